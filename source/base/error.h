@@ -1,0 +1,21 @@
+/* What went wrong, in words for the person at the keyboard.
+ * Library code adds one line per problem and returns the status; it never prints and never exits. */
+#ifndef BRECCIA_BASE_ERROR_H
+#define BRECCIA_BASE_ERROR_H
+
+#include "breccia/breccia.h"
+#include <stddef.h>
+
+typedef struct breccia_error Error;
+
+/** Adds one line to the error (NULL: the line is dropped).
+ *  @return `status`, so that a caller can write `return error_add(error, BRECCIA_USER_ERROR, "...")` */
+int error_add(Error *error, int status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/** @return the number of lines added so far */
+int error_count(const Error *error);
+
+/** Forgets all lines. */
+void error_clear(Error *error);
+
+#endif

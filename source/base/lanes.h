@@ -1,0 +1,66 @@
+/* Short vectors: four doubles side by side, written with the compilers' own vector types so that one text serves
+ * every processor. A slice is eight particles: two such vectors. Eight, because one byte then holds the intact bits of
+ * a slot; four per vector, because a 3 x 3 accumulator and its operands then fit in the 16 registers of AVX2. */
+#ifndef BRECCIA_BASE_LANES_H
+#define BRECCIA_BASE_LANES_H
+
+#include <stdint.h>
+#include <string.h>
+
+enum { LANES = 4, SLICE = 8 };
+
+typedef double Lanes __attribute__((vector_size(32)));
+typedef int64_t LaneMask __attribute__((vector_size(32)));
+
+/* Hot loops are compiled once per processor generation and chosen when the program starts. The sanitizers' start-up
+ * comes after that choice, so their builds have the plain version only. */
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(BRECCIA_NO_CLONES)
+#define BRECCIA_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define BRECCIA_CLONES
+#endif
+
+#define LANES_INLINE static inline __attribute__((always_inline))
+
+LANES_INLINE Lanes lanes_load(const double *from)
+{
+  Lanes lanes;
+  memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+LANES_INLINE void lanes_store(double *to, Lanes lanes)
+{
+  memcpy(to, &lanes, sizeof lanes);
+}
+
+LANES_INLINE Lanes lanes_set(double value)
+{
+  return (Lanes){value, value, value, value};
+}
+
+LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
+{
+  return (Lanes){from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
+}
+
+/** All bits set in the lanes whose bit (0 to 3) is set in `bits`. */
+LANES_INLINE LaneMask lanes_mask(unsigned bits)
+{
+  const LaneMask bit = {1, 2, 4, 8};
+  int64_t all = (int64_t)bits;
+  return ((LaneMask){all, all, all, all} & bit) != 0;
+}
+
+/** The lanes of `lanes` where the mask is set, zero elsewhere. */
+LANES_INLINE Lanes lanes_where(LaneMask mask, Lanes lanes)
+{
+  return (Lanes)((LaneMask)lanes & mask);
+}
+
+LANES_INLINE int lanes_any(LaneMask mask)
+{
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+#endif

@@ -1,0 +1,22 @@
+/* One labelled door for large memory, and an arena for the many small pieces that live and die together. */
+#ifndef BRECCIA_BASE_MEMORY_H
+#define BRECCIA_BASE_MEMORY_H
+
+#include "base/error.h"
+#include <stddef.h>
+
+/** Zeroed memory aligned to 64 bytes for `count` things of `size` bytes.
+ *  @param[in] label  what it is for, in words, used in the message when memory is out
+ *  @return NULL after adding a line to `error`; never NULL for count 0; freed with free() */
+void *memory_zeroed(size_t count, size_t size, const char *label, Error *error);
+
+typedef struct Arena Arena;
+
+Arena *arena_create(void);
+/** Zeroed memory that lives as long as the arena; NULL when memory is out. */
+void *arena_zeroed(Arena *arena, size_t size);
+/** A copy of the first `length` bytes of `words`, zero-terminated, that lives as long as the arena. */
+char *arena_copy(Arena *arena, const char *words, size_t length);
+void arena_destroy(Arena **arena);
+
+#endif

@@ -1,0 +1,122 @@
+#include "base/text.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void text_add_list(Text *text, const char *format, va_list arguments)
+{
+  va_list again;
+  va_copy(again, arguments);
+  int needed = vsnprintf(NULL, 0, format, again);
+  va_end(again);
+  if (needed < 0) return;
+  size_t wanted = text->length + (size_t)needed + 1;
+  if (wanted > text->capacity) {
+    size_t capacity = wanted > 2 * text->capacity ? wanted : 2 * text->capacity;
+    char *grown = realloc(text->characters, capacity);
+    if (!grown) return;
+    text->characters = grown;
+    text->capacity = capacity;
+  }
+  vsnprintf(text->characters + text->length, (size_t)needed + 1, format, arguments);
+  text->length += (size_t)needed;
+}
+
+void text_add(Text *text, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  text_add_list(text, format, arguments);
+  va_end(arguments);
+}
+
+void text_add_json(Text *text, const char *words)
+{
+  text_add(text, "\"");
+  for (const unsigned char *c = (const unsigned char *)words; *c; ++c) {
+    if (*c == '"' || *c == '\\')
+      text_add(text, "\\%c", *c);
+    else if (*c < 0x20)
+      text_add(text, "\\u%04x", *c);
+    else
+      text_add(text, "%c", *c);
+  }
+  text_add(text, "\"");
+}
+
+void text_free(Text *text)
+{
+  free(text->characters);
+  *text = (Text){0};
+}
+
+char *text_format(const char *format, ...)
+{
+  Text text = {0};
+  va_list arguments;
+  va_start(arguments, format);
+  text_add_list(&text, format, arguments);
+  va_end(arguments);
+  return text.characters;
+}
+
+int text_distance(const char *a, const char *b)
+{
+  enum { LONGEST = 64 };
+  size_t na = strlen(a), nb = strlen(b);
+  if (na >= LONGEST || nb >= LONGEST) return LONGEST;
+  int row[LONGEST + 1];
+  for (size_t j = 0; j <= nb; ++j) row[j] = (int)j;
+  for (size_t i = 1; i <= na; ++i) {
+    int diagonal = row[0];
+    row[0] = (int)i;
+    for (size_t j = 1; j <= nb; ++j) {
+      int substitute = diagonal + (tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]));
+      diagonal = row[j];
+      int other = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+      row[j] = substitute < other ? substitute : other;
+    }
+  }
+  return row[nb];
+}
+
+bool text_resembles(const char *word, const char *candidate, int distance)
+{
+  size_t longer = strlen(word) > strlen(candidate) ? strlen(word) : strlen(candidate);
+  return distance <= 1 + (int)longer / 4;
+}
+
+void text_file_name(const char *words, char *name, size_t size)
+{
+  size_t n = 0;
+  for (; *words && n + 1 < size; ++words) {
+    unsigned char c = (unsigned char)*words;
+    name[n++] = (char)(isalnum(c) || c == '-' || c == '.' ? c : '-');
+  }
+  name[n] = 0;
+}
+
+char *text_read_file(const char *path, size_t *length)
+{
+  FILE *file = fopen(path, "rb");
+  if (!file) return NULL;
+  size_t capacity = 1 << 16, n = 0;
+  char *content = malloc(capacity);
+  while (content) {
+    n += fread(content + n, 1, capacity - 1 - n, file);
+    if (n < capacity - 1) break;
+    char *grown = realloc(content, capacity *= 2);
+    if (!grown) free(content);
+    content = grown;
+  }
+  if (content && ferror(file)) {
+    free(content);
+    content = NULL;
+  }
+  fclose(file);
+  if (content) content[n] = 0;
+  if (length) *length = n;
+  return content;
+}

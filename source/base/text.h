@@ -1,0 +1,38 @@
+/* A growing piece of text, and the few things done with words: nearest spelling, file names, JSON quoting. */
+#ifndef BRECCIA_BASE_TEXT_H
+#define BRECCIA_BASE_TEXT_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct Text {
+  char *characters; /* ends in a zero byte once something was added; owned */
+  size_t length, capacity;
+} Text;
+
+/** Appends formatted text. When memory is out the text stays as it is. */
+void text_add(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_add_list(Text *text, const char *format, va_list arguments);
+
+/** Appends `words` as a JSON string, quotes included. */
+void text_add_json(Text *text, const char *words);
+
+void text_free(Text *text);
+
+/** @return a copy of formatted text that the caller frees, or NULL when memory is out */
+char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** @return the edit distance (insertions, deletions, substitutions, case ignored) between two words, at most 64 */
+int text_distance(const char *a, const char *b);
+
+/** @return true if `candidate` is close enough to `word` to be suggested for it */
+bool text_resembles(const char *word, const char *candidate, int distance);
+
+/** Copies `words` into `name` (size bytes) with everything but letters, digits, - and . replaced by -. */
+void text_file_name(const char *words, char *name, size_t size);
+
+/** Reads a whole file. @return its content, zero-terminated, to be freed; NULL with errno set on failure */
+char *text_read_file(const char *path, size_t *length);
+
+#endif

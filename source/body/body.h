@@ -1,0 +1,65 @@
+/* The deck's geometry turned into particles: blocks filled with lattices, notches taken out, cuts remembered. */
+#ifndef BRECCIA_BODY_BODY_H
+#define BRECCIA_BODY_BODY_H
+
+#include "body/particles.h"
+#include "body/shape.h"
+
+typedef enum Space { SPACE_3D, SPACE_PLANE_STRAIN, SPACE_PLANE_STRESS } Space;
+
+typedef struct BlockSpec {
+  SectionHead head;
+  const char *material;
+  const char *lattice; /* "cubic" or "square" */
+  double spacing, thickness;
+  Shape *shape;
+} BlockSpec;
+
+typedef struct CutSpec { /* a surface that no bond crosses */
+  SectionHead head;
+  NumberList line;    /* in the plane, or through the whole height along z */
+  NumberList polygon; /* a flat polygon in space */
+} CutSpec;
+
+typedef struct CrackSpec {
+  SectionHead head;
+  Shape *remove; /* particles inside are taken out */
+  bool cut_faces;
+  CutSpec *cut;
+} CrackSpec;
+
+extern const Section block_section, crack_section;
+
+/** A lattice that fills one block: cell (0,0,0) has its centre at `origin`. Rows run along `axis`. */
+typedef struct Lattice {
+  double origin[3], spacing;
+  int64_t cells[3];
+  int axis, across[2]; /* axis of the rows, and the two others in ascending order */
+  int64_t chunks;      /* slices that a full row would have */
+  int32_t *slice;      /* [cells[across[1]]][cells[across[0]]][chunks] slice there, or -1 */
+  double volume;       /* of a particle */
+  bool plane;
+} Lattice;
+
+typedef struct Body {
+  Particles particles;
+  int block_count;
+  const BlockSpec **blocks;
+  Lattice *lattices; /* one per block */
+  int crack_count;
+  const CrackSpec **cracks;
+  double largest_spacing;
+  bool plane; /* all lattices are square */
+} Body;
+
+/** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */
+int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks);
+void body_destroy(Body *body);
+
+/** True if the segment between two points crosses one of the body's cuts. */
+bool body_cuts(const Body *body, const double a[3], const double b[3]);
+
+/** Lattice cell of a place: slice s, lane l. */
+void lattice_cell(const Lattice *lattice, int64_t row, int64_t chunk, int lane, int64_t cell[3]);
+
+#endif

@@ -1,0 +1,124 @@
+/* Pre-existing cracks: particles taken out, and surfaces that cut bonds. */
+#include "body/body.h"
+
+#include <math.h>
+
+static void check_cut(const DeckReader *reader, void *section)
+{
+  const CutSpec *cut = section;
+  if (cut->line.count == 1)
+    node_error(reader->document, section_place(section, "line"), reader->error, "line: needs at least two points");
+  if (cut->polygon.count == 1 || cut->polygon.count == 2)
+    node_error(reader->document, section_place(section, "polygon"), reader->error, "polygon: needs at least three corners");
+  for (int n = 3; n < cut->polygon.count; ++n) {
+    const double *p = cut->polygon.values;
+    double a[3], b[3], c[3], size = 0;
+    for (int k = 0; k < 3; ++k) {
+      a[k] = p[3 + k] - p[k];
+      b[k] = p[6 + k] - p[k];
+      c[k] = p[3 * n + k] - p[k];
+      size += a[k] * a[k] + b[k] * b[k] + c[k] * c[k];
+    }
+    double volume = c[0] * (a[1] * b[2] - a[2] * b[1]) + c[1] * (a[2] * b[0] - a[0] * b[2]) +
+                    c[2] * (a[0] * b[1] - a[1] * b[0]);
+    if (fabs(volume) > 1e-9 * pow(size, 1.5)) {
+      node_error(reader->document, section_place(section, "polygon"), reader->error,
+                 "polygon: corner %d does not lie in the plane of the first three", n + 1);
+      break;
+    }
+  }
+}
+
+static const Field cut_fields[] = {
+    {"line", FIELD_POINTS, offsetof(CutSpec, line), "length", "", NULL,
+     "points [x, y] of a line; in space the cut runs through the whole height along z", NULL, NULL, 'A'},
+    {"polygon", FIELD_POINTS, offsetof(CutSpec, polygon), "length", "", NULL, "corners [x, y, z] of a flat polygon", NULL,
+     NULL, 'A'},
+};
+static const Section cut_section = {"cut", "A surface without thickness that no bond crosses.", sizeof(CutSpec),
+                                    FIELDS(cut_fields), check_cut, NULL, NULL, 0};
+
+static void check_crack(const DeckReader *reader, void *section)
+{
+  const CrackSpec *crack = section;
+  if (crack->remove && crack->cut_faces && !crack->remove->box)
+    node_error(reader->document, section_place(section, "cut faces"), reader->error,
+               "cut faces: works for a box only; give the cut as a line or polygon of its own");
+  else if (!crack->remove && crack->cut_faces)
+    node_error(reader->document, section_place(section, "cut faces"), reader->error, "cut faces: goes with 'remove'");
+}
+
+static const Field crack_fields[] = {
+    {"remove", FIELD_SECTION, offsetof(CrackSpec, remove), NULL, "", NULL, "particles inside this shape are taken out",
+     &shape_section, NULL, 'A'},
+    {"cut", FIELD_SECTION, offsetof(CrackSpec, cut), NULL, "", NULL, "bonds across this surface are cut", &cut_section,
+     NULL, 'A'},
+    {"cut faces", FIELD_FLAG, offsetof(CrackSpec, cut_faces), NULL, "no", NULL,
+     "with 'remove' of a box: bonds that pass through the box are cut too, so that its faces do not hold together", NULL,
+     NULL, 0},
+};
+const Section crack_section = {"crack",           "A notch or crack that is there from the beginning.",
+                               sizeof(CrackSpec), FIELDS(crack_fields), check_crack, NULL, NULL, 0};
+
+/** True if segments ab and cd of the x-y plane cross; touching an end of cd counts. */
+static bool segments_cross(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+  double rx = b[0] - a[0], ry = b[1] - a[1], sx = d[0] - c[0], sy = d[1] - c[1];
+  double cross = rx * sy - ry * sx;
+  double scale = sqrt((rx * rx + ry * ry) * (sx * sx + sy * sy));
+  if (fabs(cross) <= 1e-12 * scale) return false; /* along the cut */
+  double t = ((c[0] - a[0]) * sy - (c[1] - a[1]) * sx) / cross, u = ((c[0] - a[0]) * ry - (c[1] - a[1]) * rx) / cross;
+  const double end = 1e-9; /* a bond that meets the very end of a cut is cut, whatever the rounding */
+  return t >= -end && t <= 1 + end && u >= -end && u <= 1 + end;
+}
+
+static bool polygon_crossed(const double *corners, int count, const double a[3], const double b[3])
+{
+  double u[3], v[3], normal[3], along = 0, before = 0;
+  for (int k = 0; k < 3; ++k) {
+    u[k] = corners[3 + k] - corners[k];
+    v[k] = corners[6 + k] - corners[k];
+  }
+  for (int k = 0; k < 3; ++k) {
+    normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    along += normal[k] * (b[k] - a[k]);
+    before += normal[k] * (corners[k] - a[k]);
+  }
+  if (along == 0) return false;
+  double t = before / along;
+  if (t < -1e-9 || t > 1 + 1e-9) return false;
+  /* Seen along the largest component of the normal the polygon keeps its shape. */
+  int drop = 0;
+  for (int k = 1; k < 3; ++k)
+    if (fabs(normal[k]) > fabs(normal[drop])) drop = k;
+  int ix = (drop + 1) % 3, iy = (drop + 2) % 3;
+  double x = a[ix] + t * (b[ix] - a[ix]), y = a[iy] + t * (b[iy] - a[iy]);
+  bool inside = false;
+  for (int m = 0, n = count - 1; m < count; n = m++) {
+    const double *p = corners + 3 * m, *q = corners + 3 * n;
+    if ((p[iy] > y) != (q[iy] > y) && x < (q[ix] - p[ix]) * (y - p[iy]) / (q[iy] - p[iy]) + p[ix]) inside = !inside;
+  }
+  return inside;
+}
+
+bool body_cuts(const Body *body, const double a[3], const double b[3])
+{
+  for (int c = 0; c < body->crack_count; ++c) {
+    const CrackSpec *crack = body->cracks[c];
+    if (crack->cut_faces && crack->remove) {
+      double low[3], high[3];
+      box_corners(crack->remove->box, body->largest_spacing, low, high);
+      if (body->plane) {
+        low[2] = -INFINITY;
+        high[2] = INFINITY;
+      }
+      if (box_meets_segment(low, high, a, b)) return true;
+    }
+    if (!crack->cut) continue;
+    const NumberList *line = &crack->cut->line, *polygon = &crack->cut->polygon;
+    for (int n = 0; n + 1 < line->count; ++n)
+      if (segments_cross(a, b, line->values + 3 * n, line->values + 3 * (n + 1))) return true;
+    if (polygon->count && polygon_crossed(polygon->values, polygon->count, a, b)) return true;
+  }
+  return false;
+}

@@ -1,0 +1,84 @@
+#include "body/particles.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+double *places_array(int64_t places, const char *label, Error *error)
+{
+  double *memory = memory_zeroed((size_t)places + 2 * SLICE, sizeof(double), label, error);
+  return memory ? memory + SLICE : NULL;
+}
+
+void places_free(double **array)
+{
+  if (*array) free(*array - SLICE);
+  *array = NULL;
+}
+
+int particles_create(Particles *particles, int64_t slices, int64_t count, Error *error)
+{
+  *particles = (Particles){.slices = slices, .count = count, .places = slices * SLICE};
+  int failed = 0;
+  for (int k = 0; k < 3; ++k) {
+    failed |= !(particles->position[k] = places_array(particles->places, "positions", error));
+    failed |= !(particles->displacement[k] = places_array(particles->places, "displacements", error));
+    failed |= !(particles->velocity[k] = places_array(particles->places, "velocities", error));
+    failed |= !(particles->internal[k] = places_array(particles->places, "internal forces", error));
+    failed |= !(particles->external[k] = places_array(particles->places, "external forces", error));
+  }
+  failed |= !(particles->volume = places_array(particles->places, "volumes", error));
+  failed |= !(particles->density = places_array(particles->places, "densities", error));
+  failed |= !(particles->number = memory_zeroed((size_t)particles->places, sizeof(int32_t), "numbers", error));
+  failed |= !(particles->place_of = memory_zeroed((size_t)count, sizeof(int32_t), "numbers", error));
+  failed |= !(particles->block = memory_zeroed((size_t)slices, sizeof(int32_t), "block of each slice", error));
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+void particles_destroy(Particles *particles)
+{
+  for (int k = 0; k < 3; ++k) {
+    places_free(&particles->position[k]);
+    places_free(&particles->displacement[k]);
+    places_free(&particles->velocity[k]);
+    places_free(&particles->internal[k]);
+    places_free(&particles->external[k]);
+  }
+  places_free(&particles->volume);
+  places_free(&particles->density);
+  free(particles->number);
+  free(particles->place_of);
+  free(particles->block);
+  *particles = (Particles){0};
+}
+
+void particles_bounds(const Particles *particles, double low[3], double high[3])
+{
+  for (int k = 0; k < 3; ++k) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+    for (int64_t n = 0; n < particles->count; ++n) {
+      double x = particles->position[k][particles->place_of[n]];
+      low[k] = fmin(low[k], x);
+      high[k] = fmax(high[k], x);
+    }
+  }
+}
+
+int32_t particles_nearest(const Particles *particles, const double point[3])
+{
+  int32_t nearest = -1;
+  double best = INFINITY;
+  for (int64_t n = 0; n < particles->count; ++n) {
+    int32_t place = particles->place_of[n];
+    double distance = 0;
+    for (int k = 0; k < 3; ++k) {
+      double d = particles->position[k][place] - point[k];
+      distance += d * d;
+    }
+    if (distance < best * (1 - 1e-12)) { /* roundings must not decide between equals */
+      best = distance;
+      nearest = place;
+    }
+  }
+  return nearest;
+}

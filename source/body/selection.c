@@ -1,0 +1,91 @@
+#include "body/selection.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *face_word(int k)
+{
+  static const char *const words[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
+  return words[k];
+}
+
+static void check_selection(const DeckReader *reader, void *section)
+{
+  const SelectionSpec *s = section;
+  if (!s->block && !s->face && !s->inside && isnan(s->nearest[0]) && !s->all)
+    node_error(reader->document, s->head.node, reader->error,
+               "selection: say what is selected: block, face, inside, nearest or 'all: yes'");
+}
+
+static const Field selection_fields[] = {
+    {"block", FIELD_TEXT, offsetof(SelectionSpec, block), NULL, "", NULL, "particles of this block", NULL, NULL, 0},
+    {"face", FIELD_CHOICE, offsetof(SelectionSpec, face), NULL, "", NULL,
+     "particles next to the outermost ones in this direction", NULL, face_word, 0},
+    {"layers", FIELD_COUNT, offsetof(SelectionSpec, layers), NULL, "1", "[1, inf)", "how many layers of a face", NULL, NULL,
+     0},
+    {"inside", FIELD_SECTION, offsetof(SelectionSpec, inside), NULL, "", NULL, "particles inside this shape",
+     &shape_section, NULL, 0},
+    {"nearest", FIELD_POINT, offsetof(SelectionSpec, nearest), "length", "", NULL, "the one particle nearest to this point",
+     NULL, NULL, 0},
+    {"all", FIELD_FLAG, offsetof(SelectionSpec, all), NULL, "no", NULL, "the whole body", NULL, NULL, 0},
+};
+const Section selection_section = {"selection",           "Some particles. Where several conditions stand, all must hold.",
+                                   sizeof(SelectionSpec), FIELDS(selection_fields), check_selection, NULL, NULL, 0};
+
+static int block_index(const Body *body, const char *name)
+{
+  for (int b = 0; b < body->block_count; ++b)
+    if (!strcmp(body->blocks[b]->head.name, name)) return b;
+  return -1;
+}
+
+int selection_create(Selection *selection, const Body *body, const DeckReader *reader, const SectionList *named,
+                     const Reference *reference)
+{
+  *selection = (Selection){0};
+  const SelectionSpec *spec = reference->section;
+  if (reference->name) spec = section_find(named, reference->name);
+  if (!spec) {
+    if (reference->name) section_unknown(reader, reference->node, "selection", reference->name, named);
+    return BRECCIA_USER_ERROR;
+  }
+  int block = -1;
+  if (spec->block && (block = block_index(body, spec->block)) < 0)
+    return node_error(reader->document, section_place(spec, "block"), reader->error, "block: there is no block '%s'",
+                      spec->block);
+  const Particles *particles = &body->particles;
+  selection->places = memory_zeroed((size_t)particles->count, sizeof(int32_t), "selection", reader->error);
+  if (!selection->places) return BRECCIA_FAILURE;
+
+  int axis = spec->face ? spec->face[0] - 'x' : 0;
+  double sign = spec->face && spec->face[1] == '-' ? -1 : 1, outermost = -INFINITY;
+  for (int64_t n = 0; spec->face && n < particles->count; ++n) {
+    int32_t place = particles->place_of[n];
+    if (block >= 0 && particles->block[place / SLICE] != block) continue;
+    outermost = fmax(outermost, sign * particles->position[axis][place]);
+  }
+  int32_t nearest = isnan(spec->nearest[0]) ? -1 : particles_nearest(particles, spec->nearest);
+  for (int64_t n = 0; n < particles->count; ++n) {
+    int32_t place = particles->place_of[n];
+    int own = particles->block[place / SLICE];
+    double point[3] = {particles->position[0][place], particles->position[1][place], particles->position[2][place]};
+    double spacing = body->lattices[own].spacing;
+    if (block >= 0 && own != block) continue;
+    if (spec->face && sign * point[axis] < outermost - spacing * ((double)spec->layers - 0.5)) continue;
+    if (spec->inside && !shape_contains(spec->inside, spacing, body->plane, point, 1e-6 * spacing)) continue;
+    if (nearest >= 0 && place != nearest) continue;
+    selection->places[selection->count++] = place;
+  }
+  if (!selection->count) {
+    selection_destroy(selection);
+    return node_error(reader->document, reference->node, reader->error, "the selection holds no particle");
+  }
+  return BRECCIA_OK;
+}
+
+void selection_destroy(Selection *selection)
+{
+  free(selection->places);
+  *selection = (Selection){0};
+}

@@ -1,0 +1,211 @@
+#include "body/shape.h"
+
+#include <math.h>
+
+static void check_box(const DeckReader *reader, void *section)
+{
+  const Box *box = section;
+  bool corners = !isnan(box->from[0]) || !isnan(box->to[0]), counted = box->particles[0] >= 0;
+  if (corners == counted || (corners && (isnan(box->from[0]) || isnan(box->to[0]))))
+    node_error(reader->document, box->head.node, reader->error,
+               "box: give either 'from' and 'to', or 'particles' (and 'first particle')");
+  else if (corners && !(box->from[0] < box->to[0] && box->from[1] < box->to[1] && box->from[2] <= box->to[2]))
+    node_error(reader->document, box->head.node, reader->error,
+               "box: 'to' must lie beyond 'from' in every direction; found from [%g, %g, %g] to [%g, %g, %g]",
+               box->from[0], box->from[1], box->from[2], box->to[0], box->to[1], box->to[2]);
+}
+
+static const Field box_fields[] = {
+    {"from", FIELD_POINT, offsetof(Box, from), "length", "", NULL, "lowest corner", NULL, NULL, 0},
+    {"to", FIELD_POINT, offsetof(Box, to), "length", "", NULL, "highest corner", NULL, NULL, 0},
+    {"particles", FIELD_COUNTS, offsetof(Box, particles), NULL, "", "[1, 1e7]",
+     "size as numbers of particles along x, y, z, instead of corners", NULL, NULL, 0},
+    {"first particle", FIELD_POINT, offsetof(Box, first), "length", "", NULL,
+     "centre of the first particle, with 'particles' (half a spacing from the origin when absent)", NULL, NULL, 0},
+};
+const Section box_section = {"box", "A box along the axes.", sizeof(Box), FIELDS(box_fields), check_box, NULL, NULL, 0};
+
+static const Field cylinder_fields[] = {
+    {"from", FIELD_POINT, offsetof(Cylinder, from), "length", NULL, NULL, "centre of one end", NULL, NULL, 0},
+    {"to", FIELD_POINT, offsetof(Cylinder, to), "length", NULL, NULL, "centre of the other end", NULL, NULL, 0},
+    {"radius", FIELD_NUMBER, offsetof(Cylinder, radius), "length", NULL, "(0, inf)", "radius", NULL, NULL, 0},
+};
+static void check_cylinder(const DeckReader *reader, void *section)
+{
+  const Cylinder *c = section;
+  if (c->from[0] == c->to[0] && c->from[1] == c->to[1] && c->from[2] == c->to[2])
+    node_error(reader->document, c->head.node, reader->error, "cylinder: 'from' and 'to' are the same point");
+}
+static const Section cylinder_section = {"cylinder",     "A round bar between two points (in the plane: a strip).",
+                                         sizeof(Cylinder), FIELDS(cylinder_fields), check_cylinder, NULL, NULL, 0};
+
+static const Field sphere_fields[] = {
+    {"centre", FIELD_POINT, offsetof(Sphere, centre), "length", NULL, NULL, "centre", NULL, NULL, 0},
+    {"radius", FIELD_NUMBER, offsetof(Sphere, radius), "length", NULL, "(0, inf)", "radius", NULL, NULL, 0},
+};
+static const Section sphere_section = {"sphere", "A ball (in the plane: a disc).", sizeof(Sphere), FIELDS(sphere_fields),
+                                       NULL, NULL, NULL, 0};
+
+static void check_polygon(const DeckReader *reader, void *section)
+{
+  const Polygon *polygon = section;
+  if (polygon->corners.count < 3)
+    node_error(reader->document, section_place(section, "corners"), reader->error, "polygon: needs at least 3 corners");
+  else if (polygon->top <= polygon->bottom)
+    node_error(reader->document, polygon->head.node, reader->error, "polygon: 'top' must be above 'bottom'");
+}
+static const Field polygon_fields[] = {
+    {"corners", FIELD_POINTS, offsetof(Polygon, corners), "length", NULL, NULL, "corners [x, y] in order", NULL, NULL, 0},
+    {"bottom", FIELD_NUMBER, offsetof(Polygon, bottom), "length", "0", NULL, "where the extrusion along z begins", NULL,
+     NULL, 0},
+    {"top", FIELD_NUMBER, offsetof(Polygon, top), "length", "1", NULL, "where it ends (no meaning in the plane)", NULL,
+     NULL, 0},
+};
+static const Section polygon_section = {"polygon",       "A polygon in the x-y plane, extruded along z.",
+                                        sizeof(Polygon), FIELDS(polygon_fields), check_polygon, NULL, NULL, 0};
+
+static void check_shape(const DeckReader *reader, void *section)
+{
+  const Shape *shape = section;
+  const Node *difference = node_get(shape->head.node, "difference");
+  if (difference && shape->difference.count < 2)
+    node_error(reader->document, difference, reader->error,
+               "difference: needs at least two shapes, the first minus the others");
+}
+static const Field shape_fields[] = {
+    {"box", FIELD_SECTION, offsetof(Shape, box), NULL, "", NULL, "a box", &box_section, NULL, 'A'},
+    {"cylinder", FIELD_SECTION, offsetof(Shape, cylinder), NULL, "", NULL, "a round bar", &cylinder_section, NULL, 'A'},
+    {"sphere", FIELD_SECTION, offsetof(Shape, sphere), NULL, "", NULL, "a ball", &sphere_section, NULL, 'A'},
+    {"polygon", FIELD_SECTION, offsetof(Shape, polygon), NULL, "", NULL, "an extruded polygon", &polygon_section, NULL,
+     'A'},
+    {"union", FIELD_SECTIONS, offsetof(Shape, together), NULL, "", NULL, "all of several shapes", &shape_section, NULL, 'A'},
+    {"difference", FIELD_SECTIONS, offsetof(Shape, difference), NULL, "", NULL, "the first shape minus the others",
+     &shape_section, NULL, 'A'},
+};
+const Section shape_section = {"shape",         "What a block fills. Shapes nest: a union may hold differences.",
+                               sizeof(Shape), FIELDS(shape_fields), check_shape, NULL, NULL, 0};
+
+void box_corners(const Box *box, double spacing, double low[3], double high[3])
+{
+  for (int k = 0; k < 3; ++k) {
+    if (box->particles[0] < 0) {
+      low[k] = box->from[k];
+      high[k] = box->to[k];
+    } else {
+      low[k] = isnan(box->first[k]) ? 0 : box->first[k] - spacing / 2;
+      high[k] = low[k] + spacing * (double)box->particles[k];
+    }
+  }
+}
+
+bool polygon_contains(const double *corners, int count, double x, double y)
+{
+  bool inside = false;
+  for (int a = 0, b = count - 1; a < count; b = a++) {
+    const double *p = corners + 3 * a, *q = corners + 3 * b;
+    if ((p[1] > y) != (q[1] > y) && x < (q[0] - p[0]) * (y - p[1]) / (q[1] - p[1]) + p[0]) inside = !inside;
+  }
+  return inside;
+}
+
+bool shape_contains(const Shape *shape, double spacing, bool plane, const double p[3], double tolerance)
+{
+  int dimensions = plane ? 2 : 3;
+  if (shape->box) {
+    double low[3], high[3];
+    box_corners(shape->box, spacing, low, high);
+    for (int k = 0; k < dimensions; ++k)
+      if (p[k] < low[k] - tolerance || p[k] > high[k] + tolerance) return false;
+    return true;
+  }
+  if (shape->sphere) {
+    double distance = 0;
+    for (int k = 0; k < dimensions; ++k) {
+      double d = p[k] - shape->sphere->centre[k];
+      distance += d * d;
+    }
+    return sqrt(distance) <= shape->sphere->radius + tolerance;
+  }
+  if (shape->cylinder) {
+    const Cylinder *c = shape->cylinder;
+    double axis = 0, along = 0, square = 0;
+    for (int k = 0; k < dimensions; ++k) {
+      double a = c->to[k] - c->from[k], d = p[k] - c->from[k];
+      axis += a * a;
+      along += a * d;
+      square += d * d;
+    }
+    double length = sqrt(axis), x = along / length;
+    return x >= -tolerance && x <= length + tolerance && sqrt(fmax(0, square - x * x)) <= c->radius + tolerance;
+  }
+  if (shape->polygon) {
+    const Polygon *polygon = shape->polygon;
+    bool level = plane || (p[2] >= polygon->bottom - tolerance && p[2] <= polygon->top + tolerance);
+    return level && polygon_contains(polygon->corners.values, polygon->corners.count, p[0], p[1]);
+  }
+  for (int k = 0; k < shape->together.count; ++k)
+    if (shape_contains(shape->together.items[k], spacing, plane, p, tolerance)) return true;
+  if (!shape->difference.count || !shape_contains(shape->difference.items[0], spacing, plane, p, tolerance)) return false;
+  for (int k = 1; k < shape->difference.count; ++k)
+    if (shape_contains(shape->difference.items[k], spacing, plane, p, -tolerance)) return false;
+  return true;
+}
+
+void shape_bounds(const Shape *shape, double spacing, double low[3], double high[3])
+{
+  for (int k = 0; k < 3; ++k) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
+  if (shape->box)
+    box_corners(shape->box, spacing, low, high);
+  else if (shape->sphere) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = shape->sphere->centre[k] - shape->sphere->radius;
+      high[k] = shape->sphere->centre[k] + shape->sphere->radius;
+    }
+  } else if (shape->cylinder) {
+    const Cylinder *c = shape->cylinder;
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += (c->to[k] - c->from[k]) * (c->to[k] - c->from[k]);
+    for (int k = 0; k < 3; ++k) {
+      double a = c->to[k] - c->from[k], reach = c->radius * sqrt(fmax(0, 1 - a * a / square));
+      low[k] = fmin(c->from[k], c->to[k]) - reach;
+      high[k] = fmax(c->from[k], c->to[k]) + reach;
+    }
+  } else if (shape->polygon) {
+    const Polygon *polygon = shape->polygon;
+    for (int n = 0; n < polygon->corners.count; ++n)
+      for (int k = 0; k < 2; ++k) {
+        low[k] = fmin(low[k], polygon->corners.values[3 * n + k]);
+        high[k] = fmax(high[k], polygon->corners.values[3 * n + k]);
+      }
+    low[2] = polygon->bottom;
+    high[2] = polygon->top;
+  } else if (shape->difference.count)
+    shape_bounds(shape->difference.items[0], spacing, low, high);
+  for (int n = 0; n < shape->together.count; ++n) {
+    double a[3], b[3];
+    shape_bounds(shape->together.items[n], spacing, a, b);
+    for (int k = 0; k < 3; ++k) {
+      low[k] = fmin(low[k], a[k]);
+      high[k] = fmax(high[k], b[k]);
+    }
+  }
+}
+
+bool box_meets_segment(const double low[3], const double high[3], const double a[3], const double b[3])
+{
+  double enter = 0, leave = 1;
+  for (int k = 0; k < 3; ++k) {
+    double d = b[k] - a[k];
+    if (d == 0) {
+      if (a[k] < low[k] || a[k] > high[k]) return false;
+      continue;
+    }
+    double t0 = (low[k] - a[k]) / d, t1 = (high[k] - a[k]) / d;
+    enter = fmax(enter, fmin(t0, t1));
+    leave = fmin(leave, fmax(t0, t1));
+  }
+  return enter <= leave;
+}

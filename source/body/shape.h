@@ -1,0 +1,57 @@
+/* Solid shapes: boxes, cylinders, spheres, extruded polygons, their unions and differences. */
+#ifndef BRECCIA_BODY_SHAPE_H
+#define BRECCIA_BODY_SHAPE_H
+
+#include "deck/section.h"
+
+typedef struct Box {
+  SectionHead head;
+  double from[3], to[3];  /* NaN when given by particles */
+  int64_t particles[3];   /* -1 when given by corners */
+  double first[3];        /* centre of the first particle */
+} Box;
+
+typedef struct Cylinder {
+  SectionHead head;
+  double from[3], to[3], radius;
+} Cylinder;
+
+typedef struct Sphere {
+  SectionHead head;
+  double centre[3], radius;
+} Sphere;
+
+typedef struct Polygon {
+  SectionHead head;
+  NumberList corners;
+  double bottom, top;
+} Polygon;
+
+typedef struct Shape {
+  SectionHead head;
+  Box *box;
+  Cylinder *cylinder;
+  Sphere *sphere;
+  Polygon *polygon;
+  SectionList together, difference; /* of Shape */
+} Shape;
+
+extern const Section shape_section, box_section;
+
+/** Corners of a box; `spacing` is needed where it is given by numbers of particles. */
+void box_corners(const Box *box, double spacing, double low[3], double high[3]);
+
+/** True if a point lies inside; a surface belongs to the shape within `tolerance`.
+ *  @param[in] plane  the third coordinate does not count */
+bool shape_contains(const Shape *shape, double spacing, bool plane, const double point[3], double tolerance);
+
+/** Corners of a box that holds the shape. */
+void shape_bounds(const Shape *shape, double spacing, double low[3], double high[3]);
+
+/** True if a segment from a to b passes through a box. */
+bool box_meets_segment(const double low[3], const double high[3], const double a[3], const double b[3]);
+
+/** True if a point of the plane lies inside a polygon of `count` corners, three numbers each, seen along z. */
+bool polygon_contains(const double *corners, int count, double x, double y);
+
+#endif

@@ -1,0 +1,128 @@
+/* breccia: peridynamics for concrete, soil and rock. A thin client of the library. */
+#include "cli/verbs.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+const Verb *const verbs[] = {&verb_run,  &verb_check, &verb_new,    &verb_plot,       &verb_models,
+                             &verb_material, &verb_schema, &verb_completion, NULL};
+
+enum { MOST_OPTIONS = 32 };
+
+int fail(breccia_error *error, int status)
+{
+  const char *words = breccia_error_text(error);
+  if (*words) fprintf(stderr, "%s\n", words);
+  breccia_error_destroy(&error);
+  return status;
+}
+
+char *result_folder(const char *deck)
+{
+  const char *slash = strrchr(deck, '/'), *dot = strrchr(deck, '.');
+  if (!dot || dot == deck || (slash && dot <= slash + 1)) return text_format("%s.results", deck);
+  return text_format("%.*s", (int)(dot - deck), deck);
+}
+
+int read_whole(const char *words, const char *option, long long least, long long *value)
+{
+  char *end;
+  errno = 0;
+  *value = strtoll(words, &end, 10);
+  if (*words && !*end && !errno && *value >= least) return 0;
+  fprintf(stderr, "breccia: --%s: '%s' is not a whole number of at least %lld\n", option, words, least);
+  return 1;
+}
+
+static int option_count(const Verb *verb)
+{
+  int count = 0;
+  while (verb->options && verb->options[count].name) ++count;
+  return count;
+}
+
+void print_verb_help(const Verb *verb, FILE *out)
+{
+  fprintf(out, "usage: breccia %s %s\n\n%s\n", verb->name, verb->arguments, verb->about);
+  int count = option_count(verb);
+  if (count) fprintf(out, "\n");
+  for (int k = 0; k < count; ++k) {
+    char words[64];
+    const Option *o = &verb->options[k];
+    snprintf(words, sizeof words, "--%s%s%s", o->name, o->argument ? " " : "", o->argument ? o->argument : "");
+    fprintf(out, "  %-28s %s\n", words, o->about);
+  }
+  if (verb->more) fprintf(out, "\n%s\n", verb->more);
+}
+
+int read_options(int argc, char **argv, const Verb *verb, const char **values,
+                 void (*on_each)(void *context, int option, const char *value), void *context)
+{
+  struct option table[MOST_OPTIONS + 2] = {{0}};
+  int count = option_count(verb), which, code;
+  for (int k = 0; k < count; ++k) {
+    values[k] = NULL;
+    table[k] = (struct option){verb->options[k].name, verb->options[k].argument ? required_argument : no_argument, NULL, 0};
+  }
+  table[count] = (struct option){"help", no_argument, NULL, 'h'};
+  optind = 1;
+  opterr = 0;
+  while ((code = getopt_long(argc, argv, ":h", table, &which)) != -1) {
+    if (code == 'h') {
+      print_verb_help(verb, stdout);
+      return -2;
+    }
+    if (code != 0) {
+      const char *given = argv[optind - 1];
+      if (code == ':')
+        fprintf(stderr, "breccia %s: %s needs a value; see 'breccia %s --help'\n", verb->name, given, verb->name);
+      else
+        fprintf(stderr, "breccia %s: unknown option %s; see 'breccia %s --help'\n", verb->name, given, verb->name);
+      return -1;
+    }
+    values[which] = optarg ? optarg : "yes";
+    if (on_each) on_each(context, which, values[which]);
+  }
+  return optind;
+}
+
+static void print_help(FILE *out)
+{
+  fprintf(out, "breccia %s: peridynamics for concrete, soil and rock\n\nusage: breccia VERB ...\n\n", BRECCIA_VERSION);
+  for (int k = 0; verbs[k]; ++k) fprintf(out, "  %-11s %s\n", verbs[k]->name, verbs[k]->about);
+  fprintf(out, "\n'breccia VERB --help' tells more. To begin: breccia new plate.yaml, then breccia run plate.yaml\n");
+}
+
+int main(int argc, char **argv)
+{
+  const char *word = argc > 1 ? argv[1] : "--help";
+  if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
+    for (int k = 0; argc > 2 && verbs[k]; ++k)
+      if (!strcmp(verbs[k]->name, argv[2])) {
+        print_verb_help(verbs[k], stdout);
+        return 0;
+      }
+    print_help(stdout);
+    return argc > 1 ? 0 : 2;
+  }
+  if (!strcmp(word, "--version")) {
+    printf("breccia %s\n", BRECCIA_VERSION);
+    return 0;
+  }
+  const char *nearest = NULL;
+  int best = 1000;
+  for (int k = 0; verbs[k]; ++k) {
+    if (!strcmp(verbs[k]->name, word)) return verbs[k]->run(argc - 1, argv + 1, verbs[k]);
+    int distance = text_distance(word, verbs[k]->name);
+    if (distance < best) {
+      best = distance;
+      nearest = verbs[k]->name;
+    }
+  }
+  if (nearest && text_resembles(word, nearest, best))
+    fprintf(stderr, "breccia: there is no verb '%s'; did you mean '%s'?\n", word, nearest);
+  else
+    fprintf(stderr, "breccia: there is no verb '%s'; 'breccia --help' lists them\n", word);
+  return 2;
+}

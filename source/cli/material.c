@@ -1,0 +1,184 @@
+/* One material point driven through a strain path. */
+#include "base/memory.h"
+#include "cli/verbs.h"
+#include "constitutive/material.h"
+#include "results/curve.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MODEL, SET, STRAIN, OUTPUT, TANGENT, ELASTIC, COUNT };
+
+static const Option options[] = {
+    {"model", "NAME", "constitutive model"},
+    {"set", "KEY=VALUE", "a parameter, with or without unit (repeat for each)"},
+    {"strain", "PATH.csv", "total strains: columns e11,e22,e33,g12,g23,g31"},
+    {"output", "OUT.csv", "where strains and stresses go (standard output)"},
+    {"tangent", NULL, "add the tangent: columns C11 ... C66, row by row"},
+    {"elastic-rows", "N", "respond elastically in the first N rows (gravity stage)"},
+    {0},
+};
+
+typedef struct Settings {
+  const char *items[128];
+  int count;
+} Settings;
+
+static void keep_settings(void *context, int option, const char *value)
+{
+  Settings *settings = context;
+  if (option == SET && settings->count < 128) settings->items[settings->count++] = value;
+}
+
+/** Reads KEY=VALUE words into the law's parameter values. */
+static int read_parameters(const breccia_law *law, const Settings *settings, const Units *units, double *values,
+                           breccia_error *error)
+{
+  int status = BRECCIA_OK;
+  bool given[128] = {false};
+  for (int s = 0; s < settings->count; ++s) {
+    const char *equals = strchr(settings->items[s], '=');
+    size_t n = equals ? (size_t)(equals - settings->items[s]) : 0;
+    int which = -1;
+    for (int k = 0; k < law->parameter_count; ++k)
+      if (equals && strlen(law->parameters[k].name) == n && !strncmp(law->parameters[k].name, settings->items[s], n)) which = k;
+    if (which < 0) {
+      Text names = {0};
+      for (int k = 0; k < law->parameter_count; ++k) text_add(&names, "%s'%s'", k ? ", " : "", law->parameters[k].name);
+      status = error_add(error, BRECCIA_USER_ERROR, "--set %s: expected KEY=VALUE with one of the keys %s",
+                         settings->items[s], names.characters);
+      text_free(&names);
+      continue;
+    }
+    Text reason = {0};
+    if (units_read(units, dimension_find(law->parameters[which].dimension), equals + 1, &values[which], &reason))
+      status = error_add(error, BRECCIA_USER_ERROR, "--set %s: %s", settings->items[s], reason.characters);
+    else if (!interval_contains(law->parameters[which].range, values[which])) {
+      char words[128];
+      interval_describe(law->parameters[which].range, words, sizeof words);
+      status = error_add(error, BRECCIA_USER_ERROR, "--set %s: must be %s", settings->items[s], words);
+    }
+    text_free(&reason);
+    given[which] = true;
+  }
+  for (int k = 0; k < law->parameter_count; ++k) {
+    const breccia_parameter *p = &law->parameters[k];
+    Text reason = {0};
+    if (given[k]) continue;
+    values[k] = NAN;
+    if (!p->standard)
+      status = error_add(error, BRECCIA_USER_ERROR, "missing --set '%s=...' (%s)", p->name, p->meaning);
+    else if (*p->standard)
+      units_read(units, dimension_find(p->dimension), p->standard, &values[k], &reason);
+    text_free(&reason);
+  }
+  return status;
+}
+
+/** Strain rows [count][6], to be freed. */
+static double *read_path(const char *path, int *count, breccia_error *error)
+{
+  static const char *const names[] = {"e11", "e22", "e33", "g12", "g23", "g31"};
+  double *rows = NULL;
+  for (int k = 0; k < 6; ++k) {
+    char label[128];
+    int n;
+    double *column = csv_column(path, names[k], &n, label, error);
+    if (!column) {
+      free(rows);
+      return NULL;
+    }
+    if (!k) rows = malloc(sizeof(double) * 6 * (size_t)(n + 1));
+    for (int i = 0; rows && i < n && (!k || i < *count); ++i) rows[6 * i + k] = column[i];
+    *count = n;
+    free(column);
+  }
+  return rows;
+}
+
+static int drive(const Material *m, const double *rows, int count, long long elastic, bool tangent, FILE *out,
+                 breccia_error *error)
+{
+  size_t size = (size_t)m->history_values + 1;
+  double *histories = calloc(2 * size, sizeof(double)), *committed = histories, *trial = histories + size;
+  double strain[6], stress[6], d[36];
+  if (!histories) return error_add(error, BRECCIA_FAILURE, "out of memory");
+  if (m->law->begin) {
+    m->law->begin(m->constants, committed);
+    m->law->begin(m->constants, trial);
+  }
+  fprintf(out, "e11,e22,e33,g12,g23,g31,s11,s22,s33,s12,s23,s31");
+  for (int k = 0; tangent && k < 36; ++k) fprintf(out, ",C%d%d", k / 6 + 1, k % 6 + 1);
+  fprintf(out, "\n");
+  int status = BRECCIA_OK;
+  for (int i = 0; i < count && !status; ++i) {
+    breccia_batch batch = {.count = 1, .committed = committed, .trial = trial, .tangent = tangent ? d : NULL,
+                           .elastic_stage = i < elastic};
+    for (int k = 0; k < 6; ++k) {
+      strain[k] = rows[6 * i + k];
+      batch.strain[k] = &strain[k];
+      batch.stress[k] = &stress[k];
+    }
+    if (m->law->update(m->constants, &batch) >= 0)
+      status = error_add(error, BRECCIA_FAILURE, "row %d: the law could not be integrated at this strain", i + 1);
+    for (int k = 0; k < 6; ++k) fprintf(out, "%s%.17g", k ? "," : "", strain[k]);
+    for (int k = 0; k < 6; ++k) fprintf(out, ",%.17g", stress[k]);
+    for (int k = 0; tangent && k < 36; ++k) fprintf(out, ",%.17g", d[k]);
+    fprintf(out, "\n");
+    double *other = committed;
+    committed = trial;
+    trial = other;
+  }
+  free(histories);
+  return status;
+}
+
+static int run(int argc, char **argv, const Verb *verb)
+{
+  const char *values[COUNT];
+  Settings settings = {.count = 0};
+  int first = read_options(argc, argv, verb, values, keep_settings, &settings);
+  if (first < 0) return first == -2 ? 0 : 2;
+  if (first < argc || !values[MODEL] || !values[STRAIN]) {
+    fprintf(stderr, "breccia material: --model and --strain are needed; see 'breccia material --help'\n");
+    return 2;
+  }
+  long long elastic = 0;
+  if (values[ELASTIC] && read_whole(values[ELASTIC], "elastic-rows", 0, &elastic)) return 2;
+  breccia_error *error = breccia_error_create();
+  const breccia_law *law = law_find(NULL, values[MODEL]);
+  if (!law) {
+    error_add(error, BRECCIA_USER_ERROR, "breccia material: there is no model '%s'; 'breccia models' lists them",
+              values[MODEL]);
+    return fail(error, BRECCIA_USER_ERROR);
+  }
+  Units *units = units_create("m", "kN", "s", error);
+  double numbers[128];
+  Material material = {0};
+  int count = 0, status = units ? read_parameters(law, &settings, units, numbers, error) : BRECCIA_FAILURE;
+  if (!status) {
+    char reason[512];
+    status = material_prepare(&material, law, numbers, reason, sizeof reason);
+    if (status) error_add(error, status, "%s: %s", law->name, reason);
+  }
+  double *rows = status ? NULL : read_path(values[STRAIN], &count, error);
+  if (!status && !rows) status = BRECCIA_USER_ERROR;
+  FILE *out = stdout;
+  if (!status && values[OUTPUT] && !(out = fopen(values[OUTPUT], "w")))
+    status = error_add(error, BRECCIA_USER_ERROR, "%s: cannot be written: %s", values[OUTPUT], strerror(errno));
+  if (!status) status = drive(&material, rows, count, elastic, values[TANGENT] != NULL, out, error);
+  if (out && out != stdout && fclose(out) && !status)
+    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", values[OUTPUT], strerror(errno));
+  free(rows);
+  material_destroy(&material);
+  units_destroy(&units);
+  return fail(error, status);
+}
+
+const Verb verb_material = {"material", "--model NAME --set KEY=VALUE ... --strain PATH.csv [options]",
+                            "drive one material point through a strain path", options,
+                            "Plain numbers are in m, kN, s (stress in kPa); shear strains are engineering, tension is\n"
+                            "positive. Lines of the path that begin with # are comments.",
+                            run};

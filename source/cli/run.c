@@ -1,0 +1,93 @@
+#include "cli/verbs.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { OUTPUT, STEPS, THREADS, RESTART, FORCE, QUIET, COUNT };
+
+static const Option options[] = {
+    {"output", "DIR", "folder for the files (a folder beside the deck, named after it)"},
+    {"steps", "N", "stop after N steps in all"},
+    {"threads", "N", "number of threads (all cores)"},
+    {"restart", NULL, "go on from the checkpoint in the folder"},
+    {"force", NULL, "accept a time step above the stable one"},
+    {"quiet", NULL, "print nothing but errors"},
+    {0},
+};
+
+/* A second signal ends the program at once. */
+static volatile int interrupted;
+
+static void on_signal(int number)
+{
+  interrupted = 1;
+  signal(number, SIG_DFL);
+}
+
+static void show(void *context, int64_t step, int64_t steps, double left)
+{
+  (void)context;
+  char time[32];
+  if (left < 100)
+    snprintf(time, sizeof time, "%.0f s", left);
+  else if (left < 6000)
+    snprintf(time, sizeof time, "%.0f min", left / 60);
+  else
+    snprintf(time, sizeof time, "%.1f h", left / 3600);
+  fprintf(stderr, "\r%3.0f %%  step %lld of %lld, %s left \033[K", steps ? 100.0 * (double)step / (double)steps : 100.0,
+          (long long)step, (long long)steps, time);
+}
+
+static int run(int argc, char **argv, const Verb *verb)
+{
+  const char *values[COUNT];
+  int first = read_options(argc, argv, verb, values, NULL, NULL);
+  if (first < 0) return first == -2 ? 0 : 2;
+  if (argc - first != 1) {
+    fprintf(stderr, "breccia run: give one deck; see 'breccia run --help'\n");
+    return 2;
+  }
+  long long steps = 0, threads = 0;
+  if (values[STEPS] && read_whole(values[STEPS], "steps", 1, &steps)) return 2;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return 2;
+  const char *deck = argv[first];
+  breccia_error *error = breccia_error_create();
+  const breccia_options wishes = {.threads = (int)(threads > 4096 ? 4096 : threads), .force = values[FORCE] != NULL};
+  breccia_model *model;
+  int status = breccia_model_load_file(deck, &wishes, &model, error);
+  if (status) return fail(error, status);
+  bool quiet = values[QUIET] != NULL, terminal = isatty(STDERR_FILENO);
+  if (!quiet) {
+    if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
+    printf("%s\n", breccia_model_overview(model));
+    fflush(stdout);
+  }
+  size_t told = strlen(breccia_model_warnings(model));
+  char *folder = values[OUTPUT] ? text_format("%s", values[OUTPUT]) : result_folder(deck);
+  struct sigaction action = {.sa_handler = on_signal};
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  const breccia_run wish = {.folder = folder,
+                            .restart = values[RESTART] != NULL,
+                            .steps = steps,
+                            .interrupted = &interrupted,
+                            .progress = !quiet && terminal ? show : NULL};
+  status = breccia_model_run(model, &wish, error);
+  if (!quiet && terminal) fprintf(stderr, "\r\033[K");
+  if (!quiet) {
+    const char *warnings = breccia_model_warnings(model);
+    if (strlen(warnings) > told) fprintf(stderr, "%s\n", warnings + told + (warnings[told] == '\n'));
+    if (*breccia_model_outcome(model)) printf("%s\n", breccia_model_outcome(model));
+    if (status == BRECCIA_INTERRUPTED) printf("'breccia run %s --restart' goes on from here\n", deck);
+  }
+  breccia_model_destroy(&model);
+  free(folder);
+  return fail(error, status == BRECCIA_INTERRUPTED ? 130 : status);
+}
+
+const Verb verb_run = {"run", "DECK [options]", "run a deck and write its results, histories and pictures", options,
+                       "Ctrl-C stops cleanly: files are closed and a checkpoint is written, from which --restart goes on.\n"
+                       "Exit status: 0 done, 1 the computation failed, 2 the deck or the arguments are wrong, 130 stopped.",
+                       run};

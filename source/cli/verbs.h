@@ -1,0 +1,46 @@
+/* The verbs of the command. Each file holds one; a new one is a file and a line in main.c. */
+#ifndef BRECCIA_CLI_VERBS_H
+#define BRECCIA_CLI_VERBS_H
+
+#include "base/text.h"
+#include "breccia/breccia.h"
+#include <getopt.h>
+#include <stdio.h>
+
+typedef struct Option {
+  const char *name;     /* without dashes */
+  const char *argument; /* NULL: a switch */
+  const char *about;
+} Option;
+
+typedef struct Verb {
+  const char *name, *arguments, *about;
+  const Option *options; /* ending in a NULL name */
+  const char *more;      /* text for --help, or NULL */
+  int (*run)(int argc, char **argv, const struct Verb *verb);
+} Verb;
+
+extern const Verb verb_run, verb_check, verb_schema, verb_models, verb_material, verb_plot, verb_new, verb_completion;
+
+/** All verbs, ending in NULL. */
+extern const Verb *const verbs[];
+
+/** Reads the verb's options with getopt_long.
+ *  @param[out] values  one per option, in table order: its argument, "yes" for a switch, or NULL; a repeated option keeps the last,
+ *                      and `on_each`, if given, sees all
+ *  @return index of the first other argument, or -1 after a message, or -2 after --help */
+int read_options(int argc, char **argv, const Verb *verb, const char **values,
+                 void (*on_each)(void *context, int option, const char *value), void *context);
+
+void print_verb_help(const Verb *verb, FILE *out);
+
+/** Prints an error's lines and returns the status. */
+int fail(breccia_error *error, int status);
+
+/** Folder for a deck's results: beside it, named after it. To be freed. */
+char *result_folder(const char *deck);
+
+/** Reads a whole number of at least `least`; says what is wrong. */
+int read_whole(const char *words, const char *option, long long least, long long *value);
+
+#endif

@@ -1,0 +1,20 @@
+/* The list of constitutive laws. A new law is one file and one line in laws.h. */
+#ifndef BRECCIA_CONSTITUTIVE_LAW_H
+#define BRECCIA_CONSTITUTIVE_LAW_H
+
+#include "breccia/breccia.h"
+
+/** Built-in laws and those that a program brought along. */
+typedef struct LawList {
+  const breccia_law *const *own;
+  int own_count;
+} LawList;
+
+/** @return the k-th law, own ones last, or NULL after the last; `list` may be NULL */
+const breccia_law *law_at(const LawList *list, int k);
+const breccia_law *law_find(const LawList *list, const char *name);
+
+/** Parameters of a table under one name, for laws. */
+#define LAW_PARAMETERS(table) .parameters = (table), .parameter_count = (int)(sizeof(table) / sizeof *(table))
+
+#endif

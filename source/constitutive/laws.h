@@ -1,0 +1,2 @@
+LAW(elastic)
+LAW(multi_yield_j2)

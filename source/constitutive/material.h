@@ -1,0 +1,37 @@
+/* A law with its constants, under the name that a deck gave it. */
+#ifndef BRECCIA_CONSTITUTIVE_MATERIAL_H
+#define BRECCIA_CONSTITUTIVE_MATERIAL_H
+
+#include "constitutive/law.h"
+#include "deck/section.h"
+
+typedef struct MaterialSpec {
+  SectionHead head;
+  const char *model;
+  double density;
+  double *values; /* of the law's parameters, in table order */
+} MaterialSpec;
+
+extern const Section material_section;
+
+typedef struct Material {
+  const char *name;
+  const breccia_law *law;
+  void *constants; /* owned */
+  double density, bulk, shear;
+  int history_values;
+} Material;
+
+/** Prepares a material from its section (reader->context is the LawList). */
+int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec);
+
+/** Prepares a material from a law and its parameter values; `reason` tells what is inadmissible. */
+int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size);
+void material_destroy(Material *material);
+
+/** Young's modulus of the undamaged material. */
+double material_young(const Material *material);
+/** Constrained modulus K + 4 G / 3, which sets the speed of pressure waves. */
+double material_constrained(const Material *material);
+
+#endif

@@ -1,0 +1,245 @@
+#include "deck/describe.h"
+
+#include <string.h>
+
+enum { MOST_SECTIONS = 128 };
+
+typedef struct Walk {
+  const Section *sections[MOST_SECTIONS];
+  int count;
+} Walk;
+
+static void collect(Walk *walk, const Section *section)
+{
+  for (int k = 0; k < walk->count; ++k)
+    if (walk->sections[k] == section) return;
+  if (walk->count == MOST_SECTIONS) return;
+  walk->sections[walk->count++] = section;
+  for (int f = 0; f < section->field_count; ++f)
+    if (section->fields[f].section) collect(walk, section->fields[f].section);
+}
+
+static const char *value_words(const Field *field)
+{
+  switch (field->kind) {
+  case FIELD_NUMBER: return !field->dimension || !strcmp(field->dimension, "1") ? "number" : field->dimension;
+  case FIELD_LENGTH: return "length, or number of spacings";
+  case FIELD_COUNT: return "whole number";
+  case FIELD_FLAG: return "yes or no";
+  case FIELD_TEXT: return "words";
+  case FIELD_CHOICE: return "one of";
+  case FIELD_POINT: return "[x, y, z]";
+  case FIELD_FREE_POINT: return "[x, y, z], each may be `free`";
+  case FIELD_COUNTS: return "[nx, ny, nz]";
+  case FIELD_NUMBERS: return "list of numbers";
+  case FIELD_PAIRS: return "list of [time, value]";
+  case FIELD_POINTS: return "list of [x, y, z]";
+  case FIELD_TEXTS: return "list of words";
+  case FIELD_SECTION: return "see";
+  case FIELD_SECTIONS: return "list of";
+  case FIELD_NAMED: return "map of names to";
+  case FIELD_REFERENCE: return "a name, or";
+  }
+  return "";
+}
+
+static void add_anchor(Text *text, const char *name)
+{
+  for (; *name; ++name)
+    if (*name == ' ')
+      text_add(text, "-");
+    else if (*name != '(' && *name != ')' && *name != ',')
+      text_add(text, "%c", *name);
+}
+
+static void add_default(Text *text, const char *standard)
+{
+  if (!standard)
+    text_add(text, "**required**");
+  else if (*standard)
+    text_add(text, "`%s`", standard);
+}
+
+void describe_parameters(const breccia_parameter *parameters, int count, Text *text)
+{
+  text_add(text, "| parameter | what it is | default | range | meaning |\n|---|---|---|---|---|\n");
+  for (int k = 0; k < count; ++k) {
+    const breccia_parameter *p = &parameters[k];
+    text_add(text, "| `%s` | %s | ", p->name, strcmp(p->dimension, "1") ? p->dimension : "number");
+    add_default(text, p->standard);
+    text_add(text, " | %s | %s |\n", p->range ? p->range : "", p->meaning);
+  }
+}
+
+void describe_markdown(const Section *root, const ParameterTable *tables, int table_count, Text *text)
+{
+  Walk walk = {0};
+  collect(&walk, root);
+  text_add(text, "# The deck\n\n"
+                 "Made from the program's own tables by `breccia schema --markdown`; do not edit.\n\n"
+                 "A deck is a YAML file. Plain numbers are in the deck's units; a number with a unit (`1.89 m`, `30 kPa`,\n"
+                 "`4000 psi`, `145 pcf`) may stand anywhere. Axes are x, y, z; stress is tension-positive.\n");
+  for (int s = 0; s < walk.count; ++s) {
+    const Section *section = walk.sections[s];
+    text_add(text, "\n## %s\n\n%s\n\n", section->name, section->about);
+    text_add(text, "| key | value | default | range | meaning |\n|---|---|---|---|---|\n");
+    for (int f = 0; f < section->field_count; ++f) {
+      const Field *field = &section->fields[f];
+      text_add(text, "| `%s` | %s", field->key, value_words(field));
+      if (field->section) {
+        text_add(text, " [%s](#", field->section->name);
+        add_anchor(text, field->section->name);
+        text_add(text, ")");
+      }
+      for (int k = 0; field->choice && field->choice(k); ++k) text_add(text, "%s `%s`", k ? "," : "", field->choice(k));
+      if (field->dimension && field->kind != FIELD_NUMBER && strcmp(field->dimension, "1"))
+        text_add(text, " (%s)", field->dimension);
+      text_add(text, " | ");
+      if (field->group)
+        text_add(text, "one of group %c", field->group);
+      else
+        add_default(text, field->standard);
+      text_add(text, " | %s | %s |\n", field->range ? field->range : "", field->meaning);
+    }
+    if (section->parameters) text_add(text, "\nFurther keys, by the word under `%s`:\n", section->chooser);
+    for (int t = 0; section->parameters && t < table_count; ++t) {
+      text_add(text, "\n### %s\n\n%s\n\n", tables[t].word, tables[t].about);
+      describe_parameters(tables[t].parameters, tables[t].count, text);
+    }
+  }
+  text_add(text, "\n## Quantities\n\n| dimension | example of a unit |\n|---|---|\n");
+  for (const Dimension *d = dimension_list(); d->name; ++d)
+    if (*d->example) text_add(text, "| %s | `%s` |\n", d->name, d->example);
+}
+
+static void add_value_schema(Text *text, const Field *field)
+{
+  const char *number = "{\"type\": [\"number\", \"string\"]}";
+  switch (field->kind) {
+  case FIELD_NUMBER:
+  case FIELD_LENGTH: text_add(text, "\"type\": [\"number\", \"string\"]"); break;
+  case FIELD_COUNT: text_add(text, "\"type\": [\"integer\", \"number\"]"); break;
+  case FIELD_FLAG: text_add(text, "\"enum\": [true, false, \"yes\", \"no\", \"on\", \"off\"]"); break;
+  case FIELD_TEXT: text_add(text, "\"type\": [\"string\", \"number\"]"); break;
+  case FIELD_CHOICE:
+    text_add(text, "\"enum\": [");
+    for (int k = 0; field->choice(k); ++k) {
+      if (k) text_add(text, ", ");
+      text_add_json(text, field->choice(k));
+    }
+    text_add(text, "]");
+    break;
+  case FIELD_POINT:
+  case FIELD_FREE_POINT:
+  case FIELD_COUNTS:
+    text_add(text, "\"type\": \"array\", \"items\": %s, \"minItems\": 2, \"maxItems\": 3", number);
+    break;
+  case FIELD_NUMBERS: text_add(text, "\"type\": \"array\", \"items\": %s, \"minItems\": 1", number); break;
+  case FIELD_PAIRS:
+  case FIELD_POINTS:
+    text_add(text, "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"array\", \"items\": %s, \"minItems\": 2, "
+                   "\"maxItems\": %d}", number, field->kind == FIELD_PAIRS ? 2 : 3);
+    break;
+  case FIELD_TEXTS: text_add(text, "\"type\": \"array\", \"items\": {\"type\": \"string\"}"); break;
+  case FIELD_SECTION: text_add(text, "\"$ref\": \"#/$defs/%s\"", field->section->name); break;
+  case FIELD_SECTIONS:
+    text_add(text, "\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}", field->section->name);
+    break;
+  case FIELD_NAMED:
+    text_add(text, "\"type\": \"object\", \"additionalProperties\": {\"$ref\": \"#/$defs/%s\"}", field->section->name);
+    break;
+  case FIELD_REFERENCE:
+    text_add(text, "\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/$defs/%s\"}]", field->section->name);
+    break;
+  }
+}
+
+static void add_meaning(Text *text, const char *meaning, const char *standard)
+{
+  text_add(text, ", \"description\": ");
+  text_add_json(text, meaning);
+  if (standard && *standard) {
+    text_add(text, ", \"default\": ");
+    text_add_json(text, standard);
+  }
+}
+
+static void add_properties(Text *text, const Section *section, const ParameterTable *table)
+{
+  text_add(text, "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {");
+  for (int f = 0; f < section->field_count; ++f) {
+    const Field *field = &section->fields[f];
+    text_add(text, "%s\n      ", f ? "," : "");
+    text_add_json(text, field->key);
+    text_add(text, ": {");
+    if (table && !strcmp(field->key, section->chooser)) {
+      text_add(text, "\"const\": ");
+      text_add_json(text, table->word);
+    } else
+      add_value_schema(text, field);
+    add_meaning(text, field->meaning, field->standard);
+    text_add(text, "}");
+  }
+  for (int k = 0; table && k < table->count; ++k) {
+    text_add(text, ",\n      ");
+    text_add_json(text, table->parameters[k].name);
+    text_add(text, ": {\"type\": [\"number\", \"string\"]");
+    add_meaning(text, table->parameters[k].meaning, table->parameters[k].standard);
+    text_add(text, "}");
+  }
+  text_add(text, "}, \"required\": [");
+  int some = 0;
+  for (int f = 0; f < section->field_count; ++f)
+    if (!section->fields[f].standard) {
+      if (some++) text_add(text, ", ");
+      text_add_json(text, section->fields[f].key);
+    }
+  for (int k = 0; table && k < table->count; ++k)
+    if (!table->parameters[k].standard) {
+      if (some++) text_add(text, ", ");
+      text_add_json(text, table->parameters[k].name);
+    }
+  text_add(text, "]");
+}
+
+static void add_groups(Text *text, const Section *section)
+{
+  int some = 0;
+  for (int f = 0; f < section->field_count; ++f) {
+    if (!section->fields[f].group) continue;
+    text_add(text, "%s{\"required\": [", some++ ? ", " : ", \"oneOf\": [");
+    text_add_json(text, section->fields[f].key);
+    text_add(text, "]}");
+  }
+  if (some) text_add(text, "]");
+}
+
+void describe_json_schema(const Section *root, const ParameterTable *tables, int table_count, Text *text)
+{
+  Walk walk = {0};
+  collect(&walk, root);
+  text_add(text, "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
+                 "  \"title\": \"Breccia deck\",\n  \"$ref\": \"#/$defs/%s\",\n  \"$defs\": {", root->name);
+  for (int s = 0; s < walk.count; ++s) {
+    const Section *section = walk.sections[s];
+    text_add(text, "%s\n    ", s ? "," : "");
+    text_add_json(text, section->name);
+    text_add(text, ": {\"description\": ");
+    text_add_json(text, section->about);
+    if (section->parameters) {
+      text_add(text, ", \"oneOf\": [");
+      for (int t = 0; t < table_count; ++t) {
+        text_add(text, "%s{", t ? ", " : "");
+        add_properties(text, section, &tables[t]);
+        text_add(text, "}");
+      }
+      text_add(text, "]");
+    } else {
+      text_add(text, ", ");
+      add_properties(text, section, NULL);
+      add_groups(text, section);
+    }
+    text_add(text, "}");
+  }
+  text_add(text, "\n  }\n}\n");
+}

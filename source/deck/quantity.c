@@ -1,0 +1,241 @@
+/* A strict wrapper around UDUNITS-2. What the library accepts silently and reads otherwise than an engineer means it
+ * ("ton" is the US short ton, 6" an angle, MPa*m^0.5 a multiple) is refused with a hint. */
+#include "deck/quantity.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <udunits2.h>
+
+static const Dimension dimensions[] = {
+    {"1", 0, 0, 0, ""},
+    {"angle", 0, 0, 0, "deg"},
+    {"length", 1, 0, 0, "m"},
+    {"area", 2, 0, 0, "m2"},
+    {"time", 0, 0, 1, "s"},
+    {"frequency", 0, 0, -1, "Hz"},
+    {"velocity", 1, 0, -1, "m/s"},
+    {"acceleration", 1, 0, -2, "m/s2"},
+    {"force", 0, 1, 0, "kN"},
+    {"force per volume", -3, 1, 0, "kN/m3"},
+    {"stress", -2, 1, 0, "kPa"},
+    {"density", -4, 1, 2, "t/m3"},
+    {"energy", 1, 1, 0, "kJ"},
+    {"fracture energy", -1, 1, 0, "N/m"},
+    {NULL, 0, 0, 0, NULL},
+};
+
+const Dimension *dimension_list(void)
+{
+  return dimensions;
+}
+
+const Dimension *dimension_find(const char *name)
+{
+  for (const Dimension *d = dimensions; d->name; ++d)
+    if (!strcmp(d->name, name)) return d;
+  return NULL;
+}
+
+struct Units {
+  ut_system *system;
+  ut_unit *base[3], *degree;
+  char name[3][32];
+};
+
+/* Names that civil engineers use and the library lacks. */
+static const struct {
+  const char *name, *meaning;
+} additions[] = {
+    {"kip", "1000 lbf"},       {"ksi", "1000 lbf/in2"},  {"pcf", "lb/ft3"},       {"psf", "lbf/ft2"},
+    {"plf", "lbf/ft"},         {"klf", "1000 lbf/ft"},   {"ksf", "1000 lbf/ft2"}, {"tonf", "2000 lbf"},
+    {"microstrain", "1e-6"},   {"deg", "arc_degree"},    {"kgf", "9.80665 N"},    {"tf", "9806.65 N"},
+};
+
+static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
+{
+  for (const char *c = words; *c; ++c) {
+    if (*c == '"' || *c == '\'') {
+      text_add(reason, "unit '%s': quotation marks are angles to some and inches to others; write in, ft or deg", words);
+      return NULL;
+    }
+    if (*c == '^' || *c == '*') {
+      const char *power = c + 1 + (c[0] == '*' && c[1] == '*');
+      char *end;
+      double exponent = *c == '^' || c[1] == '*' ? strtod(power, &end) : 1;
+      if (exponent != floor(exponent)) {
+        text_add(reason, "unit '%s': powers must be whole numbers", words);
+        return NULL;
+      }
+    }
+    if (!strncmp(c, "ton", 3) && !isalpha((unsigned char)c[3]) && (c == words || !isalpha((unsigned char)c[-1]))) {
+      text_add(reason, "unit '%s': 'ton' may be short, long or metric; write t (1000 kg) or lb", words);
+      return NULL;
+    }
+    if (*c == '@' || !strncmp(c, "since", 5)) {
+      text_add(reason, "unit '%s': units with an origin are not understood here", words);
+      return NULL;
+    }
+  }
+  ut_unit *unit = ut_parse(units->system, words, UT_UTF8);
+  if (!unit) text_add(reason, "unit '%s' is not known", words);
+  return unit;
+}
+
+static ut_unit *unit_of(const Units *units, const Dimension *dimension)
+{
+  if (!strcmp(dimension->name, "angle")) return ut_clone(units->degree);
+  const int power[3] = {dimension->length, dimension->force, dimension->time};
+  ut_unit *product = ut_get_dimensionless_unit_one(units->system);
+  for (int k = 0; k < 3 && product; ++k) {
+    ut_unit *factor = ut_raise(units->base[k], power[k]);
+    ut_unit *next = factor ? ut_multiply(product, factor) : NULL;
+    ut_free(factor);
+    ut_free(product);
+    product = next;
+  }
+  return product;
+}
+
+Units *units_create(const char *length, const char *force, const char *time, Error *error)
+{
+  Units *units = calloc(1, sizeof *units);
+  if (!units) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: units");
+    return NULL;
+  }
+  ut_set_error_message_handler(ut_ignore);
+  units->system = ut_read_xml(NULL);
+  if (!units->system) {
+    error_add(error, BRECCIA_FAILURE, "the unit database of UDUNITS-2 was not found: install libudunits2-data");
+    units_destroy(&units);
+    return NULL;
+  }
+  for (size_t k = 0; k < sizeof additions / sizeof *additions; ++k) {
+    ut_unit *known = ut_get_unit_by_name(units->system, additions[k].name);
+    if (!known) {
+      ut_unit *unit = ut_parse(units->system, additions[k].meaning, UT_ASCII);
+      if (unit) ut_map_name_to_unit(additions[k].name, UT_ASCII, unit);
+      ut_free(unit);
+    }
+    ut_free(known);
+  }
+  units->degree = ut_parse(units->system, "arc_degree", UT_ASCII);
+  const char *names[3] = {length, force, time}, *wanted[3] = {"m", "N", "s"}, *what[3] = {"length", "force", "time"};
+  for (int k = 0; k < 3; ++k) {
+    Text reason = {0};
+    units->base[k] = parse_unit(units, names[k], &reason);
+    ut_unit *standard = ut_parse(units->system, wanted[k], UT_ASCII);
+    if (units->base[k] && !ut_are_convertible(units->base[k], standard))
+      text_add(&reason, "unit '%s' is not a unit of %s", names[k], what[k]);
+    ut_free(standard);
+    if (reason.length) error_add(error, BRECCIA_USER_ERROR, "%s", reason.characters);
+    int failed = reason.length > 0;
+    text_free(&reason);
+    if (failed) {
+      units_destroy(&units);
+      return NULL;
+    }
+    strncpy(units->name[k], names[k], sizeof units->name[k] - 1);
+  }
+  return units;
+}
+
+void units_destroy(Units **units)
+{
+  if (!units || !*units) return;
+  for (int k = 0; k < 3; ++k) ut_free((*units)->base[k]);
+  ut_free((*units)->degree);
+  ut_free_system((*units)->system);
+  free(*units);
+  *units = NULL;
+}
+
+void units_name(const Units *units, const Dimension *dimension, char *name, size_t size)
+{
+  if (!strcmp(dimension->name, "angle")) {
+    snprintf(name, size, "deg");
+    return;
+  }
+  if (!strcmp(dimension->name, "stress") && !strcmp(units->name[0], "m")) { /* kN/m2 is kPa to everybody */
+    const char *force = units->name[1];
+    size_t n = strlen(force);
+    if (n && force[n - 1] == 'N') {
+      snprintf(name, size, "%.*sPa", (int)(n - 1), force);
+      return;
+    }
+  }
+  /* Force per acceleration is mass: say so where the unit has a name. */
+  int mass = 0;
+  int power[3] = {dimension->length, dimension->force, dimension->time};
+  if (power[1] == 1 && power[2] == 2 && !strcmp(units->name[0], "m") && !strcmp(units->name[2], "s")) {
+    if (!strcmp(units->name[1], "kN") || !strcmp(units->name[1], "N")) {
+      mass = units->name[1][0] == 'k' ? 1 : 2;
+      power[0] += 1;
+      power[1] = power[2] = 0;
+    }
+  }
+  Text top = {0}, bottom = {0};
+  if (mass) text_add(&top, mass == 1 ? "t" : "kg");
+  static const int order[3] = {1, 0, 2};
+  for (int i = 0; i < 3; ++i) {
+    int k = order[i];
+    if (!power[k]) continue;
+    Text *side = power[k] > 0 ? &top : &bottom;
+    if (side->length) text_add(side, "*");
+    text_add(side, "%s", units->name[k]);
+    if (abs(power[k]) > 1) text_add(side, "%d", abs(power[k]));
+  }
+  if (bottom.length)
+    snprintf(name, size, "%s/%s", top.length ? top.characters : "1", bottom.characters);
+  else
+    snprintf(name, size, "%s", top.length ? top.characters : "");
+  text_free(&top);
+  text_free(&bottom);
+}
+
+int units_read(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason)
+{
+  char *end;
+  double number = strtod(words, &end);
+  /* strtod takes hexadecimal numbers and the words inf and nan; a deck has no use for them. */
+  const char *first = words + strspn(words, " \t+-");
+  if (end == words || !(isdigit((unsigned char)*first) || *first == '.') || first[1] == 'x' || first[1] == 'X') {
+    text_add(reason, "'%s' is not a number", words);
+    goto expected;
+  }
+  if (!isfinite(number)) {
+    text_add(reason, "'%s' is too large for a number", words);
+    return 1;
+  }
+  while (isspace((unsigned char)*end)) ++end;
+  if (!*end) {
+    *value = number;
+    return 0;
+  }
+  ut_unit *given = parse_unit(units, end, reason);
+  if (!given) goto expected;
+  ut_unit *target = unit_of(units, dimension);
+  int convertible = target && ut_are_convertible(given, target);
+  if (convertible) {
+    cv_converter *converter = ut_get_converter(given, target);
+    *value = cv_convert_double(converter, number);
+    cv_free(converter);
+  }
+  ut_free(given);
+  ut_free(target);
+  if (convertible) return 0;
+  text_add(reason, "'%s' has the wrong dimension", words);
+expected:
+  if (!strcmp(dimension->name, "1"))
+    text_add(reason, "; expected a plain number");
+  else {
+    char unit[64];
+    units_name(units, dimension, unit, sizeof unit);
+    text_add(reason, "; expected a %s, like '1.5 %s' or 1.5 (plain numbers are in %s)", dimension->name,
+             dimension->example, unit);
+  }
+  return 1;
+}

@@ -1,0 +1,35 @@
+/* Numbers with units at the door: "30 kPa" becomes a number in the deck's own units, and nothing past the deck knows. */
+#ifndef BRECCIA_DECK_QUANTITY_H
+#define BRECCIA_DECK_QUANTITY_H
+
+#include "base/error.h"
+#include "base/text.h"
+
+/** A physical dimension as powers of length, force and time. */
+typedef struct Dimension {
+  const char *name;
+  int length, force, time;
+  const char *example; /* a unit that an engineer would write */
+} Dimension;
+
+/** @return the dimension called so, or NULL */
+const Dimension *dimension_find(const char *name);
+/** All dimensions, ending in one whose name is NULL. */
+const Dimension *dimension_list(void);
+
+typedef struct Units Units;
+
+/** Units with which plain numbers of a deck are read.
+ *  @param[in] length, force, time  unit names, like "m", "kN", "s" */
+Units *units_create(const char *length, const char *force, const char *time, Error *error);
+void units_destroy(Units **units);
+
+/** The deck's unit for a dimension in words, like "kN/m2"; "" for a plain number. */
+void units_name(const Units *units, const Dimension *dimension, char *name, size_t size);
+
+/** Reads "30 kPa" or "30".
+ *  @param[out] reason  what is wrong, in words that can follow "file:line:column: key: "
+ *  @return 0 and the value in the deck's units, or 1 */
+int units_read(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason);
+
+#endif

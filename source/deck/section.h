@@ -1,0 +1,120 @@
+/* What may stand in a deck, as tables. The reader, its messages, the JSON Schema and docs/deck.md are all made from them.
+ *
+ * A Section is a map in the deck and a struct in the program; a Field is one key of it and one member of the struct. Every
+ * section's struct begins with a SectionHead. Each room declares the sections that it understands. */
+#ifndef BRECCIA_DECK_SECTION_H
+#define BRECCIA_DECK_SECTION_H
+
+#include "base/text.h"
+#include "deck/document.h"
+#include "deck/quantity.h"
+
+typedef struct Section Section;
+
+typedef struct SectionHead {
+  const char *name; /* key under which it stands in a named list, else NULL */
+  const Node *node; /* for messages that come later */
+} SectionHead;
+
+typedef struct Length { /* a length, or a number of lattice spacings */
+  double value;
+  bool in_spacings;
+} Length;
+
+typedef struct NumberList {
+  double *values;
+  int count; /* of rows: numbers, pairs or points */
+} NumberList;
+
+typedef struct TextList {
+  const char **items;
+  int count;
+} TextList;
+
+typedef struct SectionList {
+  void **items; /* pointers to the section's struct */
+  int count;
+} SectionList;
+
+typedef struct Reference { /* the name of something defined elsewhere in the deck, or its definition on the spot */
+  const char *name;
+  void *section;
+  const Node *node;
+} Reference;
+
+typedef enum FieldKind {
+  FIELD_NUMBER,     /* double; NaN when optional and absent */
+  FIELD_LENGTH,     /* Length */
+  FIELD_COUNT,      /* int64_t; -1 when optional and absent */
+  FIELD_FLAG,       /* bool */
+  FIELD_TEXT,       /* const char * */
+  FIELD_CHOICE,     /* const char *, one of Field.choice */
+  FIELD_POINT,      /* double[3]; a third component left out is 0; NaN when optional and absent */
+  FIELD_FREE_POINT, /* the same, where the word 'free' makes a component NaN */
+  FIELD_COUNTS,     /* int64_t[3]; a third left out is 1; -1 when optional and absent */
+  FIELD_NUMBERS,    /* NumberList */
+  FIELD_PAIRS,      /* NumberList of [time, number] */
+  FIELD_POINTS,     /* NumberList of points */
+  FIELD_TEXTS,      /* TextList */
+  FIELD_SECTION,    /* pointer to the section's struct; NULL when absent */
+  FIELD_SECTIONS,   /* SectionList from a YAML list */
+  FIELD_NAMED,      /* SectionList from a YAML map: name -> section */
+  FIELD_REFERENCE,  /* Reference: words, or a section */
+} FieldKind;
+
+typedef struct Field {
+  const char *key;
+  FieldKind kind;
+  size_t offset;
+  const char *dimension; /* of numbers; NULL where there are none */
+  const char *standard;  /* default as written in a deck; NULL: required; "": optional */
+  const char *range;     /* interval like "(0, inf)", in deck units; NULL: any */
+  const char *meaning;
+  const Section *section;
+  const char *(*choice)(int k); /* k-th allowed word, NULL after the last */
+  char group;                   /* of the fields with one letter exactly one is given; 0: none */
+} Field;
+
+typedef struct DeckReader {
+  const Document *document;
+  const Units *units;
+  const void *context; /* what Section.parameters needs */
+  Error *error;
+} DeckReader;
+
+struct Section {
+  const char *name, *about;
+  size_t size; /* of the struct */
+  const Field *fields;
+  int field_count;
+  /** Checks what single fields cannot; adds its messages with node_error. May be NULL. */
+  void (*check)(const DeckReader *reader, void *section);
+  /** For sections whose further keys depend on the word under `chooser`: the table for that word, or NULL after saying
+   *  what is wrong. The values (table order, NaN when absent) are stored as double * at `parameters_offset`. */
+  const breccia_parameter *(*parameters)(const DeckReader *reader, const Node *chooser, int *count);
+  const char *chooser;
+  size_t parameters_offset;
+};
+
+#define FIELDS(table) table, (int)(sizeof(table) / sizeof *(table))
+
+/** Reads a map into a section's struct, adding every problem to the reader's error.
+ *  @return the struct (in the document's arena), or NULL when the node is no map */
+void *section_read(const DeckReader *reader, const Node *node, const Section *section);
+
+/** The node under a key of a section that was read, or the section's own node: where to point in a message. */
+const Node *section_place(const void *section, const char *key);
+
+/** Finds a named section in a list. @return NULL if there is none of that name */
+void *section_find(const SectionList *list, const char *name);
+
+/** Says that `name` is none of the names in the list. */
+void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
+                     const SectionList *list);
+
+/** True if `value` lies in an interval like "(0, inf)" or "[0, 1)"; NULL holds everything. */
+bool interval_contains(const char *interval, double value);
+/** "greater than 0", "at least 0 and less than 1", ... */
+void interval_describe(const char *interval, char *words, size_t size);
+
+#endif

@@ -1,0 +1,76 @@
+/* The part of the body that one process owns: particles, bonds, material points, the formulation that joins them, and the blocks
+ * that its threads work on. Functions marked "by all threads" contain work-sharing loops: call them from every thread of a parallel
+ * region, or from none. Whatever is summed over particles is summed block by block in a fixed order. */
+#ifndef BRECCIA_DOMAIN_DOMAIN_H
+#define BRECCIA_DOMAIN_DOMAIN_H
+
+#include "failure/failure.h"
+#include "formulation/formulation.h"
+
+typedef struct Span { /* slices first .. last - 1, of one material, at most BLOCK places */
+  int64_t first, last;
+} Span;
+
+typedef struct BrokenBond {
+  int64_t step;
+  double time;
+  int32_t a, b; /* numbers, a < b */
+} BrokenBond;
+
+typedef struct Domain {
+  Body body;
+  Particles *particles; /* the body's */
+  Family family;
+  Material *materials;
+  int material_count;
+  int32_t *material; /* [slices] */
+  Points points;
+  const FormulationType *type;
+  void *formulation;
+  Failure failure;
+  Span *blocks;
+  int64_t block_count;
+  double *family_volume; /* [places] of the neighbours of each place, before anything broke */
+  uint8_t *suspects;     /* [slices] */
+  BrokenBond *broken;    /* in the order in which they broke */
+  int64_t broken_count, broken_capacity;
+  double fracture_energy;
+  double force_sum;  /* of all internal force components' magnitudes, as of the last domain_forces */
+  double *block_sum; /* [blocks] */
+  int64_t failed_place; /* whose law could not be integrated, or -1 */
+} Domain;
+
+typedef struct DomainSpec {
+  const SectionList *materials, *blocks, *cracks;
+  const PeridynamicsSpec *peridynamics;
+  const FailureSpec *failure; /* or NULL */
+} DomainSpec;
+
+/** Builds everything that a step needs. `domain` must be zero; destroy it in any case. */
+int domain_create(Domain *domain, const DeckReader *reader, const DomainSpec *spec);
+void domain_destroy(Domain *domain);
+
+/** Internal forces at the displacements held, by all threads. Trial state only. */
+void domain_forces(Domain *domain);
+
+/** Takes up a state read from elsewhere: displacements, stresses and intact bits are in place; shapes, deformations and force
+ *  states follow from them, to the same bits as in the run that left them. */
+void domain_resume(Domain *domain);
+
+/** Breaks the bonds that the criterion says, by all threads, and renews the families concerned. */
+void domain_break(Domain *domain, int64_t step, double time);
+
+/** Adds a broken bond to the list. */
+int domain_record(Domain *domain, const BrokenBond *bond);
+
+/** Broken share of the family of a place, 0 to 1. */
+double domain_damage(const Domain *domain, int32_t place);
+
+/** Material of a place. */
+const Material *domain_material(const Domain *domain, int64_t place);
+
+/** Bytes in particles and points; in bonds; in the formulation. */
+size_t domain_particle_bytes(const Domain *domain);
+size_t domain_bytes(const Domain *domain);
+
+#endif

@@ -1,0 +1,34 @@
+/* When a bond breaks. A criterion finds suspect slices in a fast sweep; the few bonds in them are then judged and broken one
+ * by one, in a fixed order, both sides at once. */
+#ifndef BRECCIA_FAILURE_FAILURE_H
+#define BRECCIA_FAILURE_FAILURE_H
+
+#include "deck/section.h"
+#include "family/family.h"
+
+typedef struct FailureSpec {
+  SectionHead head;
+  double critical_stretch; /* NaN: bonds do not break */
+} FailureSpec;
+
+extern const Section failure_section;
+
+typedef struct Criterion {
+  const char *name, *about, *source;
+  /** Marks slices first .. last - 1 in which some bond may exceed the limit. */
+  void (*suspect)(double limit, const Family *family, int64_t first, int64_t last, uint8_t *suspects);
+  /** True if this bond exceeds it. */
+  bool (*exceeds)(double limit, const Family *family, int64_t slice, const Bond *bond, int lane);
+} Criterion;
+
+extern const Criterion criterion_critical_stretch;
+
+typedef struct Failure {
+  const Criterion *criterion; /* NULL: bonds do not break */
+  double limit;
+} Failure;
+
+/** @param[in] spec  NULL: bonds do not break */
+Failure failure_of(const FailureSpec *spec);
+
+#endif

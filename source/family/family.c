@@ -1,0 +1,320 @@
+#include "family/family.h"
+
+#include "family/search.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *volume_correction_word(int k)
+{
+  static const char *const words[] = {"none", "partial", "partial-beyond", NULL};
+  return words[k];
+}
+
+/** Share of a neighbour's volume that counts (docs/theory.md 1, options 1 and 2); r is half a spacing. */
+static double volume_share(VolumeCorrection correction, double length, double horizon, double r)
+{
+  if (correction == VOLUME_WHOLE || length <= horizon - r) return 1;
+  return fmax(0, fmin(1, (horizon + r - length) / (2 * r)));
+}
+
+/** Lattice vectors of one block within reach, ascending by number of the neighbour: z, then y, then x. */
+static int add_patterns(Family *family, const Lattice *lattice, int64_t (**offsets)[3], int *first, double reach,
+                        const Influence *influence, VolumeCorrection correction, Error *error)
+{
+  int64_t reach_cells = (int64_t)floor(reach / lattice->spacing * (1 + 1e-9)), deep = lattice->plane ? 0 : reach_cells;
+  *first = family->pattern_count;
+  for (int pass = 0; pass < 2; ++pass) {
+    int count = *first;
+    for (int64_t z = -deep; z <= deep; ++z)
+      for (int64_t y = -reach_cells; y <= reach_cells; ++y)
+        for (int64_t x = -reach_cells; x <= reach_cells; ++x) {
+          double length = lattice->spacing * sqrt((double)(x * x + y * y + z * z));
+          if (length == 0 || length > reach * (1 + 1e-9)) continue;
+          double share = volume_share(correction, length, family->horizon, lattice->spacing / 2);
+          if (share == 0) continue;
+          if (pass) {
+            Pattern *row = &family->patterns[count];
+            const int64_t offset[3] = {x, y, z};
+            for (int k = 0; k < 3; ++k) {
+              row->xi[k] = lattice->spacing * (double)offset[k];
+              (*offsets)[count - *first][k] = offset[k];
+            }
+            row->length = length;
+            row->weight = influence->value(fmin(1, length / family->horizon), length) * share * lattice->volume;
+            for (int k = 0; k < 3; ++k) row->weighted_xi[k] = row->weight * row->xi[k];
+          }
+          ++count;
+        }
+    if (count > UINT16_MAX)
+      return error_add(error, BRECCIA_USER_ERROR,
+                       "the horizon of %g reaches over so many spacings that a family would have more than %d bonds",
+                       family->horizon, UINT16_MAX);
+    if (!pass) {
+      Pattern *grown = realloc(family->patterns, sizeof(Pattern) * (size_t)(count ? count : 1));
+      if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: bond patterns");
+      family->patterns = grown;
+      *offsets = memory_zeroed((size_t)(count - *first), sizeof **offsets, "bond patterns", error);
+      if (!*offsets) return BRECCIA_FAILURE;
+    }
+    family->pattern_count = count;
+  }
+  return BRECCIA_OK;
+}
+
+/** One lattice slot: base place and mask of existing neighbours. @return the mask */
+static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk, const int64_t offset[3],
+                            int32_t *base)
+{
+  int64_t cell[3];
+  lattice_cell(lattice, row, chunk, 0, cell);
+  for (int k = 0; k < 2; ++k) {
+    int axis = lattice->across[k];
+    cell[axis] += offset[axis];
+    if (cell[axis] < 0 || cell[axis] >= lattice->cells[axis]) return 0;
+  }
+  int64_t start = cell[lattice->axis] + offset[lattice->axis];
+  int64_t near = start >= 0 ? start / SLICE : (start - SLICE + 1) / SLICE, shift = start - near * SLICE;
+  int64_t other = cell[lattice->across[0]] + lattice->cells[lattice->across[0]] * cell[lattice->across[1]];
+  const int32_t *slices = lattice->slice + other * lattice->chunks;
+  int32_t a = near >= 0 && near < lattice->chunks ? slices[near] : -1;
+  int32_t b = shift && near + 1 >= 0 && near + 1 < lattice->chunks ? slices[near + 1] : -1;
+  if (a < 0 && b < 0) return 0;
+  *base = (int32_t)(a >= 0 ? a * SLICE + shift : b * SLICE + shift - SLICE);
+  const Particles *p = &body->particles;
+  int64_t here = (int64_t)lattice->slice[row * lattice->chunks + chunk] * SLICE;
+  uint8_t mask = 0;
+  for (int lane = 0; lane < SLICE; ++lane) {
+    bool in_first = shift + lane < SLICE;
+    if (p->number[here + lane] < 0 || (in_first ? a : b) < 0 || p->number[*base + lane] < 0) continue;
+    mask |= (uint8_t)(1u << lane);
+  }
+  return mask;
+}
+
+static uint8_t cut_slot(const Body *body, int64_t slice, int32_t base, uint8_t mask)
+{
+  const Particles *p = &body->particles;
+  for (int lane = 0; lane < SLICE; ++lane) {
+    if (!(mask >> lane & 1)) continue;
+    double a[3], b[3];
+    for (int k = 0; k < 3; ++k) {
+      a[k] = p->position[k][slice * SLICE + lane];
+      b[k] = p->position[k][base + lane];
+    }
+    if (body_cuts(body, a, b)) mask = (uint8_t)(mask & ~(1u << lane));
+  }
+  return mask;
+}
+
+typedef struct Rows { /* of slices of one lattice, for a loop over slices */
+  int64_t row, chunk;
+  int lattice;
+} Rows;
+
+typedef struct Build {
+  Family *family;
+  const Body *body;
+  const Rows *rows;
+  int64_t (**offsets)[3];
+  const int *first_pattern, *pattern_count;
+  const StoredBonds *stored;
+} Build;
+
+/** Slots of one slice; writes them when `write` is set. @return their number; `stored_slots` of which are stored */
+static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_t *stored_slots, int64_t *bonds)
+{
+  Family *family = build->family;
+  const Rows *where = &build->rows[slice];
+  const Lattice *lattice = &build->body->lattices[where->lattice];
+  int64_t slot = write ? family->first[slice] : 0, begin = slot;
+  for (int k = 0; k < build->pattern_count[where->lattice]; ++k) {
+    int32_t base = 0;
+    uint8_t mask =
+        lattice_slot(build->body, lattice, where->row, where->chunk, build->offsets[where->lattice][k], &base);
+    if (mask && build->body->crack_count) mask = cut_slot(build->body, slice, base, mask);
+    if (!mask) continue;
+    if (write) {
+      family->base[slot] = base;
+      family->pattern[slot] = (uint16_t)(build->first_pattern[where->lattice] + k);
+      family->intact[slot] = mask;
+    }
+    *bonds += __builtin_popcount(mask);
+    ++slot;
+  }
+  const StoredBonds *stored = build->stored;
+  int64_t most = 0;
+  for (int lane = 0; lane < SLICE; ++lane) {
+    int64_t place = slice * SLICE + lane, count = stored->first ? stored->first[place + 1] - stored->first[place] : 0;
+    *bonds += count;
+    if (count > most) most = count;
+  }
+  if (write) {
+    family->stored[slice] = slot;
+    int64_t row = *stored_slots;
+    for (int64_t k = 0; k < most; ++k, ++row) {
+      family->base[slot + k] = (int32_t)row;
+      for (int lane = 0; lane < SLICE; ++lane) {
+        int64_t place = slice * SLICE + lane, at = stored->first[place] + k;
+        bool here = at < stored->first[place + 1];
+        family->neighbour[row * SLICE + lane] = here ? stored->neighbour[at] : (int32_t)place;
+        family->weight[row * SLICE + lane] = here ? stored->weight[at] : 0;
+        if (here) family->intact[slot + k] |= (uint8_t)(1u << lane);
+      }
+    }
+  }
+  *stored_slots += most;
+  return slot - begin + most;
+}
+
+static Rows *slice_rows(const Body *body, Error *error)
+{
+  Rows *rows = memory_zeroed((size_t)body->particles.slices, sizeof *rows, "slice rows", error);
+  for (int b = 0; rows && b < body->block_count; ++b) {
+    const Lattice *lattice = &body->lattices[b];
+    int64_t count = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
+    for (int64_t row = 0; row < count; ++row)
+      for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
+        int32_t slice = lattice->slice[row * lattice->chunks + chunk];
+        if (slice >= 0) rows[slice] = (Rows){row, chunk, b};
+      }
+  }
+  return rows;
+}
+
+static int fill_slots(Build *build, Error *error)
+{
+  Family *family = build->family;
+  int64_t slices = build->body->particles.slices;
+  int64_t *stored_before = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "bond rows", error);
+  family->first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "bond rows", error);
+  family->stored = memory_zeroed((size_t)slices, sizeof(int64_t), "bond rows", error);
+  if (!stored_before || !family->first || !family->stored) {
+    free(stored_before);
+    return BRECCIA_FAILURE;
+  }
+  int64_t bonds = 0;
+#pragma omp parallel for schedule(static) reduction(+ : bonds)
+  for (int64_t s = 0; s < slices; ++s)
+    family->first[s + 1] = slice_slots(build, s, false, &stored_before[s + 1], &bonds);
+  for (int64_t s = 0; s < slices; ++s) {
+    family->first[s + 1] += family->first[s];
+    stored_before[s + 1] += stored_before[s];
+  }
+  family->bonds = bonds;
+  family->slots = family->first[slices];
+  family->stored_slots = stored_before[slices];
+  family->base = memory_zeroed((size_t)family->slots, sizeof *family->base, "bonds", error);
+  family->pattern = memory_zeroed((size_t)family->slots, sizeof *family->pattern, "bonds", error);
+  family->intact = memory_zeroed((size_t)family->slots, sizeof *family->intact, "bonds", error);
+  family->neighbour = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(int32_t), "bonds", error);
+  family->weight = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(double), "bonds", error);
+  int failed = !family->base || !family->pattern || !family->intact || !family->neighbour || !family->weight;
+  if (!failed) {
+#pragma omp parallel for schedule(static)
+    for (int64_t s = 0; s < slices; ++s) {
+      int64_t row = stored_before[s], ignored = 0;
+      slice_slots(build, s, true, &row, &ignored);
+    }
+  }
+  free(stored_before);
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+int family_create(Family *family, const Body *body, double horizon, const Influence *influence,
+                  VolumeCorrection correction, Error *error)
+{
+  *family = (Family){.particles = &body->particles, .horizon = horizon};
+  int blocks = body->block_count;
+  int64_t(**offsets)[3] = memory_zeroed((size_t)blocks, sizeof *offsets, "bond patterns", error);
+  int *first = memory_zeroed((size_t)blocks, sizeof *first, "bond patterns", error);
+  int *count = memory_zeroed((size_t)blocks, sizeof *count, "bond patterns", error);
+  Rows *rows = slice_rows(body, error);
+  StoredBonds stored = {0};
+  int status = offsets && first && count && rows ? BRECCIA_OK : BRECCIA_FAILURE;
+  for (int b = 0; b < blocks && !status; ++b) {
+    double reach = horizon + (correction == VOLUME_PARTIAL_BEYOND ? body->lattices[b].spacing / 2 : 0);
+    status = add_patterns(family, &body->lattices[b], &offsets[b], &first[b], reach, influence, correction, error);
+    count[b] = family->pattern_count - first[b];
+  }
+  if (!status && blocks > 1) {
+    StoredWeight weight = {horizon, influence, correction, volume_share};
+    status = search_between_blocks(&stored, body, &weight, error);
+  }
+  if (!status) {
+    Build build = {family, body, rows, offsets, first, count, &stored};
+    status = fill_slots(&build, error);
+  }
+  for (int b = 0; offsets && b < blocks; ++b) free(offsets[b]);
+  free(offsets);
+  free(first);
+  free(count);
+  free(rows);
+  stored_bonds_destroy(&stored);
+  return status;
+}
+
+void family_destroy(Family *family)
+{
+  free(family->first);
+  free(family->stored);
+  free(family->base);
+  free(family->pattern);
+  free(family->intact);
+  free(family->patterns);
+  free(family->neighbour);
+  free(family->weight);
+  *family = (Family){0};
+}
+
+/** Slot in which place a has place b as its neighbour, or -1. */
+static int64_t find_slot(const Family *family, int32_t a, int32_t b)
+{
+  int64_t slice = a / SLICE;
+  int lane = a % SLICE;
+  for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot)
+    if (family->intact[slot] >> lane & 1 && family_bond(family, slice, slot, lane).neighbour == b) return slot;
+  return -1;
+}
+
+bool family_joins(const Family *family, int32_t a, int32_t b)
+{
+  return find_slot(family, a, b) >= 0;
+}
+
+bool family_break(Family *family, int32_t a, int32_t b)
+{
+  int64_t there = find_slot(family, a, b), back = find_slot(family, b, a);
+  if (there < 0 || back < 0) return false;
+  family->intact[there] = (uint8_t)(family->intact[there] & ~(1u << (a % SLICE)));
+  family->intact[back] = (uint8_t)(family->intact[back] & ~(1u << (b % SLICE)));
+  return true;
+}
+
+int family_count(const Family *family, int32_t place)
+{
+  int64_t slice = place / SLICE;
+  int lane = place % SLICE, count = 0;
+  for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot)
+    count += family->intact[slot] >> lane & 1;
+  return count;
+}
+
+double family_volume(const Family *family, int32_t place)
+{
+  int64_t slice = place / SLICE;
+  int lane = place % SLICE;
+  double volume = 0;
+  for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot)
+    if (family->intact[slot] >> lane & 1)
+      volume += family->particles->volume[family_bond(family, slice, slot, lane).neighbour];
+  return volume;
+}
+
+size_t family_bytes(const Family *family)
+{
+  size_t slot = sizeof *family->base + sizeof *family->pattern + sizeof *family->intact;
+  size_t stored = SLICE * (sizeof *family->neighbour + sizeof *family->weight);
+  return (size_t)family->slots * slot + (size_t)family->stored_slots * stored +
+         (size_t)family->particles->slices * 2 * sizeof(int64_t);
+}

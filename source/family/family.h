@@ -1,0 +1,88 @@
+/* Who interacts with whom.
+ *
+ * The bonds of a slice of eight particles lie in slots: slot k holds one bond of each of them. On a lattice the eight
+ * neighbours of a slot stand side by side too and share one reference vector, so a slot is a base index (the place of lane
+ * 0's neighbour), a row of the pattern table (reference vector, length, weight) and a byte of intact bits: about one byte per bond.
+ * Bonds between lattices are kept in stored slots: eight places and eight weights, and the reference vector is the difference of positions.
+ * Always true:
+ *   slots first[s] .. stored[s] - 1 of slice s are lattice slots, stored[s] .. first[s+1] - 1 stored ones;
+ *   bonds come in pairs (i to j, j to i) whose intact bits agree; no particle is its own neighbour;
+ *   along the slots of one kind the neighbours of a lane ascend by number, so sums add in the same order whatever the threads. */
+#ifndef BRECCIA_FAMILY_FAMILY_H
+#define BRECCIA_FAMILY_FAMILY_H
+
+#include "body/body.h"
+#include "family/influence.h"
+
+typedef struct Pattern { /* a relative lattice vector */
+  double xi[3];          /* from the particle to its neighbour */
+  double length, weight; /* weight: influence x volume correction x volume of the neighbour */
+  double weighted_xi[3]; /* weight x xi */
+} Pattern;
+
+typedef enum VolumeCorrection { VOLUME_WHOLE, VOLUME_PARTIAL, VOLUME_PARTIAL_BEYOND } VolumeCorrection;
+
+typedef struct Family {
+  const Particles *particles;
+  double horizon;
+  int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
+  int64_t *first;                     /* [slices + 1] */
+  int64_t *stored;                    /* [slices] first stored slot */
+  int32_t *base;                      /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and weight */
+  uint16_t *pattern;                  /* [slots] row of patterns; unused in stored slots */
+  uint8_t *intact;                    /* [slots] */
+  Pattern *patterns;
+  int pattern_count;
+  int32_t *neighbour; /* [stored_slots][8] */
+  double *weight;     /* [stored_slots][8] */
+} Family;
+
+/** One bond seen from one end. */
+typedef struct Bond {
+  int32_t neighbour;
+  double xi[3], length, weight;
+} Bond;
+
+const char *volume_correction_word(int k);
+
+/** Finds all pairs nearer than the horizon (inclusive, with a tolerance of 1e-9) that no cut of the body separates.
+ *  Refuses particles that lie (nearly) on top of each other. */
+int family_create(Family *family, const Body *body, double horizon, const Influence *influence,
+                  VolumeCorrection correction, Error *error);
+void family_destroy(Family *family);
+
+/** The bond of a lane in a slot of a slice; its intact bit is not looked at. */
+static inline Bond family_bond(const Family *family, int64_t slice, int64_t slot, int lane)
+{
+  const Particles *p = family->particles;
+  if (slot < family->stored[slice]) {
+    const Pattern *row = &family->patterns[family->pattern[slot]];
+    return (Bond){family->base[slot] + lane, {row->xi[0], row->xi[1], row->xi[2]}, row->length, row->weight};
+  }
+  int64_t at = (int64_t)family->base[slot] * SLICE + lane, here = slice * SLICE + lane;
+  Bond bond = {.neighbour = family->neighbour[at], .weight = family->weight[at]};
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    bond.xi[k] = p->position[k][bond.neighbour] - p->position[k][here];
+    square += bond.xi[k] * bond.xi[k];
+  }
+  bond.length = __builtin_sqrt(square);
+  return bond;
+}
+
+/** Breaks the bond between two places on both sides. @return false if there is no intact one */
+bool family_break(Family *family, int32_t a, int32_t b);
+
+/** @return whether an intact bond joins two places */
+bool family_joins(const Family *family, int32_t a, int32_t b);
+
+/** Intact bonds of a place. */
+int family_count(const Family *family, int32_t place);
+
+/** Sum of the neighbours' volumes over intact bonds of a place; at the start it is what damage is measured against. */
+double family_volume(const Family *family, int32_t place);
+
+/** Bytes that bonds take. */
+size_t family_bytes(const Family *family);
+
+#endif

@@ -1,0 +1,63 @@
+#include "family/influence.h"
+
+#include <math.h>
+#include <string.h>
+
+static double constant(double q, double length)
+{
+  (void)q, (void)length;
+  return 1;
+}
+static double conical(double q, double length)
+{
+  (void)length;
+  return 1 - q;
+}
+static double inverse(double q, double length)
+{
+  (void)q;
+  return 1 / length;
+}
+static double inverse_square(double q, double length)
+{
+  (void)q;
+  return 1 / (length * length);
+}
+static double gaussian(double q, double length)
+{
+  (void)length;
+  return exp(-4 * q * q);
+}
+static double quartic(double q, double length)
+{
+  (void)length;
+  return (1 - q * q) * (1 - q * q);
+}
+static double cubic_spline(double q, double length)
+{
+  (void)length;
+  return q <= 0.5 ? 2.0 / 3 - 4 * q * q + 4 * q * q * q : 4.0 / 3 * (1 - q) * (1 - q) * (1 - q);
+}
+
+static const Influence influences[] = {
+    {"constant", constant}, {"conical", conical}, {"inverse", inverse},           {"inverse-square", inverse_square},
+    {"gaussian", gaussian}, {"quartic", quartic}, {"cubic-spline", cubic_spline},
+};
+enum { COUNT = sizeof influences / sizeof *influences };
+
+const Influence *influence_at(int k)
+{
+  return k < COUNT ? &influences[k] : 0;
+}
+
+const Influence *influence_find(const char *name)
+{
+  for (int k = 0; k < COUNT; ++k)
+    if (!strcmp(influences[k].name, name)) return &influences[k];
+  return 0;
+}
+
+const char *influence_word(int k)
+{
+  return k < COUNT ? influences[k].name : 0;
+}

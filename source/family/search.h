@@ -1,0 +1,24 @@
+/* Cell-list search for bonds between particles of different lattices; within a lattice the offsets are known. */
+#ifndef BRECCIA_FAMILY_SEARCH_H
+#define BRECCIA_FAMILY_SEARCH_H
+
+#include "family/family.h"
+
+typedef struct StoredBonds { /* compressed rows over places, each ascending by number of the neighbour */
+  int64_t *first;            /* [places + 1]; NULL: none */
+  int32_t *neighbour;
+  double *weight;
+} StoredBonds;
+
+typedef struct StoredWeight {
+  double horizon;
+  const Influence *influence;
+  VolumeCorrection correction;
+  double (*share)(VolumeCorrection correction, double length, double horizon, double half_spacing);
+} StoredWeight;
+
+/** O(N) for bodies of even density. Refuses particles of two blocks nearer than a hundredth of a spacing. */
+int search_between_blocks(StoredBonds *stored, const Body *body, const StoredWeight *weight, Error *error);
+void stored_bonds_destroy(StoredBonds *stored);
+
+#endif

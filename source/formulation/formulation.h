@@ -1,0 +1,66 @@
+/* Formulations: displacements to strain at material points, and stress there to forces between particles.
+ * A formulation knows nothing of laws, a law nothing of formulations; what calls them in turn is domain/. */
+#ifndef BRECCIA_FORMULATION_FORMULATION_H
+#define BRECCIA_FORMULATION_FORMULATION_H
+
+#include "constitutive/points.h"
+#include "family/family.h"
+
+typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
+  SectionHead head;
+  double silling, wan;
+  bool none;
+} ControlSpec;
+
+typedef struct PeridynamicsSpec {
+  SectionHead head;
+  const char *formulation, *space, *strain, *influence, *volume_correction;
+  Length horizon;
+  ControlSpec *control;
+} PeridynamicsSpec;
+
+extern const Section peridynamics_section;
+
+Space peridynamics_space(const PeridynamicsSpec *spec);
+
+/** What a formulation works on; borrowed. */
+typedef struct FormulationParts {
+  const PeridynamicsSpec *spec;
+  const Body *body;
+  const Particles *particles;
+  const Family *family;
+  Points *points;
+} FormulationParts;
+
+typedef struct FormulationType {
+  const char *name, *about, *source, *maturity;
+  /** Makes a formulation for a body. Says where families are too poor for it. */
+  void *(*create)(const FormulationParts *parts, Error *error);
+  void (*destroy)(void *formulation);
+  /** Bonds of this slice have broken. */
+  void (*renew)(void *formulation, int64_t slice);
+  /** Displacements to strains at the points of slices first .. last - 1. */
+  void (*deform)(void *formulation, int64_t first, int64_t last);
+  /** Stresses at these points to whatever `resist` needs of a particle and its neighbours. */
+  void (*respond)(void *formulation, int64_t first, int64_t last);
+  /** Internal force per volume on the particles of these slices; all slices have responded before. */
+  void (*resist)(void *formulation, int64_t first, int64_t last);
+  /** Forces of the few particles that need another treatment; called once, by one thread, after all have resisted. */
+  void (*finish)(void *formulation);
+  /** Force per volume squared that the neighbour exerts on the particle through one bond (t_ij - t_ji). */
+  void (*bond_force)(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
+  /** Deformation gradient F at a place, row by row, as of the last `deform`. */
+  void (*gradient)(const void *formulation, int64_t place, double f[9]);
+  /** Bytes beyond particles, families and points. */
+  size_t (*bytes)(const void *formulation);
+} FormulationType;
+
+/** @return the k-th formulation, or NULL after the last */
+const FormulationType *formulation_at(int k);
+const FormulationType *formulation_find(const char *name);
+
+/** Micromodulus c of a bond-based solid with this Young's modulus and constant influence: 12E/(pi delta^4), in the plane
+ *  9E/(pi t delta^3) (docs/theory.md 2). It sets the scale of zero-energy control and of lone axial bonds. */
+double micromodulus(const Body *body, double young, double horizon);
+
+#endif

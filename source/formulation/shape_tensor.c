@@ -1,0 +1,63 @@
+#include "formulation/shape_tensor.h"
+
+#include "base/tensor.h"
+
+static double roundness(const double k[6], bool plane)
+{
+  if (plane) {
+    double trace = (k[XX] + k[YY]) / 2;
+    return trace > 0 ? (k[XX] * k[YY] - k[XY] * k[XY]) / (trace * trace) : 0;
+  }
+  double trace = (k[XX] + k[YY] + k[ZZ]) / 3;
+  return trace > 0 ? tensor_determinant(k) / (trace * trace * trace) : 0;
+}
+
+/** Inverse on the directions whose eigenvalue is at least a thousandth of the largest; 0 on the others. */
+static void pseudo_inverse(const double k[6], double inverse[6])
+{
+  double value[3], vector[9], largest = 0;
+  tensor_eigen(k, value, vector);
+  for (int e = 0; e < 3; ++e) largest = fmax(largest, value[e]);
+  for (int c = 0; c < 6; ++c) inverse[c] = 0;
+  for (int e = 0; e < 3; ++e) {
+    if (value[e] < 1e-3 * largest) continue;
+    for (int c = 0; c < 6; ++c)
+      inverse[c] += vector[3 * symmetric_row[c] + e] * vector[3 * symmetric_column[c] + e] / value[e];
+  }
+}
+
+ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double initial_roundness)
+{
+  ShapeTensor shape = {.mode = SHAPE_REGULAR};
+  int64_t slice = place / SLICE;
+  int lane = place % SLICE, dimensions = plane ? 2 : 3;
+  double k[6] = {0}, weights = 0, volumes = 0;
+  for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot) {
+    if (!(family->intact[slot] >> lane & 1)) continue;
+    Bond bond = family_bond(family, slice, slot, lane);
+    for (int c = 0; c < 6; ++c) k[c] += bond.weight * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
+    for (int i = 0; i < 3; ++i) shape.first_moment[i] += bond.weight * bond.xi[i];
+    weights += bond.weight;
+    volumes += family->particles->volume[bond.neighbour];
+    ++shape.bonds;
+  }
+  shape.mean_influence = volumes > 0 ? weights / volumes : 0;
+  shape.roundness = roundness(k, plane);
+  if (!shape.bonds) {
+    shape.mode = SHAPE_FREE;
+  } else if (shape.bonds < dimensions + 1) {
+    shape.mode = SHAPE_AXIAL;
+  } else if (shape.roundness > 1e-4 * initial_roundness && shape.roundness > 1e-12) {
+    if (plane) {
+      double determinant = k[XX] * k[YY] - k[XY] * k[XY];
+      shape.inverse[XX] = k[YY] / determinant;
+      shape.inverse[YY] = k[XX] / determinant;
+      shape.inverse[XY] = -k[XY] / determinant;
+    } else
+      tensor_inverse(k, shape.inverse);
+  } else {
+    pseudo_inverse(k, shape.inverse);
+    shape.mode = SHAPE_REDUCED;
+  }
+  return shape;
+}

@@ -1,0 +1,27 @@
+/* Shape tensors K = sum w xi (x) xi and what to do when they cannot be inverted (docs/theory.md 4). */
+#ifndef BRECCIA_FORMULATION_SHAPE_TENSOR_H
+#define BRECCIA_FORMULATION_SHAPE_TENSOR_H
+
+#include "family/family.h"
+
+typedef enum ShapeMode {
+  SHAPE_REGULAR, /* K was inverted */
+  SHAPE_REDUCED, /* directions in which the family is flat were dropped: no strain there */
+  SHAPE_AXIAL,   /* too few bonds for a strain: they act as springs */
+  SHAPE_FREE,    /* no bonds */
+} ShapeMode;
+
+typedef struct ShapeTensor {
+  double inverse[6];      /* of K, or of its part that can be inverted, or 0 */
+  double first_moment[3]; /* sum of w xi */
+  double mean_influence;  /* sum of w / sum of volumes */
+  double roundness;       /* det K / (tr K / d)^d: 1 for a full family, 0 for a flat one */
+  int bonds;
+  ShapeMode mode;
+} ShapeTensor;
+
+/** Shape tensor of a place from its intact bonds.
+ *  @param[in] initial_roundness  what it was with all bonds; 0 while it is first asked for */
+ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double initial_roundness);
+
+#endif

@@ -1,0 +1,178 @@
+#include "loading/load.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void check_along(const DeckReader *reader, void *section)
+{
+  const AlongSpec *along = section;
+  if (along->direction[0] == 0 && along->direction[1] == 0 && along->direction[2] == 0)
+    node_error(reader->document, section_place(section, "direction"), reader->error, "direction: must not be zero");
+}
+
+static const Field along_fields[] = {
+    {"direction", FIELD_POINT, offsetof(AlongSpec, direction), "1", NULL, NULL, "any length but zero", NULL, NULL, 0},
+    {"displacement", FIELD_NUMBER, offsetof(AlongSpec, displacement), "length", "", NULL, "in that direction", NULL, NULL,
+     'A'},
+    {"velocity", FIELD_NUMBER, offsetof(AlongSpec, velocity), "velocity", "", NULL, "in that direction", NULL, NULL, 'A'},
+};
+static const Section along_section = {"along",           "A motion in one direction; the particles stay free across it.",
+                                      sizeof(AlongSpec), FIELDS(along_fields), check_along, NULL, NULL, 0};
+
+static void check_load(const DeckReader *reader, void *section)
+{
+  const LoadSpec *load = section;
+  if (!load->on.node && isnan(load->gravity[0]))
+    node_error(reader->document, load->head.node, reader->error, "load: missing key 'on': which particles are loaded");
+}
+
+static const Field load_fields[] = {
+    {"name", FIELD_TEXT, offsetof(LoadSpec, name), NULL, "", NULL, "name, for watching what it applies", NULL, NULL, 0},
+    {"on", FIELD_REFERENCE, offsetof(LoadSpec, on), NULL, "", NULL,
+     "name of a selection, or a selection; gravity acts on the whole body when absent", &selection_section, NULL, 0},
+    {"body force", FIELD_POINT, offsetof(LoadSpec, body_force), "force per volume", "", NULL, "force per volume", NULL, NULL,
+     'A'},
+    {"force", FIELD_POINT, offsetof(LoadSpec, force), "force", "", NULL,
+     "total force, shared among the particles by volume", NULL, NULL, 'A'},
+    {"gravity", FIELD_POINT, offsetof(LoadSpec, gravity), "acceleration", "", NULL, "acceleration, times the density", NULL,
+     NULL, 'A'},
+    {"displacement", FIELD_FREE_POINT, offsetof(LoadSpec, displacement), "length", "", NULL, "prescribed displacement", NULL,
+     NULL, 'A'},
+    {"velocity", FIELD_FREE_POINT, offsetof(LoadSpec, velocity), "velocity", "", NULL, "prescribed velocity", NULL, NULL,
+     'A'},
+    {"along", FIELD_SECTION, offsetof(LoadSpec, along), NULL, "", NULL, "motion prescribed in one direction only",
+     &along_section, NULL, 'A'},
+    {"history", FIELD_SECTION, offsetof(LoadSpec, history), NULL, "", NULL, "constant when absent", &history_section, NULL,
+     0},
+};
+const Section load_section = {"load", "A force on some particles, or a motion prescribed to them.", sizeof(LoadSpec),
+                              FIELDS(load_fields), check_load, NULL, NULL, 0};
+
+static void add_constraints(Loading *loading, const Load *load)
+{
+  const LoadSpec *spec = load->spec;
+  for (int kind = 0; kind < 2; ++kind) {
+    const double *value = kind ? spec->velocity : spec->displacement;
+    for (int k = 0; k < 3; ++k) {
+      if (isnan(value[k])) continue;
+      Constraint c = {load, {0}, value[k], kind};
+      c.direction[k] = 1;
+      loading->constraints[loading->constraint_count++] = c;
+    }
+  }
+  if (!spec->along) return;
+  const double *d = spec->along->direction, length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  bool is_velocity = isnan(spec->along->displacement);
+  loading->constraints[loading->constraint_count++] =
+      (Constraint){load,
+                   {d[0] / length, d[1] / length, d[2] / length},
+                   is_velocity ? spec->along->velocity : spec->along->displacement,
+                   is_velocity};
+}
+
+/** Two motions of one particle must be at right angles, or they contradict each other. */
+static int check_constraints(const Loading *loading, const Particles *particles, const DeckReader *reader)
+{
+  int status = BRECCIA_OK;
+  uint8_t *marked = memory_zeroed((size_t)particles->places, 1, "prescribed motions", reader->error);
+  if (!marked) return BRECCIA_FAILURE;
+  for (int a = 0; a < loading->constraint_count; ++a) {
+    const Constraint *first = &loading->constraints[a];
+    memset(marked, 0, (size_t)particles->places);
+    for (int64_t n = 0; n < first->load->selection.count; ++n) marked[first->load->selection.places[n]] = 1;
+    for (int b = a + 1; b < loading->constraint_count; ++b) {
+      const Constraint *second = &loading->constraints[b];
+      double cosine = 0;
+      for (int k = 0; k < 3; ++k) cosine += first->direction[k] * second->direction[k];
+      if (fabs(cosine) < 1e-9) continue;
+      for (int64_t n = 0; n < second->load->selection.count; ++n) {
+        int32_t place = second->load->selection.places[n];
+        if (!marked[place]) continue;
+        status = node_error(reader->document, second->load->spec->head.node, reader->error,
+                            "load: particle %d at [%g, %g, %g] already moves as the load in line %d says, in a direction "
+                            "that is not at right angles to this one", particles->number[place],
+                            particles->position[0][place], particles->position[1][place], particles->position[2][place],
+                            first->load->spec->head.node->line);
+        break;
+      }
+    }
+  }
+  free(marked);
+  return status;
+}
+
+int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
+                   const SectionList *selections)
+{
+  *loading = (Loading){0};
+  loading->loads = memory_zeroed((size_t)loads->count, sizeof(Load), "loads", reader->error);
+  loading->constraints = memory_zeroed((size_t)loads->count * 3, sizeof(Constraint), "loads", reader->error);
+  if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
+  static const Node everywhere = {.kind = NODE_MAP};
+  SelectionSpec all = {.head = {NULL, &everywhere}, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
+  int status = BRECCIA_OK;
+  for (int k = 0; k < loads->count; ++k) {
+    Load *load = &loading->loads[loading->count++];
+    load->spec = loads->items[k];
+    Reference reference = load->spec->on;
+    if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
+    int bad = selection_create(&load->selection, body, reader, selections, &reference);
+    if (bad) status = bad;
+    for (int64_t n = 0; n < load->selection.count; ++n) load->volume += body->particles.volume[load->selection.places[n]];
+    add_constraints(loading, load);
+  }
+  return status ? status : check_constraints(loading, &body->particles, reader);
+}
+
+void loading_destroy(Loading *loading)
+{
+  for (int k = 0; k < loading->count; ++k) selection_destroy(&loading->loads[k].selection);
+  free(loading->loads);
+  free(loading->constraints);
+  *loading = (Loading){0};
+}
+
+void loading_apply(const Loading *loading, Particles *p, double time)
+{
+  for (int l = 0; l < loading->count; ++l) /* loads may overlap: clear first, then add */
+    for (int64_t n = 0; n < loading->loads[l].selection.count; ++n)
+      for (int k = 0; k < 3; ++k) p->external[k][loading->loads[l].selection.places[n]] = 0;
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    const LoadSpec *spec = load->spec;
+    double factor = history_factor(spec->history, time);
+    for (int k = 0; k < 3; ++k) {
+      double uniform = 0, per_density = 0;
+      if (!isnan(spec->body_force[k])) uniform = factor * spec->body_force[k];
+      if (!isnan(spec->force[k])) uniform = factor * spec->force[k] / load->volume;
+      if (!isnan(spec->gravity[k])) per_density = factor * spec->gravity[k];
+      if (uniform == 0 && per_density == 0) continue;
+      for (int64_t n = 0; n < load->selection.count; ++n) {
+        int32_t place = load->selection.places[n];
+        p->external[k][place] += uniform + per_density * p->density[place];
+      }
+    }
+  }
+}
+
+double constraint_displacement(const Constraint *constraint, double time)
+{
+  const HistorySpec *history = constraint->load->spec->history;
+  if (!constraint->is_velocity) return constraint->value * history_factor(history, time);
+  if (!history || history->constant) return constraint->value * time;
+  if (history->sine) {
+    const double pi = acos(-1), omega = 2 * pi * history->sine->frequency, phase = history->sine->phase * pi / 180;
+    return constraint->value * (cos(phase) - cos(omega * time + phase)) / omega;
+  }
+  /* Integral of the factor over its straight pieces. */
+  double begin = 0, sum = 0;
+  int corners = !isnan(history->ramp) ? 1 : history->table.count;
+  for (int c = 0; c <= corners; ++c) {
+    double end = c == corners ? time : !isnan(history->ramp) ? history->ramp : history->table.values[2 * c];
+    end = fmin(time, fmax(begin, end));
+    sum += (end - begin) * (history_factor(history, begin) + history_factor(history, end)) / 2;
+    begin = end;
+  }
+  return constraint->value * sum;
+}

@@ -1,0 +1,76 @@
+#include "model/deck_layout.h"
+
+#include <stdlib.h>
+
+static const Field units_fields[] = {
+    {"length", FIELD_TEXT, offsetof(UnitsSpec, length), NULL, "m", NULL, "unit of length", NULL, NULL, 0},
+    {"force", FIELD_TEXT, offsetof(UnitsSpec, force), NULL, "N", NULL, "unit of force; the unit of mass follows", NULL, NULL,
+     0},
+    {"time", FIELD_TEXT, offsetof(UnitsSpec, time), NULL, "s", NULL, "unit of time", NULL, NULL, 0},
+};
+const Section units_section = {"units",
+                               "What plain numbers mean, and in what results are written. m, kN, s give kPa and t/m3.",
+                               sizeof(UnitsSpec), FIELDS(units_fields), NULL, NULL, NULL, 0};
+
+static const Field solve_fields[] = {
+    {"explicit", FIELD_SECTION, offsetof(SolveSpec, explicit_dynamics), NULL, NULL, NULL, "explicit dynamics",
+     &explicit_section, NULL, 0},
+};
+static const Section solve_section = {"solve", "How the equations are solved.", sizeof(SolveSpec), FIELDS(solve_fields),
+                                      NULL,    NULL, NULL, 0};
+
+static const Field deck_fields[] = {
+    {"title", FIELD_TEXT, offsetof(DeckSpec, title), NULL, "untitled", NULL, "stands over pictures", NULL, NULL, 0},
+    {"units", FIELD_SECTION, offsetof(DeckSpec, units), NULL, "", NULL, "m, N, s when absent", &units_section, NULL, 0},
+    {"materials", FIELD_NAMED, offsetof(DeckSpec, materials), NULL, NULL, NULL, "the materials by name", &material_section,
+     NULL, 0},
+    {"body", FIELD_NAMED, offsetof(DeckSpec, body), NULL, NULL, NULL, "the blocks of the body by name", &block_section, NULL,
+     0},
+    {"selections", FIELD_NAMED, offsetof(DeckSpec, selections), NULL, "", NULL, "particles by name", &selection_section,
+     NULL, 0},
+    {"cracks", FIELD_SECTIONS, offsetof(DeckSpec, cracks), NULL, "", NULL, "notches and cracks from the beginning",
+     &crack_section, NULL, 0},
+    {"peridynamics", FIELD_SECTION, offsetof(DeckSpec, peridynamics), NULL, "", NULL, "formulation and horizon",
+     &peridynamics_section, NULL, 0},
+    {"failure", FIELD_SECTION, offsetof(DeckSpec, failure), NULL, "", NULL, "when bonds break; never when absent",
+     &failure_section, NULL, 0},
+    {"loads", FIELD_SECTIONS, offsetof(DeckSpec, loads), NULL, "", NULL, "forces and prescribed motions", &load_section, NULL,
+     0},
+    {"solve", FIELD_SECTION, offsetof(DeckSpec, solve), NULL, NULL, NULL, "how it is solved", &solve_section, NULL, 0},
+    {"watch", FIELD_NAMED, offsetof(DeckSpec, watches), NULL, "", NULL, "histories by name", &watch_section, NULL, 0},
+    {"results", FIELD_SECTION, offsetof(DeckSpec, results), NULL, "", NULL, "what is kept", &results_section, NULL, 0},
+    {"pictures", FIELD_SECTIONS, offsetof(DeckSpec, pictures), NULL, "", NULL,
+     "when absent: displacement, octahedral shear stress and damage at the end", &picture_section, NULL, 0},
+};
+
+static void check_deck(const DeckReader *reader, void *section)
+{
+  const DeckSpec *deck = section;
+  if (!deck->materials.count)
+    node_error(reader->document, section_place(section, "materials"), reader->error, "materials: none is given");
+  if (!deck->body.count)
+    node_error(reader->document, section_place(section, "body"), reader->error, "body: no block is given");
+}
+
+const Section deck_section = {"deck", "The top level of a deck.", sizeof(DeckSpec), FIELDS(deck_fields),
+                              check_deck, NULL, NULL, 0};
+
+ParameterTable *law_tables(const LawList *laws, int *count)
+{
+  *count = 0;
+  while (law_at(laws, *count)) ++*count;
+  ParameterTable *tables = calloc((size_t)*count + 1, sizeof *tables);
+  for (int k = 0; tables && k < *count; ++k) {
+    const breccia_law *law = law_at(laws, k);
+    tables[k] = (ParameterTable){law->name, law->about, law->parameters, law->parameter_count};
+  }
+  return tables;
+}
+
+void *section_standard(const DeckReader *reader, const Section *section, const Node *place)
+{
+  Node *empty = arena_zeroed(reader->document->arena, sizeof *empty);
+  if (!empty) return NULL;
+  *empty = (Node){.kind = NODE_MAP, .line = place->line, .column = place->column};
+  return section_read(reader, empty, section);
+}

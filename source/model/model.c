@@ -1,0 +1,346 @@
+#include "model/model.h"
+
+#include "base/clock.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static void set_threads(breccia_model *model)
+{
+#ifdef _OPENMP
+  if (model->threads <= 0) model->threads = omp_get_max_threads();
+  omp_set_num_threads(model->threads);
+#else
+  model->threads = 1;
+#endif
+}
+
+int64_t model_step_at(const breccia_model *model, double time)
+{
+  double step = round(time / model->solver.time_step);
+  return step < (double)model->solver.steps ? (int64_t)step : model->solver.steps;
+}
+
+/* ---- loading ---- */
+
+/** Units come first: nothing else can be read without them. */
+static int read_units(breccia_model *model, Error *error)
+{
+  const Node *root = model->document->root, *node = node_get(root, "units");
+  Units *plain = units_create("m", "N", "s", error);
+  if (!plain) return BRECCIA_FAILURE;
+  model->reader = (DeckReader){model->document, plain, &model->laws, error};
+  int before = error_count(error);
+  const UnitsSpec *spec =
+      node ? section_read(&model->reader, node, &units_section) : section_standard(&model->reader, &units_section, root);
+  units_destroy(&plain);
+  if (!spec || error_count(error) > before) return BRECCIA_USER_ERROR;
+  Error *reason = breccia_error_create();
+  model->units = units_create(spec->length, spec->force, spec->time, reason);
+  if (!model->units) node_error(model->document, node ? node : root, error, "units: %s", breccia_error_text(reason));
+  breccia_error_destroy(&reason);
+  model->reader.units = model->units;
+  return model->units ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}
+
+static int check_names(const breccia_model *model, const Domain *domain, const TextList *names, const Node *place)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < names->count; ++k) {
+    if (output_field_find(names->items[k]) || history_field_find(domain, names->items[k]) >= 0) continue;
+    Text all = {0};
+    for (int f = 0; output_field_at(f); ++f) text_add(&all, "%s%s", f ? ", " : "", output_field_at(f)->name);
+    status = node_error(model->document, place, model->reader.error, "there is no field '%s'; the fields are %s%s",
+                        names->items[k], all.characters, " and named histories of the materials");
+    text_free(&all);
+  }
+  return status;
+}
+
+static int check_results(breccia_model *model)
+{
+  DeckSpec *spec = (DeckSpec *)(void *)(uintptr_t)model->spec;
+  if (!spec->results) spec->results = section_standard(&model->reader, &results_section, spec->head.node);
+  if (!spec->results) return BRECCIA_FAILURE;
+  int status = check_names(model, &model->domain, &spec->results->fields, section_place(spec->results, "fields"));
+  for (int k = 0; k < spec->pictures.count; ++k) {
+    const PictureSpec *picture = spec->pictures.items[k];
+    if (!picture->field) continue;
+    TextList one = {(const char *[]){picture->field}, 1};
+    int bad = check_names(model, &model->domain, &one, section_place(picture, "field"));
+    if (bad) status = bad;
+  }
+  return status;
+}
+
+static int by_value(const void *a, const void *b)
+{
+  int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+  return x < y ? -1 : x > y;
+}
+
+/** Steps at which results are written: evenly, and where pictures and the deck ask for them. Does not depend on how far a
+ *  run goes, so that a restarted run writes the same. */
+static int make_schedule(breccia_model *model, Error *error)
+{
+  const ResultsSpec *r = model->spec->results;
+  int64_t steps = model->solver.steps, even = r->every > 0 ? steps / r->every : r->number, count = 2 + even + r->times.count;
+  for (int k = 0; k < model->spec->pictures.count; ++k)
+    count += ((const PictureSpec *)model->spec->pictures.items[k])->times.count;
+  if (count > 10000000)
+    return node_error(model->document, r->head.node, error, "results: %lld states are too many to write", (long long)count);
+  model->schedule = memory_zeroed((size_t)count, sizeof(int64_t), "schedule", error);
+  if (!model->schedule) return BRECCIA_FAILURE;
+  int64_t n = 0, *list = model->schedule;
+  list[n++] = 0;
+  list[n++] = steps;
+  for (int64_t k = 1; k <= even; ++k)
+    list[n++] = r->every > 0 ? k * r->every : (int64_t)((double)k * (double)steps / (double)even + 0.5);
+  for (int k = 0; k < r->times.count; ++k) list[n++] = model_step_at(model, r->times.values[k]);
+  for (int p = 0; p < model->spec->pictures.count; ++p) {
+    const PictureSpec *picture = model->spec->pictures.items[p];
+    for (int k = 0; k < picture->times.count; ++k) list[n++] = model_step_at(model, picture->times.values[k]);
+  }
+  qsort(list, (size_t)n, sizeof *list, by_value);
+  for (int64_t k = 0; k < n; ++k)
+    if (!k || list[k] != list[k - 1]) list[model->schedule_count++] = list[k];
+  return BRECCIA_OK;
+}
+
+static int build(breccia_model *model, bool force, Error *error)
+{
+  DeckSpec *spec = section_read(&model->reader, model->document->root, &deck_section);
+  if (!spec || error_count(error)) return BRECCIA_USER_ERROR;
+  model->spec = spec;
+  if (!spec->peridynamics) spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
+  if (!spec->peridynamics) return BRECCIA_FAILURE;
+  DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure};
+  int status = domain_create(&model->domain, &model->reader, &parts), bad;
+  if (!model->domain.particles || !model->domain.particles->count) return status ? status : BRECCIA_USER_ERROR;
+  /* What follows needs the body only: its mistakes are told together with those of the rest. */
+  bad = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, &spec->selections);
+  if (bad) status = bad;
+  if (model->domain.family.first) {
+    bad = watches_create(&model->watches, &model->domain.body, &model->domain.family, &model->loading, &model->reader,
+                         &spec->watches, &spec->selections);
+    if (bad) status = bad;
+  }
+  bad = check_results(model);
+  if (bad) status = bad;
+  if (status) return status;
+  double start = clock_seconds();
+#pragma omp parallel
+  domain_forces(&model->domain);
+  start = clock_seconds();
+#pragma omp parallel
+  domain_forces(&model->domain);
+  model->evaluation_seconds = clock_seconds() - start;
+  status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics, &model->reader,
+                           force, &model->warnings);
+  return status ? status : make_schedule(model, error);
+}
+
+int breccia_model_load_string(const char *deck, const char *name, const breccia_options *options, breccia_model **out,
+                              breccia_error *given)
+{
+  *out = NULL;
+  Error *error = given ? given : breccia_error_create();
+  breccia_model *model = calloc(1, sizeof *model);
+  int status = BRECCIA_FAILURE;
+  if (!model || !error || !(model->deck_text = text_format("%s", deck))) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: model");
+  } else {
+    static const breccia_options standard = {0};
+    if (!options) options = &standard;
+    model->laws = (LawList){options->laws, options->law_count};
+    model->threads = options->threads;
+    set_threads(model);
+    model->document = document_parse(deck, strlen(deck), name, error);
+    status = model->document ? read_units(model, error) : BRECCIA_USER_ERROR;
+    if (!status) status = build(model, options->force, error);
+    if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
+  }
+  if (status)
+    breccia_model_destroy(&model);
+  else
+    model->reader.error = NULL;
+  if (!given) breccia_error_destroy(&error);
+  *out = model;
+  return status;
+}
+
+int breccia_model_load_file(const char *path, const breccia_options *options, breccia_model **model, breccia_error *error)
+{
+  *model = NULL;
+  size_t length;
+  char *text = text_read_file(path, &length);
+  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+  int status = BRECCIA_USER_ERROR;
+  if (strlen(text) != length)
+    error_add(error, status, "%s:1:1: is not text: it holds a zero byte", path);
+  else
+    status = breccia_model_load_string(text, path, options, model, error);
+  free(text);
+  return status;
+}
+
+void breccia_model_destroy(breccia_model **out)
+{
+  if (!out || !*out) return;
+  breccia_model *model = *out;
+  watches_destroy(&model->watches);
+  explicit_destroy(&model->solver);
+  loading_destroy(&model->loading);
+  domain_destroy(&model->domain);
+  units_destroy(&model->units);
+  document_destroy(&model->document);
+  text_free(&model->warnings);
+  text_free(&model->overview);
+  text_free(&model->outcome);
+  free(model->schedule);
+  free(model->deck_text);
+  free(model);
+  *out = NULL;
+}
+
+/* ---- stepping ---- */
+
+void model_begin(breccia_model *model)
+{
+  set_threads(model);
+  if (!model->begun) explicit_begin(&model->solver);
+  model->begun = true;
+}
+
+int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error)
+{
+  model_begin(model);
+  for (int64_t k = 0; k < steps && model->solver.step < model->solver.steps; ++k) {
+    int status = explicit_advance(&model->solver, error);
+    if (status) return status;
+  }
+  return BRECCIA_OK;
+}
+
+/* ---- looking ---- */
+
+int64_t breccia_model_particles(const breccia_model *model)
+{
+  return model->domain.particles->count;
+}
+int64_t breccia_model_bonds(const breccia_model *model)
+{
+  return model->domain.family.bonds;
+}
+int64_t breccia_model_broken_bonds(const breccia_model *model)
+{
+  return 2 * model->domain.broken_count;
+}
+int64_t breccia_model_steps_done(const breccia_model *model)
+{
+  return model->solver.step;
+}
+double breccia_model_time(const breccia_model *model)
+{
+  return model->solver.time;
+}
+double breccia_model_time_step(const breccia_model *model)
+{
+  return model->solver.time_step;
+}
+double breccia_model_stable_time_step(const breccia_model *model)
+{
+  return model->solver.stable;
+}
+int64_t breccia_model_places(const breccia_model *model)
+{
+  return model->domain.particles->places;
+}
+const int32_t *breccia_model_numbers(const breccia_model *model)
+{
+  return model->domain.particles->number;
+}
+
+double *breccia_model_array(breccia_model *model, const char *name)
+{
+  Particles *p = model->domain.particles;
+  static const char *const voigt[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  const struct {
+    const char *name;
+    double **arrays;
+  } vectors[] = {{"position", p->position},
+                 {"displacement", p->displacement},
+                 {"velocity", p->velocity},
+                 {"force", p->internal}};
+  char wanted[64];
+  for (int v = 0; v < 4; ++v)
+    for (int k = 0; k < 3; ++k) {
+      snprintf(wanted, sizeof wanted, "%s %c", vectors[v].name, "xyz"[k]);
+      if (!strcmp(wanted, name)) return vectors[v].arrays[k];
+    }
+  for (int k = 0; k < 6; ++k) {
+    snprintf(wanted, sizeof wanted, "stress %s", voigt[k]);
+    if (!strcmp(wanted, name)) return model->domain.points.stress[k];
+    snprintf(wanted, sizeof wanted, "strain %s", voigt[k]);
+    if (!strcmp(wanted, name)) return model->domain.points.strain[k];
+  }
+  if (!strcmp(name, "volume")) return p->volume;
+  if (!strcmp(name, "density")) return p->density;
+  return NULL;
+}
+
+static void add_duration(Text *text, double seconds)
+{
+  if (seconds < 100)
+    text_add(text, "%.*f s", seconds < 10 ? 1 : 0, seconds);
+  else if (seconds < 6000)
+    text_add(text, "%.0f min", seconds / 60);
+  else
+    text_add(text, "%.1f h", seconds / 3600);
+}
+
+const char *breccia_model_overview(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const Explicit *s = &model->solver;
+  Text *text = &model->overview;
+  text_free(text);
+  int fewest = INT32_MAX, most = 0;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    int count = family_count(&d->family, d->particles->place_of[n]);
+    if (count < fewest) fewest = count;
+    if (count > most) most = count;
+  }
+  char length[64], time[64];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  units_name(model->units, dimension_find("time"), time, sizeof time);
+  text_add(text, "%s: %lld particles, %lld directed bonds, %d to %d per particle (mean %.1f), horizon %g %s\n",
+           model->spec->title, (long long)d->particles->count, (long long)d->family.bonds, fewest, most,
+           (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
+  text_add(text, "%s;", d->type->name);
+  for (int k = 0; k < d->material_count; ++k)
+    text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law->name);
+  if (d->failure.criterion)
+    text_add(text, "; %s %g", d->failure.criterion->name, d->failure.limit);
+  else
+    text_add(text, "; bonds do not break");
+  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step, time,
+           s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
+  add_duration(text, model->evaluation_seconds * 1.15 * (double)(s->steps - s->step));
+  return text->characters;
+}
+
+const char *breccia_model_warnings(breccia_model *model)
+{
+  return model->warnings.characters ? model->warnings.characters : "";
+}
+
+const char *breccia_model_outcome(breccia_model *model)
+{
+  return model->outcome.characters ? model->outcome.characters : "";
+}

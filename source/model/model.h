@@ -1,0 +1,40 @@
+/* A model: a deck put to work. */
+#ifndef BRECCIA_MODEL_MODEL_H
+#define BRECCIA_MODEL_MODEL_H
+
+#include "model/deck_layout.h"
+#include "solver/explicit.h"
+
+typedef struct Peaks { /* over all states written */
+  double displacement, velocity, octahedral, mean_low, mean_high, damage;
+} Peaks;
+
+struct breccia_model {
+  char *deck_text;
+  Document *document;
+  Units *units;
+  LawList laws;
+  DeckReader reader; /* its error is only set while loading */
+  const DeckSpec *spec;
+  Domain domain;
+  Loading loading;
+  Explicit solver;
+  Watches *watches;
+  Text warnings, overview, outcome;
+  double evaluation_seconds; /* of one force evaluation, measured */
+  bool begun;
+  int threads;
+  int64_t *schedule; /* steps at which results are written */
+  int64_t schedule_count;
+  Peaks peaks;
+  double run_seconds;
+  int64_t run_steps;
+};
+
+/** Prepares forces and accelerations of the first state, once. */
+void model_begin(breccia_model *model);
+
+/** Step nearest to a time. */
+int64_t model_step_at(const breccia_model *model, double time);
+
+#endif

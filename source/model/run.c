@@ -1,0 +1,466 @@
+/* A whole run with its files: results, histories, checkpoints, pictures, summary. */
+#include "base/clock.h"
+#include "base/tensor.h"
+#include "model/model.h"
+#include "results/checkpoint.h"
+#include "results/curve.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { STABLE_STEP_EVERY = 2000 };
+
+typedef struct Run {
+  breccia_model *model;
+  const breccia_run *wish;
+  ResultFile *results;
+  int64_t next_write; /* index in the schedule */
+  int64_t steps;      /* where to stop */
+  double started, last_checkpoint, last_progress;
+  TextList names;
+  const char **names_memory;
+  Text files;
+} Run;
+
+static void note_file(Run *run, const char *path)
+{
+  text_add(&run->files, "  %s\n", path);
+}
+
+/* ---- pieces ---- */
+
+static int make_folder(const char *path, Error *error)
+{
+  char *part = text_format("%s", path);
+  if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: folder");
+  for (char *slash = strchr(part + 1, '/');; slash = strchr(slash + 1, '/')) {
+    if (slash) *slash = 0;
+    int bad = mkdir(part, 0777);
+    struct stat status;
+    if (bad && (errno != EEXIST || stat(part, &status) || !S_ISDIR(status.st_mode))) {
+      error_add(error, BRECCIA_USER_ERROR, "%s: the folder cannot be made: %s", part, strerror(errno));
+      free(part);
+      return BRECCIA_USER_ERROR;
+    }
+    if (!slash) break;
+    *slash = '/';
+  }
+  free(part);
+  return BRECCIA_OK;
+}
+
+/** Fields of the deck, those of its pictures, and displacement, without doubles. */
+static int list_names(Run *run, Error *error)
+{
+  const DeckSpec *spec = run->model->spec;
+  const TextList *asked = &spec->results->fields;
+  int most = asked->count + spec->pictures.count + 16;
+  run->names_memory = calloc((size_t)most, sizeof(char *));
+  if (!run->names_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: fields");
+  run->names.items = run->names_memory;
+  for (int pass = 0; pass < 3; ++pass) {
+    int count = pass == 0 ? asked->count : pass == 1 ? spec->pictures.count : 6;
+    for (int k = 0; k < count; ++k) {
+      const char *name = pass == 0   ? asked->items[k]
+                         : pass == 1 ? ((const PictureSpec *)spec->pictures.items[k])->field
+                         : asked->count ? "displacement"
+                                        : standard_fields[k];
+      int known = !name;
+      for (int n = 0; n < run->names.count; ++n) known |= name && !strcmp(run->names.items[n], name);
+      if (!known) run->names_memory[run->names.count++] = name;
+    }
+  }
+  return BRECCIA_OK;
+}
+
+static void update_peaks(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  Peaks *peaks = &model->peaks;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    int32_t place = d->particles->place_of[n];
+    double u = 0, v = 0, s[6];
+    for (int k = 0; k < 3; ++k) {
+      u += pow(d->particles->displacement[k][place], 2);
+      v += pow(d->particles->velocity[k][place], 2);
+    }
+    for (int k = 0; k < 6; ++k) s[k] = d->points.stress[k][place];
+    peaks->displacement = fmax(peaks->displacement, sqrt(u));
+    peaks->velocity = fmax(peaks->velocity, sqrt(v));
+    peaks->octahedral = fmax(peaks->octahedral, tensor_octahedral_shear(s));
+    peaks->mean_low = fmin(peaks->mean_low, (s[XX] + s[YY] + s[ZZ]) / 3);
+    peaks->mean_high = fmax(peaks->mean_high, (s[XX] + s[YY] + s[ZZ]) / 3);
+    peaks->damage = fmax(peaks->damage, d->broken_count ? domain_damage(d, place) : 0);
+  }
+}
+
+static int write_results(Run *run, Error *error)
+{
+  breccia_model *model = run->model;
+  update_peaks(model);
+  return result_file_write(run->results, &model->domain, model->solver.step, model->solver.time, error);
+}
+
+static int write_checkpoint(Run *run, Error *error)
+{
+  const Peaks *p = &run->model->peaks;
+  const double extras[CHECKPOINT_EXTRAS] = {p->displacement, p->velocity, p->octahedral,
+                                            p->mean_low,     p->mean_high, p->damage};
+  run->last_checkpoint = clock_seconds();
+  return checkpoint_write(run->wish->folder, &run->model->solver, run->model->deck_text, extras, error);
+}
+
+static int open_files(Run *run, Error *error)
+{
+  breccia_model *model = run->model;
+  const ResultNames names = {run->names.items, run->names.count, !strcmp(model->spec->results->precision, "single")};
+  int64_t resume = run->wish->restart ? model->solver.step : -1;
+  int status;
+  if (run->wish->restart) {
+    while (run->next_write < model->schedule_count && model->schedule[run->next_write] <= model->solver.step)
+      ++run->next_write;
+    status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title, &names,
+                                model->schedule, run->next_write, error);
+  } else
+    status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title, &names,
+                                error);
+  return status ? status : watches_open(model->watches, run->wish->folder, model->units, resume, error);
+}
+
+/* ---- the loop ---- */
+
+static void show_progress(Run *run, bool always)
+{
+  const Explicit *s = &run->model->solver;
+  double now = clock_seconds();
+  if (!run->wish->progress || (!always && now - run->last_progress < 0.2)) return;
+  run->last_progress = now;
+  int64_t done = run->model->run_steps;
+  double rate = done > 0 ? (now - run->started) / (double)done : 0;
+  run->wish->progress(run->wish->context, s->step, run->steps, rate * (double)(run->steps - s->step));
+}
+
+static int due(Run *run, Error *error)
+{
+  breccia_model *model = run->model;
+  const Explicit *s = &model->solver;
+  const ResultsSpec *r = model->spec->results;
+  int status = watches_write(model->watches, s, false, error);
+  if (!status && run->next_write < model->schedule_count && model->schedule[run->next_write] == s->step) {
+    ++run->next_write;
+    status = write_results(run, error);
+  }
+  bool by_steps = r->checkpoint_steps > 0 && s->step && s->step % r->checkpoint_steps == 0;
+  if (!status && (by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
+    status = write_checkpoint(run, error);
+  return status;
+}
+
+static int loop(Run *run, Error *error)
+{
+  breccia_model *model = run->model;
+  Explicit *s = &model->solver;
+  int status = run->wish->restart ? BRECCIA_OK : due(run, error);
+  while (!status && s->step < run->steps) {
+    if (run->wish->interrupted && *run->wish->interrupted) return BRECCIA_INTERRUPTED;
+    if ((status = explicit_advance(s, error))) break;
+    ++model->run_steps;
+    if ((status = due(run, error))) break;
+    if (s->step % STABLE_STEP_EVERY == 0) status = explicit_renew_stable_step(s, &model->warnings, error);
+    show_progress(run, false);
+  }
+  return status;
+}
+
+/* ---- pictures ---- */
+
+static int nearest_write(const ResultView *view, double time)
+{
+  int best = view->steps - 1;
+  for (int k = 0; k < view->steps; ++k)
+    if (fabs(view->times[k] - time) < fabs(view->times[best] - time)) best = k;
+  return best;
+}
+
+static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, int step, Error *error)
+{
+  char name[160], words[256];
+  PictureOptions o = {spec->field, spec->component, spec->deformed, NAN, NAN, NAN, NAN, spec->broken_bonds};
+  o.azimuth = spec->view[0];
+  o.elevation = spec->view[1];
+  o.low = spec->range[0];
+  o.high = spec->range[1];
+  snprintf(words, sizeof words, "%s%s%s step %lld", spec->field, spec->component ? " " : "",
+           spec->component ? spec->component : "", (long long)view->step_numbers[step]);
+  text_file_name(words, name, sizeof name);
+  char *path = text_format("%s/pictures/%s.png", run->wish->folder, name);
+  int status = path ? picture_draw(view, step, &o, path, error) : BRECCIA_FAILURE;
+  if (!status) note_file(run, path);
+  free(path);
+  return status;
+}
+
+static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
+{
+  char name[160];
+  text_file_name(spec->curve, name, sizeof name);
+  char *path = text_format("%s/pictures/%s.png", run->wish->folder, name);
+  const char *folder = run->wish->folder;
+  int status = path ? curve_draw(&folder, 1, spec->curve, NULL, run->model->spec->title, path, error) : BRECCIA_FAILURE;
+  if (!status) note_file(run, path);
+  free(path);
+  return status;
+}
+
+/** Pictures are made from the files, as `breccia plot` does. What cannot be drawn is a warning: the results are there. */
+static void draw_pictures(Run *run)
+{
+  breccia_model *model = run->model;
+  Error *error = breccia_error_create();
+  char *path = text_format("%s/results.vtkhdf", run->wish->folder), *folder = text_format("%s/pictures", run->wish->folder);
+  ResultView view;
+  int status = path && folder ? make_folder(folder, error) : BRECCIA_FAILURE;
+  if (!status && !(status = result_view_open(&view, path, error))) {
+    static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
+    for (int k = 0; !model->spec->pictures.count && k < 3; ++k) {
+      bool written = false;
+      for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
+      const PictureSpec spec = {.field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}};
+      if (written) draw_field(run, &view, &spec, view.steps - 1, error);
+    }
+    for (int k = 0; k < model->spec->pictures.count; ++k) {
+      const PictureSpec *spec = model->spec->pictures.items[k];
+      if (spec->curve) {
+        draw_curve(run, spec, error);
+        continue;
+      }
+      for (int t = 0; t < (spec->times.count ? spec->times.count : 1); ++t) {
+        double time = spec->times.count ? spec->times.values[t] : model->solver.time;
+        if (time > model->solver.time * (1 + 1e-9)) continue; /* the run did not come so far */
+        draw_field(run, &view, spec, nearest_write(&view, time), error);
+      }
+    }
+    result_view_close(&view);
+  }
+  if (error_count(error))
+    text_add(&model->warnings, "%swarning: %s", model->warnings.length ? "\n" : "", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  free(path);
+  free(folder);
+}
+
+/* ---- summary ---- */
+
+static double load_magnitude(const LoadSpec *l)
+{
+  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
+  double square = 0;
+  for (int v = 0; v < 5; ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!isnan(given[v][k])) square += given[v][k] * given[v][k];
+  if (l->along) square = pow(isnan(l->along->displacement) ? l->along->velocity : l->along->displacement, 2);
+  return sqrt(square);
+}
+
+static double load_peak(const LoadSpec *l, double time)
+{
+  enum { SAMPLES = 1000 };
+  double peak = 0;
+  for (int k = 0; k <= SAMPLES; ++k) peak = fmax(peak, fabs(history_factor(l->history, time * k / SAMPLES)));
+  return peak * load_magnitude(l);
+}
+
+static double nanoseconds_per_bond(const breccia_model *model)
+{
+  double work = (double)model->run_steps * (double)model->domain.family.bonds;
+  return work > 0 ? 1e9 * model->run_seconds / work : 0;
+}
+
+static void add_number(Text *text, const char *key, double value)
+{
+  if (isfinite(value))
+    text_add(text, "\"%s\": %.10g", key, value);
+  else
+    text_add(text, "\"%s\": null", key);
+}
+
+static int write_summary(Run *run, int status, const char *problem, Error *error)
+{
+  breccia_model *model = run->model;
+  const Domain *d = &model->domain;
+  const Explicit *s = &model->solver;
+  Energy e = explicit_energy(s);
+  Text t = {0};
+  text_add(&t, "{\n  \"title\": ");
+  text_add_json(&t, model->spec->title);
+  text_add(&t, ",\n  \"version\": \"%s\",\n  \"completed\": %s,\n", BRECCIA_VERSION,
+           !status && s->step >= s->steps ? "true" : "false");
+  if (problem && *problem) {
+    text_add(&t, "  \"problem\": ");
+    text_add_json(&t, problem);
+    text_add(&t, ",\n");
+  }
+  text_add(&t, "  \"particles\": %lld,\n  \"bonds\": %lld,\n  \"steps\": %lld,\n", (long long)d->particles->count,
+           (long long)d->family.bonds, (long long)s->step);
+  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->time, s->time_step,
+           s->stable);
+  text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_bond_step\": %.4f,\n  \"threads\": %d,\n", model->run_seconds,
+           nanoseconds_per_bond(model), model->threads);
+  if (d->broken_count) {
+    const BrokenBond *b = &d->broken[0];
+    int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
+    double x[3];
+    for (int k = 0; k < 3; ++k) x[k] = (d->particles->position[k][a] + d->particles->position[k][c]) / 2;
+    text_add(&t, "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
+                 "%.10g]},\n", (long long)b->step, b->time, b->a, b->b, x[0], x[1], x[2]);
+  } else
+    text_add(&t, "  \"first_broken_bond\": null,\n");
+  text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)(2 * d->broken_count));
+  const struct {
+    const char *key;
+    double value;
+  } energies[] = {{"kinetic", e.kinetic},   {"internal", e.internal}, {"external", e.external},
+                  {"damping", e.damping},   {"fracture", e.fracture}, {"imbalance", e.imbalance}};
+  for (int k = 0; k < 6; ++k) {
+    if (k) text_add(&t, ", ");
+    add_number(&t, energies[k].key, energies[k].value);
+  }
+  text_add(&t, "},\n  \"peaks\": {");
+  const Peaks *p = &model->peaks;
+  const struct {
+    const char *key;
+    double value;
+  } peaks[] = {{"displacement", p->displacement},
+               {"velocity", p->velocity},
+               {"octahedral_shear_stress", p->octahedral},
+               {"mean_stress_lowest", p->mean_low},
+               {"mean_stress_highest", p->mean_high},
+               {"damage", p->damage}};
+  for (int k = 0; k < 6; ++k) {
+    if (k) text_add(&t, ", ");
+    add_number(&t, peaks[k].key, peaks[k].value);
+  }
+  text_add(&t, "},\n  \"loads\": [");
+  for (int k = 0; k < model->loading.count; ++k) {
+    const LoadSpec *l = model->loading.loads[k].spec;
+    text_add(&t, "%s{\"name\": ", k ? ", " : "");
+    text_add_json(&t, l->name ? l->name : "");
+    text_add(&t, ", ");
+    add_number(&t, "peak", load_peak(l, s->time));
+    text_add(&t, "}");
+  }
+  text_add(&t, "]\n}\n");
+  char *path = text_format("%s/summary.json", run->wish->folder), *part = text_format("%s/summary.json.part", run->wish->folder);
+  errno = 0;
+  FILE *file = part ? fopen(part, "w") : NULL;
+  int bad = !file || fwrite(t.characters, 1, t.length, file) != t.length;
+  if (file && fclose(file)) bad = 1;
+  bad = bad || rename(part, path);
+  if (bad) error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : "summary", strerror(errno));
+  else note_file(run, path);
+  free(path);
+  free(part);
+  text_free(&t);
+  return bad ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+static void tell_outcome(Run *run, int status)
+{
+  breccia_model *model = run->model;
+  const Domain *d = &model->domain;
+  const Explicit *s = &model->solver;
+  Energy e = explicit_energy(s);
+  Text *t = &model->outcome;
+  char time[64], energy[64];
+  units_name(model->units, dimension_find("time"), time, sizeof time);
+  units_name(model->units, dimension_find("energy"), energy, sizeof energy);
+  text_free(t);
+  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld steps, %.2f ns per bond and step\n",
+           status == BRECCIA_INTERRUPTED ? "stopped on request"
+           : status                      ? "stopped by a failure"
+                                         : "finished",
+           (long long)s->step, (long long)s->steps, s->time, time, model->run_seconds, (long long)model->run_steps,
+           nanoseconds_per_bond(model));
+  for (int k = 0; k < model->loading.count; ++k) {
+    const LoadSpec *l = model->loading.loads[k].spec;
+    if (l->name) text_add(t, "load '%s': peak %.6g\n", l->name, load_peak(l, s->time));
+  }
+  if (d->broken_count) {
+    const BrokenBond *b = &d->broken[0];
+    int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
+    text_add(t, "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g]; %lld bonds broken in all\n",
+             (long long)b->step, b->time, time, (d->particles->position[0][a] + d->particles->position[0][c]) / 2,
+             (d->particles->position[1][a] + d->particles->position[1][c]) / 2,
+             (d->particles->position[2][a] + d->particles->position[2][c]) / 2, (long long)d->broken_count);
+  } else if (d->failure.criterion)
+    text_add(t, "no bond broke\n");
+  text_add(t, "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + damping %.4g, imbalance %.2g %%\n",
+           energy, e.external, e.kinetic, e.internal, e.fracture, e.damping, 100 * e.imbalance);
+  text_add(t, "written:\n%s", run->files.characters ? run->files.characters : "");
+  if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
+}
+
+static int finish(Run *run, int status, Error *error)
+{
+  breccia_model *model = run->model;
+  model->run_seconds = clock_seconds() - run->started;
+  char *problem = text_format("%s", breccia_error_text(error));
+  if (!status) {
+    status = watches_write(model->watches, &model->solver, true, error);
+    if (!status) status = write_results(run, error);
+    if (!status) status = write_checkpoint(run, error);
+  } else if (status == BRECCIA_INTERRUPTED) {
+    int bad = write_checkpoint(run, error);
+    if (bad) status = bad;
+  } else { /* the last good state */
+    write_checkpoint(run, error);
+    write_results(run, error);
+    watches_write(model->watches, &model->solver, true, error);
+  }
+  Text own = {0};
+  text_add(&own, "  %s/results.vtkhdf (and results.xdmf for older ParaView)\n", run->wish->folder);
+  for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
+  text_free(&run->files);
+  run->files = own;
+  int bad = write_summary(run, status, problem, error);
+  if (bad && !status) status = bad;
+  draw_pictures(run);
+  tell_outcome(run, status);
+  free(problem);
+  return status;
+}
+
+int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_error *given)
+{
+  Error *error = given ? given : breccia_error_create();
+  Run run = {.model = model, .wish = wish};
+  run.steps = wish->steps > 0 && wish->steps < model->solver.steps ? wish->steps : model->solver.steps;
+  model->run_steps = 0;
+  int status = make_folder(wish->folder, error);
+  if (!status) status = list_names(&run, error);
+  if (!status && wish->restart) {
+    double extras[CHECKPOINT_EXTRAS];
+    status = checkpoint_read(wish->folder, &model->solver, model->deck_text, extras, error);
+    if (!status) {
+      model->peaks = (Peaks){extras[0], extras[1], extras[2], extras[3], extras[4], extras[5]};
+      model->begun = true;
+    }
+  }
+  if (!status) {
+    model_begin(model);
+    status = open_files(&run, error);
+  }
+  if (!status) {
+    run.started = run.last_checkpoint = clock_seconds();
+    status = finish(&run, loop(&run, error), error);
+  }
+  result_file_destroy(&run.results);
+  free(run.names_memory);
+  text_free(&run.files);
+  if (!given) breccia_error_destroy(&error);
+  return status;
+}

@@ -1,0 +1,20 @@
+/* Curves of histories, drawn by gnuplot. */
+#ifndef BRECCIA_RESULTS_CURVE_H
+#define BRECCIA_RESULTS_CURVE_H
+
+#include "base/error.h"
+
+/** Columns of CSV files against each other; several folders give several lines.
+ *  @param[in] folders   where the history files are
+ *  @param[in] curve     "watch.column : watch.column", horizontal then vertical
+ *  @param[in] overlay   a CSV file with two columns drawn as points (measured or published values), or NULL
+ *  @param[in] path      .png, .svg or .pdf */
+int curve_draw(const char *const *folders, int folder_count, const char *curve, const char *overlay, const char *title,
+               const char *path, Error *error);
+
+/** A column of a CSV file by name (a unit in parentheses after it need not be given).
+ *  @param[out] label  the column's whole heading, 128 bytes
+ *  @return its values, to be freed, or NULL with a message */
+double *csv_column(const char *path, const char *column, int *count, char *label, Error *error);
+
+#endif

@@ -1,0 +1,123 @@
+#include "results/fields.h"
+
+#include "base/tensor.h"
+#include <string.h>
+
+static void vector_at(double *const from[3], int32_t place, double *value)
+{
+  for (int k = 0; k < 3; ++k) value[k] = from[k][place];
+}
+static void displacement(const Domain *d, int32_t place, double *value)
+{
+  vector_at(d->particles->displacement, place, value);
+}
+static void velocity(const Domain *d, int32_t place, double *value)
+{
+  vector_at(d->particles->velocity, place, value);
+}
+static void internal_force(const Domain *d, int32_t place, double *value)
+{
+  vector_at(d->particles->internal, place, value);
+}
+static void stress(const Domain *d, int32_t place, double *value)
+{
+  for (int k = 0; k < 6; ++k) value[k] = d->points.stress[k][place];
+}
+static void strain(const Domain *d, int32_t place, double *value)
+{
+  for (int k = 0; k < 6; ++k) value[k] = d->points.strain[k][place];
+}
+static void gradient(const Domain *d, int32_t place, double *value)
+{
+  d->type->gradient(d->formulation, place, value);
+}
+static void octahedral(const Domain *d, int32_t place, double *value)
+{
+  double s[6];
+  stress(d, place, s);
+  *value = tensor_octahedral_shear(s);
+}
+static void deviator_norm(const Domain *d, int32_t place, double *value)
+{
+  octahedral(d, place, value);
+  *value *= sqrt(3);
+}
+static void octahedral_strain(const Domain *d, int32_t place, double *value)
+{
+  double e[6];
+  strain(d, place, e);
+  for (int k = 3; k < 6; ++k) e[k] /= 2;
+  *value = 2 * tensor_octahedral_shear(e);
+}
+static void mean_stress(const Domain *d, int32_t place, double *value)
+{
+  *value = (d->points.stress[XX][place] + d->points.stress[YY][place] + d->points.stress[ZZ][place]) / 3;
+}
+static void damage(const Domain *d, int32_t place, double *value)
+{
+  *value = domain_damage(d, place);
+}
+static void block(const Domain *d, int32_t place, double *value)
+{
+  *value = d->particles->block[place / SLICE];
+}
+
+static const char *const xyz[] = {"x", "y", "z"}, *const voigt[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+static const char *const full[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+
+static const OutputField fields[] = {
+    {"displacement", "length", "displacement from the reference position", 3, xyz, displacement},
+    {"velocity", "velocity", "velocity", 3, xyz, velocity},
+    {"stress", "stress", "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain)", 6, voigt, stress},
+    {"strain", "1", "strain as the law takes it, engineering shear", 6, voigt, strain},
+    {"deformation gradient", "1", "F, row by row", 9, full, gradient},
+    {"octahedral shear stress", "stress", "sqrt(2 J2 / 3)", 1, NULL, octahedral},
+    {"octahedral shear strain", "1", "twice the octahedral measure of the strain deviator: 2 / sqrt(3) |e|", 1, NULL,
+     octahedral_strain},
+    {"deviator norm", "stress", "|s| = sqrt(2 J2)", 1, NULL, deviator_norm},
+    {"mean stress", "stress", "a third of the trace, tension positive", 1, NULL, mean_stress},
+    {"damage", "1", "broken share of the family, 0 to 1", 1, NULL, damage},
+    {"internal force", "force per volume", "force per volume from bonds", 3, xyz, internal_force},
+    {"block", "1", "which block of the deck, from 0", 1, NULL, block},
+};
+enum { COUNT = sizeof fields / sizeof *fields };
+
+const OutputField *output_field_at(int k)
+{
+  return k < COUNT ? &fields[k] : NULL;
+}
+
+const OutputField *output_field_find(const char *name)
+{
+  for (int k = 0; k < COUNT; ++k)
+    if (!strcmp(fields[k].name, name)) return &fields[k];
+  return NULL;
+}
+
+static int history_index(const Material *m, const char *name)
+{
+  char word[64];
+  for (int k = 0; m->law->history_name && k < m->history_values; ++k) {
+    *word = 0;
+    m->law->history_name(m->constants, k, word, sizeof word);
+    if (*word && !strcmp(word, name)) return k;
+  }
+  return -1;
+}
+
+int history_field_find(const Domain *d, const char *name)
+{
+  for (int m = 0; m < d->material_count; ++m) {
+    int k = history_index(&d->materials[m], name);
+    if (k >= 0) return k;
+  }
+  return -1;
+}
+
+double history_field_value(const Domain *d, const char *name, int32_t place)
+{
+  const Material *m = domain_material(d, place);
+  int k = history_index(m, name);
+  if (k < 0) return 0;
+  return d->points.committed[d->points.history_start[place / SLICE] + (place % SLICE) * m->history_values + k];
+}

@@ -1,0 +1,670 @@
+#include "results/result_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <hdf5.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { COPY_LIMIT = 256 << 20, CHUNK_BYTES = 1 << 18 };
+
+static const char *precision_word(int k)
+{
+  static const char *const words[] = {"single", "double", NULL};
+  return words[k];
+}
+
+static const Field results_fields[] = {
+    {"fields", FIELD_TEXTS, offsetof(ResultsSpec, fields), NULL, "", NULL,
+     "what is written of each particle (see the list of fields); when absent: displacement, velocity, stress, octahedral "
+     "shear stress, mean stress, damage", NULL, NULL, 0},
+    {"precision", FIELD_CHOICE, offsetof(ResultsSpec, precision), NULL, "single", NULL, "of numbers in the result file",
+     NULL, precision_word, 0},
+    {"number", FIELD_COUNT, offsetof(ResultsSpec, number), NULL, "20", "[0, 1e6]",
+     "how many states are written, evenly over the run, besides the first and those that pictures ask for", NULL, NULL, 0},
+    {"every", FIELD_COUNT, offsetof(ResultsSpec, every), NULL, "", "[1, inf)", "instead: one in so many steps", NULL, NULL, 0},
+    {"times", FIELD_NUMBERS, offsetof(ResultsSpec, times), "time", "", "[0, inf)", "further times to write", NULL, NULL, 0},
+    {"checkpoint steps", FIELD_COUNT, offsetof(ResultsSpec, checkpoint_steps), NULL, "", "[1, inf)",
+     "a checkpoint every so many steps", NULL, NULL, 0},
+    {"checkpoint seconds", FIELD_NUMBER, offsetof(ResultsSpec, checkpoint_seconds), "1", "300", "(0, inf)",
+     "a checkpoint every so many seconds of computing", NULL, NULL, 0},
+};
+const Section results_section = {"results", "What is kept of a run, and how often.", sizeof(ResultsSpec),
+                                 FIELDS(results_fields), NULL, NULL, NULL, 0};
+
+const char *const standard_fields[] = {"displacement", "velocity", "stress", "octahedral shear stress", "mean stress", "damage",
+                                       NULL};
+
+typedef struct Column {
+  char name[64], unit[64];
+  const OutputField *field; /* NULL: a history number */
+  int components;
+} Column;
+
+struct ResultFile {
+  char *path, *xdmf;
+  int64_t particles, writes, broken_written;
+  bool single;
+  Column *columns;
+  int column_count;
+  double *times; /* of all writes */
+  int64_t *steps;
+  int64_t capacity;
+  const char *title;
+};
+
+/* ---- small HDF5 helpers: every one returns negative on failure ---- */
+
+static hid_t dataset_create(hid_t where, const char *name, hid_t type, int columns, hsize_t rows_per_chunk)
+{
+  hsize_t size[2] = {0, (hsize_t)columns}, most[2] = {H5S_UNLIMITED, (hsize_t)columns};
+  hsize_t chunk[2] = {rows_per_chunk ? rows_per_chunk : 1, (hsize_t)columns};
+  int rank = columns > 1 ? 2 : 1;
+  hid_t space = H5Screate_simple(rank, size, most), properties = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(properties, rank, chunk);
+  hid_t set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  H5Pclose(properties);
+  H5Sclose(space);
+  return set;
+}
+
+static hsize_t dataset_rows(hid_t set)
+{
+  hsize_t size[2] = {0, 1};
+  hid_t space = H5Dget_space(set);
+  H5Sget_simple_extent_dims(space, size, NULL);
+  H5Sclose(space);
+  return size[0];
+}
+
+/** Writes rows at `first`, growing or cutting the dataset to end there. */
+static int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns, hsize_t first, hsize_t rows,
+                         const void *values)
+{
+  hid_t set = H5Dopen2(where, name, H5P_DEFAULT);
+  hsize_t end[2] = {first + rows, (hsize_t)columns}, start[2] = {first, 0}, count[2] = {rows, (hsize_t)columns};
+  int rank = columns > 1 ? 2 : 1;
+  herr_t bad = set < 0 ? -1 : H5Dset_extent(set, end);
+  if (bad >= 0 && rows) {
+    hid_t space = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+    bad = H5Dwrite(set, memory_type, memory, space, H5P_DEFAULT, values);
+    H5Sclose(space);
+    H5Sclose(memory);
+  }
+  if (set >= 0) H5Dclose(set);
+  return bad < 0;
+}
+
+static int attribute_numbers(hid_t where, const char *name, hid_t type, hsize_t count, const void *values)
+{
+  hid_t space = count > 1 ? H5Screate_simple(1, &count, NULL) : H5Screate(H5S_SCALAR);
+  hid_t attribute = H5Aexists(where, name) > 0 ? H5Aopen(where, name, H5P_DEFAULT)
+                                               : H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  herr_t bad = attribute < 0 ? -1 : H5Awrite(attribute, type, values);
+  if (attribute >= 0) H5Aclose(attribute);
+  H5Sclose(space);
+  return bad < 0;
+}
+
+static int attribute_text(hid_t where, const char *name, const char *words)
+{
+  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, strlen(words) ? strlen(words) : 1);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  hid_t attribute = H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  herr_t bad = attribute < 0 ? -1 : H5Awrite(attribute, type, words);
+  if (attribute >= 0) H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+  return bad < 0;
+}
+
+static void attribute_read_text(hid_t where, const char *name, char *words, size_t size)
+{
+  *words = 0;
+  if (H5Aexists(where, name) <= 0) return;
+  hid_t attribute = H5Aopen(where, name, H5P_DEFAULT), type = H5Aget_type(attribute);
+  size_t length = H5Tget_size(type);
+  char *whole = calloc(1, length + 1);
+  if (whole && !H5Tis_variable_str(type) && H5Aread(attribute, type, whole) >= 0) snprintf(words, size, "%s", whole);
+  free(whole);
+  H5Tclose(type);
+  H5Aclose(attribute);
+}
+
+/* ---- building the file ---- */
+
+static const char *const cell_kinds[] = {"Vertices", "Lines", "Polygons", "Strips"};
+
+static int write_cells(hid_t root, int64_t particles)
+{
+  int bad = 0;
+  for (int k = 0; k < 4; ++k) {
+    int64_t cells = k ? 0 : particles, *numbers = calloc((size_t)cells + 2, sizeof(int64_t));
+    hid_t group = H5Gcreate2(root, cell_kinds[k], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const char *const names[] = {"NumberOfCells", "NumberOfConnectivityIds", "Offsets", "Connectivity"};
+    const hsize_t rows[] = {1, 1, (hsize_t)cells + 1, (hsize_t)cells};
+    if (!numbers || group < 0) return 1;
+    for (int n = 0; n < 4; ++n) {
+      for (int64_t i = 0; i <= cells; ++i) numbers[i] = n < 2 ? cells : i;
+      hid_t set = dataset_create(group, names[n], H5T_STD_I64LE, 1, rows[n] > 4096 ? 4096 : rows[n]);
+      bad |= set < 0;
+      if (set >= 0) H5Dclose(set);
+      bad |= dataset_write(group, names[n], H5T_NATIVE_INT64, 1, 0, rows[n], numbers);
+    }
+    free(numbers);
+    H5Gclose(group);
+  }
+  return bad;
+}
+
+static void field_values(const ResultFile *file, const Domain *d, const Column *column, double *values)
+{
+  (void)file;
+#pragma omp parallel for schedule(static)
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    int32_t place = d->particles->place_of[n];
+    if (column->field)
+      column->field->value(d, place, values + n * column->components);
+    else
+      values[n] = history_field_value(d, column->name, place);
+  }
+}
+
+static int create_sets(hid_t root, const ResultFile *file)
+{
+  int bad = 0;
+  hid_t data = H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t steps = H5Gcreate2(root, "Steps", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t offsets = H5Gcreate2(steps, "PointDataOffsets", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const char *const lists[] = {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets",
+                               "ConnectivityIdOffsets", "StepNumbers"};
+  for (int k = 0; k < 7; ++k) {
+    hid_t set = dataset_create(steps, lists[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k == 4 || k == 5 ? 4 : 1, 64);
+    bad |= set < 0;
+    if (set >= 0) H5Dclose(set);
+  }
+  for (int c = 0; c < file->column_count; ++c) {
+    const Column *column = &file->columns[c];
+    hsize_t width = (hsize_t)column->components * (file->single ? 4 : 8), rows = CHUNK_BYTES / width;
+    if (rows > (hsize_t)file->particles) rows = (hsize_t)file->particles;
+    hid_t set = dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
+    bad |= set < 0;
+    if (set >= 0) {
+      bad |= attribute_text(set, "unit", column->unit);
+      H5Dclose(set);
+    }
+    set = dataset_create(offsets, column->name, H5T_STD_I64LE, 1, 64);
+    bad |= set < 0;
+    if (set >= 0) H5Dclose(set);
+  }
+  int64_t none = 0;
+  bad |= attribute_numbers(steps, "NSteps", H5T_NATIVE_INT64, 1, &none);
+  H5Gclose(offsets);
+  H5Gclose(steps);
+  H5Gclose(data);
+  return bad;
+}
+
+static int write_geometry(hid_t root, const Domain *d)
+{
+  const Particles *p = d->particles;
+  double *positions = malloc(sizeof(double) * 3 * (size_t)p->count), *spacings = malloc(sizeof(double) * (size_t)p->count);
+  int bad = !positions || !spacings;
+  for (int64_t n = 0; !bad && n < p->count; ++n) {
+    for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
+    spacings[n] = d->body.lattices[p->block[p->place_of[n] / SLICE]].spacing;
+  }
+  const char *const names[] = {"Points", "NumberOfPoints"};
+  for (int k = 0; k < 2 && !bad; ++k) {
+    hid_t set = dataset_create(root, names[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k ? 1 : 3, k ? 1 : 4096);
+    bad = set < 0;
+    if (set >= 0) H5Dclose(set);
+  }
+  if (!bad) {
+    bad |= dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, 0, (hsize_t)p->count, positions);
+    bad |= dataset_write(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 0, 1, &p->count);
+    hid_t file = H5Iget_file_id(root), own = H5Gcreate2(file, "Breccia", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    int plane = d->body.plane;
+    bad |= attribute_text(own, "version", BRECCIA_VERSION);
+    bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
+    hid_t set = dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
+    H5Dclose(set);
+    set = dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
+    H5Dclose(set);
+    bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)p->count, spacings);
+    H5Gclose(own);
+    H5Fclose(file);
+  }
+  free(positions);
+  free(spacings);
+  return bad;
+}
+
+static int copy_file(const char *from, const char *to)
+{
+  int in = open(from, O_RDONLY), out = open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666), bad = in < 0 || out < 0;
+  char *buffer = malloc(1 << 20);
+  bad |= !buffer;
+  while (!bad) {
+    ssize_t n = read(in, buffer, 1 << 20);
+    if (n <= 0) {
+      bad = n < 0;
+      break;
+    }
+    for (ssize_t done = 0; done < n && !bad;) {
+      ssize_t m = write(out, buffer + done, (size_t)(n - done));
+      bad = m < 0;
+      done += m;
+    }
+  }
+  free(buffer);
+  if (in >= 0) close(in);
+  if (out >= 0 && close(out)) bad = 1;
+  return bad;
+}
+
+static int file_error(const char *path, Error *error)
+{
+  return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, errno ? strerror(errno) : "HDF5 refused");
+}
+
+static ResultFile *prepare(const char *folder, const Domain *d, const Units *units, const char *title,
+                           const ResultNames *names, Error *error)
+{
+  ResultFile *file = calloc(1, sizeof *file);
+  if (!file) return NULL;
+  file->path = text_format("%s/results.vtkhdf", folder);
+  file->xdmf = text_format("%s/results.xdmf", folder);
+  file->particles = d->particles->count;
+  file->single = names->single;
+  file->title = title;
+  file->columns = calloc((size_t)names->count + 1, sizeof(Column));
+  if (!file->path || !file->xdmf || !file->columns) {
+    result_file_destroy(&file);
+    error_add(error, BRECCIA_FAILURE, "out of memory: result file");
+    return NULL;
+  }
+  for (int k = 0; k < names->count; ++k) {
+    Column *column = &file->columns[file->column_count++];
+    snprintf(column->name, sizeof column->name, "%s", names->fields[k]);
+    column->field = output_field_find(names->fields[k]);
+    column->components = column->field ? column->field->components : 1;
+    if (column->field) units_name(units, dimension_find(column->field->dimension), column->unit, sizeof column->unit);
+  }
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  return file;
+}
+
+int result_file_create(ResultFile **out, const char *folder, const Domain *d, const Units *units, const char *title,
+                       const ResultNames *names, Error *error)
+{
+  ResultFile *file = *out = prepare(folder, d, units, title, names, error);
+  if (!file) return BRECCIA_FAILURE;
+  errno = 0;
+  char *temporary = text_format("%s.part", file->path);
+  hid_t h5 = H5Fcreate(temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  int bad = h5 < 0;
+  if (!bad) {
+    hid_t root = H5Gcreate2(h5, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    int64_t version[2] = {2, 0};
+    bad |= attribute_numbers(root, "Version", H5T_NATIVE_INT64, 2, version);
+    bad |= attribute_text(root, "Type", "PolyData");
+    bad |= write_geometry(root, d);
+    bad |= write_cells(root, file->particles);
+    bad |= create_sets(root, file);
+    H5Gclose(root);
+    hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
+    char unit[64];
+    units_name(units, dimension_find("length"), unit, sizeof unit);
+    bad |= attribute_text(own, "title", title) | attribute_text(own, "length unit", unit);
+    units_name(units, dimension_find("time"), unit, sizeof unit);
+    bad |= attribute_text(own, "time unit", unit);
+    H5Gclose(own);
+    bad |= H5Fclose(h5) < 0;
+  }
+  bad = bad || rename(temporary, file->path);
+  free(temporary);
+  return bad ? file_error(file->path, error) : BRECCIA_OK;
+}
+
+static int grow_times(ResultFile *file)
+{
+  if (file->writes < file->capacity) return 0;
+  int64_t capacity = file->capacity ? 2 * file->capacity : 64;
+  double *times = realloc(file->times, sizeof(double) * (size_t)capacity);
+  if (times) file->times = times;
+  int64_t *steps = realloc(file->steps, sizeof(int64_t) * (size_t)capacity);
+  if (steps) file->steps = steps;
+  if (times && steps) file->capacity = capacity;
+  return !times || !steps;
+}
+
+static int write_xdmf(const ResultFile *file)
+{
+  Text text = {0};
+  text_add(&text, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
+                  "  <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  long long n = file->particles;
+  for (int64_t w = 0; w < file->writes; ++w) {
+    text_add(&text, "   <Grid Name=\"step %lld\">\n    <Time Value=\"%.17g\"/>\n", (long long)file->steps[w], file->times[w]);
+    text_add(&text, "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%lld\"/>\n"
+                    "    <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+                    "Dimensions=\"%lld 3\">results.vtkhdf:/VTKHDF/Points</DataItem></Geometry>\n", n, n);
+    for (int c = 0; c < file->column_count; ++c) {
+      const Column *column = &file->columns[c];
+      int k = column->components;
+      char shape[64], all[64], slab[128];
+      if (k > 1) {
+        snprintf(shape, sizeof shape, "%lld %d", n, k);
+        snprintf(all, sizeof all, "%lld %d", n * (long long)file->writes, k);
+        snprintf(slab, sizeof slab, "%lld 0 1 1 %lld %d", n * (long long)w, n, k);
+      } else {
+        snprintf(shape, sizeof shape, "%lld", n);
+        snprintf(all, sizeof all, "%lld", n * (long long)file->writes);
+        snprintf(slab, sizeof slab, "%lld 1 %lld", n * (long long)w, n);
+      }
+      text_add(&text, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" "
+                      "Dimensions=\"%s\"><DataItem Dimensions=\"3 %d\" Format=\"XML\">%s</DataItem>"
+                      "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%s\">"
+                      "results.vtkhdf:/VTKHDF/PointData/%s</DataItem></DataItem></Attribute>\n",
+               column->name, k == 1 ? "Scalar" : k == 3 ? "Vector" : k == 6 ? "Tensor6" : k == 9 ? "Tensor" : "Matrix", shape,
+               k > 1 ? 2 : 1, slab, file->single ? 4 : 8, all, column->name);
+    }
+    text_add(&text, "   </Grid>\n");
+  }
+  text_add(&text, "  </Grid>\n </Domain>\n</Xdmf>\n");
+  char *temporary = text_format("%s.part", file->xdmf);
+  FILE *out = temporary ? fopen(temporary, "w") : NULL;
+  int bad = !out || fwrite(text.characters, 1, text.length, out) != text.length;
+  if (out && fclose(out)) bad = 1;
+  bad = bad || rename(temporary, file->xdmf);
+  free(temporary);
+  text_free(&text);
+  return bad;
+}
+
+/** Cuts (count < written) or extends the lists of steps. */
+static int write_steps(hid_t root, const ResultFile *file)
+{
+  hid_t steps = H5Gopen2(root, "Steps", H5P_DEFAULT), offsets = H5Gopen2(steps, "PointDataOffsets", H5P_DEFAULT);
+  hsize_t n = (hsize_t)file->writes;
+  int64_t *zeros = calloc((size_t)n * 4 + 4, sizeof(int64_t)), *ones = calloc((size_t)n + 1, sizeof(int64_t));
+  int64_t *starts = calloc((size_t)n + 1, sizeof(int64_t));
+  int bad = !zeros || !ones || !starts || steps < 0 || offsets < 0;
+  for (hsize_t k = 0; !bad && k < n; ++k) {
+    ones[k] = 1;
+    starts[k] = (int64_t)k * file->particles;
+  }
+  if (!bad) {
+    bad |= dataset_write(steps, "Values", H5T_NATIVE_DOUBLE, 1, 0, n, file->times);
+    bad |= dataset_write(steps, "StepNumbers", H5T_NATIVE_INT64, 1, 0, n, file->steps);
+    bad |= dataset_write(steps, "PartOffsets", H5T_NATIVE_INT64, 1, 0, n, zeros);
+    bad |= dataset_write(steps, "NumberOfParts", H5T_NATIVE_INT64, 1, 0, n, ones);
+    bad |= dataset_write(steps, "PointOffsets", H5T_NATIVE_INT64, 1, 0, n, zeros);
+    bad |= dataset_write(steps, "CellOffsets", H5T_NATIVE_INT64, 4, 0, n, zeros);
+    bad |= dataset_write(steps, "ConnectivityIdOffsets", H5T_NATIVE_INT64, 4, 0, n, zeros);
+    for (int c = 0; c < file->column_count; ++c)
+      bad |= dataset_write(offsets, file->columns[c].name, H5T_NATIVE_INT64, 1, 0, n, starts);
+    bad |= attribute_numbers(steps, "NSteps", H5T_NATIVE_INT64, 1, &file->writes);
+  }
+  free(zeros);
+  free(ones);
+  free(starts);
+  if (offsets >= 0) H5Gclose(offsets);
+  if (steps >= 0) H5Gclose(steps);
+  return bad;
+}
+
+static int append(ResultFile *file, const char *path, const Domain *d)
+{
+  hid_t h5 = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+  if (h5 < 0) return 1;
+  hid_t root = H5Gopen2(h5, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
+  double *values = malloc(sizeof(double) * MOST_COMPONENTS * (size_t)file->particles);
+  int bad = !values || root < 0 || data < 0;
+  for (int c = 0; c < file->column_count && !bad; ++c) {
+    const Column *column = &file->columns[c];
+    field_values(file, d, column, values);
+    bad = dataset_write(data, column->name, H5T_NATIVE_DOUBLE, column->components,
+                        (hsize_t)((file->writes - 1) * file->particles), (hsize_t)file->particles, values);
+  }
+  int64_t fresh = d->broken_count - file->broken_written, *rows = calloc((size_t)fresh * 3 + 3, sizeof(int64_t));
+  bad |= !rows;
+  for (int64_t k = 0; !bad && k < fresh; ++k) {
+    const BrokenBond *bond = &d->broken[file->broken_written + k];
+    rows[3 * k] = bond->step;
+    rows[3 * k + 1] = bond->a;
+    rows[3 * k + 2] = bond->b;
+  }
+  hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
+  bad = bad || dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
+  bad = bad || H5Fflush(h5, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file);
+  if (own >= 0) H5Gclose(own);
+  if (data >= 0) H5Gclose(data);
+  if (root >= 0) H5Gclose(root);
+  bad |= H5Fclose(h5) < 0;
+  free(rows);
+  free(values);
+  if (!bad) file->broken_written = d->broken_count;
+  return bad;
+}
+
+int result_file_write(ResultFile *file, const Domain *d, int64_t step, double time, Error *error)
+{
+  if (grow_times(file)) return error_add(error, BRECCIA_FAILURE, "out of memory: result file");
+  if (file->writes && file->steps[file->writes - 1] == step) return BRECCIA_OK;
+  file->times[file->writes] = time;
+  file->steps[file->writes++] = step;
+  errno = 0;
+  struct stat status;
+  int bad = stat(file->path, &status);
+  if (!bad && status.st_size < COPY_LIMIT) {
+    char *temporary = text_format("%s.part", file->path);
+    bad = copy_file(file->path, temporary) || append(file, temporary, d) || rename(temporary, file->path);
+    if (bad) remove(temporary);
+    free(temporary);
+  } else if (!bad)
+    bad = append(file, file->path, d);
+  bad = bad || write_xdmf(file);
+  if (!bad) return BRECCIA_OK;
+  --file->writes;
+  return file_error(file->path, error);
+}
+
+int result_file_resume(ResultFile **out, const char *folder, const Domain *d, const Units *units, const char *title,
+                       const ResultNames *names, const int64_t *schedule, int64_t count, Error *error)
+{
+  ResultFile *file = *out = prepare(folder, d, units, title, names, error);
+  if (!file) return BRECCIA_FAILURE;
+  ResultView view;
+  int status = result_view_open(&view, file->path, error);
+  if (status) return status;
+  for (int k = 0; k < view.steps && k < count && view.step_numbers[k] == schedule[k] && !grow_times(file); ++k) {
+    file->times[file->writes] = view.times[k];
+    file->steps[file->writes++] = view.step_numbers[k];
+  }
+  int64_t last = file->writes ? file->steps[file->writes - 1] : -1;
+  while (file->broken_written < d->broken_count && d->broken[file->broken_written].step <= last) ++file->broken_written;
+  bool same = view.particles == file->particles;
+  result_view_close(&view);
+  if (!same)
+    return error_add(error, BRECCIA_USER_ERROR, "%s: holds another number of particles than the deck", file->path);
+  errno = 0;
+  char *temporary = text_format("%s.part", file->path);
+  int bad = copy_file(file->path, temporary);
+  hid_t h5 = bad ? -1 : H5Fopen(temporary, H5F_ACC_RDWR, H5P_DEFAULT);
+  bad |= h5 < 0;
+  if (!bad) {
+    hid_t root = H5Gopen2(h5, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
+    for (int c = 0; c < file->column_count; ++c)
+      bad |= dataset_write(data, file->columns[c].name, H5T_NATIVE_DOUBLE, file->columns[c].components,
+                           (hsize_t)(file->writes * file->particles), 0, NULL);
+    hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
+    bad |= dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, 0, NULL);
+    bad |= write_steps(root, file);
+    H5Gclose(own);
+    H5Gclose(data);
+    H5Gclose(root);
+    bad |= H5Fclose(h5) < 0;
+  }
+  bad = bad || rename(temporary, file->path) || write_xdmf(file);
+  free(temporary);
+  return bad ? file_error(file->path, error) : BRECCIA_OK;
+}
+
+void result_file_destroy(ResultFile **file)
+{
+  if (!file || !*file) return;
+  free((*file)->path);
+  free((*file)->xdmf);
+  free((*file)->columns);
+  free((*file)->times);
+  free((*file)->steps);
+  free(*file);
+  *file = NULL;
+}
+
+/* ---- reading ---- */
+
+static void *read_all(hid_t where, const char *name, hid_t type, size_t size, hsize_t *rows)
+{
+  hid_t set = H5Dopen2(where, name, H5P_DEFAULT);
+  if (set < 0) return NULL;
+  hid_t space = H5Dget_space(set);
+  hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (rows) *rows = dataset_rows(set);
+  void *values = calloc((size_t)(count > 0 ? count : 1), size);
+  if (values && count > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    free(values);
+    values = NULL;
+  }
+  H5Sclose(space);
+  H5Dclose(set);
+  return values;
+}
+
+int result_view_open(ResultView *view, const char *path, Error *error)
+{
+  *view = (ResultView){.file = -1};
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  view->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (view->file < 0) {
+    struct stat status;
+    return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
+                     stat(path, &status) ? "there is no such file" : "is not a result file");
+  }
+  hid_t root = H5Gopen2(view->file, "VTKHDF", H5P_DEFAULT), own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
+  hsize_t steps = 0, particles = 0;
+  if (root >= 0 && own >= 0) {
+    view->positions = read_all(root, "Points", H5T_NATIVE_DOUBLE, sizeof(double), &particles);
+    view->times = read_all(root, "Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps);
+    view->step_numbers = read_all(root, "Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL);
+    view->spacings = read_all(own, "Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL);
+    attribute_read_text(own, "title", view->title, sizeof view->title);
+    attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
+    attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
+    int plane = 0;
+    hid_t attribute = H5Aopen(own, "plane", H5P_DEFAULT);
+    if (attribute >= 0) {
+      H5Aread(attribute, H5T_NATIVE_INT, &plane);
+      H5Aclose(attribute);
+    }
+    view->plane = plane;
+  }
+  if (root >= 0) H5Gclose(root);
+  if (own >= 0) H5Gclose(own);
+  if (!view->positions || !view->times || !view->step_numbers || !view->spacings) {
+    result_view_close(view);
+    return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
+  }
+  view->particles = (int64_t)particles;
+  view->steps = (int)steps;
+  for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
+  return BRECCIA_OK;
+}
+
+void result_view_close(ResultView *view)
+{
+  if (view->file >= 0) H5Fclose(view->file);
+  free(view->positions);
+  free(view->times);
+  free(view->step_numbers);
+  free(view->spacings);
+  *view = (ResultView){.file = -1};
+}
+
+static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *names)
+{
+  (void)group, (void)info;
+  Text *text = names;
+  text_add(text, "%s%s", text->length ? ", " : "", name);
+  return 0;
+}
+
+void result_view_fields(const ResultView *view, Text *names)
+{
+  hid_t data = H5Gopen2(view->file, "VTKHDF/PointData", H5P_DEFAULT);
+  if (data < 0) return;
+  H5Literate(data, H5_INDEX_NAME, H5_ITER_INC, NULL, add_name, names);
+  H5Gclose(data);
+}
+
+double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error)
+{
+  char path[256];
+  snprintf(path, sizeof path, "VTKHDF/PointData/%s", field);
+  hid_t data = H5Gopen2(view->file, "VTKHDF/PointData", H5P_DEFAULT);
+  hid_t set = data >= 0 && !strchr(field, '/') && H5Lexists(data, field, H5P_DEFAULT) > 0
+                  ? H5Dopen2(view->file, path, H5P_DEFAULT)
+                  : -1;
+  if (data >= 0) H5Gclose(data);
+  if (set < 0) {
+    Text names = {0};
+    result_view_fields(view, &names);
+    error_add(error, BRECCIA_USER_ERROR, "there is no field '%s' in the result file; it holds %s", field,
+              names.length ? names.characters : "none");
+    text_free(&names);
+    return NULL;
+  }
+  hsize_t size[2] = {0, 1};
+  hid_t space = H5Dget_space(set);
+  int rank = H5Sget_simple_extent_dims(space, size, NULL);
+  *components = rank > 1 ? (int)size[1] : 1;
+  hsize_t start[2] = {(hsize_t)step * (hsize_t)view->particles, 0}, count[2] = {(hsize_t)view->particles, size[1]};
+  double *values = calloc((size_t)view->particles * (size_t)*components, sizeof(double));
+  hid_t memory = H5Screate_simple(rank, count, NULL);
+  int bad = !values || start[0] + count[0] > size[0] ||
+            H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
+            H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) < 0;
+  if (unit) attribute_read_text(set, "unit", unit, 64);
+  H5Sclose(memory);
+  H5Sclose(space);
+  H5Dclose(set);
+  if (bad) {
+    free(values);
+    error_add(error, BRECCIA_FAILURE, "field '%s' cannot be read for step %d", field, step);
+    return NULL;
+  }
+  return values;
+}
+
+int64_t *result_view_broken(const ResultView *view, int step, int64_t *count)
+{
+  hsize_t rows = 0;
+  hid_t own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
+  int64_t *all = own >= 0 ? read_all(own, "BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &rows) : NULL;
+  if (own >= 0) H5Gclose(own);
+  *count = 0;
+  for (hsize_t k = 0; all && k < rows && all[3 * k] <= view->step_numbers[step]; ++k) {
+    all[2 * *count] = all[3 * k + 1];
+    all[2 * *count + 1] = all[3 * k + 2];
+    ++*count;
+  }
+  return all;
+}

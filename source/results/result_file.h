@@ -1,0 +1,68 @@
+/* The result file: VTKHDF 2.0 (HDF5), one cloud of points with time steps, and a small XDMF file beside it for older readers.
+ *
+ * Positions are the reference positions, written once; every write adds one step of each field. Small files are copied, extended
+ * and renamed into place, so that a run killed at any moment leaves a whole one; above COPY_LIMIT bytes they are extended in place. */
+#ifndef BRECCIA_RESULTS_RESULT_FILE_H
+#define BRECCIA_RESULTS_RESULT_FILE_H
+
+#include "deck/section.h"
+#include "results/fields.h"
+
+typedef struct ResultsSpec {
+  SectionHead head;
+  TextList fields;
+  const char *precision; /* "single" or "double" */
+  int64_t number, every;
+  NumberList times;
+  int64_t checkpoint_steps;
+  double checkpoint_seconds;
+} ResultsSpec;
+
+extern const Section results_section;
+
+/** Fields written when the deck names none. */
+extern const char *const standard_fields[];
+
+typedef struct ResultFile ResultFile;
+
+typedef struct ResultNames {
+  const char *const *fields; /* of fields.c, or named history numbers */
+  int count;
+  bool single;
+} ResultNames;
+
+/** Begins a result file in `folder` (results.vtkhdf and results.xdmf), replacing an older one. */
+int result_file_create(ResultFile **file, const char *folder, const Domain *domain, const Units *units, const char *title,
+                       const ResultNames *names, Error *error);
+/** Takes up the file of a run that stopped, keeping only what stands there of the first `count` steps of a schedule. */
+int result_file_resume(ResultFile **file, const char *folder, const Domain *domain, const Units *units, const char *title,
+                       const ResultNames *names, const int64_t *schedule, int64_t count, Error *error);
+/** Adds the present state. */
+int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
+void result_file_destroy(ResultFile **file);
+
+/* ---- reading ---- */
+
+typedef struct ResultView {
+  int64_t file;      /* HDF5 handle */
+  int64_t particles;
+  int steps;
+  int64_t *step_numbers;
+  double *times, *positions; /* [particles][3] */
+  double spacing;
+  double *spacings; /* [particles] */
+  bool plane;
+  char title[256], length_unit[64], time_unit[64];
+} ResultView;
+
+int result_view_open(ResultView *view, const char *path, Error *error);
+void result_view_close(ResultView *view);
+/** Names of the fields, comma separated. */
+void result_view_fields(const ResultView *view, Text *names);
+/** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field.
+ *  @param[out] unit  64 bytes */
+double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error);
+/** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed. */
+int64_t *result_view_broken(const ResultView *view, int step, int64_t *count);
+
+#endif

@@ -1,0 +1,339 @@
+#include "results/watch.h"
+
+#include "base/tensor.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void check_between(const DeckReader *reader, const void *section, const char *key, const NumberList *points)
+{
+  if (points->count && points->count != 2)
+    node_error(reader->document, section_place(section, key), reader->error, "%s: expected two points, found %d", key,
+               points->count);
+}
+static void check_watch(const DeckReader *reader, void *section)
+{
+  const WatchSpec *w = section;
+  check_between(reader, w, "opening between", &w->opening);
+  check_between(reader, w, "bond between", &w->bond);
+}
+
+static const Field watch_fields[] = {
+    {"every", FIELD_COUNT, offsetof(WatchSpec, every), NULL, "10", "[1, inf)", "a row every so many steps", NULL, NULL, 0},
+    {"displacement of", FIELD_REFERENCE, offsetof(WatchSpec, displacement), NULL, "", NULL, "mean displacement",
+     &selection_section, NULL, 'A'},
+    {"velocity of", FIELD_REFERENCE, offsetof(WatchSpec, velocity), NULL, "", NULL, "mean velocity", &selection_section,
+     NULL, 'A'},
+    {"force on", FIELD_REFERENCE, offsetof(WatchSpec, force), NULL, "", NULL,
+     "total force that bonds exert on these particles; minus the reaction where a motion is prescribed slowly",
+     &selection_section, NULL, 'A'},
+    {"stress and strain of", FIELD_REFERENCE, offsetof(WatchSpec, stress), NULL, "", NULL, "mean strain and stress",
+     &selection_section, NULL, 'A'},
+    {"damage of", FIELD_REFERENCE, offsetof(WatchSpec, damage), NULL, "", NULL, "mean and largest damage",
+     &selection_section, NULL, 'A'},
+    {"opening between", FIELD_POINTS, offsetof(WatchSpec, opening), "length", "", NULL,
+     "distance of the particles nearest to two points, and its growth", NULL, NULL, 'A'},
+    {"bond between", FIELD_POINTS, offsetof(WatchSpec, bond), "length", "", NULL,
+     "stretch of the bond between the particles nearest to two points, and whether it is intact", NULL, NULL, 'A'},
+    {"load", FIELD_TEXT, offsetof(WatchSpec, load), NULL, "", NULL, "value of a named load", NULL, NULL, 'A'},
+    {"energy", FIELD_FLAG, offsetof(WatchSpec, energy), NULL, "", NULL, "the energy ledger and the number of broken bonds",
+     NULL, NULL, 'A'},
+};
+const Section watch_section = {"watch", "A history, written to a CSV file of the same name.", sizeof(WatchSpec),
+                               FIELDS(watch_fields), check_watch, NULL, NULL, 0};
+
+typedef struct Watch Watch;
+typedef struct Kind {
+  const char *columns; /* name:dimension, separated by commas */
+  void (*row)(const Watch *watch, const Explicit *solver, double *values);
+} Kind;
+
+struct Watch {
+  const WatchSpec *spec;
+  const Kind *kind;
+  Selection selection;
+  int32_t ends[2];
+  const LoadSpec *load;
+  FILE *file;
+  char *path;
+  int64_t last_step;
+};
+
+struct Watches {
+  int count;
+  Watch *items;
+};
+
+static void mean(double *const from[3], const Selection *s, double *values)
+{
+  for (int k = 0; k < 3; ++k) {
+    values[k] = 0;
+    for (int64_t n = 0; n < s->count; ++n) values[k] += from[k][s->places[n]];
+    values[k] /= (double)s->count;
+  }
+}
+static void displacement_row(const Watch *w, const Explicit *s, double *values)
+{
+  mean(s->domain->particles->displacement, &w->selection, values);
+}
+static void velocity_row(const Watch *w, const Explicit *s, double *values)
+{
+  mean(s->domain->particles->velocity, &w->selection, values);
+}
+static void force_row(const Watch *w, const Explicit *s, double *values)
+{
+  const Particles *p = s->domain->particles;
+  for (int k = 0; k < 3; ++k) {
+    values[k] = 0;
+    for (int64_t n = 0; n < w->selection.count; ++n)
+      values[k] += p->internal[k][w->selection.places[n]] * p->volume[w->selection.places[n]];
+  }
+}
+static void stress_row(const Watch *w, const Explicit *s, double *values)
+{
+  double *strain = values, *stress = values + 6, tensor[6];
+  for (int k = 0; k < 6; ++k) {
+    strain[k] = stress[k] = 0;
+    for (int64_t n = 0; n < w->selection.count; ++n) {
+      strain[k] += s->domain->points.strain[k][w->selection.places[n]] / (double)w->selection.count;
+      stress[k] += s->domain->points.stress[k][w->selection.places[n]] / (double)w->selection.count;
+    }
+    tensor[k] = k < 3 ? strain[k] : strain[k] / 2;
+  }
+  values[12] = 2 * tensor_octahedral_shear(tensor);
+  values[13] = tensor_octahedral_shear(stress);
+  values[14] = (stress[XX] + stress[YY] + stress[ZZ]) / 3;
+}
+static void damage_row(const Watch *w, const Explicit *s, double *values)
+{
+  values[0] = values[1] = 0;
+  for (int64_t n = 0; n < w->selection.count; ++n) {
+    double damage = domain_damage(s->domain, w->selection.places[n]);
+    values[0] += damage / (double)w->selection.count;
+    values[1] = fmax(values[1], damage);
+  }
+}
+static void distances(const Watch *w, const Explicit *s, double *now, double *reference)
+{
+  const Particles *p = s->domain->particles;
+  *now = *reference = 0;
+  for (int k = 0; k < 3; ++k) {
+    double xi = p->position[k][w->ends[1]] - p->position[k][w->ends[0]];
+    double y = xi + p->displacement[k][w->ends[1]] - p->displacement[k][w->ends[0]];
+    *now += y * y;
+    *reference += xi * xi;
+  }
+  *now = sqrt(*now);
+  *reference = sqrt(*reference);
+}
+static void opening_row(const Watch *w, const Explicit *s, double *values)
+{
+  double reference;
+  distances(w, s, &values[0], &reference);
+  values[1] = values[0] - reference;
+}
+static void bond_row(const Watch *w, const Explicit *s, double *values)
+{
+  double now, reference;
+  distances(w, s, &now, &reference);
+  values[0] = now / reference - 1;
+  values[1] = family_joins(&s->domain->family, w->ends[0], w->ends[1]);
+}
+static void load_row(const Watch *w, const Explicit *s, double *values)
+{
+  const LoadSpec *l = w->load;
+  double factor = history_factor(l->history, s->time), square = 0;
+  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
+  for (int v = 0; v < 5; ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!isnan(given[v][k])) square += given[v][k] * given[v][k];
+  if (l->along) square = pow(isnan(l->along->displacement) ? l->along->velocity : l->along->displacement, 2);
+  values[0] = factor;
+  values[1] = factor * sqrt(square);
+}
+static void energy_row(const Watch *w, const Explicit *s, double *values)
+{
+  (void)w;
+  Energy e = explicit_energy(s);
+  const double row[] = {e.kinetic, e.internal, e.external, e.damping, e.fracture, e.imbalance,
+                        (double)s->domain->broken_count};
+  memcpy(values, row, sizeof row);
+}
+
+static const Kind displacement_kind = {"x:length,y:length,z:length", displacement_row},
+                  velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
+                  force_kind = {"x:force,y:force,z:force", force_row},
+                  stress_kind = {"e11:1,e22:1,e33:1,g12:1,g23:1,g31:1,s11:stress,s22:stress,s33:stress,s12:stress,s23:stress,"
+                                 "s31:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
+                                 stress_row},
+                  damage_kind = {"mean:1,largest:1", damage_row},
+                  opening_kind = {"distance:length,opening:length", opening_row},
+                  bond_kind = {"stretch:1,intact:1", bond_row}, load_kind = {"factor:1,value:1", load_row},
+                  energy_kind = {"kinetic:energy,internal:energy,external:energy,damping:energy,fracture:energy,"
+                                 "imbalance:1,broken bonds:1",
+                                 energy_row};
+enum { MOST_COLUMNS = 16 };
+
+static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
+{
+  const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;
+  const char *key = w->spec->opening.count ? "opening between" : "bond between";
+  for (int e = 0; e < 2; ++e) w->ends[e] = particles_nearest(&body->particles, points->values + 3 * e);
+  if (w->ends[0] == w->ends[1])
+    return node_error(reader->document, section_place(w->spec, key), reader->error,
+                      "%s: the same particle is nearest to both points", key);
+  if (w->spec->bond.count && !family_joins(family, w->ends[0], w->ends[1]))
+    return node_error(reader->document, section_place(w->spec, key), reader->error,
+                      "%s: no bond joins the particles nearest to these points", key);
+  return BRECCIA_OK;
+}
+
+static int resolve(Watch *w, const Body *body, const Family *family, const Loading *loading, const DeckReader *reader,
+                   const SectionList *selections)
+{
+  const WatchSpec *spec = w->spec;
+  const struct {
+    const Reference *reference;
+    const Kind *kind;
+  } selected[] = {{&spec->displacement, &displacement_kind},
+                  {&spec->velocity, &velocity_kind},
+                  {&spec->force, &force_kind},
+                  {&spec->stress, &stress_kind},
+                  {&spec->damage, &damage_kind}};
+  for (int k = 0; k < 5; ++k)
+    if (selected[k].reference->node) {
+      w->kind = selected[k].kind;
+      return selection_create(&w->selection, body, reader, selections, selected[k].reference);
+    }
+  if (spec->opening.count || spec->bond.count) {
+    w->kind = spec->opening.count ? &opening_kind : &bond_kind;
+    return resolve_ends(w, body, family, reader);
+  }
+  if (!spec->load) {
+    w->kind = &energy_kind;
+    return BRECCIA_OK;
+  }
+  w->kind = &load_kind;
+  for (int l = 0; l < loading->count; ++l)
+    if (loading->loads[l].spec->name && !strcmp(loading->loads[l].spec->name, spec->load)) w->load = loading->loads[l].spec;
+  if (w->load) return BRECCIA_OK;
+  return node_error(reader->document, section_place(spec, "load"), reader->error,
+                    "load: no load has the name '%s'; give it one with 'name:'", spec->load);
+}
+
+int watches_create(Watches **out, const Body *body, const Family *family, const Loading *loading, const DeckReader *reader,
+                   const SectionList *specs, const SectionList *selections)
+{
+  Watches *watches = *out = calloc(1, sizeof *watches);
+  if (!watches || !(watches->items = calloc((size_t)specs->count + 1, sizeof(Watch))))
+    return error_add(reader->error, BRECCIA_FAILURE, "out of memory: watches");
+  int status = BRECCIA_OK;
+  for (int k = 0; k < specs->count; ++k) {
+    Watch *w = &watches->items[watches->count++];
+    w->spec = specs->items[k];
+    w->last_step = -1;
+    int bad = resolve(w, body, family, loading, reader, selections);
+    if (bad) status = bad;
+  }
+  return status;
+}
+
+static void write_header(FILE *file, const Kind *kind, const Units *units)
+{
+  char time[64], columns[1024], *rest = columns;
+  units_name(units, dimension_find("time"), time, sizeof time);
+  snprintf(columns, sizeof columns, "%s", kind->columns);
+  fprintf(file, "step,time (%s)", time);
+  while (*rest) {
+    char *colon = strchr(rest, ':'), *comma = strchr(colon, ','), unit[64];
+    *colon = 0;
+    if (comma) *comma = 0;
+    units_name(units, dimension_find(colon + 1), unit, sizeof unit);
+    if (*unit)
+      fprintf(file, ",%s (%s)", rest, unit);
+    else
+      fprintf(file, ",%s", rest);
+    rest = comma ? comma + 1 : colon + 1 + strlen(colon + 1);
+  }
+  fprintf(file, "\n");
+}
+
+/** Cuts a history file after the last whole row that is due and not beyond `step`. @return that row's step, or -1 */
+static int64_t cut_rows(const char *path, int64_t step, int64_t every)
+{
+  size_t length;
+  char *text = text_read_file(path, &length);
+  if (!text) return -1;
+  int64_t last = -1;
+  char *line = strchr(text, '\n'), *keep = line ? line + 1 : text;
+  for (char *row = keep, *end; line && (end = strchr(row, '\n')); row = end + 1) {
+    long long number = strtoll(row, NULL, 10);
+    if (number > step || number % every) break;
+    last = number;
+    keep = end + 1;
+  }
+  int bad = truncate(path, keep - text);
+  free(text);
+  return bad ? -1 : last;
+}
+
+int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error)
+{
+  for (int k = 0; k < watches->count; ++k) {
+    Watch *w = &watches->items[k];
+    char name[160];
+    text_file_name(w->spec->head.name, name, sizeof name);
+    free(w->path);
+    w->path = text_format("%s/%s.csv", folder, name);
+    if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
+    if (resume_after >= 0) w->last_step = cut_rows(w->path, resume_after, w->spec->every);
+    w->file = fopen(w->path, resume_after >= 0 && w->last_step >= 0 ? "a" : "w");
+    if (!w->file) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    if (w->last_step < 0) write_header(w->file, w->kind, units);
+  }
+  return BRECCIA_OK;
+}
+
+int watches_write(Watches *watches, const Explicit *solver, bool last, Error *error)
+{
+  for (int k = 0; k < watches->count; ++k) {
+    Watch *w = &watches->items[k];
+    if (w->last_step == solver->step || (solver->step % w->spec->every && !last)) continue;
+    double values[MOST_COLUMNS];
+    int columns = 1;
+    for (const char *c = w->kind->columns; *c; ++c) columns += *c == ',';
+    w->kind->row(w, solver, values);
+    fprintf(w->file, "%lld,%.10g", (long long)solver->step, solver->time);
+    for (int c = 0; c < columns; ++c) fprintf(w->file, ",%.17g", values[c]);
+    fprintf(w->file, "\n");
+    if (fflush(w->file)) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    w->last_step = solver->step;
+  }
+  return BRECCIA_OK;
+}
+
+int watches_count(const Watches *watches)
+{
+  return watches->count;
+}
+
+const char *watches_path(const Watches *watches, int k)
+{
+  return watches->items[k].path;
+}
+
+void watches_destroy(Watches **watches)
+{
+  if (!watches || !*watches) return;
+  for (int k = 0; k < (*watches)->count; ++k) {
+    Watch *w = &(*watches)->items[k];
+    selection_destroy(&w->selection);
+    if (w->file) fclose(w->file);
+    free(w->path);
+  }
+  free((*watches)->items);
+  free(*watches);
+  *watches = NULL;
+}

@@ -1,0 +1,32 @@
+/* Histories: what is written of a few particles, bonds, loads or the whole body at many steps, one CSV file each. */
+#ifndef BRECCIA_RESULTS_WATCH_H
+#define BRECCIA_RESULTS_WATCH_H
+
+#include "solver/explicit.h"
+
+typedef struct WatchSpec {
+  SectionHead head;
+  int64_t every;
+  Reference displacement, velocity, force, stress, damage;
+  NumberList opening, bond;
+  const char *load;
+  bool energy;
+} WatchSpec;
+
+extern const Section watch_section;
+
+typedef struct Watches Watches;
+
+/** Resolves the watches of a deck on a body. */
+int watches_create(Watches **watches, const Body *body, const Family *family, const Loading *loading,
+                   const DeckReader *reader, const SectionList *specs, const SectionList *selections);
+/** Opens <folder>/<name>.csv for each; with `resume_after` >= 0 old files are kept up to that step and continued. */
+int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error);
+/** Writes a row to each file that is due at the solver's step; `last` makes all due. */
+int watches_write(Watches *watches, const Explicit *solver, bool last, Error *error);
+int watches_count(const Watches *watches);
+/** Path of the k-th file. */
+const char *watches_path(const Watches *watches, int k);
+void watches_destroy(Watches **watches);
+
+#endif

@@ -1,0 +1,296 @@
+/* Velocity Verlet (docs/theory.md 7):
+ *   v+ = v + dt/2 (a - c v),  u' = u + dt v+,  a' = (f(u') + b - local damping) / rho,  v' = (v+ + dt/2 a') / (1 + c dt/2).
+ * Works are summed by the trapezium rule over the step, so that their sum misses the kinetic energy by O(dt^2) only. */
+#include "solver/explicit.h"
+
+#include "solver/stable_step.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC };
+
+static const Field explicit_fields[] = {
+    {"time step", FIELD_NUMBER, offsetof(ExplicitSpec, time_step), "time", "", "(0, inf)",
+     "when absent: 'safety' times the stable step, which is found by the program", NULL, NULL, 0},
+    {"safety", FIELD_NUMBER, offsetof(ExplicitSpec, safety), "1", "0.8", "(0, 1]",
+     "share of the stable step taken when 'time step' is absent", NULL, NULL, 0},
+    {"steps", FIELD_COUNT, offsetof(ExplicitSpec, steps), NULL, "", "[0, 1e15]", "number of steps", NULL, NULL, 'A'},
+    {"end time", FIELD_NUMBER, offsetof(ExplicitSpec, end_time), "time", "", "(0, inf)", "steps until this time", NULL, NULL,
+     'A'},
+    {"damping", FIELD_NUMBER, offsetof(ExplicitSpec, damping), "frequency", "0", "[0, inf)",
+     "mass-proportional damping c: force density - c rho v", NULL, NULL, 0},
+    {"local damping", FIELD_NUMBER, offsetof(ExplicitSpec, local_damping), "1", "0", "[0, 1)",
+     "Cundall's damping: a share of the force out of balance, against the velocity; 0.8 finds states of rest", NULL, NULL,
+     0},
+};
+const Section explicit_section = {"explicit", "Explicit dynamics by velocity Verlet.", sizeof(ExplicitSpec),
+                                  FIELDS(explicit_fields), NULL, NULL, NULL, 0};
+
+int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec, const DeckReader *reader,
+                    bool force, Text *warning)
+{
+  *s = (Explicit){.domain = domain, .loading = loading, .spec = spec};
+  int failed = 0;
+  for (int k = 0; k < 3; ++k)
+    failed |= !(s->acceleration[k] = places_array(domain->particles->places, "accelerations", reader->error));
+  s->sums = memory_zeroed((size_t)domain->block_count, sizeof *s->sums, "energy sums", reader->error);
+  if (failed || !s->sums) return BRECCIA_FAILURE;
+  int status = stable_step(domain, &s->stable, reader->error);
+  if (status) return status;
+  s->time_step = isnan(spec->time_step) ? spec->safety * s->stable : spec->time_step;
+  double share = s->time_step / s->stable;
+  const Node *place = section_place(spec, "time step");
+  if (share > 1 && !force)
+    return node_error(reader->document, place, reader->error,
+                      "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
+                      "--force", s->time_step, share, s->stable);
+  if (share > 0.9)
+    text_add(warning, "%s:%d:%d: warning: time step: %g is %.2f times the stable step of %.4g", reader->document->name,
+             place->line, place->column, s->time_step, share, s->stable);
+  double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / s->time_step - 1e-9);
+  if (steps > 1e15)
+    return node_error(reader->document, spec->head.node, reader->error, "explicit: %.3g steps are too many", steps);
+  s->steps = (int64_t)steps;
+  return BRECCIA_OK;
+}
+
+void explicit_destroy(Explicit *s)
+{
+  for (int k = 0; k < 3; ++k) places_free(&s->acceleration[k]);
+  free(s->sums);
+  *s = (Explicit){0};
+}
+
+/** First half: velocities to the middle of the step, displacements to its end. */
+BRECCIA_CLONES
+static void kick_and_drift(Explicit *s, int64_t block)
+{
+  const Particles *p = s->domain->particles;
+  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0;
+  int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
+  for (int k = 0; k < 3; ++k) {
+    double *v = p->velocity[k], *u = p->displacement[k];
+    const double *a = s->acceleration[k], *fi = p->internal[k], *fe = p->external[k];
+    for (int64_t i = first; i < last; ++i) {
+      double drag = fi[i] + fe[i] - p->density[i] * (a[i] - c * v[i]);
+      double half = v[i] + 0.5 * dt * (a[i] - c * v[i]), du = dt * half, work = 0.5 * du * p->volume[i];
+      bond -= fi[i] * work;
+      external += fe[i] * work;
+      damping += drag * work;
+      u[i] += du;
+      v[i] = half;
+    }
+  }
+  double *sums = s->sums[block];
+  sums[BOND_WORK] = bond;
+  sums[EXTERNAL_WORK] = external;
+  sums[DAMPING_WORK] = damping;
+}
+
+/** Second half: accelerations and velocities at the end of the step. */
+BRECCIA_CLONES
+static void kick(Explicit *s, int64_t block)
+{
+  const Particles *p = s->domain->particles;
+  double dt = s->time_step, c = s->spec->damping, local = s->spec->local_damping;
+  double bond = 0, external = 0, damping = 0, kinetic = 0;
+  int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
+  for (int k = 0; k < 3; ++k) {
+    double *v = p->velocity[k], *a = s->acceleration[k];
+    const double *fi = p->internal[k], *fe = p->external[k];
+    for (int64_t i = first; i < last; ++i) {
+      double half = v[i], force = fi[i] + fe[i], drag = local * fabs(force) * (half > 0 ? 1 : half < 0 ? -1 : 0);
+      double acceleration = (force - drag) / p->density[i], end = (half + 0.5 * dt * acceleration) / (1 + 0.5 * c * dt);
+      double work = 0.5 * dt * half * p->volume[i];
+      bond -= fi[i] * work;
+      external += fe[i] * work;
+      damping += (drag + c * p->density[i] * end) * work;
+      kinetic += 0.5 * p->density[i] * p->volume[i] * end * end;
+      a[i] = acceleration;
+      v[i] = end;
+    }
+  }
+  double *sums = s->sums[block];
+  sums[BOND_WORK] += bond;
+  sums[EXTERNAL_WORK] += external;
+  sums[DAMPING_WORK] += damping;
+  sums[KINETIC] = kinetic;
+}
+
+static double along(double *const vector[3], const double direction[3], int32_t i)
+{
+  return vector[0][i] * direction[0] + vector[1][i] * direction[1] + vector[2][i] * direction[2];
+}
+
+/* Prescribed motions. In a prescribed direction loads, reaction and damping together do whatever work the change of
+ * kinetic energy and the bonds ask for; that sum is booked as external. The loops above have booked the free motion, which is
+ * taken back here. */
+
+/** After the drift: displacements at the end of the step, velocities in its middle. */
+static void prescribe_displacements(Explicit *s)
+{
+  const Particles *p = s->domain->particles;
+  double dt = s->time_step, c = s->spec->damping;
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *constraint = &s->loading->constraints[n];
+    const double *d = constraint->direction;
+    double target = constraint_displacement(constraint, s->time + dt);
+    for (int64_t k = 0; k < constraint->load->selection.count; ++k) {
+      int32_t i = constraint->load->selection.places[k];
+      double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
+      double fi = along(p->internal, d, i), fe = along(p->external, d, i);
+      double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt), off = target - along(p->displacement, d, i);
+      double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
+      s->bond_work -= fi * (work - free_work);
+      s->damping_work -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
+      s->external_work += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
+      for (int j = 0; j < 3; ++j) {
+        p->displacement[j][i] += off * d[j];
+        p->velocity[j][i] += off / dt * d[j];
+      }
+    }
+  }
+}
+
+/** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. */
+static void prescribe_velocities(Explicit *s)
+{
+  const Particles *p = s->domain->particles;
+  double dt = s->time_step, c = s->spec->damping;
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *constraint = &s->loading->constraints[n];
+    const double *d = constraint->direction;
+    double before = constraint_displacement(constraint, s->time - dt), now = constraint_displacement(constraint, s->time);
+    double rate = (constraint_displacement(constraint, s->time + dt) - before) / (2 * dt);
+    for (int64_t k = 0; k < constraint->load->selection.count; ++k) {
+      int32_t i = constraint->load->selection.places[k];
+      double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
+      double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * (now - before) * p->volume[i];
+      s->kinetic += 0.5 * mass * (rate * rate - v * v);
+      s->damping_work -= (fi + fe - p->density[i] * (a - c * v)) * work;
+      s->external_work += 0.5 * mass * rate * rate - fe * work - fi * work;
+      for (int j = 0; j < 3; ++j) {
+        p->velocity[j][i] += (rate - v) * d[j];
+        s->acceleration[j][i] -= a * d[j];
+      }
+    }
+  }
+}
+
+static void add_sums(Explicit *s)
+{
+  s->kinetic = 0;
+  for (int64_t b = 0; b < s->domain->block_count; ++b) {
+    s->bond_work += s->sums[b][BOND_WORK];
+    s->external_work += s->sums[b][EXTERNAL_WORK];
+    s->damping_work += s->sums[b][DAMPING_WORK];
+    s->kinetic += s->sums[b][KINETIC];
+  }
+}
+
+void explicit_begin(Explicit *s)
+{
+  Domain *d = s->domain;
+  loading_apply(s->loading, d->particles, s->time);
+#pragma omp parallel
+  domain_forces(d);
+  const Particles *p = d->particles;
+  s->kinetic = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->density[i];
+      s->kinetic += 0.5 * p->density[i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
+    }
+}
+
+static int32_t first_bad_particle(const Particles *p)
+{
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k)
+      if (!isfinite(p->internal[k][p->place_of[n]])) return p->place_of[n];
+  return p->place_of[0];
+}
+
+/** Takes displacements and velocities back to the start of the step, and says what happened. */
+static int retreat(Explicit *s, Error *error)
+{
+  const Particles *p = s->domain->particles;
+  double dt = s->time_step, c = s->spec->damping;
+  int32_t failed = (int32_t)s->domain->failed_place, bad = failed >= 0 ? failed : first_bad_particle(p);
+  double energy = s->kinetic;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      double half = p->velocity[k][i];
+      p->displacement[k][i] -= dt * half;
+      p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
+    }
+  const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
+  if (dt > s->stable)
+    cause = "the time step is above the stable one";
+  else if (failed >= 0)
+    cause = "its constitutive law could not be integrated at this strain";
+  else if (family_count(&s->domain->family, bad) < 4)
+    cause = "it has lost nearly all its bonds";
+  error_add(error, BRECCIA_FAILURE,
+            "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
+            "%g, stable step %g, kinetic energy %g)", (long long)s->step + 1, s->time + dt, p->number[bad],
+            p->position[0][bad], p->position[1][bad], p->position[2][bad], cause, dt, s->stable, energy);
+#pragma omp parallel
+  domain_forces(s->domain); /* strains and stresses of the state that is left */
+  return BRECCIA_FAILURE;
+}
+
+int explicit_advance(Explicit *s, Error *error)
+{
+  Domain *d = s->domain;
+  int sound = 1;
+#pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < d->block_count; ++b) kick_and_drift(s, b);
+#pragma omp single
+    prescribe_displacements(s);
+    domain_break(d, s->step + 1, s->time + s->time_step);
+    domain_forces(d);
+#pragma omp single
+    {
+      sound = isfinite(d->force_sum) && d->failed_place < 0;
+      if (sound) loading_apply(s->loading, d->particles, s->time + s->time_step);
+    }
+    if (sound) {
+#pragma omp for schedule(static)
+      for (int64_t b = 0; b < d->block_count; ++b) kick(s, b);
+    }
+  }
+  if (!sound) return retreat(s, error);
+  add_sums(s);
+  ++s->step;
+  s->time = (double)s->step * s->time_step;
+  prescribe_velocities(s);
+  points_commit(&d->points);
+  return BRECCIA_OK;
+}
+
+int explicit_renew_stable_step(Explicit *s, Text *warning, Error *error)
+{
+  if (s->domain->broken_count == s->broken_at_estimate) return BRECCIA_OK;
+  s->broken_at_estimate = s->domain->broken_count;
+  int status = stable_step(s->domain, &s->stable, error);
+  if (!status && s->time_step > s->stable)
+    text_add(warning, "warning: step %lld: broken bonds have lowered the stable step to %.4g, below the time step of %.4g",
+             (long long)s->step, s->stable, s->time_step);
+  return status;
+}
+
+Energy explicit_energy(const Explicit *s)
+{
+  Energy e = {.kinetic = s->kinetic,
+              .internal = s->bond_work - s->domain->fracture_energy,
+              .external = s->external_work,
+              .damping = s->damping_work,
+              .fracture = s->domain->fracture_energy};
+  double error = e.external - e.kinetic - e.internal - e.damping - e.fracture;
+  double largest = fmax(fmax(fabs(e.kinetic), fabs(s->bond_work)), fmax(fabs(e.external), fabs(e.damping)));
+  e.imbalance = largest > 0 ? fabs(error) / largest : 0;
+  return e;
+}
