@@ -58,9 +58,16 @@ LANES_INLINE Lanes lanes_where(LaneMask mask, Lanes lanes)
   return (Lanes)((LaneMask)lanes & mask);
 }
 
-LANES_INLINE int lanes_any(LaneMask mask)
+LANES_INLINE Lanes lanes_root(Lanes x)
 {
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+  return (Lanes){__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
+}
+
+/** The smaller of two, lane by lane; a where b is not a number. */
+LANES_INLINE Lanes lanes_least(Lanes a, Lanes b)
+{
+  LaneMask smaller = b < a;
+  return lanes_where(smaller, b) + lanes_where(~smaller, a);
 }
 
 #endif

@@ -52,7 +52,8 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   d->material = memory_zeroed((size_t)p->slices, sizeof(int32_t), "materials of slices", error);
   d->family_volume = memory_zeroed((size_t)p->places, sizeof(double), "family volumes", error);
   d->suspects = memory_zeroed((size_t)p->slices, 1, "suspect slices", error);
-  if (!d->material || !d->family_volume || !d->suspects) return BRECCIA_FAILURE;
+  d->look_again = memory_zeroed((size_t)p->slices, sizeof(double), "suspect slices", error);
+  if (!d->material || !d->family_volume || !d->suspects || !d->look_again) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < p->slices; ++s) {
     const SectionHead *named = section_find(spec->materials, d->body.blocks[p->block[s]]->material);
     while (strcmp(d->materials[d->material[s]].name, named->name)) ++d->material[s];
@@ -109,6 +110,7 @@ void domain_destroy(Domain *d)
   free(d->block_sum);
   free(d->family_volume);
   free(d->suspects);
+  free(d->look_again);
   free(d->broken);
   *d = (Domain){0};
 }
@@ -213,12 +215,18 @@ static bool judge(Domain *d, int64_t step, double time)
   return d->broken_count > before;
 }
 
-void domain_break(Domain *d, int64_t step, double time)
+void domain_break(Domain *d, int64_t step, double time, double motion)
 {
   if (!d->failure.criterion) return;
+#pragma omp single
+  d->motion += motion;
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b)
-    d->failure.criterion->suspect(d->failure.limit, &d->family, d->blocks[b].first, d->blocks[b].last, d->suspects);
+    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
+      d->suspects[s] = 0;
+      if (d->motion < d->look_again[s]) continue;
+      d->look_again[s] = d->motion + d->failure.criterion->suspect(d->failure.limit, &d->family, s, &d->suspects[s]);
+    }
 #pragma omp single
   {
     int any = 0;

@@ -32,6 +32,8 @@ typedef struct Domain {
   int64_t block_count;
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */
+  double *look_again;    /* [slices] sum of largest motions at which the criterion looks at the slice again */
+  double motion;         /* sum over steps of the largest displacement increment of any particle */
   BrokenBond *broken;    /* in the order in which they broke */
   int64_t broken_count, broken_capacity;
   double fracture_energy;
@@ -57,8 +59,9 @@ void domain_forces(Domain *domain);
  *  states follow from them, to the same bits as in the run that left them. */
 void domain_resume(Domain *domain);
 
-/** Breaks the bonds that the criterion says, by all threads, and renews the families concerned. */
-void domain_break(Domain *domain, int64_t step, double time);
+/** Breaks the bonds that the criterion says, by all threads, and renews the families concerned.
+ *  @param[in] motion  largest displacement increment of any particle in this step */
+void domain_break(Domain *domain, int64_t step, double time, double motion);
 
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);

@@ -15,8 +15,9 @@ extern const Section failure_section;
 
 typedef struct Criterion {
   const char *name, *about, *source;
-  /** Marks slices first .. last - 1 in which some bond may exceed the limit. */
-  void (*suspect)(double limit, const Family *family, int64_t first, int64_t last, uint8_t *suspects);
+  /** Marks a slice if some bond of it may exceed the limit.
+   *  @return how far every particle may move before the slice has to be looked at again; 0: look at every step */
+  double (*suspect)(double limit, const Family *family, int64_t slice, uint8_t *suspect);
   /** True if this bond exceeds it. */
   bool (*exceeds)(double limit, const Family *family, int64_t slice, const Bond *bond, int lane);
 } Criterion;

@@ -305,57 +305,62 @@ static void respond(void *formulation, int64_t first, int64_t last)
   for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) respond_lanes(formulation, place);
 }
 
-LANES_INLINE void resist_slots(const Correspondence *c, int64_t from, int64_t to, int64_t place, int half, bool lattice,
-                               Control control, Lanes force[3])
+/* Both halves of a slice in one pass: three sums each fit the registers, and what belongs to the slot is read once. */
+LANES_INLINE void resist_slots(const Correspondence *c, int64_t from, int64_t to, int64_t place, bool lattice,
+                               Control control, Lanes force[2][3])
 {
   double *const *u = c->particles->displacement;
-  const Lanes own[3] = {lanes_load(u[0] + place), lanes_load(u[1] + place), lanes_load(u[2] + place)};
-  for (int64_t slot = from; slot < to; ++slot) {
-    Slot s;
-    if (!slot_open(c, slot, place, half, lattice, &s)) continue;
-    Lanes eta[3], hold;
-    for (int k = 0; control != CONTROL_NONE && k < 3; ++k) eta[k] = slot_read(&s, u[k]) - own[k];
-    if (control == CONTROL_SCALAR) hold = slot_read(&s, c->hold[0]) * s.weight;
-    for (int k = 0; k < 3; ++k) {
-      Lanes f = slot_read(&s, c->state[3 * k]) * s.weighted_xi[0] + slot_read(&s, c->state[3 * k + 1]) * s.weighted_xi[1] +
-                slot_read(&s, c->state[3 * k + 2]) * s.weighted_xi[2];
-      if (control == CONTROL_SCALAR) f += hold * eta[k];
-      if (control == CONTROL_TENSOR)
-        for (int j = 0; j < 3; ++j) f += slot_read(&s, c->hold[symmetric_place[3 * k + j]]) * (s.weight * eta[j]);
-      force[k] += slot_intact(&s, f);
+  Lanes own[2][3];
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + place + LANES * half);
+  for (int64_t slot = from; slot < to; ++slot)
+    for (int half = 0; half < 2; ++half) {
+      Slot s;
+      if (!slot_open(c, slot, place + LANES * half, half, lattice, &s)) continue;
+      Lanes eta[3], hold;
+      for (int k = 0; control != CONTROL_NONE && k < 3; ++k) eta[k] = slot_read(&s, u[k]) - own[half][k];
+      if (control == CONTROL_SCALAR) hold = slot_read(&s, c->hold[0]) * s.weight;
+      for (int k = 0; k < 3; ++k) {
+        Lanes f = slot_read(&s, c->state[3 * k]) * s.weighted_xi[0] + slot_read(&s, c->state[3 * k + 1]) * s.weighted_xi[1] +
+                  slot_read(&s, c->state[3 * k + 2]) * s.weighted_xi[2];
+        if (control == CONTROL_SCALAR) f += hold * eta[k];
+        if (control == CONTROL_TENSOR)
+          for (int j = 0; j < 3; ++j) f += slot_read(&s, c->hold[symmetric_place[3 * k + j]]) * (s.weight * eta[j]);
+        force[half][k] += slot_intact(&s, f);
+      }
     }
-  }
 }
 
-LANES_INLINE void resist_half(const Correspondence *c, int64_t slice, int half, Control control)
+LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control control)
 {
   const Family *f = c->family;
-  int64_t place = slice * SLICE + LANES * half;
-  Lanes force[3] = {{0}};
-  resist_slots(c, f->first[slice], f->stored[slice], place, half, true, control, force);
+  Lanes force[2][3] = {{{0}}};
+  resist_slots(c, f->first[slice], f->stored[slice], slice * SLICE, true, control, force);
   if (f->stored[slice] < f->first[slice + 1])
-    resist_slots(c, f->stored[slice], f->first[slice + 1], place, half, false, control, force);
-  for (int k = 0; k < 3; ++k) {
-    for (int j = 0; j < 3; ++j) force[k] += lanes_load(c->state[3 * k + j] + place) * lanes_load(c->first_moment[j] + place);
-    if (control == CONTROL_SCALAR) force[k] += lanes_load(c->hold[0] + place) * lanes_load(c->stretch[k] + place);
-    for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j)
-      force[k] += lanes_load(c->hold[symmetric_place[3 * k + j]] + place) * lanes_load(c->stretch[j] + place);
-    lanes_store(c->particles->internal[k] + place, force[k]);
-  }
+    resist_slots(c, f->stored[slice], f->first[slice + 1], slice * SLICE, false, control, force);
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) {
+      int64_t place = slice * SLICE + LANES * half;
+      Lanes sum = force[half][k];
+      for (int j = 0; j < 3; ++j) sum += lanes_load(c->state[3 * k + j] + place) * lanes_load(c->first_moment[j] + place);
+      if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * lanes_load(c->stretch[k] + place);
+      for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j)
+        sum += lanes_load(c->hold[symmetric_place[3 * k + j]] + place) * lanes_load(c->stretch[j] + place);
+      lanes_store(c->particles->internal[k] + place, sum);
+    }
 }
 
 BRECCIA_CLONES
 static void resist(void *formulation, int64_t first, int64_t last)
 {
-  const Correspondence *c = formulation;
+  const Correspondence local = *(const Correspondence *)formulation, *c = &local; /* so that stores are seen not to change it */
   for (int64_t slice = first; slice < last; ++slice)
-    for (int half = 0; half < SLICE / LANES; ++half)
-      if (c->control == CONTROL_SCALAR)
-        resist_half(c, slice, half, CONTROL_SCALAR);
-      else if (c->control == CONTROL_NONE)
-        resist_half(c, slice, half, CONTROL_NONE);
-      else
-        resist_half(c, slice, half, CONTROL_TENSOR);
+    if (c->control == CONTROL_SCALAR)
+      resist_slice(c, slice, CONTROL_SCALAR);
+    else if (c->control == CONTROL_NONE)
+      resist_slice(c, slice, CONTROL_NONE);
+    else
+      resist_slice(c, slice, CONTROL_TENSOR);
 }
 
 /* ---- particles with too few bonds, and single bonds ---- */

@@ -302,22 +302,39 @@ static void draw_bar(cairo_t *cr, const Page *page, const Scene *scene, const ch
 
 /* ---- particles ---- */
 
-static void draw_squares(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view, bool undeformed)
+typedef struct Depth {
+  double depth;
+  int64_t particle;
+} Depth;
+
+static int by_depth(const void *a, const void *b)
 {
-  for (int64_t n = 0; n < scene->count; ++n) {
-    double rgb[3], half = view->spacings[n] / 2;
+  const Depth *x = a, *y = b;
+  return x->depth != y->depth ? (x->depth < y->depth ? -1 : 1) : (x->particle < y->particle ? -1 : 1);
+}
+
+/** Flat squares, the nearest last: plane bodies, and plates seen from the front. */
+static int draw_squares(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view)
+{
+  Depth *order = malloc(sizeof(Depth) * (size_t)(scene->count + 1));
+  if (!order) return 1;
+  for (int64_t n = 0; n < scene->count; ++n) order[n] = (Depth){scene->depth[n], n};
+  qsort(order, (size_t)scene->count, sizeof(Depth), by_depth);
+  for (int64_t k = 0; k < scene->count; ++k) {
+    int64_t n = order[k].particle;
+    double rgb[3], half = view->spacings[n] / 2, side = 2 * half * page->scale;
     colour((scene->value[n] - scene->low) / (scene->high - scene->low), rgb);
     cairo_set_source_rgb(cr, rgb[0], rgb[1], rgb[2]);
     double x0 = page->left + (scene->x[n] - half - scene->x0) * page->scale;
     double y0 = page->top + page->high - (scene->y[n] + half - scene->y0) * page->scale;
-    double side = 2 * half * page->scale;
-    if (!undeformed) side *= 1.02;
     double x1 = floor(x0 + side + 0.5), y1 = floor(y0 + side + 0.5); /* edges on pixels, or seams show */
     x0 = floor(x0 + 0.5);
     y0 = floor(y0 + 0.5);
     cairo_rectangle(cr, x0, y0, x1 - x0, y1 - y0);
     cairo_fill(cr);
   }
+  free(order);
+  return 0;
 }
 
 /** Spheres into an image of twice the resolution, the nearest one in each pixel. */
@@ -404,11 +421,7 @@ static int render(const Scene *scene, const ResultView *view, int step, const Pi
   cairo_set_source_rgb(cr, 1, 1, 1);
   cairo_paint(cr);
   cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  int bad = 0;
-  if (view->plane)
-    draw_squares(cr, &page, scene, view, o->deformed == 0);
-  else
-    bad = draw_spheres(cr, &page, scene, view);
+  int bad = scene->flat ? draw_squares(cr, &page, scene, view) : draw_spheres(cr, &page, scene, view);
   if (o->broken_bonds) draw_broken(cr, &page, scene, view, step);
   if (scene->flat)
     draw_axes(cr, &page, scene, view);

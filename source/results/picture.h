@@ -1,4 +1,4 @@
-/* Pictures of particles: plane bodies as filled squares, bodies in space as shaded spheres with a depth buffer. */
+/* Pictures of particles: flat bodies as filled squares, others as shaded spheres with a depth buffer. */
 #ifndef BRECCIA_RESULTS_PICTURE_H
 #define BRECCIA_RESULTS_PICTURE_H
 

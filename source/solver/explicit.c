@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC };
+enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC, MOTION };
 
 static const Field explicit_fields[] = {
     {"time step", FIELD_NUMBER, offsetof(ExplicitSpec, time_step), "time", "", "(0, inf)",
@@ -66,7 +66,7 @@ BRECCIA_CLONES
 static void kick_and_drift(Explicit *s, int64_t block)
 {
   const Particles *p = s->domain->particles;
-  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0;
+  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, largest = 0;
   int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
   for (int k = 0; k < 3; ++k) {
     double *v = p->velocity[k], *u = p->displacement[k];
@@ -77,6 +77,7 @@ static void kick_and_drift(Explicit *s, int64_t block)
       bond -= fi[i] * work;
       external += fe[i] * work;
       damping += drag * work;
+      largest = fmax(largest, fabs(du));
       u[i] += du;
       v[i] = half;
     }
@@ -85,6 +86,7 @@ static void kick_and_drift(Explicit *s, int64_t block)
   sums[BOND_WORK] = bond;
   sums[EXTERNAL_WORK] = external;
   sums[DAMPING_WORK] = damping;
+  sums[MOTION] = largest;
 }
 
 /** Second half: accelerations and velocities at the end of the step. */
@@ -131,6 +133,8 @@ static void prescribe_displacements(Explicit *s)
 {
   const Particles *p = s->domain->particles;
   double dt = s->time_step, c = s->spec->damping;
+  s->motion = 0;
+  for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *constraint = &s->loading->constraints[n];
     const double *d = constraint->direction;
@@ -140,6 +144,7 @@ static void prescribe_displacements(Explicit *s)
       double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
       double fi = along(p->internal, d, i), fe = along(p->external, d, i);
       double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt), off = target - along(p->displacement, d, i);
+      s->motion = fmax(s->motion, fabs(drifted + off));
       double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
       s->bond_work -= fi * (work - free_work);
       s->damping_work -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
@@ -250,7 +255,7 @@ int explicit_advance(Explicit *s, Error *error)
     for (int64_t b = 0; b < d->block_count; ++b) kick_and_drift(s, b);
 #pragma omp single
     prescribe_displacements(s);
-    domain_break(d, s->step + 1, s->time + s->time_step);
+    domain_break(d, s->step + 1, s->time + s->time_step, sqrt(3) * s->motion);
     domain_forces(d);
 #pragma omp single
     {

@@ -32,7 +32,8 @@ typedef struct Explicit {
   int64_t step, steps; /* done, and wanted in all */
   int64_t broken_at_estimate; /* broken bonds when `stable` was found */
   double bond_work, external_work, damping_work, kinetic;
-  double (*sums)[4]; /* [blocks] of the four above */
+  double motion;     /* largest component of any displacement increment in the step under way */
+  double (*sums)[5]; /* [blocks] of the five above */
 } Explicit;
 
 /** Sets up; finds the stable step and checks a chosen one against it.

@@ -1,0 +1,34 @@
+/* What the unit tests share: models from decks in the text, and comparisons that say what was found. */
+#ifndef BRECCIA_TESTS_SUPPORT_H
+#define BRECCIA_TESTS_SUPPORT_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "model/model.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** A model from a deck given as text with %-directives; fails the test with the reader's words if it is refused. */
+breccia_model *model_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/** The words with which a deck is refused, to be freed; fails the test if it is accepted. */
+char *refusal_of(const char *deck);
+
+/** Fails unless |a - b| <= tolerance. */
+#define assert_near(a, b, tolerance) assert_near_at((a), (b), (tolerance), #a, __FILE__, __LINE__)
+void assert_near_at(double a, double b, double tolerance, const char *what, const char *file, int line);
+
+/** Sets displacements u = (F - I) X of all particles; F row by row. */
+void deform_uniformly(breccia_model *model, const double f[9]);
+/** Internal forces of the displacements held. */
+void compute_forces(breccia_model *model);
+/** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */
+Material material_of(const char *law, ...);
+
+#endif

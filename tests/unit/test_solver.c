@@ -1,0 +1,266 @@
+#include "solver/stable_step.h"
+#include "support.h"
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define STEEL "materials: {m: {model: elastic, density: 7.85, Young modulus: 2.1e8, Poisson ratio: %s}}\n"
+
+static void a_free_body_under_gravity_falls_as_galilei_says(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 5, 5]}}}}\n"
+                              "loads: [{gravity: [0, 0, -9.81]}]\nsolve: {explicit: {steps: 500}}\n");
+  assert_int_equal(breccia_model_step(m, 500, NULL), 0);
+  double t = breccia_model_time(m), *u = breccia_model_array(m, "displacement z");
+  for (int64_t n = 0; n < 125; ++n) assert_near(u[m->domain.particles->place_of[n]], -9.81 * t * t / 2, 1e-10 * 9.81 * t * t);
+  breccia_model_destroy(&m);
+}
+
+static void a_wave_runs_along_a_slender_bar_at_root_e_over_rho(void **state)
+{
+  (void)state;
+  /* validation A6: 5172 m/s; a velocity step at one end, arrival at 2 % of it, 8 cells across. */
+  breccia_model *m = model_of(STEEL "units: {length: m, force: kN, time: s}\n"
+                                    "peridynamics: {horizon: 2.015 spacings}\n"
+                                    "body: {b: {material: m, spacing: 0.0125, shape: {box: {particles: [160, 8, 8]}}}}\n"
+                                    "loads: [{on: {face: x-, layers: 2}, velocity: [1, free, free], history: {ramp to: 2e-5}}]\n"
+                                    "solve: {explicit: {end time: 2.6e-4}}\n", "0.29");
+  const double near[3] = {0.5, 0.05, 0.05}, far[3] = {1.2, 0.05, 0.05};
+  int32_t a = particles_nearest(m->domain.particles, near), b = particles_nearest(m->domain.particles, far);
+  double *v = breccia_model_array(m, "velocity x"), first = 0, second = 0;
+  while (!second && m->solver.step < m->solver.steps) {
+    breccia_model_step(m, 1, NULL);
+    if (!first && v[a] > 0.5) first = breccia_model_time(m);
+    if (!second && v[b] > 0.5) second = breccia_model_time(m);
+  }
+  assert_true(second > 0);
+  double speed = (m->domain.particles->position[0][b] - m->domain.particles->position[0][a]) / (second - first);
+  assert_near(speed, sqrt(2.1e8 / 7.85), 0.05 * 5172);
+  breccia_model_destroy(&m);
+}
+
+static breccia_model *shaken_plate(const char *more)
+{
+  return model_of("materials: {m: {model: multi-yield-j2, density: 1.5, shear modulus: 60000, bulk modulus: 100000, octahedral "
+                  "strength: 30}}\n"
+                  "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 9, 3]}}}}\n"
+                  "cracks: [{cut: {line: [[1, -1], [1, 0.4]]}}]\n"
+                  "failure: {critical stretch: 0.004}\n"
+                  "loads: [{on: {face: x+, layers: 2}, body force: [900, 0, 0], history: {ramp to: 0.004}},\n"
+                  "        {on: {face: x-, layers: 2}, velocity: [0, 0.3, free], history: {sine: {frequency: 100}}}]\n"
+                  "solve: {explicit: {steps: 600, time step: 5e-5%s}}\n", more);
+}
+
+static void energy_of_loads_motions_damping_yielding_and_cracks_balances(void **state)
+{
+  (void)state;
+  const char *const cases[] = {"", ", damping: 50", ", local damping: 0.5"};
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m = shaken_plate(cases[k]);
+    breccia_error *error = breccia_error_create();
+    if (breccia_model_step(m, 600, error)) fail_msg("%s", breccia_error_text(error));
+    breccia_error_destroy(&error);
+    Energy e = explicit_energy(&m->solver);
+    assert_true(e.external > 0);
+    assert_true(breccia_model_broken_bonds(m) > 0);
+    assert_true(e.fracture > 0);
+    if (k) assert_true(e.damping > 0.01 * e.external);
+    if (e.imbalance > 2e-3) fail_msg("%s: imbalance %g", cases[k], e.imbalance);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void an_elastic_body_keeps_its_energy(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 6, 5]}}}}\n"
+                              "solve: {explicit: {steps: 3000, safety: 0.3}}\n");
+  double *v = breccia_model_array(m, "velocity x");
+  const Particles *p = m->domain.particles;
+  double start = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    v[p->place_of[n]] = p->position[0][p->place_of[n]] > 0.4 ? 0.1 : -0.1;
+    start += 0.5 * 2 * p->volume[p->place_of[n]] * 0.01;
+  }
+  breccia_model_step(m, 3000, NULL);
+  Energy e = explicit_energy(&m->solver);
+  assert_near(e.kinetic + e.internal, start, 0.01 * start);
+  assert_true(e.internal > 0.05 * start);
+  breccia_model_destroy(&m);
+}
+
+static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
+{
+  (void)state;
+  const char *const bodies[] = {"spacing: 0.1, shape: {box: {particles: [12, 9, 2]}}", "spacing: 0.1, shape: {box: {particles: [8, 8, 8]}}",
+                                "spacing: 0.1, lattice: square, thickness: 1, shape: {box: {particles: [15, 11]}}"};
+  const char *const controls[] = {"silling: 0.1", "silling: 1", "wan: 1", "none: yes"};
+  for (int b = 0; b < 3; ++b)
+    for (int c = 0; c < 4; ++c)
+      for (int over = 0; over < 2; ++over) {
+        breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
+                                    "peridynamics: {strain: small, space: %s, zero-energy control: {%s}}\n"
+                                    "body: {b: {material: m, %s}}\nsolve: {explicit: {steps: 4000}}\n",
+                                    b == 2 ? "plane strain" : "3-D", controls[c], bodies[b]);
+        m->solver.time_step = m->solver.stable * (over ? 1.1 : 1);
+        const Particles *p = m->domain.particles;
+        for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = n * 7919 % 13 * 1e-9;
+        breccia_model_step(m, 4000, NULL);
+        double largest = 0;
+        for (int64_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->displacement[0][p->place_of[n]]));
+        if (over ? largest < 1e-3 : !(largest < 1e-3))
+          fail_msg("body %d, control %s, %s the stable step: displacement %g", b, controls[c], over ? "above" : "at", largest);
+        breccia_model_destroy(&m);
+      }
+}
+
+static void threads_do_not_change_a_bit(void **state)
+{
+  (void)state;
+#ifdef _OPENMP
+  double *reference[3] = {0};
+  const int threads[] = {1, 2, 3, 8};
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *m = shaken_plate("");
+    m->threads = threads[k];
+    breccia_model_step(m, 600, NULL);
+    size_t bytes = sizeof(double) * (size_t)breccia_model_places(m);
+    double *const now[3] = {breccia_model_array(m, "displacement x"), breccia_model_array(m, "stress xy"), &m->solver.bond_work};
+    for (int a = 0; a < 3; ++a) {
+      size_t size = a < 2 ? bytes : sizeof(double);
+      if (!k) {
+        reference[a] = malloc(size);
+        memcpy(reference[a], now[a], size);
+      } else
+        assert_memory_equal(now[a], reference[a], size);
+    }
+    breccia_model_destroy(&m);
+  }
+  for (int a = 0; a < 3; ++a) free(reference[a]);
+#endif
+}
+
+static void broken_bonds_stay_broken_and_damage_grows(void **state)
+{
+  (void)state;
+  breccia_model *m = shaken_plate("");
+  double before = 0;
+  for (int k = 0; k < 6; ++k) {
+    breccia_model_step(m, 100, NULL);
+    double damage = 0;
+    for (int64_t n = 0; n < m->domain.particles->count; ++n) damage += domain_damage(&m->domain, m->domain.particles->place_of[n]);
+    assert_true(damage >= before);
+    before = damage;
+  }
+  assert_true(before > 0);
+  /* No bond that is left is stretched beyond the limit, and every broken one has been. */
+  const Domain *d = &m->domain;
+  for (int64_t s = 0; s < d->particles->slices; ++s)
+    for (int64_t slot = d->family.first[s]; slot < d->family.first[s + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        if (!(d->family.intact[slot] >> lane & 1)) continue;
+        Bond bond = family_bond(&d->family, s, slot, lane);
+        assert_false(d->failure.criterion->exceeds(d->failure.limit, &d->family, s, &bond, lane));
+      }
+  breccia_model_destroy(&m);
+}
+
+static void prescribed_particles_go_where_they_are_told(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}\n"
+                              "loads:\n"
+                              "  - {on: {face: x-}, displacement: [0, 0, 0]}\n"
+                              "  - {on: {face: x+}, along: {direction: [3, 4, 0], displacement: 0.01}, history: {table: [[0, 0], "
+                              "[0.005, 1], [0.01, 0.5]]}}\n"
+                              "solve: {explicit: {end time: 0.01}}\n");
+  breccia_model_step(m, m->solver.steps, NULL);
+  const Particles *p = m->domain.particles;
+  const Selection *s = &m->loading.loads[1].selection;
+  double t = breccia_model_time(m), factor = t < 0.01 ? 1 - 0.5 * (t - 0.005) / 0.005 : 0.5;
+  assert_int_equal(s->count, 16);
+  for (int64_t n = 0; n < s->count; ++n) {
+    int32_t i = s->places[n];
+    assert_near(0.6 * p->displacement[0][i] + 0.8 * p->displacement[1][i], 0.01 * factor, 1e-12);
+  }
+  assert_near(p->displacement[0][m->loading.loads[0].selection.places[3]], 0, 1e-15);
+  assert_true(explicit_energy(&m->solver).imbalance < 1e-2);
+  breccia_model_destroy(&m);
+}
+
+static void a_burst_is_reported_with_place_step_and_cause(void **state)
+{
+  (void)state;
+  breccia_error *error = breccia_error_create();
+  breccia_model *m;
+  const breccia_options force = {.force = 1};
+  const char *deck = "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                     "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+                     "loads: [{on: {face: x+}, body force: [1, 0, 0]}]\n"
+                     "solve: {explicit: {time step: 0.01, steps: 100000}}\n";
+  assert_int_equal(breccia_model_load_string(deck, "deck", &force, &m, error), 0);
+  assert_int_equal(breccia_model_step(m, 100000, error), BRECCIA_FAILURE);
+  const char *words = breccia_error_text(error);
+  assert_non_null(strstr(words, "is not a number"));
+  assert_non_null(strstr(words, "the time step is above the stable one"));
+  for (int64_t i = 0; i < breccia_model_places(m); ++i) assert_true(isfinite(breccia_model_array(m, "displacement x")[i]));
+  breccia_model_destroy(&m);
+  breccia_error_destroy(&error);
+}
+
+static void a_step_above_the_stable_one_is_refused(void **state)
+{
+  (void)state;
+  char *words = refusal_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                           "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+                           "solve: {explicit: {time step: 0.01, steps: 10}}\n");
+  assert_non_null(strstr(words, "times the stable step"));
+  free(words);
+}
+
+/* ---- static check of the example against finite elements ---- */
+
+static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
+{
+  (void)state;
+  /* validation: 500 kN/m3 open the mouth by 3.34 mm, converged quadrilaterals; control 0.1; 2 %. */
+  breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
+                              "materials: {m: {model: elastic, density: 1.5, Young modulus: 150000, Poisson ratio: 0.25}}\n"
+                              "body: {p: {material: m, spacing: 0.03, shape: {box: {particles: [70, 64, 2], first particle: [0, 0, 0]}}}}\n"
+                              "cracks: [{remove: {box: {from: [1.035, -0.015, -0.015], to: [1.065, 0.735, 0.045]}}, cut faces: yes}]\n"
+                              "peridynamics: {strain: small, zero-energy control: {silling: 0.1}}\n"
+                              "loads: [{on: {face: x-, layers: 3}, body force: [-500, 0, 0]}, {on: {face: x+, layers: 3}, body force: [500, 0, 0]}]\n"
+                              "solve: {explicit: {steps: 6000, damping: 120, safety: 0.9}}\n");
+  assert_int_equal(breccia_model_step(m, 6000, NULL), 0);
+  const double left[3] = {1.02, 0, 0}, right[3] = {1.08, 0, 0};
+  const Particles *p = m->domain.particles;
+  int32_t a = particles_nearest(p, left), b = particles_nearest(p, right);
+  Energy e = explicit_energy(&m->solver);
+  assert_true(e.kinetic < 1e-5 * e.internal);
+  double opening = p->displacement[0][b] - p->displacement[0][a];
+  print_message("opening at rest: %.4f mm\n", 1e3 * opening);
+  assert_near(opening, 3.34e-3, 0.02 * 3.34e-3);
+  breccia_model_destroy(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_free_body_under_gravity_falls_as_galilei_says),
+      cmocka_unit_test(a_wave_runs_along_a_slender_bar_at_root_e_over_rho),
+      cmocka_unit_test(energy_of_loads_motions_damping_yielding_and_cracks_balances),
+      cmocka_unit_test(an_elastic_body_keeps_its_energy),
+      cmocka_unit_test(the_stable_step_is_stable_and_a_tenth_more_is_not),
+      cmocka_unit_test(threads_do_not_change_a_bit),
+      cmocka_unit_test(broken_bonds_stay_broken_and_damage_grows),
+      cmocka_unit_test(prescribed_particles_go_where_they_are_told),
+      cmocka_unit_test(a_burst_is_reported_with_place_step_and_cause),
+      cmocka_unit_test(a_step_above_the_stable_one_is_refused),
+      cmocka_unit_test(plate_with_crack_opens_at_rest_as_finite_elements_say),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
