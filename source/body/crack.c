@@ -54,8 +54,8 @@ static const Field crack_fields[] = {
     {"cut", FIELD_SECTION, offsetof(CrackSpec, cut), NULL, "", NULL, "bonds across this surface are cut", &cut_section,
      NULL, 'A'},
     {"cut faces", FIELD_FLAG, offsetof(CrackSpec, cut_faces), NULL, "no", NULL,
-     "with 'remove' of a box: bonds that pass through the box are cut too, so that its faces do not hold together", NULL,
-     NULL, 0},
+     "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are cut too, so that "
+     "its faces do not hold together", NULL, NULL, 0},
 };
 const Section crack_section = {"crack",           "A notch or crack that is there from the beginning.",
                                sizeof(CrackSpec), FIELDS(crack_fields), check_crack, NULL, NULL, 0};
@@ -101,19 +101,31 @@ static bool polygon_crossed(const double *corners, int count, const double a[3],
   return inside;
 }
 
+/** True if a segment crosses the middle plane of a box inside the box. Whole boxes would cut more: slanting bonds that pass the
+ *  end of a notch through its corner, which lengthens the crack by half a spacing. */
+static bool crosses_middle(const Box *box, const Body *body, const double a[3], const double b[3])
+{
+  double low[3], high[3];
+  box_corners(box, body->largest_spacing, low, high);
+  int dimensions = body->plane ? 2 : 3, thin = 0;
+  for (int k = 1; k < dimensions; ++k)
+    if (high[k] - low[k] < high[thin] - low[thin]) thin = k;
+  double middle = (low[thin] + high[thin]) / 2, d = b[thin] - a[thin];
+  if (d == 0) return false;
+  double t = (middle - a[thin]) / d;
+  if (t < 0 || t > 1) return false;
+  for (int k = 0; k < dimensions; ++k) {
+    double x = a[k] + t * (b[k] - a[k]), tolerance = 1e-9 * (high[k] - low[k]);
+    if (k != thin && (x < low[k] - tolerance || x > high[k] + tolerance)) return false;
+  }
+  return true;
+}
+
 bool body_cuts(const Body *body, const double a[3], const double b[3])
 {
   for (int c = 0; c < body->crack_count; ++c) {
     const CrackSpec *crack = body->cracks[c];
-    if (crack->cut_faces && crack->remove) {
-      double low[3], high[3];
-      box_corners(crack->remove->box, body->largest_spacing, low, high);
-      if (body->plane) {
-        low[2] = -INFINITY;
-        high[2] = INFINITY;
-      }
-      if (box_meets_segment(low, high, a, b)) return true;
-    }
+    if (crack->cut_faces && crack->remove && crosses_middle(crack->remove->box, body, a, b)) return true;
     if (!crack->cut) continue;
     const NumberList *line = &crack->cut->line, *polygon = &crack->cut->polygon;
     for (int n = 0; n + 1 < line->count; ++n)

@@ -193,19 +193,3 @@ void shape_bounds(const Shape *shape, double spacing, double low[3], double high
     }
   }
 }
-
-bool box_meets_segment(const double low[3], const double high[3], const double a[3], const double b[3])
-{
-  double enter = 0, leave = 1;
-  for (int k = 0; k < 3; ++k) {
-    double d = b[k] - a[k];
-    if (d == 0) {
-      if (a[k] < low[k] || a[k] > high[k]) return false;
-      continue;
-    }
-    double t0 = (low[k] - a[k]) / d, t1 = (high[k] - a[k]) / d;
-    enter = fmax(enter, fmin(t0, t1));
-    leave = fmin(leave, fmax(t0, t1));
-  }
-  return enter <= leave;
-}

@@ -48,9 +48,6 @@ bool shape_contains(const Shape *shape, double spacing, bool plane, const double
 /** Corners of a box that holds the shape. */
 void shape_bounds(const Shape *shape, double spacing, double low[3], double high[3]);
 
-/** True if a segment from a to b passes through a box. */
-bool box_meets_segment(const double low[3], const double high[3], const double a[3], const double b[3]);
-
 /** True if a point of the plane lies inside a polygon of `count` corners, three numbers each, seen along z. */
 bool polygon_contains(const double *corners, int count, double x, double y);
 

@@ -16,7 +16,7 @@ typedef struct SavedArray {
   bool bytes; /* 8-bit numbers rather than doubles */
 } SavedArray;
 
-enum { MOST_ARRAYS = 32, SCALARS = 10 };
+enum { MOST_ARRAYS = 32, SCALARS = 11 };
 
 static int list_arrays(const Explicit *s, SavedArray *list)
 {
@@ -56,7 +56,7 @@ static void take_scalars(const Explicit *s, double *v)
 {
   const double values[SCALARS] = {s->time,         s->bond_work, s->external_work, s->damping_work,
                                   s->kinetic,      s->stable,    s->time_step,     s->domain->fracture_energy,
-                                  (double)s->step, (double)s->broken_at_estimate};
+                                  (double)s->step, (double)s->broken_at_estimate, s->kinetic_at_start};
   memcpy(v, values, sizeof values);
 }
 
@@ -72,6 +72,7 @@ static void give_scalars(Explicit *s, const double *v)
   s->domain->fracture_energy = v[7];
   s->step = (int64_t)v[8];
   s->broken_at_estimate = (int64_t)v[9];
+  s->kinetic_at_start = v[10];
 }
 
 static int save(hid_t file, const char *name, hid_t type, size_t count, const void *values)

@@ -44,7 +44,7 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
     return node_error(reader->document, place, reader->error,
                       "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
                       "--force", s->time_step, share, s->stable);
-  if (share > 0.9)
+  if (share > 0.9 && !isnan(spec->time_step))
     text_add(warning, "%s:%d:%d: warning: time step: %g is %.2f times the stable step of %.4g", reader->document->name,
              place->line, place->column, s->time_step, share, s->stable);
   double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / s->time_step - 1e-9);
@@ -206,6 +206,7 @@ void explicit_begin(Explicit *s)
       s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->density[i];
       s->kinetic += 0.5 * p->density[i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
     }
+  s->kinetic_at_start = s->kinetic;
 }
 
 static int32_t first_bad_particle(const Particles *p)
@@ -294,7 +295,7 @@ Energy explicit_energy(const Explicit *s)
               .external = s->external_work,
               .damping = s->damping_work,
               .fracture = s->domain->fracture_energy};
-  double error = e.external - e.kinetic - e.internal - e.damping - e.fracture;
+  double error = e.external + s->kinetic_at_start - e.kinetic - e.internal - e.damping - e.fracture;
   double largest = fmax(fmax(fabs(e.kinetic), fabs(s->bond_work)), fmax(fabs(e.external), fabs(e.damping)));
   e.imbalance = largest > 0 ? fabs(error) / largest : 0;
   return e;

@@ -13,14 +13,14 @@ typedef struct ExplicitSpec {
 
 extern const Section explicit_section;
 
-/** Where the work went since the start. external = kinetic + internal + fracture + damping + error. */
+/** Where the work went. external + kinetic at the start = kinetic + internal + fracture + damping + error. */
 typedef struct Energy {
   double kinetic;
   double internal; /* work on bonds, less what broken bonds released: stored, or dissipated by the law */
   double external; /* work of loads and prescribed motions */
   double damping;
   double fracture;  /* half force times elongation of bonds as they broke */
-  double imbalance; /* |external - kinetic - internal - fracture - damping| / largest of them */
+  double imbalance; /* the error, over the largest of them */
 } Energy;
 
 typedef struct Explicit {
@@ -31,7 +31,7 @@ typedef struct Explicit {
   double time_step, stable, time;
   int64_t step, steps; /* done, and wanted in all */
   int64_t broken_at_estimate; /* broken bonds when `stable` was found */
-  double bond_work, external_work, damping_work, kinetic;
+  double bond_work, external_work, damping_work, kinetic, kinetic_at_start;
   double motion;     /* largest component of any displacement increment in the step under way */
   double (*sums)[5]; /* [blocks] of the five above */
 } Explicit;

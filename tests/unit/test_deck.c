@@ -99,7 +99,7 @@ static void all_errors_of_a_deck_come_in_one_go(void **state)
   int lines = 1;
   for (const char *c = words; *c; ++c) lines += *c == '\n';
   assert_int_equal(lines, 4);
-  assert_non_null(strstr(words, "deck:2:34: density: -1 is out of range; it must be greater than 0"));
+  assert_non_null(strstr(words, "deck:2:32: density: -1 is out of range; it must be greater than 0"));
   assert_non_null(strstr(words, "Young modulus: '3 m' has the wrong dimension"));
   assert_non_null(strstr(words, "unknown key 'colour'"));
   assert_non_null(strstr(words, "steps: 10.5 is not a whole number"));

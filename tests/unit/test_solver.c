@@ -77,7 +77,7 @@ static void an_elastic_body_keeps_its_energy(void **state)
   (void)state;
   breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
                               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 6, 5]}}}}\n"
-                              "solve: {explicit: {steps: 3000, safety: 0.3}}\n");
+                              "solve: {explicit: {steps: 3000, safety: 0.1}}\n");
   double *v = breccia_model_array(m, "velocity x");
   const Particles *p = m->domain.particles;
   double start = 0;
@@ -87,7 +87,8 @@ static void an_elastic_body_keeps_its_energy(void **state)
   }
   breccia_model_step(m, 3000, NULL);
   Energy e = explicit_energy(&m->solver);
-  assert_near(e.kinetic + e.internal, start, 0.01 * start);
+  assert_near(e.kinetic + e.internal, start, 0.002 * start);
+  assert_true(e.imbalance < 0.002);
   assert_true(e.internal > 0.05 * start);
   breccia_model_destroy(&m);
 }
@@ -107,7 +108,7 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
                                     b == 2 ? "plane strain" : "3-D", controls[c], bodies[b]);
         m->solver.time_step = m->solver.stable * (over ? 1.1 : 1);
         const Particles *p = m->domain.particles;
-        for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = n * 7919 % 13 * 1e-9;
+        for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = (double)(n * 7919 % 13) * 1e-9;
         breccia_model_step(m, 4000, NULL);
         double largest = 0;
         for (int64_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->displacement[0][p->place_of[n]]));
@@ -177,7 +178,7 @@ static void prescribed_particles_go_where_they_are_told(void **state)
                               "  - {on: {face: x-}, displacement: [0, 0, 0]}\n"
                               "  - {on: {face: x+}, along: {direction: [3, 4, 0], displacement: 0.01}, history: {table: [[0, 0], "
                               "[0.005, 1], [0.01, 0.5]]}}\n"
-                              "solve: {explicit: {end time: 0.01}}\n");
+                              "solve: {explicit: {end time: 0.01, safety: 0.1}}\n");
   breccia_model_step(m, m->solver.steps, NULL);
   const Particles *p = m->domain.particles;
   const Selection *s = &m->loading.loads[1].selection;
@@ -188,7 +189,10 @@ static void prescribed_particles_go_where_they_are_told(void **state)
     assert_near(0.6 * p->displacement[0][i] + 0.8 * p->displacement[1][i], 0.01 * factor, 1e-12);
   }
   assert_near(p->displacement[0][m->loading.loads[0].selection.places[3]], 0, 1e-15);
-  assert_true(explicit_energy(&m->solver).imbalance < 1e-2);
+  Energy e = explicit_energy(&m->solver);
+  if (e.imbalance > 1e-2)
+    fail_msg("imbalance %g: external %g kinetic %g internal %g damping %g", e.imbalance, e.external, e.kinetic, e.internal,
+             e.damping);
   breccia_model_destroy(&m);
 }
 
