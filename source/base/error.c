@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct breccia_error {
   Text text;
@@ -27,14 +28,29 @@ const char *breccia_error_text(const breccia_error *error)
   return error && error->text.characters ? error->text.characters : "";
 }
 
+static bool holds_line(const Error *error, const char *line)
+{
+  size_t n = strlen(line);
+  for (const char *at = error->text.characters; at; at = strchr(at, '\n')) {
+    if (*at == '\n') ++at;
+    if (!strncmp(at, line, n) && (at[n] == '\n' || !at[n])) return true;
+  }
+  return false;
+}
+
 int error_add(Error *error, int status, const char *format, ...)
 {
   if (!error) return status;
-  if (error->count++) text_add(&error->text, "\n");
+  Text line = {0};
   va_list arguments;
   va_start(arguments, format);
-  text_add_list(&error->text, format, arguments);
+  text_add_list(&line, format, arguments);
   va_end(arguments);
+  if (!line.characters || !holds_line(error, line.characters)) {
+    if (error->count++) text_add(&error->text, "\n");
+    text_add(&error->text, "%s", line.characters ? line.characters : format);
+  }
+  text_free(&line);
   return status;
 }
 

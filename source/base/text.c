@@ -85,7 +85,7 @@ int text_distance(const char *a, const char *b)
 bool text_resembles(const char *word, const char *candidate, int distance)
 {
   size_t longer = strlen(word) > strlen(candidate) ? strlen(word) : strlen(candidate);
-  return distance <= 1 + (int)longer / 4;
+  return distance <= 1 + (int)longer / 3;
 }
 
 void text_file_name(const char *words, char *name, size_t size)

@@ -60,33 +60,52 @@ static const Field crack_fields[] = {
 const Section crack_section = {"crack",           "A notch or crack that is there from the beginning.",
                                sizeof(CrackSpec), FIELDS(crack_fields), check_crack, NULL, NULL, 0};
 
-/** True if segments ab and cd of the x-y plane cross; touching an end of cd counts. */
-static bool segments_cross(const double a[3], const double b[3], const double c[3], const double d[3])
+/* A particle that lies on a cut belongs to its positive side, so that a cut through a row of particles parts the body beside
+ * the row instead of cutting the row off from both sides. */
+
+/** Where a segment that goes from signed distance `from` to `to` crosses zero, as a share of it; -1 if it stays on one side.
+ *  @param[in] length  of the segment, for the size of roundings */
+static double crossing(double from, double to, double length)
 {
-  double rx = b[0] - a[0], ry = b[1] - a[1], sx = d[0] - c[0], sy = d[1] - c[1];
-  double cross = rx * sy - ry * sx;
-  double scale = sqrt((rx * rx + ry * ry) * (sx * sx + sy * sy));
-  if (fabs(cross) <= 1e-12 * scale) return false; /* along the cut */
-  double t = ((c[0] - a[0]) * sy - (c[1] - a[1]) * sx) / cross, u = ((c[0] - a[0]) * ry - (c[1] - a[1]) * rx) / cross;
-  const double end = 1e-9; /* a bond that meets the very end of a cut is cut, whatever the rounding */
-  return t >= -end && t <= 1 + end && u >= -end && u <= 1 + end;
+  double rounding = -1e-9 * length;
+  if ((from >= rounding) == (to >= rounding)) return -1;
+  return fmax(0, fmin(1, from / (from - to)));
+}
+
+static double length_of(const double a[3], const double b[3])
+{
+  return sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+}
+
+/** True if segment ab crosses the line from c to d, seen along z; meeting the very end of the line counts. */
+static bool line_crossed(const double c[3], const double d[3], const double a[3], const double b[3])
+{
+  double sx = d[0] - c[0], sy = d[1] - c[1], size = sqrt(sx * sx + sy * sy);
+  if (size == 0) return false;
+  double from = (sx * (a[1] - c[1]) - sy * (a[0] - c[0])) / size, to = (sx * (b[1] - c[1]) - sy * (b[0] - c[0])) / size;
+  double t = crossing(from, to, length_of(a, b));
+  if (t < 0) return false;
+  double x = a[0] + t * (b[0] - a[0]) - c[0], y = a[1] + t * (b[1] - a[1]) - c[1], along = (x * sx + y * sy) / size;
+  double end = 1e-9 * length_of(a, b);
+  return along >= -end && along <= size + end;
 }
 
 static bool polygon_crossed(const double *corners, int count, const double a[3], const double b[3])
 {
-  double u[3], v[3], normal[3], along = 0, before = 0;
+  double u[3], v[3], normal[3], size = 0, from = 0, to = 0;
   for (int k = 0; k < 3; ++k) {
     u[k] = corners[3 + k] - corners[k];
     v[k] = corners[6 + k] - corners[k];
   }
   for (int k = 0; k < 3; ++k) {
     normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-    along += normal[k] * (b[k] - a[k]);
-    before += normal[k] * (corners[k] - a[k]);
+    size += normal[k] * normal[k];
+    from += normal[k] * (a[k] - corners[k]);
+    to += normal[k] * (b[k] - corners[k]);
   }
-  if (along == 0) return false;
-  double t = before / along;
-  if (t < -1e-9 || t > 1 + 1e-9) return false;
+  if (size == 0) return false;
+  double t = crossing(from / sqrt(size), to / sqrt(size), length_of(a, b));
+  if (t < 0) return false;
   /* Seen along the largest component of the normal the polygon keeps its shape. */
   int drop = 0;
   for (int k = 1; k < 3; ++k)
@@ -110,10 +129,8 @@ static bool crosses_middle(const Box *box, const Body *body, const double a[3], 
   int dimensions = body->plane ? 2 : 3, thin = 0;
   for (int k = 1; k < dimensions; ++k)
     if (high[k] - low[k] < high[thin] - low[thin]) thin = k;
-  double middle = (low[thin] + high[thin]) / 2, d = b[thin] - a[thin];
-  if (d == 0) return false;
-  double t = (middle - a[thin]) / d;
-  if (t < 0 || t > 1) return false;
+  double middle = (low[thin] + high[thin]) / 2, t = crossing(a[thin] - middle, b[thin] - middle, length_of(a, b));
+  if (t < 0) return false;
   for (int k = 0; k < dimensions; ++k) {
     double x = a[k] + t * (b[k] - a[k]), tolerance = 1e-9 * (high[k] - low[k]);
     if (k != thin && (x < low[k] - tolerance || x > high[k] + tolerance)) return false;
@@ -129,7 +146,7 @@ bool body_cuts(const Body *body, const double a[3], const double b[3])
     if (!crack->cut) continue;
     const NumberList *line = &crack->cut->line, *polygon = &crack->cut->polygon;
     for (int n = 0; n + 1 < line->count; ++n)
-      if (segments_cross(a, b, line->values + 3 * n, line->values + 3 * (n + 1))) return true;
+      if (line_crossed(line->values + 3 * n, line->values + 3 * (n + 1), a, b)) return true;
     if (polygon->count && polygon_crossed(polygon->values, polygon->count, a, b)) return true;
   }
   return false;

@@ -345,6 +345,20 @@ static void say_unknown_key(const DeckReader *reader, const Node *item, const Se
   text_free(&words);
 }
 
+/** True if the map holds an unknown key that was probably meant to be `key`: one message is enough. */
+static bool misspelt(const Node *node, const Section *section, const breccia_parameter *parameters, int count,
+                     const char *key)
+{
+  for (int k = 0; k < node->count; ++k) {
+    const char *given = node->items[k].key;
+    bool known = false;
+    for (int f = 0; f < section->field_count; ++f) known |= !strcmp(section->fields[f].key, given);
+    for (int p = 0; p < count; ++p) known |= !strcmp(parameters[p].name, given);
+    if (!known && (!key || text_resembles(given, key, text_distance(given, key)))) return true;
+  }
+  return false;
+}
+
 static void check_groups(const DeckReader *reader, const Node *node, const Section *section)
 {
   for (int k = 0; k < section->field_count; ++k) {
@@ -360,7 +374,7 @@ static void check_groups(const DeckReader *reader, const Node *node, const Secti
       const Node *item = node_get(node, section->fields[other].key);
       if (item && ++given > 1) last = item;
     }
-    if (first && given != 1)
+    if (first && given != 1 && !(given == 0 && misspelt(node, section, NULL, 0, NULL)))
       node_error(reader->document, last, reader->error, "%s: %s of %s; give exactly one", section->name,
                  given ? "more than one" : "none", words.characters);
     text_free(&words);
@@ -375,6 +389,7 @@ static void read_parameters(const DeckReader *reader, const Node *node, const Se
     const Node *item = node_get(node, parameter->name);
     Node standard = {.kind = NODE_SCALAR, .line = node->line, .column = node->column, .text = parameter->standard};
     values[k] = NAN;
+    if (!item && !parameter->standard && misspelt(node, section, parameters, count, parameter->name)) continue;
     if (!item && !parameter->standard)
       node_error(reader->document, node, reader->error, "%s: missing key '%s' (%s)", section->name, parameter->name,
                  parameter->meaning);
@@ -436,11 +451,11 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
       char label[160];
       snprintf(label, sizeof label, "%s", field->key);
       read_field(reader, item, label, field, target + field->offset);
-    } else if (!field->standard)
+    } else if (field->standard && *field->standard)
+      read_field(reader, &standard, field->key, field, target + field->offset);
+    else if (!field->standard && !misspelt(node, section, parameters, parameter_count, field->key))
       node_error(reader->document, node, reader->error, "%s: missing key '%s' (%s)", section->name, field->key,
                  field->meaning);
-    else if (*field->standard)
-      read_field(reader, &standard, field->key, field, target + field->offset);
   }
   check_groups(reader, node, section);
   if (section->check && error_count(reader->error) == before) section->check(reader, target);

@@ -43,7 +43,8 @@ static int share_out(Domain *d, Error *error)
     s = end;
   }
   d->block_sum = memory_zeroed((size_t)d->block_count, sizeof(double), "block sums", error);
-  return d->block_sum ? BRECCIA_OK : BRECCIA_FAILURE;
+  d->block_failed = memory_zeroed((size_t)d->block_count, sizeof(int64_t), "block sums", error);
+  return d->block_sum && d->block_failed ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
@@ -108,6 +109,7 @@ void domain_destroy(Domain *d)
   free(d->material);
   free(d->blocks);
   free(d->block_sum);
+  free(d->block_failed);
   free(d->family_volume);
   free(d->suspects);
   free(d->look_again);
@@ -125,17 +127,11 @@ static double force_magnitude(const Particles *p, const Span *span)
 
 void domain_forces(Domain *d)
 {
-#pragma omp single
-  d->failed_place = -1;
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {
     Span span = d->blocks[b];
     d->type->deform(d->formulation, span.first, span.last);
-    int64_t bad = points_update(&d->points, span.first, span.last, NULL);
-    if (bad >= 0) {
-#pragma omp critical(breccia_failed_place)
-      if (d->failed_place < 0 || bad < d->failed_place) d->failed_place = bad;
-    }
+    d->block_failed[b] = points_update(&d->points, span.first, span.last, NULL);
     d->type->respond(d->formulation, span.first, span.last);
   }
 #pragma omp for schedule(static)
@@ -147,7 +143,11 @@ void domain_forces(Domain *d)
   {
     d->type->finish(d->formulation);
     d->force_sum = 0;
-    for (int64_t b = 0; b < d->block_count; ++b) d->force_sum += d->block_sum[b];
+    d->failed_place = -1;
+    for (int64_t b = 0; b < d->block_count; ++b) {
+      d->force_sum += d->block_sum[b];
+      if (d->failed_place < 0) d->failed_place = d->block_failed[b];
+    }
   }
 }
 

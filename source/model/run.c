@@ -411,8 +411,9 @@ static int finish(Run *run, int status, Error *error)
   char *problem = text_format("%s", breccia_error_text(error));
   if (!status) {
     status = watches_write(model->watches, &model->solver, true, error);
-    if (!status) status = write_results(run, error);
+    /* First the checkpoint: a state written because a run stops early leaves no trace when it is taken up again. */
     if (!status) status = write_checkpoint(run, error);
+    if (!status) status = write_results(run, error);
   } else if (status == BRECCIA_INTERRUPTED) {
     int bad = write_checkpoint(run, error);
     if (bad) status = bad;

@@ -1,1 +1,112 @@
-exit 0
+# Wrong decks: each is the good one with a change, and must be refused in one line with place, reason and advice.
+. "$(dirname "$0")/common.sh"
+
+cat > "$work/good.yaml" <<'Y'
+title: A good deck
+units: {length: m, force: kN, time: s}
+materials:
+  clay: {model: multi-yield-j2, density: 1.5, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30}
+  steel: {model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3}
+body:
+  plate:
+    material: clay
+    spacing: 0.1
+    shape: {box: {from: [0, 0, 0], to: [1, 0.5, 0.3]}}
+selections:
+  end: {face: x+, layers: 2}
+cracks:
+  - {cut: {line: [[0.45, 0], [0.45, 0.2]]}}
+peridynamics: {horizon: 3.015 spacings}
+failure: {critical stretch: 0.05}
+loads:
+  - {name: pull, on: end, body force: [1, 0, 0], history: {ramp to: 0.1 s}}
+solve: {explicit: {steps: 10}}
+watch:
+  tip: {displacement of: end}
+results: {fields: [displacement, damage]}
+pictures:
+  - {field: damage}
+Y
+
+"$breccia" check "$work/good.yaml" > "$work/out" 2>&1 || fail "the good deck is refused: $(cat "$work/out")"
+
+# refuse EDIT PLACE WORDS: the good deck after a sed edit is refused at line:column with these words
+refuse() {
+  sed "$1" "$work/good.yaml" > "$work/deck.yaml"
+  cmp -s "$work/good.yaml" "$work/deck.yaml" && fail "the edit $1 changes nothing"
+  (cd "$work" && "$breccia" run deck.yaml > out 2> errors)
+  equal "$1: exit status" $? 2
+  contains "$1" "$(cat "$work/errors")" "deck.yaml:${2:+$2: }"
+  contains "$1" "$(cat "$work/errors")" "$3"
+  equal "$1: lines" "$(wc -l < "$work/errors")" 1
+  [ -e "$work/deck" ] && fail "$1: something was written"
+  [ -s "$work/out" ] && fail "$1: something was printed: $(cat "$work/out")"
+}
+
+refuse 's/spacing: 0.1$/spacing: 3 s/' 9:14 "has the wrong dimension; expected a length, like '1.5 m'"
+refuse 's/spacing: 0.1$/spacing: 0.1 parsec m/' 9:14 "has the wrong dimension"
+refuse 's/spacing: 0.1$/spacing: 0.1 smoots/' 9:14 "unit 'smoots' is not known"
+refuse 's/spacing: 0.1$/spacing: -0.1/' 9:14 'is out of range; it must be greater than 0'
+refuse 's/spacing: 0.1$/spacing: wide/' 9:14 'is not a number'
+refuse 's/spacing: 0.1$/spacing: [1]/' 9:5 'expected a number, found a list'
+refuse 's/spacing: 0.1$/spacing: 0.3/' 10:13 'is not a whole number of spacings of 0.3'
+refuse 's/spacing: 0.1$/spacing: 0.0001/' 9:14 'more than the 2e9'
+refuse 's/horizon: 3.015 spacings/horizons: 3/' 15:16 "unknown key 'horizons'; did you mean 'horizon'?"
+refuse 's/    spacing: 0.1$//' 7:3 "missing key 'spacing'"
+refuse 's/    spacing: 0.1$/    spacing: 0.1\n    spacing: 0.1/' 10:5 "key 'spacing' stands here twice (first in line 9)"
+refuse 's/material: clay/material: sand/' 8:15 "there is no material 'sand'; the deck defines 'clay', 'steel'"
+refuse 's/  steel:/  clay:/' 5:3 "'clay' is defined twice (first in line 4)"
+refuse 's/multi-yield-j2/multi-yeld-j2/' 4:17 "there is no model 'multi-yeld-j2'; did you mean 'multi-yield-j2'?"
+refuse 's/shear modulus/shear modulas/' 4:47 "unknown key 'shear modulas'; did you mean 'shear modulus'?"
+refuse 's/octahedral strength: 30/octahedral strength: 7 MPa/' 4:3 'a hyperbola cannot pass through both'
+refuse 's/octahedral strength: 30/surfaces: 20/' 4:3 "give either 'octahedral strength' or 'cohesion'"
+refuse 's/Poisson ratio: 0.3/Poisson ratio: 0.5/' 5:81 'it must be greater than -1 and less than 0.5'
+refuse 's/Poisson ratio: 0.3/bulk modulus: 1/' 5:3 "give 'Young modulus' and 'Poisson ratio'"
+refuse 's/density: 1.5/density: 1.5 ton\/m3/' 4:42 "'ton' may be short, long or metric"
+refuse 's/length: m/length: kN/' 2:1 'is not a unit of length'
+refuse 's/to: \[1, 0.5, 0.3\]/to: [-1, 0.5, 0.3]/' 10:13 "'to' must lie beyond 'from'"
+refuse 's/to: \[1, 0.5, 0.3\]/to: [1]/' 10:36 'expected a list of 2 or 3 numbers'
+refuse 's/, to: \[1, 0.5, 0.3\]//' 10:13 "give either 'from' and 'to', or 'particles'"
+refuse 's/shape: {box/shape: {bax/' 10:13 "unknown key 'bax'; did you mean 'box'?"
+refuse 's/face: x+/face: east/' 12:15 "'east' is not known; choose from x-, x+, y-, y+, z-, z+"
+refuse 's/layers: 2/layers: 0/' 12:27 'it must be at least 1'
+refuse 's/layers: 2/layers: 1.5/' 12:27 'is not a whole number'
+refuse 's/{face: x+, layers: 2}/{layers: 2}/' 12:3 'say what is selected'
+refuse 's/face: x+/block: dam/' 12:16 "there is no block 'dam'"
+refuse 's/on: end/on: edn/' 18:22 "there is no selection 'edn'; the deck defines 'end'"
+refuse 's/on: end/on: {nearest: [0, 0, 0], face: x+}/' 18:18 'the selection holds no particle'
+refuse 's/body force: \[1, 0, 0\]/body force: [1, 0, 0], force: [1, 0, 0]/' 18:50 "more than one of"
+refuse 's/body force: \[1, 0, 0\], //' 18:6 "none of 'body force', 'force'"
+refuse 's/body force: \[1, 0, 0\]/body force: [1 kN, 0, 0]/' 18:40 'wrong dimension; expected a force per volume'
+refuse 's/ramp to: 0.1 s/table: [[0, 0], [1, 1], [1, 2]]/' 18:85 'times must grow'
+refuse 's/horizon: 3.015 spacings/horizon: 0.05/' 15:25 'so that no particle has a neighbour'
+refuse 's/horizon: 3.015 spacings/space: plane stress/' 15:23 'needs a square lattice'
+refuse 's/horizon: 3.015 spacings/zero-energy control: {silling: 0.1, wan: 0.1}/' 15:57 'more than one of'
+refuse 's/horizon: 3.015 spacings/influence: gausian/' 15:27 "did you mean 'gaussian'?"
+refuse 's/stretch: 0.05/stretch: 0/' 16:29 'it must be greater than 0'
+refuse 's/steps: 10/steps: 10, end time: 1 s/' 19:41 'more than one of'
+refuse 's/steps: 10/steps: 10, time step: 1 s/' 19:42 'times the stable step'
+refuse 's/displacement of: end/displacment of: end/' 21:9 "unknown key 'displacment of'; did you mean 'displacement of'?"
+refuse 's/displacement of: end/load: push/' 21:15 "no load has the name 'push'"
+refuse 's/displacement of: end/opening between: [[0, 0, 0], [0, 0, 0]]/' 21:9 'the same particle is nearest to both points'
+refuse 's/displacement of: end/bond between: [[0, 0, 0], [1, 0, 0]]/' 21:9 'no bond joins'
+refuse 's/displacement, damage/displacement, colour/' 22:11 "there is no field 'colour'; the fields are displacement"
+refuse 's/field: damage/field: pressure/' 24:13 "there is no field 'pressure'"
+refuse 's/line: \[\[0.45, 0\], \[0.45, 0.2\]\]/line: [[0.45, 0]]/' 14:12 'needs at least two points'
+refuse 's/cut: {line: \[\[0.45, 0\], \[0.45, 0.2\]\]}/remove: {sphere: {centre: [0, 0, 0], radius: 9}}/' 10:5 'no lattice cell has its centre inside'
+refuse 's/^solve: .*/solve: {explicitt: {steps: 1}}/' 19:9 "unknown key 'explicitt'; did you mean 'explicit'?"
+refuse 's/^solve: .*//' 1:1 "missing key 'solve'"
+refuse 's/^title: .*/title: [/' '' 'not valid YAML'
+refuse 's/^title: .*/title: *other/' '' 'aliases (*name) are not understood'
+
+# Files that are no decks at all
+for content in '' '- a' 'words' '42'; do
+  printf '%s' "$content" > "$work/deck.yaml"
+  (cd "$work" && "$breccia" check deck.yaml > out 2> errors)
+  equal "deck «$content»: exit status" $? 2
+  contains "deck «$content»" "$(cat "$work/errors")" "deck.yaml:1:"
+done
+"$breccia" check "$work/none.yaml" > /dev/null 2> "$work/errors"
+equal "missing deck: exit status" $? 2
+contains "missing deck" "$(cat "$work/errors")" "none.yaml: cannot be read: No such file"
+finish

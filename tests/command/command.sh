@@ -1,1 +1,77 @@
-exit 0
+# The command as a person meets it: help, verbs, messages, exit statuses, files.
+. "$(dirname "$0")/common.sh"
+cd "$work"
+
+"$breccia" --version > out; equal "version: status" $? 0
+contains "version" "$(cat out)" "breccia 0."
+"$breccia" --help > out; equal "help: status" $? 0
+for verb in run check new plot models material schema completion; do
+  contains "help" "$(cat out)" "  $verb "
+  "$breccia" $verb --help > verb 2>&1; equal "$verb --help: status" $? 0
+  contains "$verb --help" "$(cat verb)" "usage: breccia $verb"
+  "$breccia" $verb --nonsense > verb 2>&1; equal "$verb --nonsense: status" $? 2
+done
+"$breccia" rnu 2> out; equal "rnu: status" $? 2
+contains "rnu" "$(cat out)" "did you mean 'run'?"
+"$breccia" > /dev/null 2>&1; equal "no verb: status" $? 2
+"$breccia" run > /dev/null 2> out; equal "run without deck: status" $? 2
+"$breccia" run a.yaml --steps many 2> out; equal "run --steps many: status" $? 2
+contains "run --steps many" "$(cat out)" "--steps: 'many' is not a whole number"
+
+# new, check, run: the starter deck works as it comes
+"$breccia" new plate.yaml > out; equal "new: status" $? 0
+"$breccia" new plate.yaml 2> out; equal "new over a file: status" $? 2
+contains "new over a file" "$(cat out)" "exists already"
+"$breccia" check plate.yaml > out 2> errors; equal "check: status" $? 0
+contains "check" "$(cat out)" "2500 particles"
+equal "check: lines" "$(wc -l < out)" 3
+[ -s errors ] && fail "check complains: $(cat errors)"
+[ -e plate ] && fail "check writes"
+"$breccia" run plate.yaml --steps 100 > out 2> errors; equal "run: status" $? 0
+contains "run" "$(cat out)" "finished at step 100 of"
+[ -s errors ] && fail "run complains: $(cat errors)"
+for file in results.vtkhdf results.xdmf summary.json checkpoint.h5 opening.csv grip.csv energy.csv pictures; do
+  [ -e "plate/$file" ] || fail "run did not write $file"
+done
+ls plate | grep -q part && fail "half-written files are left: $(ls plate)"
+for key in particles bonds steps time_step stable_time_step wall_seconds ns_per_bond_step first_broken_bond broken_bonds imbalance; do
+  [ -n "$(json plate/summary.json $key)" ] || fail "summary.json lacks $key"
+done
+equal "summary: particles" "$(json plate/summary.json particles)" 2500
+equal "summary: steps" "$(json plate/summary.json steps)" 100
+equal "history: rows" "$(wc -l < plate/opening.csv)" 12
+"$breccia" run plate.yaml --steps 3 --quiet --output "other folder/deep" > out 2>&1; equal "run --quiet: status" $? 0
+[ -s out ] && fail "run --quiet prints: $(cat out)"
+[ -e "other folder/deep/summary.json" ] || fail "--output is not obeyed"
+touch file; "$breccia" run plate.yaml --steps 3 --output file/x 2> out > /dev/null; equal "output below a file: status" $? 2
+
+# a burst writes the last good state and ends with status 1
+sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
+"$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2
+"$breccia" run burst.yaml --force > out 2> errors; equal "burst: status" $? 1
+contains "burst" "$(cat errors)" "is not a number; likely cause: the time step is above the stable one"
+contains "burst" "$(cat out)" "stopped by a failure"
+[ -e burst/results.vtkhdf ] && [ -e burst/summary.json ] || fail "a burst leaves no results"
+contains "burst: summary" "$(cat burst/summary.json)" '"problem": "step '
+
+# material: one point against closed forms
+printf 'e11,e22,e33,g12,g23,g31\n0.001,0,0,0,0,0\n0,0,0,0.002,0,0\n' > path.csv
+"$breccia" material --model elastic --set "Young modulus=150 MPa" --set "Poisson ratio=0.25" --strain path.csv --output out.csv --tangent
+equal "material: status" $? 0
+equal "material: heading" "$(head -1 out.csv | cut -d, -f1-13)" "e11,e22,e33,g12,g23,g31,s11,s22,s33,s12,s23,s31,C11"
+equal "material: s11" "$(sed -n 2p out.csv | cut -d, -f7)" 180
+equal "material: s12" "$(sed -n 3p out.csv | cut -d, -f10)" 120
+equal "material: C11" "$(sed -n 2p out.csv | cut -d, -f13)" 180000
+"$breccia" material --model elastic --set "Young=1" --strain path.csv 2> out; equal "material, wrong key: status" $? 2
+contains "material, wrong key" "$(cat out)" "expected KEY=VALUE with one of the keys 'Young modulus'"
+"$breccia" material --model multi-yield-j2 --strain path.csv 2> out; equal "material, nothing set: status" $? 2
+contains "material, nothing set" "$(cat out)" "missing --set 'shear modulus=...'"
+"$breccia" models > out; contains "models" "$(cat out)" "multi-yield-j2"
+contains "models" "$(cat out)" "octahedral strength"
+"$breccia" models elastic > out; contains "models elastic" "$(cat out)" "Poisson ratio"
+
+# completion is valid shell, the page is troff
+"$breccia" completion > completion.sh && bash -n completion.sh || fail "completion is not shell"
+bash -c 'source completion.sh; COMP_WORDS=(breccia ru); COMP_CWORD=1; _breccia; [ "${COMPREPLY[0]}" = run ]' || fail "completion does not complete"
+"$breccia" completion --man > page.1; contains "page" "$(head -1 page.1)" ".TH BRECCIA 1"
+finish

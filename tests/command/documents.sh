@@ -1,1 +1,15 @@
-exit 0
+# Pages made from the program's tables are current, and the schema is JSON that the decks of the examples obey.
+. "$(dirname "$0")/common.sh"
+"$breccia" schema --markdown > "$work/deck.md"
+cmp -s "$work/deck.md" "$source/docs/deck.md" || fail "docs/deck.md is not current: run 'make docs'"
+"$breccia" schema > "$work/schema.json"
+contains "schema" "$(cat "$work/schema.json")" '"$schema": "https://json-schema.org/draft/2020-12/schema"'
+if command -v python3 > /dev/null; then
+  python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/schema.json" || fail "the schema is not JSON"
+fi
+for deck in "$source"/examples/*/*.yaml; do
+  "$breccia" check "$deck" > "$work/out" 2>&1 || fail "$deck is refused: $(cat "$work/out")"
+  checks=$((checks + 1))
+done
+grep -rnE '/(root|home|work)/' "$source/README.md" "$source/docs" "$source"/examples/*/README.md && fail "a page holds a machine's path"
+finish

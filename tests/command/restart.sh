@@ -1,1 +1,74 @@
-exit 0
+# A run that was killed, at moments of chance, and taken up again ends in the same bits as one never stopped.
+. "$(dirname "$0")/common.sh"
+cd "$work"
+cat > plate.yaml <<'Y'
+title: Restart
+materials:
+  clay: {model: multi-yield-j2, density: 1500, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30 kPa}
+body:
+  plate: {material: clay, spacing: 0.1, shape: {box: {particles: [40, 36, 2]}}}
+cracks: [{cut: {line: [[2, -1], [2, 1.4]]}}]
+failure: {critical stretch: 0.01}
+loads:
+  - {on: {face: x-, layers: 3}, body force: [-700 kN/m3, 0, 0], history: {ramp to: 0.01}}
+  - {on: {face: x+, layers: 3}, body force: [700 kN/m3, 0, 0], history: {ramp to: 0.01}}
+solve: {explicit: {time step: 1e-4, steps: 1500}}
+watch:
+  mouth: {opening between: [[1.95, 0, 0], [2.05, 0, 0]], every: 7}
+  energy: {energy: yes, every: 50}
+results: {number: 13, checkpoint steps: 40, precision: double}
+Y
+"$breccia" run plate.yaml --output whole > out 2>&1 || fail "the whole run failed: $(cat out)"
+[ "$(json whole/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks, the test is too tame"
+
+same() { # same FOLDER: all that a run leaves is as in the whole run
+  for file in mouth.csv energy.csv; do
+    cmp -s "whole/$file" "$1/$file" || fail "$1: $file differs"
+    checks=$((checks + 1))
+  done
+  "$build/tests/compare_results" whole/results.vtkhdf "$1/results.vtkhdf" || fail "$1: results differ"
+  "$build/tests/compare_results" whole/checkpoint.h5 "$1/checkpoint.h5" || fail "$1: checkpoints differ"
+  checks=$((checks + 2))
+}
+
+# stopped by --steps, then taken up with another number of threads
+"$breccia" run plate.yaml --output parts --steps 333 --threads 1 > out 2>&1
+"$breccia" run plate.yaml --output parts --steps 801 --restart --threads 2 > out 2>&1 || fail "restart: $(cat out)"
+"$breccia" run plate.yaml --output parts --restart > out 2>&1 || fail "restart: $(cat out)"
+same parts
+
+# interrupted and killed at moments of chance
+RANDOM=7
+for signal in INT TERM KILL KILL KILL; do
+  rm -rf killed
+  "$breccia" run plate.yaml --output killed > out 2>&1 &
+  for attempt in 1 2 3; do
+    pid=$!
+    sleep "0.$((RANDOM % 5 + 2))"
+    kill -$signal $pid 2> /dev/null
+    wait $pid 2> /dev/null
+    status=$?
+    [ $signal = KILL ] || [ $status = 130 ] || [ $status = 0 ] || fail "$signal: exit status $status: $(cat out)"
+    [ $signal = KILL ] || [ $status = 0 ] || contains "$signal" "$(cat out)" "--restart' goes on from here"
+    if [ -e killed/checkpoint.h5 ]; then
+      "$breccia" run plate.yaml --output killed --restart > out 2>&1 &
+    else
+      "$breccia" run plate.yaml --output killed > out 2>&1 &
+    fi
+  done
+  wait $! || fail "$signal: the last restart failed: $(cat out)"
+  same killed
+done
+
+# what does not fit is refused with the reason
+sed 's/steps: 1500/steps: 1600/' plate.yaml > other.yaml
+"$breccia" run other.yaml --output parts --restart > /dev/null 2> out; equal "another deck: status" $? 2
+contains "another deck" "$(cat out)" "was written with another deck"
+sed 's/\[40, 36, 2\]/[40, 35, 2]/' plate.yaml > other.yaml
+"$breccia" run other.yaml --output parts --restart > /dev/null 2> out; equal "another body: status" $? 2
+contains "another body" "$(cat out)" "particles, the deck makes"
+"$breccia" run plate.yaml --output nowhere --restart > /dev/null 2> out; equal "no checkpoint: status" $? 2
+contains "no checkpoint" "$(cat out)" "there is no checkpoint to restart from"
+head -c 3000 whole/checkpoint.h5 > parts/checkpoint.h5
+"$breccia" run plate.yaml --output parts --restart > /dev/null 2> out; equal "damaged checkpoint: status" $? 2
+finish

@@ -130,6 +130,25 @@ static void families_are_those_of_all_pairs_on_a_body_with_hole_cut_and_two_latt
   breccia_model_destroy(&model);
 }
 
+static void a_cut_through_a_row_of_particles_parts_the_body_beside_it(void **state)
+{
+  (void)state;
+  /* Particles on the cut belong to one side: nothing is cut off from both. */
+  breccia_model *model = model_of(MATERIAL SOLVE "peridynamics: {horizon: 2.015}\ncracks: [{cut: {line: [[4, -9], [4, 99]]}}]\n"
+                                                 "body: {b: {material: m, spacing: 1, shape: {box: {particles: [9, 5, 4], first "
+                                                 "particle: [0, 0, 0]}}}}\n");
+  const Particles *p = model->domain.particles;
+  int across[2] = {0, 0};
+  for (int64_t n = 0; n < p->count; ++n) {
+    if (p->position[0][p->place_of[n]] != 4) continue;
+    across[0] += family_joins(&model->domain.family, p->place_of[n], p->place_of[n - 1]);
+    across[1] += family_joins(&model->domain.family, p->place_of[n], p->place_of[n + 1]);
+  }
+  assert_int_equal(across[0] + across[1], 20);
+  assert_int_equal(across[0] * across[1], 0);
+  breccia_model_destroy(&model);
+}
+
 static void bonds_come_in_pairs_with_opposite_vectors_and_break_on_both_sides(void **state)
 {
   (void)state;
@@ -225,6 +244,7 @@ int main(void)
       cmocka_unit_test(numbers_run_along_x_then_y_then_z),
       cmocka_unit_test(families_on_lattices_have_the_counts_of_geometry),
       cmocka_unit_test(families_are_those_of_all_pairs_on_a_body_with_hole_cut_and_two_lattices),
+      cmocka_unit_test(a_cut_through_a_row_of_particles_parts_the_body_beside_it),
       cmocka_unit_test(bonds_come_in_pairs_with_opposite_vectors_and_break_on_both_sides),
       cmocka_unit_test(weighted_volume_of_whole_cells_matches_peridigm),
       cmocka_unit_test(particles_on_top_of_each_other_are_refused),

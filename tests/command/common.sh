@@ -1,0 +1,33 @@
+# What the command tests share. Each is called with: the command, the source folder, the build folder.
+set -u
+breccia=$1 source=$2 build=$3
+work=$(mktemp -d "${TMPDIR:-/tmp}/breccia test.XXXXXX") # a path with a space in it
+trap 'rm -rf "$work"' EXIT
+failures=0 checks=0
+
+fail() {
+  echo "FAIL: $*"
+  failures=$((failures + 1))
+}
+
+# contains WHAT TEXT WORDS: TEXT must hold WORDS
+contains() {
+  checks=$((checks + 1))
+  case $2 in *"$3"*) ;; *) fail "$1: expected «$3», found: $2" ;; esac
+}
+
+# equal WHAT FOUND EXPECTED
+equal() {
+  checks=$((checks + 1))
+  [ "$2" = "$3" ] || fail "$1: expected «$3», found «$2»"
+}
+
+# Words of a JSON file's "key": value
+json() {
+  sed -n "s/.*\"$2\": \([^,}]*\).*/\1/p" "$1" | head -1
+}
+
+finish() {
+  echo "$checks checks, $failures failed"
+  [ $failures = 0 ]
+}
