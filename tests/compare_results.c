@@ -20,8 +20,8 @@ static herr_t compare(hid_t object, const char *name, const H5O_info_t *info, vo
     same = n == H5Sget_simple_extent_npoints(space_b);
     char *x = calloc(bytes + 1, 1), *y = calloc(bytes + 1, 1);
     if (same && n)
-      same = H5Dread(a, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, x) >= 0 && H5Dread(b, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, y) >= 0 &&
-             !memcmp(x, y, bytes);
+      same = H5Dread(a, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, x) >= 0 &&
+             H5Dread(b, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, y) >= 0 && !memcmp(x, y, bytes);
     free(x);
     free(y);
     H5Sclose(space_a);

@@ -87,7 +87,8 @@ int main(void)
       }
     double length = 1.9, expected = 1 * 9.81 * length * length / (2 * 2000); /* between the outermost centres */
     printf("%lld particles after %lld steps: the end sags by %.3f mm, rho g L^2 / (2 E) is %.3f mm\n",
-           (long long)breccia_model_particles(model), (long long)breccia_model_steps_done(model), 1e3 * sag, 1e3 * expected);
+           (long long)breccia_model_particles(model), (long long)breccia_model_steps_done(model), 1e3 * sag,
+           1e3 * expected);
     if (fabs(sag - expected) > 0.08 * expected) status = 1;
   }
   if (*breccia_error_text(error)) fprintf(stderr, "%s\n", breccia_error_text(error));

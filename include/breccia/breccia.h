@@ -83,7 +83,8 @@ typedef struct breccia_law {
 typedef struct breccia_model breccia_model;
 
 typedef struct breccia_options {
-  const breccia_law *const *laws; /* laws of one's own, `law_count` of them, borrowed for the model's life; may be NULL */
+  const breccia_law *const
+      *laws; /* laws of one's own, `law_count` of them, borrowed for the model's life; may be NULL */
   int law_count;
   int threads; /* 0: all cores */
   int force;   /* 1: accept a time step above the stable one */
@@ -102,11 +103,13 @@ BRECCIA_API void breccia_model_destroy(breccia_model **model);
 BRECCIA_API int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error);
 
 typedef struct breccia_run {
-  const char *folder;                /* for all files; made if need be */
-  int restart;                       /* 1: go on from the checkpoint in the folder */
-  int64_t steps;                     /* stop after so many steps in all; 0: as the deck says */
-  const volatile int *interrupted;   /* polled between steps: non-zero stops the run cleanly, with a checkpoint; may be NULL */
-  void (*progress)(void *context, int64_t step, int64_t steps, double seconds_left); /* a few times a second; may be NULL */
+  const char *folder; /* for all files; made if need be */
+  int restart;        /* 1: go on from the checkpoint in the folder */
+  int64_t steps;      /* stop after so many steps in all; 0: as the deck says */
+  const volatile int
+      *interrupted; /* polled between steps: non-zero stops the run cleanly, with a checkpoint; may be NULL */
+  void (*progress)(void *context, int64_t step, int64_t steps,
+                   double seconds_left); /* a few times a second; may be NULL */
   void *context;
 } breccia_run;
 

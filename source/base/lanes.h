@@ -13,8 +13,9 @@ typedef double Lanes __attribute__((vector_size(32)));
 typedef int64_t LaneMask __attribute__((vector_size(32)));
 
 /* Hot loops are compiled once per processor generation and chosen when the program starts. The sanitizers' start-up
- * comes after that choice, so their builds have the plain version only. */
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(BRECCIA_NO_CLONES)
+ * comes after that choice, so their builds have the plain version only; and clang does not let functions of another
+ * generation pass vectors to inlined ones, so that with clang -march=native is the way to speed. */
+#if defined(__x86_64__) && !defined(__clang__) && !defined(BRECCIA_NO_CLONES)
 #define BRECCIA_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define BRECCIA_CLONES

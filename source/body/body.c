@@ -23,26 +23,36 @@ static void check_block(const DeckReader *reader, void *section)
 }
 
 static const Field block_fields[] = {
-    {"material", FIELD_TEXT, offsetof(BlockSpec, material), NULL, NULL, NULL, "name of one of the materials", NULL, NULL, 0},
+    {"material", FIELD_TEXT, offsetof(BlockSpec, material), NULL, NULL, NULL, "name of one of the materials", NULL,
+     NULL, 0},
     {"lattice", FIELD_CHOICE, offsetof(BlockSpec, lattice), NULL, "cubic", NULL,
      "arrangement of the particles; square for plane bodies", NULL, lattice_word, 0},
-    {"spacing", FIELD_NUMBER, offsetof(BlockSpec, spacing), "length", NULL, "(0, inf)", "distance of neighbouring particles",
-     NULL, NULL, 0},
-    {"thickness", FIELD_NUMBER, offsetof(BlockSpec, thickness), "length", "", "(0, inf)", "of a plane body", NULL, NULL, 0},
-    {"shape", FIELD_SECTION, offsetof(BlockSpec, shape), NULL, NULL, NULL,
-     "what the particles fill; one stands in the middle of each lattice cell whose centre is inside", &shape_section, NULL,
+    {"spacing", FIELD_NUMBER, offsetof(BlockSpec, spacing), "length", NULL, "(0, inf)",
+     "distance of neighbouring particles", NULL, NULL, 0},
+    {"thickness", FIELD_NUMBER, offsetof(BlockSpec, thickness), "length", "", "(0, inf)", "of a plane body", NULL, NULL,
      0},
+    {"shape", FIELD_SECTION, offsetof(BlockSpec, shape), NULL, NULL, NULL,
+     "what the particles fill; one stands in the middle of each lattice cell whose centre is inside", &shape_section,
+     NULL, 0},
 };
-const Section block_section = {"block",
-                               "A part of the body with its own material and lattice. Blocks nearer than the horizon are "
-                               "bonded to each other.",
-                               sizeof(BlockSpec), FIELDS(block_fields), check_block, NULL, NULL, 0};
+const Section block_section = {
+    "block",
+    "A part of the body with its own material and lattice. Blocks nearer than the horizon are "
+    "bonded to each other.",
+    sizeof(BlockSpec),
+    FIELDS(block_fields),
+    check_block,
+    NULL,
+    NULL,
+    0};
 
 /** The box that fixes where the lattice begins: the shape itself or the first one in it. NULL: something round. */
 static const Box *leading_box(const Shape *shape)
 {
   while (shape && !shape->box)
-    shape = shape->together.count ? shape->together.items[0] : shape->difference.count ? shape->difference.items[0] : NULL;
+    shape = shape->together.count     ? shape->together.items[0]
+            : shape->difference.count ? shape->difference.items[0]
+                                      : NULL;
   return shape ? shape->box : NULL;
 }
 
@@ -54,8 +64,7 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
   shape_bounds(block->shape, spacing, low, high);
   const Box *box = leading_box(block->shape);
   double anchor[3], far[3];
-  if (box)
-    box_corners(box, spacing, anchor, far);
+  if (box) box_corners(box, spacing, anchor, far);
   double total = 1;
   for (int k = 0; k < 3; ++k) {
     if (k == 2 && lattice->plane) {
@@ -80,7 +89,8 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
   }
   if (!(total < 2e9))
     return node_error(reader->document, section_place(block, "spacing"), reader->error,
-                      "block: %.3g lattice cells are more than the 2e9 that can be numbered; is the spacing right?", total);
+                      "block: %.3g lattice cells are more than the 2e9 that can be numbered; is the spacing right?",
+                      total);
   lattice->axis = 0;
   for (int k = 1; k < 3; ++k)
     if (lattice->cells[k] > lattice->cells[lattice->axis]) lattice->axis = k;
@@ -204,7 +214,8 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
     }
     const Lattice *lattice = &body->lattices[b];
     int64_t before = count;
-    for (int64_t k = 0; k < lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]] * lattice->chunks; ++k)
+    for (int64_t k = 0; k < lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]] * lattice->chunks;
+         ++k)
       count += __builtin_popcount(present[b][k]);
     if (count == before)
       status = node_error(reader->document, section_place(body->blocks[b], "shape"), error,

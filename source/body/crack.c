@@ -9,7 +9,8 @@ static void check_cut(const DeckReader *reader, void *section)
   if (cut->line.count == 1)
     node_error(reader->document, section_place(section, "line"), reader->error, "line: needs at least two points");
   if (cut->polygon.count == 1 || cut->polygon.count == 2)
-    node_error(reader->document, section_place(section, "polygon"), reader->error, "polygon: needs at least three corners");
+    node_error(reader->document, section_place(section, "polygon"), reader->error,
+               "polygon: needs at least three corners");
   for (int n = 3; n < cut->polygon.count; ++n) {
     const double *p = cut->polygon.values;
     double a[3], b[3], c[3], size = 0;
@@ -19,8 +20,8 @@ static void check_cut(const DeckReader *reader, void *section)
       c[k] = p[3 * n + k] - p[k];
       size += a[k] * a[k] + b[k] * b[k] + c[k] * c[k];
     }
-    double volume = c[0] * (a[1] * b[2] - a[2] * b[1]) + c[1] * (a[2] * b[0] - a[0] * b[2]) +
-                    c[2] * (a[0] * b[1] - a[1] * b[0]);
+    double volume =
+        c[0] * (a[1] * b[2] - a[2] * b[1]) + c[1] * (a[2] * b[0] - a[0] * b[2]) + c[2] * (a[0] * b[1] - a[1] * b[0]);
     if (fabs(volume) > 1e-9 * pow(size, 1.5)) {
       node_error(reader->document, section_place(section, "polygon"), reader->error,
                  "polygon: corner %d does not lie in the plane of the first three", n + 1);
@@ -32,11 +33,17 @@ static void check_cut(const DeckReader *reader, void *section)
 static const Field cut_fields[] = {
     {"line", FIELD_POINTS, offsetof(CutSpec, line), "length", "", NULL,
      "points [x, y] of a line; in space the cut runs through the whole height along z", NULL, NULL, 'A'},
-    {"polygon", FIELD_POINTS, offsetof(CutSpec, polygon), "length", "", NULL, "corners [x, y, z] of a flat polygon", NULL,
-     NULL, 'A'},
+    {"polygon", FIELD_POINTS, offsetof(CutSpec, polygon), "length", "", NULL, "corners [x, y, z] of a flat polygon",
+     NULL, NULL, 'A'},
 };
-static const Section cut_section = {"cut", "A surface without thickness that no bond crosses.", sizeof(CutSpec),
-                                    FIELDS(cut_fields), check_cut, NULL, NULL, 0};
+static const Section cut_section = {"cut",
+                                    "A surface without thickness that no bond crosses.",
+                                    sizeof(CutSpec),
+                                    FIELDS(cut_fields),
+                                    check_cut,
+                                    NULL,
+                                    NULL,
+                                    0};
 
 static void check_crack(const DeckReader *reader, void *section)
 {
@@ -54,11 +61,19 @@ static const Field crack_fields[] = {
     {"cut", FIELD_SECTION, offsetof(CrackSpec, cut), NULL, "", NULL, "bonds across this surface are cut", &cut_section,
      NULL, 'A'},
     {"cut faces", FIELD_FLAG, offsetof(CrackSpec, cut_faces), NULL, "no", NULL,
-     "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are cut too, so that "
-     "its faces do not hold together", NULL, NULL, 0},
+     "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are cut too, so "
+     "that "
+     "its faces do not hold together",
+     NULL, NULL, 0},
 };
-const Section crack_section = {"crack",           "A notch or crack that is there from the beginning.",
-                               sizeof(CrackSpec), FIELDS(crack_fields), check_crack, NULL, NULL, 0};
+const Section crack_section = {"crack",
+                               "A notch or crack that is there from the beginning.",
+                               sizeof(CrackSpec),
+                               FIELDS(crack_fields),
+                               check_crack,
+                               NULL,
+                               NULL,
+                               0};
 
 /* A particle that lies on a cut belongs to its positive side, so that a cut through a row of particles parts the body beside
  * the row instead of cutting the row off from both sides. */

@@ -22,16 +22,22 @@ static const Field selection_fields[] = {
     {"block", FIELD_TEXT, offsetof(SelectionSpec, block), NULL, "", NULL, "particles of this block", NULL, NULL, 0},
     {"face", FIELD_CHOICE, offsetof(SelectionSpec, face), NULL, "", NULL,
      "particles next to the outermost ones in this direction", NULL, face_word, 0},
-    {"layers", FIELD_COUNT, offsetof(SelectionSpec, layers), NULL, "1", "[1, inf)", "how many layers of a face", NULL, NULL,
-     0},
+    {"layers", FIELD_COUNT, offsetof(SelectionSpec, layers), NULL, "1", "[1, inf)", "how many layers of a face", NULL,
+     NULL, 0},
     {"inside", FIELD_SECTION, offsetof(SelectionSpec, inside), NULL, "", NULL, "particles inside this shape",
      &shape_section, NULL, 0},
-    {"nearest", FIELD_POINT, offsetof(SelectionSpec, nearest), "length", "", NULL, "the one particle nearest to this point",
-     NULL, NULL, 0},
+    {"nearest", FIELD_POINT, offsetof(SelectionSpec, nearest), "length", "", NULL,
+     "the one particle nearest to this point", NULL, NULL, 0},
     {"all", FIELD_FLAG, offsetof(SelectionSpec, all), NULL, "no", NULL, "the whole body", NULL, NULL, 0},
 };
-const Section selection_section = {"selection",           "Some particles. Where several conditions stand, all must hold.",
-                                   sizeof(SelectionSpec), FIELDS(selection_fields), check_selection, NULL, NULL, 0};
+const Section selection_section = {"selection",
+                                   "Some particles. Where several conditions stand, all must hold.",
+                                   sizeof(SelectionSpec),
+                                   FIELDS(selection_fields),
+                                   check_selection,
+                                   NULL,
+                                   NULL,
+                                   0};
 
 static int block_index(const Body *body, const char *name)
 {

@@ -36,15 +36,21 @@ static void check_cylinder(const DeckReader *reader, void *section)
   if (c->from[0] == c->to[0] && c->from[1] == c->to[1] && c->from[2] == c->to[2])
     node_error(reader->document, c->head.node, reader->error, "cylinder: 'from' and 'to' are the same point");
 }
-static const Section cylinder_section = {"cylinder",     "A round bar between two points (in the plane: a strip).",
-                                         sizeof(Cylinder), FIELDS(cylinder_fields), check_cylinder, NULL, NULL, 0};
+static const Section cylinder_section = {"cylinder",
+                                         "A round bar between two points (in the plane: a strip).",
+                                         sizeof(Cylinder),
+                                         FIELDS(cylinder_fields),
+                                         check_cylinder,
+                                         NULL,
+                                         NULL,
+                                         0};
 
 static const Field sphere_fields[] = {
     {"centre", FIELD_POINT, offsetof(Sphere, centre), "length", NULL, NULL, "centre", NULL, NULL, 0},
     {"radius", FIELD_NUMBER, offsetof(Sphere, radius), "length", NULL, "(0, inf)", "radius", NULL, NULL, 0},
 };
-static const Section sphere_section = {"sphere", "A ball (in the plane: a disc).", sizeof(Sphere), FIELDS(sphere_fields),
-                                       NULL, NULL, NULL, 0};
+static const Section sphere_section = {
+    "sphere", "A ball (in the plane: a disc).", sizeof(Sphere), FIELDS(sphere_fields), NULL, NULL, NULL, 0};
 
 static void check_polygon(const DeckReader *reader, void *section)
 {
@@ -55,14 +61,21 @@ static void check_polygon(const DeckReader *reader, void *section)
     node_error(reader->document, polygon->head.node, reader->error, "polygon: 'top' must be above 'bottom'");
 }
 static const Field polygon_fields[] = {
-    {"corners", FIELD_POINTS, offsetof(Polygon, corners), "length", NULL, NULL, "corners [x, y] in order", NULL, NULL, 0},
+    {"corners", FIELD_POINTS, offsetof(Polygon, corners), "length", NULL, NULL, "corners [x, y] in order", NULL, NULL,
+     0},
     {"bottom", FIELD_NUMBER, offsetof(Polygon, bottom), "length", "0", NULL, "where the extrusion along z begins", NULL,
      NULL, 0},
     {"top", FIELD_NUMBER, offsetof(Polygon, top), "length", "1", NULL, "where it ends (no meaning in the plane)", NULL,
      NULL, 0},
 };
-static const Section polygon_section = {"polygon",       "A polygon in the x-y plane, extruded along z.",
-                                        sizeof(Polygon), FIELDS(polygon_fields), check_polygon, NULL, NULL, 0};
+static const Section polygon_section = {"polygon",
+                                        "A polygon in the x-y plane, extruded along z.",
+                                        sizeof(Polygon),
+                                        FIELDS(polygon_fields),
+                                        check_polygon,
+                                        NULL,
+                                        NULL,
+                                        0};
 
 static void check_shape(const DeckReader *reader, void *section)
 {
@@ -78,12 +91,15 @@ static const Field shape_fields[] = {
     {"sphere", FIELD_SECTION, offsetof(Shape, sphere), NULL, "", NULL, "a ball", &sphere_section, NULL, 'A'},
     {"polygon", FIELD_SECTION, offsetof(Shape, polygon), NULL, "", NULL, "an extruded polygon", &polygon_section, NULL,
      'A'},
-    {"union", FIELD_SECTIONS, offsetof(Shape, together), NULL, "", NULL, "all of several shapes", &shape_section, NULL, 'A'},
+    {"union", FIELD_SECTIONS, offsetof(Shape, together), NULL, "", NULL, "all of several shapes", &shape_section, NULL,
+     'A'},
     {"difference", FIELD_SECTIONS, offsetof(Shape, difference), NULL, "", NULL, "the first shape minus the others",
      &shape_section, NULL, 'A'},
 };
-const Section shape_section = {"shape",         "What a block fills. Shapes nest: a union may hold differences.",
-                               sizeof(Shape), FIELDS(shape_fields), check_shape, NULL, NULL, 0};
+const Section shape_section = {"shape",       "What a block fills. Shapes nest: a union may hold differences.",
+                               sizeof(Shape), FIELDS(shape_fields),
+                               check_shape,   NULL,
+                               NULL,          0};
 
 void box_corners(const Box *box, double spacing, double low[3], double high[3])
 {
@@ -145,7 +161,8 @@ bool shape_contains(const Shape *shape, double spacing, bool plane, const double
   }
   for (int k = 0; k < shape->together.count; ++k)
     if (shape_contains(shape->together.items[k], spacing, plane, p, tolerance)) return true;
-  if (!shape->difference.count || !shape_contains(shape->difference.items[0], spacing, plane, p, tolerance)) return false;
+  if (!shape->difference.count || !shape_contains(shape->difference.items[0], spacing, plane, p, tolerance))
+    return false;
   for (int k = 1; k < shape->difference.count; ++k)
     if (shape_contains(shape->difference.items[k], spacing, plane, p, -tolerance)) return false;
   return true;

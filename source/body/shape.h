@@ -6,9 +6,9 @@
 
 typedef struct Box {
   SectionHead head;
-  double from[3], to[3];  /* NaN when given by particles */
-  int64_t particles[3];   /* -1 when given by corners */
-  double first[3];        /* centre of the first particle */
+  double from[3], to[3]; /* NaN when given by particles */
+  int64_t particles[3];  /* -1 when given by corners */
+  double first[3];       /* centre of the first particle */
 } Box;
 
 typedef struct Cylinder {

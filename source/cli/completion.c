@@ -9,29 +9,36 @@ static void print_completion(void)
          "_breccia() {\n  local word=\"${COMP_WORDS[COMP_CWORD]}\"\n  if [ \"$COMP_CWORD\" = 1 ]; then\n"
          "    COMPREPLY=($(compgen -W \"");
   for (int k = 0; verbs[k]; ++k) printf("%s ", verbs[k]->name);
-  printf("--help --version\" -- \"$word\"))\n    return\n  fi\n  case \"$word\" in\n  -*) case \"${COMP_WORDS[1]}\" in\n");
+  printf(
+      "--help --version\" -- \"$word\"))\n    return\n  fi\n  case \"$word\" in\n  -*) case \"${COMP_WORDS[1]}\" in\n");
   for (int k = 0; verbs[k]; ++k) {
     printf("    %s) COMPREPLY=($(compgen -W \"--help", verbs[k]->name);
     for (const Option *o = verbs[k]->options; o->name; ++o) printf(" --%s", o->name);
     printf("\" -- \"$word\")) ;;\n");
   }
-  printf("    esac ;;\n  *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n  esac\n}\ncomplete -o filenames -F _breccia breccia\n");
+  printf("    esac ;;\n  *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n  esac\n}\ncomplete -o filenames -F _breccia "
+         "breccia\n");
 }
 
 /** Text with the dashes and backslashes that troff would change. */
 static void print_troff(const char *words)
 {
   for (; *words; ++words)
-    if (*words == '-') printf("\\-");
-    else if (*words == '\\') printf("\\e");
-    else putchar(*words);
+    if (*words == '-')
+      printf("\\-");
+    else if (*words == '\\')
+      printf("\\e");
+    else
+      putchar(*words);
 }
 
 static void print_man(void)
 {
   printf(".TH BRECCIA 1 \"\" \"breccia %s\"\n.SH NAME\nbreccia \\- peridynamics for concrete, soil and rock\n"
-         ".SH SYNOPSIS\n.B breccia\nVERB [arguments]\n.SH DESCRIPTION\n", BRECCIA_VERSION);
-  printf("Computes how concrete, soil and rock deform, yield and crack. A deck in YAML says what is computed; results go to a\n"
+         ".SH SYNOPSIS\n.B breccia\nVERB [arguments]\n.SH DESCRIPTION\n",
+         BRECCIA_VERSION);
+  printf("Computes how concrete, soil and rock deform, yield and crack. A deck in YAML says what is computed; results "
+         "go to a\n"
          "folder beside it.\n.SH VERBS\n");
   for (int k = 0; verbs[k]; ++k) {
     printf(".SS %s ", verbs[k]->name);
@@ -51,7 +58,8 @@ static void print_man(void)
       printf("\n");
     }
   }
-  printf(".SH EXIT STATUS\n0 done; 1 the computation failed; 2 the deck or the arguments are wrong; 130 stopped by a signal.\n");
+  printf(".SH EXIT STATUS\n0 done; 1 the computation failed; 2 the deck or the arguments are wrong; 130 stopped by a "
+         "signal.\n");
 }
 
 static int run(int argc, char **argv, const Verb *verb)
@@ -66,5 +74,9 @@ static int run(int argc, char **argv, const Verb *verb)
   return 0;
 }
 
-const Verb verb_completion = {"completion", "[--man]", "print shell completion (bash, zsh) or the manual page", options,
-                              "To use it: source <(breccia completion)", run};
+const Verb verb_completion = {"completion",
+                              "[--man]",
+                              "print shell completion (bash, zsh) or the manual page",
+                              options,
+                              "To use it: source <(breccia completion)",
+                              run};

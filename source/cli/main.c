@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const Verb *const verbs[] = {&verb_run,  &verb_check, &verb_new,    &verb_plot,       &verb_models,
+const Verb *const verbs[] = {&verb_run,      &verb_check,  &verb_new,        &verb_plot, &verb_models,
                              &verb_material, &verb_schema, &verb_completion, NULL};
 
 enum { MOST_OPTIONS = 32 };
@@ -63,7 +63,8 @@ int read_options(int argc, char **argv, const Verb *verb, const char **values,
   int count = option_count(verb), which, code;
   for (int k = 0; k < count; ++k) {
     values[k] = NULL;
-    table[k] = (struct option){verb->options[k].name, verb->options[k].argument ? required_argument : no_argument, NULL, 0};
+    table[k] =
+        (struct option){verb->options[k].name, verb->options[k].argument ? required_argument : no_argument, NULL, 0};
   }
   table[count] = (struct option){"help", no_argument, NULL, 'h'};
   optind = 1;

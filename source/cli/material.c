@@ -1,7 +1,7 @@
 /* One material point driven through a strain path. */
+#include "constitutive/material.h"
 #include "base/memory.h"
 #include "cli/verbs.h"
-#include "constitutive/material.h"
 #include "results/curve.h"
 
 #include <errno.h>
@@ -43,7 +43,8 @@ static int read_parameters(const breccia_law *law, const Settings *settings, con
     size_t n = equals ? (size_t)(equals - settings->items[s]) : 0;
     int which = -1;
     for (int k = 0; k < law->parameter_count; ++k)
-      if (equals && strlen(law->parameters[k].name) == n && !strncmp(law->parameters[k].name, settings->items[s], n)) which = k;
+      if (equals && strlen(law->parameters[k].name) == n && !strncmp(law->parameters[k].name, settings->items[s], n))
+        which = k;
     if (which < 0) {
       Text names = {0};
       for (int k = 0; k < law->parameter_count; ++k) text_add(&names, "%s'%s'", k ? ", " : "", law->parameters[k].name);
@@ -114,7 +115,10 @@ static int drive(const Material *m, const double *rows, int count, long long ela
   fprintf(out, "\n");
   int status = BRECCIA_OK;
   for (int i = 0; i < count && !status; ++i) {
-    breccia_batch batch = {.count = 1, .committed = committed, .trial = trial, .tangent = tangent ? d : NULL,
+    breccia_batch batch = {.count = 1,
+                           .committed = committed,
+                           .trial = trial,
+                           .tangent = tangent ? d : NULL,
                            .elastic_stage = i < elastic};
     for (int k = 0; k < 6; ++k) {
       strain[k] = rows[6 * i + k];
@@ -177,8 +181,10 @@ static int run(int argc, char **argv, const Verb *verb)
   return fail(error, status);
 }
 
-const Verb verb_material = {"material", "--model NAME --set KEY=VALUE ... --strain PATH.csv [options]",
-                            "drive one material point through a strain path", options,
+const Verb verb_material = {"material",
+                            "--model NAME --set KEY=VALUE ... --strain PATH.csv [options]",
+                            "drive one material point through a strain path",
+                            options,
                             "Plain numbers are in m, kN, s (stress in kPa); shear strains are engineering, tension is\n"
                             "positive. Lines of the path that begin with # are comments.",
                             run};

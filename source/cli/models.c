@@ -16,7 +16,10 @@ static void print_law(const breccia_law *law)
     char range[128] = "";
     if (p->range) interval_describe(p->range, range, sizeof range);
     printf("  %-24s %-10s %-10s %s%s%s%s\n", p->name, *dimension->example ? dimension->example : "-",
-           !p->standard ? "required" : *p->standard ? p->standard : "optional", p->meaning, *range ? "; " : "", range, "");
+           !p->standard   ? "required"
+           : *p->standard ? p->standard
+                          : "optional",
+           p->meaning, *range ? "; " : "", range, "");
   }
 }
 
@@ -46,5 +49,5 @@ static int run(int argc, char **argv, const Verb *verb)
   return 0;
 }
 
-const Verb verb_models = {"models", "[MODEL]", "list constitutive models and formulations with their parameters", options,
-                          NULL, run};
+const Verb verb_models = {"models", "[MODEL]", "list constitutive models and formulations with their parameters",
+                          options,  NULL,      run};

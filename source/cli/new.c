@@ -6,7 +6,8 @@
 static const Option options[] = {{0}};
 
 static const char starter[] =
-    "# A deck of Breccia. 'breccia check' tells what it would run, 'breccia run' runs it; docs/deck.md lists every key.\n"
+    "# A deck of Breccia. 'breccia check' tells what it would run, 'breccia run' runs it; docs/deck.md lists every "
+    "key.\n"
     "title: Plate with an edge crack\n"
     "units: {length: m, force: kN, time: s}      # plain numbers are in these; \"30 MPa\" works anywhere\n"
     "\n"

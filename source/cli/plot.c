@@ -96,8 +96,8 @@ static int draw_steps(const char *path, const char **values, const PictureOption
       file = text_format("%.*s-%06lld%s", stem, values[OUTPUT], (long long)view.step_numbers[k], dot ? dot : ".png");
     } else {
       char words[256], name[256], *folder = folder_of(path);
-      snprintf(words, sizeof words, "%s%s%s step %lld", o->field, o->component ? " " : "", o->component ? o->component : "",
-               (long long)view.step_numbers[k]);
+      snprintf(words, sizeof words, "%s%s%s step %lld", o->field, o->component ? " " : "",
+               o->component ? o->component : "", (long long)view.step_numbers[k]);
       text_file_name(words, name, sizeof name);
       char *pictures = text_format("%s/pictures", folder);
       mkdir(pictures, 0777);
@@ -122,8 +122,13 @@ static int run(int argc, char **argv, const Verb *verb)
     fprintf(stderr, "breccia plot: give one result folder (several with --curve); see 'breccia plot --help'\n");
     return 2;
   }
-  PictureOptions o = {.field = values[FIELD] ? values[FIELD] : "octahedral shear stress", .component = values[COMPONENT],
-                      .deformed = 1, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN,
+  PictureOptions o = {.field = values[FIELD] ? values[FIELD] : "octahedral shear stress",
+                      .component = values[COMPONENT],
+                      .deformed = 1,
+                      .azimuth = NAN,
+                      .elevation = NAN,
+                      .low = NAN,
+                      .high = NAN,
                       .broken_bonds = values[BROKEN] != NULL};
   if (values[DEFORMED] && read_number(values[DEFORMED], "deformed", &o.deformed)) return 2;
   if (values[RANGE] && read_pair(values[RANGE], "range", &o.low, &o.high)) return 2;
@@ -147,5 +152,9 @@ static int run(int argc, char **argv, const Verb *verb)
   return fail(error, status);
 }
 
-const Verb verb_plot = {"plot", "RESULT ... [options]", "draw fields and curves from results", options,
-                        "RESULT is a result folder or its results.vtkhdf.", run};
+const Verb verb_plot = {"plot",
+                        "RESULT ... [options]",
+                        "draw fields and curves from results",
+                        options,
+                        "RESULT is a result folder or its results.vtkhdf.",
+                        run};

@@ -24,8 +24,7 @@ static int run(int argc, char **argv, const Verb *verb)
     for (int k = 0; output_field_at(k); ++k) {
       const OutputField *f = output_field_at(k);
       text_add(&text, "| `%s` |", f->name);
-      for (int c = 0; c < f->components; ++c)
-        text_add(&text, " %s", f->component_names ? f->component_names[c] : "");
+      for (int c = 0; c < f->components; ++c) text_add(&text, " %s", f->component_names ? f->component_names[c] : "");
       text_add(&text, " | %s |\n", f->about);
     }
   } else
@@ -36,7 +35,10 @@ static int run(int argc, char **argv, const Verb *verb)
   return 0;
 }
 
-const Verb verb_schema = {"schema", "[--markdown]", "print a JSON Schema of the deck, for completion in editors", options,
+const Verb verb_schema = {"schema",
+                          "[--markdown]",
+                          "print a JSON Schema of the deck, for completion in editors",
+                          options,
                           "An editor with the YAML language server uses it after a first line like\n"
                           "  # yaml-language-server: $schema=breccia.schema.json",
                           run};

@@ -30,10 +30,10 @@ static const breccia_parameter *law_parameters(const DeckReader *reader, const N
 }
 
 static const Field material_fields[] = {
-    {"model", FIELD_TEXT, offsetof(MaterialSpec, model), NULL, NULL, NULL, "constitutive model; `breccia models` lists them",
-     NULL, NULL, 0},
-    {"density", FIELD_NUMBER, offsetof(MaterialSpec, density), "density", NULL, "(0, inf)", "mass per volume", NULL, NULL,
-     0},
+    {"model", FIELD_TEXT, offsetof(MaterialSpec, model), NULL, NULL, NULL,
+     "constitutive model; `breccia models` lists them", NULL, NULL, 0},
+    {"density", FIELD_NUMBER, offsetof(MaterialSpec, density), "density", NULL, "(0, inf)", "mass per volume", NULL,
+     NULL, 0},
 };
 const Section material_section = {"material",
                                   "A constitutive model with its parameters.",

@@ -75,10 +75,11 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
 {
   Walk walk = {0};
   collect(&walk, root);
-  text_add(text, "# The deck\n\n"
-                 "Made from the program's own tables by `breccia schema --markdown`; do not edit.\n\n"
-                 "A deck is a YAML file. Plain numbers are in the deck's units; a number with a unit (`1.89 m`, `30 kPa`,\n"
-                 "`4000 psi`, `145 pcf`) may stand anywhere. Axes are x, y, z; stress is tension-positive.\n");
+  text_add(text,
+           "# The deck\n\n"
+           "Made from the program's own tables by `breccia schema --markdown`; do not edit.\n\n"
+           "A deck is a YAML file. Plain numbers are in the deck's units; a number with a unit (`1.89 m`, `30 kPa`,\n"
+           "`4000 psi`, `145 pcf`) may stand anywhere. Axes are x, y, z; stress is tension-positive.\n");
   for (int s = 0; s < walk.count; ++s) {
     const Section *section = walk.sections[s];
     text_add(text, "\n## %s\n\n%s\n\n", section->name, section->about);
@@ -137,8 +138,10 @@ static void add_value_schema(Text *text, const Field *field)
   case FIELD_NUMBERS: text_add(text, "\"type\": \"array\", \"items\": %s, \"minItems\": 1", number); break;
   case FIELD_PAIRS:
   case FIELD_POINTS:
-    text_add(text, "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"array\", \"items\": %s, \"minItems\": 2, "
-                   "\"maxItems\": %d}", number, field->kind == FIELD_PAIRS ? 2 : 3);
+    text_add(text,
+             "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"array\", \"items\": %s, \"minItems\": 2, "
+             "\"maxItems\": %d}",
+             number, field->kind == FIELD_PAIRS ? 2 : 3);
     break;
   case FIELD_TEXTS: text_add(text, "\"type\": \"array\", \"items\": {\"type\": \"string\"}"); break;
   case FIELD_SECTION: text_add(text, "\"$ref\": \"#/$defs/%s\"", field->section->name); break;
@@ -218,8 +221,10 @@ void describe_json_schema(const Section *root, const ParameterTable *tables, int
 {
   Walk walk = {0};
   collect(&walk, root);
-  text_add(text, "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
-                 "  \"title\": \"Breccia deck\",\n  \"$ref\": \"#/$defs/%s\",\n  \"$defs\": {", root->name);
+  text_add(text,
+           "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
+           "  \"title\": \"Breccia deck\",\n  \"$ref\": \"#/$defs/%s\",\n  \"$defs\": {",
+           root->name);
   for (int s = 0; s < walk.count; ++s) {
     const Section *section = walk.sections[s];
     text_add(text, "%s\n    ", s ? "," : "");

@@ -10,12 +10,12 @@ typedef enum NodeKind { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
 
 typedef struct Node {
   NodeKind kind;
-  int line, column;  /* of the value, from 1 */
-  const char *text;  /* scalar: its characters */
-  bool quoted;       /* scalar: was written in quotes */
-  const char *key;   /* if it is the value of a map entry: the key */
+  int line, column; /* of the value, from 1 */
+  const char *text; /* scalar: its characters */
+  bool quoted;      /* scalar: was written in quotes */
+  const char *key;  /* if it is the value of a map entry: the key */
   int key_line, key_column;
-  int count;         /* of a list or a map */
+  int count; /* of a list or a map */
   struct Node *items;
 } Node;
 

@@ -49,16 +49,17 @@ struct Units {
 static const struct {
   const char *name, *meaning;
 } additions[] = {
-    {"kip", "1000 lbf"},       {"ksi", "1000 lbf/in2"},  {"pcf", "lb/ft3"},       {"psf", "lbf/ft2"},
-    {"plf", "lbf/ft"},         {"klf", "1000 lbf/ft"},   {"ksf", "1000 lbf/ft2"}, {"tonf", "2000 lbf"},
-    {"microstrain", "1e-6"},   {"deg", "arc_degree"},    {"kgf", "9.80665 N"},    {"tf", "9806.65 N"},
+    {"kip", "1000 lbf"},     {"ksi", "1000 lbf/in2"}, {"pcf", "lb/ft3"},       {"psf", "lbf/ft2"},
+    {"plf", "lbf/ft"},       {"klf", "1000 lbf/ft"},  {"ksf", "1000 lbf/ft2"}, {"tonf", "2000 lbf"},
+    {"microstrain", "1e-6"}, {"deg", "arc_degree"},   {"kgf", "9.80665 N"},    {"tf", "9806.65 N"},
 };
 
 static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
 {
   for (const char *c = words; *c; ++c) {
     if (*c == '"' || *c == '\'') {
-      text_add(reason, "unit '%s': quotation marks are angles to some and inches to others; write in, ft or deg", words);
+      text_add(reason, "unit '%s': quotation marks are angles to some and inches to others; write in, ft or deg",
+               words);
       return NULL;
     }
     if (*c == '^' || *c == '*') {

@@ -74,7 +74,8 @@ static int read_number(const DeckReader *reader, const Node *node, const char *l
   else if (!interval_contains(range, *value)) {
     char words[128];
     interval_describe(range, words, sizeof words);
-    node_error(reader->document, node, reader->error, "%s: %s is out of range; it must be %s", label, node->text, words);
+    node_error(reader->document, node, reader->error, "%s: %s is out of range; it must be %s", label, node->text,
+               words);
     failed = 1;
   }
   text_free(&reason);
@@ -129,7 +130,8 @@ static void *zeroed(const DeckReader *reader, size_t size)
   return memory;
 }
 
-static int read_point(const DeckReader *reader, const Node *node, const char *label, const Field *field, double point[3])
+static int read_point(const DeckReader *reader, const Node *node, const char *label, const Field *field,
+                      double point[3])
 {
   if (node->kind != NODE_LIST || node->count < 2 || node->count > 3) {
     node_error(reader->document, node, reader->error, "%s: expected %s", label, kind_words(FIELD_POINT));
@@ -148,7 +150,8 @@ static int read_point(const DeckReader *reader, const Node *node, const char *la
   return failed;
 }
 
-static int read_rows(const DeckReader *reader, const Node *node, const char *label, const Field *field, NumberList *list)
+static int read_rows(const DeckReader *reader, const Node *node, const char *label, const Field *field,
+                     NumberList *list)
 {
   int width = field->kind == FIELD_NUMBERS ? 1 : field->kind == FIELD_PAIRS ? 2 : 3, failed = 0;
   if (node->kind != NODE_LIST || !node->count) {
@@ -226,8 +229,8 @@ static void say_choices(const DeckReader *reader, const Node *node, const char *
   }
   const char *given = node->kind == NODE_SCALAR ? node->text : "?";
   if (nearest && text_resembles(given, nearest, best))
-    node_error(reader->document, node, reader->error, "%s: '%s' is not known; did you mean '%s'? (choose from %s)", label,
-               given, nearest, words.characters);
+    node_error(reader->document, node, reader->error, "%s: '%s' is not known; did you mean '%s'? (choose from %s)",
+               label, given, nearest, words.characters);
   else
     node_error(reader->document, node, reader->error, "%s: '%s' is not known; choose from %s", label, given,
                words.characters);

@@ -28,7 +28,8 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
   if (d->body.plane == (space != SPACE_3D)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
                     d->body.plane ? "space: a square lattice needs 'plane strain' or 'plane stress'"
-                                  : "space: '%s' needs a square lattice; this body's is cubic", spec->peridynamics->space);
+                                  : "space: '%s' needs a square lattice; this body's is cubic",
+                    spec->peridynamics->space);
 }
 
 static int share_out(Domain *d, Error *error)
@@ -82,13 +83,15 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  status = family_create(&d->family, &d->body, horizon, influence_find(pd->influence), (VolumeCorrection)correction, error);
+  status =
+      family_create(&d->family, &d->body, horizon, influence_find(pd->influence), (VolumeCorrection)correction, error);
   if (status) return status;
 #pragma omp parallel for schedule(static)
   for (int32_t place = 0; place < (int32_t)d->particles->places; ++place)
     d->family_volume[place] = family_volume(&d->family, place);
 
-  if ((status = points_create(&d->points, d->particles->slices, peridynamics_space(pd), d->materials, d->material, error)))
+  if ((status =
+           points_create(&d->points, d->particles->slices, peridynamics_space(pd), d->materials, d->material, error)))
     return status;
   if ((status = share_out(d, error))) return status;
   FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};

@@ -37,10 +37,10 @@ typedef struct Domain {
   BrokenBond *broken;    /* in the order in which they broke */
   int64_t broken_count, broken_capacity;
   double fracture_energy;
-  double force_sum;  /* of all internal force components' magnitudes, as of the last domain_forces */
+  double force_sum;      /* of all internal force components' magnitudes, as of the last domain_forces */
   double *block_sum;     /* [blocks] */
   int64_t *block_failed; /* [blocks] */
-  int64_t failed_place; /* whose law could not be integrated, or -1 */
+  int64_t failed_place;  /* whose law could not be integrated, or -1 */
 } Domain;
 
 typedef struct DomainSpec {

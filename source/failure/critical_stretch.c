@@ -12,7 +12,8 @@ LANES_INLINE Lanes reserve(const Family *f, int64_t slot, int64_t place, int hal
   Lanes square = {0}, reference = {0};
   for (int k = 0; k < 3; ++k) {
     const double *u = p->displacement[k], *x = p->position[k];
-    Lanes xi = lattice ? lanes_set(f->patterns[f->pattern[slot]].xi[k]) : lanes_gather(x, index) - lanes_load(x + place);
+    Lanes xi =
+        lattice ? lanes_set(f->patterns[f->pattern[slot]].xi[k]) : lanes_gather(x, index) - lanes_load(x + place);
     Lanes y = xi + (lattice ? lanes_load(u + base) : lanes_gather(u, index)) - lanes_load(u + place);
     square += y * y;
     reference += xi * xi;

@@ -63,8 +63,8 @@ static int add_patterns(Family *family, const Lattice *lattice, int64_t (**offse
 }
 
 /** One lattice slot: base place and mask of existing neighbours. @return the mask */
-static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk, const int64_t offset[3],
-                            int32_t *base)
+static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk,
+                            const int64_t offset[3], int32_t *base)
 {
   int64_t cell[3];
   lattice_cell(lattice, row, chunk, 0, cell);

@@ -28,9 +28,9 @@ typedef struct Family {
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
   int64_t *first;                     /* [slices + 1] */
   int64_t *stored;                    /* [slices] first stored slot */
-  int32_t *base;                      /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and weight */
-  uint16_t *pattern;                  /* [slots] row of patterns; unused in stored slots */
-  uint8_t *intact;                    /* [slots] */
+  int32_t *base;     /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and weight */
+  uint16_t *pattern; /* [slots] row of patterns; unused in stored slots */
+  uint8_t *intact;   /* [slots] */
   Pattern *patterns;
   int pattern_count;
   int32_t *neighbour; /* [stored_slots][8] */

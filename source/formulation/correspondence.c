@@ -114,11 +114,13 @@ static int set_all_shapes(Correspondence *c, Error *error)
   }
   if (worst == INT32_MAX) return BRECCIA_OK;
   int32_t place = p->place_of[worst];
-  return error_add(error, BRECCIA_USER_ERROR,
-                   "particle %d at [%g, %g, %g] has %d bonds that do not span %s, so that it has no strain; the horizon is "
-                   "%g: give the body at least two layers in every direction, a longer horizon, or a square lattice in the "
-                   "plane", worst, p->position[0][place], p->position[1][place], p->position[2][place],
-                   family_count(c->family, place), c->plane ? "the plane" : "space", c->family->horizon);
+  return error_add(
+      error, BRECCIA_USER_ERROR,
+      "particle %d at [%g, %g, %g] has %d bonds that do not span %s, so that it has no strain; the horizon is "
+      "%g: give the body at least two layers in every direction, a longer horizon, or a square lattice in the "
+      "plane",
+      worst, p->position[0][place], p->position[1][place], p->position[2][place], family_count(c->family, place),
+      c->plane ? "the plane" : "space", c->family->horizon);
 }
 
 static void *create(const FormulationParts *parts, Error *error)
@@ -256,8 +258,7 @@ LANES_INLINE void deform_half(const Correspondence *c, int64_t slice, int half, 
     if (k == ZZ && c->points->space == SPACE_PLANE_STRESS) continue; /* that strain is the law's affair */
     int r = symmetric_row[k], col = symmetric_column[k];
     Lanes strain = g[3 * r + col] + g[3 * col + r];
-    if (c->finite)
-      strain += g[r] * g[col] + g[3 + r] * g[3 + col] + g[6 + r] * g[6 + col];
+    if (c->finite) strain += g[r] * g[col] + g[3 + r] * g[3 + col] + g[6 + r] * g[6 + col];
     lanes_store(c->points->strain[k] + place, k < 3 ? strain * lanes_set(0.5) : strain);
   }
 }
@@ -321,7 +322,8 @@ LANES_INLINE void resist_slots(const Correspondence *c, int64_t from, int64_t to
       for (int k = 0; control != CONTROL_NONE && k < 3; ++k) eta[k] = slot_read(&s, u[k]) - own[half][k];
       if (control == CONTROL_SCALAR) hold = slot_read(&s, c->hold[0]) * s.weight;
       for (int k = 0; k < 3; ++k) {
-        Lanes f = slot_read(&s, c->state[3 * k]) * s.weighted_xi[0] + slot_read(&s, c->state[3 * k + 1]) * s.weighted_xi[1] +
+        Lanes f = slot_read(&s, c->state[3 * k]) * s.weighted_xi[0] +
+                  slot_read(&s, c->state[3 * k + 1]) * s.weighted_xi[1] +
                   slot_read(&s, c->state[3 * k + 2]) * s.weighted_xi[2];
         if (control == CONTROL_SCALAR) f += hold * eta[k];
         if (control == CONTROL_TENSOR)
@@ -342,7 +344,8 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
     for (int k = 0; k < 3; ++k) {
       int64_t place = slice * SLICE + LANES * half;
       Lanes sum = force[half][k];
-      for (int j = 0; j < 3; ++j) sum += lanes_load(c->state[3 * k + j] + place) * lanes_load(c->first_moment[j] + place);
+      for (int j = 0; j < 3; ++j)
+        sum += lanes_load(c->state[3 * k + j] + place) * lanes_load(c->first_moment[j] + place);
       if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * lanes_load(c->stretch[k] + place);
       for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j)
         sum += lanes_load(c->hold[symmetric_place[3 * k + j]] + place) * lanes_load(c->stretch[j] + place);
@@ -353,7 +356,8 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
 BRECCIA_CLONES
 static void resist(void *formulation, int64_t first, int64_t last)
 {
-  const Correspondence local = *(const Correspondence *)formulation, *c = &local; /* so that stores are seen not to change it */
+  const Correspondence local = *(const Correspondence *)formulation,
+                       *c = &local; /* so that stores are seen not to change it */
   for (int64_t slice = first; slice < last; ++slice)
     if (c->control == CONTROL_SCALAR)
       resist_slice(c, slice, CONTROL_SCALAR);

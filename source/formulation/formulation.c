@@ -38,18 +38,21 @@ static const char *strain_word(int k)
 
 static const Field control_fields[] = {
     {"silling", FIELD_NUMBER, offsetof(ControlSpec, silling), "1", "", "[0, inf)",
-     "strength G_s of Silling's (2017) control; 0.1 is just enough in 3-D, 0.2 in the plane; more stiffens crack tips", NULL,
-     NULL, 'A'},
+     "strength G_s of Silling's (2017) control; 0.1 is just enough in 3-D, 0.2 in the plane; more stiffens crack tips",
+     NULL, NULL, 'A'},
     {"wan", FIELD_NUMBER, offsetof(ControlSpec, wan), "1", "", "[0, inf)",
      "factor on the control of Wan et al. (2019), C : K^-1; 0.1 is a good start", NULL, NULL, 'A'},
-    {"none", FIELD_FLAG, offsetof(ControlSpec, none), NULL, "", NULL, "no control: zero-energy modes are free to grow", NULL,
-     NULL, 'A'},
+    {"none", FIELD_FLAG, offsetof(ControlSpec, none), NULL, "", NULL, "no control: zero-energy modes are free to grow",
+     NULL, NULL, 'A'},
 };
-static const Section control_section = {
-    "zero-energy control", "What keeps particles from moving in patterns that their strain does not see.",
-    sizeof(ControlSpec),   FIELDS(control_fields),
-    NULL,                  NULL,
-    NULL,                  0};
+static const Section control_section = {"zero-energy control",
+                                        "What keeps particles from moving in patterns that their strain does not see.",
+                                        sizeof(ControlSpec),
+                                        FIELDS(control_fields),
+                                        NULL,
+                                        NULL,
+                                        NULL,
+                                        0};
 
 static const Field peridynamics_fields[] = {
     {"formulation", FIELD_CHOICE, offsetof(PeridynamicsSpec, formulation), NULL, "correspondence", NULL,
@@ -63,7 +66,8 @@ static const Field peridynamics_fields[] = {
     {"influence", FIELD_CHOICE, offsetof(PeridynamicsSpec, influence), NULL, "constant", NULL,
      "weight of a bond by its length", NULL, influence_word, 0},
     {"volume correction", FIELD_CHOICE, offsetof(PeridynamicsSpec, volume_correction), NULL, "none", NULL,
-     "share of a neighbour's volume near the horizon: whole, partial inside it, or partial half a spacing beyond it too",
+     "share of a neighbour's volume near the horizon: whole, partial inside it, or partial half a spacing beyond it "
+     "too",
      NULL, volume_correction_word, 0},
     {"zero-energy control", FIELD_SECTION, offsetof(PeridynamicsSpec, control), NULL, "", NULL,
      "silling 0.1 in 3-D and 0.2 in the plane when absent", &control_section, NULL, 0},

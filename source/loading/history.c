@@ -3,12 +3,12 @@
 #include <math.h>
 
 static const Field sine_fields[] = {
-    {"frequency", FIELD_NUMBER, offsetof(SineSpec, frequency), "frequency", NULL, "(0, inf)", "cycles per time", NULL, NULL,
-     0},
+    {"frequency", FIELD_NUMBER, offsetof(SineSpec, frequency), "frequency", NULL, "(0, inf)", "cycles per time", NULL,
+     NULL, 0},
     {"phase", FIELD_NUMBER, offsetof(SineSpec, phase), "angle", "0", NULL, "angle at time 0", NULL, NULL, 0},
 };
-static const Section sine_section = {"sine", "sin(2 pi frequency time + phase).", sizeof(SineSpec), FIELDS(sine_fields),
-                                     NULL,   NULL, NULL, 0};
+static const Section sine_section = {
+    "sine", "sin(2 pi frequency time + phase).", sizeof(SineSpec), FIELDS(sine_fields), NULL, NULL, NULL, 0};
 
 static const Field history_fields[] = {
     {"ramp to", FIELD_NUMBER, offsetof(HistorySpec, ramp), "time", "", "(0, inf)",
@@ -19,10 +19,14 @@ static const Field history_fields[] = {
      "factors at times, straight lines between them, constant before and after", NULL, NULL, 'A'},
     {"sine", FIELD_SECTION, offsetof(HistorySpec, sine), NULL, "", NULL, "harmonic", &sine_section, NULL, 'A'},
 };
-const Section history_section = {"history",           "How a load varies in time: a factor on its value.",
-                                 sizeof(HistorySpec), FIELDS(history_fields),
-                                 NULL,                NULL,
-                                 NULL,                0};
+const Section history_section = {"history",
+                                 "How a load varies in time: a factor on its value.",
+                                 sizeof(HistorySpec),
+                                 FIELDS(history_fields),
+                                 NULL,
+                                 NULL,
+                                 NULL,
+                                 0};
 
 double history_factor(const HistorySpec *spec, double time)
 {

@@ -13,12 +13,19 @@ static void check_along(const DeckReader *reader, void *section)
 
 static const Field along_fields[] = {
     {"direction", FIELD_POINT, offsetof(AlongSpec, direction), "1", NULL, NULL, "any length but zero", NULL, NULL, 0},
-    {"displacement", FIELD_NUMBER, offsetof(AlongSpec, displacement), "length", "", NULL, "in that direction", NULL, NULL,
+    {"displacement", FIELD_NUMBER, offsetof(AlongSpec, displacement), "length", "", NULL, "in that direction", NULL,
+     NULL, 'A'},
+    {"velocity", FIELD_NUMBER, offsetof(AlongSpec, velocity), "velocity", "", NULL, "in that direction", NULL, NULL,
      'A'},
-    {"velocity", FIELD_NUMBER, offsetof(AlongSpec, velocity), "velocity", "", NULL, "in that direction", NULL, NULL, 'A'},
 };
-static const Section along_section = {"along",           "A motion in one direction; the particles stay free across it.",
-                                      sizeof(AlongSpec), FIELDS(along_fields), check_along, NULL, NULL, 0};
+static const Section along_section = {"along",
+                                      "A motion in one direction; the particles stay free across it.",
+                                      sizeof(AlongSpec),
+                                      FIELDS(along_fields),
+                                      check_along,
+                                      NULL,
+                                      NULL,
+                                      0};
 
 static void check_load(const DeckReader *reader, void *section)
 {
@@ -31,23 +38,29 @@ static const Field load_fields[] = {
     {"name", FIELD_TEXT, offsetof(LoadSpec, name), NULL, "", NULL, "name, for watching what it applies", NULL, NULL, 0},
     {"on", FIELD_REFERENCE, offsetof(LoadSpec, on), NULL, "", NULL,
      "name of a selection, or a selection; gravity acts on the whole body when absent", &selection_section, NULL, 0},
-    {"body force", FIELD_POINT, offsetof(LoadSpec, body_force), "force per volume", "", NULL, "force per volume", NULL, NULL,
-     'A'},
+    {"body force", FIELD_POINT, offsetof(LoadSpec, body_force), "force per volume", "", NULL, "force per volume", NULL,
+     NULL, 'A'},
     {"force", FIELD_POINT, offsetof(LoadSpec, force), "force", "", NULL,
      "total force, shared among the particles by volume", NULL, NULL, 'A'},
-    {"gravity", FIELD_POINT, offsetof(LoadSpec, gravity), "acceleration", "", NULL, "acceleration, times the density", NULL,
+    {"gravity", FIELD_POINT, offsetof(LoadSpec, gravity), "acceleration", "", NULL, "acceleration, times the density",
+     NULL, NULL, 'A'},
+    {"displacement", FIELD_FREE_POINT, offsetof(LoadSpec, displacement), "length", "", NULL, "prescribed displacement",
+     NULL, NULL, 'A'},
+    {"velocity", FIELD_FREE_POINT, offsetof(LoadSpec, velocity), "velocity", "", NULL, "prescribed velocity", NULL,
      NULL, 'A'},
-    {"displacement", FIELD_FREE_POINT, offsetof(LoadSpec, displacement), "length", "", NULL, "prescribed displacement", NULL,
-     NULL, 'A'},
-    {"velocity", FIELD_FREE_POINT, offsetof(LoadSpec, velocity), "velocity", "", NULL, "prescribed velocity", NULL, NULL,
-     'A'},
     {"along", FIELD_SECTION, offsetof(LoadSpec, along), NULL, "", NULL, "motion prescribed in one direction only",
      &along_section, NULL, 'A'},
-    {"history", FIELD_SECTION, offsetof(LoadSpec, history), NULL, "", NULL, "constant when absent", &history_section, NULL,
-     0},
+    {"history", FIELD_SECTION, offsetof(LoadSpec, history), NULL, "", NULL, "constant when absent", &history_section,
+     NULL, 0},
 };
-const Section load_section = {"load", "A force on some particles, or a motion prescribed to them.", sizeof(LoadSpec),
-                              FIELDS(load_fields), check_load, NULL, NULL, 0};
+const Section load_section = {"load",
+                              "A force on some particles, or a motion prescribed to them.",
+                              sizeof(LoadSpec),
+                              FIELDS(load_fields),
+                              check_load,
+                              NULL,
+                              NULL,
+                              0};
 
 static void add_constraints(Loading *loading, const Load *load)
 {
@@ -89,11 +102,12 @@ static int check_constraints(const Loading *loading, const Particles *particles,
       for (int64_t n = 0; n < second->load->selection.count; ++n) {
         int32_t place = second->load->selection.places[n];
         if (!marked[place]) continue;
-        status = node_error(reader->document, second->load->spec->head.node, reader->error,
-                            "load: particle %d at [%g, %g, %g] already moves as the load in line %d says, in a direction "
-                            "that is not at right angles to this one", particles->number[place],
-                            particles->position[0][place], particles->position[1][place], particles->position[2][place],
-                            first->load->spec->head.node->line);
+        status =
+            node_error(reader->document, second->load->spec->head.node, reader->error,
+                       "load: particle %d at [%g, %g, %g] already moves as the load in line %d says, in a direction "
+                       "that is not at right angles to this one",
+                       particles->number[place], particles->position[0][place], particles->position[1][place],
+                       particles->position[2][place], first->load->spec->head.node->line);
         break;
       }
     }
@@ -119,7 +133,8 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
     if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
     int bad = selection_create(&load->selection, body, reader, selections, &reference);
     if (bad) status = bad;
-    for (int64_t n = 0; n < load->selection.count; ++n) load->volume += body->particles.volume[load->selection.places[n]];
+    for (int64_t n = 0; n < load->selection.count; ++n)
+      load->volume += body->particles.volume[load->selection.places[n]];
     add_constraints(loading, load);
   }
   return status ? status : check_constraints(loading, &body->particles, reader);

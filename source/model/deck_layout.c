@@ -4,28 +4,33 @@
 
 static const Field units_fields[] = {
     {"length", FIELD_TEXT, offsetof(UnitsSpec, length), NULL, "m", NULL, "unit of length", NULL, NULL, 0},
-    {"force", FIELD_TEXT, offsetof(UnitsSpec, force), NULL, "N", NULL, "unit of force; the unit of mass follows", NULL, NULL,
-     0},
+    {"force", FIELD_TEXT, offsetof(UnitsSpec, force), NULL, "N", NULL, "unit of force; the unit of mass follows", NULL,
+     NULL, 0},
     {"time", FIELD_TEXT, offsetof(UnitsSpec, time), NULL, "s", NULL, "unit of time", NULL, NULL, 0},
 };
 const Section units_section = {"units",
                                "What plain numbers mean, and in what results are written. m, kN, s give kPa and t/m3.",
-                               sizeof(UnitsSpec), FIELDS(units_fields), NULL, NULL, NULL, 0};
+                               sizeof(UnitsSpec),
+                               FIELDS(units_fields),
+                               NULL,
+                               NULL,
+                               NULL,
+                               0};
 
 static const Field solve_fields[] = {
     {"explicit", FIELD_SECTION, offsetof(SolveSpec, explicit_dynamics), NULL, NULL, NULL, "explicit dynamics",
      &explicit_section, NULL, 0},
 };
-static const Section solve_section = {"solve", "How the equations are solved.", sizeof(SolveSpec), FIELDS(solve_fields),
-                                      NULL,    NULL, NULL, 0};
+static const Section solve_section = {
+    "solve", "How the equations are solved.", sizeof(SolveSpec), FIELDS(solve_fields), NULL, NULL, NULL, 0};
 
 static const Field deck_fields[] = {
     {"title", FIELD_TEXT, offsetof(DeckSpec, title), NULL, "untitled", NULL, "stands over pictures", NULL, NULL, 0},
     {"units", FIELD_SECTION, offsetof(DeckSpec, units), NULL, "", NULL, "m, N, s when absent", &units_section, NULL, 0},
-    {"materials", FIELD_NAMED, offsetof(DeckSpec, materials), NULL, NULL, NULL, "the materials by name", &material_section,
+    {"materials", FIELD_NAMED, offsetof(DeckSpec, materials), NULL, NULL, NULL, "the materials by name",
+     &material_section, NULL, 0},
+    {"body", FIELD_NAMED, offsetof(DeckSpec, body), NULL, NULL, NULL, "the blocks of the body by name", &block_section,
      NULL, 0},
-    {"body", FIELD_NAMED, offsetof(DeckSpec, body), NULL, NULL, NULL, "the blocks of the body by name", &block_section, NULL,
-     0},
     {"selections", FIELD_NAMED, offsetof(DeckSpec, selections), NULL, "", NULL, "particles by name", &selection_section,
      NULL, 0},
     {"cracks", FIELD_SECTIONS, offsetof(DeckSpec, cracks), NULL, "", NULL, "notches and cracks from the beginning",
@@ -34,8 +39,8 @@ static const Field deck_fields[] = {
      &peridynamics_section, NULL, 0},
     {"failure", FIELD_SECTION, offsetof(DeckSpec, failure), NULL, "", NULL, "when bonds break; never when absent",
      &failure_section, NULL, 0},
-    {"loads", FIELD_SECTIONS, offsetof(DeckSpec, loads), NULL, "", NULL, "forces and prescribed motions", &load_section, NULL,
-     0},
+    {"loads", FIELD_SECTIONS, offsetof(DeckSpec, loads), NULL, "", NULL, "forces and prescribed motions", &load_section,
+     NULL, 0},
     {"solve", FIELD_SECTION, offsetof(DeckSpec, solve), NULL, NULL, NULL, "how it is solved", &solve_section, NULL, 0},
     {"watch", FIELD_NAMED, offsetof(DeckSpec, watches), NULL, "", NULL, "histories by name", &watch_section, NULL, 0},
     {"results", FIELD_SECTION, offsetof(DeckSpec, results), NULL, "", NULL, "what is kept", &results_section, NULL, 0},
@@ -52,8 +57,8 @@ static void check_deck(const DeckReader *reader, void *section)
     node_error(reader->document, section_place(section, "body"), reader->error, "body: no block is given");
 }
 
-const Section deck_section = {"deck", "The top level of a deck.", sizeof(DeckSpec), FIELDS(deck_fields),
-                              check_deck, NULL, NULL, 0};
+const Section deck_section = {
+    "deck", "The top level of a deck.", sizeof(DeckSpec), FIELDS(deck_fields), check_deck, NULL, NULL, 0};
 
 ParameterTable *law_tables(const LawList *laws, int *count)
 {

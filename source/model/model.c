@@ -36,8 +36,8 @@ static int read_units(breccia_model *model, Error *error)
   if (!plain) return BRECCIA_FAILURE;
   model->reader = (DeckReader){model->document, plain, &model->laws, error};
   int before = error_count(error);
-  const UnitsSpec *spec =
-      node ? section_read(&model->reader, node, &units_section) : section_standard(&model->reader, &units_section, root);
+  const UnitsSpec *spec = node ? section_read(&model->reader, node, &units_section)
+                               : section_standard(&model->reader, &units_section, root);
   units_destroy(&plain);
   if (!spec || error_count(error) > before) return BRECCIA_USER_ERROR;
   Error *reason = breccia_error_create();
@@ -89,11 +89,13 @@ static int by_value(const void *a, const void *b)
 static int make_schedule(breccia_model *model, Error *error)
 {
   const ResultsSpec *r = model->spec->results;
-  int64_t steps = model->solver.steps, even = r->every > 0 ? steps / r->every : r->number, count = 2 + even + r->times.count;
+  int64_t steps = model->solver.steps, even = r->every > 0 ? steps / r->every : r->number,
+          count = 2 + even + r->times.count;
   for (int k = 0; k < model->spec->pictures.count; ++k)
     count += ((const PictureSpec *)model->spec->pictures.items[k])->times.count;
   if (count > 10000000)
-    return node_error(model->document, r->head.node, error, "results: %lld states are too many to write", (long long)count);
+    return node_error(model->document, r->head.node, error, "results: %lld states are too many to write",
+                      (long long)count);
   model->schedule = memory_zeroed((size_t)count, sizeof(int64_t), "schedule", error);
   if (!model->schedule) return BRECCIA_FAILURE;
   int64_t n = 0, *list = model->schedule;
@@ -117,7 +119,8 @@ static int build(breccia_model *model, bool force, Error *error)
   DeckSpec *spec = section_read(&model->reader, model->document->root, &deck_section);
   if (!spec || error_count(error)) return BRECCIA_USER_ERROR;
   model->spec = spec;
-  if (!spec->peridynamics) spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
+  if (!spec->peridynamics)
+    spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
   if (!spec->peridynamics) return BRECCIA_FAILURE;
   DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure};
   int status = domain_create(&model->domain, &model->reader, &parts), bad;
@@ -140,8 +143,8 @@ static int build(breccia_model *model, bool force, Error *error)
 #pragma omp parallel
   domain_forces(&model->domain);
   model->evaluation_seconds = clock_seconds() - start;
-  status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics, &model->reader,
-                           force, &model->warnings);
+  status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics,
+                           &model->reader, force, &model->warnings);
   return status ? status : make_schedule(model, error);
 }
 
@@ -174,7 +177,8 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
   return status;
 }
 
-int breccia_model_load_file(const char *path, const breccia_options *options, breccia_model **model, breccia_error *error)
+int breccia_model_load_file(const char *path, const breccia_options *options, breccia_model **model,
+                            breccia_error *error)
 {
   *model = NULL;
   size_t length;
@@ -273,10 +277,8 @@ double *breccia_model_array(breccia_model *model, const char *name)
   const struct {
     const char *name;
     double **arrays;
-  } vectors[] = {{"position", p->position},
-                 {"displacement", p->displacement},
-                 {"velocity", p->velocity},
-                 {"force", p->internal}};
+  } vectors[] = {
+      {"position", p->position}, {"displacement", p->displacement}, {"velocity", p->velocity}, {"force", p->internal}};
   char wanted[64];
   for (int v = 0; v < 4; ++v)
     for (int k = 0; k < 3; ++k) {
@@ -329,8 +331,8 @@ const char *breccia_model_overview(breccia_model *model)
     text_add(text, "; %s %g", d->failure.criterion->name, d->failure.limit);
   else
     text_add(text, "; bonds do not break");
-  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step, time,
-           s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
+  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps,
+           s->time_step, time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
   add_duration(text, model->evaluation_seconds * 1.15 * (double)(s->steps - s->step));
   return text->characters;
 }

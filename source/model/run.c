@@ -65,8 +65,8 @@ static int list_names(Run *run, Error *error)
   for (int pass = 0; pass < 3; ++pass) {
     int count = pass == 0 ? asked->count : pass == 1 ? spec->pictures.count : 6;
     for (int k = 0; k < count; ++k) {
-      const char *name = pass == 0   ? asked->items[k]
-                         : pass == 1 ? ((const PictureSpec *)spec->pictures.items[k])->field
+      const char *name = pass == 0      ? asked->items[k]
+                         : pass == 1    ? ((const PictureSpec *)spec->pictures.items[k])->field
                          : asked->count ? "displacement"
                                         : standard_fields[k];
       int known = !name;
@@ -108,7 +108,7 @@ static int write_results(Run *run, Error *error)
 static int write_checkpoint(Run *run, Error *error)
 {
   const Peaks *p = &run->model->peaks;
-  const double extras[CHECKPOINT_EXTRAS] = {p->displacement, p->velocity, p->octahedral,
+  const double extras[CHECKPOINT_EXTRAS] = {p->displacement, p->velocity,  p->octahedral,
                                             p->mean_low,     p->mean_high, p->damage};
   run->last_checkpoint = clock_seconds();
   return checkpoint_write(run->wish->folder, &run->model->solver, run->model->deck_text, extras, error);
@@ -123,11 +123,11 @@ static int open_files(Run *run, Error *error)
   if (run->wish->restart) {
     while (run->next_write < model->schedule_count && model->schedule[run->next_write] <= model->solver.step)
       ++run->next_write;
-    status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title, &names,
-                                model->schedule, run->next_write, error);
+    status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
+                                &names, model->schedule, run->next_write, error);
   } else
-    status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title, &names,
-                                error);
+    status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
+                                &names, error);
   return status ? status : watches_open(model->watches, run->wish->folder, model->units, resume, error);
 }
 
@@ -221,7 +221,8 @@ static void draw_pictures(Run *run)
 {
   breccia_model *model = run->model;
   Error *error = breccia_error_create();
-  char *path = text_format("%s/results.vtkhdf", run->wish->folder), *folder = text_format("%s/pictures", run->wish->folder);
+  char *path = text_format("%s/results.vtkhdf", run->wish->folder),
+       *folder = text_format("%s/pictures", run->wish->folder);
   ResultView view;
   int status = path && folder ? make_folder(folder, error) : BRECCIA_FAILURE;
   if (!status && !(status = result_view_open(&view, path, error))) {
@@ -315,16 +316,19 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
     int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
     double x[3];
     for (int k = 0; k < 3; ++k) x[k] = (d->particles->position[k][a] + d->particles->position[k][c]) / 2;
-    text_add(&t, "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
-                 "%.10g]},\n", (long long)b->step, b->time, b->a, b->b, x[0], x[1], x[2]);
+    text_add(
+        &t,
+        "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
+        "%.10g]},\n",
+        (long long)b->step, b->time, b->a, b->b, x[0], x[1], x[2]);
   } else
     text_add(&t, "  \"first_broken_bond\": null,\n");
   text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)(2 * d->broken_count));
   const struct {
     const char *key;
     double value;
-  } energies[] = {{"kinetic", e.kinetic},   {"internal", e.internal}, {"external", e.external},
-                  {"damping", e.damping},   {"fracture", e.fracture}, {"imbalance", e.imbalance}};
+  } energies[] = {{"kinetic", e.kinetic}, {"internal", e.internal}, {"external", e.external},
+                  {"damping", e.damping}, {"fracture", e.fracture}, {"imbalance", e.imbalance}};
   for (int k = 0; k < 6; ++k) {
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, energies[k].value);
@@ -334,12 +338,9 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   const struct {
     const char *key;
     double value;
-  } peaks[] = {{"displacement", p->displacement},
-               {"velocity", p->velocity},
-               {"octahedral_shear_stress", p->octahedral},
-               {"mean_stress_lowest", p->mean_low},
-               {"mean_stress_highest", p->mean_high},
-               {"damage", p->damage}};
+  } peaks[] = {{"displacement", p->displacement},          {"velocity", p->velocity},
+               {"octahedral_shear_stress", p->octahedral}, {"mean_stress_lowest", p->mean_low},
+               {"mean_stress_highest", p->mean_high},      {"damage", p->damage}};
   for (int k = 0; k < 6; ++k) {
     if (k) text_add(&t, ", ");
     add_number(&t, peaks[k].key, peaks[k].value);
@@ -354,14 +355,17 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
     text_add(&t, "}");
   }
   text_add(&t, "]\n}\n");
-  char *path = text_format("%s/summary.json", run->wish->folder), *part = text_format("%s/summary.json.part", run->wish->folder);
+  char *path = text_format("%s/summary.json", run->wish->folder),
+       *part = text_format("%s/summary.json.part", run->wish->folder);
   errno = 0;
   FILE *file = part ? fopen(part, "w") : NULL;
   int bad = !file || fwrite(t.characters, 1, t.length, file) != t.length;
   if (file && fclose(file)) bad = 1;
   bad = bad || rename(part, path);
-  if (bad) error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : "summary", strerror(errno));
-  else note_file(run, path);
+  if (bad)
+    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : "summary", strerror(errno));
+  else
+    note_file(run, path);
   free(path);
   free(part);
   text_free(&t);
@@ -398,8 +402,10 @@ static void tell_outcome(Run *run, int status)
              (d->particles->position[2][a] + d->particles->position[2][c]) / 2, (long long)d->broken_count);
   } else if (d->failure.criterion)
     text_add(t, "no bond broke\n");
-  text_add(t, "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + damping %.4g, imbalance %.2g %%\n",
-           energy, e.external, e.kinetic, e.internal, e.fracture, e.damping, 100 * e.imbalance);
+  text_add(
+      t,
+      "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + damping %.4g, imbalance %.2g %%\n",
+      energy, e.external, e.kinetic, e.internal, e.fracture, e.damping, 100 * e.imbalance);
   text_add(t, "written:\n%s", run->files.characters ? run->files.characters : "");
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
 }

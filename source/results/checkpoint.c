@@ -54,9 +54,17 @@ static int list_arrays(const Explicit *s, SavedArray *list)
 
 static void take_scalars(const Explicit *s, double *v)
 {
-  const double values[SCALARS] = {s->time,         s->bond_work, s->external_work, s->damping_work,
-                                  s->kinetic,      s->stable,    s->time_step,     s->domain->fracture_energy,
-                                  (double)s->step, (double)s->broken_at_estimate, s->kinetic_at_start};
+  const double values[SCALARS] = {s->time,
+                                  s->bond_work,
+                                  s->external_work,
+                                  s->damping_work,
+                                  s->kinetic,
+                                  s->stable,
+                                  s->time_step,
+                                  s->domain->fracture_energy,
+                                  (double)s->step,
+                                  (double)s->broken_at_estimate,
+                                  s->kinetic_at_start};
   memcpy(v, values, sizeof values);
 }
 
@@ -122,7 +130,8 @@ int checkpoint_write(const char *folder, const Explicit *s, const char *deck, co
     SavedArray list[MOST_ARRAYS] = {0};
     int count = list_arrays(s, list);
     for (int k = 0; k < count; ++k)
-      bad |= save(file, list[k].name, list[k].bytes ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, list[k].count, list[k].values);
+      bad |=
+          save(file, list[k].name, list[k].bytes ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, list[k].count, list[k].values);
     double scalars[SCALARS];
     take_scalars(s, scalars);
     bad |= save(file, "scalars", H5T_NATIVE_DOUBLE, SCALARS, scalars);
@@ -203,25 +212,27 @@ int checkpoint_read(const char *folder, Explicit *s, const char *deck, double *e
   else if (load(file, "sizes", H5T_NATIVE_INT64, 2, sizes))
     status = error_add(error, BRECCIA_USER_ERROR, "%s: is damaged; run without --restart", path);
   else if (sizes[0] != d->particles->count)
-    status = error_add(error, BRECCIA_USER_ERROR, "%s: holds %lld particles, the deck makes %lld; run without --restart",
-                       path, (long long)sizes[0], (long long)d->particles->count);
+    status =
+        error_add(error, BRECCIA_USER_ERROR, "%s: holds %lld particles, the deck makes %lld; run without --restart",
+                  path, (long long)sizes[0], (long long)d->particles->count);
   else if (!same_text(file, "deck", deck))
-    status = error_add(error, BRECCIA_USER_ERROR,
-                       "%s: was written with another deck; put the deck back as it was, or run without --restart", path);
+    status =
+        error_add(error, BRECCIA_USER_ERROR,
+                  "%s: was written with another deck; put the deck back as it was, or run without --restart", path);
   if (!status) {
     SavedArray list[MOST_ARRAYS] = {0};
     double scalars[SCALARS];
     int count = list_arrays(s, list), bad = load(file, "scalars", H5T_NATIVE_DOUBLE, SCALARS, scalars);
     for (int k = 0; k < count; ++k)
-      bad |= load(file, list[k].name, list[k].bytes ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, list[k].count, list[k].values);
+      bad |=
+          load(file, list[k].name, list[k].bytes ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, list[k].count, list[k].values);
     bad |= load(file, "extras", H5T_NATIVE_DOUBLE, CHECKPOINT_EXTRAS, extras);
     bad |= read_broken(file, d);
     if (bad)
       status = error_add(error, BRECCIA_USER_ERROR, "%s: is damaged; run without --restart", path);
     else {
       give_scalars(s, scalars);
-      if (d->points.history_size)
-        memcpy(d->points.trial, d->points.committed, sizeof(double) * d->points.history_size);
+      if (d->points.history_size) memcpy(d->points.trial, d->points.committed, sizeof(double) * d->points.history_size);
     }
   }
   if (file >= 0) H5Fclose(file);

@@ -44,7 +44,8 @@ double *csv_column(const char *path, const char *column, int *count, char *label
     index = column_index(line, column, label);
   }
   if (index < 0) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: has no column '%s'; its columns are %s", path, column, end ? line : "none");
+    error_add(error, BRECCIA_USER_ERROR, "%s: has no column '%s'; its columns are %s", path, column,
+              end ? line : "none");
     free(text);
     return NULL;
   }
@@ -68,7 +69,8 @@ double *csv_column(const char *path, const char *column, int *count, char *label
 }
 
 /** Splits "watch.column" at its last dot and reads that column, with the steps of its rows. */
-static double *history_column(const char *folder, const char *name, double **steps, int *count, char *label, Error *error)
+static double *history_column(const char *folder, const char *name, double **steps, int *count, char *label,
+                              Error *error)
 {
   char watch[160];
   const char *dot = strrchr(name, '.');
@@ -114,8 +116,10 @@ static int add_data(Text *script, const char *folder, int number, Axes *axes, Er
   if (x && y) {
     text_add(script, "$data%d << END\n", number);
     for (int i = 0, j = 0; i < nx && j < ny;) { /* rows of the same step */
-      if (sx[i] < sy[j]) ++i;
-      else if (sx[i] > sy[j]) ++j;
+      if (sx[i] < sy[j])
+        ++i;
+      else if (sx[i] > sy[j])
+        ++j;
       else {
         if (isfinite(x[i]) && isfinite(y[j])) text_add(script, "%.9g %.9g\n", x[i], y[j]);
         ++i;
@@ -157,7 +161,8 @@ static int run_gnuplot(const Text *script, const char *path, Error *error)
   int status = pclose(pipe);
   if (status == 0) return BRECCIA_OK;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return error_add(error, BRECCIA_FAILURE, "%s: curves are drawn by gnuplot, which is not installed (gnuplot-nox)", path);
+    return error_add(error, BRECCIA_FAILURE, "%s: curves are drawn by gnuplot, which is not installed (gnuplot-nox)",
+                     path);
   return error_add(error, BRECCIA_FAILURE, "%s: gnuplot could not draw it", path);
 }
 
@@ -166,8 +171,7 @@ int curve_draw(const char *const *folders, int folder_count, const char *curve, 
 {
   Axes axes = {0};
   const char *colon = strchr(curve, ':'), *dot = strrchr(path, '.');
-  if (!colon)
-    return error_add(error, BRECCIA_USER_ERROR, "curve: '%s' should be 'watch.column : watch.column'", curve);
+  if (!colon) return error_add(error, BRECCIA_USER_ERROR, "curve: '%s' should be 'watch.column : watch.column'", curve);
   snprintf(axes.x, sizeof axes.x, "%.*s", (int)(colon - curve), curve);
   snprintf(axes.y, sizeof axes.y, "%s", colon + 1);
   trim(axes.x);

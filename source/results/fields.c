@@ -68,7 +68,8 @@ static const char *const full[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy
 static const OutputField fields[] = {
     {"displacement", "length", "displacement from the reference position", 3, xyz, displacement},
     {"velocity", "velocity", "velocity", 3, xyz, velocity},
-    {"stress", "stress", "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain)", 6, voigt, stress},
+    {"stress", "stress", "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain)", 6, voigt,
+     stress},
     {"strain", "1", "strain as the law takes it, engineering shear", 6, voigt, strain},
     {"deformation gradient", "1", "F, row by row", 9, full, gradient},
     {"octahedral shear stress", "stress", "sqrt(2 J2 / 3)", 1, NULL, octahedral},

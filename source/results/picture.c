@@ -9,25 +9,33 @@
 #include <string.h>
 
 static const Field picture_fields[] = {
-    {"field", FIELD_TEXT, offsetof(PictureSpec, field), NULL, "", NULL, "field of the particles to colour by", NULL, NULL,
-     'A'},
+    {"field", FIELD_TEXT, offsetof(PictureSpec, field), NULL, "", NULL, "field of the particles to colour by", NULL,
+     NULL, 'A'},
     {"curve", FIELD_TEXT, offsetof(PictureSpec, curve), NULL, "", NULL,
-     "two columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis", NULL, NULL, 'A'},
+     "two columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis", NULL, NULL,
+     'A'},
     {"component", FIELD_TEXT, offsetof(PictureSpec, component), NULL, "", NULL,
      "of a vector or tensor, like x or xy; when absent the length of a vector", NULL, NULL, 0},
-    {"at", FIELD_NUMBERS, offsetof(PictureSpec, times), "time", "", "[0, inf)", "times to draw; the end when absent", NULL,
-     NULL, 0},
-    {"deformed", FIELD_NUMBER, offsetof(PictureSpec, deformed), "1", "1", NULL, "scale of the displacements drawn", NULL,
-     NULL, 0},
+    {"at", FIELD_NUMBERS, offsetof(PictureSpec, times), "time", "", "[0, inf)", "times to draw; the end when absent",
+     NULL, NULL, 0},
+    {"deformed", FIELD_NUMBER, offsetof(PictureSpec, deformed), "1", "1", NULL, "scale of the displacements drawn",
+     NULL, NULL, 0},
     {"view", FIELD_POINT, offsetof(PictureSpec, view), "angle", "", NULL,
-     "[azimuth, elevation] of the eye; from the front for flat bodies and aslant for others when absent", NULL, NULL, 0},
+     "[azimuth, elevation] of the eye; from the front for flat bodies and aslant for others when absent", NULL, NULL,
+     0},
     {"range", FIELD_POINT, offsetof(PictureSpec, range), "1", "", NULL,
      "[lowest, highest] value of the colour scale, in the deck's units", NULL, NULL, 0},
-    {"broken bonds", FIELD_FLAG, offsetof(PictureSpec, broken_bonds), NULL, "no", NULL, "draw bonds that have broken", NULL,
-     NULL, 0},
+    {"broken bonds", FIELD_FLAG, offsetof(PictureSpec, broken_bonds), NULL, "no", NULL, "draw bonds that have broken",
+     NULL, NULL, 0},
 };
-const Section picture_section = {"picture", "A picture made at the end of a run, in the folder 'pictures'.",
-                                 sizeof(PictureSpec), FIELDS(picture_fields), NULL, NULL, NULL, 0};
+const Section picture_section = {"picture",
+                                 "A picture made at the end of a run, in the folder 'pictures'.",
+                                 sizeof(PictureSpec),
+                                 FIELDS(picture_fields),
+                                 NULL,
+                                 NULL,
+                                 NULL,
+                                 0};
 
 bool picture_format(const char *path)
 {
@@ -52,7 +60,7 @@ typedef struct Scene {
   int64_t count;
   double *x, *y, *depth; /* on the picture plane, and towards the eye */
   double *value;
-  double low, high;      /* of the colours */
+  double low, high; /* of the colours */
   double right[3], up[3], eye[3];
   bool flat;             /* seen along z: the axes of the picture are x and y */
   double x0, x1, y0, y1; /* extent with half a spacing around */
@@ -68,8 +76,8 @@ static int component_index(const char *component, int components)
   return -1;
 }
 
-static int take_values(Scene *scene, const ResultView *view, int step, const PictureOptions *o, char *label, size_t size,
-                       Error *error)
+static int take_values(Scene *scene, const ResultView *view, int step, const PictureOptions *o, char *label,
+                       size_t size, Error *error)
 {
   int components, chosen = 0;
   char unit[64] = "";
@@ -77,12 +85,13 @@ static int take_values(Scene *scene, const ResultView *view, int step, const Pic
   if (!all) return BRECCIA_USER_ERROR;
   if (o->component && (chosen = component_index(o->component, components)) < 0) {
     free(all);
-    return error_add(error, BRECCIA_USER_ERROR, "field '%s' has %d component%s and none called '%s'", o->field, components,
-                     components == 1 ? "" : "s", o->component);
+    return error_add(error, BRECCIA_USER_ERROR, "field '%s' has %d component%s and none called '%s'", o->field,
+                     components, components == 1 ? "" : "s", o->component);
   }
   if (!o->component && components > 3) {
     free(all);
-    return error_add(error, BRECCIA_USER_ERROR, "field '%s' has %d components; choose one, like xx", o->field, components);
+    return error_add(error, BRECCIA_USER_ERROR, "field '%s' has %d components; choose one, like xx", o->field,
+                     components);
   }
   scene->low = INFINITY;
   scene->high = -INFINITY;
@@ -141,7 +150,8 @@ static int project(Scene *scene, const ResultView *view, int step, const Picture
     u = result_view_read(view, "displacement", step, &components, NULL, ignored);
     breccia_error_destroy(&ignored);
     if (!u && o->deformed != 1)
-      return error_add(error, BRECCIA_USER_ERROR, "a deformed picture needs the field 'displacement' in the result file");
+      return error_add(error, BRECCIA_USER_ERROR,
+                       "a deformed picture needs the field 'displacement' in the result file");
   }
   scene->x0 = scene->y0 = INFINITY;
   scene->x1 = scene->y1 = -INFINITY;
@@ -167,9 +177,9 @@ static int project(Scene *scene, const ResultView *view, int step, const Picture
 /* ---- the page ---- */
 
 typedef struct Page {
-  double width, height;            /* of the page in points */
-  double left, top, wide, high;    /* of the drawing */
-  double scale;                    /* points per length */
+  double width, height;         /* of the page in points */
+  double left, top, wide, high; /* of the drawing */
+  double scale;                 /* points per length */
 } Page;
 
 static Page lay_out(const Scene *scene)
@@ -396,8 +406,10 @@ static void draw_broken(cairo_t *cr, const Page *page, const Scene *scene, const
       if (n < 0 || n >= scene->count) continue;
       double x = page->left + (scene->x[n] - scene->x0) * page->scale;
       double y = page->top + page->high - (scene->y[n] - scene->y0) * page->scale;
-      if (e) cairo_line_to(cr, x, y);
-      else cairo_move_to(cr, x, y);
+      if (e)
+        cairo_line_to(cr, x, y);
+      else
+        cairo_move_to(cr, x, y);
     }
     cairo_stroke(cr);
   }

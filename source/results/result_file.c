@@ -20,24 +20,30 @@ static const char *precision_word(int k)
 
 static const Field results_fields[] = {
     {"fields", FIELD_TEXTS, offsetof(ResultsSpec, fields), NULL, "", NULL,
-     "what is written of each particle (see the list of fields); when absent: displacement, velocity, stress, octahedral "
-     "shear stress, mean stress, damage", NULL, NULL, 0},
+     "what is written of each particle (see the list of fields); when absent: displacement, velocity, stress, "
+     "octahedral "
+     "shear stress, mean stress, damage",
+     NULL, NULL, 0},
     {"precision", FIELD_CHOICE, offsetof(ResultsSpec, precision), NULL, "single", NULL, "of numbers in the result file",
      NULL, precision_word, 0},
     {"number", FIELD_COUNT, offsetof(ResultsSpec, number), NULL, "20", "[0, 1e6]",
-     "how many states are written, evenly over the run, besides the first and those that pictures ask for", NULL, NULL, 0},
-    {"every", FIELD_COUNT, offsetof(ResultsSpec, every), NULL, "", "[1, inf)", "instead: one in so many steps", NULL, NULL, 0},
-    {"times", FIELD_NUMBERS, offsetof(ResultsSpec, times), "time", "", "[0, inf)", "further times to write", NULL, NULL, 0},
+     "how many states are written, evenly over the run, besides the first and those that pictures ask for", NULL, NULL,
+     0},
+    {"every", FIELD_COUNT, offsetof(ResultsSpec, every), NULL, "", "[1, inf)", "instead: one in so many steps", NULL,
+     NULL, 0},
+    {"times", FIELD_NUMBERS, offsetof(ResultsSpec, times), "time", "", "[0, inf)", "further times to write", NULL, NULL,
+     0},
     {"checkpoint steps", FIELD_COUNT, offsetof(ResultsSpec, checkpoint_steps), NULL, "", "[1, inf)",
      "a checkpoint every so many steps", NULL, NULL, 0},
     {"checkpoint seconds", FIELD_NUMBER, offsetof(ResultsSpec, checkpoint_seconds), "1", "300", "(0, inf)",
      "a checkpoint every so many seconds of computing", NULL, NULL, 0},
 };
-const Section results_section = {"results", "What is kept of a run, and how often.", sizeof(ResultsSpec),
-                                 FIELDS(results_fields), NULL, NULL, NULL, 0};
+const Section results_section = {
+    "results", "What is kept of a run, and how often.", sizeof(ResultsSpec), FIELDS(results_fields), NULL, NULL, NULL,
+    0};
 
-const char *const standard_fields[] = {"displacement", "velocity", "stress", "octahedral shear stress", "mean stress", "damage",
-                                       NULL};
+const char *const standard_fields[] = {"displacement", "velocity", "stress", "octahedral shear stress",
+                                       "mean stress",  "damage",   NULL};
 
 typedef struct Column {
   char name[64], unit[64];
@@ -182,8 +188,8 @@ static int create_sets(hid_t root, const ResultFile *file)
   hid_t data = H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   hid_t steps = H5Gcreate2(root, "Steps", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   hid_t offsets = H5Gcreate2(steps, "PointDataOffsets", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  const char *const lists[] = {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets",
-                               "ConnectivityIdOffsets", "StepNumbers"};
+  const char *const lists[] = {"Values",      "PartOffsets",           "NumberOfParts", "PointOffsets",
+                               "CellOffsets", "ConnectivityIdOffsets", "StepNumbers"};
   for (int k = 0; k < 7; ++k) {
     hid_t set = dataset_create(steps, lists[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k == 4 || k == 5 ? 4 : 1, 64);
     bad |= set < 0;
@@ -193,7 +199,8 @@ static int create_sets(hid_t root, const ResultFile *file)
     const Column *column = &file->columns[c];
     hsize_t width = (hsize_t)column->components * (file->single ? 4 : 8), rows = CHUNK_BYTES / width;
     if (rows > (hsize_t)file->particles) rows = (hsize_t)file->particles;
-    hid_t set = dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
+    hid_t set =
+        dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
     bad |= set < 0;
     if (set >= 0) {
       bad |= attribute_text(set, "unit", column->unit);
@@ -214,7 +221,8 @@ static int create_sets(hid_t root, const ResultFile *file)
 static int write_geometry(hid_t root, const Domain *d)
 {
   const Particles *p = d->particles;
-  double *positions = malloc(sizeof(double) * 3 * (size_t)p->count), *spacings = malloc(sizeof(double) * (size_t)p->count);
+  double *positions = malloc(sizeof(double) * 3 * (size_t)p->count),
+         *spacings = malloc(sizeof(double) * (size_t)p->count);
   int bad = !positions || !spacings;
   for (int64_t n = 0; !bad && n < p->count; ++n) {
     for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
@@ -352,10 +360,13 @@ static int write_xdmf(const ResultFile *file)
                   "  <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   long long n = file->particles;
   for (int64_t w = 0; w < file->writes; ++w) {
-    text_add(&text, "   <Grid Name=\"step %lld\">\n    <Time Value=\"%.17g\"/>\n", (long long)file->steps[w], file->times[w]);
-    text_add(&text, "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%lld\"/>\n"
-                    "    <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
-                    "Dimensions=\"%lld 3\">results.vtkhdf:/VTKHDF/Points</DataItem></Geometry>\n", n, n);
+    text_add(&text, "   <Grid Name=\"step %lld\">\n    <Time Value=\"%.17g\"/>\n", (long long)file->steps[w],
+             file->times[w]);
+    text_add(&text,
+             "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%lld\"/>\n"
+             "    <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+             "Dimensions=\"%lld 3\">results.vtkhdf:/VTKHDF/Points</DataItem></Geometry>\n",
+             n, n);
     for (int c = 0; c < file->column_count; ++c) {
       const Column *column = &file->columns[c];
       int k = column->components;
@@ -369,12 +380,18 @@ static int write_xdmf(const ResultFile *file)
         snprintf(all, sizeof all, "%lld", n * (long long)file->writes);
         snprintf(slab, sizeof slab, "%lld 1 %lld", n * (long long)w, n);
       }
-      text_add(&text, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" "
-                      "Dimensions=\"%s\"><DataItem Dimensions=\"3 %d\" Format=\"XML\">%s</DataItem>"
-                      "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%s\">"
-                      "results.vtkhdf:/VTKHDF/PointData/%s</DataItem></DataItem></Attribute>\n",
-               column->name, k == 1 ? "Scalar" : k == 3 ? "Vector" : k == 6 ? "Tensor6" : k == 9 ? "Tensor" : "Matrix", shape,
-               k > 1 ? 2 : 1, slab, file->single ? 4 : 8, all, column->name);
+      text_add(&text,
+               "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" "
+               "Dimensions=\"%s\"><DataItem Dimensions=\"3 %d\" Format=\"XML\">%s</DataItem>"
+               "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%s\">"
+               "results.vtkhdf:/VTKHDF/PointData/%s</DataItem></DataItem></Attribute>\n",
+               column->name,
+               k == 1   ? "Scalar"
+               : k == 3 ? "Vector"
+               : k == 6 ? "Tensor6"
+               : k == 9 ? "Tensor"
+                        : "Matrix",
+               shape, k > 1 ? 2 : 1, slab, file->single ? 4 : 8, all, column->name);
     }
     text_add(&text, "   </Grid>\n");
   }
@@ -443,7 +460,8 @@ static int append(ResultFile *file, const char *path, const Domain *d)
     rows[3 * k + 2] = bond->b;
   }
   hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
-  bad = bad || dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
+  bad = bad ||
+        dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
   bad = bad || H5Fflush(h5, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file);
   if (own >= 0) H5Gclose(own);
   if (data >= 0) H5Gclose(data);

@@ -32,11 +32,12 @@ typedef struct ResultNames {
 } ResultNames;
 
 /** Begins a result file in `folder` (results.vtkhdf and results.xdmf), replacing an older one. */
-int result_file_create(ResultFile **file, const char *folder, const Domain *domain, const Units *units, const char *title,
-                       const ResultNames *names, Error *error);
+int result_file_create(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
+                       const char *title, const ResultNames *names, Error *error);
 /** Takes up the file of a run that stopped, keeping only what stands there of the first `count` steps of a schedule. */
-int result_file_resume(ResultFile **file, const char *folder, const Domain *domain, const Units *units, const char *title,
-                       const ResultNames *names, const int64_t *schedule, int64_t count, Error *error);
+int result_file_resume(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
+                       const char *title, const ResultNames *names, const int64_t *schedule, int64_t count,
+                       Error *error);
 /** Adds the present state. */
 int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
 void result_file_destroy(ResultFile **file);
@@ -44,7 +45,7 @@ void result_file_destroy(ResultFile **file);
 /* ---- reading ---- */
 
 typedef struct ResultView {
-  int64_t file;      /* HDF5 handle */
+  int64_t file; /* HDF5 handle */
   int64_t particles;
   int steps;
   int64_t *step_numbers;
@@ -61,7 +62,8 @@ void result_view_close(ResultView *view);
 void result_view_fields(const ResultView *view, Text *names);
 /** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field.
  *  @param[out] unit  64 bytes */
-double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error);
+double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit,
+                         Error *error);
 /** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed. */
 int64_t *result_view_broken(const ResultView *view, int step, int64_t *count);
 

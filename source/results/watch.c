@@ -21,7 +21,8 @@ static void check_watch(const DeckReader *reader, void *section)
 }
 
 static const Field watch_fields[] = {
-    {"every", FIELD_COUNT, offsetof(WatchSpec, every), NULL, "10", "[1, inf)", "a row every so many steps", NULL, NULL, 0},
+    {"every", FIELD_COUNT, offsetof(WatchSpec, every), NULL, "10", "[1, inf)", "a row every so many steps", NULL, NULL,
+     0},
     {"displacement of", FIELD_REFERENCE, offsetof(WatchSpec, displacement), NULL, "", NULL, "mean displacement",
      &selection_section, NULL, 'A'},
     {"velocity of", FIELD_REFERENCE, offsetof(WatchSpec, velocity), NULL, "", NULL, "mean velocity", &selection_section,
@@ -38,11 +39,17 @@ static const Field watch_fields[] = {
     {"bond between", FIELD_POINTS, offsetof(WatchSpec, bond), "length", "", NULL,
      "stretch of the bond between the particles nearest to two points, and whether it is intact", NULL, NULL, 'A'},
     {"load", FIELD_TEXT, offsetof(WatchSpec, load), NULL, "", NULL, "value of a named load", NULL, NULL, 'A'},
-    {"energy", FIELD_FLAG, offsetof(WatchSpec, energy), NULL, "", NULL, "the energy ledger and the number of broken bonds",
-     NULL, NULL, 'A'},
+    {"energy", FIELD_FLAG, offsetof(WatchSpec, energy), NULL, "", NULL,
+     "the energy ledger and the number of broken bonds", NULL, NULL, 'A'},
 };
-const Section watch_section = {"watch", "A history, written to a CSV file of the same name.", sizeof(WatchSpec),
-                               FIELDS(watch_fields), check_watch, NULL, NULL, 0};
+const Section watch_section = {"watch",
+                               "A history, written to a CSV file of the same name.",
+                               sizeof(WatchSpec),
+                               FIELDS(watch_fields),
+                               check_watch,
+                               NULL,
+                               NULL,
+                               0};
 
 typedef struct Watch Watch;
 typedef struct Kind {
@@ -157,17 +164,18 @@ static void energy_row(const Watch *w, const Explicit *s, double *values)
 {
   (void)w;
   Energy e = explicit_energy(s);
-  const double row[] = {e.kinetic, e.internal, e.external, e.damping, e.fracture, e.imbalance,
-                        (double)s->domain->broken_count};
+  const double row[] = {
+      e.kinetic, e.internal, e.external, e.damping, e.fracture, e.imbalance, (double)s->domain->broken_count};
   memcpy(values, row, sizeof row);
 }
 
 static const Kind displacement_kind = {"x:length,y:length,z:length", displacement_row},
                   velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
                   force_kind = {"x:force,y:force,z:force", force_row},
-                  stress_kind = {"e11:1,e22:1,e33:1,g12:1,g23:1,g31:1,s11:stress,s22:stress,s33:stress,s12:stress,s23:stress,"
-                                 "s31:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
-                                 stress_row},
+                  stress_kind =
+                      {"e11:1,e22:1,e33:1,g12:1,g23:1,g31:1,s11:stress,s22:stress,s33:stress,s12:stress,s23:stress,"
+                       "s31:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
+                       stress_row},
                   damage_kind = {"mean:1,largest:1", damage_row},
                   opening_kind = {"distance:length,opening:length", opening_row},
                   bond_kind = {"stretch:1,intact:1", bond_row}, load_kind = {"factor:1,value:1", load_row},
@@ -217,14 +225,15 @@ static int resolve(Watch *w, const Body *body, const Family *family, const Loadi
   }
   w->kind = &load_kind;
   for (int l = 0; l < loading->count; ++l)
-    if (loading->loads[l].spec->name && !strcmp(loading->loads[l].spec->name, spec->load)) w->load = loading->loads[l].spec;
+    if (loading->loads[l].spec->name && !strcmp(loading->loads[l].spec->name, spec->load))
+      w->load = loading->loads[l].spec;
   if (w->load) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec, "load"), reader->error,
                     "load: no load has the name '%s'; give it one with 'name:'", spec->load);
 }
 
-int watches_create(Watches **out, const Body *body, const Family *family, const Loading *loading, const DeckReader *reader,
-                   const SectionList *specs, const SectionList *selections)
+int watches_create(Watches **out, const Body *body, const Family *family, const Loading *loading,
+                   const DeckReader *reader, const SectionList *specs, const SectionList *selections)
 {
   Watches *watches = *out = calloc(1, sizeof *watches);
   if (!watches || !(watches->items = calloc((size_t)specs->count + 1, sizeof(Watch))))
@@ -308,7 +317,8 @@ int watches_write(Watches *watches, const Explicit *solver, bool last, Error *er
     fprintf(w->file, "%lld,%.10g", (long long)solver->step, solver->time);
     for (int c = 0; c < columns; ++c) fprintf(w->file, ",%.17g", values[c]);
     fprintf(w->file, "\n");
-    if (fflush(w->file)) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    if (fflush(w->file))
+      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
     w->last_step = solver->step;
   }
   return BRECCIA_OK;

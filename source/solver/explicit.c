@@ -15,19 +15,25 @@ static const Field explicit_fields[] = {
     {"safety", FIELD_NUMBER, offsetof(ExplicitSpec, safety), "1", "0.8", "(0, 1]",
      "share of the stable step taken when 'time step' is absent", NULL, NULL, 0},
     {"steps", FIELD_COUNT, offsetof(ExplicitSpec, steps), NULL, "", "[0, 1e15]", "number of steps", NULL, NULL, 'A'},
-    {"end time", FIELD_NUMBER, offsetof(ExplicitSpec, end_time), "time", "", "(0, inf)", "steps until this time", NULL, NULL,
-     'A'},
+    {"end time", FIELD_NUMBER, offsetof(ExplicitSpec, end_time), "time", "", "(0, inf)", "steps until this time", NULL,
+     NULL, 'A'},
     {"damping", FIELD_NUMBER, offsetof(ExplicitSpec, damping), "frequency", "0", "[0, inf)",
      "mass-proportional damping c: force density - c rho v", NULL, NULL, 0},
     {"local damping", FIELD_NUMBER, offsetof(ExplicitSpec, local_damping), "1", "0", "[0, 1)",
-     "Cundall's damping: a share of the force out of balance, against the velocity; 0.8 finds states of rest", NULL, NULL,
-     0},
+     "Cundall's damping: a share of the force out of balance, against the velocity; 0.8 finds states of rest", NULL,
+     NULL, 0},
 };
-const Section explicit_section = {"explicit", "Explicit dynamics by velocity Verlet.", sizeof(ExplicitSpec),
-                                  FIELDS(explicit_fields), NULL, NULL, NULL, 0};
+const Section explicit_section = {"explicit",
+                                  "Explicit dynamics by velocity Verlet.",
+                                  sizeof(ExplicitSpec),
+                                  FIELDS(explicit_fields),
+                                  NULL,
+                                  NULL,
+                                  NULL,
+                                  0};
 
-int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec, const DeckReader *reader,
-                    bool force, Text *warning)
+int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec,
+                    const DeckReader *reader, bool force, Text *warning)
 {
   *s = (Explicit){.domain = domain, .loading = loading, .spec = spec};
   int failed = 0;
@@ -41,9 +47,11 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
   double share = s->time_step / s->stable;
   const Node *place = section_place(spec, "time step");
   if (share > 1 && !force)
-    return node_error(reader->document, place, reader->error,
-                      "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
-                      "--force", s->time_step, share, s->stable);
+    return node_error(
+        reader->document, place, reader->error,
+        "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
+        "--force",
+        s->time_step, share, s->stable);
   if (share > 0.9 && !isnan(spec->time_step))
     text_add(warning, "%s:%d:%d: warning: time step: %g is %.2f times the stable step of %.4g", reader->document->name,
              place->line, place->column, s->time_step, share, s->stable);
@@ -165,7 +173,8 @@ static void prescribe_velocities(Explicit *s)
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *constraint = &s->loading->constraints[n];
     const double *d = constraint->direction;
-    double before = constraint_displacement(constraint, s->time - dt), now = constraint_displacement(constraint, s->time);
+    double before = constraint_displacement(constraint, s->time - dt),
+           now = constraint_displacement(constraint, s->time);
     double rate = (constraint_displacement(constraint, s->time + dt) - before) / (2 * dt);
     for (int64_t k = 0; k < constraint->load->selection.count; ++k) {
       int32_t i = constraint->load->selection.places[k];
@@ -237,10 +246,12 @@ static int retreat(Explicit *s, Error *error)
     cause = "its constitutive law could not be integrated at this strain";
   else if (family_count(&s->domain->family, bad) < 4)
     cause = "it has lost nearly all its bonds";
-  error_add(error, BRECCIA_FAILURE,
-            "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
-            "%g, stable step %g, kinetic energy %g)", (long long)s->step + 1, s->time + dt, p->number[bad],
-            p->position[0][bad], p->position[1][bad], p->position[2][bad], cause, dt, s->stable, energy);
+  error_add(
+      error, BRECCIA_FAILURE,
+      "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
+      "%g, stable step %g, kinetic energy %g)",
+      (long long)s->step + 1, s->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
+      p->position[2][bad], cause, dt, s->stable, energy);
 #pragma omp parallel
   domain_forces(s->domain); /* strains and stresses of the state that is left */
   return BRECCIA_FAILURE;
@@ -283,7 +294,8 @@ int explicit_renew_stable_step(Explicit *s, Text *warning, Error *error)
   s->broken_at_estimate = s->domain->broken_count;
   int status = stable_step(s->domain, &s->stable, error);
   if (!status && s->time_step > s->stable)
-    text_add(warning, "warning: step %lld: broken bonds have lowered the stable step to %.4g, below the time step of %.4g",
+    text_add(warning,
+             "warning: step %lld: broken bonds have lowered the stable step to %.4g, below the time step of %.4g",
              (long long)s->step, s->stable, s->time_step);
   return status;
 }

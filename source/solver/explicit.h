@@ -29,7 +29,7 @@ typedef struct Explicit {
   const ExplicitSpec *spec;
   double *acceleration[3];
   double time_step, stable, time;
-  int64_t step, steps; /* done, and wanted in all */
+  int64_t step, steps;        /* done, and wanted in all */
   int64_t broken_at_estimate; /* broken bonds when `stable` was found */
   double bond_work, external_work, damping_work, kinetic, kinetic_at_start;
   double motion;     /* largest component of any displacement increment in the step under way */

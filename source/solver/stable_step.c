@@ -34,7 +34,8 @@ static double mass_product(const Domain *d, double *const a[3], double *const b[
 {
   const Particles *p = d->particles;
   double sum = 0;
-  for (int64_t block = 0; block < d->block_count; ++block) { /* block by block: the same bits for any number of threads */
+  for (int64_t block = 0; block < d->block_count;
+       ++block) { /* block by block: the same bits for any number of threads */
     double part = 0;
     for (int k = 0; k < 3; ++k)
       for (int64_t i = d->blocks[block].first * SLICE; i < d->blocks[block].last * SLICE; ++i)
@@ -67,15 +68,17 @@ static double largest_eigenvalue(const double *alpha, const double *beta, int n)
   }
   for (int k = 0; k < 100 && high - low > 1e-10 * fabs(high); ++k) {
     double middle = (low + high) / 2;
-    if (count_above(alpha, beta, n, middle)) low = middle;
-    else high = middle;
+    if (count_above(alpha, beta, n, middle))
+      low = middle;
+    else
+      high = middle;
   }
   return high;
 }
 
 /** v -> -(f(u + h v) - f(u)) / (h rho); `base` holds u and f(u). */
-static void apply(Domain *d, Trial *trial, double *const base_u[3], double *const base_f[3], double h, double *const v[3],
-                  double *const out[3])
+static void apply(Domain *d, Trial *trial, double *const base_u[3], double *const base_f[3], double h,
+                  double *const v[3], double *const out[3])
 {
   int64_t places = d->particles->places;
   for (int k = 0; k < 3; ++k)
@@ -149,8 +152,10 @@ int stable_step(Domain *d, double *step, Error *error)
   }
   d->points.elastic_stage = elastic;
   if (!isfinite(largest) || largest <= 0)
-    failed = error_add(error, BRECCIA_FAILURE, "the stable time step could not be found: the internal forces are not those "
-                                               "of a stiff body (largest eigenvalue %g)", largest);
+    failed = error_add(error, BRECCIA_FAILURE,
+                       "the stable time step could not be found: the internal forces are not those "
+                       "of a stiff body (largest eigenvalue %g)",
+                       largest);
   else
     *step = 2 / sqrt(largest * 1.005); /* what Lanczos' method may still lack after its stopping test */
 done:

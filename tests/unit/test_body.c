@@ -6,7 +6,8 @@
 static breccia_model *block_of(const char *shape, double spacing)
 {
   return model_of(MATERIAL SOLVE "peridynamics: {horizon: 2.015 spacings}\n"
-                                 "body: {b: {material: m, spacing: %g, shape: %s}}\n", spacing, shape);
+                                 "body: {b: {material: m, spacing: %g, shape: %s}}\n",
+                  spacing, shape);
 }
 
 static double volume_of(const breccia_model *model)
@@ -30,9 +31,11 @@ static void shapes_have_the_volumes_of_geometry(void **state)
       {"{cylinder: {from: [0, 0, 0], to: [0, 0, 1], radius: 0.4}}", pi * 0.16, 0.02},
       {"{cylinder: {from: [0, 0, 0], to: [1, 1, 1], radius: 0.3}}", pi * 0.09 * sqrt(3), 0.02},
       {"{polygon: {corners: [[0, 0], [1, 0], [0, 1]], bottom: 0, top: 0.5}}", 0.25, 0.035},
-      {"{difference: [{box: {from: [0, 0, 0], to: [1, 1, 0.5]}}, {box: {from: [0.25, 0.25, -1], to: [0.75, 0.75, 1]}}]}", 0.375,
+      {"{difference: [{box: {from: [0, 0, 0], to: [1, 1, 0.5]}}, {box: {from: [0.25, 0.25, -1], to: [0.75, 0.75, "
+       "1]}}]}",
+       0.375, 1e-12},
+      {"{union: [{box: {from: [0, 0, 0], to: [1, 0.5, 0.5]}}, {box: {from: [0, 0, 0], to: [0.5, 1, 0.5]}}]}", 0.375,
        1e-12},
-      {"{union: [{box: {from: [0, 0, 0], to: [1, 0.5, 0.5]}}, {box: {from: [0, 0, 0], to: [0.5, 1, 0.5]}}]}", 0.375, 1e-12},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     breccia_model *model = block_of(cases[k].shape, 1.0 / 32);
@@ -61,10 +64,11 @@ static void numbers_run_along_x_then_y_then_z(void **state)
 
 static int interior_bonds(const char *lattice, const char *space, int n, double horizon)
 {
-  breccia_model *model = model_of(MATERIAL SOLVE "peridynamics: {horizon: %g spacings, space: %s}\n"
-                                                 "body: {b: {material: m, lattice: %s, spacing: 1, shape: {box: {particles: "
-                                                 "[%d, %d, %d], first particle: [0, 0, 0]}}}}\n",
-                                  horizon, space, lattice, n, n, strcmp(space, "3-D") ? 1 : n);
+  breccia_model *model =
+      model_of(MATERIAL SOLVE "peridynamics: {horizon: %g spacings, space: %s}\n"
+                              "body: {b: {material: m, lattice: %s, spacing: 1, shape: {box: {particles: "
+                              "[%d, %d, %d], first particle: [0, 0, 0]}}}}\n",
+               horizon, space, lattice, n, n, strcmp(space, "3-D") ? 1 : n);
   const double middle[3] = {(n - 1) / 2, (n - 1) / 2, strcmp(space, "3-D") ? 0 : (n - 1) / 2};
   int count = family_count(&model->domain.family, particles_nearest(model->domain.particles, middle));
   breccia_model_destroy(&model);
@@ -117,14 +121,14 @@ static void families_are_those_of_all_pairs_on_a_body_with_hole_cut_and_two_latt
 {
   (void)state;
   breccia_model *model = model_of(
-      MATERIAL SOLVE
-      "peridynamics: {horizon: 2.5}\n"
-      "cracks: [{cut: {polygon: [[2.7, -9, -9], [2.7, 6.3, -9], [2.7, 6.3, 9], [2.7, -9, 9]]}},\n"
-      "         {remove: {box: {from: [8.5, 3.5, -1], to: [9.5, 20, 9]}}, cut faces: yes}]\n"
-      "body:\n"
-      "  coarse: {material: m, spacing: 1, shape: {difference: [{box: {particles: [21, 9, 4]}}, {sphere: {centre: [14, 4, 2], "
-      "radius: 1.9}}]}}\n"
-      "  fine: {material: m, spacing: 0.8, shape: {box: {from: [0, 0, 4], to: [8, 8, 6.4]}}}\n");
+      MATERIAL SOLVE "peridynamics: {horizon: 2.5}\n"
+                     "cracks: [{cut: {polygon: [[2.7, -9, -9], [2.7, 6.3, -9], [2.7, 6.3, 9], [2.7, -9, 9]]}},\n"
+                     "         {remove: {box: {from: [8.5, 3.5, -1], to: [9.5, 20, 9]}}, cut faces: yes}]\n"
+                     "body:\n"
+                     "  coarse: {material: m, spacing: 1, shape: {difference: [{box: {particles: [21, 9, 4]}}, "
+                     "{sphere: {centre: [14, 4, 2], "
+                     "radius: 1.9}}]}}\n"
+                     "  fine: {material: m, spacing: 0.8, shape: {box: {from: [0, 0, 4], to: [8, 8, 6.4]}}}\n");
   assert_true(model->domain.family.stored_slots > 0);
   compare_with_all_pairs(model);
   breccia_model_destroy(&model);
@@ -134,9 +138,10 @@ static void a_cut_through_a_row_of_particles_parts_the_body_beside_it(void **sta
 {
   (void)state;
   /* Particles on the cut belong to one side: nothing is cut off from both. */
-  breccia_model *model = model_of(MATERIAL SOLVE "peridynamics: {horizon: 2.015}\ncracks: [{cut: {line: [[4, -9], [4, 99]]}}]\n"
-                                                 "body: {b: {material: m, spacing: 1, shape: {box: {particles: [9, 5, 4], first "
-                                                 "particle: [0, 0, 0]}}}}\n");
+  breccia_model *model =
+      model_of(MATERIAL SOLVE "peridynamics: {horizon: 2.015}\ncracks: [{cut: {line: [[4, -9], [4, 99]]}}]\n"
+                              "body: {b: {material: m, spacing: 1, shape: {box: {particles: [9, 5, 4], first "
+                              "particle: [0, 0, 0]}}}}\n");
   const Particles *p = model->domain.particles;
   int across[2] = {0, 0};
   for (int64_t n = 0; n < p->count; ++n) {
@@ -178,9 +183,11 @@ static void bonds_come_in_pairs_with_opposite_vectors_and_break_on_both_sides(vo
 static double weighted_volume(int n, const char *correction)
 {
   /* Sum of omega |xi|^2 V over the family of the middle particle of a cube of side 2, horizon 1. */
-  breccia_model *model = model_of(MATERIAL SOLVE "peridynamics: {horizon: 1, volume correction: %s}\n"
-                                                 "body: {b: {material: m, spacing: %.17g, shape: {box: {from: [-1, -1, -1], "
-                                                 "to: [1, 1, 1]}}}}\n", correction, 2.0 / n);
+  breccia_model *model =
+      model_of(MATERIAL SOLVE "peridynamics: {horizon: 1, volume correction: %s}\n"
+                              "body: {b: {material: m, spacing: %.17g, shape: {box: {from: [-1, -1, -1], "
+                              "to: [1, 1, 1]}}}}\n",
+               correction, 2.0 / n);
   const double origin[3] = {0, 0, 0};
   int32_t i = particles_nearest(model->domain.particles, origin);
   const Family *f = &model->domain.family;
@@ -221,9 +228,10 @@ static void selections_hold_what_they_say(void **state)
 {
   (void)state;
   breccia_model *model = model_of(
-      MATERIAL SOLVE "body: {b: {material: m, spacing: 1, shape: {box: {particles: [10, 5, 3], first particle: [0, 0, 0]}}}}\n"
-                     "loads: [{on: {face: x+, layers: 3}, force: [6, 0, 0]}, {on: {inside: {sphere: {centre: [0, 0, 0], radius: "
-                     "1}}}, body force: [0, 1, 0]}, {on: {nearest: [4.4, 2.2, 1]}, body force: [0, 0, 2]}]\n");
+      MATERIAL SOLVE
+      "body: {b: {material: m, spacing: 1, shape: {box: {particles: [10, 5, 3], first particle: [0, 0, 0]}}}}\n"
+      "loads: [{on: {face: x+, layers: 3}, force: [6, 0, 0]}, {on: {inside: {sphere: {centre: [0, 0, 0], radius: "
+      "1}}}, body force: [0, 1, 0]}, {on: {nearest: [4.4, 2.2, 1]}, body force: [0, 0, 2]}]\n");
   const Loading *l = &model->loading;
   assert_int_equal(l->loads[0].selection.count, 3 * 5 * 3);
   assert_int_equal(l->loads[1].selection.count, 4);

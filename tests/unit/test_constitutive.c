@@ -1,6 +1,6 @@
+#include "base/random.h"
 #include "results/curve.h"
 #include "support.h"
-#include "base/random.h"
 #include <glob.h>
 
 /* ---- golden paths ---- */
@@ -43,7 +43,8 @@ typedef struct Drive { /* one point, its twin histories, and rows of a tangent f
 
 static Drive start(const Material *m)
 {
-  Drive d = {m, calloc((size_t)m->history_values + 1, sizeof(double)), calloc((size_t)m->history_values + 1, sizeof(double))};
+  Drive d = {m, calloc((size_t)m->history_values + 1, sizeof(double)),
+             calloc((size_t)m->history_values + 1, sizeof(double))};
   if (m->law->begin) {
     m->law->begin(m->constants, d.committed);
     m->law->begin(m->constants, d.trial);
@@ -57,8 +58,8 @@ static void stop(Drive *d)
 }
 static void try_strain(Drive *d, const double *strain, double *stress, double *tangent, int elastic)
 {
-  breccia_batch batch = {.count = 1, .committed = d->committed, .trial = d->trial, .tangent = tangent,
-                         .elastic_stage = elastic};
+  breccia_batch batch = {
+      .count = 1, .committed = d->committed, .trial = d->trial, .tangent = tangent, .elastic_stage = elastic};
   for (int k = 0; k < 6; ++k) {
     batch.strain[k] = strain + k;
     batch.stress[k] = stress + k;
@@ -72,7 +73,8 @@ static void commit(Drive *d)
   d->trial = other;
 }
 
-static void follow(Drive *d, const char *file, const double *tangents, int tangent_rows, int first_row, int elastic_rows)
+static void follow(Drive *d, const char *file, const double *tangents, int tangent_rows, int first_row,
+                   int elastic_rows)
 {
   Path path = read_path(file);
   double largest = 0, worst = 0, worst_tangent = 0, largest_tangent = 0;
@@ -99,7 +101,8 @@ static void follow(Drive *d, const char *file, const double *tangents, int tange
 /** The set (P1, P2, P3, A) is the last part of a file's name. */
 static Material material_for(const char *file)
 {
-  if (strstr(file, "ElasticIsotropic3D")) return material_of("elastic", "Young modulus=150000", "Poisson ratio=0.25", NULL);
+  if (strstr(file, "ElasticIsotropic3D"))
+    return material_of("elastic", "Young modulus=150000", "Poisson ratio=0.25", NULL);
   if (strstr(file, "_P1"))
     return material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "cohesion=31.8198051534", NULL);
   if (strstr(file, "_P2"))
@@ -167,7 +170,8 @@ static void corners_of_the_backbone_lie_on_the_hyperbola(void **state)
 {
   (void)state;
   /* docs/theory.md 8.2 and validation P1: corners at (gamma(tau_m) - 1.309e-6, tau_m). */
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   const double reference = 0.1 * 30 / (60000 * 0.1 - 30);
   assert_near(reference, 5.0251e-4, 1e-8);
   double shift = 1.5 * reference / (60000 * reference - 1.5) - 1.5 / 60000;
@@ -175,7 +179,8 @@ static void corners_of_the_backbone_lie_on_the_hyperbola(void **state)
   Drive d = start(&m);
   for (int corner = 1; corner < 20; ++corner) {
     double tau = 30.0 * corner / 20, gamma = tau * reference / (60000 * reference - tau) - shift;
-    double from = corner == 1 ? 0 : 30.0 * (corner - 1) / 20 * reference / (60000 * reference - 30.0 * (corner - 1) / 20) - shift;
+    double from =
+        corner == 1 ? 0 : 30.0 * (corner - 1) / 20 * reference / (60000 * reference - 30.0 * (corner - 1) / 20) - shift;
     for (int k = 1; k <= 200; ++k) { /* in simple shear gamma_oct = sqrt(2/3) gamma, tau_oct = sqrt(2/3) tau */
       double strain[6] = {0, 0, 0, sqrt(1.5) * (from + (gamma - from) * k / 200)}, stress[6];
       try_strain(&d, strain, stress, NULL, 0);
@@ -191,7 +196,8 @@ static void uniaxial_strength_is_three_tau_over_root_two(void **state)
 {
   (void)state;
   /* Uniaxial stress by iterating the lateral strain (validation P4: 63.640 kPa). */
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   Drive d = start(&m);
   double lateral = 0, stress[6];
   for (int k = 1; k <= 3000; ++k) {
@@ -213,7 +219,8 @@ static void unloading_doubles_the_backbone(void **state)
 {
   (void)state;
   /* Masing: after a reversal at (g, t) the stress at g - 2 x lies at t - 2 tau(x). */
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   enum { STEPS = 4000 };
   static double loading[STEPS + 1];
   double top = 0.004, stress[6];
@@ -237,7 +244,8 @@ static void unloading_doubles_the_backbone(void **state)
 static void a_trial_can_be_repeated_and_leaves_the_committed_state_alone(void **state)
 {
   (void)state;
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   Drive tried = start(&m), plain = start(&m);
   uint64_t seed = 7;
   double strain[6] = {0}, a[6], b[6];
@@ -268,7 +276,8 @@ static void stress_turns_with_the_strain(void **state)
 {
   (void)state;
   /* Objectivity: the axes x, y, z renamed to y, z, x give the same stress renamed. */
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   Drive a = start(&m), b = start(&m);
   const int renamed[6] = {1, 2, 0, 4, 5, 3};
   uint64_t seed = 3;
@@ -290,7 +299,8 @@ static void stress_turns_with_the_strain(void **state)
 static void stress_never_leaves_the_outermost_surface(void **state)
 {
   (void)state;
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   uint64_t seed = 11;
   for (int scale = -12; scale <= 0; ++scale) {
     Drive d = start(&m);
@@ -331,7 +341,8 @@ static void multi_yield_tangent_is_the_derivative_of_stress_while_loading_on(voi
   (void)state;
   /* The law's tangent is the continuum one: it is the derivative in the limit of small increments from the committed state,
    * for increments that load on. */
-  Material m = material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+  Material m =
+      material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
   Drive d = start(&m);
   const double direction[6] = {1, -0.4, -0.2, 1.5, 0.7, -0.3};
   double strain[6], s[6], t[6], tangent[36], h = 1e-9;

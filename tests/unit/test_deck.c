@@ -36,10 +36,10 @@ static void quantities_of_engineers_convert_to_the_decks_units(void **state)
 static void ambiguous_or_wrong_units_are_refused(void **state)
 {
   (void)state;
-  const char *const wrong[][2] = {{"stress", "30 kN"},     {"length", "6\""},        {"force", "2 ton"},
-                                  {"length", "3 s"},       {"stress", "5 MPa*m^0.5"}, {"stress", "thirty"},
-                                  {"length", "1 parsnip"}, {"1", "3 m"},             {"stress", "0x10"},
-                                  {"stress", "nan"},       {"length", "inf"},        {"time", "1e999"}};
+  const char *const wrong[][2] = {
+      {"stress", "30 kN"},       {"length", "6\""},    {"force", "2 ton"},      {"length", "3 s"},
+      {"stress", "5 MPa*m^0.5"}, {"stress", "thirty"}, {"length", "1 parsnip"}, {"1", "3 m"},
+      {"stress", "0x10"},        {"stress", "nan"},    {"length", "inf"},       {"time", "1e999"}};
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
     if (!isnan(read_as(wrong[k][0], wrong[k][1]))) fail_msg("'%s' was read as a %s", wrong[k][1], wrong[k][0]);
 }
@@ -93,9 +93,10 @@ static void positions_of_nodes_are_those_of_the_text(void **state)
 static void all_errors_of_a_deck_come_in_one_go(void **state)
 {
   (void)state;
-  char *words = refusal_of("materials:\n  m: {model: elastic, density: -1, Young modulus: 3 m, Poisson ratio: 0.2}\n"
-                           "body:\n  b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}, colour: red}\n"
-                           "solve: {explicit: {steps: 10.5}}\n");
+  char *words =
+      refusal_of("materials:\n  m: {model: elastic, density: -1, Young modulus: 3 m, Poisson ratio: 0.2}\n"
+                 "body:\n  b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}, colour: red}\n"
+                 "solve: {explicit: {steps: 10.5}}\n");
   int lines = 1;
   for (const char *c = words; *c; ++c) lines += *c == '\n';
   assert_int_equal(lines, 4);

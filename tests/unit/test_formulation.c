@@ -4,22 +4,26 @@
 /* An irregular body: two lattices that do not fit each other, a hole and a cut. */
 static breccia_model *irregular_body(const char *peridynamics)
 {
-  return model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
-                  "peridynamics: {horizon: 2.5, %s}\n"
-                  "cracks: [{cut: {line: [[3.05, -9], [3.05, 3.1]]}}]\n"
-                  "body:\n"
-                  "  a: {material: m, spacing: 1, shape: {difference: [{box: {particles: [13, 9, 5]}}, {sphere: {centre: [9, 4.5, "
-                  "2.5], radius: 1.3}}]}}\n"
-                  "  b: {material: m, spacing: 0.8, shape: {box: {from: [0, 0, 5.05], to: [8, 4, 8.25]}}}\n"
-                  "solve: {explicit: {steps: 10}}\n", peridynamics);
+  return model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+      "peridynamics: {horizon: 2.5, %s}\n"
+      "cracks: [{cut: {line: [[3.05, -9], [3.05, 3.1]]}}]\n"
+      "body:\n"
+      "  a: {material: m, spacing: 1, shape: {difference: [{box: {particles: [13, 9, 5]}}, {sphere: {centre: [9, 4.5, "
+      "2.5], radius: 1.3}}]}}\n"
+      "  b: {material: m, spacing: 0.8, shape: {box: {from: [0, 0, 5.05], to: [8, 4, 8.25]}}}\n"
+      "solve: {explicit: {steps: 10}}\n",
+      peridynamics);
 }
 
 static breccia_model *plane_body(const char *space, const char *more)
 {
-  return model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
-                  "peridynamics: {space: %s, horizon: 3.015 spacings, %s}\n"
-                  "body: {b: {material: m, lattice: square, thickness: 0.1, spacing: 0.1, shape: {box: {particles: [17, 13]}}}}\n"
-                  "solve: {explicit: {steps: 1}}\n", space, more);
+  return model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+      "peridynamics: {space: %s, horizon: 3.015 spacings, %s}\n"
+      "body: {b: {material: m, lattice: square, thickness: 0.1, spacing: 0.1, shape: {box: {particles: [17, 13]}}}}\n"
+      "solve: {explicit: {steps: 1}}\n",
+      space, more);
 }
 
 static double largest_force(const breccia_model *model)
@@ -31,8 +35,11 @@ static double largest_force(const breccia_model *model)
   return largest;
 }
 
-static const char *const controls[] = {"zero-energy control: {none: yes}", "zero-energy control: {silling: 0.1}",
-                                       "zero-energy control: {wan: 0.1}", "influence: cubic-spline", "influence: inverse",
+static const char *const controls[] = {"zero-energy control: {none: yes}",
+                                       "zero-energy control: {silling: 0.1}",
+                                       "zero-energy control: {wan: 0.1}",
+                                       "influence: cubic-spline",
+                                       "influence: inverse",
                                        "volume correction: partial, influence: gaussian"};
 enum { CONTROLS = sizeof controls / sizeof *controls };
 
@@ -192,10 +199,12 @@ static void force_is_minus_the_gradient_of_the_energy(void **state)
 static double checkerboard_resistance(const char *control)
 {
   /* rms force density over E 2a / (dx delta), interior particles (validation A4). */
-  breccia_model *model = model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
-                                  "peridynamics: {%s}\n"
-                                  "body: {b: {material: m, spacing: 1, shape: {box: {particles: [16, 16, 16], first particle: [0, 0, 0]}}}}\n"
-                                  "solve: {explicit: {steps: 1}}\n", control);
+  breccia_model *model = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+      "peridynamics: {%s}\n"
+      "body: {b: {material: m, spacing: 1, shape: {box: {particles: [16, 16, 16], first particle: [0, 0, 0]}}}}\n"
+      "solve: {explicit: {steps: 1}}\n",
+      control);
   const Particles *p = model->domain.particles;
   double a = 1e-4, square = 0;
   int count = 0;
@@ -237,8 +246,7 @@ static void a_chequered_plane_body_is_held_too(void **state)
   (void)state;
   breccia_model *model = plane_body("plane stress", "influence: constant");
   const Particles *p = model->domain.particles;
-  for (int64_t n = 0; n < p->count; ++n)
-    p->displacement[0][p->place_of[n]] = 1e-5 * ((n % 17 + n / 17) % 2 ? 1 : -1);
+  for (int64_t n = 0; n < p->count; ++n) p->displacement[0][p->place_of[n]] = 1e-5 * ((n % 17 + n / 17) % 2 ? 1 : -1);
   compute_forces(model);
   const double middle[3] = {0.85, 0.65, 0};
   int32_t i = particles_nearest(p, middle);
@@ -271,10 +279,11 @@ static void lone_particles_and_torn_families_give_finite_forces(void **state)
 {
   (void)state;
   /* Breaks bonds at random until nothing is left; every rung of the ladder is met. */
-  breccia_model *model = model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
-                                  "peridynamics: {horizon: 1.5 spacings}\n"
-                                  "body: {b: {material: m, spacing: 1, shape: {box: {particles: [5, 4, 3]}}}}\n"
-                                  "solve: {explicit: {steps: 1}}\n");
+  breccia_model *model =
+      model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+               "peridynamics: {horizon: 1.5 spacings}\n"
+               "body: {b: {material: m, spacing: 1, shape: {box: {particles: [5, 4, 3]}}}}\n"
+               "solve: {explicit: {steps: 1}}\n");
   Particles *p = model->domain.particles;
   uint64_t seed = 9;
   shake(model, 0.1);

@@ -14,7 +14,8 @@ static void a_free_body_under_gravity_falls_as_galilei_says(void **state)
                               "loads: [{gravity: [0, 0, -9.81]}]\nsolve: {explicit: {steps: 500}}\n");
   assert_int_equal(breccia_model_step(m, 500, NULL), 0);
   double t = breccia_model_time(m), *u = breccia_model_array(m, "displacement z");
-  for (int64_t n = 0; n < 125; ++n) assert_near(u[m->domain.particles->place_of[n]], -9.81 * t * t / 2, 1e-10 * 9.81 * t * t);
+  for (int64_t n = 0; n < 125; ++n)
+    assert_near(u[m->domain.particles->place_of[n]], -9.81 * t * t / 2, 1e-10 * 9.81 * t * t);
   breccia_model_destroy(&m);
 }
 
@@ -22,11 +23,13 @@ static void a_wave_runs_along_a_slender_bar_at_root_e_over_rho(void **state)
 {
   (void)state;
   /* validation A6: 5172 m/s; a velocity step at one end, arrival at 2 % of it, 8 cells across. */
-  breccia_model *m = model_of(STEEL "units: {length: m, force: kN, time: s}\n"
-                                    "peridynamics: {horizon: 2.015 spacings}\n"
-                                    "body: {b: {material: m, spacing: 0.0125, shape: {box: {particles: [160, 8, 8]}}}}\n"
-                                    "loads: [{on: {face: x-, layers: 2}, velocity: [1, free, free], history: {ramp to: 2e-5}}]\n"
-                                    "solve: {explicit: {end time: 2.6e-4}}\n", "0.29");
+  breccia_model *m =
+      model_of(STEEL "units: {length: m, force: kN, time: s}\n"
+                     "peridynamics: {horizon: 2.015 spacings}\n"
+                     "body: {b: {material: m, spacing: 0.0125, shape: {box: {particles: [160, 8, 8]}}}}\n"
+                     "loads: [{on: {face: x-, layers: 2}, velocity: [1, free, free], history: {ramp to: 2e-5}}]\n"
+                     "solve: {explicit: {end time: 2.6e-4}}\n",
+               "0.29");
   const double near[3] = {0.5, 0.05, 0.05}, far[3] = {1.2, 0.05, 0.05};
   int32_t a = particles_nearest(m->domain.particles, near), b = particles_nearest(m->domain.particles, far);
   double *v = breccia_model_array(m, "velocity x"), first = 0, second = 0;
@@ -43,14 +46,16 @@ static void a_wave_runs_along_a_slender_bar_at_root_e_over_rho(void **state)
 
 static breccia_model *shaken_plate(const char *more)
 {
-  return model_of("materials: {m: {model: multi-yield-j2, density: 1.5, shear modulus: 60000, bulk modulus: 100000, octahedral "
-                  "strength: 30}}\n"
-                  "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 9, 3]}}}}\n"
-                  "cracks: [{cut: {line: [[1, -1], [1, 0.4]]}}]\n"
-                  "failure: {critical stretch: 0.004}\n"
-                  "loads: [{on: {face: x+, layers: 2}, body force: [900, 0, 0], history: {ramp to: 0.004}},\n"
-                  "        {on: {face: x-, layers: 2}, velocity: [0, 0.3, free], history: {sine: {frequency: 100}}}]\n"
-                  "solve: {explicit: {steps: 600, time step: 5e-5%s}}\n", more);
+  return model_of(
+      "materials: {m: {model: multi-yield-j2, density: 1.5, shear modulus: 60000, bulk modulus: 100000, octahedral "
+      "strength: 30}}\n"
+      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 9, 3]}}}}\n"
+      "cracks: [{cut: {line: [[1, -1], [1, 0.4]]}}]\n"
+      "failure: {critical stretch: 0.004}\n"
+      "loads: [{on: {face: x+, layers: 2}, body force: [900, 0, 0], history: {ramp to: 0.004}},\n"
+      "        {on: {face: x-, layers: 2}, velocity: [0, 0.3, free], history: {sine: {frequency: 100}}}]\n"
+      "solve: {explicit: {steps: 600, time step: 5e-5%s}}\n",
+      more);
 }
 
 static void energy_of_loads_motions_damping_yielding_and_cracks_balances(void **state)
@@ -96,16 +101,18 @@ static void an_elastic_body_keeps_its_energy(void **state)
 static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
 {
   (void)state;
-  const char *const bodies[] = {"spacing: 0.1, shape: {box: {particles: [12, 9, 2]}}", "spacing: 0.1, shape: {box: {particles: [8, 8, 8]}}",
+  const char *const bodies[] = {"spacing: 0.1, shape: {box: {particles: [12, 9, 2]}}",
+                                "spacing: 0.1, shape: {box: {particles: [8, 8, 8]}}",
                                 "spacing: 0.1, lattice: square, thickness: 1, shape: {box: {particles: [15, 11]}}"};
   const char *const controls[] = {"silling: 0.1", "silling: 1", "wan: 1", "none: yes"};
   for (int b = 0; b < 3; ++b)
     for (int c = 0; c < 4; ++c)
       for (int over = 0; over < 2; ++over) {
-        breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
-                                    "peridynamics: {strain: small, space: %s, zero-energy control: {%s}}\n"
-                                    "body: {b: {material: m, %s}}\nsolve: {explicit: {steps: 4000}}\n",
-                                    b == 2 ? "plane strain" : "3-D", controls[c], bodies[b]);
+        breccia_model *m =
+            model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
+                     "peridynamics: {strain: small, space: %s, zero-energy control: {%s}}\n"
+                     "body: {b: {material: m, %s}}\nsolve: {explicit: {steps: 4000}}\n",
+                     b == 2 ? "plane strain" : "3-D", controls[c], bodies[b]);
         m->solver.time_step = m->solver.stable * (over ? 1.1 : 1);
         const Particles *p = m->domain.particles;
         for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = (double)(n * 7919 % 13) * 1e-9;
@@ -113,7 +120,8 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
         double largest = 0;
         for (int64_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->displacement[0][p->place_of[n]]));
         if (over ? largest < 1e-3 : !(largest < 1e-3))
-          fail_msg("body %d, control %s, %s the stable step: displacement %g", b, controls[c], over ? "above" : "at", largest);
+          fail_msg("body %d, control %s, %s the stable step: displacement %g", b, controls[c], over ? "above" : "at",
+                   largest);
         breccia_model_destroy(&m);
       }
 }
@@ -129,7 +137,8 @@ static void threads_do_not_change_a_bit(void **state)
     m->threads = threads[k];
     breccia_model_step(m, 600, NULL);
     size_t bytes = sizeof(double) * (size_t)breccia_model_places(m);
-    double *const now[3] = {breccia_model_array(m, "displacement x"), breccia_model_array(m, "stress xy"), &m->solver.bond_work};
+    double *const now[3] = {breccia_model_array(m, "displacement x"), breccia_model_array(m, "stress xy"),
+                            &m->solver.bond_work};
     for (int a = 0; a < 3; ++a) {
       size_t size = a < 2 ? bytes : sizeof(double);
       if (!k) {
@@ -152,7 +161,8 @@ static void broken_bonds_stay_broken_and_damage_grows(void **state)
   for (int k = 0; k < 6; ++k) {
     breccia_model_step(m, 100, NULL);
     double damage = 0;
-    for (int64_t n = 0; n < m->domain.particles->count; ++n) damage += domain_damage(&m->domain, m->domain.particles->place_of[n]);
+    for (int64_t n = 0; n < m->domain.particles->count; ++n)
+      damage += domain_damage(&m->domain, m->domain.particles->place_of[n]);
     assert_true(damage >= before);
     before = damage;
   }
@@ -172,13 +182,14 @@ static void broken_bonds_stay_broken_and_damage_grows(void **state)
 static void prescribed_particles_go_where_they_are_told(void **state)
 {
   (void)state;
-  breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
-                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}\n"
-                              "loads:\n"
-                              "  - {on: {face: x-}, displacement: [0, 0, 0]}\n"
-                              "  - {on: {face: x+}, along: {direction: [3, 4, 0], displacement: 0.01}, history: {table: [[0, 0], "
-                              "[0.005, 1], [0.01, 0.5]]}}\n"
-                              "solve: {explicit: {end time: 0.01, safety: 0.1}}\n");
+  breccia_model *m =
+      model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}\n"
+               "loads:\n"
+               "  - {on: {face: x-}, displacement: [0, 0, 0]}\n"
+               "  - {on: {face: x+}, along: {direction: [3, 4, 0], displacement: 0.01}, history: {table: [[0, 0], "
+               "[0.005, 1], [0.01, 0.5]]}}\n"
+               "solve: {explicit: {end time: 0.01, safety: 0.1}}\n");
   breccia_model_step(m, m->solver.steps, NULL);
   const Particles *p = m->domain.particles;
   const Selection *s = &m->loading.loads[1].selection;
@@ -191,8 +202,8 @@ static void prescribed_particles_go_where_they_are_told(void **state)
   assert_near(p->displacement[0][m->loading.loads[0].selection.places[3]], 0, 1e-15);
   Energy e = explicit_energy(&m->solver);
   if (e.imbalance > 1e-2)
-    fail_msg("imbalance %g: external %g kinetic %g internal %g damping %g", e.imbalance, e.external, e.kinetic, e.internal,
-             e.damping);
+    fail_msg("imbalance %g: external %g kinetic %g internal %g damping %g", e.imbalance, e.external, e.kinetic,
+             e.internal, e.damping);
   breccia_model_destroy(&m);
 }
 
@@ -211,7 +222,8 @@ static void a_burst_is_reported_with_place_step_and_cause(void **state)
   const char *words = breccia_error_text(error);
   assert_non_null(strstr(words, "is not a number"));
   assert_non_null(strstr(words, "the time step is above the stable one"));
-  for (int64_t i = 0; i < breccia_model_places(m); ++i) assert_true(isfinite(breccia_model_array(m, "displacement x")[i]));
+  for (int64_t i = 0; i < breccia_model_places(m); ++i)
+    assert_true(isfinite(breccia_model_array(m, "displacement x")[i]));
   breccia_model_destroy(&m);
   breccia_error_destroy(&error);
 }
@@ -232,13 +244,15 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
 {
   (void)state;
   /* validation: 500 kN/m3 open the mouth by 3.34 mm, converged quadrilaterals; control 0.1; 2 %. */
-  breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
-                              "materials: {m: {model: elastic, density: 1.5, Young modulus: 150000, Poisson ratio: 0.25}}\n"
-                              "body: {p: {material: m, spacing: 0.03, shape: {box: {particles: [70, 64, 2], first particle: [0, 0, 0]}}}}\n"
-                              "cracks: [{remove: {box: {from: [1.035, -0.015, -0.015], to: [1.065, 0.735, 0.045]}}, cut faces: yes}]\n"
-                              "peridynamics: {strain: small, zero-energy control: {silling: 0.1}}\n"
-                              "loads: [{on: {face: x-, layers: 3}, body force: [-500, 0, 0]}, {on: {face: x+, layers: 3}, body force: [500, 0, 0]}]\n"
-                              "solve: {explicit: {steps: 6000, damping: 120, safety: 0.9}}\n");
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: elastic, density: 1.5, Young modulus: 150000, Poisson ratio: 0.25}}\n"
+      "body: {p: {material: m, spacing: 0.03, shape: {box: {particles: [70, 64, 2], first particle: [0, 0, 0]}}}}\n"
+      "cracks: [{remove: {box: {from: [1.035, -0.015, -0.015], to: [1.065, 0.735, 0.045]}}, cut faces: yes}]\n"
+      "peridynamics: {strain: small, zero-energy control: {silling: 0.1}}\n"
+      "loads: [{on: {face: x-, layers: 3}, body force: [-500, 0, 0]}, {on: {face: x+, layers: 3}, body force: [500, 0, "
+      "0]}]\n"
+      "solve: {explicit: {steps: 6000, damping: 120, safety: 0.9}}\n");
   assert_int_equal(breccia_model_step(m, 6000, NULL), 0);
   const double left[3] = {1.02, 0, 0}, right[3] = {1.08, 0, 0};
   const Particles *p = m->domain.particles;

@@ -75,9 +75,11 @@ static int prepare(const double *v, void *constants, char *reason, size_t reason
   }
   double peak = v[P_PEAK], shear = c->shear;
   if (shear * peak <= strength) {
-    snprintf(reason, reason_size,
-             "the strength, %g (octahedral), must lie below shear modulus times peak strain, %g: a hyperbola cannot pass "
-             "through both", strength, shear * peak);
+    snprintf(
+        reason, reason_size,
+        "the strength, %g (octahedral), must lie below shear modulus times peak strain, %g: a hyperbola cannot pass "
+        "through both",
+        strength, shear * peak);
     return 1;
   }
   double reference_strain = peak * strength / (shear * peak - strength);
@@ -297,8 +299,8 @@ static void tangent_of(const Point *p, const double s[6], double *tangent)
   }
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 6; ++k)
-      tangent[6 * i + k] = (i < 3 && k < 3 ? lambda : 0) + (i == k ? (i < 3 ? 2 : 1) * p->shear : 0) -
-                           coefficient * r[i] * r[k];
+      tangent[6 * i + k] =
+          (i < 3 && k < 3 ? lambda : 0) + (i == k ? (i < 3 ? 2 : 1) * p->shear : 0) - coefficient * r[i] * r[k];
 }
 
 static int update(const void *constants, const breccia_batch *batch)
@@ -307,13 +309,19 @@ static int update(const void *constants, const breccia_batch *batch)
   int row = history_values(constants);
   for (int i = 0; i < batch->count; ++i) {
     const double *old = batch->committed + (size_t)row * (size_t)i;
-    double *new = batch->trial + (size_t)row * (size_t)i;
+    double *new = batch->trial + (size_t)row *(size_t)i;
     int low = (int)fmin(old[LOW], new[LOW]), high = (int)fmax(old[HIGH], new[HIGH]);
     if (low <= high)
       memcpy(new + HEAD + 6 * (low - 1), old + HEAD + 6 * (low - 1), sizeof(double) * 6 * (size_t)(high - low + 1));
 
-    Point p = {c,  c->shear * old[MODULUS_SCALE], old[MODULUS_SCALE], old[SIZE_SCALE], new + HEAD, (int)old[ACTIVE],
-               MOST_SURFACES, 0};
+    Point p = {c,
+               c->shear * old[MODULUS_SCALE],
+               old[MODULUS_SCALE],
+               old[SIZE_SCALE],
+               new + HEAD,
+               (int)old[ACTIVE],
+               MOST_SURFACES,
+               0};
     double s[6], de[6], volumetric = 0, pressure = old[PRESSURE];
     for (int k = 0; k < 6; ++k) {
       s[k] = old[DEVIATOR + k];

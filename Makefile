@@ -1,0 +1,72 @@
+# What people type. CMake does the work (CMakePresets.json); this says it in short.
+cores := $(shell nproc 2>/dev/null || echo 2)
+
+.PHONY: all setup demo test test-external bench docs format check-format asan coverage clang fuzz install clean
+
+all:
+	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
+	@rm -f build-log.txt
+	@cmake --build --preset release --parallel $(cores)
+
+setup:
+	@sh scripts/setup.sh build
+
+# The plate of clay and the elastic plate of the first example, whole.
+demo: setup all
+	@sh scripts/demo.sh
+
+test:
+	@sh scripts/setup.sh test
+	@cmake --preset test > build-log.txt 2>&1 || { cat build-log.txt; exit 1; }
+	@rm -f build-log.txt
+	@cmake --build --preset test --parallel $(cores)
+	@ctest --preset test
+
+# Other people's programs from the Python index, in an environment of the project's own.
+test-external: setup all
+	@sh scripts/setup.sh test
+	@sh tests/external/run.sh
+
+bench: setup all
+	@build/release/breccia_bench
+
+# Pages and pictures that the program makes itself.
+docs: all
+	@build/release/breccia schema --markdown > docs/deck.md
+
+format:
+	@clang-format -i $$(git ls-files '*.c' '*.h')
+check-format:
+	@clang-format --dry-run --Werror $$(git ls-files '*.c' '*.h')
+
+# The whole suite under the address and undefined-behaviour sanitizers.
+asan:
+	@sh scripts/setup.sh test
+	@cmake --preset asan-ubsan > /dev/null
+	@cmake --build --preset asan-ubsan --parallel $(cores)
+	@BRECCIA_SANITIZED=1 UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan-ubsan
+
+coverage:
+	@sh scripts/setup.sh test
+	@cmake --preset coverage > /dev/null
+	@cmake --build --preset coverage --parallel $(cores)
+	@ctest --preset coverage
+	@gcovr -r . --filter source build/coverage --print-summary
+
+# A second compiler, warnings as errors.
+clang:
+	@cmake --preset clang > /dev/null
+	@cmake --build --preset clang --parallel $(cores)
+
+# The deck reader against decks of chance, for FUZZ_SECONDS.
+fuzz:
+	@sh scripts/setup.sh test
+	@cmake --preset fuzz > /dev/null
+	@cmake --build --preset fuzz --target fuzz_deck --parallel $(cores)
+	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
+
+install: all
+	@cmake --install build/release $(if $(PREFIX),--prefix "$(PREFIX)")
+
+clean:
+	@rm -rf build

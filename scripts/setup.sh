@@ -1,0 +1,48 @@
+#!/bin/sh
+# Installs what is missing from the distribution's packages (Debian, Ubuntu). Asks nothing; does nothing when all is there.
+#   setup.sh build   what the program needs
+#   setup.sh test    what its tests need besides
+set -eu
+
+build="gcc:C_compiler cmake:build ninja-build:build pkg-config:build libc6-dev:C_library libfyaml-dev:decks_in_YAML
+libudunits2-dev:units libhdf5-dev:result_files libcairo2-dev:pictures fonts-dejavu-core:words_in_pictures
+gnuplot-nox:curves"
+test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing clang-format:layout_of_the_code gcovr:coverage
+python3:external_tests python3-venv:external_tests"
+
+wanted=$build
+[ "${1:-build}" = test ] && wanted="$build $test"
+
+missing="" why=""
+for entry in $wanted; do
+  package=${entry%%:*} purpose=$(echo "${entry#*:}" | tr _ ' ')
+  dpkg-query -W -f '${Status}' "$package" 2> /dev/null | grep -q 'install ok installed' && continue
+  missing="$missing $package"
+  why="$why $package ($purpose)"
+done
+# The fuzzer's runtime carries clang's version in its name.
+if [ "${1:-build}" = test ]; then
+  version=$(clang -dumpversion 2> /dev/null | cut -d. -f1 || true)
+  [ -n "$version" ] || version=$(apt-cache depends clang 2> /dev/null | sed -n 's/.*Depends: clang-\([0-9]*\)$/\1/p' | head -1)
+  runtime="libclang-rt-${version:-14}-dev"
+  if ! dpkg-query -W -f '${Status}' "$runtime" 2> /dev/null | grep -q 'install ok installed'; then
+    missing="$missing $runtime" why="$why $runtime (fuzzing)"
+  fi
+fi
+[ -z "$missing" ] && exit 0
+
+if ! command -v apt-get > /dev/null; then
+  echo "These packages are missing, and there is no apt-get to install them with:$why" >&2
+  exit 2
+fi
+root=""
+if [ "$(id -u)" != 0 ]; then
+  command -v sudo > /dev/null || { echo "Become root, or install these packages:$why" >&2; exit 2; }
+  root="sudo"
+fi
+echo "Installing from the distribution:$why"
+export DEBIAN_FRONTEND=noninteractive
+if ! $root apt-get install -y -qq --no-install-recommends $missing > /dev/null 2>&1; then
+  $root apt-get update -qq
+  $root apt-get install -y -qq --no-install-recommends $missing > /dev/null
+fi

@@ -1,0 +1,18 @@
+#!/bin/sh
+# Tests that need other people's programs: an environment of the project's own, then each test.
+set -eu
+cd "$(dirname "$0")/../.."
+environment=.venv/external
+if ! cmp -s tests/external/requirements.txt "$environment/installed" 2> /dev/null; then
+  python3 -m venv --clear "$environment"
+  "$environment/bin/python" -m pip install --quiet --disable-pip-version-check -r tests/external/requirements.txt
+  cp tests/external/requirements.txt "$environment/installed"
+fi
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+passed=0 failed=0
+for test in tests/external/test_*.py; do
+  if "$environment/bin/python" "$test" build/release/breccia "$work"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
