@@ -104,7 +104,7 @@ static int collect(const Cells *cells, const Body *body, const StoredWeight *wei
       found->items[found->count++] = (Candidate){p->number[other], other, influence * share * p->volume[other]};
     }
   }
-  qsort(found->items, (size_t)found->count, sizeof(Candidate), by_number);
+  if (found->count) qsort(found->items, (size_t)found->count, sizeof(Candidate), by_number);
   return 0;
 }
 

@@ -324,15 +324,17 @@ static int by_depth(const void *a, const void *b)
 }
 
 /** Flat squares, the nearest last: plane bodies, and plates seen from the front. */
-static int draw_squares(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view)
+static int draw_squares(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view, bool deformed)
 {
+  /* Turned squares leave gaps at their corners: where the body is deformed they are drawn a little larger. */
+  const double larger = deformed ? 1.1 : 1;
   Depth *order = malloc(sizeof(Depth) * (size_t)(scene->count + 1));
   if (!order) return 1;
   for (int64_t n = 0; n < scene->count; ++n) order[n] = (Depth){scene->depth[n], n};
   qsort(order, (size_t)scene->count, sizeof(Depth), by_depth);
   for (int64_t k = 0; k < scene->count; ++k) {
     int64_t n = order[k].particle;
-    double rgb[3], half = view->spacings[n] / 2, side = 2 * half * page->scale;
+    double rgb[3], half = larger * view->spacings[n] / 2, side = 2 * half * page->scale;
     colour((scene->value[n] - scene->low) / (scene->high - scene->low), rgb);
     cairo_set_source_rgb(cr, rgb[0], rgb[1], rgb[2]);
     double x0 = page->left + (scene->x[n] - half - scene->x0) * page->scale;
@@ -433,7 +435,7 @@ static int render(const Scene *scene, const ResultView *view, int step, const Pi
   cairo_set_source_rgb(cr, 1, 1, 1);
   cairo_paint(cr);
   cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  int bad = scene->flat ? draw_squares(cr, &page, scene, view) : draw_spheres(cr, &page, scene, view);
+  int bad = scene->flat ? draw_squares(cr, &page, scene, view, o->deformed != 0) : draw_spheres(cr, &page, scene, view);
   if (o->broken_bonds) draw_broken(cr, &page, scene, view, step);
   if (scene->flat)
     draw_axes(cr, &page, scene, view);

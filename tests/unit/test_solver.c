@@ -244,16 +244,9 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
 {
   (void)state;
   /* validation: 500 kN/m3 open the mouth by 3.34 mm, converged quadrilaterals; control 0.1; 2 %. */
-  breccia_model *m = model_of(
-      "units: {length: m, force: kN, time: s}\n"
-      "materials: {m: {model: elastic, density: 1.5, Young modulus: 150000, Poisson ratio: 0.25}}\n"
-      "body: {p: {material: m, spacing: 0.03, shape: {box: {particles: [70, 64, 2], first particle: [0, 0, 0]}}}}\n"
-      "cracks: [{remove: {box: {from: [1.035, -0.015, -0.015], to: [1.065, 0.735, 0.045]}}, cut faces: yes}]\n"
-      "peridynamics: {strain: small, zero-energy control: {silling: 0.1}}\n"
-      "loads: [{on: {face: x-, layers: 3}, body force: [-500, 0, 0]}, {on: {face: x+, layers: 3}, body force: [500, 0, "
-      "0]}]\n"
-      "solve: {explicit: {steps: 6000, damping: 120, safety: 0.9}}\n");
-  assert_int_equal(breccia_model_step(m, 6000, NULL), 0);
+  breccia_model *m;
+  assert_int_equal(breccia_model_load_file(EXAMPLES "/plate-with-crack/rest.yaml", NULL, &m, NULL), 0);
+  assert_int_equal(breccia_model_step(m, m->solver.steps, NULL), 0);
   const double left[3] = {1.02, 0, 0}, right[3] = {1.08, 0, 0};
   const Particles *p = m->domain.particles;
   int32_t a = particles_nearest(p, left), b = particles_nearest(p, right);
