@@ -16,7 +16,7 @@ static const Option options[] = {
     {"step", "N|last|all", "which written step (last)"},
     {"time", "T", "the written step nearest to this time, in the deck's unit"},
     {"deformed", "SCALE", "scale of the displacements drawn (1; 0 draws the reference shape)"},
-    {"range", "LOW:HIGH", "ends of the colour scale"},
+    {"range", "LOW:HIGH", "ends of the colour scale; with --curve of the horizontal axis"},
     {"view", "AZIMUTH:ELEVATION", "where the eye is, in degrees, for bodies in space"},
     {"broken-bonds", NULL, "draw the bonds that have broken"},
     {"curve", "X:Y", "instead: columns of histories against each other, like 'opening.distance:pull.value'"},
@@ -141,8 +141,8 @@ static int run(int argc, char **argv, const Verb *verb)
   int status;
   if (values[CURVE]) {
     const char *file = values[OUTPUT] ? values[OUTPUT] : "curve.png";
-    status = curve_draw((const char *const *)argv + first, argc - first, values[CURVE], values[OVERLAY],
-                        values[TITLE] ? values[TITLE] : values[CURVE], file, error);
+    const CurveOptions c = {values[TITLE] ? values[TITLE] : values[CURVE], values[OVERLAY], o.low, o.high};
+    status = curve_draw((const char *const *)argv + first, argc - first, values[CURVE], &c, file, error);
     if (!status) printf("%s\n", file);
   } else {
     char *path = result_path(argv[first]);

@@ -15,7 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum Control { CONTROL_NONE, CONTROL_SCALAR, CONTROL_TENSOR } Control;
+/* Uniform: the scalar control of a body of one material with constant influence, where C is the same everywhere; sum w C_j eta
+ * is then known from the first sweep and the second needs a third fewer numbers. */
+typedef enum Control { CONTROL_NONE, CONTROL_UNIFORM, CONTROL_SCALAR, CONTROL_TENSOR } Control;
 
 typedef struct Correspondence {
   const Particles *particles;
@@ -39,7 +41,7 @@ typedef struct Correspondence {
 
 static int hold_components(Control control)
 {
-  return control == CONTROL_NONE ? 0 : control == CONTROL_SCALAR ? 1 : 6;
+  return control == CONTROL_NONE ? 0 : control == CONTROL_TENSOR ? 6 : 1;
 }
 
 static void destroy(void *formulation)
@@ -70,9 +72,9 @@ static void set_shape(Correspondence *c, int32_t place, const ShapeTensor *shape
   for (int k = 0; k < 3; ++k) c->first_moment[k][place] = shape->first_moment[k];
   bool strained = shape->mode == SHAPE_REGULAR || shape->mode == SHAPE_REDUCED;
   const Material *m = &c->points->materials[c->points->material[place / SLICE]];
-  if (c->control == CONTROL_SCALAR) {
+  if (c->control == CONTROL_SCALAR || c->control == CONTROL_UNIFORM) {
     double scale = c->strength * micromodulus(c->body, material_young(m), c->family->horizon) / c->family->horizon;
-    c->hold[0][place] = strained ? scale / shape->mean_influence : 0;
+    c->hold[0][place] = shape->mean_influence > 0 ? scale / shape->mean_influence : scale;
   } else if (c->control == CONTROL_TENSOR) {
     double lambda = m->bulk - 2 * m->shear / 3;
     double trace = shape->inverse[XX] + shape->inverse[YY] + shape->inverse[ZZ];
@@ -97,6 +99,19 @@ static void renew(void *formulation, int64_t slice)
     c->mode[place] = (uint8_t)shape.mode;
     set_shape(c, place, &shape);
   }
+}
+
+/** True if all particles have one and the same scalar C, and will keep it whatever breaks. */
+static bool is_uniform(const Correspondence *c)
+{
+  const Particles *p = c->particles;
+  if (c->control != CONTROL_SCALAR) return false;
+  double first = c->hold[0][p->place_of[0]];
+  for (int64_t n = 1; n < p->count; ++n)
+    if (c->hold[0][p->place_of[n]] != first) return false;
+  for (int k = 0; k < c->family->pattern_count; ++k)
+    if (c->family->patterns[k].weight != c->family->patterns[0].weight) return false;
+  return true;
 }
 
 static int set_all_shapes(Correspondence *c, Error *error)
@@ -166,6 +181,7 @@ static void *create(const FormulationParts *parts, Error *error)
     destroy(c);
     return NULL;
   }
+  if (is_uniform(c)) c->control = CONTROL_UNIFORM;
   return c;
 }
 
@@ -216,12 +232,10 @@ LANES_INLINE Lanes slot_intact(const Slot *s, Lanes value)
   return s->whole ? value : lanes_where(s->mask, value);
 }
 
-typedef struct Deformation {
-  Lanes tensor[9], stretch[3];
-} Deformation;
-
+/* Nine sums and what they are made from just fit 16 registers. The three further sums of the control go in a loop of their
+ * own: in this one they were kept in memory, and waiting for them took as long as all the rest. */
 LANES_INLINE void deform_slots(const Correspondence *c, int64_t from, int64_t to, int64_t place, int half, bool lattice,
-                               bool control, Deformation *sum)
+                               Lanes tensor[9])
 {
   double *const *u = c->particles->displacement;
   const Lanes own[3] = {lanes_load(u[0] + place), lanes_load(u[1] + place), lanes_load(u[2] + place)};
@@ -230,30 +244,44 @@ LANES_INLINE void deform_slots(const Correspondence *c, int64_t from, int64_t to
     if (!slot_open(c, slot, place, half, lattice, &s)) continue;
     for (int k = 0; k < 3; ++k) {
       Lanes eta = slot_intact(&s, slot_read(&s, u[k]) - own[k]);
-      for (int j = 0; j < 3; ++j) sum->tensor[3 * k + j] += eta * s.weighted_xi[j];
-      if (control) sum->stretch[k] += eta * s.weight;
+      for (int j = 0; j < 3; ++j) tensor[3 * k + j] += eta * s.weighted_xi[j];
     }
+  }
+}
+
+LANES_INLINE void stretch_slots(const Correspondence *c, int64_t from, int64_t to, int64_t place, int half,
+                                bool lattice, Lanes stretch[3])
+{
+  double *const *u = c->particles->displacement;
+  const Lanes own[3] = {lanes_load(u[0] + place), lanes_load(u[1] + place), lanes_load(u[2] + place)};
+  for (int64_t slot = from; slot < to; ++slot) {
+    Slot s;
+    if (!slot_open(c, slot, place, half, lattice, &s)) continue;
+    for (int k = 0; k < 3; ++k) stretch[k] += slot_intact(&s, slot_read(&s, u[k]) - own[k]) * s.weight;
   }
 }
 
 LANES_INLINE void deform_half(const Correspondence *c, int64_t slice, int half, bool control)
 {
   const Family *f = c->family;
-  int64_t place = slice * SLICE + LANES * half;
-  Deformation sum = {0};
-  deform_slots(c, f->first[slice], f->stored[slice], place, half, true, control, &sum);
-  if (f->stored[slice] < f->first[slice + 1])
-    deform_slots(c, f->stored[slice], f->first[slice + 1], place, half, false, control, &sum);
+  int64_t place = slice * SLICE + LANES * half, first = f->first[slice], stored = f->stored[slice];
+  int64_t last = f->first[slice + 1];
+  Lanes tensor[9] = {{0}}, stretch[3] = {{0}};
+  deform_slots(c, first, stored, place, half, true, tensor);
+  if (stored < last) deform_slots(c, stored, last, place, half, false, tensor);
+  if (control) {
+    stretch_slots(c, first, stored, place, half, true, stretch);
+    if (stored < last) stretch_slots(c, stored, last, place, half, false, stretch);
+  }
 
   Lanes inverse[6], g[9];
   for (int k = 0; k < 6; ++k) inverse[k] = lanes_load(c->inverse[k] + place);
   for (int r = 0; r < 3; ++r)
     for (int k = 0; k < 3; ++k)
-      g[3 * r + k] = sum.tensor[3 * r] * inverse[symmetric_place[k]] +
-                     sum.tensor[3 * r + 1] * inverse[symmetric_place[3 + k]] +
-                     sum.tensor[3 * r + 2] * inverse[symmetric_place[6 + k]];
+      g[3 * r + k] = tensor[3 * r] * inverse[symmetric_place[k]] + tensor[3 * r + 1] * inverse[symmetric_place[3 + k]] +
+                     tensor[3 * r + 2] * inverse[symmetric_place[6 + k]];
   for (int k = 0; k < 9; ++k) lanes_store(c->gradient[k] + place, g[k]);
-  for (int k = 0; control && k < 3; ++k) lanes_store(c->stretch[k] + place, sum.stretch[k]);
+  for (int k = 0; control && k < 3; ++k) lanes_store(c->stretch[k] + place, stretch[k]);
   for (int k = 0; k < 6; ++k) {
     if (k == ZZ && c->points->space == SPACE_PLANE_STRESS) continue; /* that strain is the law's affair */
     int r = symmetric_row[k], col = symmetric_column[k];
@@ -266,7 +294,8 @@ LANES_INLINE void deform_half(const Correspondence *c, int64_t slice, int half, 
 BRECCIA_CLONES
 static void deform(void *formulation, int64_t first, int64_t last)
 {
-  const Correspondence *c = formulation;
+  const Correspondence local = *(const Correspondence *)formulation,
+                       *c = &local; /* so that stores are seen not to change it */
   bool control = c->control != CONTROL_NONE;
   for (int64_t slice = first; slice < last; ++slice)
     for (int half = 0; half < SLICE / LANES; ++half)
@@ -294,7 +323,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place)
     for (int k = 0; k < 3; ++k) {
       Lanes q = p[3 * r] * inverse[symmetric_place[k]] + p[3 * r + 1] * inverse[symmetric_place[3 + k]] +
                 p[3 * r + 2] * inverse[symmetric_place[6 + k]];
-      if (c->control == CONTROL_SCALAR) q -= hold[0] * g[3 * r + k];
+      if (c->control == CONTROL_SCALAR || c->control == CONTROL_UNIFORM) q -= hold[0] * g[3 * r + k];
       for (int j = 0; c->control == CONTROL_TENSOR && j < 3; ++j) q -= hold[symmetric_place[3 * r + j]] * g[3 * j + k];
       lanes_store(c->state[3 * r + k] + place, q);
     }
@@ -311,15 +340,16 @@ LANES_INLINE void resist_slots(const Correspondence *c, int64_t from, int64_t to
                                Control control, Lanes force[2][3])
 {
   double *const *u = c->particles->displacement;
+  bool displaced = control == CONTROL_SCALAR || control == CONTROL_TENSOR;
   Lanes own[2][3];
-  for (int half = 0; half < 2; ++half)
+  for (int half = 0; displaced && half < 2; ++half)
     for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + place + LANES * half);
   for (int64_t slot = from; slot < to; ++slot)
     for (int half = 0; half < 2; ++half) {
       Slot s;
       if (!slot_open(c, slot, place + LANES * half, half, lattice, &s)) continue;
       Lanes eta[3], hold;
-      for (int k = 0; control != CONTROL_NONE && k < 3; ++k) eta[k] = slot_read(&s, u[k]) - own[half][k];
+      for (int k = 0; displaced && k < 3; ++k) eta[k] = slot_read(&s, u[k]) - own[half][k];
       if (control == CONTROL_SCALAR) hold = slot_read(&s, c->hold[0]) * s.weight;
       for (int k = 0; k < 3; ++k) {
         Lanes f = slot_read(&s, c->state[3 * k]) * s.weighted_xi[0] +
@@ -347,6 +377,8 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
       for (int j = 0; j < 3; ++j)
         sum += lanes_load(c->state[3 * k + j] + place) * lanes_load(c->first_moment[j] + place);
       if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * lanes_load(c->stretch[k] + place);
+      if (control == CONTROL_UNIFORM)
+        sum += lanes_set(2) * lanes_load(c->hold[0] + place) * lanes_load(c->stretch[k] + place);
       for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j)
         sum += lanes_load(c->hold[symmetric_place[3 * k + j]] + place) * lanes_load(c->stretch[j] + place);
       lanes_store(c->particles->internal[k] + place, sum);
@@ -359,7 +391,9 @@ static void resist(void *formulation, int64_t first, int64_t last)
   const Correspondence local = *(const Correspondence *)formulation,
                        *c = &local; /* so that stores are seen not to change it */
   for (int64_t slice = first; slice < last; ++slice)
-    if (c->control == CONTROL_SCALAR)
+    if (c->control == CONTROL_UNIFORM)
+      resist_slice(c, slice, CONTROL_UNIFORM);
+    else if (c->control == CONTROL_SCALAR)
       resist_slice(c, slice, CONTROL_SCALAR);
     else if (c->control == CONTROL_NONE)
       resist_slice(c, slice, CONTROL_NONE);
@@ -369,7 +403,8 @@ static void resist(void *formulation, int64_t first, int64_t last)
 
 /* ---- particles with too few bonds, and single bonds ---- */
 
-/** Half of a bond-based spring: what a particle without a strain exerts through one of its bonds. */
+/** What a particle without a strain exerts through one of its bonds: half of a bond-based spring, instead of the control that
+ *  the sweeps have added for it. */
 static void axial_state(const Correspondence *c, int64_t slice, const Bond *bond, int lane, double t[3])
 {
   int64_t place = slice * SLICE + lane;
@@ -382,7 +417,9 @@ static void axial_state(const Correspondence *c, int64_t slice, const Bond *bond
   length = sqrt(length);
   double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
   double pull = length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
-  for (int k = 0; k < 3; ++k) t[k] = pull * y[k];
+  double omega = bond->weight / c->particles->volume[bond->neighbour];
+  double hold = c->control == CONTROL_SCALAR || c->control == CONTROL_UNIFORM ? c->hold[0][place] : 0;
+  for (int k = 0; k < 3; ++k) t[k] = pull * y[k] - omega * hold * (y[k] - bond->xi[k]);
 }
 
 static void finish(void *formulation)
@@ -418,15 +455,21 @@ static void bond_force(const void *formulation, int64_t slice, int64_t slot, int
       for (int j = 0; j < 3; ++j) {
         double eta = c->particles->displacement[j][bond.neighbour] - c->particles->displacement[j][place];
         double hold = c->control == CONTROL_NONE     ? 0
-                      : c->control == CONTROL_SCALAR ? (j == k ? c->hold[0][ends[e]] : 0)
+                      : c->control != CONTROL_TENSOR ? (j == k ? c->hold[0][ends[e]] : 0)
                                                      : c->hold[symmetric_place[3 * k + j]][ends[e]];
         force[k] += omega * (c->state[3 * k + j][ends[e]] * bond.xi[j] + hold * eta);
       }
   for (int e = 0; e < 2; ++e) { /* a spring pulls its two ends alike */
     if (c->mode[ends[e]] != SHAPE_AXIAL) continue;
+    Bond seen = bond; /* from that end */
     double t[3];
-    axial_state(c, slice, &bond, lane, t);
-    for (int k = 0; k < 3; ++k) force[k] += t[k];
+    if (e) {
+      seen.neighbour = (int32_t)place;
+      for (int k = 0; k < 3; ++k) seen.xi[k] = -bond.xi[k];
+      seen.weight = bond.weight * c->particles->volume[place] / c->particles->volume[bond.neighbour];
+    }
+    axial_state(c, ends[e] / SLICE, &seen, (int)(ends[e] % SLICE), t);
+    for (int k = 0; k < 3; ++k) force[k] += e ? -t[k] : t[k];
   }
 }
 

@@ -191,3 +191,14 @@ double constraint_displacement(const Constraint *constraint, double time)
   }
   return constraint->value * sum;
 }
+
+double load_magnitude(const LoadSpec *l)
+{
+  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
+  double square = 0;
+  for (int v = 0; v < 5; ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!isnan(given[v][k])) square += given[v][k] * given[v][k];
+  if (l->along) square = pow(isnan(l->along->displacement) ? l->along->velocity : l->along->displacement, 2);
+  return sqrt(square);
+}

@@ -50,6 +50,9 @@ void loading_destroy(Loading *loading);
 /** Sets the external force per volume of all particles to what the loads say at a time. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
 
+/** Length of the vector that a load prescribes at factor 1. */
+double load_magnitude(const LoadSpec *load);
+
 /** Displacement along its direction that a constraint prescribes at a time, from the start at time 0. */
 double constraint_displacement(const Constraint *constraint, double time);
 

@@ -210,7 +210,8 @@ static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
   text_file_name(spec->curve, name, sizeof name);
   char *path = text_format("%s/pictures/%s.png", run->wish->folder, name);
   const char *folder = run->wish->folder;
-  int status = path ? curve_draw(&folder, 1, spec->curve, NULL, run->model->spec->title, path, error) : BRECCIA_FAILURE;
+  const CurveOptions o = {run->model->spec->title, NULL, spec->range[0], spec->range[1]};
+  int status = path ? curve_draw(&folder, 1, spec->curve, &o, path, error) : BRECCIA_FAILURE;
   if (!status) note_file(run, path);
   free(path);
   return status;
@@ -255,17 +256,6 @@ static void draw_pictures(Run *run)
 }
 
 /* ---- summary ---- */
-
-static double load_magnitude(const LoadSpec *l)
-{
-  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
-  double square = 0;
-  for (int v = 0; v < 5; ++v)
-    for (int k = 0; k < 3; ++k)
-      if (!isnan(given[v][k])) square += given[v][k] * given[v][k];
-  if (l->along) square = pow(isnan(l->along->displacement) ? l->along->velocity : l->along->displacement, 2);
-  return sqrt(square);
-}
 
 static double load_peak(const LoadSpec *l, double time)
 {

@@ -86,6 +86,9 @@ static double *history_column(const char *folder, const char *name, double **ste
   *steps = csv_column(path, "step", count, ignored, error);
   if (*steps) values = csv_column(path, dot + 1, count, label, error);
   free(path);
+  char whole[300];
+  snprintf(whole, sizeof whole, "%s: %s", words, label);
+  snprintf(label, 128, "%.127s", whole);
   return values;
 }
 
@@ -166,8 +169,8 @@ static int run_gnuplot(const Text *script, const char *path, Error *error)
   return error_add(error, BRECCIA_FAILURE, "%s: gnuplot could not draw it", path);
 }
 
-int curve_draw(const char *const *folders, int folder_count, const char *curve, const char *overlay, const char *title,
-               const char *path, Error *error)
+int curve_draw(const char *const *folders, int folder_count, const char *curve, const CurveOptions *o, const char *path,
+               Error *error)
 {
   Axes axes = {0};
   const char *colon = strchr(curve, ':'), *dot = strrchr(path, '.');
@@ -179,6 +182,7 @@ int curve_draw(const char *const *folders, int folder_count, const char *curve, 
   Text script = {0};
   int status = BRECCIA_OK;
   for (int k = 0; k < folder_count && !status; ++k) status = add_data(&script, folders[k], k, &axes, error);
+  const char *overlay = o->overlay;
   if (overlay && !status) status = add_overlay(&script, overlay, error);
   if (!status) {
     const char *terminal = !dot || !strcmp(dot, ".png") ? "pngcairo size 760,520 font \"sans,12\""
@@ -187,14 +191,16 @@ int curve_draw(const char *const *folders, int folder_count, const char *curve, 
     text_add(&script, "set terminal %s\nset output ", terminal);
     quote(&script, path);
     text_add(&script, "\nset title ");
-    quote(&script, title);
+    quote(&script, o->title);
     text_add(&script, " noenhanced\nset xlabel ");
     quote(&script, axes.x_label);
     text_add(&script, " noenhanced\nset ylabel ");
     quote(&script, axes.y_label);
     text_add(&script, " noenhanced\nset grid lc rgb \"#dddddd\"\nset border lc rgb \"#333333\"\n");
-    text_add(&script, folder_count > 1 || overlay ? "set key outside bottom center horizontal\n" : "unset key\n");
-    text_add(&script, "set datafile separator whitespace\nplot ");
+    text_add(&script, folder_count > 1 || overlay ? "set key bottom right opaque\n" : "unset key\n");
+    text_add(&script, "set datafile separator whitespace\n");
+    if (isfinite(o->low) && isfinite(o->high)) text_add(&script, "set xrange [%.9g:%.9g]\n", o->low, o->high);
+    text_add(&script, "plot ");
     for (int k = 0; k < folder_count; ++k) {
       static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e"};
       const char *slash = strrchr(folders[k], '/');

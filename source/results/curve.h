@@ -4,12 +4,16 @@
 
 #include "base/error.h"
 
+typedef struct CurveOptions {
+  const char *title, *overlay; /* overlay: a CSV file whose first two columns are drawn as points, or NULL */
+  double low, high;            /* ends of the horizontal axis; NaN: from the data */
+} CurveOptions;
+
 /** Columns of CSV files against each other; several folders give several lines.
- *  @param[in] folders   where the history files are
- *  @param[in] curve     "watch.column : watch.column", horizontal then vertical
- *  @param[in] overlay   a CSV file with two columns drawn as points (measured or published values), or NULL
- *  @param[in] path      .png, .svg or .pdf */
-int curve_draw(const char *const *folders, int folder_count, const char *curve, const char *overlay, const char *title,
+ *  @param[in] folders  where the history files are
+ *  @param[in] curve    "watch.column : watch.column", horizontal then vertical
+ *  @param[in] path     .png, .svg or .pdf */
+int curve_draw(const char *const *folders, int folder_count, const char *curve, const CurveOptions *options,
                const char *path, Error *error);
 
 /** A column of a CSV file by name (a unit in parentheses after it need not be given).

@@ -24,7 +24,8 @@ static const Field picture_fields[] = {
      "[azimuth, elevation] of the eye; from the front for flat bodies and aslant for others when absent", NULL, NULL,
      0},
     {"range", FIELD_POINT, offsetof(PictureSpec, range), "1", "", NULL,
-     "[lowest, highest] value of the colour scale, in the deck's units", NULL, NULL, 0},
+     "[lowest, highest] value of the colour scale, or of the horizontal axis of a curve, in the deck's units", NULL,
+     NULL, 0},
     {"broken bonds", FIELD_FLAG, offsetof(PictureSpec, broken_bonds), NULL, "no", NULL, "draw bonds that have broken",
      NULL, NULL, 0},
 };
@@ -326,8 +327,8 @@ static int by_depth(const void *a, const void *b)
 /** Flat squares, the nearest last: plane bodies, and plates seen from the front. */
 static int draw_squares(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view, bool deformed)
 {
-  /* Turned squares leave gaps at their corners: where the body is deformed they are drawn a little larger. */
-  const double larger = deformed ? 1.1 : 1;
+  /* Turned and parted squares would leave gaps: where the body is deformed they are drawn a little larger. */
+  const double larger = deformed ? 1.3 : 1;
   Depth *order = malloc(sizeof(Depth) * (size_t)(scene->count + 1));
   if (!order) return 1;
   for (int64_t n = 0; n < scene->count; ++n) order[n] = (Depth){scene->depth[n], n};

@@ -150,15 +150,8 @@ static void bond_row(const Watch *w, const Explicit *s, double *values)
 }
 static void load_row(const Watch *w, const Explicit *s, double *values)
 {
-  const LoadSpec *l = w->load;
-  double factor = history_factor(l->history, s->time), square = 0;
-  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
-  for (int v = 0; v < 5; ++v)
-    for (int k = 0; k < 3; ++k)
-      if (!isnan(given[v][k])) square += given[v][k] * given[v][k];
-  if (l->along) square = pow(isnan(l->along->displacement) ? l->along->velocity : l->along->displacement, 2);
-  values[0] = factor;
-  values[1] = factor * sqrt(square);
+  values[0] = history_factor(w->load->history, s->time);
+  values[1] = values[0] * load_magnitude(w->load);
 }
 static void energy_row(const Watch *w, const Explicit *s, double *values)
 {
@@ -178,10 +171,27 @@ static const Kind displacement_kind = {"x:length,y:length,z:length", displacemen
                        stress_row},
                   damage_kind = {"mean:1,largest:1", damage_row},
                   opening_kind = {"distance:length,opening:length", opening_row},
-                  bond_kind = {"stretch:1,intact:1", bond_row}, load_kind = {"factor:1,value:1", load_row},
+                  bond_kind = {"stretch:1,intact:1", bond_row},
                   energy_kind = {"kinetic:energy,internal:energy,external:energy,damping:energy,fracture:energy,"
                                  "imbalance:1,broken bonds:1",
                                  energy_row};
+/* The value of a load, in the unit of what it prescribes. */
+static const Kind load_kinds[] = {
+    {"factor:1,value:force per volume", load_row}, {"factor:1,value:force", load_row},
+    {"factor:1,value:acceleration", load_row},     {"factor:1,value:length", load_row},
+    {"factor:1,value:velocity", load_row},
+};
+
+static const Kind *load_kind(const LoadSpec *l)
+{
+  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
+  if (l->along) return &load_kinds[isnan(l->along->displacement) ? 4 : 3];
+  for (int v = 0; v < 4; ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!isnan(given[v][k])) return &load_kinds[v];
+  return &load_kinds[4];
+}
+
 enum { MOST_COLUMNS = 16 };
 
 static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
@@ -223,11 +233,13 @@ static int resolve(Watch *w, const Body *body, const Family *family, const Loadi
     w->kind = &energy_kind;
     return BRECCIA_OK;
   }
-  w->kind = &load_kind;
   for (int l = 0; l < loading->count; ++l)
     if (loading->loads[l].spec->name && !strcmp(loading->loads[l].spec->name, spec->load))
       w->load = loading->loads[l].spec;
-  if (w->load) return BRECCIA_OK;
+  if (w->load) {
+    w->kind = load_kind(w->load);
+    return BRECCIA_OK;
+  }
   return node_error(reader->document, section_place(spec, "load"), reader->error,
                     "load: no load has the name '%s'; give it one with 'name:'", spec->load);
 }
