@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "deck/document.h"
+#include "deck/interval.h"
 #include "deck/quantity.h"
 
 typedef struct Section Section;
@@ -111,10 +112,5 @@ void *section_find(const SectionList *list, const char *name);
 /** Says that `name` is none of the names in the list. */
 void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
                      const SectionList *list);
-
-/** True if `value` lies in an interval like "(0, inf)" or "[0, 1)"; NULL holds everything. */
-bool interval_contains(const char *interval, double value);
-/** "greater than 0", "at least 0 and less than 1", ... */
-void interval_describe(const char *interval, char *words, size_t size);
 
 #endif

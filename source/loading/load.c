@@ -116,6 +116,22 @@ static int check_constraints(const Loading *loading, const Particles *particles,
   return status;
 }
 
+/** In the plane nothing moves along z. */
+static int check_plane(const LoadSpec *spec, const DeckReader *reader)
+{
+  const struct {
+    const char *key;
+    const double *value;
+  } vectors[] = {{"body force", spec->body_force}, {"force", spec->force},
+                 {"gravity", spec->gravity},       {"displacement", spec->displacement},
+                 {"velocity", spec->velocity},     {"along", spec->along ? spec->along->direction : NULL}};
+  for (int v = 0; v < 6; ++v)
+    if (vectors[v].value && !isnan(vectors[v].value[2]) && vectors[v].value[2] != 0)
+      return node_error(reader->document, section_place(spec, vectors[v].key), reader->error,
+                        "%s: has a part along z, but the body is plane", vectors[v].key);
+  return BRECCIA_OK;
+}
+
 int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
                    const SectionList *selections)
 {
@@ -132,6 +148,7 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
     Reference reference = load->spec->on;
     if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
     int bad = selection_create(&load->selection, body, reader, selections, &reference);
+    if (!bad && body->plane) bad = check_plane(load->spec, reader);
     if (bad) status = bad;
     for (int64_t n = 0; n < load->selection.count; ++n)
       load->volume += body->particles.volume[load->selection.places[n]];

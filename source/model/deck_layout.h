@@ -5,6 +5,7 @@
 #include "constitutive/law.h"
 #include "deck/describe.h"
 #include "results/picture.h"
+#include "results/result_file.h"
 #include "results/watch.h"
 
 typedef struct UnitsSpec {

@@ -52,7 +52,10 @@ static int check_names(const breccia_model *model, const Domain *domain, const T
 {
   int status = BRECCIA_OK;
   for (int k = 0; k < names->count; ++k) {
-    if (output_field_find(names->items[k]) || history_field_find(domain, names->items[k]) >= 0) continue;
+    bool known = output_field_find(names->items[k]) != NULL;
+    for (int m = 0; m < domain->material_count; ++m)
+      known |= history_field_index(&domain->materials[m], names->items[k]) >= 0;
+    if (known) continue;
     Text all = {0};
     for (int f = 0; output_field_at(f); ++f) text_add(&all, "%s%s", f ? ", " : "", output_field_at(f)->name);
     status = node_error(model->document, place, model->reader.error, "there is no field '%s'; the fields are %s%s",

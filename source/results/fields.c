@@ -95,7 +95,7 @@ const OutputField *output_field_find(const char *name)
   return NULL;
 }
 
-static int history_index(const Material *m, const char *name)
+int history_field_index(const Material *m, const char *name)
 {
   char word[64];
   for (int k = 0; m->law->history_name && k < m->history_values; ++k) {
@@ -104,21 +104,4 @@ static int history_index(const Material *m, const char *name)
     if (*word && !strcmp(word, name)) return k;
   }
   return -1;
-}
-
-int history_field_find(const Domain *d, const char *name)
-{
-  for (int m = 0; m < d->material_count; ++m) {
-    int k = history_index(&d->materials[m], name);
-    if (k >= 0) return k;
-  }
-  return -1;
-}
-
-double history_field_value(const Domain *d, const char *name, int32_t place)
-{
-  const Material *m = domain_material(d, place);
-  int k = history_index(m, name);
-  if (k < 0) return 0;
-  return d->points.committed[d->points.history_start[place / SLICE] + (place % SLICE) * m->history_values + k];
 }

@@ -17,9 +17,7 @@ typedef struct OutputField {
 const OutputField *output_field_at(int k);
 const OutputField *output_field_find(const char *name);
 
-/** Index of a named history number of any law of the domain, or -1: such numbers are fields too, one component. */
-int history_field_find(const Domain *domain, const char *name);
-/** Value of a named history number at a place; 0 where the material has none of that name. */
-double history_field_value(const Domain *domain, const char *name, int32_t place);
+/** Place of a named number in a material's history rows, or -1. Such numbers are fields too, of one component. */
+int history_field_index(const Material *material, const char *name);
 
 #endif

@@ -2,7 +2,8 @@
 #ifndef BRECCIA_RESULTS_PICTURE_H
 #define BRECCIA_RESULTS_PICTURE_H
 
-#include "results/result_file.h"
+#include "deck/section.h"
+#include "results/result_view.h"
 
 typedef struct PictureSpec {
   SectionHead head;

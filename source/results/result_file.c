@@ -1,5 +1,6 @@
 #include "results/result_file.h"
 
+#include "results/result_view.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <hdf5.h>
@@ -78,15 +79,6 @@ static hid_t dataset_create(hid_t where, const char *name, hid_t type, int colum
   return set;
 }
 
-static hsize_t dataset_rows(hid_t set)
-{
-  hsize_t size[2] = {0, 1};
-  hid_t space = H5Dget_space(set);
-  H5Sget_simple_extent_dims(space, size, NULL);
-  H5Sclose(space);
-  return size[0];
-}
-
 /** Writes rows at `first`, growing or cutting the dataset to end there. */
 static int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns, hsize_t first, hsize_t rows,
                          const void *values)
@@ -130,19 +122,6 @@ static int attribute_text(hid_t where, const char *name, const char *words)
   return bad < 0;
 }
 
-static void attribute_read_text(hid_t where, const char *name, char *words, size_t size)
-{
-  *words = 0;
-  if (H5Aexists(where, name) <= 0) return;
-  hid_t attribute = H5Aopen(where, name, H5P_DEFAULT), type = H5Aget_type(attribute);
-  size_t length = H5Tget_size(type);
-  char *whole = calloc(1, length + 1);
-  if (whole && !H5Tis_variable_str(type) && H5Aread(attribute, type, whole) >= 0) snprintf(words, size, "%s", whole);
-  free(whole);
-  H5Tclose(type);
-  H5Aclose(attribute);
-}
-
 /* ---- building the file ---- */
 
 static const char *const cell_kinds[] = {"Vertices", "Lines", "Polygons", "Strips"};
@@ -169,17 +148,30 @@ static int write_cells(hid_t root, int64_t particles)
   return bad;
 }
 
-static void field_values(const ResultFile *file, const Domain *d, const Column *column, double *values)
+/** A named history number of all particles; 0 where the material has none of that name. */
+static void history_values(const Domain *d, const char *name, double *values)
 {
-  (void)file;
-#pragma omp parallel for schedule(static)
-  for (int64_t n = 0; n < d->particles->count; ++n) {
-    int32_t place = d->particles->place_of[n];
-    if (column->field)
-      column->field->value(d, place, values + n * column->components);
-    else
-      values[n] = history_field_value(d, column->name, place);
+  const Particles *p = d->particles;
+  for (int m = 0; m < d->material_count; ++m) {
+    int k = history_field_index(&d->materials[m], name);
+    for (int64_t n = 0; n < p->count; ++n) {
+      int64_t slice = p->place_of[n] / SLICE, lane = p->place_of[n] % SLICE;
+      if (d->material[slice] != m) continue;
+      const double *rows = d->points.committed + d->points.history_start[slice];
+      values[n] = k < 0 ? 0 : rows[lane * d->materials[m].history_values + k];
+    }
   }
+}
+
+static void field_values(const Domain *d, const Column *column, double *values)
+{
+  if (!column->field) {
+    history_values(d, column->name, values);
+    return;
+  }
+#pragma omp parallel for schedule(static)
+  for (int64_t n = 0; n < d->particles->count; ++n)
+    column->field->value(d, d->particles->place_of[n], values + n * column->components);
 }
 
 static int create_sets(hid_t root, const ResultFile *file)
@@ -388,8 +380,6 @@ static int write_xdmf(const ResultFile *file)
                column->name,
                k == 1   ? "Scalar"
                : k == 3 ? "Vector"
-               : k == 6 ? "Tensor6"
-               : k == 9 ? "Tensor"
                         : "Matrix",
                shape, k > 1 ? 2 : 1, slab, file->single ? 4 : 8, all, column->name);
     }
@@ -447,7 +437,7 @@ static int append(ResultFile *file, const char *path, const Domain *d)
   int bad = !values || root < 0 || data < 0;
   for (int c = 0; c < file->column_count && !bad; ++c) {
     const Column *column = &file->columns[c];
-    field_values(file, d, column, values);
+    field_values(d, column, values);
     bad = dataset_write(data, column->name, H5T_NATIVE_DOUBLE, column->components,
                         (hsize_t)((file->writes - 1) * file->particles), (hsize_t)file->particles, values);
   }
@@ -546,143 +536,4 @@ void result_file_destroy(ResultFile **file)
   free((*file)->steps);
   free(*file);
   *file = NULL;
-}
-
-/* ---- reading ---- */
-
-static void *read_all(hid_t where, const char *name, hid_t type, size_t size, hsize_t *rows)
-{
-  hid_t set = H5Dopen2(where, name, H5P_DEFAULT);
-  if (set < 0) return NULL;
-  hid_t space = H5Dget_space(set);
-  hssize_t count = H5Sget_simple_extent_npoints(space);
-  if (rows) *rows = dataset_rows(set);
-  void *values = calloc((size_t)(count > 0 ? count : 1), size);
-  if (values && count > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
-    free(values);
-    values = NULL;
-  }
-  H5Sclose(space);
-  H5Dclose(set);
-  return values;
-}
-
-int result_view_open(ResultView *view, const char *path, Error *error)
-{
-  *view = (ResultView){.file = -1};
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  view->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (view->file < 0) {
-    struct stat status;
-    return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
-                     stat(path, &status) ? "there is no such file" : "is not a result file");
-  }
-  hid_t root = H5Gopen2(view->file, "VTKHDF", H5P_DEFAULT), own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
-  hsize_t steps = 0, particles = 0;
-  if (root >= 0 && own >= 0) {
-    view->positions = read_all(root, "Points", H5T_NATIVE_DOUBLE, sizeof(double), &particles);
-    view->times = read_all(root, "Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps);
-    view->step_numbers = read_all(root, "Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL);
-    view->spacings = read_all(own, "Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL);
-    attribute_read_text(own, "title", view->title, sizeof view->title);
-    attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
-    attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
-    int plane = 0;
-    hid_t attribute = H5Aopen(own, "plane", H5P_DEFAULT);
-    if (attribute >= 0) {
-      H5Aread(attribute, H5T_NATIVE_INT, &plane);
-      H5Aclose(attribute);
-    }
-    view->plane = plane;
-  }
-  if (root >= 0) H5Gclose(root);
-  if (own >= 0) H5Gclose(own);
-  if (!view->positions || !view->times || !view->step_numbers || !view->spacings) {
-    result_view_close(view);
-    return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
-  }
-  view->particles = (int64_t)particles;
-  view->steps = (int)steps;
-  for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
-  return BRECCIA_OK;
-}
-
-void result_view_close(ResultView *view)
-{
-  if (view->file >= 0) H5Fclose(view->file);
-  free(view->positions);
-  free(view->times);
-  free(view->step_numbers);
-  free(view->spacings);
-  *view = (ResultView){.file = -1};
-}
-
-static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *names)
-{
-  (void)group, (void)info;
-  Text *text = names;
-  text_add(text, "%s%s", text->length ? ", " : "", name);
-  return 0;
-}
-
-void result_view_fields(const ResultView *view, Text *names)
-{
-  hid_t data = H5Gopen2(view->file, "VTKHDF/PointData", H5P_DEFAULT);
-  if (data < 0) return;
-  H5Literate(data, H5_INDEX_NAME, H5_ITER_INC, NULL, add_name, names);
-  H5Gclose(data);
-}
-
-double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error)
-{
-  char path[256];
-  snprintf(path, sizeof path, "VTKHDF/PointData/%s", field);
-  hid_t data = H5Gopen2(view->file, "VTKHDF/PointData", H5P_DEFAULT);
-  hid_t set = data >= 0 && !strchr(field, '/') && H5Lexists(data, field, H5P_DEFAULT) > 0
-                  ? H5Dopen2(view->file, path, H5P_DEFAULT)
-                  : -1;
-  if (data >= 0) H5Gclose(data);
-  if (set < 0) {
-    Text names = {0};
-    result_view_fields(view, &names);
-    error_add(error, BRECCIA_USER_ERROR, "there is no field '%s' in the result file; it holds %s", field,
-              names.length ? names.characters : "none");
-    text_free(&names);
-    return NULL;
-  }
-  hsize_t size[2] = {0, 1};
-  hid_t space = H5Dget_space(set);
-  int rank = H5Sget_simple_extent_dims(space, size, NULL);
-  *components = rank > 1 ? (int)size[1] : 1;
-  hsize_t start[2] = {(hsize_t)step * (hsize_t)view->particles, 0}, count[2] = {(hsize_t)view->particles, size[1]};
-  double *values = calloc((size_t)view->particles * (size_t)*components, sizeof(double));
-  hid_t memory = H5Screate_simple(rank, count, NULL);
-  int bad = !values || start[0] + count[0] > size[0] ||
-            H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
-            H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) < 0;
-  if (unit) attribute_read_text(set, "unit", unit, 64);
-  H5Sclose(memory);
-  H5Sclose(space);
-  H5Dclose(set);
-  if (bad) {
-    free(values);
-    error_add(error, BRECCIA_FAILURE, "field '%s' cannot be read for step %d", field, step);
-    return NULL;
-  }
-  return values;
-}
-
-int64_t *result_view_broken(const ResultView *view, int step, int64_t *count)
-{
-  hsize_t rows = 0;
-  hid_t own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
-  int64_t *all = own >= 0 ? read_all(own, "BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &rows) : NULL;
-  if (own >= 0) H5Gclose(own);
-  *count = 0;
-  for (hsize_t k = 0; all && k < rows && all[3 * k] <= view->step_numbers[step]; ++k) {
-    all[2 * *count] = all[3 * k + 1];
-    all[2 * *count + 1] = all[3 * k + 2];
-    ++*count;
-  }
-  return all;
 }

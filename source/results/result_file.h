@@ -42,29 +42,4 @@ int result_file_resume(ResultFile **file, const char *folder, const Domain *doma
 int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
 void result_file_destroy(ResultFile **file);
 
-/* ---- reading ---- */
-
-typedef struct ResultView {
-  int64_t file; /* HDF5 handle */
-  int64_t particles;
-  int steps;
-  int64_t *step_numbers;
-  double *times, *positions; /* [particles][3] */
-  double spacing;
-  double *spacings; /* [particles] */
-  bool plane;
-  char title[256], length_unit[64], time_unit[64];
-} ResultView;
-
-int result_view_open(ResultView *view, const char *path, Error *error);
-void result_view_close(ResultView *view);
-/** Names of the fields, comma separated. */
-void result_view_fields(const ResultView *view, Text *names);
-/** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field.
- *  @param[out] unit  64 bytes */
-double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit,
-                         Error *error);
-/** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed. */
-int64_t *result_view_broken(const ResultView *view, int step, int64_t *count);
-
 #endif

@@ -99,6 +99,9 @@ refuse 's/^solve: .*//' 1:1 "missing key 'solve'"
 refuse 's/^title: .*/title: [/' '' 'not valid YAML'
 refuse 's/^title: .*/title: *other/' '' 'aliases (*name) are not understood'
 
+refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/\[1, 0, 0\]/[1, 0, 2]/; s/^peri.*/peridynamics: {space: plane strain}/' \
+  20:27 'has a part along z, but the body is plane'
+
 # Files that are no decks at all
 for content in '' '- a' 'words' '42'; do
   printf '%s' "$content" > "$work/deck.yaml"

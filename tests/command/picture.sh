@@ -25,6 +25,11 @@ equal "all steps" "$(wc -l < out)" 3
 contains "curve" "$(cat curve.svg)" "<svg"
 printf 'a,b\n0,0\n1,1\n' > measured.csv
 "$breccia" plot bar bar --curve "end.x:end.y" --overlay measured.csv --output curve.png > out 2>&1 || fail "overlay: $(cat out)"
+# histories of laws are fields too
+sed 's/model: elastic.*Poisson ratio: 0.2/model: multi-yield-j2, density: 1, shear modulus: 60, bulk modulus: 100, octahedral strength: 1e-3/
+     s/damage]/damage, active surface]/' bar.yaml > clay.yaml
+"$breccia" run clay.yaml > out 2>&1 || fail "clay: $(cat out)"
+"$breccia" plot clay --field "active surface" --output surface.png > out 2>&1 || fail "active surface: $(cat out)"
 wrong() { # wrong WORDS ARGUMENTS ...
   words=$1
   shift

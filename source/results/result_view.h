@@ -1,0 +1,32 @@
+/* Result files read back, for pictures and for runs that are taken up again. */
+#ifndef BRECCIA_RESULTS_RESULT_VIEW_H
+#define BRECCIA_RESULTS_RESULT_VIEW_H
+
+#include "base/error.h"
+#include "base/text.h"
+#include <stdint.h>
+
+typedef struct ResultView {
+  int64_t file; /* HDF5 handle */
+  int64_t particles;
+  int steps;
+  int64_t *step_numbers;
+  double *times, *positions; /* [particles][3] */
+  double spacing;
+  double *spacings; /* [particles] */
+  bool plane;
+  char title[256], length_unit[64], time_unit[64];
+} ResultView;
+
+int result_view_open(ResultView *view, const char *path, Error *error);
+void result_view_close(ResultView *view);
+/** Names of the fields, comma separated. */
+void result_view_fields(const ResultView *view, Text *names);
+/** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field.
+ *  @param[out] unit  64 bytes */
+double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit,
+                         Error *error);
+/** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed. */
+int64_t *result_view_broken(const ResultView *view, int step, int64_t *count);
+
+#endif
