@@ -214,6 +214,39 @@ static void weighted_volume_of_whole_cells_matches_peridigm(void **state)
   assert_near(weighted_volume(17, "partial-beyond"), exact, 0.02 * exact);
 }
 
+static void weights_of_bonds_are_influence_times_volume(void **state)
+{
+  (void)state;
+  /* docs/theory.md 1, at the bond of length 2 spacings of a horizon of 3 spacings: q = 2/3, spacing 0.5. */
+  const double q = 2.0 / 3;
+  const struct {
+    const char *name;
+    double value;
+  } cases[] = {{"constant", 1},
+               {"conical", 1 - q},
+               {"inverse", 1},
+               {"inverse-square", 1},
+               {"quartic", pow(1 - q * q, 2)},
+               {"gaussian", exp(-pow(q / 0.5, 2))},
+               {"cubic-spline", 4.0 / 3 * pow(1 - q, 3)}};
+  for (int k = 0; k < 7; ++k) {
+    breccia_model *model =
+        model_of(MATERIAL SOLVE "peridynamics: {horizon: 3 spacings, influence: %s}\n"
+                                "body: {b: {material: m, spacing: 0.5, shape: {box: {particles: [9, 9, 9]}}}}\n",
+                 cases[k].name);
+    const Family *f = &model->domain.family;
+    int found = 0;
+    for (int row = 0; row < f->pattern_count; ++row) {
+      if (fabs(f->patterns[row].length - 1) > 1e-12) continue;
+      ++found;
+      assert_near(f->patterns[row].weight, cases[k].value * 0.125, 1e-15);
+      assert_near(f->patterns[row].weighted_xi[0], f->patterns[row].weight * f->patterns[row].xi[0], 1e-18);
+    }
+    assert_int_equal(found, 6);
+    breccia_model_destroy(&model);
+  }
+}
+
 static void particles_on_top_of_each_other_are_refused(void **state)
 {
   (void)state;
@@ -255,6 +288,7 @@ int main(void)
       cmocka_unit_test(a_cut_through_a_row_of_particles_parts_the_body_beside_it),
       cmocka_unit_test(bonds_come_in_pairs_with_opposite_vectors_and_break_on_both_sides),
       cmocka_unit_test(weighted_volume_of_whole_cells_matches_peridigm),
+      cmocka_unit_test(weights_of_bonds_are_influence_times_volume),
       cmocka_unit_test(particles_on_top_of_each_other_are_refused),
       cmocka_unit_test(selections_hold_what_they_say),
   };

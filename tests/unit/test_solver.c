@@ -179,6 +179,26 @@ static void broken_bonds_stay_broken_and_damage_grows(void **state)
   breccia_model_destroy(&m);
 }
 
+static void looking_only_where_bonds_may_break_misses_none(void **state)
+{
+  (void)state;
+  /* A copy that looks at every bond in every step breaks the same bonds at the same steps. */
+  breccia_model *lazy = shaken_plate(""), *thorough = shaken_plate("");
+  int64_t skipped = 0;
+  for (int k = 0; k < 600; ++k) {
+    breccia_model_step(lazy, 1, NULL);
+    memset(thorough->domain.look_again, 0, sizeof(double) * (size_t)thorough->domain.particles->slices);
+    breccia_model_step(thorough, 1, NULL);
+    assert_int_equal(lazy->domain.broken_count, thorough->domain.broken_count);
+    for (int64_t s = 0; s < lazy->domain.particles->slices; ++s)
+      skipped += lazy->domain.look_again[s] > lazy->domain.motion;
+  }
+  assert_true(lazy->domain.broken_count > 0);
+  assert_true(skipped > 300 * lazy->domain.particles->slices);
+  breccia_model_destroy(&lazy);
+  breccia_model_destroy(&thorough);
+}
+
 static void prescribed_particles_go_where_they_are_told(void **state)
 {
   (void)state;
@@ -268,6 +288,7 @@ int main(void)
       cmocka_unit_test(the_stable_step_is_stable_and_a_tenth_more_is_not),
       cmocka_unit_test(threads_do_not_change_a_bit),
       cmocka_unit_test(broken_bonds_stay_broken_and_damage_grows),
+      cmocka_unit_test(looking_only_where_bonds_may_break_misses_none),
       cmocka_unit_test(prescribed_particles_go_where_they_are_told),
       cmocka_unit_test(a_burst_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),
