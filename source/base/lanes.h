@@ -45,12 +45,15 @@ LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
   return (Lanes){from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
 }
 
-/** All bits set in the lanes whose bit (0 to 3) is set in `bits`. */
+/** All bits set in the lanes whose bit (0 to 3) is set in `bits`. Looked up: computing it took two registers that the sweeps
+ *  need for their sums. */
 LANES_INLINE LaneMask lanes_mask(unsigned bits)
 {
-  const LaneMask bit = {1, 2, 4, 8};
-  int64_t all = (int64_t)bits;
-  return ((LaneMask){all, all, all, all} & bit) != 0;
+  static const LaneMask masks[16] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
+                                     {0, 0, -1, 0},  {-1, 0, -1, 0},  {0, -1, -1, 0},  {-1, -1, -1, 0},
+                                     {0, 0, 0, -1},  {-1, 0, 0, -1},  {0, -1, 0, -1},  {-1, -1, 0, -1},
+                                     {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
+  return masks[bits];
 }
 
 /** The lanes of `lanes` where the mask is set, zero elsewhere. */

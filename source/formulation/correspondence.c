@@ -189,7 +189,7 @@ static void *create(const FormulationParts *parts, Error *error)
 
 /** The bonds of half a slice in one slot: where the four neighbours are, and their reference vectors. */
 typedef struct Slot {
-  bool lattice, whole;
+  bool lattice;
   int64_t base;         /* lattice: place of the first neighbour */
   const int32_t *index; /* stored: their places */
   LaneMask mask;
@@ -203,7 +203,6 @@ LANES_INLINE bool slot_open(const Correspondence *c, int64_t slot, int64_t place
   unsigned bits = (unsigned)f->intact[slot] >> (LANES * half) & 15u;
   if (!bits) return false;
   s->lattice = lattice;
-  s->whole = bits == 15u;
   s->mask = lanes_mask(bits);
   if (lattice) {
     const Pattern *row = &f->patterns[f->pattern[slot]];
@@ -229,7 +228,7 @@ LANES_INLINE Lanes slot_read(const Slot *s, const double *array)
 
 LANES_INLINE Lanes slot_intact(const Slot *s, Lanes value)
 {
-  return s->whole ? value : lanes_where(s->mask, value);
+  return lanes_where(s->mask, value);
 }
 
 /* Nine sums and what they are made from just fit 16 registers. The three further sums of the control go in a loop of their
@@ -249,30 +248,40 @@ LANES_INLINE void deform_slots(const Correspondence *c, int64_t from, int64_t to
   }
 }
 
-LANES_INLINE void stretch_slots(const Correspondence *c, int64_t from, int64_t to, int64_t place, int half,
-                                bool lattice, Lanes stretch[3])
+LANES_INLINE void stretch_slots(const Correspondence *c, int64_t from, int64_t to, int64_t place, bool lattice,
+                                Lanes stretch[2][3])
 {
   double *const *u = c->particles->displacement;
-  const Lanes own[3] = {lanes_load(u[0] + place), lanes_load(u[1] + place), lanes_load(u[2] + place)};
-  for (int64_t slot = from; slot < to; ++slot) {
-    Slot s;
-    if (!slot_open(c, slot, place, half, lattice, &s)) continue;
-    for (int k = 0; k < 3; ++k) stretch[k] += slot_intact(&s, slot_read(&s, u[k]) - own[k]) * s.weight;
-  }
+  Lanes own[2][3];
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + place + LANES * half);
+  for (int64_t slot = from; slot < to; ++slot)
+    for (int half = 0; half < 2; ++half) {
+      Slot s;
+      if (!slot_open(c, slot, place + LANES * half, half, lattice, &s)) continue;
+      for (int k = 0; k < 3; ++k) stretch[half][k] += slot_intact(&s, slot_read(&s, u[k]) - own[half][k]) * s.weight;
+    }
 }
 
-LANES_INLINE void deform_half(const Correspondence *c, int64_t slice, int half, bool control)
+LANES_INLINE void stretch_slice(const Correspondence *c, int64_t slice)
+{
+  const Family *f = c->family;
+  Lanes stretch[2][3] = {{{0}}};
+  stretch_slots(c, f->first[slice], f->stored[slice], slice * SLICE, true, stretch);
+  if (f->stored[slice] < f->first[slice + 1])
+    stretch_slots(c, f->stored[slice], f->first[slice + 1], slice * SLICE, false, stretch);
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) lanes_store(c->stretch[k] + slice * SLICE + LANES * half, stretch[half][k]);
+}
+
+LANES_INLINE void deform_half(const Correspondence *c, int64_t slice, int half)
 {
   const Family *f = c->family;
   int64_t place = slice * SLICE + LANES * half, first = f->first[slice], stored = f->stored[slice];
   int64_t last = f->first[slice + 1];
-  Lanes tensor[9] = {{0}}, stretch[3] = {{0}};
+  Lanes tensor[9] = {{0}};
   deform_slots(c, first, stored, place, half, true, tensor);
   if (stored < last) deform_slots(c, stored, last, place, half, false, tensor);
-  if (control) {
-    stretch_slots(c, first, stored, place, half, true, stretch);
-    if (stored < last) stretch_slots(c, stored, last, place, half, false, stretch);
-  }
 
   Lanes inverse[6], g[9];
   for (int k = 0; k < 6; ++k) inverse[k] = lanes_load(c->inverse[k] + place);
@@ -281,7 +290,6 @@ LANES_INLINE void deform_half(const Correspondence *c, int64_t slice, int half, 
       g[3 * r + k] = tensor[3 * r] * inverse[symmetric_place[k]] + tensor[3 * r + 1] * inverse[symmetric_place[3 + k]] +
                      tensor[3 * r + 2] * inverse[symmetric_place[6 + k]];
   for (int k = 0; k < 9; ++k) lanes_store(c->gradient[k] + place, g[k]);
-  for (int k = 0; control && k < 3; ++k) lanes_store(c->stretch[k] + place, stretch[k]);
   for (int k = 0; k < 6; ++k) {
     if (k == ZZ && c->points->space == SPACE_PLANE_STRESS) continue; /* that strain is the law's affair */
     int r = symmetric_row[k], col = symmetric_column[k];
@@ -296,13 +304,10 @@ static void deform(void *formulation, int64_t first, int64_t last)
 {
   const Correspondence local = *(const Correspondence *)formulation,
                        *c = &local; /* so that stores are seen not to change it */
-  bool control = c->control != CONTROL_NONE;
-  for (int64_t slice = first; slice < last; ++slice)
-    for (int half = 0; half < SLICE / LANES; ++half)
-      if (control)
-        deform_half(c, slice, half, true);
-      else
-        deform_half(c, slice, half, false);
+  for (int64_t slice = first; slice < last; ++slice) {
+    for (int half = 0; half < SLICE / LANES; ++half) deform_half(c, slice, half);
+    if (c->control != CONTROL_NONE) stretch_slice(c, slice);
+  }
 }
 
 LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place)
