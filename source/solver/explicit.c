@@ -305,7 +305,7 @@ Energy explicit_energy(const Explicit *s)
   Energy e = {.kinetic = s->kinetic,
               .internal = s->bond_work - s->domain->fracture_energy,
               .external = s->external_work,
-              .damping = s->damping_work,
+              .damping = s->spec->damping > 0 || s->spec->local_damping > 0 ? s->damping_work : 0, /* else roundings */
               .fracture = s->domain->fracture_energy};
   double error = e.external + s->kinetic_at_start - e.kinetic - e.internal - e.damping - e.fracture;
   double largest = fmax(fmax(fabs(e.kinetic), fabs(s->bond_work)), fmax(fabs(e.external), fabs(e.damping)));
