@@ -52,6 +52,10 @@ static int run(int argc, char **argv, const Verb *verb)
   long long steps = 0, threads = 0;
   if (values[STEPS] && read_whole(values[STEPS], "steps", 1, &steps)) return 2;
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return 2;
+  /* From here on: what is stopped while it is still being set up leaves a checkpoint too. */
+  struct sigaction action = {.sa_handler = on_signal};
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
   const char *deck = argv[first];
   breccia_error *error = breccia_error_create();
   const breccia_options wishes = {.threads = (int)(threads > 4096 ? 4096 : threads), .force = values[FORCE] != NULL};
@@ -66,9 +70,6 @@ static int run(int argc, char **argv, const Verb *verb)
   }
   size_t told = strlen(breccia_model_warnings(model));
   char *folder = values[OUTPUT] ? text_format("%s", values[OUTPUT]) : result_folder(deck);
-  struct sigaction action = {.sa_handler = on_signal};
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
   const breccia_run wish = {.folder = folder,
                             .restart = values[RESTART] != NULL,
                             .steps = steps,

@@ -19,6 +19,11 @@ C
     cmake --build "$work/client/build" >> "$work/log" 2>&1 || fail "a client does not build: $(tail -5 "$work/log")"
   "$work/client/build/client" > "$work/out" 2>&1 || fail "the client fails: $(cat "$work/out")"
   contains "client" "$(cat "$work/out")" "320 particles after 4000 steps"
+  # The prefix has a space in it: pkg-config writes it escaped, eval reads it.
+  flags=$(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --cflags --libs breccia) || fail "pkg-config does not find the library"
+  eval "cc \"$work/client/embedding.c\" $flags -lm -o \"$work/direct\"" || fail "no client builds with pkg-config"
+  LD_LIBRARY_PATH=$lib "$work/direct" > "$work/out" 2>&1 || fail "the client built with pkg-config fails: $(cat "$work/out")"
+  contains "client by pkg-config" "$(cat "$work/out")" "320 particles after 4000 steps"
   foreign=$(nm -D --defined-only "$lib/libbreccia.so" | awk '{print $3}' | grep -v '^breccia_' || true)
   equal "names that the library exports beside its own" "$foreign" ""
 fi
