@@ -86,8 +86,29 @@ static void build(Builder *builder, struct fy_node *from, Node *node, int depth)
   }
 }
 
+/** Line of the first directive (% at the start of a line), or 0. The library scans some of them for ever, and a deck has no
+ *  use for any. */
+static int directive_line(const char *text, size_t length)
+{
+  int line = 1;
+  bool start = true;
+  for (size_t k = 0; k < length; ++k) {
+    if (start && text[k] == '%') return line;
+    bool mark = line == 1 && k < 3 && (unsigned char)text[k] >= 0xbb; /* of byte order */
+    if (!mark) start = text[k] == '\n' || text[k] == '\r';
+    line += text[k] == '\n';
+  }
+  return 0;
+}
+
 Document *document_parse(const char *text, size_t length, const char *name, Error *error)
 {
+  int directive = directive_line(text, length);
+  if (directive) {
+    error_add(error, BRECCIA_USER_ERROR, "%s:%d:1: not valid YAML for a deck: a line must not begin with %%", name,
+              directive);
+    return NULL;
+  }
   Document *document = calloc(1, sizeof *document);
   Arena *arena = arena_create();
   if (!document || !arena || !(document->root = arena_zeroed(arena, sizeof(Node)))) {

@@ -4,5 +4,5 @@ set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/fuzz/corpus
 cp examples/*/*.yaml build/fuzz/corpus
-LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_deck -max_total_time="$1" -max_len=4096 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
+LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_deck -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=4096 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
   -dict=tests/fuzz/deck.dict -verbosity=0 -print_final_stats=1 build/fuzz/corpus
