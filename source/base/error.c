@@ -58,10 +58,3 @@ int error_count(const Error *error)
 {
   return error ? error->count : 0;
 }
-
-void error_clear(Error *error)
-{
-  if (!error) return;
-  text_free(&error->text);
-  error->count = 0;
-}

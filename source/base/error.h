@@ -15,7 +15,4 @@ int error_add(Error *error, int status, const char *format, ...) __attribute__((
 /** @return the number of lines added so far */
 int error_count(const Error *error);
 
-/** Forgets all lines. */
-void error_clear(Error *error);
-
 #endif

@@ -83,8 +83,3 @@ double material_young(const Material *material)
 {
   return 9 * material->bulk * material->shear / (3 * material->bulk + material->shear);
 }
-
-double material_constrained(const Material *material)
-{
-  return material->bulk + 4 * material->shear / 3;
-}

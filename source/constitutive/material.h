@@ -31,7 +31,4 @@ void material_destroy(Material *material);
 
 /** Young's modulus of the undamaged material. */
 double material_young(const Material *material);
-/** Constrained modulus K + 4 G / 3, which sets the speed of pressure waves. */
-double material_constrained(const Material *material);
-
 #endif

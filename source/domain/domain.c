@@ -246,11 +246,6 @@ double domain_damage(const Domain *d, int32_t place)
   return whole > 0 ? fmax(0, 1 - family_volume(&d->family, place) / whole) : 0;
 }
 
-const Material *domain_material(const Domain *d, int64_t place)
-{
-  return &d->materials[d->material[place / SLICE]];
-}
-
 size_t domain_particle_bytes(const Domain *d)
 {
   size_t places = (size_t)d->particles->places;

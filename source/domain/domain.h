@@ -70,9 +70,6 @@ int domain_record(Domain *domain, const BrokenBond *bond);
 /** Broken share of the family of a place, 0 to 1. */
 double domain_damage(const Domain *domain, int32_t place);
 
-/** Material of a place. */
-const Material *domain_material(const Domain *domain, int64_t place);
-
 /** Bytes in particles and points; in bonds; in the formulation. */
 size_t domain_particle_bytes(const Domain *domain);
 size_t domain_bytes(const Domain *domain);

@@ -45,11 +45,6 @@ static const Influence influences[] = {
 };
 enum { COUNT = sizeof influences / sizeof *influences };
 
-const Influence *influence_at(int k)
-{
-  return k < COUNT ? &influences[k] : 0;
-}
-
 const Influence *influence_find(const char *name)
 {
   for (int k = 0; k < COUNT; ++k)

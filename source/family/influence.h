@@ -7,8 +7,6 @@ typedef struct Influence {
   double (*value)(double q, double length);
 } Influence;
 
-/** @return the k-th influence function, or NULL after the last */
-const Influence *influence_at(int k);
 const Influence *influence_find(const char *name);
 /** k-th name, for the deck. */
 const char *influence_word(int k);
