@@ -130,13 +130,20 @@ static double force_magnitude(const Particles *p, const Span *span)
 
 void domain_forces(Domain *d)
 {
+  _Alignas(64) double carry[CARRY * BLOCK];
+#pragma omp for schedule(static)
+  for (int64_t b = 0; b < d->block_count; ++b)
+    d->type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {
     Span span = d->blocks[b];
-    d->type->deform(d->formulation, span.first, span.last);
+    d->type->deform(d->formulation, span.first, span.last, carry);
     d->block_failed[b] = points_update(&d->points, span.first, span.last, NULL);
-    d->type->respond(d->formulation, span.first, span.last);
+    d->type->respond(d->formulation, span.first, span.last, carry);
   }
+#pragma omp for schedule(static)
+  for (int64_t b = 0; b < d->block_count; ++b)
+    d->type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {
     d->type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
@@ -156,13 +163,18 @@ void domain_forces(Domain *d)
 
 void domain_resume(Domain *d)
 {
+  _Alignas(64) double carry[CARRY * BLOCK];
   for (int64_t n = 0; n < d->broken_count; ++n) {
     d->type->renew(d->formulation, d->particles->place_of[d->broken[n].a] / SLICE);
     d->type->renew(d->formulation, d->particles->place_of[d->broken[n].b] / SLICE);
+    lattice_rows_mark(&d->family, d->particles->place_of[d->broken[n].a] / SLICE);
+    lattice_rows_mark(&d->family, d->particles->place_of[d->broken[n].b] / SLICE);
   }
+  for (int64_t b = 0; b < d->block_count; ++b)
+    d->type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
   for (int64_t b = 0; b < d->block_count; ++b) {
-    d->type->deform(d->formulation, d->blocks[b].first, d->blocks[b].last);
-    d->type->respond(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    d->type->deform(d->formulation, d->blocks[b].first, d->blocks[b].last, carry);
+    d->type->respond(d->formulation, d->blocks[b].first, d->blocks[b].last, carry);
   }
 }
 

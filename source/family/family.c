@@ -18,34 +18,40 @@ static double volume_share(VolumeCorrection correction, double length, double ho
   return fmax(0, fmin(1, (horizon + r - length) / (2 * r)));
 }
 
-/** Lattice vectors of one block within reach, ascending by number of the neighbour: z, then y, then x. */
-static int add_patterns(Family *family, const Lattice *lattice, int64_t (**offsets)[3], int *first, double reach,
-                        const Influence *influence, VolumeCorrection correction, Error *error)
+/** Lattice vectors of one block within reach, lattice row by lattice row. */
+static int add_patterns(Family *family, const Lattice *lattice, int *first, double reach, const Influence *influence,
+                        VolumeCorrection correction, Error *error)
 {
-  int64_t reach_cells = (int64_t)floor(reach / lattice->spacing * (1 + 1e-9)), deep = lattice->plane ? 0 : reach_cells;
+  int cells = (int)floor(reach / lattice->spacing * (1 + 1e-9)), extent[3] = {cells, cells, cells};
+  if (lattice->plane) extent[2] = 0;
+  const int axes[3] = {lattice->axis, lattice->across[0], lattice->across[1]};
   *first = family->pattern_count;
   for (int pass = 0; pass < 2; ++pass) {
     int count = *first;
-    for (int64_t z = -deep; z <= deep; ++z)
-      for (int64_t y = -reach_cells; y <= reach_cells; ++y)
-        for (int64_t x = -reach_cells; x <= reach_cells; ++x) {
-          double length = lattice->spacing * sqrt((double)(x * x + y * y + z * z));
+    int offset[3];
+    for (offset[axes[2]] = -extent[axes[2]]; offset[axes[2]] <= extent[axes[2]]; ++offset[axes[2]])
+      for (offset[axes[1]] = -extent[axes[1]]; offset[axes[1]] <= extent[axes[1]]; ++offset[axes[1]]) {
+        int row_begins = count;
+        for (offset[axes[0]] = -extent[axes[0]]; offset[axes[0]] <= extent[axes[0]]; ++offset[axes[0]]) {
+          double length = lattice->spacing * sqrt((double)offset[0] * offset[0] + (double)offset[1] * offset[1] +
+                                                  (double)offset[2] * offset[2]);
           if (length == 0 || length > reach * (1 + 1e-9)) continue;
           double share = volume_share(correction, length, family->horizon, lattice->spacing / 2);
           if (share == 0) continue;
           if (pass) {
             Pattern *row = &family->patterns[count];
-            const int64_t offset[3] = {x, y, z};
             for (int k = 0; k < 3; ++k) {
-              row->xi[k] = lattice->spacing * (double)offset[k];
-              (*offsets)[count - *first][k] = offset[k];
+              row->xi[k] = lattice->spacing * offset[k];
+              row->offset[k] = offset[k];
             }
             row->length = length;
             row->weight = influence->value(fmin(1, length / family->horizon), length) * share * lattice->volume;
             for (int k = 0; k < 3; ++k) row->weighted_xi[k] = row->weight * row->xi[k];
+            row->row = row_begins;
           }
           ++count;
         }
+      }
     if (count > UINT16_MAX)
       return error_add(error, BRECCIA_USER_ERROR,
                        "the horizon of %g reaches over so many spacings that a family would have more than %d bonds",
@@ -54,8 +60,6 @@ static int add_patterns(Family *family, const Lattice *lattice, int64_t (**offse
       Pattern *grown = realloc(family->patterns, sizeof(Pattern) * (size_t)(count ? count : 1));
       if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: bond patterns");
       family->patterns = grown;
-      *offsets = memory_zeroed((size_t)(count - *first), sizeof **offsets, "bond patterns", error);
-      if (!*offsets) return BRECCIA_FAILURE;
     }
     family->pattern_count = count;
   }
@@ -63,8 +67,8 @@ static int add_patterns(Family *family, const Lattice *lattice, int64_t (**offse
 }
 
 /** One lattice slot: base place and mask of existing neighbours. @return the mask */
-static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk,
-                            const int64_t offset[3], int32_t *base)
+static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk, const int offset[3],
+                            int32_t *base)
 {
   int64_t cell[3];
   lattice_cell(lattice, row, chunk, 0, cell);
@@ -116,7 +120,6 @@ typedef struct Build {
   Family *family;
   const Body *body;
   const Rows *rows;
-  int64_t (**offsets)[3];
   const int *first_pattern, *pattern_count;
   const StoredBonds *stored;
 } Build;
@@ -130,8 +133,8 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
   int64_t slot = write ? family->first[slice] : 0, begin = slot;
   for (int k = 0; k < build->pattern_count[where->lattice]; ++k) {
     int32_t base = 0;
-    uint8_t mask =
-        lattice_slot(build->body, lattice, where->row, where->chunk, build->offsets[where->lattice][k], &base);
+    const Pattern *pattern = &family->patterns[build->first_pattern[where->lattice] + k];
+    uint8_t mask = lattice_slot(build->body, lattice, where->row, where->chunk, pattern->offset, &base);
     if (mask && build->body->crack_count) mask = cut_slot(build->body, slice, base, mask);
     if (!mask) continue;
     if (write) {
@@ -224,29 +227,30 @@ static int fill_slots(Build *build, Error *error)
 int family_create(Family *family, const Body *body, double horizon, const Influence *influence,
                   VolumeCorrection correction, Error *error)
 {
-  *family = (Family){.particles = &body->particles, .horizon = horizon};
+  *family = (Family){.particles = &body->particles, .lattices = body->lattices, .horizon = horizon};
   int blocks = body->block_count;
-  int64_t(**offsets)[3] = memory_zeroed((size_t)blocks, sizeof *offsets, "bond patterns", error);
+  family->rows.kind = memory_zeroed((size_t)blocks * ROW_KINDS, sizeof(RowKind), "lattice rows", error);
+  if (!family->rows.kind) return BRECCIA_FAILURE;
   int *first = memory_zeroed((size_t)blocks, sizeof *first, "bond patterns", error);
   int *count = memory_zeroed((size_t)blocks, sizeof *count, "bond patterns", error);
   Rows *rows = slice_rows(body, error);
   StoredBonds stored = {0};
-  int status = offsets && first && count && rows ? BRECCIA_OK : BRECCIA_FAILURE;
+  int status = first && count && rows ? BRECCIA_OK : BRECCIA_FAILURE;
   for (int b = 0; b < blocks && !status; ++b) {
     double reach = horizon + (correction == VOLUME_PARTIAL_BEYOND ? body->lattices[b].spacing / 2 : 0);
-    status = add_patterns(family, &body->lattices[b], &offsets[b], &first[b], reach, influence, correction, error);
+    status = add_patterns(family, &body->lattices[b], &first[b], reach, influence, correction, error);
     count[b] = family->pattern_count - first[b];
+    if (!status) status = lattice_rows_choose(family, &body->lattices[b], b, first[b], count[b], error);
   }
   if (!status && blocks > 1) {
     StoredWeight weight = {horizon, influence, correction, volume_share};
     status = search_between_blocks(&stored, body, &weight, error);
   }
   if (!status) {
-    Build build = {family, body, rows, offsets, first, count, &stored};
+    Build build = {family, body, rows, first, count, &stored};
     status = fill_slots(&build, error);
   }
-  for (int b = 0; offsets && b < blocks; ++b) free(offsets[b]);
-  free(offsets);
+  if (!status) status = lattice_rows_create(family, body, error);
   free(first);
   free(count);
   free(rows);
@@ -264,6 +268,7 @@ void family_destroy(Family *family)
   free(family->patterns);
   free(family->neighbour);
   free(family->weight);
+  lattice_rows_destroy(&family->rows);
   *family = (Family){0};
 }
 
@@ -288,6 +293,8 @@ bool family_break(Family *family, int32_t a, int32_t b)
   if (there < 0 || back < 0) return false;
   family->intact[there] = (uint8_t)(family->intact[there] & ~(1u << (a % SLICE)));
   family->intact[back] = (uint8_t)(family->intact[back] & ~(1u << (b % SLICE)));
+  lattice_rows_mark(family, a / SLICE);
+  lattice_rows_mark(family, b / SLICE);
   return true;
 }
 
@@ -316,5 +323,5 @@ size_t family_bytes(const Family *family)
   size_t slot = sizeof *family->base + sizeof *family->pattern + sizeof *family->intact;
   size_t stored = SLICE * (sizeof *family->neighbour + sizeof *family->weight);
   return (size_t)family->slots * slot + (size_t)family->stored_slots * stored +
-         (size_t)family->particles->slices * 2 * sizeof(int64_t);
+         (size_t)family->particles->slices * 2 * sizeof(int64_t) + lattice_rows_bytes(family);
 }

@@ -7,23 +7,28 @@
  * Always true:
  *   slots first[s] .. stored[s] - 1 of slice s are lattice slots, stored[s] .. first[s+1] - 1 stored ones;
  *   bonds come in pairs (i to j, j to i) whose intact bits agree; no particle is its own neighbour;
- *   along the slots of one kind the neighbours of a lane ascend by number, so sums add in the same order whatever the threads. */
+ *   the lattice slots of a slice are in the order of patterns: lattice row by lattice row, and along each row. */
 #ifndef BRECCIA_FAMILY_FAMILY_H
 #define BRECCIA_FAMILY_FAMILY_H
 
 #include "body/body.h"
 #include "family/influence.h"
+#include "family/lattice_rows.h"
 
 typedef struct Pattern { /* a relative lattice vector */
   double xi[3];          /* from the particle to its neighbour */
   double length, weight; /* weight: influence x volume correction x volume of the neighbour */
   double weighted_xi[3]; /* weight x xi */
+  int offset[3];         /* in spacings */
+  int row;               /* alike for patterns that lead to the same lattice row */
+  int kind;              /* of that row, or -1 */
 } Pattern;
 
 typedef enum VolumeCorrection { VOLUME_WHOLE, VOLUME_PARTIAL, VOLUME_PARTIAL_BEYOND } VolumeCorrection;
 
-typedef struct Family {
+struct Family {
   const Particles *particles;
+  const Lattice *lattices; /* one per block */
   double horizon;
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
   int64_t *first;                     /* [slices + 1] */
@@ -35,7 +40,8 @@ typedef struct Family {
   int pattern_count;
   int32_t *neighbour; /* [stored_slots][8] */
   double *weight;     /* [stored_slots][8] */
-} Family;
+  LatticeRows rows;
+};
 
 /** One bond seen from one end. */
 typedef struct Bond {

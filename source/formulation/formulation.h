@@ -23,6 +23,8 @@ extern const Section peridynamics_section;
 
 Space peridynamics_space(const PeridynamicsSpec *spec);
 
+enum { CARRY = 9 };
+
 /** What a formulation works on; borrowed. */
 typedef struct FormulationParts {
   const PeridynamicsSpec *spec;
@@ -39,17 +41,22 @@ typedef struct FormulationType {
   void (*destroy)(void *formulation);
   /** Bonds of this slice have broken. */
   void (*renew)(void *formulation, int64_t slice);
-  /** Displacements to strains at the points of slices first .. last - 1. */
-  void (*deform)(void *formulation, int64_t first, int64_t last);
+  /** Sums of displacements that neighbours will read; all slices are done before any deforms. */
+  void (*sum_displacements)(void *formulation, int64_t first, int64_t last);
+  /** Displacements to strains at the points of slices first .. last - 1, at most BLOCK places.
+   *  @param[out] carry  [CARRY][BLOCK] numbers of these places that `respond` finds again: they need never leave the cache */
+  void (*deform)(void *formulation, int64_t first, int64_t last, double *carry);
   /** Stresses at these points to whatever `resist` needs of a particle and its neighbours. */
-  void (*respond)(void *formulation, int64_t first, int64_t last);
-  /** Internal force per volume on the particles of these slices; all slices have responded before. */
+  void (*respond)(void *formulation, int64_t first, int64_t last, const double *carry);
+  /** Sums of responses that neighbours will read; all slices have responded before. */
+  void (*sum_states)(void *formulation, int64_t first, int64_t last);
+  /** Internal force per volume on the particles of these slices; all slices are summed before. */
   void (*resist)(void *formulation, int64_t first, int64_t last);
   /** Forces of the few particles that need another treatment; called once, by one thread, after all have resisted. */
   void (*finish)(void *formulation);
   /** Force per volume squared that the neighbour exerts on the particle through one bond (t_ij - t_ji). */
   void (*bond_force)(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
-  /** Deformation gradient F at a place, row by row, as of the last `deform`. */
+  /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);

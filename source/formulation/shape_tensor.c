@@ -31,17 +31,17 @@ ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double
   ShapeTensor shape = {.mode = SHAPE_REGULAR};
   int64_t slice = place / SLICE;
   int lane = place % SLICE, dimensions = plane ? 2 : 3;
-  double k[6] = {0}, weights = 0, volumes = 0;
+  double k[6] = {0}, volumes = 0;
   for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot) {
     if (!(family->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(family, slice, slot, lane);
     for (int c = 0; c < 6; ++c) k[c] += bond.weight * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
     for (int i = 0; i < 3; ++i) shape.first_moment[i] += bond.weight * bond.xi[i];
-    weights += bond.weight;
+    shape.weight_sum += bond.weight;
     volumes += family->particles->volume[bond.neighbour];
     ++shape.bonds;
   }
-  shape.mean_influence = volumes > 0 ? weights / volumes : 0;
+  shape.mean_influence = volumes > 0 ? shape.weight_sum / volumes : 0;
   shape.roundness = roundness(k, plane);
   if (!shape.bonds) {
     shape.mode = SHAPE_FREE;

@@ -14,6 +14,7 @@ typedef enum ShapeMode {
 typedef struct ShapeTensor {
   double inverse[6];      /* of K, or of its part that can be inverted, or 0 */
   double first_moment[3]; /* sum of w xi */
+  double weight_sum;      /* sum of w */
   double mean_influence;  /* sum of w / sum of volumes */
   double roundness;       /* det K / (tr K / d)^d: 1 for a full family, 0 for a flat one */
   int bonds;

@@ -1,4 +1,5 @@
 #include "base/random.h"
+#include "base/tensor.h"
 #include "support.h"
 
 /* An irregular body: two lattices that do not fit each other, a hole and a cut. */
@@ -57,6 +58,11 @@ static void deformation_gradient_of_a_linear_field_is_exact_everywhere(void **st
       double found[9];
       d->type->gradient(d->formulation, d->particles->place_of[n], found);
       for (int k = 0; k < 9; ++k) assert_near(found[k], f[k], 1e-12);
+      for (int k = 0; k < 6; ++k) {
+        int r = symmetric_row[k], s = symmetric_column[k];
+        double strain = f[r] * f[s] + f[3 + r] * f[3 + s] + f[6 + r] * f[6 + s] - (r == s);
+        assert_near(d->points.strain[k][d->particles->place_of[n]], k < 3 ? strain / 2 : strain, 3e-12);
+      }
     }
     breccia_model_destroy(&model);
   }
@@ -161,6 +167,66 @@ static void internal_forces_balance(void **state)
     for (int k = 0; k < 3 && strstr(controls[c], "none: yes"); ++k) assert_near(moment[k], 0, 1e-12 * size * 13);
     breccia_model_destroy(&model);
   }
+}
+
+/** Makes all slices sum their bonds one by one. */
+static void forget_rows(Family *f)
+{
+  memset(f->rows.count, 0, sizeof *f->rows.count * (size_t)f->particles->slices);
+  memset(f->rows.condition, ROWS_RAGGED | ROWS_GAPS, (size_t)f->particles->slices);
+  memset(f->rows.skip, 0, (size_t)f->slots);
+}
+
+static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state)
+{
+  (void)state;
+  /* Rows along x, y and z, ended by faces, a hole and a cut, and torn by broken bonds; controls alike and different. */
+  const char *const bodies[] = {
+      "cubic, shape: {difference: [{box: {particles: [27, 12, 9]}}, {sphere: {centre: [16, 6.5, "
+      "4.5], radius: 2.6}}]}",
+      "cubic, shape: {box: {particles: [9, 21, 8]}}", "cubic, shape: {box: {particles: [8, 9, 19]}}",
+      "square, thickness: 1, shape: {polygon: {corners: [[0, 5], [6, 0], [20, 0], [22, 13], [12, 20], [2, 18]]}}"};
+  for (int b = 0; b < 4; ++b)
+    for (int c = 0; c < 2 * CONTROLS; ++c) {
+      breccia_model *model = model_of(
+          "materials:\n"
+          "  m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}\n"
+          "  n: {model: elastic, density: 1, Young modulus: %s, Poisson ratio: 0.3}\n"
+          "peridynamics: {space: %s, horizon: %g spacings, %s}\n"
+          "cracks: [{cut: {line: [[6.03, -9], [6.03, 5.1]]}}]\n"
+          "body: {a: {material: m, spacing: 1, lattice: %s}, b: {material: n, spacing: 1, lattice: %s, shape: {box: "
+          "{from: [-9, 0, 0], to: [-1, 3, %d]}}}}\n"
+          "solve: {explicit: {steps: 1}}\n",
+          c < CONTROLS ? "150" : "90", b == 3 ? "plane strain" : "3-D", b == 3 ? 5.015 : 3.015, controls[c % CONTROLS],
+          bodies[b], b == 3 ? "square, thickness: 1" : "cubic", b == 3 ? 1 : 3);
+      Domain *d = &model->domain;
+      Particles *p = d->particles;
+      Family *f = &d->family;
+      shake(model, 0.02);
+      for (int64_t n = 0; n < 20; ++n) {
+        int32_t first = p->place_of[n * p->count / 20], second = p->place_of[n * p->count / 20 + 1];
+        if (!family_break(f, first, second)) continue;
+        d->type->renew(d->formulation, first / SLICE);
+        d->type->renew(d->formulation, second / SLICE);
+      }
+      int64_t whole = 0, ragged = 0;
+      for (int64_t s = 0; s < p->slices; ++s) {
+        whole += f->rows.count[s];
+        ragged += f->rows.condition[s] & ROWS_RAGGED;
+      }
+      assert_true(c % CONTROLS >= 3 ||
+                  (whole > 2 * p->slices && ragged > 3)); /* other influences have more kinds of rows */
+      compute_forces(model);
+      double *by_rows = malloc(3 * sizeof(double) * (size_t)p->places), largest = largest_force(model);
+      for (int k = 0; k < 3; ++k) memcpy(by_rows + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+      forget_rows(f);
+      compute_forces(model);
+      for (int k = 0; k < 3; ++k)
+        for (int64_t i = 0; i < p->places; ++i)
+          assert_near(by_rows[k * p->places + i], p->internal[k][i], 1e-12 * largest);
+      free(by_rows);
+      breccia_model_destroy(&model);
+    }
 }
 
 static void force_is_minus_the_gradient_of_the_energy(void **state)
@@ -328,6 +394,7 @@ int main(void)
       cmocka_unit_test(strain_and_stress_of_a_stretched_bar_are_those_of_green_lagrange),
       cmocka_unit_test(rigid_rotation_makes_no_force),
       cmocka_unit_test(internal_forces_balance),
+      cmocka_unit_test(sums_along_lattice_rows_give_the_forces_of_single_bonds),
       cmocka_unit_test(force_is_minus_the_gradient_of_the_energy),
       cmocka_unit_test(control_resists_the_checkerboard_and_correspondence_alone_does_not),
       cmocka_unit_test(a_chequered_plane_body_is_held_too),

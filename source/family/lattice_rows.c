@@ -1,0 +1,213 @@
+#include "family/lattice_rows.h"
+
+#include "family/family.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Sums are worth making where they spare many loads: a row of n neighbours costs two instead of n, and making the sums costs about as
+ * much as MAKING further neighbours per place (measured). */
+enum { MAKING = 12 };
+
+typedef struct Candidate {
+  RowKind kind;
+  int rows; /* how many there are of it around a particle */
+} Candidate;
+
+static bool same_kind(const RowKind *a, const RowKind *b)
+{
+  return a->reach == b->reach && !memcmp(a->weight, b->weight, sizeof a->weight);
+}
+
+static int gain(const Candidate *candidate)
+{
+  int neighbours = 2 * candidate->kind.reach + 1;
+  return candidate->rows * (neighbours - 2) - MAKING;
+}
+
+/** Stable: patterns without sums first. */
+static int put_last(Pattern *patterns, int count, Error *error)
+{
+  Pattern *sorted = memory_zeroed((size_t)count, sizeof *sorted, "bond patterns", error);
+  if (!sorted) return BRECCIA_FAILURE;
+  int n = 0;
+  for (int with_sums = 0; with_sums < 2; ++with_sums)
+    for (int k = 0; k < count; ++k)
+      if ((patterns[k].kind >= 0) == with_sums) sorted[n++] = patterns[k];
+  memcpy(patterns, sorted, sizeof *patterns * (size_t)count);
+  free(sorted);
+  return BRECCIA_OK;
+}
+
+int lattice_rows_choose(Family *family, const Lattice *lattice, int b, int first, int count, Error *error)
+{
+  Candidate found[4 * ROW_KINDS];
+  int candidates = 0;
+  for (int k = first; k < first + count; ++k) family->patterns[k].kind = -1;
+  for (int pass = 0; pass < 2; ++pass) { /* first count the rows of each kind, then tell the patterns */
+    for (int begin = first, end; begin < first + count; begin = end) {
+      const Pattern *row = &family->patterns[begin];
+      for (end = begin + 1; end < first + count && family->patterns[end].row == begin;) ++end;
+      int reach = -row->offset[lattice->axis];
+      if (reach > ROW_REACH || end - begin != 2 * reach + 1) continue; /* too long, or the particle's own row */
+      RowKind kind = {.reach = reach};
+      for (int s = 0; s <= 2 * reach; ++s) {
+        kind.weight[s] = row[s].weight;
+        kind.moment[s] = row[s].weight * row[s].xi[lattice->axis];
+      }
+      int c = 0;
+      while (c < candidates && !same_kind(&found[c].kind, &kind)) ++c;
+      if (!pass && c == candidates && c < 4 * ROW_KINDS) found[candidates++] = (Candidate){kind, 0};
+      if (!pass && c < candidates) ++found[c].rows;
+      for (int s = begin; pass && c < ROW_KINDS && c < candidates && s < end; ++s) family->patterns[s].kind = c;
+    }
+    if (pass) break;
+    for (int a = 0; a < candidates; ++a) /* the best first; those without gain go */
+      for (int c = a + 1; c < candidates; ++c)
+        if (gain(&found[c]) > gain(&found[a])) {
+          Candidate better = found[c];
+          found[c] = found[a];
+          found[a] = better;
+        }
+    while (candidates && gain(&found[candidates - 1]) <= 0) --candidates;
+    if (candidates > ROW_KINDS) candidates = ROW_KINDS;
+  }
+  LatticeRows *rows = &family->rows;
+  for (int c = 0; c < candidates; ++c) {
+    rows->kind[b * ROW_KINDS + c] = found[c].kind;
+    if (found[c].kind.reach > rows->reach) rows->reach = found[c].kind.reach;
+  }
+  if (candidates > rows->kinds) rows->kinds = candidates;
+  return put_last(family->patterns + first, count, error);
+}
+
+/** Which lanes of a slice have a particle `along` places further in their row. */
+static uint8_t present_lanes(const Particles *p, const int32_t *slices, int64_t chunks, int64_t chunk, int along)
+{
+  uint8_t lanes = 0;
+  for (int lane = 0; lane < SLICE; ++lane) {
+    int64_t at = chunk * SLICE + lane + along;
+    if (at < 0 || at >= chunks * SLICE || slices[at / SLICE] < 0) continue;
+    if (p->number[(int64_t)slices[at / SLICE] * SLICE + at % SLICE] >= 0) lanes |= (uint8_t)(1u << lane);
+  }
+  return lanes;
+}
+
+static bool same_row(const Family *family, int64_t a, int64_t b)
+{
+  return family->patterns[family->pattern[a]].row == family->patterns[family->pattern[b]].row;
+}
+
+/** Counts the rows of a slice that have sums, and finds the first slot of them. */
+static int64_t count_rows(const Family *family, int64_t slice, int64_t *first)
+{
+  int64_t slot = family->first[slice], stored = family->stored[slice], rows = 0;
+  while (slot < stored && family->patterns[family->pattern[slot]].kind < 0) ++slot;
+  *first = slot;
+  for (; slot < stored; ++slot) rows += slot == *first || !same_row(family, slot - 1, slot);
+  return rows;
+}
+
+int lattice_rows_create(Family *family, const Body *body, Error *error)
+{
+  LatticeRows *rows = &family->rows;
+  const Particles *p = family->particles;
+  int width = 2 * rows->reach + 1;
+  size_t slices = (size_t)p->slices;
+  rows->present = memory_zeroed(slices * (size_t)width, 1, "lattice rows", error);
+  rows->complete = memory_zeroed(slices, 1, "lattice rows", error);
+  rows->first = memory_zeroed(slices, sizeof *rows->first, "lattice rows", error);
+  rows->begin = memory_zeroed(slices + 1, sizeof *rows->begin, "lattice rows", error);
+  rows->count = memory_zeroed(slices, sizeof *rows->count, "lattice rows", error);
+  rows->condition = memory_zeroed(slices, 1, "lattice rows", error);
+  rows->skip = memory_zeroed((size_t)family->slots, 1, "lattice rows", error);
+  if (!rows->present || !rows->complete || !rows->first || !rows->begin || !rows->count || !rows->condition ||
+      !rows->skip)
+    return BRECCIA_FAILURE;
+  for (int b = 0; b < body->block_count; ++b) {
+    const Lattice *lattice = &body->lattices[b];
+    int64_t count = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
+#pragma omp parallel for schedule(static)
+    for (int64_t row = 0; row < count; ++row)
+      for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
+        const int32_t *row_slices = lattice->slice + row * lattice->chunks;
+        int64_t slice = row_slices[chunk];
+        if (slice < 0) continue;
+        uint8_t *present = rows->present + slice * width;
+        rows->complete[slice] = 1;
+        for (int s = 0; s < width; ++s) {
+          present[s] = present_lanes(p, row_slices, lattice->chunks, chunk, s - rows->reach);
+          rows->complete[slice] &= present[s] == UINT8_MAX;
+        }
+      }
+  }
+  for (int64_t slice = 0; slice < p->slices; ++slice)
+    rows->begin[slice + 1] = rows->begin[slice] + count_rows(family, slice, &rows->first[slice]);
+  rows->whole = memory_zeroed((size_t)rows->begin[p->slices], sizeof *rows->whole, "lattice rows", error);
+  if (!rows->whole) return BRECCIA_FAILURE;
+#pragma omp parallel for schedule(static)
+  for (int64_t slice = 0; slice < p->slices; ++slice) lattice_rows_mark(family, slice);
+  return BRECCIA_OK;
+}
+
+void lattice_rows_destroy(LatticeRows *rows)
+{
+  free(rows->kind);
+  free(rows->present);
+  free(rows->complete);
+  free(rows->first);
+  free(rows->begin);
+  free(rows->whole);
+  free(rows->count);
+  free(rows->skip);
+  free(rows->condition);
+  *rows = (LatticeRows){0};
+}
+
+/** @return the slice at the middle of the row whose slots are begin .. end - 1 if the row is whole, or -1 */
+static int64_t middle_of_whole(const Family *family, int64_t slice, int64_t begin, int64_t end)
+{
+  const LatticeRows *rows = &family->rows;
+  int block = family->particles->block[slice], axis = family->lattices[block].axis;
+  int64_t middle = -1;
+  for (int64_t slot = begin; slot < end; ++slot)
+    if (family->patterns[family->pattern[slot]].offset[axis] == 0) middle = family->base[slot] / SLICE;
+  if (middle < 0) return -1;
+  const RowKind *kind = &rows->kind[block * ROW_KINDS + family->patterns[family->pattern[begin]].kind];
+  const uint8_t *present = rows->present + middle * (2 * rows->reach + 1) + rows->reach;
+  unsigned own = lattice_rows_lanes(rows, slice);
+  int64_t slot = begin;
+  for (int along = -kind->reach; along <= kind->reach; ++along) {
+    bool listed = slot < end && family->patterns[family->pattern[slot]].offset[axis] == along;
+    if ((own & present[along]) != (listed ? family->intact[slot] : 0u)) return -1;
+    slot += listed;
+  }
+  return middle;
+}
+
+void lattice_rows_mark(Family *family, int64_t slice)
+{
+  LatticeRows *rows = &family->rows;
+  int64_t entry = rows->begin[slice];
+  unsigned condition = 0;
+  for (int64_t slot = family->first[slice]; slot < rows->first[slice]; ++slot)
+    if (family->intact[slot] != UINT8_MAX) condition |= ROWS_GAPS;
+  for (int64_t begin = rows->first[slice], end; begin < family->stored[slice]; begin = end) {
+    for (end = begin + 1; end < family->stored[slice] && same_row(family, begin, end);) rows->skip[end++] = 0;
+    int64_t middle = middle_of_whole(family, slice, begin, end);
+    rows->skip[begin] = middle < 0 ? 0 : (uint8_t)(end - begin);
+    if (middle < 0)
+      condition |= ROWS_RAGGED | ROWS_GAPS;
+    else
+      rows->whole[entry++] = (WholeRow){(int32_t)middle, family->pattern[begin]};
+  }
+  rows->count[slice] = (uint16_t)(entry - rows->begin[slice]);
+  rows->condition[slice] = (uint8_t)condition;
+}
+
+size_t lattice_rows_bytes(const Family *family)
+{
+  const LatticeRows *rows = &family->rows;
+  size_t slices = (size_t)family->particles->slices, slice = (size_t)(2 * rows->reach + 3) + sizeof *rows->first;
+  return (size_t)family->slots + slices * (slice + sizeof *rows->begin + sizeof *rows->count) +
+         (size_t)rows->begin[slices] * sizeof *rows->whole;
+}

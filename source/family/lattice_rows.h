@@ -1,0 +1,91 @@
+/* Whole rows of a lattice at once.
+ *
+ * What is summed over a family is often linear in a number q of the neighbour: sum w q and sum w xi q. The part of such a sum that
+ * comes from one lattice row is then made of two sums along that row,
+ *   sum w q  and  sum w s q   (s: distance along the row from its middle),
+ * which all particles around share. With a horizon of 3.015 spacings 20 of the 28 other rows that a particle's bonds lead to are alike: five
+ * neighbours with equal weights. Sums along them are made once per place; a particle reads 2 numbers instead of 5.
+ *
+ * Rows are of one kind if their weights are alike; kinds with too few rows or neighbours have no sums (kind -1).
+ * The row of a slice is whole if each of its particles has an intact bond to every particle of the row within reach. Bonds of
+ * other rows, and bonds between lattices, are summed slot by slot. */
+#ifndef BRECCIA_FAMILY_LATTICE_ROWS_H
+#define BRECCIA_FAMILY_LATTICE_ROWS_H
+
+#include "body/body.h"
+
+enum { ROW_KINDS = 4, ROW_REACH = SLICE };
+
+typedef struct RowKind {
+  int reach;                        /* neighbours from -reach to reach along the row */
+  double weight[2 * ROW_REACH + 1]; /* [reach + s] weight of a bond to the s-th neighbour from the middle */
+  double moment[2 * ROW_REACH + 1]; /* weight times distance from the middle */
+} RowKind;
+
+typedef struct WholeRow {
+  int32_t middle;  /* slice at the row's middle */
+  int32_t pattern; /* first one of the row */
+} WholeRow;
+
+typedef struct LatticeRows {
+  int kinds, reach;   /* how many kinds have sums, the longest's reach */
+  RowKind *kind;      /* [lattices][ROW_KINDS] */
+  uint8_t *present;   /* [slices][2 reach + 1] lanes for which a particle is so many places further in the same row */
+  uint8_t *complete;  /* [slices] 1: there is one for all lanes and distances */
+  int64_t *first;     /* [slices] first slot of a row that has sums; they come after all others */
+  int64_t *begin;     /* [slices + 1] first of the slice's entries in `whole` */
+  WholeRow *whole;    /* entries begin[s] .. begin[s] + count[s] - 1 are the whole rows of slice s */
+  uint16_t *count;    /* [slices] */
+  uint8_t *skip;      /* [slots] in the first slot of a whole row: how many slots it has; 0 in all others */
+  uint8_t *condition; /* [slices] RowCondition bits */
+} LatticeRows;
+
+typedef enum RowCondition {
+  ROWS_RAGGED = 1, /* a row that has sums is not whole */
+  ROWS_GAPS = 2,   /* a bond of a slot that belongs to no whole row is missing */
+} RowCondition;
+
+/** Sums along the rows for all places of one slice, as far as particles are present there.
+ *  @param[in] q      a number per place, with spare entries (places_array)
+ *  @param[out] sum, moment  [8] sum w q and sum w s q of the slice's places; either may be NULL */
+LANES_INLINE void lattice_row_sums(const LatticeRows *rows, const RowKind *kind, int64_t slice, const double *q,
+                                   double *sum, double *moment)
+{
+  const uint8_t *present = rows->present + slice * (2 * rows->reach + 1) + rows->reach;
+  bool complete = rows->complete[slice];
+  for (int half = 0; half < SLICE / LANES; ++half) {
+    int64_t place = slice * SLICE + LANES * half;
+    Lanes s = {0}, m = {0};
+    for (int along = -kind->reach; along <= kind->reach; ++along) {
+      Lanes value = lanes_load(q + place + along);
+      if (!complete) value = lanes_where(lanes_mask((unsigned)present[along] >> (LANES * half) & 15u), value);
+      if (sum) s += value * lanes_set(kind->weight[kind->reach + along]);
+      if (moment) m += value * lanes_set(kind->moment[kind->reach + along]);
+    }
+    if (sum) lanes_store(sum + LANES * half, s);
+    if (moment) lanes_store(moment + LANES * half, m);
+  }
+}
+
+/** Lanes of a slice that hold a particle, a bit each. */
+static inline unsigned lattice_rows_lanes(const LatticeRows *rows, int64_t slice)
+{
+  return rows->present[slice * (2 * rows->reach + 1) + rows->reach];
+}
+
+typedef struct Family Family;
+
+/** Chooses the kinds of rows that get sums in one lattice, whose patterns are first .. first + count - 1, and puts their patterns
+ *  last. */
+int lattice_rows_choose(Family *family, const Lattice *lattice, int b, int first, int count, Error *error);
+
+/** Finds which particles are present along rows and which rows are whole; kinds were chosen and slots built before. */
+int lattice_rows_create(Family *family, const Body *body, Error *error);
+void lattice_rows_destroy(LatticeRows *rows);
+
+/** Finds out anew which rows of a slice are whole; to be called when its intact bits have changed. */
+void lattice_rows_mark(Family *family, int64_t slice);
+
+size_t lattice_rows_bytes(const Family *family);
+
+#endif

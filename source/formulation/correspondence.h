@@ -1,0 +1,73 @@
+/* Non-ordinary state-based peridynamics by correspondence (Silling et al. 2007; docs/theory.md 4).
+ *
+ * With w = omega beta V_j and G = F - I, particle i has
+ *   G_i = (sum w eta (x) xi) K_i^-1,  E = (G + G^T + G^T G) / 2,  P = (I + G) S(E),
+ * and the force on it per volume is sum w [P_i K_i^-1 + P_j K_j^-1] xi + sum w [C_i (eta - G_i xi) + C_j (eta - G_j xi)], the
+ * second sum being the control of zero-energy modes: C = G_s c_b / (delta omega_mean) I (Silling 2017) or a factor times
+ * C : K^-1 (Wan et al. 2019). All sums over bonds are arranged such that they are linear in what is read of the neighbour, and so can be
+ * made along whole lattice rows (family/lattice_rows.h). With the moments of the family m = sum w xi and w_sum = sum w, one state
+ * Q = P K^-1 - C G per particle and the stretch e = sum w eta,
+ *   sum w eta (x) xi = sum w u_j (x) xi - u_i (x) m,      e = sum w u_j - w_sum u_i,
+ *   f_i = Q_i m + C_i e + sum w [Q_j xi + C_j u_j] - (sum w C_j) u_i. */
+#ifndef BRECCIA_FORMULATION_CORRESPONDENCE_H
+#define BRECCIA_FORMULATION_CORRESPONDENCE_H
+
+#include "base/tensor.h"
+#include "formulation/formulation.h"
+#include "formulation/shape_tensor.h"
+
+/* Uniform: the scalar control of a body of one material with constant influence, where C is the same everywhere; sum w C_j eta
+ * is then C e, known from the first sweep. */
+typedef enum Control { CONTROL_NONE, CONTROL_UNIFORM, CONTROL_SCALAR, CONTROL_TENSOR } Control;
+
+enum { MOST_PULLS = 9 + 3 + 6 };
+
+typedef struct Correspondence {
+  const Particles *particles;
+  const Family *family;
+  Points *points;
+  const Body *body;
+  bool plane, finite;
+  Control control;
+  double strength;
+  double *inverse[6];      /* K^-1 */
+  double *first_moment[3]; /* m */
+  double *weight_sum;      /* w_sum */
+  double *state[9];        /* Q */
+  double *stretch[3];      /* e */
+  double *hold[6];         /* C: one component, or six, or none */
+  double *held[3];         /* C u, if neighbours read it */
+  /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
+  double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
+  double *row_pull[ROW_KINDS];         /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
+  int pulls;
+  float *roundness;    /* of K with all bonds */
+  uint8_t *mode;       /* ShapeMode of each place */
+  int32_t *axial;      /* places whose bonds act as springs, ascending (some may have become free since) */
+  int64_t axial_count;
+} Correspondence;
+
+/** Numbers per place that C takes. */
+static inline int hold_components(Control control)
+{
+  return control == CONTROL_NONE ? 0 : control == CONTROL_TENSOR ? 6 : 1;
+}
+
+/** True if neighbours read C and C u of a particle. */
+static inline bool hold_is_read(Control control)
+{
+  return control == CONTROL_SCALAR || control == CONTROL_TENSOR;
+}
+
+/* Making, and what follows from the shapes of families (correspondence_setup.c). */
+void *correspondence_create(const FormulationParts *parts, Error *error);
+void correspondence_destroy(void *formulation);
+void correspondence_renew(void *formulation, int64_t slice);
+void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
+size_t correspondence_bytes(const void *formulation);
+
+/* Single bonds, and particles with too few of them (correspondence_bonds.c). */
+void correspondence_finish(void *formulation);
+void correspondence_bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
+
+#endif
