@@ -8,7 +8,7 @@
 #include "body/body.h"
 #include "constitutive/material.h"
 
-enum { BLOCK = 64 }; /* places worked on together: their strains, stresses and states stay in the first-level cache */
+enum { BLOCK = 128 }; /* places worked on together: their strains, stresses and states stay in the first-level cache */
 
 typedef struct Points {
   int64_t places;

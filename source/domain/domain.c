@@ -32,14 +32,32 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
                     spec->peridynamics->space);
 }
 
+/** True if the row of a slice goes on in the slice after it. */
+static bool row_goes_on(const Domain *d, int64_t slice)
+{
+  const Particles *p = d->particles;
+  if (slice + 1 >= p->slices || p->block[slice + 1] != p->block[slice]) return false;
+  const Lattice *lattice = &d->body.lattices[p->block[slice]];
+  for (int k = 0; k < 3; ++k) {
+    double step = p->position[k][(slice + 1) * SLICE] - p->position[k][slice * SLICE];
+    if (fabs(step - (k == lattice->axis) * SLICE * lattice->spacing) > 0.5 * lattice->spacing) return false;
+  }
+  return true;
+}
+
+/* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
+ * in the cache. */
 static int share_out(Domain *d, Error *error)
 {
   int64_t slices = d->particles->slices;
   d->blocks = memory_zeroed((size_t)slices, sizeof(Span), "blocks", error);
   if (!d->blocks) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < slices;) {
-    int64_t end = s + 1;
-    while (end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s]) ++end;
+    int64_t end = s + 1, row_end = row_goes_on(d, s) ? s : end;
+    for (; end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s]; ++end)
+      if (!row_goes_on(d, end)) row_end = end + 1;
+    if (row_end > s) end = row_end;
+    d->rows_cut |= row_goes_on(d, end - 1);
     d->blocks[d->block_count++] = (Span){s, end};
     s = end;
   }
@@ -140,10 +158,13 @@ void domain_forces(Domain *d)
     d->type->deform(d->formulation, span.first, span.last, carry);
     d->block_failed[b] = points_update(&d->points, span.first, span.last, NULL);
     d->type->respond(d->formulation, span.first, span.last, carry);
+    if (!d->rows_cut) d->type->sum_states(d->formulation, span.first, span.last);
   }
+  if (d->rows_cut) {
 #pragma omp for schedule(static)
-  for (int64_t b = 0; b < d->block_count; ++b)
-    d->type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    for (int64_t b = 0; b < d->block_count; ++b)
+      d->type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
+  }
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {
     d->type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);

@@ -30,6 +30,7 @@ typedef struct Domain {
   Failure failure;
   Span *blocks;
   int64_t block_count;
+  bool rows_cut;         /* a row is longer than a block */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */
   double *look_again;    /* [slices] sum of largest motions at which the criterion looks at the slice again */

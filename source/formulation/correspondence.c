@@ -27,8 +27,8 @@ LANES_INLINE Slot slot_open(const Correspondence *c, int64_t slot, int64_t slice
     s.weight[half] = lanes_load(f->weight + at + LANES * half);
     for (int k = 0; k < 3; ++k) {
       const double *x = c->particles->position[k];
-      s.weighted_xi[half][k] = s.weight[half] * (lanes_gather(x, s.index + LANES * half) -
-                                                 lanes_load(x + slice * SLICE + LANES * half));
+      s.weighted_xi[half][k] =
+          s.weight[half] * (lanes_gather(x, s.index + LANES * half) - lanes_load(x + slice * SLICE + LANES * half));
     }
   }
   return s;
@@ -149,7 +149,8 @@ LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums
     for (const WholeRow *row = begin; row < end; ++row) {
       const Pattern *pattern = &c->family->patterns[row->pattern];
       const double *there = c->row_displacement[pattern->kind] + (int64_t)row->middle * (6 * SLICE) + LANES * half;
-      for (int k = 0; k < 3; ++k) __builtin_prefetch(there + (6 + 3 * half + k) * SLICE);
+      for (int k = 0; k < 3; ++k)
+        __builtin_prefetch(there + (6 + 3 * half + k) * SLICE); /* for the next slice: 5 to 10 % */
       Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
       for (int k = 0; k < 3; ++k) {
         Lanes u = lanes_load(there + (2 * k + 1) * SLICE);
@@ -199,7 +200,7 @@ LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control co
   for (const WholeRow *row = begin; row < end; ++row) {
     const Pattern *pattern = &c->family->patterns[row->pattern];
     const double *there = c->row_pull[pattern->kind] + (int64_t)row->middle * (c->pulls * SLICE);
-    for (int k = 0; k < 9; ++k) __builtin_prefetch(there + (9 + k) * SLICE);
+    for (int k = 0; k < 9; ++k) __builtin_prefetch(there + (9 + k) * SLICE); /* as above */
     Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
     for (int half = 0; half < 2; ++half)
       for (int r = 0; r < 3; ++r) {
@@ -261,8 +262,7 @@ static void deform(void *formulation, int64_t first, int64_t last, double *gradi
 {
   const Correspondence local = *(const Correspondence *)formulation,
                        *c = &local; /* so that stores are seen not to change it */
-  for (int64_t slice = first; slice < last; ++slice)
-    deform_slice(c, slice, gradients + (slice - first) * SLICE);
+  for (int64_t slice = first; slice < last; ++slice) deform_slice(c, slice, gradients + (slice - first) * SLICE);
 }
 
 LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const double *gradients)
@@ -272,6 +272,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const do
     s[k] = lanes_load(c->points->stress[k] + place);
     inverse[k] = lanes_load(c->inverse[k] + place);
   }
+  hold[0] = lanes_set(c->uniform);
   for (int k = 0; k < hold_components(c->control); ++k) hold[k] = lanes_load(c->hold[k] + place);
   for (int k = 0; k < 9; ++k) g[k] = lanes_load(gradients + k * BLOCK);
   for (int r = 0; r < 3; ++r)
@@ -302,7 +303,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const do
 BRECCIA_CLONES
 static void respond(void *formulation, int64_t first, int64_t last, const double *gradients)
 {
-  for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) 
+  for (int64_t place = first * SLICE; place < last * SLICE; place += LANES)
     respond_lanes(formulation, place, gradients + place - first * SLICE);
 }
 
@@ -331,7 +332,7 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
       Lanes sum = force[half][r];
       for (int j = 0; j < 3; ++j)
         sum += lanes_load(c->state[3 * r + j] + place) * lanes_load(c->first_moment[j] + place);
-      if (control == CONTROL_UNIFORM) sum += lanes_set(2) * lanes_load(c->hold[0] + place) * stretch[r];
+      if (control == CONTROL_UNIFORM) sum += lanes_set(2 * c->uniform) * stretch[r];
       if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * stretch[r] - hold[half][0] * u[r];
       for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j) {
         int k = symmetric_place[3 * r + j];

@@ -35,22 +35,31 @@ typedef struct Correspondence {
   double *weight_sum;      /* w_sum */
   double *state[9];        /* Q */
   double *stretch[3];      /* e */
+  double uniform;          /* C, if it is uniform */
   double *hold[6];         /* C: one component, or six, or none */
   double *held[3];         /* C u, if neighbours read it */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
-  double *row_pull[ROW_KINDS];         /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
+  double *row_pull
+      [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
-  float *roundness;    /* of K with all bonds */
-  uint8_t *mode;       /* ShapeMode of each place */
-  int32_t *axial;      /* places whose bonds act as springs, ascending (some may have become free since) */
+  float *roundness; /* of K with all bonds */
+  uint8_t *mode;    /* ShapeMode of each place */
+  int32_t *axial;   /* places whose bonds act as springs, ascending (some may have become free since) */
   int64_t axial_count;
 } Correspondence;
 
 /** Numbers per place that C takes. */
 static inline int hold_components(Control control)
 {
-  return control == CONTROL_NONE ? 0 : control == CONTROL_TENSOR ? 6 : 1;
+  return control == CONTROL_TENSOR ? 6 : control == CONTROL_SCALAR;
+}
+
+/** A component of C (XX, ... ZX). */
+static inline double hold_component(const Correspondence *c, int64_t place, int k)
+{
+  if (c->control == CONTROL_TENSOR) return c->hold[k][place];
+  return k > ZZ || c->control == CONTROL_NONE ? 0 : c->control == CONTROL_SCALAR ? c->hold[0][place] : c->uniform;
 }
 
 /** True if neighbours read C and C u of a particle. */

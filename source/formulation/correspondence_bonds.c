@@ -17,7 +17,7 @@ static void axial_state(const Correspondence *c, int64_t slice, const Bond *bond
   double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
   double pull = length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
   double omega = bond->weight / c->particles->volume[bond->neighbour];
-  double hold = c->control == CONTROL_SCALAR || c->control == CONTROL_UNIFORM ? c->hold[0][place] : 0;
+  double hold = c->control == CONTROL_TENSOR ? 0 : hold_component(c, place, XX);
   for (int k = 0; k < 3; ++k) t[k] = pull * y[k] - omega * hold * (y[k] - bond->xi[k]);
 }
 
@@ -53,9 +53,7 @@ void correspondence_bond_force(const void *formulation, int64_t slice, int64_t s
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j) {
         double eta = c->particles->displacement[j][bond.neighbour] - c->particles->displacement[j][place];
-        double hold = c->control == CONTROL_NONE     ? 0
-                      : c->control != CONTROL_TENSOR ? (j == k ? c->hold[0][ends[e]] : 0)
-                                                     : c->hold[symmetric_place[3 * k + j]][ends[e]];
+        double hold = hold_component(c, ends[e], symmetric_place[3 * k + j]);
         force[k] += omega * (c->state[3 * k + j][ends[e]] * bond.xi[j] + hold * eta);
       }
   for (int e = 0; e < 2; ++e) { /* a spring pulls its two ends alike */

@@ -36,7 +36,7 @@ static void set_shape(Correspondence *c, int32_t place, const ShapeTensor *shape
   c->weight_sum[place] = shape->weight_sum;
   bool strained = shape->mode == SHAPE_REGULAR || shape->mode == SHAPE_REDUCED;
   const Material *m = &c->points->materials[c->points->material[place / SLICE]];
-  if (c->control == CONTROL_SCALAR || c->control == CONTROL_UNIFORM) {
+  if (c->control == CONTROL_SCALAR) {
     double scale = c->strength * micromodulus(c->body, material_young(m), c->family->horizon) / c->family->horizon;
     c->hold[0][place] = shape->mean_influence > 0 ? scale / shape->mean_influence : scale;
   } else if (c->control == CONTROL_TENSOR) {
@@ -143,7 +143,11 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     correspondence_destroy(c);
     return NULL;
   }
-  if (is_uniform(c)) c->control = CONTROL_UNIFORM;
+  if (is_uniform(c)) {
+    c->control = CONTROL_UNIFORM;
+    c->uniform = c->hold[0][c->particles->place_of[0]];
+    places_free(&c->hold[0]);
+  }
   c->pulls = 9 + (hold_is_read(c->control) ? 3 + hold_components(c->control) : 0);
   for (int kind = 0; kind < c->family->rows.kinds; ++kind) {
     failed |= !(c->row_displacement[kind] = places_array(6 * places, "row sums", error));

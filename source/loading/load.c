@@ -165,25 +165,36 @@ void loading_destroy(Loading *loading)
   *loading = (Loading){0};
 }
 
+static bool is_force(const LoadSpec *spec)
+{
+  bool any = false;
+  for (int k = 0; k < 3; ++k) any |= !isnan(spec->body_force[k]) || !isnan(spec->force[k]) || !isnan(spec->gravity[k]);
+  return any;
+}
+
 void loading_apply(const Loading *loading, Particles *p, double time)
 {
-  for (int l = 0; l < loading->count; ++l) /* loads may overlap: clear first, then add */
-    for (int64_t n = 0; n < loading->loads[l].selection.count; ++n)
-      for (int k = 0; k < 3; ++k) p->external[k][loading->loads[l].selection.places[n]] = 0;
+  for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
+    const Selection *selection = &loading->loads[l].selection;
+    if (!is_force(loading->loads[l].spec)) continue;
+#pragma omp for schedule(static)
+    for (int64_t n = 0; n < selection->count; ++n)
+      for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
+  }
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     const LoadSpec *spec = load->spec;
-    double factor = history_factor(spec->history, time);
+    if (!is_force(spec)) continue;
+    double factor = history_factor(spec->history, time), uniform[3] = {0}, per_density[3] = {0};
     for (int k = 0; k < 3; ++k) {
-      double uniform = 0, per_density = 0;
-      if (!isnan(spec->body_force[k])) uniform = factor * spec->body_force[k];
-      if (!isnan(spec->force[k])) uniform = factor * spec->force[k] / load->volume;
-      if (!isnan(spec->gravity[k])) per_density = factor * spec->gravity[k];
-      if (uniform == 0 && per_density == 0) continue;
-      for (int64_t n = 0; n < load->selection.count; ++n) {
-        int32_t place = load->selection.places[n];
-        p->external[k][place] += uniform + per_density * p->density[place];
-      }
+      if (!isnan(spec->body_force[k])) uniform[k] = factor * spec->body_force[k];
+      if (!isnan(spec->force[k])) uniform[k] = factor * spec->force[k] / load->volume;
+      if (!isnan(spec->gravity[k])) per_density[k] = factor * spec->gravity[k];
+    }
+#pragma omp for schedule(static)
+    for (int64_t n = 0; n < load->selection.count; ++n) {
+      int32_t place = load->selection.places[n];
+      for (int k = 0; k < 3; ++k) p->external[k][place] += uniform[k] + per_density[k] * p->density[place];
     }
   }
 }

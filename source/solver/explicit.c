@@ -32,6 +32,13 @@ const Section explicit_section = {"explicit",
                                   NULL,
                                   0};
 
+enum { PART = 512 };
+
+static int64_t parts_of(const Constraint *constraint)
+{
+  return (constraint->load->selection.count + PART - 1) / PART;
+}
+
 int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec,
                     const DeckReader *reader, bool force, Text *warning)
 {
@@ -40,7 +47,11 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
   for (int k = 0; k < 3; ++k)
     failed |= !(s->acceleration[k] = places_array(domain->particles->places, "accelerations", reader->error));
   s->sums = memory_zeroed((size_t)domain->block_count, sizeof *s->sums, "energy sums", reader->error);
-  if (failed || !s->sums) return BRECCIA_FAILURE;
+  int64_t parts = 0;
+  for (int n = 0; n < loading->constraint_count; ++n)
+    if (parts_of(&loading->constraints[n]) > parts) parts = parts_of(&loading->constraints[n]);
+  s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", reader->error);
+  if (failed || !s->sums || !s->parts) return BRECCIA_FAILURE;
   int status = stable_step(domain, &s->stable, reader->error);
   if (status) return status;
   s->time_step = isnan(spec->time_step) ? spec->safety * s->stable : spec->time_step;
@@ -66,6 +77,7 @@ void explicit_destroy(Explicit *s)
 {
   for (int k = 0; k < 3; ++k) places_free(&s->acceleration[k]);
   free(s->sums);
+  free(s->parts);
   *s = (Explicit){0};
 }
 
@@ -134,60 +146,110 @@ static double along(double *const vector[3], const double direction[3], int32_t 
 
 /* Prescribed motions. In a prescribed direction loads, reaction and damping together do whatever work the change of
  * kinetic energy and the bonds ask for; that sum is booked as external. The loops above have booked the free motion, which is
- * taken back here. */
-
-/** After the drift: displacements at the end of the step, velocities in its middle. */
-static void prescribe_displacements(Explicit *s)
+ * taken back here. Particles are shared out in parts whose sums are added in order; held faces are large enough for one thread
+ * alone to hold up all others. */
+static int64_t part_end(const Constraint *constraint, int64_t part)
 {
-  const Particles *p = s->domain->particles;
-  double dt = s->time_step, c = s->spec->damping;
-  s->motion = 0;
-  for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
-  for (int n = 0; n < s->loading->constraint_count; ++n) {
-    const Constraint *constraint = &s->loading->constraints[n];
-    const double *d = constraint->direction;
-    double target = constraint_displacement(constraint, s->time + dt);
-    for (int64_t k = 0; k < constraint->load->selection.count; ++k) {
-      int32_t i = constraint->load->selection.places[k];
-      double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
-      double fi = along(p->internal, d, i), fe = along(p->external, d, i);
-      double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt), off = target - along(p->displacement, d, i);
-      s->motion = fmax(s->motion, fabs(drifted + off));
-      double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
-      s->bond_work -= fi * (work - free_work);
-      s->damping_work -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
-      s->external_work += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
-      for (int j = 0; j < 3; ++j) {
-        p->displacement[j][i] += off * d[j];
-        p->velocity[j][i] += off / dt * d[j];
-      }
-    }
+  int64_t end = (part + 1) * PART;
+  return end < constraint->load->selection.count ? end : constraint->load->selection.count;
+}
+
+static void add_parts(Explicit *s, const Constraint *constraint)
+{
+  for (int64_t part = 0; part < parts_of(constraint); ++part) {
+    const double *sums = s->parts[part];
+    s->bond_work += sums[BOND_WORK];
+    s->external_work += sums[EXTERNAL_WORK];
+    s->damping_work += sums[DAMPING_WORK];
+    s->kinetic += sums[KINETIC];
+    s->motion = fmax(s->motion, sums[MOTION]);
   }
 }
 
-/** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. */
-static void prescribe_velocities(Explicit *s)
+static void move_part(Explicit *s, const Constraint *constraint, double target, int64_t part)
 {
   const Particles *p = s->domain->particles;
-  double dt = s->time_step, c = s->spec->damping;
+  const double *d = constraint->direction;
+  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, largest = 0;
+  for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
+    int32_t i = constraint->load->selection.places[k];
+    double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
+    double fi = along(p->internal, d, i), fe = along(p->external, d, i);
+    double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt), off = target - along(p->displacement, d, i);
+    largest = fmax(largest, fabs(drifted + off));
+    double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
+    bond -= fi * (work - free_work);
+    damping -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
+    external += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
+    for (int j = 0; j < 3; ++j) {
+      p->displacement[j][i] += off * d[j];
+      p->velocity[j][i] += off / dt * d[j];
+    }
+  }
+  double *sums = s->parts[part];
+  sums[BOND_WORK] = bond;
+  sums[EXTERNAL_WORK] = external;
+  sums[DAMPING_WORK] = damping;
+  sums[KINETIC] = 0;
+  sums[MOTION] = largest;
+}
+
+/** After the drift: displacements at the end of the step, velocities in its middle. Called by all threads. */
+static void prescribe_displacements(Explicit *s)
+{
+#pragma omp single
+  {
+    s->motion = 0;
+    for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
+  }
+  for (int n = 0; n < s->loading->constraint_count; ++n) { /* one after the other: they may share particles */
+    const Constraint *constraint = &s->loading->constraints[n];
+    double target = constraint_displacement(constraint, s->time + s->time_step);
+#pragma omp for schedule(static)
+    for (int64_t part = 0; part < parts_of(constraint); ++part) move_part(s, constraint, target, part);
+#pragma omp single
+    add_parts(s, constraint);
+  }
+}
+
+static void speed_part(Explicit *s, const Constraint *constraint, double moved, double rate, int64_t part)
+{
+  const Particles *p = s->domain->particles;
+  const double *d = constraint->direction;
+  double c = s->spec->damping, external = 0, damping = 0, kinetic = 0;
+  for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
+    int32_t i = constraint->load->selection.places[k];
+    double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
+    double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * moved * p->volume[i];
+    kinetic += 0.5 * mass * (rate * rate - v * v);
+    damping -= (fi + fe - p->density[i] * (a - c * v)) * work;
+    external += 0.5 * mass * rate * rate - fe * work - fi * work;
+    for (int j = 0; j < 3; ++j) {
+      p->velocity[j][i] += (rate - v) * d[j];
+      s->acceleration[j][i] -= a * d[j];
+    }
+  }
+  double *sums = s->parts[part];
+  sums[BOND_WORK] = sums[MOTION] = 0;
+  sums[EXTERNAL_WORK] = external;
+  sums[DAMPING_WORK] = damping;
+  sums[KINETIC] = kinetic;
+}
+
+/** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. Called by all
+ *  threads. */
+static void prescribe_velocities(Explicit *s)
+{
+  double dt = s->time_step;
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *constraint = &s->loading->constraints[n];
-    const double *d = constraint->direction;
-    double before = constraint_displacement(constraint, s->time - dt),
-           now = constraint_displacement(constraint, s->time);
+    double before = constraint_displacement(constraint, s->time - dt);
+    double moved = constraint_displacement(constraint, s->time) - before;
     double rate = (constraint_displacement(constraint, s->time + dt) - before) / (2 * dt);
-    for (int64_t k = 0; k < constraint->load->selection.count; ++k) {
-      int32_t i = constraint->load->selection.places[k];
-      double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
-      double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * (now - before) * p->volume[i];
-      s->kinetic += 0.5 * mass * (rate * rate - v * v);
-      s->damping_work -= (fi + fe - p->density[i] * (a - c * v)) * work;
-      s->external_work += 0.5 * mass * rate * rate - fe * work - fi * work;
-      for (int j = 0; j < 3; ++j) {
-        p->velocity[j][i] += (rate - v) * d[j];
-        s->acceleration[j][i] -= a * d[j];
-      }
-    }
+#pragma omp for schedule(static)
+    for (int64_t part = 0; part < parts_of(constraint); ++part) speed_part(s, constraint, moved, rate, part);
+#pragma omp single
+    add_parts(s, constraint);
   }
 }
 
@@ -265,25 +327,25 @@ int explicit_advance(Explicit *s, Error *error)
   {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < d->block_count; ++b) kick_and_drift(s, b);
-#pragma omp single
     prescribe_displacements(s);
     domain_break(d, s->step + 1, s->time + s->time_step, sqrt(3) * s->motion);
     domain_forces(d);
 #pragma omp single
-    {
-      sound = isfinite(d->force_sum) && d->failed_place < 0;
-      if (sound) loading_apply(s->loading, d->particles, s->time + s->time_step);
-    }
+    sound = isfinite(d->force_sum) && d->failed_place < 0;
     if (sound) {
+      loading_apply(s->loading, d->particles, s->time + s->time_step);
 #pragma omp for schedule(static)
       for (int64_t b = 0; b < d->block_count; ++b) kick(s, b);
+#pragma omp single
+      {
+        add_sums(s);
+        ++s->step;
+        s->time = (double)s->step * s->time_step;
+      }
+      prescribe_velocities(s);
     }
   }
   if (!sound) return retreat(s, error);
-  add_sums(s);
-  ++s->step;
-  s->time = (double)s->step * s->time_step;
-  prescribe_velocities(s);
   points_commit(&d->points);
   return BRECCIA_OK;
 }

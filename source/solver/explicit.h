@@ -32,8 +32,9 @@ typedef struct Explicit {
   int64_t step, steps;        /* done, and wanted in all */
   int64_t broken_at_estimate; /* broken bonds when `stable` was found */
   double bond_work, external_work, damping_work, kinetic, kinetic_at_start;
-  double motion;     /* largest component of any displacement increment in the step under way */
-  double (*sums)[5]; /* [blocks] of the five above */
+  double motion;      /* largest component of any displacement increment in the step under way */
+  double (*sums)[5];  /* [blocks] of the five above */
+  double (*parts)[5]; /* the same for parts of prescribed selections */
 } Explicit;
 
 /** Sets up; finds the stable step and checks a chosen one against it.
