@@ -217,10 +217,11 @@ LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control co
 
 /* ---- the three sweeps ---- */
 
-LANES_INLINE void strain_half(const Correspondence *c, int64_t place, Lanes sums[3][4], double *gradients)
+LANES_INLINE void strain_half(const Correspondence *c, const SliceShape *shape, int64_t place, Lanes sums[3][4],
+                              double *gradients)
 {
   Lanes inverse[6], g[9];
-  for (int k = 0; k < 6; ++k) inverse[k] = lanes_load(c->inverse[k] + place);
+  for (int k = 0; k < 6; ++k) inverse[k] = lanes_load(shape->inverse[k] + place % SLICE);
   for (int r = 0; r < 3; ++r)
     for (int k = 0; k < 3; ++k)
       g[3 * r + k] = sums[r][0] * inverse[symmetric_place[k]] + sums[r][1] * inverse[symmetric_place[3 + k]] +
@@ -238,6 +239,7 @@ LANES_INLINE void strain_half(const Correspondence *c, int64_t place, Lanes sums
 LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, double *gradients)
 {
   const Family *f = c->family;
+  const SliceShape *shape = shape_of_slice(&c->shapes, slice);
   Lanes sums[3][2][4] = {{{{0}}}};
   deform_rows(c, slice, sums);
   if (f->rows.condition[slice] & ROWS_GAPS)
@@ -250,10 +252,11 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, double *g
     Lanes moved[3][4];
     for (int k = 0; k < 3; ++k) {
       Lanes u = lanes_load(c->particles->displacement[k] + place);
-      for (int j = 0; j < 3; ++j) moved[k][j] = sums[k][half][j] - u * lanes_load(c->first_moment[j] + place);
-      lanes_store(c->stretch[k] + place, sums[k][half][3] - u * lanes_load(c->weight_sum + place));
+      for (int j = 0; j < 3; ++j)
+        moved[k][j] = sums[k][half][j] - u * lanes_load(shape->first_moment[j] + LANES * half);
+      lanes_store(c->stretch[k] + place, sums[k][half][3] - u * lanes_load(shape->weight_sum + LANES * half));
     }
-    strain_half(c, place, moved, gradients + LANES * half);
+    strain_half(c, shape, place, moved, gradients + LANES * half);
   }
 }
 
@@ -267,10 +270,11 @@ static void deform(void *formulation, int64_t first, int64_t last, double *gradi
 
 LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const double *gradients)
 {
+  const SliceShape *shape = shape_of_slice(&c->shapes, place / SLICE);
   Lanes s[6], g[9], p[9], inverse[6], hold[6];
   for (int k = 0; k < 6; ++k) {
     s[k] = lanes_load(c->points->stress[k] + place);
-    inverse[k] = lanes_load(c->inverse[k] + place);
+    inverse[k] = lanes_load(shape->inverse[k] + place % SLICE);
   }
   hold[0] = lanes_set(c->uniform);
   for (int k = 0; k < hold_components(c->control); ++k) hold[k] = lanes_load(c->hold[k] + place);
@@ -310,6 +314,7 @@ static void respond(void *formulation, int64_t first, int64_t last, const double
 LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control control)
 {
   const Family *f = c->family;
+  const SliceShape *shape = shape_of_slice(&c->shapes, slice);
   Lanes force[2][3] = {{{0}}}, hold[2][6] = {{{0}}};
   resist_rows(c, slice, control, force, hold);
   if (f->rows.condition[slice] & ROWS_GAPS)
@@ -331,7 +336,7 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
     for (int r = 0; r < 3; ++r) {
       Lanes sum = force[half][r];
       for (int j = 0; j < 3; ++j)
-        sum += lanes_load(c->state[3 * r + j] + place) * lanes_load(c->first_moment[j] + place);
+        sum += lanes_load(c->state[3 * r + j] + place) * lanes_load(shape->first_moment[j] + LANES * half);
       if (control == CONTROL_UNIFORM) sum += lanes_set(2 * c->uniform) * stretch[r];
       if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * stretch[r] - hold[half][0] * u[r];
       for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j) {

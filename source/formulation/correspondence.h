@@ -14,7 +14,7 @@
 
 #include "base/tensor.h"
 #include "formulation/formulation.h"
-#include "formulation/shape_tensor.h"
+#include "formulation/shape_table.h"
 
 /* Uniform: the scalar control of a body of one material with constant influence, where C is the same everywhere; sum w C_j eta
  * is then C e, known from the first sweep. */
@@ -30,22 +30,18 @@ typedef struct Correspondence {
   bool plane, finite;
   Control control;
   double strength;
-  double *inverse[6];      /* K^-1 */
-  double *first_moment[3]; /* m */
-  double *weight_sum;      /* w_sum */
-  double *state[9];        /* Q */
-  double *stretch[3];      /* e */
-  double uniform;          /* C, if it is uniform */
-  double *hold[6];         /* C: one component, or six, or none */
-  double *held[3];         /* C u, if neighbours read it */
+  ShapeTable shapes;  /* K^-1, m, w_sum */
+  double *state[9];   /* Q */
+  double *stretch[3]; /* e */
+  double uniform;     /* C, if it is uniform */
+  double *hold[6];    /* C: one component, or six, or none */
+  double *held[3];    /* C u, if neighbours read it */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
-  float *roundness; /* of K with all bonds */
-  uint8_t *mode;    /* ShapeMode of each place */
-  int32_t *axial;   /* places whose bonds act as springs, ascending (some may have become free since) */
+  int32_t *axial; /* places whose bonds act as springs, ascending (some may have become free since) */
   int64_t axial_count;
 } Correspondence;
 

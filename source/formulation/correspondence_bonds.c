@@ -28,7 +28,7 @@ void correspondence_finish(void *formulation)
     int32_t place = c->axial[n];
     int64_t slice = place / SLICE;
     int lane = place % SLICE;
-    if (c->mode[place] != SHAPE_AXIAL) continue;
+    if (c->shapes.mode[place] != SHAPE_AXIAL) continue;
     for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
       if (!(c->family->intact[slot] >> lane & 1)) continue;
       Bond bond = family_bond(c->family, slice, slot, lane);
@@ -57,7 +57,7 @@ void correspondence_bond_force(const void *formulation, int64_t slice, int64_t s
         force[k] += omega * (c->state[3 * k + j][ends[e]] * bond.xi[j] + hold * eta);
       }
   for (int e = 0; e < 2; ++e) { /* a spring pulls its two ends alike */
-    if (c->mode[ends[e]] != SHAPE_AXIAL) continue;
+    if (c->shapes.mode[ends[e]] != SHAPE_AXIAL) continue;
     Bond seen = bond; /* from that end */
     double t[3];
     if (e) {
