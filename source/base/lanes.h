@@ -74,4 +74,16 @@ LANES_INLINE Lanes lanes_least(Lanes a, Lanes b)
   return lanes_where(smaller, b) + lanes_where(~smaller, a);
 }
 
+LANES_INLINE Lanes lanes_absolute(Lanes a)
+{
+  const LaneMask magnitude = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
+  return (Lanes)((LaneMask)a & magnitude);
+}
+
+/** Sum of the four lanes, always in the same order. */
+LANES_INLINE double lanes_total(Lanes a)
+{
+  return (a[0] + a[1]) + (a[2] + a[3]);
+}
+
 #endif

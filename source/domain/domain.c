@@ -138,12 +138,15 @@ void domain_destroy(Domain *d)
   *d = (Domain){0};
 }
 
+/** Not finite if any force of the block is not. */
+BRECCIA_CLONES
 static double force_magnitude(const Particles *p, const Span *span)
 {
-  double sum = 0;
+  Lanes sum = {0};
   for (int k = 0; k < 3; ++k)
-    for (int64_t place = span->first * SLICE; place < span->last * SLICE; ++place) sum += fabs(p->internal[k][place]);
-  return sum;
+    for (int64_t place = span->first * SLICE; place < span->last * SLICE; place += LANES)
+      sum += lanes_absolute(lanes_load(p->internal[k] + place));
+  return lanes_total(sum);
 }
 
 void domain_forces(Domain *d)

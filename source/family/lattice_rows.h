@@ -45,6 +45,22 @@ typedef enum RowCondition {
   ROWS_GAPS = 2,   /* a bond of a slot that belongs to no whole row is missing */
 } RowCondition;
 
+LANES_INLINE void lattice_row_sums_reaching(const RowKind *kind, int reach, const uint8_t *present, const double *q,
+                                            double *sum, double *moment)
+{
+  for (int half = 0; half < SLICE / LANES; ++half) {
+    Lanes s = {0}, m = {0};
+    for (int along = -reach; along <= reach; ++along) {
+      Lanes value = lanes_load(q + LANES * half + along);
+      if (present) value = lanes_where(lanes_mask((unsigned)present[along] >> (LANES * half) & 15u), value);
+      if (sum) s += value * lanes_set(kind->weight[reach + along]);
+      if (moment) m += value * lanes_set(kind->moment[reach + along]);
+    }
+    if (sum) lanes_store(sum + LANES * half, s);
+    if (moment) lanes_store(moment + LANES * half, m);
+  }
+}
+
 /** Sums along the rows for all places of one slice, as far as particles are present there.
  *  @param[in] q      a number per place, with spare entries (places_array)
  *  @param[out] sum, moment  [8] sum w q and sum w s q of the slice's places; either may be NULL */
@@ -52,19 +68,13 @@ LANES_INLINE void lattice_row_sums(const LatticeRows *rows, const RowKind *kind,
                                    double *sum, double *moment)
 {
   const uint8_t *present = rows->present + slice * (2 * rows->reach + 1) + rows->reach;
-  bool complete = rows->complete[slice];
-  for (int half = 0; half < SLICE / LANES; ++half) {
-    int64_t place = slice * SLICE + LANES * half;
-    Lanes s = {0}, m = {0};
-    for (int along = -kind->reach; along <= kind->reach; ++along) {
-      Lanes value = lanes_load(q + place + along);
-      if (!complete) value = lanes_where(lanes_mask((unsigned)present[along] >> (LANES * half) & 15u), value);
-      if (sum) s += value * lanes_set(kind->weight[kind->reach + along]);
-      if (moment) m += value * lanes_set(kind->moment[kind->reach + along]);
-    }
-    if (sum) lanes_store(sum + LANES * half, s);
-    if (moment) lanes_store(moment + LANES * half, m);
-  }
+  q += slice * SLICE;
+  if (!rows->complete[slice])
+    lattice_row_sums_reaching(kind, kind->reach, present, q, sum, moment);
+  else if (kind->reach == 2) /* the usual horizon of 3.015 spacings; loops of known length take a third less time */
+    lattice_row_sums_reaching(kind, 2, NULL, q, sum, moment);
+  else
+    lattice_row_sums_reaching(kind, kind->reach, NULL, q, sum, moment);
 }
 
 /** Lanes of a slice that hold a particle, a bit each. */

@@ -57,8 +57,7 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
   *table = (ShapeTable){.plane = plane};
   table->entry_of = memory_zeroed((size_t)slices, sizeof *table->entry_of, "shape tensors", error);
   table->shared = memory_zeroed(capacity, 1, "shape tensors", error);
-  table->roundness =
-      memory_zeroed((size_t)family->particles->places, sizeof *table->roundness, "shape tensors", error);
+  table->roundness = memory_zeroed((size_t)family->particles->places, sizeof *table->roundness, "shape tensors", error);
   table->mode = memory_zeroed((size_t)family->particles->places, 1, "shape tensors", error);
   SliceShape *batch = memory_zeroed(BATCH, sizeof *batch, "shape tensors", error);
   int32_t *slots = memory_zeroed(slots_count, sizeof *slots, "shape tensors", error);

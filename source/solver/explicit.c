@@ -86,27 +86,27 @@ BRECCIA_CLONES
 static void kick_and_drift(Explicit *s, int64_t block)
 {
   const Particles *p = s->domain->particles;
-  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, largest = 0;
+  const Lanes dt = lanes_set(s->time_step), c = lanes_set(s->spec->damping), one_half = lanes_set(0.5);
+  Lanes bond = {0}, external = {0}, damping = {0}, still = {0};
   int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
-  for (int k = 0; k < 3; ++k) {
-    double *v = p->velocity[k], *u = p->displacement[k];
-    const double *a = s->acceleration[k], *fi = p->internal[k], *fe = p->external[k];
-    for (int64_t i = first; i < last; ++i) {
-      double drag = fi[i] + fe[i] - p->density[i] * (a[i] - c * v[i]);
-      double half = v[i] + 0.5 * dt * (a[i] - c * v[i]), du = dt * half, work = 0.5 * du * p->volume[i];
-      bond -= fi[i] * work;
-      external += fe[i] * work;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = first; i < last; i += LANES) {
+      Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
+      Lanes fe = lanes_load(p->external[k] + i);
+      Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->density + i) * gain;
+      Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(p->volume + i);
+      bond -= fi * work;
+      external += fe * work;
       damping += drag * work;
-      largest = fmax(largest, fabs(du));
-      u[i] += du;
-      v[i] = half;
+      still = lanes_least(still, -lanes_absolute(du));
+      lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
+      lanes_store(p->velocity[k] + i, half);
     }
-  }
   double *sums = s->sums[block];
-  sums[BOND_WORK] = bond;
-  sums[EXTERNAL_WORK] = external;
-  sums[DAMPING_WORK] = damping;
-  sums[MOTION] = largest;
+  sums[BOND_WORK] = lanes_total(bond);
+  sums[EXTERNAL_WORK] = lanes_total(external);
+  sums[DAMPING_WORK] = lanes_total(damping);
+  sums[MOTION] = fmax(fmax(-still[0], -still[1]), fmax(-still[2], -still[3]));
 }
 
 /** Second half: accelerations and velocities at the end of the step. */
@@ -114,29 +114,31 @@ BRECCIA_CLONES
 static void kick(Explicit *s, int64_t block)
 {
   const Particles *p = s->domain->particles;
-  double dt = s->time_step, c = s->spec->damping, local = s->spec->local_damping;
-  double bond = 0, external = 0, damping = 0, kinetic = 0;
+  double c = s->spec->damping;
+  const Lanes dt = lanes_set(s->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
+  const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->time_step)), viscous = lanes_set(c);
+  Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0};
   int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
-  for (int k = 0; k < 3; ++k) {
-    double *v = p->velocity[k], *a = s->acceleration[k];
-    const double *fi = p->internal[k], *fe = p->external[k];
-    for (int64_t i = first; i < last; ++i) {
-      double half = v[i], force = fi[i] + fe[i], drag = local * fabs(force) * (half > 0 ? 1 : half < 0 ? -1 : 0);
-      double acceleration = (force - drag) / p->density[i], end = (half + 0.5 * dt * acceleration) / (1 + 0.5 * c * dt);
-      double work = 0.5 * dt * half * p->volume[i];
-      bond -= fi[i] * work;
-      external += fe[i] * work;
-      damping += (drag + c * p->density[i] * end) * work;
-      kinetic += 0.5 * p->density[i] * p->volume[i] * end * end;
-      a[i] = acceleration;
-      v[i] = end;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = first; i < last; i += LANES) {
+      Lanes half = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
+      Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->density + i);
+      Lanes volume = lanes_load(p->volume + i), force = fi + fe, size = local * lanes_absolute(force);
+      Lanes drag = lanes_where(half > lanes_set(0), size) - lanes_where(half < lanes_set(0), size);
+      Lanes acceleration = (force - drag) / density, end = (half + one_half * dt * acceleration) * slow;
+      Lanes work = one_half * dt * half * volume;
+      bond -= fi * work;
+      external += fe * work;
+      damping += (drag + viscous * density * end) * work;
+      kinetic += one_half * density * volume * end * end;
+      lanes_store(s->acceleration[k] + i, acceleration);
+      lanes_store(p->velocity[k] + i, end);
     }
-  }
   double *sums = s->sums[block];
-  sums[BOND_WORK] += bond;
-  sums[EXTERNAL_WORK] += external;
-  sums[DAMPING_WORK] += damping;
-  sums[KINETIC] = kinetic;
+  sums[BOND_WORK] += lanes_total(bond);
+  sums[EXTERNAL_WORK] += lanes_total(external);
+  sums[DAMPING_WORK] += lanes_total(damping);
+  sums[KINETIC] = lanes_total(kinetic);
 }
 
 static double along(double *const vector[3], const double direction[3], int32_t i)
