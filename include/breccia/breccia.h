@@ -43,7 +43,8 @@ typedef struct breccia_parameter {
   const char *meaning;
 } breccia_parameter;
 
-/** Points handed to a law at once. Component order xx yy zz xy yz zx, engineering shear strains, tension positive. */
+/** Points handed to a law at once. Component order xx yy zz xy yz zx, engineering shear strains, tension positive. A uniaxial
+ *  law has one component: strain[0], stress[0], and one number of tangent per point. */
 typedef struct breccia_batch {
   int count;
   const double *strain[6]; /* total strain, [count] each */
@@ -64,6 +65,8 @@ typedef struct breccia_law {
   const breccia_parameter *parameters;
   int parameter_count;
   size_t constants_size; /* bytes that `prepare` fills */
+  int uniaxial;          /* 1: takes one strain (of a bond), 0: the six of a point in space */
+  int linear;            /* 1: stress is a constant times strain, so that points need not be kept */
   /** Parameter values (in table order) to constants. @return 0, or 1 with the reason in words */
   int (*prepare)(const double *values, void *constants, char *reason, size_t reason_size);
   /** Elastic moduli of the undamaged material, for stable steps and zero-energy control. */

@@ -14,9 +14,9 @@ enum { MODEL, SET, STRAIN, OUTPUT, TANGENT, ELASTIC, COUNT };
 static const Option options[] = {
     {"model", "NAME", "constitutive model"},
     {"set", "KEY=VALUE", "a parameter, with or without unit (repeat for each)"},
-    {"strain", "PATH.csv", "total strains: columns e11,e22,e33,g12,g23,g31"},
+    {"strain", "PATH.csv", "total strains: columns e11,e22,e33,g12,g23,g31; e11 alone for laws of one strain"},
     {"output", "OUT.csv", "where strains and stresses go (standard output)"},
-    {"tangent", NULL, "add the tangent: columns C11 ... C66, row by row"},
+    {"tangent", NULL, "add the tangent: columns C11 ... C66, row by row, or C11"},
     {"elastic-rows", "N", "respond elastically in the first N rows (gravity stage)"},
     {0},
 };
@@ -78,15 +78,17 @@ static int read_parameters(const breccia_law *law, const Settings *settings, con
   return status;
 }
 
-/** Strain rows [count][6], to be freed. */
-static double *read_path(const char *path, int *count, breccia_error *error)
+static const char *const strains[] = {"e11", "e22", "e33", "g12", "g23", "g31"};
+static const char *const stresses[] = {"s11", "s22", "s33", "s12", "s23", "s31"};
+
+/** Strain rows [count][6], to be freed; the components that a law takes come first, the others are left. */
+static double *read_path(const char *path, int components, int *count, breccia_error *error)
 {
-  static const char *const names[] = {"e11", "e22", "e33", "g12", "g23", "g31"};
   double *rows = NULL;
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < components; ++k) {
     char label[128];
     int n;
-    double *column = csv_column(path, names[k], &n, label, error);
+    double *column = csv_column(path, strains[k], &n, label, error);
     if (!column) {
       free(rows);
       return NULL;
@@ -105,13 +107,16 @@ static int drive(const Material *m, const double *rows, int count, long long ela
   size_t size = (size_t)m->history_values + 1;
   double *histories = calloc(2 * size, sizeof(double)), *committed = histories, *trial = histories + size;
   double strain[6], stress[6], d[36];
+  const int components = m->law->uniaxial ? 1 : 6;
   if (!histories) return error_add(error, BRECCIA_FAILURE, "out of memory");
   if (m->law->begin) {
     m->law->begin(m->constants, committed);
     m->law->begin(m->constants, trial);
   }
-  fprintf(out, "e11,e22,e33,g12,g23,g31,s11,s22,s33,s12,s23,s31");
-  for (int k = 0; tangent && k < 36; ++k) fprintf(out, ",C%d%d", k / 6 + 1, k % 6 + 1);
+  for (int k = 0; k < components; ++k) fprintf(out, "%s%s", k ? "," : "", strains[k]);
+  for (int k = 0; k < components; ++k) fprintf(out, ",%s", stresses[k]);
+  for (int k = 0; tangent && k < components * components; ++k)
+    fprintf(out, ",C%d%d", k / components + 1, k % components + 1);
   fprintf(out, "\n");
   int status = BRECCIA_OK;
   for (int i = 0; i < count && !status; ++i) {
@@ -120,16 +125,16 @@ static int drive(const Material *m, const double *rows, int count, long long ela
                            .trial = trial,
                            .tangent = tangent ? d : NULL,
                            .elastic_stage = i < elastic};
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < components; ++k) {
       strain[k] = rows[6 * i + k];
       batch.strain[k] = &strain[k];
       batch.stress[k] = &stress[k];
     }
     if (m->law->update(m->constants, &batch) >= 0)
       status = error_add(error, BRECCIA_FAILURE, "row %d: the law could not be integrated at this strain", i + 1);
-    for (int k = 0; k < 6; ++k) fprintf(out, "%s%.17g", k ? "," : "", strain[k]);
-    for (int k = 0; k < 6; ++k) fprintf(out, ",%.17g", stress[k]);
-    for (int k = 0; tangent && k < 36; ++k) fprintf(out, ",%.17g", d[k]);
+    for (int k = 0; k < components; ++k) fprintf(out, "%s%.17g", k ? "," : "", strain[k]);
+    for (int k = 0; k < components; ++k) fprintf(out, ",%.17g", stress[k]);
+    for (int k = 0; tangent && k < components * components; ++k) fprintf(out, ",%.17g", d[k]);
     fprintf(out, "\n");
     double *other = committed;
     committed = trial;
@@ -167,7 +172,7 @@ static int run(int argc, char **argv, const Verb *verb)
     status = material_prepare(&material, law, numbers, reason, sizeof reason);
     if (status) error_add(error, status, "%s: %s", law->name, reason);
   }
-  double *rows = status ? NULL : read_path(values[STRAIN], &count, error);
+  double *rows = status ? NULL : read_path(values[STRAIN], law->uniaxial ? 1 : 6, &count, error);
   if (!status && !rows) status = BRECCIA_USER_ERROR;
   FILE *out = stdout;
   if (!status && values[OUTPUT] && !(out = fopen(values[OUTPUT], "w")))

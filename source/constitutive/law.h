@@ -14,6 +14,13 @@ typedef struct LawList {
 const breccia_law *law_at(const LawList *list, int k);
 const breccia_law *law_find(const LawList *list, const char *name);
 
+/** What `moduli` says for a uniaxial law: those of a solid with its Young's modulus and a Poisson ratio of 1/4. */
+static inline void uniaxial_moduli(double young, double *bulk, double *shear)
+{
+  *bulk = young / 1.5;
+  *shear = young / 2.5;
+}
+
 /** Parameters of a table under one name, for laws. */
 #define LAW_PARAMETERS(table) .parameters = (table), .parameter_count = (int)(sizeof(table) / sizeof *(table))
 

@@ -5,13 +5,14 @@
 #include <string.h>
 
 int points_create(Points *points, int64_t slices, Space space, const Material *materials, const int32_t *material,
-                  Error *error)
+                  bool kept, Error *error)
 {
-  *points = (Points){.places = slices * SLICE, .space = space, .materials = materials, .material = material};
+  *points =
+      (Points){.places = slices * SLICE, .kept = kept, .space = space, .materials = materials, .material = material};
   points->history_start = memory_zeroed((size_t)slices, sizeof(int64_t), "history rows", error);
   if (!points->history_start) return BRECCIA_FAILURE;
   int64_t total = 0;
-  for (int64_t s = 0; s < slices; ++s) {
+  for (int64_t s = 0; s < slices && kept; ++s) {
     points->history_start[s] = total;
     total += SLICE * materials[material[s]].history_values;
   }
@@ -26,7 +27,7 @@ int points_create(Points *points, int64_t slices, Space space, const Material *m
   if (failed) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < slices; ++s) {
     const Material *m = &materials[material[s]];
-    for (int lane = 0; m->law->begin && lane < SLICE; ++lane)
+    for (int lane = 0; kept && m->law->begin && lane < SLICE; ++lane)
       m->law->begin(m->constants, points->committed + points->history_start[s] + lane * m->history_values);
   }
   if (total) memcpy(points->trial, points->committed, sizeof(double) * (size_t)total);
@@ -88,6 +89,7 @@ static int plane_stress(const Material *m, breccia_batch *batch, double *strain_
 
 int64_t points_update(Points *points, int64_t first, int64_t last, double *tangent)
 {
+  if (!points->kept) return -1;
   const Material *m = &points->materials[points->material[first]];
   int64_t place = first * SLICE;
   breccia_batch batch = {

@@ -13,7 +13,8 @@ enum { BLOCK = 128 }; /* places worked on together: their strains, stresses and 
 typedef struct Points {
   int64_t places;
   Space space;
-  double *strain[6], *stress[6];
+  bool kept;
+  double *strain[6], *stress[6]; /* [places]; if no point is kept, what domain_observe has found */
   double *committed, *trial;
   size_t history_size;    /* numbers in each of them */
   int64_t *history_start; /* [slices] */
@@ -22,9 +23,10 @@ typedef struct Points {
   int elastic_stage;       /* laws respond elastically while it is set */
 } Points;
 
-/** @param[in] material  [slices] which of the materials; both arrays are borrowed */
+/** @param[in] material  [slices] which of the materials; both arrays are borrowed
+ *  @param[in] kept      false: linear laws on bonds need no points; points_update then does nothing */
 int points_create(Points *points, int64_t slices, Space space, const Material *materials, const int32_t *material,
-                  Error *error);
+                  bool kept, Error *error);
 void points_destroy(Points *points);
 
 /** Stress and trial history of slices first .. last - 1 from their strains; they must be of one material and at most BLOCK

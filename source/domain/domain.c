@@ -1,8 +1,28 @@
 #include "domain/domain.h"
 
+#include "base/tensor.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/** Laws take one strain or six; formulations offer one or the other. */
+static int check_law(const Domain *d, const DeckReader *reader, const SectionHead *section, const Material *m)
+{
+  const LawList *laws = reader->context;
+  if (m->law->uniaxial == d->type->uniaxial && (!m->law->uniaxial || m->law->linear)) return BRECCIA_OK;
+  Text words = {0};
+  for (int k = 0; law_at(laws, k); ++k)
+    if (law_at(laws, k)->uniaxial == d->type->uniaxial && (!d->type->uniaxial || law_at(laws, k)->linear))
+      text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
+  node_error(reader->document, section_place(section, "model"), reader->error,
+             "material '%s': '%s' is a law of %s; %s takes %s", m->name, m->law->name,
+             m->law->uniaxial != d->type->uniaxial ? m->law->uniaxial ? "one strain" : "strain in space"
+                                                   : "bonds that keep a history",
+             d->type->name, words.characters);
+  text_free(&words);
+  return BRECCIA_USER_ERROR;
+}
 
 static int create_materials(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
@@ -10,7 +30,9 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
   if (!d->materials) return BRECCIA_FAILURE;
   int status = BRECCIA_OK;
   for (int k = 0; k < spec->materials->count; ++k) {
-    int bad = material_create(&d->materials[d->material_count++], reader, spec->materials->items[k]);
+    Material *m = &d->materials[d->material_count++];
+    int bad = material_create(m, reader, spec->materials->items[k]);
+    if (!bad) bad = check_law(d, reader, spec->materials->items[k], m);
     if (bad) status = bad;
   }
   for (int b = 0; b < spec->blocks->count; ++b) {
@@ -25,6 +47,10 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
 static int check_space(const Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Space space = peridynamics_space(spec->peridynamics);
+  if (d->type->uniaxial && spec->peridynamics->control)
+    return node_error(reader->document, section_place(spec->peridynamics, "zero-energy control"), reader->error,
+                      "zero-energy control: is for correspondence; %s has no modes without energy: leave it out",
+                      d->type->name);
   if (d->body.plane == (space != SPACE_3D)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
                     d->body.plane ? "space: a square lattice needs 'plane strain' or 'plane stress'"
@@ -47,6 +73,30 @@ static bool row_goes_on(const Domain *d, int64_t slice)
 
 /* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
  * in the cache. */
+static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec)
+{
+  double limit = spec ? spec->critical_stretch : NAN;
+  if (!isnan(limit) && !isnan(spec->fracture_energy))
+    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
+                      "failure: give 'critical stretch' or 'fracture energy', not both");
+  if (spec && !isnan(spec->fracture_energy)) {
+    const Node *place = section_place(spec, "fracture energy");
+    if (!d->type->critical_stretch)
+      return node_error(
+          reader->document, place, reader->error,
+          "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
+          "'critical stretch'");
+    limit = d->type->critical_stretch(d->formulation, spec->fracture_energy);
+    if (isnan(limit))
+      return node_error(
+          reader->document, place, reader->error,
+          "fracture energy: the materials differ in stiffness, so that each would have a critical stretch of "
+          "its own; give 'critical stretch'");
+  }
+  if (!isnan(limit)) d->failure = (Failure){&criterion_critical_stretch, limit};
+  return BRECCIA_OK;
+}
+
 static int share_out(Domain *d, Error *error)
 {
   int64_t slices = d->particles->slices;
@@ -63,7 +113,9 @@ static int share_out(Domain *d, Error *error)
   }
   d->block_sum = memory_zeroed((size_t)d->block_count, sizeof(double), "block sums", error);
   d->block_failed = memory_zeroed((size_t)d->block_count, sizeof(int64_t), "block sums", error);
-  return d->block_sum && d->block_failed ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (!d->block_sum || !d->block_failed) return BRECCIA_FAILURE;
+  for (int64_t b = 0; b < d->block_count; ++b) d->block_failed[b] = -1;
+  return BRECCIA_OK;
 }
 
 static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
@@ -87,6 +139,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   Error *error = reader->error;
   const PeridynamicsSpec *pd = spec->peridynamics;
   d->failed_place = -1;
+  d->type = formulation_find(pd->formulation);
   int status = create_materials(d, reader, spec), bad = body_create(&d->body, reader, spec->blocks, spec->cracks);
   if (bad) status = bad;
   if (!bad && (bad = check_space(d, reader, spec))) status = bad;
@@ -101,22 +154,21 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  status =
-      family_create(&d->family, &d->body, horizon, influence_find(pd->influence), (VolumeCorrection)correction, error);
+  status = family_create(
+      &d->family, &d->body,
+      &(FamilySpec){horizon, influence_find(pd->influence), (VolumeCorrection)correction, d->type->row_sums}, error);
   if (status) return status;
 #pragma omp parallel for schedule(static)
   for (int32_t place = 0; place < (int32_t)d->particles->places; ++place)
     d->family_volume[place] = family_volume(&d->family, place);
 
-  if ((status =
-           points_create(&d->points, d->particles->slices, peridynamics_space(pd), d->materials, d->material, error)))
+  if ((status = points_create(&d->points, d->particles->slices, peridynamics_space(pd), d->materials, d->material,
+                              !d->type->uniaxial, error)))
     return status;
   if ((status = share_out(d, error))) return status;
   FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};
-  d->type = formulation_find(pd->formulation);
   d->formulation = d->type->create(&parts, error);
-  d->failure = failure_of(spec->failure);
-  return d->formulation ? BRECCIA_OK : BRECCIA_USER_ERROR;
+  return d->formulation ? create_failure(d, reader, spec->failure) : BRECCIA_USER_ERROR;
 }
 
 void domain_destroy(Domain *d)
@@ -149,33 +201,44 @@ static double force_magnitude(const Particles *p, const Span *span)
   return lanes_total(sum);
 }
 
-void domain_forces(Domain *d)
+/** Stresses of a block, and what its particles show their neighbours. */
+static void answer(Domain *d, int64_t block, bool resume)
 {
   _Alignas(64) double carry[CARRY * BLOCK];
-#pragma omp for schedule(static)
-  for (int64_t b = 0; b < d->block_count; ++b)
-    d->type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
-#pragma omp for schedule(static)
-  for (int64_t b = 0; b < d->block_count; ++b) {
-    Span span = d->blocks[b];
-    d->type->deform(d->formulation, span.first, span.last, carry);
-    d->block_failed[b] = points_update(&d->points, span.first, span.last, NULL);
-    d->type->respond(d->formulation, span.first, span.last, carry);
-    if (!d->rows_cut) d->type->sum_states(d->formulation, span.first, span.last);
-  }
-  if (d->rows_cut) {
+  Span span = d->blocks[block];
+  d->type->deform(d->formulation, span.first, span.last, carry);
+  if (!resume) d->block_failed[block] = points_update(&d->points, span.first, span.last, NULL);
+  d->type->respond(d->formulation, span.first, span.last, carry);
+}
+
+void domain_forces(Domain *d)
+{
+  const FormulationType *type = d->type;
+  if (type->row_sums) {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < d->block_count; ++b)
-      d->type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
+      type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
+  }
+  if (type->deform) {
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < d->block_count; ++b) {
+      answer(d, b, false);
+      if (type->row_sums && !d->rows_cut) type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    }
+  }
+  if (type->row_sums && d->rows_cut) {
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < d->block_count; ++b)
+      type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
   }
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {
-    d->type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
     d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
   }
 #pragma omp single
   {
-    d->type->finish(d->formulation);
+    if (type->finish) type->finish(d->formulation);
     d->force_sum = 0;
     d->failed_place = -1;
     for (int64_t b = 0; b < d->block_count; ++b) {
@@ -187,18 +250,48 @@ void domain_forces(Domain *d)
 
 void domain_resume(Domain *d)
 {
-  _Alignas(64) double carry[CARRY * BLOCK];
-  for (int64_t n = 0; n < d->broken_count; ++n) {
-    d->type->renew(d->formulation, d->particles->place_of[d->broken[n].a] / SLICE);
-    d->type->renew(d->formulation, d->particles->place_of[d->broken[n].b] / SLICE);
-    lattice_rows_mark(&d->family, d->particles->place_of[d->broken[n].a] / SLICE);
-    lattice_rows_mark(&d->family, d->particles->place_of[d->broken[n].b] / SLICE);
-  }
-  for (int64_t b = 0; b < d->block_count; ++b)
+  for (int64_t n = 0; n < d->broken_count; ++n)
+    for (int end = 0; end < 2; ++end) {
+      int64_t slice = d->particles->place_of[end ? d->broken[n].b : d->broken[n].a] / SLICE;
+      lattice_rows_mark(&d->family, slice);
+      if (d->type->renew) d->type->renew(d->formulation, slice);
+    }
+  for (int64_t b = 0; d->type->row_sums && b < d->block_count; ++b)
     d->type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
-  for (int64_t b = 0; b < d->block_count; ++b) {
-    d->type->deform(d->formulation, d->blocks[b].first, d->blocks[b].last, carry);
-    d->type->respond(d->formulation, d->blocks[b].first, d->blocks[b].last, carry);
+  for (int64_t b = 0; d->type->deform && b < d->block_count; ++b) answer(d, b, true);
+}
+
+void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
+{
+  if (d->points.kept) {
+    for (int k = 0; k < 6; ++k) {
+      strain[k] = d->points.strain[k][place];
+      stress[k] = d->points.stress[k][place];
+    }
+    return;
+  }
+  double f[9];
+  d->type->stress(d->formulation, place, stress);
+  d->type->gradient(d->formulation, place, f);
+  for (int k = 0; k < 6; ++k) {
+    int r = symmetric_row[k], s = symmetric_column[k];
+    double green = f[r] * f[s] + f[3 + r] * f[3 + s] + f[6 + r] * f[6 + s] - (r == s);
+    strain[k] = k < 3 ? green / 2 : green;
+  }
+}
+
+void domain_observe(Domain *d)
+{
+  if (d->points.kept) return;
+#pragma omp parallel for schedule(static)
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    int32_t place = d->particles->place_of[n];
+    double strain[6], stress[6];
+    domain_look(d, place, strain, stress);
+    for (int k = 0; k < 6; ++k) {
+      d->points.strain[k][place] = strain[k];
+      d->points.stress[k][place] = stress[k];
+    }
   }
 }
 
@@ -272,7 +365,7 @@ void domain_break(Domain *d, int64_t step, double time, double motion)
     for (int64_t s = 0; s < d->particles->slices; ++s) any |= d->suspects[s];
     if (any && judge(d, step, time))
       for (int64_t s = 0; s < d->particles->slices; ++s)
-        if (d->suspects[s]) d->type->renew(d->formulation, s);
+        if (d->suspects[s] && d->type->renew) d->type->renew(d->formulation, s);
   }
 }
 

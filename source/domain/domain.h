@@ -68,6 +68,13 @@ void domain_break(Domain *domain, int64_t step, double time, double motion);
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
 
+/** Strain and stress at a place as the law takes and gives them; where laws act on bonds, Green-Lagrange strain of the family and
+ *  virial stress of the bonds. */
+void domain_look(const Domain *domain, int64_t place, double strain[6], double stress[6]);
+
+/** Brings the arrays of strains and stresses up to date where no law writes them. */
+void domain_observe(Domain *domain);
+
 /** Broken share of the family of a place, 0 to 1. */
 double domain_damage(const Domain *domain, int32_t place);
 

@@ -8,7 +8,7 @@
 
 typedef struct FailureSpec {
   SectionHead head;
-  double critical_stretch; /* NaN: bonds do not break */
+  double critical_stretch, fracture_energy; /* NaN: not given */
 } FailureSpec;
 
 extern const Section failure_section;
@@ -28,8 +28,5 @@ typedef struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */
   double limit;
 } Failure;
-
-/** @param[in] spec  NULL: bonds do not break */
-Failure failure_of(const FailureSpec *spec);
 
 #endif

@@ -19,15 +19,15 @@ static double volume_share(VolumeCorrection correction, double length, double ho
 }
 
 /** Lattice vectors of one block within reach, lattice row by lattice row. */
-static int add_patterns(Family *family, const Lattice *lattice, int *first, double reach, const Influence *influence,
+static int add_patterns(Family *family, const Lattice *lattice, double reach, const Influence *influence,
                         VolumeCorrection correction, Error *error)
 {
   int cells = (int)floor(reach / lattice->spacing * (1 + 1e-9)), extent[3] = {cells, cells, cells};
   if (lattice->plane) extent[2] = 0;
   const int axes[3] = {lattice->axis, lattice->across[0], lattice->across[1]};
-  *first = family->pattern_count;
+  const int first = family->pattern_count;
   for (int pass = 0; pass < 2; ++pass) {
-    int count = *first;
+    int count = first;
     int offset[3];
     for (offset[axes[2]] = -extent[axes[2]]; offset[axes[2]] <= extent[axes[2]]; ++offset[axes[2]])
       for (offset[axes[1]] = -extent[axes[1]]; offset[axes[1]] <= extent[axes[1]]; ++offset[axes[1]]) {
@@ -47,7 +47,10 @@ static int add_patterns(Family *family, const Lattice *lattice, int *first, doub
             row->length = length;
             row->weight = influence->value(fmin(1, length / family->horizon), length) * share * lattice->volume;
             for (int k = 0; k < 3; ++k) row->weighted_xi[k] = row->weight * row->xi[k];
+            row->weight_by_length = row->weight / length;
+            row->by_square = 1 / (length * length);
             row->row = row_begins;
+            row->kind = -1;
           }
           ++count;
         }
@@ -120,7 +123,6 @@ typedef struct Build {
   Family *family;
   const Body *body;
   const Rows *rows;
-  const int *first_pattern, *pattern_count;
   const StoredBonds *stored;
 } Build;
 
@@ -131,15 +133,15 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
   const Rows *where = &build->rows[slice];
   const Lattice *lattice = &build->body->lattices[where->lattice];
   int64_t slot = write ? family->first[slice] : 0, begin = slot;
-  for (int k = 0; k < build->pattern_count[where->lattice]; ++k) {
+  for (int k = 0; k < family->pattern_begin[where->lattice + 1] - family->pattern_begin[where->lattice]; ++k) {
     int32_t base = 0;
-    const Pattern *pattern = &family->patterns[build->first_pattern[where->lattice] + k];
+    const Pattern *pattern = &family->patterns[family->pattern_begin[where->lattice] + k];
     uint8_t mask = lattice_slot(build->body, lattice, where->row, where->chunk, pattern->offset, &base);
     if (mask && build->body->crack_count) mask = cut_slot(build->body, slice, base, mask);
     if (!mask) continue;
     if (write) {
       family->base[slot] = base;
-      family->pattern[slot] = (uint16_t)(build->first_pattern[where->lattice] + k);
+      family->pattern[slot] = (uint16_t)(family->pattern_begin[where->lattice] + k);
       family->intact[slot] = mask;
     }
     *bonds += __builtin_popcount(mask);
@@ -224,35 +226,31 @@ static int fill_slots(Build *build, Error *error)
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
-int family_create(Family *family, const Body *body, double horizon, const Influence *influence,
-                  VolumeCorrection correction, Error *error)
+int family_create(Family *family, const Body *body, const FamilySpec *spec, Error *error)
 {
-  *family = (Family){.particles = &body->particles, .lattices = body->lattices, .horizon = horizon};
+  *family = (Family){.particles = &body->particles, .lattices = body->lattices, .horizon = spec->horizon};
   int blocks = body->block_count;
   family->rows.kind = memory_zeroed((size_t)blocks * ROW_KINDS, sizeof(RowKind), "lattice rows", error);
   if (!family->rows.kind) return BRECCIA_FAILURE;
-  int *first = memory_zeroed((size_t)blocks, sizeof *first, "bond patterns", error);
-  int *count = memory_zeroed((size_t)blocks, sizeof *count, "bond patterns", error);
+  family->pattern_begin = memory_zeroed((size_t)blocks + 1, sizeof(int), "bond patterns", error);
   Rows *rows = slice_rows(body, error);
   StoredBonds stored = {0};
-  int status = first && count && rows ? BRECCIA_OK : BRECCIA_FAILURE;
+  int status = family->pattern_begin && rows ? BRECCIA_OK : BRECCIA_FAILURE;
   for (int b = 0; b < blocks && !status; ++b) {
-    double reach = horizon + (correction == VOLUME_PARTIAL_BEYOND ? body->lattices[b].spacing / 2 : 0);
-    status = add_patterns(family, &body->lattices[b], &first[b], reach, influence, correction, error);
-    count[b] = family->pattern_count - first[b];
-    if (!status) status = lattice_rows_choose(family, &body->lattices[b], b, first[b], count[b], error);
+    double reach = spec->horizon + (spec->correction == VOLUME_PARTIAL_BEYOND ? body->lattices[b].spacing / 2 : 0);
+    status = add_patterns(family, &body->lattices[b], reach, spec->influence, spec->correction, error);
+    family->pattern_begin[b + 1] = family->pattern_count;
+    if (!status && spec->row_sums) status = lattice_rows_choose(family, b, error);
   }
   if (!status && blocks > 1) {
-    StoredWeight weight = {horizon, influence, correction, volume_share};
+    StoredWeight weight = {spec->horizon, spec->influence, spec->correction, volume_share};
     status = search_between_blocks(&stored, body, &weight, error);
   }
   if (!status) {
-    Build build = {family, body, rows, first, count, &stored};
+    Build build = {family, body, rows, &stored};
     status = fill_slots(&build, error);
   }
   if (!status) status = lattice_rows_create(family, body, error);
-  free(first);
-  free(count);
   free(rows);
   stored_bonds_destroy(&stored);
   return status;
@@ -266,6 +264,7 @@ void family_destroy(Family *family)
   free(family->pattern);
   free(family->intact);
   free(family->patterns);
+  free(family->pattern_begin);
   free(family->neighbour);
   free(family->weight);
   lattice_rows_destroy(&family->rows);

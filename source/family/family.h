@@ -15,16 +15,24 @@
 #include "family/influence.h"
 #include "family/lattice_rows.h"
 
-typedef struct Pattern { /* a relative lattice vector */
-  double xi[3];          /* from the particle to its neighbour */
-  double length, weight; /* weight: influence x volume correction x volume of the neighbour */
-  double weighted_xi[3]; /* weight x xi */
-  int offset[3];         /* in spacings */
-  int row;               /* alike for patterns that lead to the same lattice row */
-  int kind;              /* of that row, or -1 */
+typedef struct Pattern {              /* a relative lattice vector */
+  double xi[3];                       /* from the particle to its neighbour */
+  double length, weight;              /* weight: influence x volume correction x volume of the neighbour */
+  double weighted_xi[3];              /* weight x xi */
+  double weight_by_length, by_square; /* weight / length, 1 / length^2 */
+  int offset[3];                      /* in spacings */
+  int row;                            /* alike for patterns that lead to the same lattice row */
+  int kind;                           /* of that row, or -1 */
 } Pattern;
 
 typedef enum VolumeCorrection { VOLUME_WHOLE, VOLUME_PARTIAL, VOLUME_PARTIAL_BEYOND } VolumeCorrection;
+
+typedef struct FamilySpec {
+  double horizon;
+  const Influence *influence;
+  VolumeCorrection correction;
+  bool row_sums; /* the formulation makes sums along lattice rows */
+} FamilySpec;
 
 struct Family {
   const Particles *particles;
@@ -37,7 +45,8 @@ struct Family {
   uint16_t *pattern; /* [slots] row of patterns; unused in stored slots */
   uint8_t *intact;   /* [slots] */
   Pattern *patterns;
-  int pattern_count;
+  int pattern_count,
+      *pattern_begin; /* [lattices + 1] those of lattice b are pattern_begin[b] .. pattern_begin[b + 1] - 1 */
   int32_t *neighbour; /* [stored_slots][8] */
   double *weight;     /* [stored_slots][8] */
   LatticeRows rows;
@@ -53,8 +62,7 @@ const char *volume_correction_word(int k);
 
 /** Finds all pairs nearer than the horizon (inclusive, with a tolerance of 1e-9) that no cut of the body separates.
  *  Refuses particles that lie (nearly) on top of each other. */
-int family_create(Family *family, const Body *body, double horizon, const Influence *influence,
-                  VolumeCorrection correction, Error *error);
+int family_create(Family *family, const Body *body, const FamilySpec *spec, Error *error);
 void family_destroy(Family *family);
 
 /** The bond of a lane in a slot of a slice; its intact bit is not looked at. */

@@ -38,11 +38,12 @@ static int put_last(Pattern *patterns, int count, Error *error)
   return BRECCIA_OK;
 }
 
-int lattice_rows_choose(Family *family, const Lattice *lattice, int b, int first, int count, Error *error)
+int lattice_rows_choose(Family *family, int b, Error *error)
 {
+  const Lattice *lattice = &family->lattices[b];
+  const int first = family->pattern_begin[b], count = family->pattern_begin[b + 1] - first;
   Candidate found[4 * ROW_KINDS];
   int candidates = 0;
-  for (int k = first; k < first + count; ++k) family->patterns[k].kind = -1;
   for (int pass = 0; pass < 2; ++pass) { /* first count the rows of each kind, then tell the patterns */
     for (int begin = first, end; begin < first + count; begin = end) {
       const Pattern *row = &family->patterns[begin];

@@ -85,9 +85,8 @@ static inline unsigned lattice_rows_lanes(const LatticeRows *rows, int64_t slice
 
 typedef struct Family Family;
 
-/** Chooses the kinds of rows that get sums in one lattice, whose patterns are first .. first + count - 1, and puts their patterns
- *  last. */
-int lattice_rows_choose(Family *family, const Lattice *lattice, int b, int first, int count, Error *error);
+/** Chooses the kinds of rows that get sums in the lattice of block b, and puts their patterns last. */
+int lattice_rows_choose(Family *family, int b, Error *error);
 
 /** Finds which particles are present along rows and which rows are whole; kinds were chosen and slots built before. */
 int lattice_rows_create(Family *family, const Body *body, Error *error);

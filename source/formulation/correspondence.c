@@ -1,56 +1,40 @@
 #include "formulation/correspondence.h"
 
+#include "family/slots.h"
+
 /* ---- bonds slot by slot ---- */
 
-/** The bonds of a slice in one slot: where the eight neighbours are, and their reference vectors, by halves of the slice. */
-typedef struct Slot {
-  bool lattice;
-  int64_t base;         /* lattice: place of the first neighbour */
-  const int32_t *index; /* stored: their places */
-  Lanes weight[2], weighted_xi[2][3];
-} Slot;
+/** A slot with its weights and weighted reference vectors, by halves of the slice. */
+typedef struct Weighted {
+  Slot slot;
+  Lanes weight[2], xi[2][3];
+} Weighted;
 
-LANES_INLINE Slot slot_open(const Correspondence *c, int64_t slot, int64_t slice, bool lattice)
+LANES_INLINE Weighted weighted_open(const Correspondence *c, int64_t slot, int64_t slice, bool lattice)
 {
   const Family *f = c->family;
-  Slot s = {.lattice = lattice};
+  Weighted s = {.slot = slot_open(f, slot, lattice)};
   if (lattice) {
     const Pattern *row = &f->patterns[f->pattern[slot]];
-    s.base = f->base[slot];
     s.weight[0] = s.weight[1] = lanes_set(row->weight);
-    for (int k = 0; k < 3; ++k) s.weighted_xi[0][k] = s.weighted_xi[1][k] = lanes_set(row->weighted_xi[k]);
+    for (int k = 0; k < 3; ++k) s.xi[0][k] = s.xi[1][k] = lanes_set(row->weighted_xi[k]);
     return s;
   }
-  int64_t at = (int64_t)f->base[slot] * SLICE;
-  s.index = f->neighbour + at;
   for (int half = 0; half < 2; ++half) {
-    s.weight[half] = lanes_load(f->weight + at + LANES * half);
-    for (int k = 0; k < 3; ++k) {
-      const double *x = c->particles->position[k];
-      s.weighted_xi[half][k] =
-          s.weight[half] * (lanes_gather(x, s.index + LANES * half) - lanes_load(x + slice * SLICE + LANES * half));
-    }
+    s.weight[half] = lanes_load(f->weight + s.slot.at + LANES * half);
+    slot_reference(&s.slot, c->particles, slice, half, s.xi[half]);
+    for (int k = 0; k < 3; ++k) s.xi[half][k] *= s.weight[half];
   }
   return s;
 }
 
-LANES_INLINE Lanes slot_read(const Slot *s, int half, const double *array)
-{
-  return s->lattice ? lanes_load(array + s->base + LANES * half) : lanes_gather(array, s->index + LANES * half);
-}
-
-LANES_INLINE LaneMask half_mask(unsigned bits, int half)
-{
-  return lanes_mask(bits >> (LANES * half) & 15u);
-}
-
 /** Adds to moments [0..2] and weighted sum [3] of one component of the displacements. */
-LANES_INLINE void deform_slot(const Slot *s, bool gaps, unsigned bits, const double *u, Lanes sum[2][4])
+LANES_INLINE void deform_slot(const Weighted *s, bool gaps, unsigned bits, const double *u, Lanes sum[2][4])
 {
   for (int half = 0; half < 2; ++half) {
-    Lanes there = slot_read(s, half, u);
+    Lanes there = slot_read(&s->slot, half, u);
     if (gaps) there = lanes_where(half_mask(bits, half), there);
-    for (int j = 0; j < 3; ++j) sum[half][j] += there * s->weighted_xi[half][j];
+    for (int j = 0; j < 3; ++j) sum[half][j] += there * s->xi[half][j];
     sum[half][3] += there * s->weight[half];
   }
 }
@@ -70,7 +54,7 @@ LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool ga
         slot += f->rows.skip[slot] - 1;
         continue;
       }
-      Slot s = slot_open(c, slot, slice, true);
+      Weighted s = weighted_open(c, slot, slice, true);
       deform_slot(&s, gaps, f->intact[slot], u, sum);
     }
     for (int half = 0; half < 2; ++half)
@@ -81,26 +65,26 @@ LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool ga
 LANES_INLINE void deform_stored(const Correspondence *c, int64_t from, int64_t to, int64_t slice, Lanes sums[3][2][4])
 {
   for (int64_t slot = from; slot < to; ++slot) {
-    Slot s = slot_open(c, slot, slice, false);
+    Weighted s = weighted_open(c, slot, slice, false);
     for (int k = 0; k < 3; ++k) deform_slot(&s, true, c->family->intact[slot], c->particles->displacement[k], sums[k]);
   }
 }
 
-LANES_INLINE void resist_slot(const Correspondence *c, const Slot *s, bool gaps, unsigned bits, Control control,
+LANES_INLINE void resist_slot(const Correspondence *c, const Weighted *s, bool gaps, unsigned bits, Control control,
                               Lanes force[2][3], Lanes hold[2][6])
 {
   for (int half = 0; half < 2; ++half) {
     LaneMask mask = {0};
     if (gaps) mask = half_mask(bits, half);
     for (int r = 0; r < 3; ++r) {
-      Lanes f = slot_read(s, half, c->state[3 * r]) * s->weighted_xi[half][0];
-      f += slot_read(s, half, c->state[3 * r + 1]) * s->weighted_xi[half][1];
-      f += slot_read(s, half, c->state[3 * r + 2]) * s->weighted_xi[half][2];
-      if (hold_is_read(control)) f += slot_read(s, half, c->held[r]) * s->weight[half];
+      Lanes f = slot_read(&s->slot, half, c->state[3 * r]) * s->xi[half][0];
+      f += slot_read(&s->slot, half, c->state[3 * r + 1]) * s->xi[half][1];
+      f += slot_read(&s->slot, half, c->state[3 * r + 2]) * s->xi[half][2];
+      if (hold_is_read(control)) f += slot_read(&s->slot, half, c->held[r]) * s->weight[half];
       force[half][r] += gaps ? lanes_where(mask, f) : f;
     }
     for (int k = 0; hold_is_read(control) && k < hold_components(control); ++k) {
-      Lanes h = slot_read(s, half, c->hold[k]) * s->weight[half];
+      Lanes h = slot_read(&s->slot, half, c->hold[k]) * s->weight[half];
       hold[half][k] += gaps ? lanes_where(mask, h) : h;
     }
   }
@@ -117,7 +101,7 @@ LANES_INLINE void resist_lattice(const Correspondence *c, int64_t slice, bool ga
       slot += f->rows.skip[slot] - 1;
       continue;
     }
-    Slot s = slot_open(c, slot, slice, true);
+    Weighted s = weighted_open(c, slot, slice, true);
     resist_slot(c, &s, gaps, f->intact[slot], control, force, hold);
   }
 }
@@ -322,7 +306,7 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
   else
     resist_lattice(c, slice, false, control, force, hold);
   for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-    Slot s = slot_open(c, slot, slice, false);
+    Weighted s = weighted_open(c, slot, slice, false);
     resist_slot(c, &s, true, f->intact[slot], control, force, hold);
   }
   unsigned lanes = lattice_rows_lanes(&f->rows, slice);
@@ -369,6 +353,7 @@ const FormulationType formulation_correspondence = {
     .about = "non-ordinary state-based: one strain per particle from its family, with control of zero-energy modes",
     .source = "Silling et al. 2007; Silling 2017 and Wan et al. 2019 for the control",
     .maturity = "verified against patch tests and finite elements",
+    .row_sums = true,
     .create = correspondence_create,
     .destroy = correspondence_destroy,
     .renew = correspondence_renew,

@@ -149,22 +149,9 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
 void correspondence_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Correspondence *c = formulation;
-  int64_t slice = place / SLICE;
-  const SliceShape *shape = shape_of_slice(&c->shapes, slice);
-  double moved[9] = {0};
-  for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
-    if (!(c->family->intact[slot] >> (place % SLICE) & 1)) continue;
-    Bond bond = family_bond(c->family, slice, slot, (int)(place % SLICE));
-    for (int k = 0; k < 9; ++k) {
-      const double *u = c->particles->displacement[k / 3];
-      moved[k] += bond.weight * (u[bond.neighbour] - u[place]) * bond.xi[k % 3];
-    }
-  }
-  for (int k = 0; k < 9; ++k) {
-    f[k] = k % 4 == 0;
-    for (int j = 0; j < 3; ++j)
-      f[k] += moved[k / 3 * 3 + j] * shape->inverse[symmetric_place[3 * j + k % 3]][place % SLICE];
-  }
+  double inverse[6];
+  for (int k = 0; k < 6; ++k) inverse[k] = shape_of_slice(&c->shapes, place / SLICE)->inverse[k][place % SLICE];
+  shape_gradient(c->family, (int32_t)place, inverse, f);
 }
 
 size_t correspondence_bytes(const void *formulation)

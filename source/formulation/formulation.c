@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-extern const FormulationType formulation_correspondence;
+extern const FormulationType formulation_correspondence, formulation_bond_based;
 
-static const FormulationType *const formulations[] = {&formulation_correspondence};
+static const FormulationType *const formulations[] = {&formulation_correspondence, &formulation_bond_based};
 enum { COUNT = sizeof formulations / sizeof *formulations };
 
 const FormulationType *formulation_at(int k)
@@ -33,6 +33,12 @@ static const char *space_word(int k)
 static const char *strain_word(int k)
 {
   static const char *const words[] = {"green-lagrange", "small", NULL};
+  return words[k];
+}
+
+const char *calibration_word(int k)
+{
+  static const char *const words[] = {"continuum", "uniform-expansion", "uniaxial", NULL};
   return words[k];
 }
 
@@ -69,8 +75,12 @@ static const Field peridynamics_fields[] = {
      "share of a neighbour's volume near the horizon: whole, partial inside it, or partial half a spacing beyond it "
      "too",
      NULL, volume_correction_word, 0},
+    {"calibration", FIELD_CHOICE, offsetof(PeridynamicsSpec, calibration), NULL, "uniform-expansion", NULL,
+     "bond-based: which field shall have the energy of the continuum on this lattice, or whether the continuum's "
+     "integrals are taken",
+     NULL, calibration_word, 0},
     {"zero-energy control", FIELD_SECTION, offsetof(PeridynamicsSpec, control), NULL, "", NULL,
-     "silling 0.1 in 3-D and 0.2 in the plane when absent", &control_section, NULL, 0},
+     "of correspondence; silling 0.1 in 3-D and 0.2 in the plane when absent", &control_section, NULL, 0},
 };
 const Section peridynamics_section = {"peridynamics",
                                       "The non-local model: who interacts, and how. May be left out: all has defaults.",

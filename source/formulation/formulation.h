@@ -14,7 +14,7 @@ typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
 
 typedef struct PeridynamicsSpec {
   SectionHead head;
-  const char *formulation, *space, *strain, *influence, *volume_correction;
+  const char *formulation, *space, *strain, *influence, *volume_correction, *calibration;
   Length horizon;
   ControlSpec *control;
 } PeridynamicsSpec;
@@ -22,6 +22,10 @@ typedef struct PeridynamicsSpec {
 extern const Section peridynamics_section;
 
 Space peridynamics_space(const PeridynamicsSpec *spec);
+
+/** How the constant of bonds follows from Young's modulus. */
+typedef enum Calibration { CALIBRATION_CONTINUUM, CALIBRATION_EXPANSION, CALIBRATION_UNIAXIAL } Calibration;
+const char *calibration_word(int k);
 
 enum { CARRY = 9 };
 
@@ -36,15 +40,18 @@ typedef struct FormulationParts {
 
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
+  int uniaxial;  /* laws act on bonds, not on points in space */
+  bool row_sums; /* sum_displacements and sum_states make sums along lattice rows for neighbours to read */
   /** Makes a formulation for a body. Says where families are too poor for it. */
   void *(*create)(const FormulationParts *parts, Error *error);
   void (*destroy)(void *formulation);
-  /** Bonds of this slice have broken. */
+  /** Bonds of this slice have broken. NULL: nothing to do. */
   void (*renew)(void *formulation, int64_t slice);
-  /** Sums of displacements that neighbours will read; all slices are done before any deforms. */
+  /** Sums of displacements that neighbours will read; all slices are done before any deforms. NULL if !row_sums. */
   void (*sum_displacements)(void *formulation, int64_t first, int64_t last);
   /** Displacements to strains at the points of slices first .. last - 1, at most BLOCK places.
-   *  @param[out] carry  [CARRY][BLOCK] numbers of these places that `respond` finds again: they need never leave the cache */
+   *  @param[out] carry  [CARRY][BLOCK] numbers of these places that `respond` finds again: they need never leave the cache.
+   *  NULL, as is `respond`, where `resist` does everything. */
   void (*deform)(void *formulation, int64_t first, int64_t last, double *carry);
   /** Stresses at these points to whatever `resist` needs of a particle and its neighbours. */
   void (*respond)(void *formulation, int64_t first, int64_t last, const double *carry);
@@ -52,12 +59,18 @@ typedef struct FormulationType {
   void (*sum_states)(void *formulation, int64_t first, int64_t last);
   /** Internal force per volume on the particles of these slices; all slices are summed before. */
   void (*resist)(void *formulation, int64_t first, int64_t last);
-  /** Forces of the few particles that need another treatment; called once, by one thread, after all have resisted. */
+  /** Forces of the few particles that need another treatment; called once, by one thread, after all have resisted. May be NULL. */
   void (*finish)(void *formulation);
   /** Force per volume squared that the neighbour exerts on the particle through one bond (t_ij - t_ji). */
   void (*bond_force)(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
   /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
+  /** Virial stress of the bonds at a place; NULL where points have a stress. */
+  void (*stress)(const void *formulation, int64_t place, double stress[6]);
+  /** Stretch at which bonds must break to spend so much energy per area; NaN if it is not the same for all. NULL: unknown. */
+  double (*critical_stretch)(const void *formulation, double fracture_energy);
+  /** Adds what a user should know before a run, as one line; NULL: nothing. */
+  void (*describe)(const void *formulation, Text *text);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);
 } FormulationType;

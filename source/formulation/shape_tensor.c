@@ -61,3 +61,22 @@ ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double
   }
   return shape;
 }
+
+void shape_gradient(const Family *family, int32_t place, const double inverse[6], double f[9])
+{
+  int64_t slice = place / SLICE;
+  int lane = place % SLICE;
+  double moved[9] = {0};
+  for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot) {
+    if (!(family->intact[slot] >> lane & 1)) continue;
+    Bond bond = family_bond(family, slice, slot, lane);
+    for (int k = 0; k < 9; ++k) {
+      const double *u = family->particles->displacement[k / 3];
+      moved[k] += bond.weight * (u[bond.neighbour] - u[place]) * bond.xi[k % 3];
+    }
+  }
+  for (int k = 0; k < 9; ++k) {
+    f[k] = k % 4 == 0;
+    for (int j = 0; j < 3; ++j) f[k] += moved[k / 3 * 3 + j] * inverse[symmetric_place[3 * j + k % 3]];
+  }
+}

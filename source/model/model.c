@@ -334,8 +334,10 @@ const char *breccia_model_overview(breccia_model *model)
     text_add(text, "; %s %g", d->failure.criterion->name, d->failure.limit);
   else
     text_add(text, "; bonds do not break");
-  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps,
-           s->time_step, time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
+  text_add(text, "\n");
+  if (d->type->describe) d->type->describe(d->formulation, text);
+  text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step,
+           time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
   add_duration(text, model->evaluation_seconds * 1.15 * (double)(s->steps - s->step));
   return text->characters;
 }

@@ -51,7 +51,9 @@ static void octahedral_strain(const Domain *d, int32_t place, double *value)
 }
 static void mean_stress(const Domain *d, int32_t place, double *value)
 {
-  *value = (d->points.stress[XX][place] + d->points.stress[YY][place] + d->points.stress[ZZ][place]) / 3;
+  double s[6];
+  stress(d, place, s);
+  *value = (s[XX] + s[YY] + s[ZZ]) / 3;
 }
 static void damage(const Domain *d, int32_t place, double *value)
 {
@@ -68,9 +70,11 @@ static const char *const full[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy
 static const OutputField fields[] = {
     {"displacement", "length", "displacement from the reference position", 3, xyz, displacement},
     {"velocity", "velocity", "velocity", 3, xyz, velocity},
-    {"stress", "stress", "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain)", 6, voigt,
-     stress},
-    {"strain", "1", "strain as the law takes it, engineering shear", 6, voigt, strain},
+    {"stress", "stress",
+     "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain); of bonds: virial stress", 6,
+     voigt, stress},
+    {"strain", "1", "strain as the law takes it, engineering shear; with bonds: Green-Lagrange of the family", 6, voigt,
+     strain},
     {"deformation gradient", "1", "F, row by row", 9, full, gradient},
     {"octahedral shear stress", "stress", "sqrt(2 J2 / 3)", 1, NULL, octahedral},
     {"octahedral shear strain", "1", "twice the octahedral measure of the strain deviator: 2 / sqrt(3) |e|", 1, NULL,

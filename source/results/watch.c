@@ -101,14 +101,13 @@ static void force_row(const Watch *w, const Explicit *s, double *values)
 static void stress_row(const Watch *w, const Explicit *s, double *values)
 {
   double *strain = values, *stress = values + 6, tensor[6];
-  for (int k = 0; k < 6; ++k) {
-    strain[k] = stress[k] = 0;
-    for (int64_t n = 0; n < w->selection.count; ++n) {
-      strain[k] += s->domain->points.strain[k][w->selection.places[n]] / (double)w->selection.count;
-      stress[k] += s->domain->points.stress[k][w->selection.places[n]] / (double)w->selection.count;
-    }
-    tensor[k] = k < 3 ? strain[k] : strain[k] / 2;
+  for (int k = 0; k < 12; ++k) values[k] = 0;
+  for (int64_t n = 0; n < w->selection.count; ++n) {
+    double here[12];
+    domain_look(s->domain, w->selection.places[n], here, here + 6);
+    for (int k = 0; k < 12; ++k) values[k] += here[k] / (double)w->selection.count;
   }
+  for (int k = 0; k < 6; ++k) tensor[k] = k < 3 ? strain[k] : strain[k] / 2;
   values[12] = 2 * tensor_octahedral_shear(tensor);
   values[13] = tensor_octahedral_shear(stress);
   values[14] = (stress[XX] + stress[YY] + stress[ZZ]) / 3;

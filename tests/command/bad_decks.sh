@@ -102,6 +102,18 @@ refuse 's/^title: .*/title: *other/' '' 'aliases (*name) are not understood'
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/\[1, 0, 0\]/[1, 0, 2]/; s/^peri.*/peridynamics: {space: plane strain}/' \
   20:27 'has a part along z, but the body is plane'
 
+bars='s/^  clay: .*/  clay: {model: elastic-1d, density: 1, Young modulus: 1 GPa}/; s/^  steel: .*/  steel: {model: elastic-1d, density: 1, Young modulus: 2 GPa}/'
+refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic, density: 1, bulk modulus: 1 GPa, shear modulus: 1 GPa}/; s/^peri.*/peridynamics: {formulation: bond-based}/" \
+  4:17 "'elastic' is a law of strain in space; bond-based takes elastic-1d"
+refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: elastic-1d, density: 7.85, Young modulus: 210 GPa/' \
+  5:18 "'elastic-1d' is a law of one strain; correspondence takes elastic, multi-yield-j2"
+refuse 's/critical stretch: 0.05/critical stretch: 0.05, fracture energy: 100 N\/m/' 16:52 "give 'critical stretch' or 'fracture energy', not both"
+refuse 's/critical stretch: 0.05/fracture energy: 100 N\/m/' 16:28 'only bond-based peridynamics has a critical stretch that follows from it'
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, zero-energy control: {none: yes}}/" 15:41 'zero-energy control: is for correspondence'
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: elastic}/" 15:54 "calibration: 'elastic' is not known; choose from continuum, uniform-expansion, uniaxial"
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/critical stretch: 0.05/fracture energy: 100 N\/m/; s/^selections:/  more: {material: steel, spacing: 0.1, shape: {box: {from: [2, 0, 0], to: [3, 0.5, 0.3]}}}\nselections:/" \
+  '' 'the materials differ in stiffness'
+
 # Files that are no decks at all
 for content in '' '- a' 'words' '42' '%' '%TAG'; do
   printf '%s' "$content" > "$work/deck.yaml"

@@ -62,6 +62,10 @@ equal "material: heading" "$(head -1 out.csv | cut -d, -f1-13)" "e11,e22,e33,g12
 equal "material: s11" "$(sed -n 2p out.csv | cut -d, -f7)" 180
 equal "material: s12" "$(sed -n 3p out.csv | cut -d, -f10)" 120
 equal "material: C11" "$(sed -n 2p out.csv | cut -d, -f13)" 180000
+"$breccia" material --model elastic-1d --set "Young modulus=2 MPa" --strain path.csv --tangent > bar.csv
+equal "material of one strain" "$(cat bar.csv)" "e11,s11,C11
+0.001,2,2000
+0,0,2000"
 "$breccia" material --model elastic --set "Young=1" --strain path.csv 2> out; equal "material, wrong key: status" $? 2
 contains "material, wrong key" "$(cat out)" "expected KEY=VALUE with one of the keys 'Young modulus'"
 "$breccia" material --model multi-yield-j2 --strain path.csv 2> out; equal "material, nothing set: status" $? 2
