@@ -57,6 +57,8 @@ static void colour(double t, double rgb[3])
   for (int c = 0; c < 3; ++c) rgb[c] = stops[k][c] + share * (stops[k + 1][c] - stops[k][c]);
 }
 
+#define BALL 0.62 /* radius of a sphere in spacings: they overlap a little, without gaps along rows */
+
 typedef struct Scene {
   int64_t count;
   double *x, *y, *depth; /* on the picture plane, and towards the eye */
@@ -157,7 +159,7 @@ static int project(Scene *scene, const ResultView *view, int step, const Picture
   scene->x0 = scene->y0 = INFINITY;
   scene->x1 = scene->y1 = -INFINITY;
   for (int64_t n = 0; n < scene->count; ++n) {
-    double p[3], half = view->spacings[n] / 2;
+    double p[3], half = view->spacings[n] * (scene->flat ? 0.5 : BALL);
     scene->x[n] = scene->y[n] = scene->depth[n] = 0;
     for (int k = 0; k < 3; ++k) {
       p[k] = view->positions[3 * n + k] + (u ? o->deformed * u[3 * n + k] : 0);
@@ -367,7 +369,7 @@ static int draw_spheres(cairo_t *cr, const Page *page, const Scene *scene, const
   int stride = cairo_image_surface_get_stride(image);
   double scale = page->scale * fine;
   for (int64_t n = 0; n < scene->count; ++n) {
-    double radius = 0.62 * view->spacings[n] * scale, rgb[3]; /* spheres overlap a little: no gaps along rows */
+    double radius = BALL * view->spacings[n] * scale, rgb[3];
     double cx = (scene->x[n] - scene->x0) * scale, cy = (scene->y1 - scene->y[n]) * scale;
     if (!isfinite(cx) || !isfinite(cy)) continue;
     colour((scene->value[n] - scene->low) / (scene->high - scene->low), rgb);
