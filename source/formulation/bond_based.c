@@ -151,7 +151,7 @@ static void *create(const FormulationParts *parts, Error *error)
   bool alike = true;
   for (int block = 0; block < b->body->block_count; ++block) {
     double factor = calibration_factor(b, block, (Calibration)calibration) * continuum_constant(b, 1);
-    if (!(factor > 0)) {
+    if (!(factor > 0) || !isfinite(factor)) {
       error_add(
           error, BRECCIA_USER_ERROR,
           "block '%s': the bonds within the horizon of %g do not resist every strain, so that there is no stiffness to "
@@ -329,6 +329,11 @@ static void describe(const void *formulation, Text *text)
     const Material *m = &b->points->materials[b->points->material[slice]];
     double c = b->stiffness ? b->stiffness[slice * SLICE] : b->uniform;
     double wanted = material_young(m) * continuum_young(b);
+    if (isnan(lattice_young(b, block, axis))) {
+      text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",
+               b->body->blocks[block]->head.name);
+      continue;
+    }
     text_add(text,
              "%s: a uniaxial patch shows %.3f of the wanted modulus along the axes, %.3f along the diagonals of the %s",
              b->body->blocks[block]->head.name, c * lattice_young(b, block, axis) / wanted,
