@@ -250,7 +250,7 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
     Build build = {family, body, rows, &stored};
     status = fill_slots(&build, error);
   }
-  if (!status) status = lattice_rows_create(family, body, error);
+  if (!status && spec->row_sums) status = lattice_rows_create(family, body, error);
   free(rows);
   stored_bonds_destroy(&stored);
   return status;

@@ -188,6 +188,7 @@ static int64_t middle_of_whole(const Family *family, int64_t slice, int64_t begi
 void lattice_rows_mark(Family *family, int64_t slice)
 {
   LatticeRows *rows = &family->rows;
+  if (!rows->skip) return;
   int64_t entry = rows->begin[slice];
   unsigned condition = 0;
   for (int64_t slot = family->first[slice]; slot < rows->first[slice]; ++slot)
@@ -208,6 +209,7 @@ void lattice_rows_mark(Family *family, int64_t slice)
 size_t lattice_rows_bytes(const Family *family)
 {
   const LatticeRows *rows = &family->rows;
+  if (!rows->skip) return 0;
   size_t slices = (size_t)family->particles->slices, slice = (size_t)(2 * rows->reach + 3) + sizeof *rows->first;
   return (size_t)family->slots + slices * (slice + sizeof *rows->begin + sizeof *rows->count) +
          (size_t)rows->begin[slices] * sizeof *rows->whole;
