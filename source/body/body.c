@@ -219,8 +219,11 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
       count += __builtin_popcount(present[b][k]);
     if (count == before)
       status = node_error(reader->document, section_place(body->blocks[b], "shape"), error,
-                          "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?",
-                          body->blocks[b]->head.name);
+                          "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?%s",
+                          body->blocks[b]->head.name,
+                          body->lattices[b].plane && body->blocks[b]->shape->cylinder
+                              ? " In the plane a cylinder is a strip; a disc is a 'sphere'"
+                              : "");
   }
   if (!status) {
     body->plane = body->lattices[0].plane;

@@ -371,6 +371,7 @@ void domain_break(Domain *d, int64_t step, double time, double motion)
 
 double domain_damage(const Domain *d, int32_t place)
 {
+  if (!d->broken_count) return 0;
   double whole = d->family_volume[place];
   return whole > 0 ? fmax(0, 1 - family_volume(&d->family, place) / whole) : 0;
 }

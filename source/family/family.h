@@ -49,7 +49,7 @@ struct Family {
       *pattern_begin; /* [lattices + 1] those of lattice b are pattern_begin[b] .. pattern_begin[b + 1] - 1 */
   int32_t *neighbour; /* [stored_slots][8] */
   double *weight;     /* [stored_slots][8] */
-  LatticeRows rows; /* empty if the formulation makes no sums along rows */
+  LatticeRows rows;   /* empty if the formulation makes no sums along rows */
 };
 
 /** One bond seen from one end. */

@@ -94,7 +94,7 @@ static void update_peaks(breccia_model *model)
     peaks->octahedral = fmax(peaks->octahedral, tensor_octahedral_shear(s));
     peaks->mean_low = fmin(peaks->mean_low, (s[XX] + s[YY] + s[ZZ]) / 3);
     peaks->mean_high = fmax(peaks->mean_high, (s[XX] + s[YY] + s[ZZ]) / 3);
-    peaks->damage = fmax(peaks->damage, d->broken_count ? domain_damage(d, place) : 0);
+    peaks->damage = fmax(peaks->damage, domain_damage(d, place));
   }
 }
 

@@ -114,6 +114,9 @@ refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: el
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/critical stretch: 0.05/fracture energy: 100 N\/m/; s/^selections:/  more: {material: steel, spacing: 0.1, shape: {box: {from: [2, 0, 0], to: [3, 0.5, 0.3]}}}\nselections:/" \
   '' 'the materials differ in stiffness'
 
+refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/shape: .*/shape: {cylinder: {from: [1, 1, -1], to: [1, 1, 1], radius: 0.5}}/; s/^peri.*/peridynamics: {space: plane strain}/' \
+  '' "In the plane a cylinder is a strip; a disc is a 'sphere'"
+
 # Files that are no decks at all
 for content in '' '- a' 'words' '42' '%' '%TAG'; do
   printf '%s' "$content" > "$work/deck.yaml"
