@@ -172,28 +172,39 @@ static void *create(const FormulationParts *parts, Error *error)
 
 /* ---- the sweep over bonds ---- */
 
-/* Largest |d| for which the series below is as good as double precision: stretches of 0.2 %. */
-#define SERIES_LIMIT 0.00390625
+/* Ways to g(d) = 1 - (1 + d)^-1/2, each good to double precision relative to g and each cheaper than the next: its series, for stretches
+ * up to 0.2 %; a reciprocal root by Newton's steps from a short series, for stretches from -13 to 11 %; root and quotients. */
+typedef enum Range { RANGE_SERIES, RANGE_NEWTON, RANGE_ANY } Range;
+static const double range_limit[] = {0.00390625, 0.25}; /* largest |d| */
 
-/** g(d) = 1 - (1 + d)^-1/2, by its series for small d, which costs a third of root and quotient. */
-LANES_INLINE Lanes shortening(Lanes d, bool small)
+LANES_INLINE Lanes shortening(Lanes d, Range range)
 {
-  if (!small) {
-    Lanes r = lanes_set(1) / lanes_root(lanes_set(1) + d);
-    return d * r * r / (lanes_set(1) + r);
+  if (range == RANGE_SERIES) {
+    Lanes series = lanes_set(429.0 / 2048);
+    series = lanes_set(-231.0 / 1024) + d * series;
+    series = lanes_set(63.0 / 256) + d * series;
+    series = lanes_set(-35.0 / 128) + d * series;
+    series = lanes_set(5.0 / 16) + d * series;
+    series = lanes_set(-3.0 / 8) + d * series;
+    return d * (lanes_set(0.5) + d * series);
   }
-  Lanes series = lanes_set(429.0 / 2048);
-  series = lanes_set(-231.0 / 1024) + d * series;
-  series = lanes_set(63.0 / 256) + d * series;
-  series = lanes_set(-35.0 / 128) + d * series;
-  series = lanes_set(5.0 / 16) + d * series;
-  series = lanes_set(-3.0 / 8) + d * series;
-  return d * (lanes_set(0.5) + d * series);
+  if (range == RANGE_NEWTON) {
+    Lanes r = lanes_set(35.0 / 128), x = lanes_set(0.5) + lanes_set(0.5) * d;
+    r = lanes_set(-5.0 / 16) + d * r;
+    r = lanes_set(3.0 / 8) + d * r;
+    r = lanes_set(-0.5) + d * r;
+    r = lanes_set(1) + d * r;
+    for (int step = 0; step < 3; ++step) r *= lanes_set(1.5) - x * (r * r);
+    Lanes g = lanes_set(1) - r; /* has lost digits where d is small; (1 - g)^2 (1 + d) = 1 gives them back */
+    return lanes_set(0.5) * (d * (r * r) + g * g);
+  }
+  Lanes r = lanes_set(1) / lanes_root(lanes_set(1) + d);
+  return d * r * r / (lanes_set(1) + r);
 }
 
-/** Adds one slot to the forces of half a slice. @return lanes in which d was too large for the series */
+/** Adds one slot to the forces of half a slice. @return lanes in which d was beyond the range */
 LANES_INLINE LaneMask add_slot(const BondBased *b, int64_t slot, int64_t slice, int half, bool lattice, bool alike,
-                               bool small, const Lanes own[3], Lanes force[3])
+                               Range range, const Lanes own[3], Lanes force[3])
 {
   const Family *f = b->family;
   const Particles *p = b->particles;
@@ -221,13 +232,13 @@ LANES_INLINE LaneMask add_slot(const BondBased *b, int64_t slot, int64_t slice, 
   if (!alike)
     factor *=
         lanes_set(0.5) * (slot_read(&s, half, b->stiffness) + lanes_load(b->stiffness + slice * SLICE + LANES * half));
-  Lanes pull = factor * shortening(d, small);
+  Lanes pull = factor * shortening(d, range);
   for (int k = 0; k < 3; ++k) force[k] += pull * y[k];
-  return small ? lanes_absolute(d) > lanes_set(SERIES_LIMIT) : (LaneMask){0};
+  return range == RANGE_ANY ? (LaneMask){0} : (LaneMask)(lanes_absolute(d) > lanes_set(range_limit[range]));
 }
 
-/** Forces of half a slice. @return false if a stretch was too large for the series */
-LANES_INLINE bool resist_half(const BondBased *b, int64_t slice, int half, bool alike, bool small)
+/** Forces of half a slice. @return false if a stretch was beyond the range */
+LANES_INLINE bool resist_half(const BondBased *b, int64_t slice, int half, bool alike, Range range)
 {
   const Family *f = b->family;
   const int64_t place = slice * SLICE + LANES * half, stored = f->stored[slice], last = f->first[slice + 1];
@@ -235,10 +246,10 @@ LANES_INLINE bool resist_half(const BondBased *b, int64_t slice, int half, bool 
   LaneMask beyond = {0};
   for (int k = 0; k < 3; ++k) own[k] = lanes_load(b->particles->displacement[k] + place);
   for (int64_t slot = f->first[slice]; slot < stored; ++slot)
-    beyond |= add_slot(b, slot, slice, half, true, alike, small, own, force);
+    beyond |= add_slot(b, slot, slice, half, true, alike, range, own, force);
   for (int64_t slot = stored; slot < last; ++slot)
-    beyond |= add_slot(b, slot, slice, half, false, alike, small, own, force);
-  if (small && (beyond[0] | beyond[1] | beyond[2] | beyond[3])) return false;
+    beyond |= add_slot(b, slot, slice, half, false, alike, range, own, force);
+  if (range != RANGE_ANY && (beyond[0] | beyond[1] | beyond[2] | beyond[3])) return false;
   Lanes scale = lanes_set(alike ? b->uniform : 1);
   for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + place, force[k] * scale);
   return true;
@@ -250,10 +261,12 @@ static void resist(void *formulation, int64_t first, int64_t last)
   const BondBased local = *(const BondBased *)formulation, *b = &local; /* so that stores are seen not to change it */
   for (int64_t slice = first; slice < last; ++slice)
     for (int half = 0; half < SLICE / LANES; ++half)
-      if (b->stiffness) {
-        if (!resist_half(b, slice, half, false, true)) resist_half(b, slice, half, false, false);
-      } else if (!resist_half(b, slice, half, true, true))
-        resist_half(b, slice, half, true, false);
+      if (b->stiffness)
+        (void)(resist_half(b, slice, half, false, RANGE_SERIES) || resist_half(b, slice, half, false, RANGE_NEWTON) ||
+               resist_half(b, slice, half, false, RANGE_ANY));
+      else
+        (void)(resist_half(b, slice, half, true, RANGE_SERIES) || resist_half(b, slice, half, true, RANGE_NEWTON) ||
+               resist_half(b, slice, half, true, RANGE_ANY));
 }
 
 /* ---- single bonds and places ---- */
