@@ -229,6 +229,20 @@ static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state
     }
 }
 
+static void rows_of_an_intact_lattice_are_whole_to_its_ends(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+      "body: {b: {material: m, spacing: 1, shape: {box: {particles: [21, 7, 6]}}}}\nsolve: {explicit: {steps: 1}}\n");
+  const Family *f = &model->domain.family;
+  for (int64_t s = 0; s < f->particles->slices; ++s) {
+    assert_true(f->rows.count[s] > 0);
+    assert_int_equal(f->rows.condition[s] & ROWS_RAGGED, 0);
+  }
+  breccia_model_destroy(&model);
+}
+
 static void force_is_minus_the_gradient_of_the_energy(void **state)
 {
   (void)state;
@@ -395,6 +409,7 @@ int main(void)
       cmocka_unit_test(rigid_rotation_makes_no_force),
       cmocka_unit_test(internal_forces_balance),
       cmocka_unit_test(sums_along_lattice_rows_give_the_forces_of_single_bonds),
+      cmocka_unit_test(rows_of_an_intact_lattice_are_whole_to_its_ends),
       cmocka_unit_test(force_is_minus_the_gradient_of_the_energy),
       cmocka_unit_test(control_resists_the_checkerboard_and_correspondence_alone_does_not),
       cmocka_unit_test(a_chequered_plane_body_is_held_too),
