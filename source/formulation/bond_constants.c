@@ -1,0 +1,141 @@
+#include "base/tensor.h"
+#include "formulation/bond_based.h"
+
+#include <string.h>
+
+static double thickness(const BondBased *b)
+{
+  return b->body->plane ? b->body->blocks[0]->thickness : 1;
+}
+
+/** Integral of omega(q) q^power over 0 <= q <= 1 by Simpson's rule. */
+static double influence_moment(const BondBased *b, int power)
+{
+  enum { INTERVALS = 2000 };
+  double sum = 0;
+  for (int k = 1; k <= INTERVALS; ++k) { /* q = 0 adds nothing */
+    double q = (double)k / INTERVALS, value = b->influence->value(q, q * b->family->horizon) * pow(q, power);
+    sum += value * (k == INTERVALS ? 1 : k % 2 ? 4 : 2);
+  }
+  return sum / (3.0 * INTERVALS);
+}
+
+double bond_continuum_constant(const BondBased *b, double young)
+{
+  const double pi = acos(-1), horizon = b->family->horizon;
+  if (b->space == SPACE_3D) return 12 * young / (pi * pow(horizon, 4)) * (1.0 / 4) / influence_moment(b, 3);
+  double constant = b->space == SPACE_PLANE_STRESS ? 9.0 : 48.0 / 5;
+  return constant * young / (pi * thickness(b) * pow(horizon, 3)) * (1.0 / 3) / influence_moment(b, 2);
+}
+
+/* Symmetric tensors of rank four as matrices in Mandel's components, so that inverse and product keep their meaning. */
+enum { MANDEL = 6 };
+
+static void mandel_of(const double n[3], double m[MANDEL])
+{
+  for (int k = 0; k < MANDEL; ++k) m[k] = n[symmetric_row[k]] * n[symmetric_column[k]] * (k < 3 ? 1 : sqrt(2));
+}
+
+/** Stiffness of the infinite lattice of a block for c = 1: half the sum of w L n n n n. */
+static void lattice_stiffness(const BondBased *b, int block, double c[MANDEL][MANDEL])
+{
+  memset(c, 0, sizeof(double) * MANDEL * MANDEL);
+  for (int k = b->family->pattern_begin[block]; k < b->family->pattern_begin[block + 1]; ++k) {
+    const Pattern *p = &b->family->patterns[k];
+    double n[3] = {p->xi[0] / p->length, p->xi[1] / p->length, p->xi[2] / p->length}, m[MANDEL];
+    mandel_of(n, m);
+    for (int i = 0; i < MANDEL; ++i)
+      for (int j = 0; j < MANDEL; ++j) c[i][j] += 0.5 * p->weight * p->length * m[i] * m[j];
+  }
+}
+
+/** Young's modulus that the infinite lattice of a block shows along a direction for c = 1: 1 / (m . C^-1 m).
+ *  @return NaN if it resists no strain there */
+static double lattice_young(const BondBased *b, int block, const double n[3])
+{
+  double c[MANDEL][MANDEL], m[MANDEL], x[MANDEL];
+  lattice_stiffness(b, block, c);
+  mandel_of(n, m);
+  memcpy(x, m, sizeof x);
+  for (int k = 0; k < MANDEL; ++k)
+    if (b->body->plane && symmetric_row[k] != symmetric_column[k] ? k != XY : b->body->plane && k == ZZ)
+      c[k][k] = 1; /* the plane's network has nothing to say here */
+  for (int k = 0; k < MANDEL; ++k) {
+    if (!(c[k][k] > 1e-12 * c[XX][XX])) return NAN;
+    for (int i = k + 1; i < MANDEL; ++i) {
+      double factor = c[i][k] / c[k][k];
+      for (int j = k; j < MANDEL; ++j) c[i][j] -= factor * c[k][j];
+      x[i] -= factor * x[k];
+    }
+  }
+  double compliance = 0;
+  for (int k = MANDEL - 1; k >= 0; --k) {
+    for (int j = k + 1; j < MANDEL; ++j) x[k] -= c[k][j] * x[j];
+    x[k] /= c[k][k];
+    compliance += m[k] * x[k];
+  }
+  return 1 / compliance;
+}
+
+/** Modulus of the continuum in uniaxial stress within the body's space, as a multiple of Young's: nu = 1/4 in plane strain. */
+static double continuum_young(const BondBased *b)
+{
+  return b->space == SPACE_PLANE_STRAIN ? 16.0 / 15 : 1;
+}
+
+double bond_calibration(const BondBased *b, int block, Calibration calibration)
+{
+  if (calibration == CALIBRATION_CONTINUUM) return 1;
+  double unit = bond_continuum_constant(b, 1);
+  if (calibration == CALIBRATION_UNIAXIAL) {
+    const double along[3] = {1, 0, 0};
+    return continuum_young(b) / (unit * lattice_young(b, block, along));
+  }
+  double c[MANDEL][MANDEL], sum = 0;
+  lattice_stiffness(b, block, c);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum += c[i][j];
+  /* Uniform expansion by s has the energy sum s^2 / 2: 6 E s^2 / 2 in space, 3 E and 3.2 E in the plane. */
+  double continuum = b->space == SPACE_3D ? 6 : b->space == SPACE_PLANE_STRESS ? 3 : 3.2;
+  return continuum / (unit * sum);
+}
+
+double bond_critical_stretch(const void *formulation, double fracture_energy)
+{
+  const BondBased *b = formulation;
+  const double pi = acos(-1), horizon = b->family->horizon;
+  double young = NAN;
+  for (int64_t slice = 0; slice < b->particles->slices; ++slice) {
+    double here = material_young(&b->points->materials[b->points->material[slice]]);
+    if (slice && here != young) return NAN;
+    young = here;
+  }
+  double c = bond_continuum_constant(b, young);
+  if (b->space == SPACE_3D) return sqrt(fracture_energy / (pi / 2 * c * pow(horizon, 5) * influence_moment(b, 4)));
+  return sqrt(fracture_energy / (c * thickness(b) * pow(horizon, 4) * influence_moment(b, 3)));
+}
+
+void bond_describe(const void *formulation, Text *text)
+{
+  const BondBased *b = formulation;
+  const double axis[3] = {1, 0, 0}, plane[3] = {sqrt(0.5), sqrt(0.5), 0},
+               space[3] = {sqrt(1. / 3), sqrt(1. / 3), sqrt(1. / 3)};
+  for (int block = 0; block < b->body->block_count; ++block) {
+    int64_t slice = 0;
+    while (b->particles->block[slice] != block) ++slice;
+    const Material *m = &b->points->materials[b->points->material[slice]];
+    double c = b->stiffness ? b->stiffness[slice * SLICE] : b->uniform;
+    double wanted = material_young(m) * continuum_young(b);
+    if (isnan(lattice_young(b, block, axis))) {
+      text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",
+               b->body->blocks[block]->head.name);
+      continue;
+    }
+    text_add(text,
+             "%s: a uniaxial patch shows %.3f of the wanted modulus along the axes, %.3f along the diagonals of the %s",
+             b->body->blocks[block]->head.name, c * lattice_young(b, block, axis) / wanted,
+             c * lattice_young(b, block, plane) / wanted, b->body->plane ? "plane" : "faces");
+    if (!b->body->plane) text_add(text, ", %.3f along those of space", c * lattice_young(b, block, space) / wanted);
+    text_add(text, "\n");
+  }
+}
