@@ -35,14 +35,40 @@ LANES_INLINE void lanes_store(double *to, Lanes lanes)
   memcpy(to, &lanes, sizeof lanes);
 }
 
+/** One number in all lanes. By way of its bits, because gcc then makes one load of it instead of a load and a permutation. */
 LANES_INLINE Lanes lanes_set(double value)
 {
-  return (Lanes){value, value, value, value};
+  int64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return (Lanes)(LaneMask){bits, bits, bits, bits};
+}
+
+LANES_INLINE Lanes lanes_widen(const float *from)
+{
+  typedef float Narrow __attribute__((vector_size(16)));
+  Narrow narrow;
+  memcpy(&narrow, from, sizeof narrow);
+  return __builtin_convertvector(narrow, Lanes);
 }
 
 LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
 {
   return (Lanes){from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
+}
+
+/** Four numbers side by side in each of four rows of an array, turned round: out[k] has the k-th of each row.
+ *  @param[in] stride  numbers per row */
+LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_t *index, Lanes out[LANES])
+{
+  Lanes a = lanes_load(from + (int64_t)index[0] * stride), b = lanes_load(from + (int64_t)index[1] * stride);
+  Lanes c = lanes_load(from + (int64_t)index[2] * stride), d = lanes_load(from + (int64_t)index[3] * stride);
+  Lanes ac = __builtin_shufflevector(a, c, 0, 1, 4, 5), bd = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  out[0] = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
+  out[1] = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
+  ac = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  bd = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  out[2] = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
+  out[3] = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
 }
 
 /** All bits set in the lanes whose bit (0 to 3) is set in `bits`. Looked up: computing it took two registers that the sweeps
@@ -54,6 +80,12 @@ LANES_INLINE LaneMask lanes_mask(unsigned bits)
                                      {0, 0, 0, -1},  {-1, 0, 0, -1},  {0, -1, 0, -1},  {-1, -1, 0, -1},
                                      {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
   return masks[bits];
+}
+
+/** The same for one half (0 or 1) of the eight bits of a slot. */
+LANES_INLINE LaneMask lanes_half(unsigned bits, int half)
+{
+  return lanes_mask(bits >> (LANES * half) & 15u);
 }
 
 /** The lanes of `lanes` where the mask is set, zero elsewhere. */
@@ -72,6 +104,13 @@ LANES_INLINE Lanes lanes_least(Lanes a, Lanes b)
 {
   LaneMask smaller = b < a;
   return lanes_where(smaller, b) + lanes_where(~smaller, a);
+}
+
+/** The greater of two, lane by lane; a where b is not a number. */
+LANES_INLINE Lanes lanes_greatest(Lanes a, Lanes b)
+{
+  LaneMask greater = b > a;
+  return lanes_where(greater, b) + lanes_where(~greater, a);
 }
 
 LANES_INLINE Lanes lanes_absolute(Lanes a)

@@ -1,4 +1,5 @@
 #include "body/body.h"
+#include "body/cloud.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,14 +27,19 @@ static const Field block_fields[] = {
     {"material", FIELD_TEXT, offsetof(BlockSpec, material), NULL, NULL, NULL, "name of one of the materials", NULL,
      NULL, 0},
     {"lattice", FIELD_CHOICE, offsetof(BlockSpec, lattice), NULL, "cubic", NULL,
-     "arrangement of the particles; square for plane bodies", NULL, lattice_word, 0},
+     "arrangement of the particles; square for plane bodies, also of particles from a file", NULL, lattice_word, 0},
     {"spacing", FIELD_NUMBER, offsetof(BlockSpec, spacing), "length", NULL, "(0, inf)",
-     "distance of neighbouring particles", NULL, NULL, 0},
+     "distance of neighbouring particles; of particles from a file: their usual one", NULL, NULL, 0},
     {"thickness", FIELD_NUMBER, offsetof(BlockSpec, thickness), "length", "", "(0, inf)", "of a plane body", NULL, NULL,
      0},
-    {"shape", FIELD_SECTION, offsetof(BlockSpec, shape), NULL, NULL, NULL,
+    {"shape", FIELD_SECTION, offsetof(BlockSpec, shape), NULL, "", NULL,
      "what the particles fill; one stands in the middle of each lattice cell whose centre is inside", &shape_section,
-     NULL, 0},
+     NULL, 'A'},
+    {"file", FIELD_TEXT, offsetof(BlockSpec, file), NULL, "", NULL,
+     "instead: a CSV file beside the deck with columns x, y, z and volume, in the deck's units, of particles that "
+     "stand "
+     "anywhere",
+     NULL, NULL, 'A'},
 };
 const Section block_section = {
     "block",
@@ -61,6 +67,11 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
   double low[3], high[3], spacing = block->spacing;
   lattice->spacing = spacing;
   lattice->plane = !strcmp(block->lattice, "square");
+  if (block->file) {
+    lattice->across[0] = 1;
+    lattice->across[1] = 2;
+    return BRECCIA_OK;
+  }
   shape_bounds(block->shape, spacing, low, high);
   const Box *box = leading_box(block->shape);
   double anchor[3], far[3];
@@ -108,6 +119,16 @@ void lattice_cell(const Lattice *lattice, int64_t row, int64_t chunk, int lane, 
   cell[lattice->across[1]] = row / lattice->cells[lattice->across[0]];
 }
 
+/** True if a crack takes out a particle at this point. */
+static bool removed(const Body *body, const Lattice *lattice, const double point[3])
+{
+  for (int c = 0; c < body->crack_count; ++c)
+    if (body->cracks[c]->remove &&
+        shape_contains(body->cracks[c]->remove, lattice->spacing, lattice->plane, point, 1e-6 * lattice->spacing))
+      return true;
+  return false;
+}
+
 static bool cell_present(const Body *body, const BlockSpec *block, const Lattice *lattice, const int64_t cell[3])
 {
   double point[3], tolerance = 1e-6 * lattice->spacing;
@@ -115,25 +136,29 @@ static bool cell_present(const Body *body, const BlockSpec *block, const Lattice
     if (cell[k] >= lattice->cells[k]) return false;
     point[k] = lattice->origin[k] + lattice->spacing * (double)cell[k];
   }
-  if (!shape_contains(block->shape, lattice->spacing, lattice->plane, point, tolerance)) return false;
-  for (int c = 0; c < body->crack_count; ++c)
-    if (body->cracks[c]->remove &&
-        shape_contains(body->cracks[c]->remove, lattice->spacing, lattice->plane, point, tolerance))
-      return false;
-  return true;
+  return shape_contains(block->shape, lattice->spacing, lattice->plane, point, tolerance) &&
+         !removed(body, lattice, point);
 }
 
-/** Finds out which slices hold particles. @return their masks (one byte a slice position), or NULL */
-static uint8_t *occupy(Body *body, int b, int64_t *slices, Error *error)
+/** What fills a block before its particles exist: a lattice's cells, or particles from a file. */
+typedef struct Filling {
+  uint8_t *present; /* [rows][chunks] lanes that hold a particle */
+  Cloud cloud;
+} Filling;
+
+static int64_t lattice_row_count(const Lattice *lattice)
+{
+  return lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
+}
+
+/** Finds out which slices of a lattice hold particles. */
+static int occupy_lattice(Body *body, int b, Filling *filling, int64_t *slices, int64_t *count, Error *error)
 {
   Lattice *lattice = &body->lattices[b];
-  int64_t rows = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
-  uint8_t *present = memory_zeroed((size_t)(rows * lattice->chunks), 1, "lattice cells", error);
+  int64_t rows = lattice_row_count(lattice);
+  uint8_t *present = filling->present = memory_zeroed((size_t)(rows * lattice->chunks), 1, "lattice cells", error);
   lattice->slice = memory_zeroed((size_t)(rows * lattice->chunks), sizeof(int32_t), "lattice slices", error);
-  if (!present || !lattice->slice) {
-    free(present);
-    return NULL;
-  }
+  if (!present || !lattice->slice) return BRECCIA_FAILURE;
 #pragma omp parallel for schedule(static)
   for (int64_t row = 0; row < rows; ++row)
     for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk)
@@ -143,15 +168,56 @@ static uint8_t *occupy(Body *body, int b, int64_t *slices, Error *error)
         if (cell_present(body, body->blocks[b], lattice, cell))
           present[row * lattice->chunks + chunk] |= (uint8_t)(1u << lane);
       }
-  for (int64_t k = 0; k < rows * lattice->chunks; ++k) lattice->slice[k] = present[k] ? (int32_t)(*slices)++ : -1;
-  return present;
+  for (int64_t k = 0; k < rows * lattice->chunks; ++k) {
+    lattice->slice[k] = present[k] ? (int32_t)(*slices)++ : -1;
+    *count += __builtin_popcount(present[k]);
+  }
+  return BRECCIA_OK;
 }
 
-static void fill(Body *body, int b, const uint8_t *present, int32_t *number)
+static int occupy_cloud(Body *body, int b, const DeckReader *reader, Filling *filling, int64_t *slices, int64_t *count)
+{
+  const BlockSpec *block = body->blocks[b];
+  const Lattice *lattice = &body->lattices[b];
+  Cloud *cloud = &filling->cloud;
+  int status = cloud_read(cloud, reader, section_place(block, "file"), block->file, lattice->plane);
+  if (status) return status;
+  uint8_t *gone = memory_zeroed((size_t)cloud->count, 1, "particles", reader->error);
+  if (!gone) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < cloud->count; ++n) {
+    double point[3];
+    for (int k = 0; k < 3; ++k) point[k] = cloud->position[k] ? cloud->position[k][n] : 0;
+    gone[n] = removed(body, lattice, point);
+  }
+  cloud_thin(cloud, gone);
+  free(gone);
+  *slices += cloud_slices(cloud);
+  *count += cloud->count;
+  return cloud_sort(cloud, reader->error);
+}
+
+static int occupy(Body *body, int b, const DeckReader *reader, Filling *filling, int64_t *slices, int64_t *count)
+{
+  const BlockSpec *block = body->blocks[b];
+  int64_t before = *count;
+  int status = block->file ? occupy_cloud(body, b, reader, filling, slices, count)
+                           : occupy_lattice(body, b, filling, slices, count, reader->error);
+  if (status || *count > before) return status;
+  if (block->file)
+    return node_error(reader->document, section_place(block, "file"), reader->error,
+                      "block '%s': the cracks take out every particle of it", block->head.name);
+  return node_error(
+      reader->document, section_place(block, "shape"), reader->error,
+      "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?%s", block->head.name,
+      body->lattices[b].plane && block->shape->cylinder ? " In the plane a cylinder is a strip; a disc is a 'sphere'"
+                                                        : "");
+}
+
+static void fill_lattice(Body *body, int b, const uint8_t *present, int32_t *number)
 {
   Particles *particles = &body->particles;
   const Lattice *lattice = &body->lattices[b];
-  int64_t rows = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
+  int64_t rows = lattice_row_count(lattice);
   for (int64_t row = 0; row < rows; ++row)
     for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
       int32_t slice = lattice->slice[row * lattice->chunks + chunk];
@@ -182,6 +248,28 @@ static void fill(Body *body, int b, const uint8_t *present, int32_t *number)
       }
 }
 
+/** Sees that all blocks have particles and makes them. */
+static int fill(Body *body, const DeckReader *reader, Filling *fillings)
+{
+  int64_t slices = 0, count = 0;
+  int64_t *begin = memory_zeroed((size_t)body->block_count, sizeof *begin, "slices of blocks", reader->error);
+  int status = begin ? BRECCIA_OK : BRECCIA_FAILURE;
+  for (int b = 0; b < body->block_count && status != BRECCIA_FAILURE; ++b) {
+    begin[b] = slices;
+    int bad = occupy(body, b, reader, &fillings[b], &slices, &count);
+    if (bad) status = bad;
+  }
+  if (!status) status = particles_create(&body->particles, slices, count, reader->error);
+  int32_t number = 0;
+  for (int b = 0; b < body->block_count && !status; ++b)
+    if (body->blocks[b]->file)
+      cloud_fill(&fillings[b].cloud, &body->particles, begin[b], b, &number);
+    else
+      fill_lattice(body, b, fillings[b].present, &number);
+  free(begin);
+  return status;
+}
+
 int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks)
 {
   Error *error = reader->error;
@@ -189,9 +277,9 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
   body->blocks = memory_zeroed((size_t)blocks->count, sizeof *body->blocks, "blocks", error);
   body->lattices = memory_zeroed((size_t)blocks->count, sizeof *body->lattices, "lattices", error);
   body->cracks = memory_zeroed((size_t)cracks->count, sizeof *body->cracks, "cracks", error);
-  uint8_t **present = memory_zeroed((size_t)blocks->count, sizeof *present, "lattice cells", error);
-  if (!body->blocks || !body->lattices || !body->cracks || !present) {
-    free(present);
+  Filling *fillings = memory_zeroed((size_t)blocks->count, sizeof *fillings, "lattice cells", error);
+  if (!body->blocks || !body->lattices || !body->cracks || !fillings) {
+    free(fillings);
     return BRECCIA_FAILURE;
   }
   for (int c = 0; c < cracks->count; ++c) body->cracks[c] = cracks->items[c];
@@ -205,34 +293,13 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
       status = node_error(reader->document, section_place(body->blocks[b], "lattice"), error,
                           "block: square and cubic lattices cannot stand in one body");
   }
-  int64_t slices = 0, count = 0;
-  for (int b = 0; b < blocks->count && !status; ++b) {
-    present[b] = occupy(body, b, &slices, error);
-    if (!present[b]) {
-      status = BRECCIA_FAILURE;
-      break;
-    }
-    const Lattice *lattice = &body->lattices[b];
-    int64_t before = count;
-    for (int64_t k = 0; k < lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]] * lattice->chunks;
-         ++k)
-      count += __builtin_popcount(present[b][k]);
-    if (count == before)
-      status = node_error(reader->document, section_place(body->blocks[b], "shape"), error,
-                          "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?%s",
-                          body->blocks[b]->head.name,
-                          body->lattices[b].plane && body->blocks[b]->shape->cylinder
-                              ? " In the plane a cylinder is a strip; a disc is a 'sphere'"
-                              : "");
+  body->plane = body->lattices[0].plane;
+  if (!status) status = fill(body, reader, fillings);
+  for (int b = 0; b < blocks->count; ++b) {
+    free(fillings[b].present);
+    cloud_destroy(&fillings[b].cloud);
   }
-  if (!status) {
-    body->plane = body->lattices[0].plane;
-    status = particles_create(&body->particles, slices, count, error);
-  }
-  int32_t number = 0;
-  for (int b = 0; b < blocks->count && !status; ++b) fill(body, b, present[b], &number);
-  for (int b = 0; b < blocks->count; ++b) free(present[b]);
-  free(present);
+  free(fillings);
   return status;
 }
 

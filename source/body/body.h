@@ -12,7 +12,8 @@ typedef struct BlockSpec {
   const char *material;
   const char *lattice; /* "cubic" or "square" */
   double spacing, thickness;
-  Shape *shape;
+  Shape *shape; /* NULL: particles come from a file */
+  const char *file;
 } BlockSpec;
 
 typedef struct CutSpec { /* a surface that no bond crosses */
@@ -30,7 +31,8 @@ typedef struct CrackSpec {
 
 extern const Section block_section, crack_section;
 
-/** A lattice that fills one block: cell (0,0,0) has its centre at `origin`. Rows run along `axis`. */
+/** A lattice that fills one block: cell (0,0,0) has its centre at `origin`. Rows run along `axis`. Particles from a file have
+ *  none: no cells, no chunks; `spacing` is their usual distance then. */
 typedef struct Lattice {
   double origin[3], spacing;
   int64_t cells[3];

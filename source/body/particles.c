@@ -6,17 +6,18 @@
 
 /* Large blocks of memory begin at the same offset of a page, so that the same place of all arrays would fall into the same set
  * of the first-level cache: thirteen arrays into eight ways. Each array is therefore shifted by some lines of a page, chosen from its
- * address; what has to be freed is kept before the spare entries. */
+ * address, and begins with a line, so that a slice is one; what has to be freed is kept before the spare entries. */
 enum { LINE = 8, PAGE_LINES = 64 };
 
 double *places_array(int64_t places, const char *label, Error *error)
 {
-  size_t spare = 2 * SLICE + LINE + LINE * PAGE_LINES;
+  size_t spare = 2 * SLICE + 2 * LINE + LINE * PAGE_LINES;
   double *memory = memory_zeroed((size_t)places + spare, sizeof(double), label, error);
   if (!memory) return NULL;
   uint64_t page = (uint64_t)(uintptr_t)memory >> 12;
   uint64_t shift = page * 0x9e3779b97f4a7c15u >> 58; /* 0 to 63 lines */
   double *array = memory + LINE + LINE * shift + SLICE;
+  array += (-(uintptr_t)array & 63) / sizeof(double);
   memcpy(array - SLICE - 1, &memory, sizeof memory);
   return array;
 }

@@ -1,8 +1,8 @@
 /* One material point driven through a strain path. */
 #include "constitutive/material.h"
+#include "base/csv.h"
 #include "base/memory.h"
 #include "cli/verbs.h"
-#include "results/curve.h"
 
 #include <errno.h>
 #include <math.h>
@@ -88,15 +88,21 @@ static double *read_path(const char *path, int components, int *count, breccia_e
   for (int k = 0; k < components; ++k) {
     char label[128];
     int n;
-    double *column = csv_column(path, strains[k], &n, label, error);
+    double *column = csv_column(path, strains[k], CSV_FINISHED, &n, label, error);
     if (!column) {
       free(rows);
       return NULL;
     }
     if (!k) rows = malloc(sizeof(double) * 6 * (size_t)(n + 1));
+    int bad = 0;
+    while (bad < n && isfinite(column[bad])) ++bad;
     for (int i = 0; rows && i < n && (!k || i < *count); ++i) rows[6 * i + k] = column[i];
     *count = n;
     free(column);
+    if (bad == n) continue;
+    error_add(error, BRECCIA_USER_ERROR, "%s: row %d: %s is not a number", path, bad + 1, strains[k]);
+    free(rows);
+    return NULL;
   }
   return rows;
 }

@@ -64,6 +64,7 @@ static bool row_goes_on(const Domain *d, int64_t slice)
   const Particles *p = d->particles;
   if (slice + 1 >= p->slices || p->block[slice + 1] != p->block[slice]) return false;
   const Lattice *lattice = &d->body.lattices[p->block[slice]];
+  if (!lattice->chunks) return false;
   for (int k = 0; k < 3; ++k) {
     double step = p->position[k][(slice + 1) * SLICE] - p->position[k][slice * SLICE];
     if (fabs(step - (k == lattice->axis) * SLICE * lattice->spacing) > 0.5 * lattice->spacing) return false;
@@ -71,8 +72,6 @@ static bool row_goes_on(const Domain *d, int64_t slice)
   return true;
 }
 
-/* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
- * in the cache. */
 static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec)
 {
   double limit = spec ? spec->critical_stretch : NAN;
@@ -97,6 +96,8 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   return BRECCIA_OK;
 }
 
+/* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
+ * in the cache. */
 static int share_out(Domain *d, Error *error)
 {
   int64_t slices = d->particles->slices;
@@ -154,9 +155,10 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  status = family_create(
-      &d->family, &d->body,
-      &(FamilySpec){horizon, influence_find(pd->influence), (VolumeCorrection)correction, d->type->row_sums}, error);
+  status = family_create(&d->family, &d->body,
+                         &(FamilySpec){horizon, influence_find(pd->influence), (VolumeCorrection)correction,
+                                       d->type->row_sums, d->type->bond_lengths},
+                         error);
   if (status) return status;
 #pragma omp parallel for schedule(static)
   for (int32_t place = 0; place < (int32_t)d->particles->places; ++place)
@@ -214,10 +216,10 @@ static void answer(Domain *d, int64_t block, bool resume)
 void domain_forces(Domain *d)
 {
   const FormulationType *type = d->type;
-  if (type->row_sums) {
+  if (type->show_displacements) {
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < d->block_count; ++b)
-      type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
+      type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
   }
   if (type->deform) {
 #pragma omp for schedule(static)
@@ -256,8 +258,8 @@ void domain_resume(Domain *d)
       lattice_rows_mark(&d->family, slice);
       if (d->type->renew) d->type->renew(d->formulation, slice);
     }
-  for (int64_t b = 0; d->type->row_sums && b < d->block_count; ++b)
-    d->type->sum_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
+  for (int64_t b = 0; d->type->show_displacements && b < d->block_count; ++b)
+    d->type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
   for (int64_t b = 0; d->type->deform && b < d->block_count; ++b) answer(d, b, true);
 }
 

@@ -116,32 +116,41 @@ static uint8_t cut_slot(const Body *body, int64_t slice, int32_t base, uint8_t m
 
 typedef struct Rows { /* of slices of one lattice, for a loop over slices */
   int64_t row, chunk;
-  int lattice;
 } Rows;
 
 typedef struct Build {
   Family *family;
+  bool bond_lengths;
   const Body *body;
   const Rows *rows;
   const StoredBonds *stored;
 } Build;
+
+static double distance(const Particles *p, int32_t a, int32_t b)
+{
+  double square = 0;
+  for (int k = 0; k < 3; ++k)
+    square += (p->position[k][b] - p->position[k][a]) * (p->position[k][b] - p->position[k][a]);
+  return sqrt(square);
+}
 
 /** Slots of one slice; writes them when `write` is set. @return their number; `stored_slots` of which are stored */
 static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_t *stored_slots, int64_t *bonds)
 {
   Family *family = build->family;
   const Rows *where = &build->rows[slice];
-  const Lattice *lattice = &build->body->lattices[where->lattice];
+  const int block = build->body->particles.block[slice];
+  const Lattice *lattice = &build->body->lattices[block];
   int64_t slot = write ? family->first[slice] : 0, begin = slot;
-  for (int k = 0; k < family->pattern_begin[where->lattice + 1] - family->pattern_begin[where->lattice]; ++k) {
+  for (int k = 0; k < family->pattern_begin[block + 1] - family->pattern_begin[block]; ++k) {
     int32_t base = 0;
-    const Pattern *pattern = &family->patterns[family->pattern_begin[where->lattice] + k];
+    const Pattern *pattern = &family->patterns[family->pattern_begin[block] + k];
     uint8_t mask = lattice_slot(build->body, lattice, where->row, where->chunk, pattern->offset, &base);
     if (mask && build->body->crack_count) mask = cut_slot(build->body, slice, base, mask);
     if (!mask) continue;
     if (write) {
       family->base[slot] = base;
-      family->pattern[slot] = (uint16_t)(family->pattern_begin[where->lattice] + k);
+      family->pattern[slot] = (uint16_t)(family->pattern_begin[block] + k);
       family->intact[slot] = mask;
     }
     *bonds += __builtin_popcount(mask);
@@ -163,7 +172,10 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
         int64_t place = slice * SLICE + lane, at = stored->first[place] + k;
         bool here = at < stored->first[place + 1];
         family->neighbour[row * SLICE + lane] = here ? stored->neighbour[at] : (int32_t)place;
-        family->weight[row * SLICE + lane] = here ? stored->weight[at] : 0;
+        if (family->scale) family->scale[row * SLICE + lane] = here ? stored->scale[at] : 0;
+        if (here && family->inverse_length)
+          family->inverse_length[row * SLICE + lane] =
+              1 / (float)distance(&build->body->particles, (int32_t)place, stored->neighbour[at]);
         if (here) family->intact[slot + k] |= (uint8_t)(1u << lane);
       }
     }
@@ -181,7 +193,7 @@ static Rows *slice_rows(const Body *body, Error *error)
     for (int64_t row = 0; row < count; ++row)
       for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
         int32_t slice = lattice->slice[row * lattice->chunks + chunk];
-        if (slice >= 0) rows[slice] = (Rows){row, chunk, b};
+        if (slice >= 0) rows[slice] = (Rows){row, chunk};
       }
   }
   return rows;
@@ -213,8 +225,12 @@ static int fill_slots(Build *build, Error *error)
   family->pattern = memory_zeroed((size_t)family->slots, sizeof *family->pattern, "bonds", error);
   family->intact = memory_zeroed((size_t)family->slots, sizeof *family->intact, "bonds", error);
   family->neighbour = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(int32_t), "bonds", error);
-  family->weight = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(double), "bonds", error);
-  int failed = !family->base || !family->pattern || !family->intact || !family->neighbour || !family->weight;
+  int failed = !family->base || !family->pattern || !family->intact || !family->neighbour;
+  if (build->stored->scale)
+    failed |= !(family->scale = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(double), "bonds", error));
+  if (build->bond_lengths)
+    failed |= !(family->inverse_length =
+                    memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(float), "bond lengths", error));
   if (!failed) {
 #pragma omp parallel for schedule(static)
     for (int64_t s = 0; s < slices; ++s) {
@@ -236,18 +252,21 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
   Rows *rows = slice_rows(body, error);
   StoredBonds stored = {0};
   int status = family->pattern_begin && rows ? BRECCIA_OK : BRECCIA_FAILURE;
+  bool stored_too = blocks > 1;
   for (int b = 0; b < blocks && !status; ++b) {
     double reach = spec->horizon + (spec->correction == VOLUME_PARTIAL_BEYOND ? body->lattices[b].spacing / 2 : 0);
-    status = add_patterns(family, &body->lattices[b], reach, spec->influence, spec->correction, error);
+    bool cloud = !body->lattices[b].chunks;
+    if (!cloud) status = add_patterns(family, &body->lattices[b], reach, spec->influence, spec->correction, error);
+    stored_too |= cloud;
     family->pattern_begin[b + 1] = family->pattern_count;
     if (!status && spec->row_sums) status = lattice_rows_choose(family, b, error);
   }
-  if (!status && blocks > 1) {
+  if (!status && stored_too) {
     StoredWeight weight = {spec->horizon, spec->influence, spec->correction, volume_share};
-    status = search_between_blocks(&stored, body, &weight, error);
+    status = search_beyond_lattices(&stored, body, &weight, error);
   }
   if (!status) {
-    Build build = {family, body, rows, &stored};
+    Build build = {family, spec->bond_lengths, body, rows, &stored};
     status = fill_slots(&build, error);
   }
   if (!status && spec->row_sums) status = lattice_rows_create(family, body, error);
@@ -266,7 +285,8 @@ void family_destroy(Family *family)
   free(family->patterns);
   free(family->pattern_begin);
   free(family->neighbour);
-  free(family->weight);
+  free(family->scale);
+  free(family->inverse_length);
   lattice_rows_destroy(&family->rows);
   *family = (Family){0};
 }
@@ -320,7 +340,8 @@ double family_volume(const Family *family, int32_t place)
 size_t family_bytes(const Family *family)
 {
   size_t slot = sizeof *family->base + sizeof *family->pattern + sizeof *family->intact;
-  size_t stored = SLICE * (sizeof *family->neighbour + sizeof *family->weight);
+  size_t stored = SLICE * (sizeof *family->neighbour + (family->scale ? sizeof *family->scale : 0) +
+                           (family->inverse_length ? sizeof *family->inverse_length : 0));
   return (size_t)family->slots * slot + (size_t)family->stored_slots * stored +
          (size_t)family->particles->slices * 2 * sizeof(int64_t) + lattice_rows_bytes(family);
 }

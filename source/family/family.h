@@ -3,7 +3,8 @@
  * The bonds of a slice of eight particles lie in slots: slot k holds one bond of each of them. On a lattice the eight
  * neighbours of a slot stand side by side too and share one reference vector, so a slot is a base index (the place of lane
  * 0's neighbour), a row of the pattern table (reference vector, length, weight) and a byte of intact bits: about one byte per bond.
- * Bonds between lattices are kept in stored slots: eight places and eight weights, and the reference vector is the difference of positions.
+ * Bonds between lattices, and of particles that stand in none, are kept in stored slots: eight places, and the reference vector is the
+ * difference of positions.
  * Always true:
  *   slots first[s] .. stored[s] - 1 of slice s are lattice slots, stored[s] .. first[s+1] - 1 stored ones;
  *   bonds come in pairs (i to j, j to i) whose intact bits agree; no particle is its own neighbour;
@@ -31,7 +32,8 @@ typedef struct FamilySpec {
   double horizon;
   const Influence *influence;
   VolumeCorrection correction;
-  bool row_sums; /* the formulation makes sums along lattice rows */
+  bool row_sums;     /* the formulation makes sums along lattice rows */
+  bool bond_lengths; /* it needs the lengths of stored bonds in its sweeps */
 } FamilySpec;
 
 struct Family {
@@ -41,15 +43,16 @@ struct Family {
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
   int64_t *first;                     /* [slices + 1] */
   int64_t *stored;                    /* [slices] first stored slot */
-  int32_t *base;     /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and weight */
+  int32_t *base;     /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and scale */
   uint16_t *pattern; /* [slots] row of patterns; unused in stored slots */
   uint8_t *intact;   /* [slots] */
   Pattern *patterns;
   int pattern_count,
-      *pattern_begin; /* [lattices + 1] those of lattice b are pattern_begin[b] .. pattern_begin[b + 1] - 1 */
-  int32_t *neighbour; /* [stored_slots][8] */
-  double *weight;     /* [stored_slots][8] */
-  LatticeRows rows;   /* empty if the formulation makes no sums along rows */
+      *pattern_begin;    /* [lattices + 1] those of lattice b are pattern_begin[b] .. pattern_begin[b + 1] - 1 */
+  int32_t *neighbour;    /* [stored_slots][8] */
+  double *scale;         /* [stored_slots][8] influence x volume correction; NULL: 1 */
+  float *inverse_length; /* [stored_slots][8] 0 where there is no bond; NULL if the formulation does not need it */
+  LatticeRows rows;      /* empty if the formulation makes no sums along rows */
 };
 
 /** One bond seen from one end. */
@@ -74,7 +77,8 @@ static inline Bond family_bond(const Family *family, int64_t slice, int64_t slot
     return (Bond){family->base[slot] + lane, {row->xi[0], row->xi[1], row->xi[2]}, row->length, row->weight};
   }
   int64_t at = (int64_t)family->base[slot] * SLICE + lane, here = slice * SLICE + lane;
-  Bond bond = {.neighbour = family->neighbour[at], .weight = family->weight[at]};
+  Bond bond = {.neighbour = family->neighbour[at]};
+  bond.weight = (family->scale ? family->scale[at] : 1) * p->volume[bond.neighbour];
   double square = 0;
   for (int k = 0; k < 3; ++k) {
     bond.xi[k] = p->position[k][bond.neighbour] - p->position[k][here];

@@ -141,6 +141,9 @@ int lattice_rows_create(Family *family, const Body *body, Error *error)
         }
       }
   }
+  for (int32_t slice = 0; slice < (int32_t)p->slices; ++slice) /* of particles that stand in no lattice */
+    if (!body->lattices[p->block[slice]].chunks)
+      rows->present[slice * width + rows->reach] = present_lanes(p, &slice, 1, 0, 0);
   for (int64_t slice = 0; slice < p->slices; ++slice)
     rows->begin[slice + 1] = rows->begin[slice] + count_rows(family, slice, &rows->first[slice]);
   rows->whole = memory_zeroed((size_t)rows->begin[p->slices], sizeof *rows->whole, "lattice rows", error);

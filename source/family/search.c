@@ -50,100 +50,97 @@ static int cells_create(Cells *cells, const Particles *p, double reach, Error *e
   return BRECCIA_OK;
 }
 
-typedef struct Candidate {
-  int32_t number, place;
-  double weight;
-} Candidate;
+typedef struct Search {
+  const Cells *cells;
+  const Body *body;
+  const StoredWeight *weight;
+} Search;
 
-static int by_number(const void *a, const void *b)
+/** Finds the neighbours of a place that stand in no common lattice with it, cell by cell and by number within a cell.
+ *  @param[out] neighbour, scale  where they go; either may be NULL
+ *  @return how many, or -1 if a particle lies on top of this one */
+static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, double *scale)
 {
-  const Candidate *x = a, *y = b;
-  return x->number < y->number ? -1 : x->number > y->number;
-}
-
-typedef struct Found {
-  Candidate *items;
-  int64_t count, capacity;
-} Found;
-
-/** Collects the neighbours of a place in other blocks. @return 0, 1 when memory is out, 2 for coinciding particles */
-static int collect(const Cells *cells, const Body *body, const StoredWeight *weight, int32_t place, Found *found)
-{
+  const Cells *cells = search->cells;
+  const Body *body = search->body;
+  const StoredWeight *rule = search->weight;
   const Particles *p = &body->particles;
-  int own = p->block[place / SLICE];
-  double here[3] = {p->position[0][place], p->position[1][place], p->position[2][place]};
-  int64_t centre[3];
-  for (int k = 0; k < 3; ++k) centre[k] = cell_along(cells, k, here[k]);
-  found->count = 0;
-  for (int64_t c = 0; c < 27; ++c) {
-    int64_t cell[3] = {centre[0] + c % 3 - 1, centre[1] + c / 3 % 3 - 1, centre[2] + c / 9 - 1};
-    bool outside = false;
-    for (int k = 0; k < 3; ++k) outside |= cell[k] < 0 || cell[k] >= cells->count[k];
-    if (outside) continue;
-    int64_t at = cell[0] + cells->count[0] * (cell[1] + cells->count[1] * cell[2]);
-    for (int64_t k = cells->first[at]; k < cells->first[at + 1]; ++k) {
-      int32_t other = cells->places[k];
-      int block = p->block[other / SLICE];
-      if (block == own) continue;
-      double there[3] = {p->position[0][other], p->position[1][other], p->position[2][other]}, square = 0;
-      for (int i = 0; i < 3; ++i) square += (there[i] - here[i]) * (there[i] - here[i]);
-      double length = sqrt(square), half = (body->lattices[own].spacing + body->lattices[block].spacing) / 4;
-      double reach = weight->horizon + (weight->correction == VOLUME_PARTIAL_BEYOND ? half : 0);
-      if (length > reach * (1 + 1e-9)) continue;
-      if (length < 0.02 * half) return 2;
-      double share = weight->share(weight->correction, length, weight->horizon, half);
-      if (share == 0 || body_cuts(body, here, there)) continue;
-      if (found->count == found->capacity) {
-        int64_t capacity = found->capacity ? 2 * found->capacity : 64;
-        Candidate *grown = realloc(found->items, sizeof(Candidate) * (size_t)capacity);
-        if (!grown) return 1;
-        found->items = grown;
-        found->capacity = capacity;
-      }
-      double influence = weight->influence->value(fmin(1, length / weight->horizon), length);
-      found->items[found->count++] = (Candidate){p->number[other], other, influence * share * p->volume[other]};
-    }
+  const int own = p->block[place / SLICE];
+  const bool own_too = !body->lattices[own].chunks;
+  const double here[3] = {p->position[0][place], p->position[1][place], p->position[2][place]};
+  int64_t low[3], high[3], count = 0;
+  for (int k = 0; k < 3; ++k) {
+    int64_t centre = cell_along(cells, k, here[k]);
+    low[k] = centre > 0 ? centre - 1 : 0;
+    high[k] = centre + 1 < cells->count[k] ? centre + 1 : centre;
   }
-  if (found->count) qsort(found->items, (size_t)found->count, sizeof(Candidate), by_number);
-  return 0;
+  for (int64_t z = low[2]; z <= high[2]; ++z)
+    for (int64_t y = low[1]; y <= high[1]; ++y) {
+      int64_t row = cells->count[0] * (y + cells->count[1] * z);
+      for (int64_t k = cells->first[row + low[0]]; k < cells->first[row + high[0] + 1]; ++k) {
+        int32_t other = cells->places[k];
+        int block = p->block[other / SLICE];
+        if (block == own && (!own_too || other == place)) continue;
+        double there[3] = {p->position[0][other], p->position[1][other], p->position[2][other]}, square = 0;
+        for (int i = 0; i < 3; ++i) square += (there[i] - here[i]) * (there[i] - here[i]);
+        double length = sqrt(square), half = (body->lattices[own].spacing + body->lattices[block].spacing) / 4;
+        double reach = rule->horizon + (rule->correction == VOLUME_PARTIAL_BEYOND ? half : 0);
+        if (length > reach * (1 + 1e-9)) continue;
+        if (length < 0.02 * half) return -1;
+        double share = rule->share(rule->correction, length, rule->horizon, half);
+        if (share == 0 || (body->crack_count && body_cuts(body, here, there))) continue;
+        if (neighbour) neighbour[count] = other;
+        if (scale) scale[count] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
+        ++count;
+      }
+    }
+  return count;
 }
 
-int search_between_blocks(StoredBonds *stored, const Body *body, const StoredWeight *weight, Error *error)
+/** Counts or fills, by all threads. @return the first place with a particle on top of it, or -1 */
+static int64_t sweep(const Search *search, StoredBonds *stored, bool fill)
+{
+  const Particles *p = &search->body->particles;
+  int64_t bad = INT64_MAX;
+#pragma omp parallel for schedule(dynamic, 512) reduction(min : bad)
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (p->number[place] < 0) continue;
+    int64_t at = fill ? stored->first[place] : 0;
+    int64_t count = collect(search, (int32_t)place, fill ? stored->neighbour + at : NULL,
+                            fill && stored->scale ? stored->scale + at : NULL);
+    if (count < 0)
+      bad = place < bad ? place : bad;
+    else if (!fill)
+      stored->first[place + 1] = count;
+  }
+  return bad == INT64_MAX ? -1 : bad;
+}
+
+int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWeight *weight, Error *error)
 {
   const Particles *p = &body->particles;
   Cells cells = {0};
   int status = cells_create(&cells, p, weight->horizon + body->largest_spacing / 2, error);
   stored->first = memory_zeroed((size_t)p->places + 1, sizeof(int64_t), "stored bonds", error);
   if (!stored->first) status = BRECCIA_FAILURE;
-  Found found = {0};
-  for (int pass = 0; pass < 2 && !status; ++pass) {
-    for (int64_t place = 0; place < p->places && !status; ++place) {
-      if (p->number[place] < 0) {
-        if (!pass) stored->first[place + 1] = stored->first[place];
-        continue;
-      }
-      int bad = collect(&cells, body, weight, (int32_t)place, &found);
-      if (bad == 1) status = error_add(error, BRECCIA_FAILURE, "out of memory: stored bonds");
-      if (bad == 2)
-        status = error_add(error, BRECCIA_USER_ERROR,
-                           "blocks overlap: two particles lie on top of each other at [%g, %g, %g] (block '%s')",
-                           p->position[0][place], p->position[1][place], p->position[2][place],
-                           body->blocks[p->block[place / SLICE]]->head.name);
-      if (status) break;
-      if (!pass) stored->first[place + 1] = stored->first[place] + found.count;
-      for (int64_t k = 0; pass && k < found.count; ++k) {
-        stored->neighbour[stored->first[place] + k] = found.items[k].place;
-        stored->weight[stored->first[place] + k] = found.items[k].weight;
-      }
-    }
-    if (!pass && !status) {
-      size_t bonds = (size_t)stored->first[p->places];
-      stored->neighbour = memory_zeroed(bonds, sizeof(int32_t), "stored bonds", error);
-      stored->weight = memory_zeroed(bonds, sizeof(double), "stored bonds", error);
-      if (!stored->neighbour || !stored->weight) status = BRECCIA_FAILURE;
-    }
+  Search search = {&cells, body, weight};
+  int64_t bad = status ? -1 : sweep(&search, stored, false);
+  if (bad >= 0)
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "two particles lie on top of each other at [%g, %g, %g] (block '%s'); blocks must not overlap",
+                       p->position[0][bad], p->position[1][bad], p->position[2][bad],
+                       body->blocks[p->block[bad / SLICE]]->head.name);
+  if (!status) {
+    for (int64_t place = 0; place < p->places; ++place) stored->first[place + 1] += stored->first[place];
+    size_t bonds = (size_t)stored->first[p->places];
+    stored->neighbour = memory_zeroed(bonds, sizeof(int32_t), "stored bonds", error);
+    bool alike = weight->correction == VOLUME_WHOLE && weight->influence == influence_find("constant");
+    if (!alike) stored->scale = memory_zeroed(bonds, sizeof(double), "stored bonds", error);
+    if (!stored->neighbour || (!alike && !stored->scale))
+      status = BRECCIA_FAILURE;
+    else
+      sweep(&search, stored, true);
   }
-  free(found.items);
   free(cells.first);
   free(cells.places);
   return status;
@@ -153,6 +150,6 @@ void stored_bonds_destroy(StoredBonds *stored)
 {
   free(stored->first);
   free(stored->neighbour);
-  free(stored->weight);
+  free(stored->scale);
   *stored = (StoredBonds){0};
 }

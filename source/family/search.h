@@ -1,13 +1,13 @@
-/* Cell-list search for bonds between particles of different lattices; within a lattice the offsets are known. */
+/* Cell-list search for bonds of particles that stand in no common lattice; within a lattice the offsets are known. */
 #ifndef BRECCIA_FAMILY_SEARCH_H
 #define BRECCIA_FAMILY_SEARCH_H
 
 #include "family/family.h"
 
-typedef struct StoredBonds { /* compressed rows over places, each ascending by number of the neighbour */
+typedef struct StoredBonds { /* compressed rows over places, in an order that does not depend on threads */
   int64_t *first;            /* [places + 1]; NULL: none */
   int32_t *neighbour;
-  double *weight;
+  double *scale; /* influence x volume correction; NULL: 1 for all */
 } StoredBonds;
 
 typedef struct StoredWeight {
@@ -17,8 +17,8 @@ typedef struct StoredWeight {
   double (*share)(VolumeCorrection correction, double length, double horizon, double half_spacing);
 } StoredWeight;
 
-/** O(N) for bodies of even density. Refuses particles of two blocks nearer than a hundredth of a spacing. */
-int search_between_blocks(StoredBonds *stored, const Body *body, const StoredWeight *weight, Error *error);
+/** O(N) for bodies of even density. Refuses particles nearer than a hundredth of a spacing. */
+int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWeight *weight, Error *error);
 void stored_bonds_destroy(StoredBonds *stored);
 
 #endif

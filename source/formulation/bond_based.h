@@ -4,6 +4,13 @@
 
 #include "formulation/formulation.h"
 
+enum { SPRING_TERMS = 6 };
+
+/** Where the numbers of a pattern stand: its vector, and what its length and weight make of d (bond_springs.c). */
+typedef struct SpringRow {
+  int32_t xi[3], length;
+} SpringRow;
+
 typedef struct BondBased {
   const Particles *particles;
   const Family *family;
@@ -11,9 +18,28 @@ typedef struct BondBased {
   const Points *points;
   Space space;
   const Influence *influence;
-  double *stiffness; /* c of each place's material and lattice; a bond has the mean of its two. NULL: all alike */
-  double uniform;    /* c, if all are alike */
+  double *stiffness; /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
+  SpringRow *rows;   /* [patterns] */
+  double *numbers;   /* of these rows */
+  double *shown;     /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  uint8_t *range;    /* [slices] how large stretches were at the last evaluation */
+  uint8_t *gaps;     /* [slices] 1: a bond of a lattice slot is missing */
 } BondBased;
+
+/** Material of a block. */
+const Material *bond_material(const BondBased *b, int block);
+
+/** Finds out whether a slice has gaps. */
+void bond_note_gaps(BondBased *b, int64_t slice);
+
+/** Makes the tables of linear bonds. */
+int bond_springs_create(BondBased *b, Error *error);
+
+/** Brings `shown` up to date. */
+void bond_show_displacements(BondBased *b, int64_t first, int64_t last);
+
+/** Forces on slices first .. last - 1 from linear bonds. */
+void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
 
 /** c by the continuum's integrals (docs/theory.md 2, table and general rule). */
 double bond_continuum_constant(const BondBased *b, double young);

@@ -83,15 +83,42 @@ static double continuum_young(const BondBased *b)
   return b->space == SPACE_PLANE_STRAIN ? 16.0 / 15 : 1;
 }
 
+/** Half the sum of w L over the families of particles from a file: the mean of those whose neighbours fill the horizon to 95 %, so
+ *  that surfaces do not count. NaN if there is none. */
+static double cloud_expansion(const BondBased *b, int block)
+{
+  const Family *f = b->family;
+  const double pi = acos(-1), horizon = f->horizon;
+  const double full = b->body->plane ? pi * horizon * horizon * thickness(b) : 4 * pi / 3 * pow(horizon, 3);
+  double sum = 0, volume = 0;
+  for (int64_t slice = 0; slice < b->particles->slices; ++slice)
+    for (int lane = 0; b->particles->block[slice] == block && lane < SLICE; ++lane) {
+      int32_t place = (int32_t)(slice * SLICE + lane);
+      double own = b->particles->volume[place], energy = 0;
+      if (own + family_volume(f, place) < 0.95 * full) continue;
+      for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+        if (!(f->intact[slot] >> lane & 1)) continue;
+        Bond bond = family_bond(f, slice, slot, lane);
+        energy += bond.weight * bond.length / 2;
+      }
+      sum += own * energy;
+      volume += own;
+    }
+  return sum / volume;
+}
+
 double bond_calibration(const BondBased *b, int block, Calibration calibration)
 {
   if (calibration == CALIBRATION_CONTINUUM) return 1;
   double unit = bond_continuum_constant(b, 1);
+  const bool cloud = !b->body->lattices[block].chunks;
   if (calibration == CALIBRATION_UNIAXIAL) {
+    if (cloud) return NAN;
     const double along[3] = {1, 0, 0};
     return continuum_young(b) / (unit * lattice_young(b, block, along));
   }
   double c[MANDEL][MANDEL], sum = 0;
+  if (cloud) sum = cloud_expansion(b, block);
   lattice_stiffness(b, block, c);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) sum += c[i][j];
@@ -121,11 +148,8 @@ void bond_describe(const void *formulation, Text *text)
   const double axis[3] = {1, 0, 0}, plane[3] = {sqrt(0.5), sqrt(0.5), 0},
                space[3] = {sqrt(1. / 3), sqrt(1. / 3), sqrt(1. / 3)};
   for (int block = 0; block < b->body->block_count; ++block) {
-    int64_t slice = 0;
-    while (b->particles->block[slice] != block) ++slice;
-    const Material *m = &b->points->materials[b->points->material[slice]];
-    double c = b->stiffness ? b->stiffness[slice * SLICE] : b->uniform;
-    double wanted = material_young(m) * continuum_young(b);
+    if (!b->body->lattices[block].chunks) continue;
+    double c = b->stiffness[block], wanted = material_young(bond_material(b, block)) * continuum_young(b);
     if (isnan(lattice_young(b, block, axis))) {
       text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",
                b->body->blocks[block]->head.name);

@@ -41,6 +41,9 @@ typedef struct Correspondence {
   double *row_pull
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
+  /* What bonds of stored slots read of a neighbour, together (correspondence.c); NULL if there are none. */
+  double *shown;  /* [places][8] of its place and displacement */
+  double *row;    /* [places][state_length] of its response */
   int32_t *axial; /* places whose bonds act as springs, ascending (some may have become free since) */
   int64_t axial_count;
 } Correspondence;
@@ -62,6 +65,12 @@ static inline double hold_component(const Correspondence *c, int64_t place, int 
 static inline bool hold_is_read(Control control)
 {
   return control == CONTROL_SCALAR || control == CONTROL_TENSOR;
+}
+
+/** Numbers of a row that shows a particle's response: Q and x, then C u and C if they are read, in whole vectors. */
+static inline int state_length(Control control)
+{
+  return 12 + (hold_is_read(control) ? (3 + hold_components(control) + LANES - 1) / LANES * LANES : 0);
 }
 
 /* Making, and what follows from the shapes of families (correspondence_setup.c). */

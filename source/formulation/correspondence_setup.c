@@ -18,6 +18,8 @@ void correspondence_destroy(void *formulation)
     places_free(&c->row_displacement[kind]);
     places_free(&c->row_pull[kind]);
   }
+  places_free(&c->row);
+  places_free(&c->shown);
   shape_table_destroy(&c->shapes);
   free(c->axial);
   free(c);
@@ -137,6 +139,10 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     failed |= !(c->row_displacement[kind] = places_array(6 * places, "row sums", error));
     failed |= !(c->row_pull[kind] = places_array(c->pulls * places, "row sums", error));
   }
+  if (c->family->stored_slots) {
+    failed |= !(c->row = places_array(state_length(c->control) * places, "force states", error));
+    failed |= !(c->shown = places_array(8 * places, "force states", error));
+  }
   for (int k = 0; k < 3 && hold_is_read(c->control); ++k)
     failed |= !(c->held[k] = places_array(places, "zero-energy control", error));
   if (failed) {
@@ -158,7 +164,7 @@ size_t correspondence_bytes(const void *formulation)
 {
   const Correspondence *c = formulation;
   size_t numbers = 9 + 3 + (size_t)hold_components(c->control) + (hold_is_read(c->control) ? 3 : 0);
-  numbers += (size_t)(c->family->rows.kinds * (6 + c->pulls));
+  numbers += (size_t)(c->family->rows.kinds * (6 + c->pulls) + (c->row ? state_length(c->control) + 8 : 0));
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
          (size_t)c->particles->count * sizeof(int32_t);
 }

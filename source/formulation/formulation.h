@@ -40,15 +40,16 @@ typedef struct FormulationParts {
 
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
-  int uniaxial;  /* laws act on bonds, not on points in space */
-  bool row_sums; /* sum_displacements and sum_states make sums along lattice rows for neighbours to read */
+  int uniaxial;      /* laws act on bonds, not on points in space */
+  bool row_sums;     /* show_displacements and sum_states make sums along lattice rows for neighbours to read */
+  bool bond_lengths; /* lengths of stored bonds are read in sweeps */
   /** Makes a formulation for a body. Says where families are too poor for it. */
   void *(*create)(const FormulationParts *parts, Error *error);
   void (*destroy)(void *formulation);
   /** Bonds of this slice have broken. NULL: nothing to do. */
   void (*renew)(void *formulation, int64_t slice);
-  /** Sums of displacements that neighbours will read; all slices are done before any deforms. NULL if !row_sums. */
-  void (*sum_displacements)(void *formulation, int64_t first, int64_t last);
+  /** What neighbours will read of displacements beyond these themselves; all slices are done before any deforms. NULL: nothing. */
+  void (*show_displacements)(void *formulation, int64_t first, int64_t last);
   /** Displacements to strains at the points of slices first .. last - 1, at most BLOCK places.
    *  @param[out] carry  [CARRY][BLOCK] numbers of these places that `respond` finds again: they need never leave the cache.
    *  NULL, as is `respond`, where `resist` does everything. */

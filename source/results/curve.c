@@ -1,5 +1,6 @@
 #include "results/curve.h"
 
+#include "base/csv.h"
 #include "base/text.h"
 #include <errno.h>
 #include <math.h>
@@ -7,66 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-
-static int column_index(char *header, const char *column, char *label)
-{
-  int index = 0;
-  size_t n = strlen(column);
-  for (char *rest = header; rest; ++index) {
-    char *comma = strchr(rest, ',');
-    if (comma) *comma = 0;
-    bool same = !strncmp(rest, column, n) && (!rest[n] || !strncmp(rest + n, " (", 2));
-    if (same) snprintf(label, 128, "%s", rest);
-    if (comma) *comma = ',';
-    if (same) return index;
-    rest = comma ? comma + 1 : NULL;
-  }
-  return -1;
-}
-
-double *csv_column(const char *path, const char *column, int *count, char *label, Error *error)
-{
-  char *text = text_read_file(path, NULL), *line = text;
-  if (!text) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
-    return NULL;
-  }
-  while (*line == '#') { /* comments before the heading */
-    line = strchr(line, '\n');
-    if (!line) break;
-    ++line;
-  }
-  char *end = line ? strchr(line, '\n') : NULL;
-  int index = -1;
-  if (end) {
-    *end = 0;
-    if (end > line && end[-1] == '\r') end[-1] = 0;
-    index = column_index(line, column, label);
-  }
-  if (index < 0) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: has no column '%s'; its columns are %s", path, column,
-              end ? line : "none");
-    free(text);
-    return NULL;
-  }
-  int capacity = 1;
-  for (char *c = end + 1; *c; ++c) capacity += *c == '\n';
-  double *values = malloc(sizeof(double) * (size_t)capacity);
-  *count = 0;
-  for (char *row = end + 1; values && *row;) {
-    char *next = strchr(row, '\n'), *cell = row;
-    if (!next) break; /* a row cut short by a killed run */
-    for (int k = 0; cell && k < index; ++k) {
-      cell = memchr(cell, ',', (size_t)(next - cell));
-      if (cell) ++cell;
-    }
-    if (cell && *row != '#') values[(*count)++] = strtod(cell, NULL);
-    row = next + 1;
-  }
-  free(text);
-  if (!values) error_add(error, BRECCIA_FAILURE, "out of memory: curve");
-  return values;
-}
 
 /** Splits "watch.column" at its last dot and reads that column, with the steps of its rows. */
 static double *history_column(const char *folder, const char *name, double **steps, int *count, char *label,
@@ -83,8 +24,8 @@ static double *history_column(const char *folder, const char *name, double **ste
   text_file_name(words, watch, sizeof watch);
   char *path = text_format("%s/%s.csv", folder, watch), ignored[128];
   double *values = NULL;
-  *steps = csv_column(path, "step", count, ignored, error);
-  if (*steps) values = csv_column(path, dot + 1, count, label, error);
+  *steps = csv_column(path, "step", CSV_LIVING, count, ignored, error);
+  if (*steps) values = csv_column(path, dot + 1, CSV_LIVING, count, label, error);
   free(path);
   char whole[300];
   snprintf(whole, sizeof whole, "%s: %s", words, label);

@@ -16,9 +16,4 @@ typedef struct CurveOptions {
 int curve_draw(const char *const *folders, int folder_count, const char *curve, const CurveOptions *options,
                const char *path, Error *error);
 
-/** A column of a CSV file by name (a unit in parentheses after it need not be given).
- *  @param[out] label  the column's whole heading, 128 bytes
- *  @return its values, to be freed, or NULL with a message */
-double *csv_column(const char *path, const char *column, int *count, char *label, Error *error);
-
 #endif

@@ -275,9 +275,40 @@ static void a_pulled_bar_breaks_alike_for_any_number_of_threads_and_keeps_its_en
   free(reference);
 }
 
+/** Two particles pulled apart: c V s to the last digits whatever the stretch, and whichever way the sweep takes to it. */
+static void a_single_bond_has_its_force_to_the_last_digits(void **state)
+{
+  (void)state;
+  FILE *file = fopen("test_pair.csv", "w");
+  fprintf(file, "x,y,z,volume\n0.05,0.05,0.05,1e-3\n0.1437,0.05,0.05,1e-3\n");
+  fclose(file);
+  for (int cloud = 0; cloud < 2; ++cloud) {
+    breccia_model *model =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1, model: elastic-1d, "
+                 "Young modulus: 150 MPa}}\nperidynamics: {formulation: bond-based, calibration: "
+                 "continuum, horizon: 0.3}\nbody: {b: {material: m, spacing: 0.1, %s}}\nsolve: "
+                 "{explicit: {steps: 1, time step: 1e-9}}\n",
+                 cloud ? "file: test_pair.csv" : "shape: {box: {particles: [2, 1, 1]}}");
+    const Particles *p = model->domain.particles;
+    const int32_t a = p->place_of[0], b = p->place_of[1];
+    const long double length = (long double)p->position[0][b] - (long double)p->position[0][a];
+    const double stretches[] = {1e-12, -3e-9, 1e-6, 1.9e-3, -1.9e-3, 1.95e-3, 2e-3, -0.02, 0.1, -0.3, 2};
+    for (size_t k = 0; k < sizeof stretches / sizeof *stretches; ++k) {
+      p->displacement[0][b] = stretches[k] * (double)length;
+      compute_forces(model);
+      long double expected = 12 * 150e3L / (acosl(-1) * powl(0.3L, 4)) * 1e-3L * (p->displacement[0][b] / length);
+      assert_near(p->internal[0][a] / (double)expected, 1, 1.5e-15);
+      assert_near(p->internal[0][b], -p->internal[0][a], 0);
+    }
+    breccia_model_destroy(&model);
+  }
+  remove("test_pair.csv");
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_single_bond_has_its_force_to_the_last_digits),
       cmocka_unit_test(uniform_expansion_has_the_energy_that_theory_tabulates),
       cmocka_unit_test(check_tells_the_modulus_that_a_patch_shows),
       cmocka_unit_test(a_quadratic_field_has_the_force_of_the_continuum),

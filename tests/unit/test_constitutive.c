@@ -1,5 +1,5 @@
+#include "base/csv.h"
 #include "base/random.h"
-#include "results/curve.h"
 #include "support.h"
 #include <glob.h>
 
@@ -16,7 +16,7 @@ static double *columns_of(const char *file, const char *const *names, int count,
   Error *error = breccia_error_create();
   for (int k = 0; k < count; ++k) {
     char label[128];
-    double *column = csv_column(file, names[k], rows, label, error);
+    double *column = csv_column(file, names[k], CSV_FINISHED, rows, label, error);
     if (!column) fail_msg("%s", breccia_error_text(error));
     if (!table) table = malloc(sizeof(double) * (size_t)(count * *rows));
     for (int i = 0; i < *rows; ++i) table[count * i + k] = column[i];

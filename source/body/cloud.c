@@ -1,0 +1,148 @@
+#include "body/cloud.h"
+
+#include "base/csv.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** Spreads the lowest 21 bits so that two others fit between each two of them. */
+static uint64_t spread(uint64_t x)
+{
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+typedef struct Keyed {
+  uint64_t key;
+  int32_t index;
+} Keyed;
+
+static int by_key(const void *a, const void *b)
+{
+  const Keyed *x = a, *y = b;
+  if (x->key != y->key) return x->key < y->key ? -1 : 1;
+  return x->index < y->index ? -1 : x->index > y->index;
+}
+
+/* Along Morton's curve: bits of the three coordinates in turn. */
+int cloud_sort(Cloud *cloud, Error *error)
+{
+  double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    double high = -INFINITY;
+    for (int64_t n = 0; cloud->position[k] && n < cloud->count; ++n) {
+      low[k] = fmin(low[k], cloud->position[k][n]);
+      high = fmax(high, cloud->position[k][n]);
+    }
+    extent = fmax(extent, high - low[k]);
+  }
+  Keyed *keyed = memory_zeroed((size_t)cloud->count, sizeof *keyed, "order of particles", error);
+  cloud->order = memory_zeroed((size_t)cloud->count, sizeof *cloud->order, "order of particles", error);
+  if (!keyed || !cloud->order) {
+    free(keyed);
+    return BRECCIA_FAILURE;
+  }
+  for (int64_t n = 0; n < cloud->count; ++n) {
+    keyed[n].index = (int32_t)n;
+    for (int k = 0; k < 3 && cloud->position[k]; ++k)
+      keyed[n].key |= spread((uint64_t)((cloud->position[k][n] - low[k]) / (extent > 0 ? extent : 1) * 0x1fffff)) << k;
+  }
+  qsort(keyed, (size_t)cloud->count, sizeof *keyed, by_key);
+  for (int64_t n = 0; n < cloud->count; ++n) cloud->order[n] = keyed[n].index;
+  free(keyed);
+  return BRECCIA_OK;
+}
+
+/** File names in a deck are relative to the deck. */
+static char *beside_deck(const Document *document, const char *file)
+{
+  const char *slash = document->name ? strrchr(document->name, '/') : NULL;
+  if (*file == '/' || !slash) return text_format("%s", file);
+  return text_format("%.*s/%s", (int)(slash - document->name), document->name, file);
+}
+
+static int check_rows(const Cloud *cloud, const DeckReader *reader, const Node *node, const char *file)
+{
+  static const char *const names[] = {"x", "y", "z"};
+  for (int64_t n = 0; n < cloud->count; ++n) {
+    for (int k = 0; k < 3; ++k)
+      if (cloud->position[k] && !isfinite(cloud->position[k][n]))
+        return node_error(reader->document, node, reader->error, "file: '%s', particle %lld: its %s is not a number",
+                          file, (long long)n, names[k]);
+    if (!(cloud->volume[n] > 0) || !isfinite(cloud->volume[n]))
+      return node_error(reader->document, node, reader->error,
+                        "file: '%s', particle %lld: its volume must be a number above 0", file, (long long)n);
+  }
+  if (!cloud->count) return node_error(reader->document, node, reader->error, "file: '%s' has no particle", file);
+  return BRECCIA_OK;
+}
+
+int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, bool plane)
+{
+  static const char *const names[] = {"x", "y", "z", "volume"};
+  *cloud = (Cloud){0};
+  char *path = beside_deck(reader->document, file);
+  if (!path) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
+  int status = BRECCIA_OK;
+  for (int k = 0; k < 4 && !status; ++k) {
+    if (plane && k == 2) continue;
+    Error *words = breccia_error_create();
+    int count;
+    double *column = csv_column(path, names[k], CSV_FINISHED, &count, NULL, words);
+    if (!column)
+      status = node_error(reader->document, node, reader->error,
+                          "file: %s; expected a CSV file with the columns %s, in the deck's units",
+                          breccia_error_text(words), plane ? "x, y, volume" : "x, y, z, volume");
+    *(k == 3 ? &cloud->volume : &cloud->position[k]) = column;
+    cloud->count = count;
+    breccia_error_destroy(&words);
+  }
+  free(path);
+  if (!status) status = check_rows(cloud, reader, node, file);
+  return status;
+}
+
+void cloud_destroy(Cloud *cloud)
+{
+  for (int k = 0; k < 3; ++k) free(cloud->position[k]);
+  free(cloud->volume);
+  free(cloud->order);
+  *cloud = (Cloud){0};
+}
+
+void cloud_thin(Cloud *cloud, const uint8_t *gone)
+{
+  int64_t count = 0;
+  for (int64_t n = 0; n < cloud->count; ++n) {
+    if (gone[n]) continue;
+    for (int k = 0; k < 3; ++k)
+      if (cloud->position[k]) cloud->position[k][count] = cloud->position[k][n];
+    cloud->volume[count++] = cloud->volume[n];
+  }
+  cloud->count = count;
+}
+
+int64_t cloud_slices(const Cloud *cloud)
+{
+  return (cloud->count + SLICE - 1) / SLICE;
+}
+
+void cloud_fill(const Cloud *cloud, Particles *particles, int64_t slice, int block, int32_t *number)
+{
+  int64_t places = cloud_slices(cloud) * SLICE;
+  for (int64_t k = 0; k < places; ++k) {
+    int64_t place = slice * SLICE + k;
+    bool here = k < cloud->count;
+    int32_t from = cloud->order[here ? k : cloud->count - 1]; /* unused places stand at the last particle */
+    particles->block[place / SLICE] = block;
+    for (int c = 0; c < 3; ++c) particles->position[c][place] = cloud->position[c] ? cloud->position[c][from] : 0;
+    particles->volume[place] = here ? cloud->volume[from] : 0;
+    particles->density[place] = 1;
+    particles->number[place] = here ? *number + from : -1;
+    if (here) particles->place_of[*number + from] = (int32_t)place;
+  }
+  *number += (int32_t)cloud->count;
+}

@@ -1,0 +1,32 @@
+/* Particles that stand anywhere: their positions and volumes come from a file. */
+#ifndef BRECCIA_BODY_CLOUD_H
+#define BRECCIA_BODY_CLOUD_H
+
+#include "body/particles.h"
+#include "deck/section.h"
+
+typedef struct Cloud {
+  int64_t count;
+  double *position[3]; /* [count] in the file's order; the third is NULL for plane bodies */
+  double *volume;
+  int32_t *order; /* [count] along a curve that fills space, so that neighbours come near each other */
+} Cloud;
+
+/** Reads a CSV file with columns x, y, z (not of plane bodies) and volume, in the deck's units; its place is relative to the deck.
+ *  @param[in] node  where the deck names the file */
+int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, bool plane);
+void cloud_destroy(Cloud *cloud);
+
+/** Leaves out the particles whose entry in `gone` [count] is set. */
+void cloud_thin(Cloud *cloud, const uint8_t *gone);
+
+/** Finds the order; the particles are complete. */
+int cloud_sort(Cloud *cloud, Error *error);
+
+/** Slices that the particles need. */
+int64_t cloud_slices(const Cloud *cloud);
+
+/** Puts the sorted particles into slices from `slice` on and numbers them from *number on in the file's order. */
+void cloud_fill(const Cloud *cloud, Particles *particles, int64_t slice, int block, int32_t *number);
+
+#endif

@@ -1,0 +1,239 @@
+/* Linear bonds: the force on a particle per volume is sum c w s y / |y| with s = (|y| - |xi|) / |xi| and y = xi + eta. As
+ * s / |y| = (1 - |xi| / |y|) / |xi|, and |y|^2 = |xi|^2 (1 + d) with d = eta . (xi + y) / |xi|^2, a bond needs
+ * g(d) = 1 - (1 + d)^-1/2 only; d has no cancellation however small the stretch. */
+#include "formulation/bond_based.h"
+
+#include <math.h>
+
+/* Ways to g(d), each good to double precision relative to g and each cheaper than the next: its series, for stretches up to 0.2 %; a
+ * reciprocal root by Newton's steps from a short series, for stretches from -13 to 11 %; root and quotients. Of a slice all bonds go the
+ * same way, the first that is good for all of them. */
+typedef enum Range { RANGE_SERIES, RANGE_NEWTON, RANGE_ANY } Range;
+static const double range_limit[] = {0.00390625, 0.25}; /* largest |d| */
+
+/* The table of lattice bonds. Components of reference vectors are few, and so are lengths with weights: each number stands there as often
+ * as a vector has lanes, so that arithmetic takes it from memory (a tenth faster than spreading one). What is read of a length: */
+enum {
+  LENGTH_PULL = 0,
+  LENGTH_LIMIT = SPRING_TERMS * LANES,
+  LENGTH_KEY = LENGTH_LIMIT + LANES,
+  LENGTH_SIZE = LENGTH_KEY + LANES
+};
+
+static void put(BondBased *b, int64_t at, double number)
+{
+  for (int k = 0; k < LANES; ++k) b->numbers[at + k] = number;
+}
+
+static void put_length(BondBased *b, int64_t at, const Pattern *pattern)
+{
+  /* -g / d as a series in -d, halved for doubled vectors; its last term is replaced by lower ones (Chebyshev) so that the error stays
+   * below 5e-17 */
+  const double h = range_limit[RANGE_SERIES], last = 429.0 / 2048, square = pattern->length * pattern->length;
+  const double series[SPRING_TERMS] = {0.5 + last * pow(h, 6) / 32,          3.0 / 8,
+                                       5.0 / 16 - last * 0.5625 * pow(h, 4), 35.0 / 128,
+                                       63.0 / 256 + last * 1.5 * h * h,      231.0 / 1024};
+  double scale = -pattern->weight_by_length / 2;
+  for (int n = 0; n < SPRING_TERMS; ++n) put(b, at + LENGTH_PULL + LANES * n, (scale /= square) * series[n]);
+  put(b, at + LENGTH_LIMIT, h * square);
+  b->numbers[at + LENGTH_KEY] = pattern->length;
+  b->numbers[at + LENGTH_KEY + 1] = pattern->weight;
+}
+
+int bond_springs_create(BondBased *b, Error *error)
+{
+  const Family *f = b->family;
+  b->rows = memory_zeroed((size_t)f->pattern_count, sizeof *b->rows, "bond constants", error);
+  b->numbers = places_array((int64_t)f->pattern_count * (3 * LANES + LENGTH_SIZE), "bond constants", error);
+  if (!b->rows || !b->numbers) return BRECCIA_FAILURE;
+  int32_t end = 0;
+  for (int p = 0; p < f->pattern_count; ++p)
+    for (int k = 0; k < 3; ++k) {
+      int32_t at = 0;
+      while (at < end && b->numbers[at] != 2 * f->patterns[p].xi[k]) at += LANES;
+      if (at == end) put(b, at, 2 * f->patterns[p].xi[k]);
+      if (at == end) end += LANES;
+      b->rows[p].xi[k] = at;
+    }
+  const int32_t lengths = end;
+  for (int p = 0; p < f->pattern_count; ++p) {
+    const Pattern *pattern = &f->patterns[p];
+    int32_t at = lengths;
+    while (at < end &&
+           (b->numbers[at + LENGTH_KEY] != pattern->length || b->numbers[at + LENGTH_KEY + 1] != pattern->weight))
+      at += LENGTH_SIZE;
+    if (at == end) put_length(b, at, pattern);
+    if (at == end) end += LENGTH_SIZE;
+    b->rows[p].length = at;
+  }
+  return BRECCIA_OK;
+}
+
+LANES_INLINE Lanes shortening(Lanes d, Range range)
+{
+  if (range == RANGE_SERIES) {
+    Lanes series = lanes_set(429.0 / 2048);
+    series = lanes_set(-231.0 / 1024) + d * series;
+    series = lanes_set(63.0 / 256) + d * series;
+    series = lanes_set(-35.0 / 128) + d * series;
+    series = lanes_set(5.0 / 16) + d * series;
+    series = lanes_set(-3.0 / 8) + d * series;
+    return d * (lanes_set(0.5) + d * series);
+  }
+  if (range == RANGE_NEWTON) {
+    Lanes r = lanes_set(35.0 / 128), x = lanes_set(0.5) + lanes_set(0.5) * d;
+    r = lanes_set(-5.0 / 16) + d * r;
+    r = lanes_set(3.0 / 8) + d * r;
+    r = lanes_set(-0.5) + d * r;
+    r = lanes_set(1) + d * r;
+    for (int step = 0; step < 3; ++step) r *= lanes_set(1.5) - x * (r * r);
+    Lanes g = lanes_set(1) - r; /* has lost digits where d is small; (1 - g)^2 (1 + d) = 1 gives them back */
+    return lanes_set(0.5) * (d * (r * r) + g * g);
+  }
+  Lanes r = lanes_set(1) / lanes_root(lanes_set(1) + d);
+  return d * r * r / (lanes_set(1) + r);
+}
+
+typedef struct Sum {
+  Lanes force[3], own[3]; /* own: displacements */
+  Lanes largest;          /* |d|, beyond the series */
+  LaneMask beyond;        /* the series */
+} Sum;
+
+/** Half a slot between lattice neighbours; back is -eta, and middle 2 xi + eta. Polynomial by pairs: its chain is shorter so. */
+LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool gaps, Range range, Sum *sum)
+{
+  const Family *f = b->family;
+  const int pattern = f->pattern[slot];
+  const SpringRow *row = &b->rows[pattern];
+  const double *numbers = b->numbers, *length = numbers + row->length;
+  const int64_t there = f->base[slot] + LANES * half;
+  Lanes d = {0}, twice[3], pull;
+  for (int k = 0; k < 3; ++k) {
+    Lanes back = sum->own[k] - lanes_load(b->particles->displacement[k] + there);
+    Lanes middle = lanes_load(numbers + row->xi[k]) - back;
+    twice[k] = middle - back; /* 2 y */
+    d += back * middle;
+  }
+  if (gaps) d = lanes_where(lanes_half(f->intact[slot], half), d);
+  if (range == RANGE_SERIES) {
+    Lanes square = d * d, pair[SPRING_TERMS / 2];
+    for (int n = 0; n < SPRING_TERMS; n += 2)
+      pair[n / 2] = lanes_load(length + LANES * n) + d * lanes_load(length + LANES * (n + 1));
+    pull = d * (pair[0] + square * (pair[1] + square * pair[2]));
+    sum->beyond |= (LaneMask)(lanes_absolute(d) > lanes_load(length + LENGTH_LIMIT));
+  } else {
+    d *= -lanes_set(f->patterns[pattern].by_square);
+    sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
+    pull = lanes_set(0.5 * f->patterns[pattern].weight_by_length) * shortening(d, range);
+  }
+  for (int k = 0; k < 3; ++k) sum->force[k] += pull * twice[k];
+}
+
+/* What stored slots read of a neighbour lies together: x, y, z, V, u, v, w and c. */
+enum { SHOWN = 8 };
+
+void bond_show_displacements(BondBased *b, int64_t first, int64_t last)
+{
+  const Particles *p = b->particles;
+  for (int64_t place = first * SLICE; place < last * SLICE; ++place) {
+    double *shown = b->shown + SHOWN * place;
+    for (int k = 0; k < 3; ++k) {
+      shown[k] = p->position[k][place];
+      shown[4 + k] = p->displacement[k][place];
+    }
+    shown[3] = p->volume[place];
+    shown[7] = b->stiffness[p->block[place / SLICE]];
+  }
+}
+
+/** 1 / |xi| from its value to single precision by one step of third order; 0 where there is no intact bond. */
+LANES_INLINE Lanes inverse_length(const Family *f, int64_t slot, int half, const Lanes xi[3])
+{
+  const float *near = f->inverse_length + (int64_t)f->base[slot] * SLICE + LANES * half;
+  Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(near));
+  Lanes off = lanes_set(1) - (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]) * r * r;
+  return r + r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
+}
+
+/** Half a stored slot; its forces have their constants in them. */
+LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, Range range, Sum *sum)
+{
+  const Family *f = b->family;
+  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
+  Lanes x[LANES], u[LANES], d = {0}, y[3];
+  lanes_gather_rows(b->shown, SHOWN, f->neighbour + at, x);
+  lanes_gather_rows(b->shown + LANES, SHOWN, f->neighbour + at, u);
+  for (int k = 0; k < 3; ++k) {
+    Lanes eta = u[k] - sum->own[k];
+    x[k] -= lanes_load(b->particles->position[k] + slice * SLICE + LANES * half);
+    y[k] = x[k] + eta;
+    d += eta * (x[k] + y[k]);
+  }
+  Lanes inverse = inverse_length(f, slot, half, x);
+  d *= inverse * inverse;
+  sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
+  Lanes pull = lanes_set(0.5) * (lanes_set(b->stiffness[f->particles->block[slice]]) + u[3]) * x[3];
+  if (f->scale) pull *= lanes_load(f->scale + at);
+  pull *= inverse * shortening(d, range);
+  for (int k = 0; k < 3; ++k) sum->force[k] += pull * y[k];
+}
+
+/** Forces on a slice, all bonds by one way. @return the way that they should go */
+LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, Range range)
+{
+  const Family *f = b->family;
+  const Particles *p = b->particles;
+  const int64_t stored = f->stored[slice], last = f->first[slice + 1];
+  const Lanes scale = lanes_set(b->stiffness[p->block[slice]]);
+  Sum sum[2] = {{.beyond = {0}}, {.beyond = {0}}};
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) sum[half].own[k] = lanes_load(p->displacement[k] + slice * SLICE + LANES * half);
+  for (int half = 0; half < 2; ++half)
+    for (int64_t slot = f->first[slice]; slot < stored; ++slot) add_lattice(b, slot, half, gaps, range, &sum[half]);
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) sum[half].force[k] *= scale;
+  for (int64_t slot = stored; slot < last; ++slot)
+    for (int half = 0; half < 2; ++half) add_stored(b, slot, slice, half, range, &sum[half]);
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) lanes_store(p->internal[k] + slice * SLICE + LANES * half, sum[half].force[k]);
+  Lanes largest = lanes_greatest(sum[0].largest, sum[1].largest);
+  LaneMask beyond = sum[0].beyond | sum[1].beyond;
+  double most = beyond[0] | beyond[1] | beyond[2] | beyond[3] ? INFINITY : 0;
+  for (int k = 0; k < LANES; ++k) most = largest[k] > most ? largest[k] : most;
+  if (range == RANGE_SERIES && most > range_limit[RANGE_SERIES]) return RANGE_NEWTON;
+  return most <= range_limit[RANGE_SERIES]   ? RANGE_SERIES
+         : most <= range_limit[RANGE_NEWTON] ? RANGE_NEWTON
+                                             : RANGE_ANY;
+}
+
+BRECCIA_CLONES
+static void resist_springs(const BondBased *b, int64_t first, int64_t last)
+{
+  const BondBased local = *b; /* so that stores are seen not to change it */
+  for (int64_t slice = first; slice < last; ++slice) {
+    /* Begins with the way of the last time, and ends with the first way that is good: what came before does not show in the bits. */
+    Range range = (Range)local.range[slice], next = range;
+    for (int turn = 0; turn < 3; ++turn) {
+      range = next;
+      next = range == RANGE_SERIES   ? local.gaps[slice] ? resist_slice(&local, slice, true, RANGE_SERIES)
+                                                         : resist_slice(&local, slice, false, RANGE_SERIES)
+               : range == RANGE_NEWTON ? resist_slice(&local, slice, true, RANGE_NEWTON)
+                                     : resist_slice(&local, slice, true, RANGE_ANY);
+      if (next == range) break;
+    }
+    local.range[slice] = (uint8_t)range;
+  }
+}
+
+void bond_note_gaps(BondBased *b, int64_t slice)
+{
+  const Family *f = b->family;
+  b->gaps[slice] = 0;
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) b->gaps[slice] |= f->intact[slot] != UINT8_MAX;
+}
+
+void bond_resist_springs(const BondBased *b, int64_t first, int64_t last)
+{
+  resist_springs(b, first, last);
+}

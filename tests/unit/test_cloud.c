@@ -1,0 +1,288 @@
+/* Particles that stand anywhere, read from a file. */
+#include "support.h"
+
+#include "base/random.h"
+#include "base/tensor.h"
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define FILE_NAME "test_cloud.csv"
+
+/** Writes the particles of a model in a random order. @return number of the lattice particle in each row, to be freed */
+static int32_t *write_particles(const breccia_model *model, bool plane)
+{
+  const Particles *p = model->domain.particles;
+  int32_t *row = malloc(sizeof(int32_t) * (size_t)p->count);
+  uint64_t seed = 7;
+  for (int32_t n = 0; n < p->count; ++n) row[n] = n;
+  for (int32_t n = (int32_t)p->count - 1; n > 0; --n) {
+    int32_t other = (int32_t)(random_uniform(&seed) * (n + 1)), kept = row[n];
+    row[n] = row[other];
+    row[other] = kept;
+  }
+  FILE *file = fopen(FILE_NAME, "w");
+  assert_non_null(file);
+  fprintf(file, "# made by a test\nvolume (m3), x (m),y%s\n", plane ? "" : ",z");
+  for (int32_t n = 0; n < p->count; ++n) {
+    int32_t i = p->place_of[row[n]];
+    fprintf(file, "%.17g, %.17g,%.17g", p->volume[i], p->position[0][i], p->position[1][i]);
+    fprintf(file, plane ? "" : ",%.17g", p->position[2][i]);
+    fprintf(file, n + 1 < p->count ? "\n" : ""); /* the last row needs no end */
+  }
+  fclose(file);
+  return row;
+}
+
+typedef struct Setting {
+  bool plane;
+  const char *law, *peridynamics;
+} Setting;
+
+#define SOLID "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25"
+#define FIBRE "model: elastic-1d, Young modulus: 150 MPa"
+
+static breccia_model *body_of(const Setting *s, const char *block)
+{
+  return model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n"
+                  "peridynamics: {%s}\nbody: {b: {material: m, spacing: 0.1, %s%s}}\n"
+                  "cracks: [{cut: {line: [[0.45, -1], [0.45, 0.42]]}}, {remove: {box: {from: [0.2, 0.7, 0], to: [0.4, "
+                  "0.9, 1]}}}]\nsolve: {explicit: {steps: 10, time step: 1e-6}}\n",
+                  s->law, s->peridynamics, s->plane ? "lattice: square, thickness: 0.2, " : "", block);
+}
+
+static void break_some(breccia_model *model, const int32_t *number_of)
+{
+  Domain *d = &model->domain;
+  const int32_t *place_of = d->particles->place_of;
+  for (int32_t n = 3; n < 60; n += 4) {
+    int32_t a = place_of[number_of ? number_of[n] : n], b = place_of[number_of ? number_of[n + 1] : n + 1];
+    if (!family_break(&d->family, a, b)) continue;
+    d->type->renew(d->formulation, a / SLICE);
+    d->type->renew(d->formulation, b / SLICE);
+  }
+}
+
+static void a_lattice_read_from_a_file_has_the_forces_of_the_lattice(void **state)
+{
+  (void)state;
+  const Setting settings[] = {
+      {false, SOLID, "zero-energy control: {none: yes}"},
+      {false, SOLID, "zero-energy control: {silling: 0.1}"},
+      {false, SOLID, "influence: gaussian, zero-energy control: {silling: 0.1}"},
+      {false, SOLID, "strain: small, volume correction: partial, zero-energy control: {wan: 0.1}"},
+      {true, SOLID, "space: plane stress, influence: cubic-spline, volume correction: partial-beyond"},
+      {false, FIBRE, "formulation: bond-based, calibration: continuum"},
+      {false, FIBRE, "formulation: bond-based, calibration: continuum, influence: conical, volume correction: partial"},
+      {true, FIBRE, "formulation: bond-based, calibration: continuum, space: plane strain"},
+  };
+  for (size_t k = 0; k < sizeof settings / sizeof *settings; ++k) {
+    const Setting *s = &settings[k];
+    breccia_model *lattice = body_of(s, "shape: {box: {from: [0, 0, 0], to: [1.1, 1, 0.7]}}");
+    int32_t *row = write_particles(lattice, s->plane);
+    breccia_model *cloud = body_of(s, "file: " FILE_NAME);
+    const Particles *p = lattice->domain.particles, *q = cloud->domain.particles;
+    assert_int_equal(p->count, q->count);
+    assert_int_equal(lattice->domain.family.bonds, cloud->domain.family.bonds);
+    int32_t *number_of = malloc(sizeof(int32_t) * (size_t)p->count);
+    for (int32_t n = 0; n < p->count; ++n) number_of[row[n]] = n;
+    break_some(lattice, NULL);
+    break_some(cloud, number_of);
+    for (int large = 0; large < 3; ++large) {
+      const double amplitude[] = {1e-6, 1e-3, 2e-2};
+      uint64_t seed = 3;
+      for (int32_t n = 0; n < p->count; ++n)
+        for (int c = 0; c < (s->plane ? 2 : 3); ++c)
+          q->displacement[c][q->place_of[number_of[n]]] = p->displacement[c][p->place_of[n]] =
+              amplitude[large] * (random_uniform(&seed) - 0.5);
+      compute_forces(lattice);
+      compute_forces(cloud);
+      double most = 0, off = 0;
+      for (int32_t n = 0; n < p->count; ++n)
+        for (int c = 0; c < 3; ++c) {
+          double f = p->internal[c][p->place_of[n]];
+          most = fmax(most, fabs(f));
+          off = fmax(off, fabs(f - q->internal[c][q->place_of[number_of[n]]]));
+        }
+      assert_true(most > 0);
+      assert_near(off, 0, 2e-13 * most);
+    }
+    free(number_of);
+    free(row);
+    breccia_model_destroy(&lattice);
+    breccia_model_destroy(&cloud);
+  }
+  remove(FILE_NAME);
+}
+
+/** A cube of n^3 particles, each moved by up to a third of the spacing of 0.1 m, with volumes that differ. */
+static void write_scattered(int n)
+{
+  FILE *file = fopen(FILE_NAME, "w");
+  assert_non_null(file);
+  uint64_t seed = 1;
+  fprintf(file, "x,y,z,volume\n");
+  for (int i = 0; i < n * n * n; ++i) {
+    double x[3], grow = 0.9 + 0.2 * random_uniform(&seed);
+    for (int k = 0; k < 3; ++k)
+      x[k] = 0.1 * ((k == 0 ? i % n : k == 1 ? i / n % n : i / n / n) + (random_uniform(&seed) - 0.5) / 1.5);
+    fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", x[0], x[1], x[2], 1e-3 * grow);
+  }
+  fclose(file);
+}
+
+static void numbers_follow_the_file_and_slices_hold_neighbours(void **state)
+{
+  (void)state;
+  write_scattered(12);
+  breccia_model *model = body_of(&(Setting){false, SOLID, "horizon: 3 spacings"}, "file: " FILE_NAME);
+  const Particles *p = model->domain.particles;
+  double before = -1, apart = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    assert_int_equal(p->number[p->place_of[n]], n);
+    double along = round(p->position[2][p->place_of[n]] * 10); /* layers come one after the other in the file */
+    assert_true(along >= before);
+    before = along;
+  }
+  for (int64_t place = 0; place < p->places; ++place) {
+    if (p->number[place] < 0) assert_true(p->volume[place] == 0);
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += pow(p->position[k][place] - p->position[k][place / SLICE * SLICE], 2);
+    apart += sqrt(square) / (double)p->places;
+  }
+  assert_true(apart < 0.2); /* two spacings; numbered along x they would be 3.5 apart */
+  breccia_model_destroy(&model);
+  remove(FILE_NAME);
+}
+
+static void scattered_particles_have_exact_gradients_and_balance(void **state)
+{
+  (void)state;
+  const double f[9] = {1.01, 0.002, -0.003, 0.004, 0.99, 0.001, -0.002, 0.003, 1.02};
+  write_scattered(9);
+  for (int fibres = 0; fibres < 2; ++fibres) {
+    const Setting s = {false, fibres ? FIBRE : SOLID, fibres ? "formulation: bond-based" : "strain: small"};
+    breccia_model *model = body_of(&s, "file: " FILE_NAME);
+    const Particles *p = model->domain.particles;
+    deform_uniformly(model, f);
+    compute_forces(model);
+    double total[3] = {0}, size = 0;
+    for (int32_t n = 0; n < p->count; ++n) {
+      int32_t i = p->place_of[n];
+      double found[9];
+      model->domain.type->gradient(model->domain.formulation, i, found);
+      for (int k = 0; k < 9; ++k) assert_near(found[k], f[k], 1e-12);
+      for (int k = 0; k < 3; ++k) {
+        total[k] += p->internal[k][i] * p->volume[i];
+        size += fabs(p->internal[k][i] * p->volume[i]);
+      }
+    }
+    for (int k = 0; k < 3; ++k) assert_near(total[k], 0, 1e-13 * size);
+    breccia_model_destroy(&model);
+  }
+  remove(FILE_NAME);
+}
+
+/** Uniform expansion of scattered bonds has the continuum's energy on the average over whole families (docs/theory.md 2). */
+static void scattered_bonds_are_calibrated_inside_the_body(void **state)
+{
+  (void)state;
+  write_scattered(13);
+  breccia_model *model = model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\nperidynamics: "
+      "{formulation: bond-based}\nbody: {b: {material: m, spacing: 0.1, file: %s}}\nsolve: {explicit: {steps: 1}}\n",
+      FIBRE, FILE_NAME);
+  const double stretch = 1e-5, f[9] = {1 + stretch, 0, 0, 0, 1 + stretch, 0, 0, 0, 1 + stretch};
+  deform_uniformly(model, f);
+  double sum = 0, count = 0;
+  for (int32_t n = 0; n < model->domain.particles->count; ++n) {
+    int32_t i = model->domain.particles->place_of[n];
+    double stress[6], strain[6];
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) inside &= fabs(model->domain.particles->position[k][i] - 0.6) < 0.3;
+    if (!inside) continue;
+    domain_look(&model->domain, i, strain, stress);
+    sum += (stress[XX] + stress[YY] + stress[ZZ]) / 3;
+    ++count;
+  }
+  assert_near(sum / count, 150e3 * 2 * stretch, 0.02 * 150e3 * 2 * stretch); /* 3 K = E / (1 - 2 nu) = 2 E */
+  breccia_model_destroy(&model);
+  remove(FILE_NAME);
+}
+
+static void threads_do_not_change_a_bit(void **state)
+{
+  (void)state;
+#ifdef _OPENMP
+  write_scattered(10);
+  for (int fibres = 0; fibres < 2; ++fibres) {
+    double *reference = NULL;
+    for (int threads = 1; threads <= 3; ++threads) {
+      omp_set_num_threads(threads);
+      breccia_model *model =
+          model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n%s"
+                   "body: {b: {material: m, spacing: 0.1, file: %s}}\nfailure: {critical stretch: 0.002}\n"
+                   "loads: [{on: {face: x+, layers: 2}, velocity: [1, 0, 0]}, {on: {face: x-, layers: 2}, velocity: "
+                   "[0, 0, 0]}]\n"
+                   "solve: {explicit: {steps: 100}}\n",
+                   fibres ? FIBRE : SOLID, fibres ? "peridynamics: {formulation: bond-based}\n" : "", FILE_NAME);
+      model->threads = threads;
+      breccia_model_step(model, 30, NULL);
+      assert_true(breccia_model_broken_bonds(model) > 0);
+      size_t bytes = sizeof(double) * (size_t)breccia_model_places(model);
+      if (!reference) {
+        reference = malloc(bytes);
+        memcpy(reference, breccia_model_array(model, "displacement y"), bytes);
+      } else
+        assert_memory_equal(breccia_model_array(model, "displacement y"), reference, bytes);
+      breccia_model_destroy(&model);
+    }
+    free(reference);
+  }
+  remove(FILE_NAME);
+#endif
+}
+
+static void wrong_files_are_refused_with_the_reason(void **state)
+{
+  (void)state;
+  const struct {
+    const char *content, *block, *words;
+  } wrong[] = {
+      {NULL, "file: no-such.csv",
+       "file: no-such.csv: No such file or directory; expected a CSV file with the columns x, y, z, volume"},
+      {"x,y,volume\n0,0,1\n", "file: " FILE_NAME, "has no column 'z'"},
+      {"x,y,z,volume\n0,0,0,1\n1,0,0,0\n", "file: " FILE_NAME, "particle 1: its volume must be a number above 0"},
+      {"x,y,z,volume\n0,0,0,1\n1,O,0,1\n", "file: " FILE_NAME, "particle 1: its y is not a number"},
+      {"x,y,z,volume\n", "file: " FILE_NAME, "has no particle"},
+      {"x,y,z,volume\n0,0,0,1\n1e-9,0,0,1\n", "file: " FILE_NAME, "two particles lie on top of each other"},
+      {"x,y,z,volume\n0,0,0,1\n", "file: " FILE_NAME ", shape: {sphere: {centre: [0, 0, 0], radius: 1}}",
+       "more than one of 'shape', 'file'"},
+  };
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    FILE *file = fopen(FILE_NAME, "w");
+    if (wrong[k].content) fputs(wrong[k].content, file);
+    fclose(file);
+    char *deck = text_format("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n"
+                             "body: {b: {material: m, spacing: 0.1, %s}}\nsolve: {explicit: {steps: 1}}\n",
+                             SOLID, wrong[k].block);
+    char *words = refusal_of(deck);
+    if (!strstr(words, wrong[k].words)) fail_msg("expected '%s' in '%s'", wrong[k].words, words);
+    free(words);
+    free(deck);
+  }
+  remove(FILE_NAME);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_lattice_read_from_a_file_has_the_forces_of_the_lattice),
+      cmocka_unit_test(numbers_follow_the_file_and_slices_hold_neighbours),
+      cmocka_unit_test(scattered_particles_have_exact_gradients_and_balance),
+      cmocka_unit_test(scattered_bonds_are_calibrated_inside_the_body),
+      cmocka_unit_test(threads_do_not_change_a_bit),
+      cmocka_unit_test(wrong_files_are_refused_with_the_reason),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
