@@ -280,7 +280,7 @@ static void a_single_bond_has_its_force_to_the_last_digits(void **state)
 {
   (void)state;
   FILE *file = fopen("test_pair.csv", "w");
-  fprintf(file, "x,y,z,volume\n0.05,0.05,0.05,1e-3\n0.1437,0.05,0.05,1e-3\n");
+  fprintf(file, "x,y,z,volume\n0.05,0.05,0.05,1e-3\n0.1453,0.05,0.05,1e-3\n");
   fclose(file);
   for (int cloud = 0; cloud < 2; ++cloud) {
     breccia_model *model =
