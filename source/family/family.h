@@ -88,6 +88,12 @@ static inline Bond family_bond(const Family *family, int64_t slice, int64_t slot
   return bond;
 }
 
+/** Which lattice row the bonds of a lattice slot lead to: alike for slots of one row. */
+static inline int family_row(const Family *family, int64_t slot)
+{
+  return family->patterns[family->pattern[slot]].row;
+}
+
 /** Breaks the bond between two places on both sides. @return false if there is no intact one */
 bool family_break(Family *family, int32_t a, int32_t b);
 

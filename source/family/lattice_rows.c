@@ -93,18 +93,13 @@ static uint8_t present_lanes(const Particles *p, const int32_t *slices, int64_t 
   return lanes;
 }
 
-static bool same_row(const Family *family, int64_t a, int64_t b)
-{
-  return family->patterns[family->pattern[a]].row == family->patterns[family->pattern[b]].row;
-}
-
 /** Counts the rows of a slice that have sums, and finds the first slot of them. */
 static int64_t count_rows(const Family *family, int64_t slice, int64_t *first)
 {
   int64_t slot = family->first[slice], stored = family->stored[slice], rows = 0;
   while (slot < stored && family->patterns[family->pattern[slot]].kind < 0) ++slot;
   *first = slot;
-  for (; slot < stored; ++slot) rows += slot == *first || !same_row(family, slot - 1, slot);
+  for (; slot < stored; ++slot) rows += slot == *first || family_row(family, slot - 1) != family_row(family, slot);
   return rows;
 }
 
@@ -120,9 +115,7 @@ int lattice_rows_create(Family *family, const Body *body, Error *error)
   rows->begin = memory_zeroed(slices + 1, sizeof *rows->begin, "lattice rows", error);
   rows->count = memory_zeroed(slices, sizeof *rows->count, "lattice rows", error);
   rows->condition = memory_zeroed(slices, 1, "lattice rows", error);
-  rows->skip = memory_zeroed((size_t)family->slots, 1, "lattice rows", error);
-  if (!rows->present || !rows->complete || !rows->first || !rows->begin || !rows->count || !rows->condition ||
-      !rows->skip)
+  if (!rows->present || !rows->complete || !rows->first || !rows->begin || !rows->count || !rows->condition)
     return BRECCIA_FAILURE;
   for (int b = 0; b < body->block_count; ++b) {
     const Lattice *lattice = &body->lattices[b];
@@ -162,22 +155,20 @@ void lattice_rows_destroy(LatticeRows *rows)
   free(rows->begin);
   free(rows->whole);
   free(rows->count);
-  free(rows->skip);
   free(rows->condition);
   *rows = (LatticeRows){0};
 }
 
-/** @return the slice at the middle of the row whose slots are begin .. end - 1 if the row is whole, or -1 */
+/** @return the middle slot of the row whose slots are begin .. end - 1 if the row is whole, or -1 */
 static int64_t middle_of_whole(const Family *family, int64_t slice, int64_t begin, int64_t end)
 {
   const LatticeRows *rows = &family->rows;
   int block = family->particles->block[slice], axis = family->lattices[block].axis;
-  int64_t middle = -1;
-  for (int64_t slot = begin; slot < end; ++slot)
-    if (family->patterns[family->pattern[slot]].offset[axis] == 0) middle = family->base[slot] / SLICE;
-  if (middle < 0) return -1;
+  int64_t middle = begin;
+  while (middle < end && family->patterns[family->pattern[middle]].offset[axis]) ++middle;
+  if (middle == end) return -1;
   const RowKind *kind = &rows->kind[block * ROW_KINDS + family->patterns[family->pattern[begin]].kind];
-  const uint8_t *present = rows->present + middle * (2 * rows->reach + 1) + rows->reach;
+  const uint8_t *present = rows->present + family->base[middle] / SLICE * (2 * rows->reach + 1) + rows->reach;
   unsigned own = lattice_rows_lanes(rows, slice);
   int64_t slot = begin;
   for (int along = -kind->reach; along <= kind->reach; ++along) {
@@ -191,19 +182,18 @@ static int64_t middle_of_whole(const Family *family, int64_t slice, int64_t begi
 void lattice_rows_mark(Family *family, int64_t slice)
 {
   LatticeRows *rows = &family->rows;
-  if (!rows->skip) return;
+  if (!rows->present) return;
   int64_t entry = rows->begin[slice];
   unsigned condition = 0;
   for (int64_t slot = family->first[slice]; slot < rows->first[slice]; ++slot)
     if (family->intact[slot] != UINT8_MAX) condition |= ROWS_GAPS;
   for (int64_t begin = rows->first[slice], end; begin < family->stored[slice]; begin = end) {
-    for (end = begin + 1; end < family->stored[slice] && same_row(family, begin, end);) rows->skip[end++] = 0;
+    for (end = begin + 1; end < family->stored[slice] && family_row(family, begin) == family_row(family, end);) ++end;
     int64_t middle = middle_of_whole(family, slice, begin, end);
-    rows->skip[begin] = middle < 0 ? 0 : (uint8_t)(end - begin);
     if (middle < 0)
       condition |= ROWS_RAGGED | ROWS_GAPS;
     else
-      rows->whole[entry++] = (WholeRow){(int32_t)middle, family->pattern[begin]};
+      rows->whole[entry++] = (uint16_t)(middle - family->first[slice]);
   }
   rows->count[slice] = (uint16_t)(entry - rows->begin[slice]);
   rows->condition[slice] = (uint8_t)condition;
@@ -212,8 +202,8 @@ void lattice_rows_mark(Family *family, int64_t slice)
 size_t lattice_rows_bytes(const Family *family)
 {
   const LatticeRows *rows = &family->rows;
-  if (!rows->skip) return 0;
+  if (!rows->present) return 0;
   size_t slices = (size_t)family->particles->slices, slice = (size_t)(2 * rows->reach + 3) + sizeof *rows->first;
-  return (size_t)family->slots + slices * (slice + sizeof *rows->begin + sizeof *rows->count) +
+  return slices * (slice + sizeof *rows->begin + sizeof *rows->count) +
          (size_t)rows->begin[slices] * sizeof *rows->whole;
 }

@@ -22,21 +22,17 @@ typedef struct RowKind {
   double moment[2 * ROW_REACH + 1]; /* weight times distance from the middle */
 } RowKind;
 
-typedef struct WholeRow {
-  int32_t middle;  /* slice at the row's middle */
-  int32_t pattern; /* first one of the row */
-} WholeRow;
-
 typedef struct LatticeRows {
-  int kinds, reach;   /* how many kinds have sums, the longest's reach */
-  RowKind *kind;      /* [lattices][ROW_KINDS] */
-  uint8_t *present;   /* [slices][2 reach + 1] lanes for which a particle is so many places further in the same row */
-  uint8_t *complete;  /* [slices] 1: there is one for all lanes and distances */
-  int64_t *first;     /* [slices] first slot of a row that has sums; they come after all others */
-  int64_t *begin;     /* [slices + 1] first of the slice's entries in `whole` */
-  WholeRow *whole;    /* entries begin[s] .. begin[s] + count[s] - 1 are the whole rows of slice s */
+  int kinds, reach;  /* how many kinds have sums, the longest's reach */
+  RowKind *kind;     /* [lattices][ROW_KINDS] */
+  uint8_t *present;  /* [slices][2 reach + 1] lanes for which a particle is so many places further in the same row */
+  uint8_t *complete; /* [slices] 1: there is one for all lanes and distances */
+  int64_t *first;    /* [slices] first slot of a row that has sums; they come after all others */
+  int64_t *begin;    /* [slices + 1] first of the slice's entries in `whole` */
+  uint16_t *
+      whole; /* entries begin[s] .. begin[s] + count[s] - 1: the whole rows of slice s, each by its middle slot, counted from
+                         the first slot of the slice */
   uint16_t *count;    /* [slices] */
-  uint8_t *skip;      /* [slots] in the first slot of a whole row: how many slots it has; 0 in all others */
   uint8_t *condition; /* [slices] RowCondition bits */
 } LatticeRows;
 

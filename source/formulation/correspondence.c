@@ -4,6 +4,18 @@
 
 /* ---- bonds slot by slot, on lattices ---- */
 
+/** Steps over the slots of a whole row. @return the row's last slot, or slot - 1 if there begins no whole row
+ *  @param[in,out] whole  the next whole row of the slice */
+LANES_INLINE int64_t step_over_row(const Family *f, int64_t slice, int64_t slot, const uint16_t **whole,
+                                   const uint16_t *end)
+{
+  if (*whole == end || family_row(f, slot) != family_row(f, f->first[slice] + **whole)) return slot - 1;
+  const int row = family_row(f, slot);
+  while (slot < f->stored[slice] && family_row(f, slot) == row) ++slot;
+  ++*whole;
+  return slot - 1;
+}
+
 /** Slots of no whole row, on the lattice. Component by component: four sums for each half of a slice, and what they are made
  *  from, fit into 16 registers. */
 LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool gaps, Lanes sums[3][2][4])
@@ -13,11 +25,15 @@ LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool ga
   int64_t last = ragged ? f->stored[slice] : f->rows.first[slice];
   for (int k = 0; k < 3; ++k) {
     const double *u = c->particles->displacement[k];
+    const uint16_t *whole = f->rows.whole + f->rows.begin[slice], *end = whole + f->rows.count[slice];
     Lanes sum[2][4] = {{{0}}};
     for (int64_t slot = f->first[slice]; slot < last; ++slot) {
-      if (ragged && f->rows.skip[slot]) {
-        slot += f->rows.skip[slot] - 1;
-        continue;
+      if (ragged) {
+        int64_t over = step_over_row(f, slice, slot, &whole, end);
+        if (over >= slot) {
+          slot = over;
+          continue;
+        }
       }
       const Pattern *row = &f->patterns[f->pattern[slot]];
       for (int half = 0; half < 2; ++half) {
@@ -62,10 +78,14 @@ LANES_INLINE void resist_lattice(const Correspondence *c, int64_t slice, bool ga
   const Family *f = c->family;
   bool ragged = gaps && f->rows.condition[slice] & ROWS_RAGGED;
   int64_t last = ragged ? f->stored[slice] : f->rows.first[slice];
+  const uint16_t *whole = f->rows.whole + f->rows.begin[slice], *end = whole + f->rows.count[slice];
   for (int64_t slot = f->first[slice]; slot < last; ++slot) {
-    if (ragged && f->rows.skip[slot]) {
-      slot += f->rows.skip[slot] - 1;
-      continue;
+    if (ragged) {
+      int64_t over = step_over_row(f, slice, slot, &whole, end);
+      if (over >= slot) {
+        slot = over;
+        continue;
+      }
     }
     resist_slot(c, slot, gaps, control, force, hold);
   }
@@ -179,12 +199,14 @@ LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums
 {
   const LatticeRows *rows = &c->family->rows;
   const Lattice *lattice = &c->family->lattices[c->particles->block[slice]];
-  const WholeRow *begin = rows->whole + rows->begin[slice], *end = begin + rows->count[slice];
+  const uint16_t *begin = rows->whole + rows->begin[slice], *end = begin + rows->count[slice];
+  const uint16_t *patterns = c->family->pattern + c->family->first[slice];
+  const int32_t *bases = c->family->base + c->family->first[slice];
   for (int half = 0; half < 2; ++half) {
     Lanes sum[3][4] = {{{0}}};
-    for (const WholeRow *row = begin; row < end; ++row) {
-      const Pattern *pattern = &c->family->patterns[row->pattern];
-      const double *there = c->row_displacement[pattern->kind] + (int64_t)row->middle * (6 * SLICE) + LANES * half;
+    for (const uint16_t *row = begin; row < end; ++row) {
+      const Pattern *pattern = &c->family->patterns[patterns[*row]];
+      const double *there = c->row_displacement[pattern->kind] + (int64_t)bases[*row] * 6 + LANES * half;
       for (int k = 0; k < 3; ++k)
         __builtin_prefetch(there + (6 + 3 * half + k) * SLICE); /* for the next slice: 5 to 10 % */
       Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
@@ -232,10 +254,12 @@ LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control co
 {
   const LatticeRows *rows = &c->family->rows;
   const Lattice *lattice = &c->family->lattices[c->particles->block[slice]];
-  const WholeRow *begin = rows->whole + rows->begin[slice], *end = begin + rows->count[slice];
-  for (const WholeRow *row = begin; row < end; ++row) {
-    const Pattern *pattern = &c->family->patterns[row->pattern];
-    const double *there = c->row_pull[pattern->kind] + (int64_t)row->middle * (c->pulls * SLICE);
+  const uint16_t *begin = rows->whole + rows->begin[slice], *end = begin + rows->count[slice];
+  const uint16_t *patterns = c->family->pattern + c->family->first[slice];
+  const int32_t *bases = c->family->base + c->family->first[slice];
+  for (const uint16_t *row = begin; row < end; ++row) {
+    const Pattern *pattern = &c->family->patterns[patterns[*row]];
+    const double *there = c->row_pull[pattern->kind] + (int64_t)bases[*row] * c->pulls;
     for (int k = 0; k < 9; ++k) __builtin_prefetch(there + (9 + k) * SLICE); /* as above */
     Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
     for (int half = 0; half < 2; ++half)

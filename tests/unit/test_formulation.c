@@ -174,7 +174,6 @@ static void forget_rows(Family *f)
 {
   memset(f->rows.count, 0, sizeof *f->rows.count * (size_t)f->particles->slices);
   memset(f->rows.condition, ROWS_RAGGED | ROWS_GAPS, (size_t)f->particles->slices);
-  memset(f->rows.skip, 0, (size_t)f->slots);
 }
 
 static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state)
