@@ -34,7 +34,8 @@ BRECCIA_API void breccia_error_destroy(breccia_error **error);
 
 /* ---- constitutive laws ---- */
 
-/** One parameter of a law: the reader, the messages, the help and the documentation are made from this. */
+/** One parameter of a law: the reader, the messages, the help and the documentation are made from this. An optional one that is
+ *  called "length" is the length over which a fracture energy is spread; where a deck leaves it out it is the formulation's. */
 typedef struct breccia_parameter {
   const char *name;      /* key in the deck, lower case words */
   const char *dimension; /* "1", "stress", "density", "length", ... (docs/deck.md lists them) */
@@ -66,11 +67,13 @@ typedef struct breccia_law {
   int parameter_count;
   size_t constants_size; /* bytes that `prepare` fills */
   int uniaxial;          /* 1: takes one strain (of a bond), 0: the six of a point in space */
-  int linear;            /* 1: stress is a constant times strain, so that points need not be kept */
+  int linear;            /* 1: stress is a constant times strain up to failure, so that points need not be kept */
   /** Parameter values (in table order) to constants. @return 0, or 1 with the reason in words */
   int (*prepare)(const double *values, void *constants, char *reason, size_t reason_size);
   /** Elastic moduli of the undamaged material, for stable steps and zero-energy control. */
   void (*moduli)(const void *constants, double *bulk, double *shear);
+  /** Of a uniaxial law: the strain beyond which a point carries nothing for good, so that its bond breaks. NULL: never. */
+  double (*failure_strain)(const void *constants);
   /** Numbers of history per point; NULL: none. */
   int (*history_values)(const void *constants);
   /** Name of history number k for result files; "" where it is of no use to people. NULL: none has a name. */

@@ -1,3 +1,6 @@
 LAW(elastic)
 LAW(elastic_1d)
 LAW(multi_yield_j2)
+LAW(elastic_brittle)
+LAW(bilinear_softening)
+LAW(exponential_softening)

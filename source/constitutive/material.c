@@ -1,7 +1,9 @@
 #include "constitutive/material.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const breccia_parameter *law_parameters(const DeckReader *reader, const Node *chooser, int *count)
 {
@@ -60,10 +62,24 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   return BRECCIA_OK;
 }
 
-int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec)
+int material_length_parameter(const breccia_law *law)
+{
+  for (int k = 0; k < law->parameter_count; ++k)
+    if (!strcmp(law->parameters[k].name, "length")) return k;
+  return -1;
+}
+
+double material_failure_strain(const Material *material)
+{
+  return material->law->failure_strain ? material->law->failure_strain(material->constants) : INFINITY;
+}
+
+int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length)
 {
   char reason[512] = "";
   const breccia_law *law = law_find(reader->context, spec->model);
+  int at = material_length_parameter(law);
+  if (at >= 0 && isnan(spec->values[at])) spec->values[at] = length;
   int status = material_prepare(material, law, spec->values, reason, sizeof reason);
   if (status)
     return node_error(reader->document, spec->head.node, reader->error, "material '%s' (%s): %s", spec->head.name,

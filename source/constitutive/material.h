@@ -22,8 +22,15 @@ typedef struct Material {
   int history_values;
 } Material;
 
-/** Prepares a material from its section (reader->context is the LawList). */
-int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec);
+/** Prepares a material from its section (reader->context is the LawList).
+ *  @param[in] length  the formulation's, for laws that spread a fracture energy; NaN: it has none */
+int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length);
+
+/** Which parameter of a law is the length over which a fracture energy is spread, or -1. */
+int material_length_parameter(const breccia_law *law);
+
+/** Strain at which bonds of the material break; infinite: never. */
+double material_failure_strain(const Material *material);
 
 /** Prepares a material from a law and its parameter values; `reason` tells what is inadmissible. */
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size);

@@ -4,17 +4,70 @@
 #include <stdlib.h>
 #include <string.h>
 
-int points_create(Points *points, int64_t slices, Space space, const Material *materials, const int32_t *material,
-                  bool kept, Error *error)
+/** Numbers of history that a slice needs. */
+static int64_t slice_values(const Points *points, int64_t slice)
 {
-  *points =
-      (Points){.places = slices * SLICE, .kept = kept, .space = space, .materials = materials, .material = material};
+  const Family *f = points->family;
+  int64_t values = points->materials[points->material[slice]].history_values;
+  if (points->where == POINTS_ON_PARTICLES) return SLICE * values;
+  return SLICE * ((f->first[slice + 1] - f->first[slice]) * values +
+                  (f->first[slice + 1] - f->stored[slice]) * points->partner_values);
+}
+
+/** Where the row of a bond's point begins, of its own law or of that at the other end. */
+static int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner)
+{
+  const Family *f = points->family;
+  int64_t own = points->materials[points->material[slice]].history_values, start = points->history_start[slice];
+  if (!partner) return start + ((slot - f->first[slice]) * SLICE + lane) * own;
+  return start + (f->first[slice + 1] - f->first[slice]) * SLICE * own +
+         ((slot - f->stored[slice]) * SLICE + lane) * points->partner_values;
+}
+
+static const Material *partner_material(const Points *points, int64_t slot, int lane)
+{
+  const Family *f = points->family;
+  return &points->materials[points->material[f->neighbour[(int64_t)f->base[slot] * SLICE + lane] / SLICE]];
+}
+
+static void begin_row(const Material *m, double *row)
+{
+  if (m->law->begin) m->law->begin(m->constants, row);
+}
+
+static void begin_slice(Points *points, int64_t slice)
+{
+  const Family *f = points->family;
+  const Material *m = &points->materials[points->material[slice]];
+  for (int lane = 0; points->where == POINTS_ON_PARTICLES && lane < SLICE; ++lane)
+    begin_row(m, points->committed + points->history_start[slice] + lane * m->history_values);
+  if (points->where != POINTS_ON_BONDS) return;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      begin_row(m, points->committed + bond_row(points, slice, slot, lane, false));
+      if (points->partner_values && slot >= f->stored[slice])
+        begin_row(partner_material(points, slot, lane), points->committed + bond_row(points, slice, slot, lane, true));
+    }
+}
+
+int points_create(Points *points, const PointsSpec *spec, Error *error)
+{
+  const int64_t slices = spec->family->particles->slices;
+  *points = (Points){.where = spec->where,
+                     .space = spec->space,
+                     .places = slices * SLICE,
+                     .materials = spec->materials,
+                     .material = spec->material,
+                     .family = spec->family};
   points->history_start = memory_zeroed((size_t)slices, sizeof(int64_t), "history rows", error);
   if (!points->history_start) return BRECCIA_FAILURE;
+  for (int k = 0; spec->material_count > 1 && k < spec->material_count; ++k)
+    if (spec->materials[k].history_values > points->partner_values)
+      points->partner_values = spec->materials[k].history_values;
   int64_t total = 0;
-  for (int64_t s = 0; s < slices && kept; ++s) {
+  for (int64_t s = 0; s < slices && spec->where != POINTS_NOWHERE; ++s) {
     points->history_start[s] = total;
-    total += SLICE * materials[material[s]].history_values;
+    total += slice_values(points, s);
   }
   points->history_size = (size_t)total;
   points->committed = memory_zeroed((size_t)total, sizeof(double), "histories", error);
@@ -25,11 +78,8 @@ int points_create(Points *points, int64_t slices, Space space, const Material *m
     failed |= !(points->stress[k] = places_array(points->places, "stresses", error));
   }
   if (failed) return BRECCIA_FAILURE;
-  for (int64_t s = 0; s < slices; ++s) {
-    const Material *m = &materials[material[s]];
-    for (int lane = 0; kept && m->law->begin && lane < SLICE; ++lane)
-      m->law->begin(m->constants, points->committed + points->history_start[s] + lane * m->history_values);
-  }
+#pragma omp parallel for schedule(static)
+  for (int64_t s = 0; s < slices; ++s) begin_slice(points, s);
   if (total) memcpy(points->trial, points->committed, sizeof(double) * (size_t)total);
   return BRECCIA_OK;
 }
@@ -89,7 +139,6 @@ static int plane_stress(const Material *m, breccia_batch *batch, double *strain_
 
 int64_t points_update(Points *points, int64_t first, int64_t last, double *tangent)
 {
-  if (!points->kept) return -1;
   const Material *m = &points->materials[points->material[first]];
   int64_t place = first * SLICE;
   breccia_batch batch = {
@@ -106,4 +155,65 @@ int64_t points_update(Points *points, int64_t first, int64_t last, double *tange
   int bad = points->space == SPACE_PLANE_STRESS ? plane_stress(m, &batch, points->strain[ZZ] + place, tangent)
                                                 : m->law->update(m->constants, &batch);
   return bad < 0 ? -1 : place + bad;
+}
+
+int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int count, const double *strain,
+                            double *stress)
+{
+  const Material *m = &points->materials[points->material[slice]];
+  const int64_t row = bond_row(points, slice, slot, 0, false);
+  breccia_batch batch = {.count = count * SLICE,
+                         .strain = {strain},
+                         .stress = {stress},
+                         .committed = points->committed + row,
+                         .trial = points->trial + row,
+                         .elastic_stage = points->elastic_stage};
+  int bad = m->law->update(m->constants, &batch);
+  return bad < 0 ? -1 : slice * SLICE + bad % SLICE;
+}
+
+int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int lane, double strain, double *stress)
+{
+  const Material *m = partner_material(points, slot, lane);
+  const int64_t row = bond_row(points, slice, slot, lane, true);
+  breccia_batch batch = {.count = 1,
+                         .strain = {&strain},
+                         .stress = {stress},
+                         .committed = points->committed + row,
+                         .trial = points->trial + row,
+                         .elastic_stage = points->elastic_stage};
+  return m->law->update(m->constants, &batch) < 0 ? -1 : slice * SLICE + lane;
+}
+
+double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain)
+{
+  enum { MOST_VALUES = 256 };
+  const Material *m = partner ? partner_material(points, slot, lane) : &points->materials[points->material[slice]];
+  const double *row = points->committed + bond_row(points, slice, slot, lane, partner);
+  double stress = NAN, scratch[MOST_VALUES];
+  if (m->history_values > MOST_VALUES) return NAN;
+  memcpy(scratch, row, sizeof(double) * (size_t)m->history_values);
+  breccia_batch batch = {.count = 1,
+                         .strain = {&strain},
+                         .stress = {&stress},
+                         .committed = row,
+                         .trial = scratch,
+                         .elastic_stage = points->elastic_stage};
+  m->law->update(m->constants, &batch);
+  return stress;
+}
+
+double points_bond_history(const Points *points, int64_t place, int k)
+{
+  const Family *f = points->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  double sum = 0;
+  int count = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    if (f->intact[slot] >> lane & 1) {
+      sum += points->committed[bond_row(points, slice, slot, lane, false) + k];
+      ++count;
+    }
+  return count ? sum / count : 0;
 }

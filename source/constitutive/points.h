@@ -1,39 +1,68 @@
-/* Material points: strain, stress and history, committed and trial, one point per place.
+/* Material points: strain, stress and history, committed and trial.
  *
- * Strain and stress are arrays by component; histories are rows per point, because a law with a long history touches little of
- * it. All points of a slice are of one material. Commit is a swap. */
+ * Points stand on particles, one per place, or on bonds, one per lane of a slot, on both sides of a bond. On particles strain and
+ * stress are arrays by component; on bonds they live only while they are worked on. Histories are rows per point, because a law with a
+ * long history touches little of it. All points of a slice are of one material; a stored slot of bonds has a second row of
+ * points for the material at their other ends, if the body has several. Commit is a swap. */
 #ifndef BRECCIA_CONSTITUTIVE_POINTS_H
 #define BRECCIA_CONSTITUTIVE_POINTS_H
 
-#include "body/body.h"
 #include "constitutive/material.h"
+#include "family/family.h"
 
-enum { BLOCK = 128 }; /* places worked on together: their strains, stresses and states stay in the first-level cache */
+enum { BLOCK = 128 }; /* points worked on together: their strains, stresses and states stay in the first-level cache */
+
+/** Where points are: nowhere if laws act on bonds and all are linear. */
+typedef enum PointsWhere { POINTS_NOWHERE, POINTS_ON_PARTICLES, POINTS_ON_BONDS } PointsWhere;
 
 typedef struct Points {
-  int64_t places;
+  PointsWhere where;
   Space space;
-  bool kept;
-  double *strain[6], *stress[6]; /* [places]; if no point is kept, what domain_observe has found */
+  int64_t places;
+  double *strain[6], *stress[6]; /* [places]; if points are not on particles, what domain_observe has found */
   double *committed, *trial;
   size_t history_size;    /* numbers in each of them */
   int64_t *history_start; /* [slices] */
+  int partner_values;     /* numbers of a bond's point of the other end's material */
   const Material *materials;
   const int32_t *material; /* [slices] */
-  int elastic_stage;       /* laws respond elastically while it is set */
+  const Family *family;
+  int elastic_stage; /* laws respond elastically while it is set */
 } Points;
 
-/** @param[in] material  [slices] which of the materials; both arrays are borrowed
- *  @param[in] kept      false: linear laws on bonds need no points; points_update then does nothing */
-int points_create(Points *points, int64_t slices, Space space, const Material *materials, const int32_t *material,
-                  bool kept, Error *error);
+typedef struct PointsSpec {
+  PointsWhere where;
+  Space space;
+  const Family *family;
+  const Material *materials;
+  int material_count;
+  const int32_t *material; /* [slices] which of the materials; all arrays are borrowed */
+} PointsSpec;
+
+int points_create(Points *points, const PointsSpec *spec, Error *error);
 void points_destroy(Points *points);
 
-/** Stress and trial history of slices first .. last - 1 from their strains; they must be of one material and at most BLOCK
- *  places. In plane stress the strain zz is found such that the stress zz vanishes.
+/** Stress and trial history of slices first .. last - 1 from their strains, of points on particles; the slices must be of one material
+ *  and at most BLOCK places. In plane stress the strain zz is found such that the stress zz vanishes.
  *  @param[out] tangent  [places][36] or NULL; in plane stress the rows and columns of zz are condensed out
  *  @return -1, or a place whose law could not be integrated */
 int64_t points_update(Points *points, int64_t first, int64_t last, double *tangent);
+
+/** Stress and trial history of the bonds of `count` slots of a slice, of points on bonds.
+ *  @param[in] strain   [count][8]
+ *  @param[out] stress  [count][8]
+ *  @return -1, or a place whose law could not be integrated */
+int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int count, const double *strain,
+                            double *stress);
+
+/** The same for one lane of a stored slot, by the law at the other end. */
+int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int lane, double strain, double *stress);
+
+/** Stress of one bond at a strain by the law of its own end or of the other (of stored slots); histories stay as they are. */
+double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain);
+
+/** Mean over the intact bonds of a place of history number k of its own law, as committed. */
+double points_bond_history(const Points *points, int64_t place, int k);
 
 /** Makes the trial state the committed one. */
 void points_commit(Points *points);

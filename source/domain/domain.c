@@ -10,28 +10,27 @@
 static int check_law(const Domain *d, const DeckReader *reader, const SectionHead *section, const Material *m)
 {
   const LawList *laws = reader->context;
-  if (m->law->uniaxial == d->type->uniaxial && (!m->law->uniaxial || m->law->linear)) return BRECCIA_OK;
+  if (m->law->uniaxial == d->type->uniaxial) return BRECCIA_OK;
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
-    if (law_at(laws, k)->uniaxial == d->type->uniaxial && (!d->type->uniaxial || law_at(laws, k)->linear))
+    if (law_at(laws, k)->uniaxial == d->type->uniaxial)
       text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
   node_error(reader->document, section_place(section, "model"), reader->error,
              "material '%s': '%s' is a law of %s; %s takes %s", m->name, m->law->name,
-             m->law->uniaxial != d->type->uniaxial ? m->law->uniaxial ? "one strain" : "strain in space"
-                                                   : "bonds that keep a history",
-             d->type->name, words.characters);
+             m->law->uniaxial ? "one strain" : "strain in space", d->type->name, words.characters);
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
 
-static int create_materials(Domain *d, const DeckReader *reader, const DomainSpec *spec)
+/** @param[in] length  over which laws spread a fracture energy, or NaN */
+static int create_materials(Domain *d, const DeckReader *reader, const DomainSpec *spec, double length)
 {
   d->materials = memory_zeroed((size_t)spec->materials->count, sizeof(Material), "materials", reader->error);
   if (!d->materials) return BRECCIA_FAILURE;
   int status = BRECCIA_OK;
   for (int k = 0; k < spec->materials->count; ++k) {
     Material *m = &d->materials[d->material_count++];
-    int bad = material_create(m, reader, spec->materials->items[k]);
+    int bad = material_create(m, reader, spec->materials->items[k], length);
     if (!bad) bad = check_law(d, reader, spec->materials->items[k], m);
     if (bad) status = bad;
   }
@@ -72,27 +71,26 @@ static bool row_goes_on(const Domain *d, int64_t slice)
   return true;
 }
 
-static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec)
+/** Limit of each material: the smallest of what the deck says for all and what its law says. */
+static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, double length)
 {
-  double limit = spec ? spec->critical_stretch : NAN;
-  if (!isnan(limit) && !isnan(spec->fracture_energy))
+  if (spec && !isnan(spec->critical_stretch) && !isnan(spec->fracture_energy))
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
-  if (spec && !isnan(spec->fracture_energy)) {
-    const Node *place = section_place(spec, "fracture energy");
-    if (!d->type->critical_stretch)
-      return node_error(
-          reader->document, place, reader->error,
-          "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
-          "'critical stretch'");
-    limit = d->type->critical_stretch(d->formulation, spec->fracture_energy);
-    if (isnan(limit))
-      return node_error(
-          reader->document, place, reader->error,
-          "fracture energy: the materials differ in stiffness, so that each would have a critical stretch of "
-          "its own; give 'critical stretch'");
+  if (spec && !isnan(spec->fracture_energy) && isnan(length))
+    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
+                      "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
+                      "'critical stretch'");
+  d->failure.limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
+  d->failure.material = d->material;
+  if (!d->failure.limit) return BRECCIA_FAILURE;
+  for (int k = 0; k < d->material_count; ++k) {
+    const Material *m = &d->materials[k];
+    double limit = material_failure_strain(m), of_deck = spec ? spec->critical_stretch : NAN;
+    if (spec && !isnan(spec->fracture_energy)) of_deck = sqrt(2 * spec->fracture_energy / (material_young(m) * length));
+    d->failure.limit[k] = fmin(limit, of_deck); /* of a number and NaN: the number */
+    if (isfinite(d->failure.limit[k])) d->failure.criterion = &criterion_critical_stretch;
   }
-  if (!isnan(limit)) d->failure = (Failure){&criterion_critical_stretch, limit};
   return BRECCIA_OK;
 }
 
@@ -135,42 +133,53 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   return BRECCIA_OK;
 }
 
+/** Where material points are needed. */
+static PointsWhere points_where(const Domain *d)
+{
+  if (!d->type->uniaxial) return POINTS_ON_PARTICLES;
+  for (int k = 0; k < d->material_count; ++k)
+    if (!d->materials[k].law->linear) return POINTS_ON_BONDS;
+  return POINTS_NOWHERE;
+}
+
 int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Error *error = reader->error;
   const PeridynamicsSpec *pd = spec->peridynamics;
+  const Influence *influence = influence_find(pd->influence);
+  const Space space = peridynamics_space(pd);
   d->failed_place = -1;
   d->type = formulation_find(pd->formulation);
-  int status = create_materials(d, reader, spec), bad = body_create(&d->body, reader, spec->blocks, spec->cracks);
+  int status = body_create(&d->body, reader, spec->blocks, spec->cracks);
+  if (!status) status = check_space(d, reader, spec);
+  double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
+  double length =
+      d->type->characteristic_length ? d->type->characteristic_length(&(BondLength){space, influence, horizon}) : NAN;
+  int bad = create_materials(d, reader, spec, length);
   if (bad) status = bad;
-  if (!bad && (bad = check_space(d, reader, spec))) status = bad;
   if (status) return status;
   d->particles = &d->body.particles;
   if ((status = fill_particles(d, spec, error))) return status;
 
-  double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
   if (horizon < d->body.largest_spacing)
     return node_error(reader->document, section_place(pd, "horizon"), error,
                       "horizon: %g is less than the spacing of %g, so that no particle has a neighbour", horizon,
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  status = family_create(&d->family, &d->body,
-                         &(FamilySpec){horizon, influence_find(pd->influence), (VolumeCorrection)correction,
-                                       d->type->row_sums, d->type->bond_lengths},
-                         error);
-  if (status) return status;
+  const FamilySpec family = {horizon, influence, (VolumeCorrection)correction, d->type->row_sums,
+                             d->type->bond_lengths};
+  if ((status = family_create(&d->family, &d->body, &family, error))) return status;
 #pragma omp parallel for schedule(static)
   for (int32_t place = 0; place < (int32_t)d->particles->places; ++place)
     d->family_volume[place] = family_volume(&d->family, place);
 
-  if ((status = points_create(&d->points, d->particles->slices, peridynamics_space(pd), d->materials, d->material,
-                              !d->type->uniaxial, error)))
-    return status;
+  const PointsSpec points = {points_where(d), space, &d->family, d->materials, d->material_count, d->material};
+  if ((status = points_create(&d->points, &points, error))) return status;
   if ((status = share_out(d, error))) return status;
   FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};
   d->formulation = d->type->create(&parts, error);
-  return d->formulation ? create_failure(d, reader, spec->failure) : BRECCIA_USER_ERROR;
+  return d->formulation ? create_failure(d, reader, spec->failure, length) : BRECCIA_USER_ERROR;
 }
 
 void domain_destroy(Domain *d)
@@ -188,6 +197,7 @@ void domain_destroy(Domain *d)
   free(d->family_volume);
   free(d->suspects);
   free(d->look_again);
+  free(d->failure.limit);
   free(d->broken);
   *d = (Domain){0};
 }
@@ -235,7 +245,8 @@ void domain_forces(Domain *d)
   }
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {
-    type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    int64_t failed = type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    if (!type->deform) d->block_failed[b] = failed;
     d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
   }
 #pragma omp single
@@ -265,7 +276,7 @@ void domain_resume(Domain *d)
 
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
 {
-  if (d->points.kept) {
+  if (d->points.where == POINTS_ON_PARTICLES) {
     for (int k = 0; k < 6; ++k) {
       strain[k] = d->points.strain[k][place];
       stress[k] = d->points.stress[k][place];
@@ -284,7 +295,7 @@ void domain_look(const Domain *d, int64_t place, double strain[6], double stress
 
 void domain_observe(Domain *d)
 {
-  if (d->points.kept) return;
+  if (d->points.where == POINTS_ON_PARTICLES) return;
 #pragma omp parallel for schedule(static)
   for (int64_t n = 0; n < d->particles->count; ++n) {
     int32_t place = d->particles->place_of[n];
@@ -336,7 +347,7 @@ static bool judge(Domain *d, int64_t step, double time)
       for (int lane = 0; lane < SLICE; ++lane) {
         if (!(f->intact[slot] >> lane & 1)) continue;
         Bond bond = family_bond(f, s, slot, lane);
-        if (!d->failure.criterion->exceeds(d->failure.limit, f, s, &bond, lane)) continue;
+        if (!d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)) continue;
         int32_t place = (int32_t)(s * SLICE + lane), a = d->particles->number[place];
         int32_t b = d->particles->number[bond.neighbour];
         d->fracture_energy += released_energy(d, s, slot, lane, &bond);
@@ -359,7 +370,7 @@ void domain_break(Domain *d, int64_t step, double time, double motion)
     for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
       d->suspects[s] = 0;
       if (d->motion < d->look_again[s]) continue;
-      d->look_again[s] = d->motion + d->failure.criterion->suspect(d->failure.limit, &d->family, s, &d->suspects[s]);
+      d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);
     }
 #pragma omp single
   {

@@ -13,20 +13,30 @@ typedef struct FailureSpec {
 
 extern const Section failure_section;
 
+typedef struct Failure Failure;
+
 typedef struct Criterion {
   const char *name, *about, *source;
-  /** Marks a slice if some bond of it may exceed the limit.
+  /** Marks a slice if some bond of it may exceed its limit.
    *  @return how far every particle may move before the slice has to be looked at again; 0: look at every step */
-  double (*suspect)(double limit, const Family *family, int64_t slice, uint8_t *suspect);
+  double (*suspect)(const Failure *failure, const Family *family, int64_t slice, uint8_t *suspect);
   /** True if this bond exceeds it. */
-  bool (*exceeds)(double limit, const Family *family, int64_t slice, const Bond *bond, int lane);
+  bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, const Bond *bond, int lane);
 } Criterion;
 
 extern const Criterion criterion_critical_stretch;
 
-typedef struct Failure {
+struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */
-  double limit;
-} Failure;
+  double *limit;              /* [materials] infinite: never; a bond between two has the smaller one */
+  const int32_t *material;    /* [slices] */
+};
+
+/** Limit of a bond between two places. */
+static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
+{
+  double one = failure->limit[failure->material[a / SLICE]], other = failure->limit[failure->material[b / SLICE]];
+  return one < other ? one : other;
+}
 
 #endif

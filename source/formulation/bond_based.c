@@ -14,6 +14,7 @@ static void destroy(void *formulation)
   BondBased *b = formulation;
   if (!b) return;
   free(b->stiffness);
+  free(b->per_stress);
   free(b->rows);
   places_free(&b->numbers);
   places_free(&b->shown);
@@ -48,7 +49,8 @@ static void *create(const FormulationParts *parts, Error *error)
   b->stiffness = memory_zeroed((size_t)b->body->block_count, sizeof(double), "bond constants", error);
   b->range = memory_zeroed((size_t)b->particles->slices, 1, "bond constants", error);
   b->gaps = memory_zeroed((size_t)b->particles->slices, 1, "bond constants", error);
-  if (!b->stiffness || !b->range || !b->gaps || bond_springs_create(b, error)) {
+  b->per_stress = memory_zeroed((size_t)b->body->block_count, sizeof(double), "bond constants", error);
+  if (!b->stiffness || !b->per_stress || !b->range || !b->gaps || bond_springs_create(b, error)) {
     destroy(b);
     return NULL;
   }
@@ -70,6 +72,7 @@ static void *create(const FormulationParts *parts, Error *error)
       destroy(b);
       return NULL;
     }
+    b->per_stress[block] = factor;
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
   if (f->stored_slots && !(b->shown = places_array(8 * b->particles->places, "bond constants", error))) {
@@ -81,26 +84,11 @@ static void *create(const FormulationParts *parts, Error *error)
 
 /* ---- single bonds and places ---- */
 
-/** c s / |y| of a bond, and y. */
-static inline double bond_pull(const BondBased *b, int64_t place, const Bond *bond, double y[3])
-{
-  const int32_t *block = b->particles->block;
-  double d = 0, c = (b->stiffness[block[place / SLICE]] + b->stiffness[block[bond->neighbour / SLICE]]) / 2;
-  for (int k = 0; k < 3; ++k) {
-    double eta = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][place];
-    y[k] = bond->xi[k] + eta;
-    d += eta * (bond->xi[k] + y[k]);
-  }
-  d /= bond->length * bond->length;
-  double r = 1 / sqrt(1 + d);
-  return c * d * r * r / ((1 + r) * bond->length);
-}
-
 static void bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3])
 {
   const BondBased *b = formulation;
   Bond bond = family_bond(b->family, slice, slot, lane);
-  double y[3], pull = bond_pull(b, slice * SLICE + lane, &bond, y);
+  double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y);
   for (int k = 0; k < 3; ++k) force[k] = pull * bond.weight / b->particles->volume[bond.neighbour] * y[k];
 }
 
@@ -122,7 +110,7 @@ static void stress(const void *formulation, int64_t place, double s[6])
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(f, slice, slot, lane);
-    double y[3], pull = bond_pull(b, place, &bond, y) * 0.5 * bond.weight;
+    double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y) * 0.5 * bond.weight;
     for (int k = 0; k < 6; ++k) s[k] += pull * y[symmetric_row[k]] * y[symmetric_column[k]];
   }
 }
@@ -138,9 +126,12 @@ static void renew(void *formulation, int64_t slice)
   bond_note_gaps(formulation, slice);
 }
 
-static void resist(void *formulation, int64_t first, int64_t last)
+static int64_t resist(void *formulation, int64_t first, int64_t last)
 {
-  bond_resist_springs(formulation, first, last);
+  const BondBased *b = formulation;
+  if (b->points->where == POINTS_ON_BONDS) return bond_resist_points(b, first, last);
+  bond_resist_springs(b, first, last);
+  return -1;
 }
 
 static size_t bytes(const void *formulation)
@@ -164,7 +155,7 @@ const FormulationType formulation_bond_based = {
     .bond_force = bond_force,
     .gradient = gradient,
     .stress = stress,
-    .critical_stretch = bond_critical_stretch,
+    .characteristic_length = bond_characteristic_length,
     .describe = bond_describe,
     .bytes = bytes,
 };

@@ -1,4 +1,5 @@
-/* What the sweep of bond-based peridynamics (bond_based.c) and its constants (bond_constants.c) share. */
+/* What the parts of bond-based peridynamics share: the table entry (bond_based.c), constants (bond_constants.c), sweeps over linear bonds
+ * (bond_springs.c) and over bonds with points (bond_points.c). */
 #ifndef BRECCIA_FORMULATION_BOND_BASED_H
 #define BRECCIA_FORMULATION_BOND_BASED_H
 
@@ -15,15 +16,16 @@ typedef struct BondBased {
   const Particles *particles;
   const Family *family;
   const Body *body;
-  const Points *points;
+  Points *points;
   Space space;
   const Influence *influence;
-  double *stiffness; /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
-  SpringRow *rows;   /* [patterns] */
-  double *numbers;   /* of these rows */
-  double *shown;     /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
-  uint8_t *range;    /* [slices] how large stretches were at the last evaluation */
-  uint8_t *gaps;     /* [slices] 1: a bond of a lattice slot is missing */
+  double *stiffness;  /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
+  double *per_stress; /* [blocks] c / E */
+  SpringRow *rows;    /* [patterns] */
+  double *numbers;    /* of these rows */
+  double *shown;      /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  uint8_t *range;     /* [slices] how large stretches were at the last evaluation */
+  uint8_t *gaps;      /* [slices] 1: a bond of a lattice slot is missing */
 } BondBased;
 
 /** Material of a block. */
@@ -41,6 +43,13 @@ void bond_show_displacements(BondBased *b, int64_t first, int64_t last);
 /** Forces on slices first .. last - 1 from linear bonds. */
 void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
 
+/** The same from bonds with points (bond_points.c). @return a place whose law could not be integrated, or -1 */
+int64_t bond_resist_points(const BondBased *b, int64_t first, int64_t last);
+
+/** Force of a bond per volume of the neighbour, weight and length of y: c s / |y|, or what its points make of it.
+ *  @param[out] y  from the place to its neighbour, as deformed */
+double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3]);
+
 /** c by the continuum's integrals (docs/theory.md 2, table and general rule). */
 double bond_continuum_constant(const BondBased *b, double young);
 
@@ -48,7 +57,7 @@ double bond_continuum_constant(const BondBased *b, double young);
 double bond_calibration(const BondBased *b, int block, Calibration calibration);
 
 /** As FormulationType describes them. */
-double bond_critical_stretch(const void *formulation, double fracture_energy);
+double bond_characteristic_length(const BondLength *of);
 void bond_describe(const void *formulation, Text *text);
 
 #endif

@@ -9,23 +9,29 @@ static double thickness(const BondBased *b)
 }
 
 /** Integral of omega(q) q^power over 0 <= q <= 1 by Simpson's rule. */
-static double influence_moment(const BondBased *b, int power)
+static double influence_moment(const BondLength *of, int power)
 {
   enum { INTERVALS = 2000 };
   double sum = 0;
   for (int k = 1; k <= INTERVALS; ++k) { /* q = 0 adds nothing */
-    double q = (double)k / INTERVALS, value = b->influence->value(q, q * b->family->horizon) * pow(q, power);
+    double q = (double)k / INTERVALS, value = of->influence->value(q, q * of->horizon) * pow(q, power);
     sum += value * (k == INTERVALS ? 1 : k % 2 ? 4 : 2);
   }
   return sum / (3.0 * INTERVALS);
 }
 
+/** c by the continuum's integrals, of a body of that thickness in the plane. */
+static double continuum_constant(const BondLength *of, double young, double thick)
+{
+  const double pi = acos(-1);
+  if (of->space == SPACE_3D) return 12 * young / (pi * pow(of->horizon, 4)) * (1.0 / 4) / influence_moment(of, 3);
+  double constant = of->space == SPACE_PLANE_STRESS ? 9.0 : 48.0 / 5;
+  return constant * young / (pi * thick * pow(of->horizon, 3)) * (1.0 / 3) / influence_moment(of, 2);
+}
+
 double bond_continuum_constant(const BondBased *b, double young)
 {
-  const double pi = acos(-1), horizon = b->family->horizon;
-  if (b->space == SPACE_3D) return 12 * young / (pi * pow(horizon, 4)) * (1.0 / 4) / influence_moment(b, 3);
-  double constant = b->space == SPACE_PLANE_STRESS ? 9.0 : 48.0 / 5;
-  return constant * young / (pi * thickness(b) * pow(horizon, 3)) * (1.0 / 3) / influence_moment(b, 2);
+  return continuum_constant(&(BondLength){b->space, b->influence, b->family->horizon}, young, thickness(b));
 }
 
 /* Symmetric tensors of rank four as matrices in Mandel's components, so that inverse and product keep their meaning. */
@@ -127,19 +133,12 @@ double bond_calibration(const BondBased *b, int block, Calibration calibration)
   return continuum / (unit * sum);
 }
 
-double bond_critical_stretch(const void *formulation, double fracture_energy)
+double bond_characteristic_length(const BondLength *of)
 {
-  const BondBased *b = formulation;
-  const double pi = acos(-1), horizon = b->family->horizon;
-  double young = NAN;
-  for (int64_t slice = 0; slice < b->particles->slices; ++slice) {
-    double here = material_young(&b->points->materials[b->points->material[slice]]);
-    if (slice && here != young) return NAN;
-    young = here;
-  }
-  double c = bond_continuum_constant(b, young);
-  if (b->space == SPACE_3D) return sqrt(fracture_energy / (pi / 2 * c * pow(horizon, 5) * influence_moment(b, 4)));
-  return sqrt(fracture_energy / (c * thickness(b) * pow(horizon, 4) * influence_moment(b, 3)));
+  const double pi = acos(-1);
+  double c = continuum_constant(of, 1, 1);
+  return of->space == SPACE_3D ? pi * c * pow(of->horizon, 5) * influence_moment(of, 4)
+                               : 2 * c * pow(of->horizon, 4) * influence_moment(of, 3);
 }
 
 void bond_describe(const void *formulation, Text *text)

@@ -418,7 +418,7 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
 }
 
 BRECCIA_CLONES
-static void resist(void *formulation, int64_t first, int64_t last)
+static int64_t resist(void *formulation, int64_t first, int64_t last)
 {
   const Correspondence local = *(const Correspondence *)formulation,
                        *c = &local; /* so that stores are seen not to change it */
@@ -431,6 +431,7 @@ static void resist(void *formulation, int64_t first, int64_t last)
       resist_slice(c, slice, CONTROL_NONE);
     else
       resist_slice(c, slice, CONTROL_TENSOR);
+  return -1;
 }
 
 const FormulationType formulation_correspondence = {

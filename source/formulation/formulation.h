@@ -38,6 +38,13 @@ typedef struct FormulationParts {
   Points *points;
 } FormulationParts;
 
+/** What the length of bonds that cross a crack depends on. */
+typedef struct BondLength {
+  Space space;
+  const Influence *influence;
+  double horizon;
+} BondLength;
+
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
   int uniaxial;      /* laws act on bonds, not on points in space */
@@ -58,8 +65,9 @@ typedef struct FormulationType {
   void (*respond)(void *formulation, int64_t first, int64_t last, const double *carry);
   /** Sums of responses that neighbours will read; all slices have responded before. */
   void (*sum_states)(void *formulation, int64_t first, int64_t last);
-  /** Internal force per volume on the particles of these slices; all slices are summed before. */
-  void (*resist)(void *formulation, int64_t first, int64_t last);
+  /** Internal force per volume on the particles of these slices; all slices are summed before.
+   *  @return a place whose law could not be integrated, or -1 */
+  int64_t (*resist)(void *formulation, int64_t first, int64_t last);
   /** Forces of the few particles that need another treatment; called once, by one thread, after all have resisted. May be NULL. */
   void (*finish)(void *formulation);
   /** Force per volume squared that the neighbour exerts on the particle through one bond (t_ij - t_ji). */
@@ -68,8 +76,8 @@ typedef struct FormulationType {
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
   /** Virial stress of the bonds at a place; NULL where points have a stress. */
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
-  /** Stretch at which bonds must break to spend so much energy per area; NaN if it is not the same for all. NULL: unknown. */
-  double (*critical_stretch)(const void *formulation, double fracture_energy);
+  /** Length over which a law of bonds must spread a fracture energy: G_F over the area below stress against stretch. NULL: unknown. */
+  double (*characteristic_length)(const BondLength *of);
   /** Adds what a user should know before a run, as one line; NULL: nothing. */
   void (*describe)(const void *formulation, Text *text);
   /** Bytes beyond particles, families and points. */

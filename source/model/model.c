@@ -331,9 +331,14 @@ const char *breccia_model_overview(breccia_model *model)
   for (int k = 0; k < d->material_count; ++k)
     text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law->name);
   if (d->failure.criterion)
-    text_add(text, "; %s %g", d->failure.criterion->name, d->failure.limit);
+    text_add(text, "; %s", d->failure.criterion->name);
   else
     text_add(text, "; bonds do not break");
+  for (int k = 0; d->failure.criterion && k < d->material_count; ++k)
+    if (isfinite(d->failure.limit[k]))
+      text_add(text, "%s %g", k ? "," : "", d->failure.limit[k]);
+    else
+      text_add(text, "%s none", k ? "," : "");
   text_add(text, "\n");
   if (d->type->describe) d->type->describe(d->formulation, text);
   text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step,

@@ -111,8 +111,11 @@ refuse 's/critical stretch: 0.05/critical stretch: 0.05, fracture energy: 100 N\
 refuse 's/critical stretch: 0.05/fracture energy: 100 N\/m/' 16:28 'only bond-based peridynamics has a critical stretch that follows from it'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, zero-energy control: {none: yes}}/" 15:41 'zero-energy control: is for correspondence'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: elastic}/" 15:54 "calibration: 'elastic' is not known; choose from continuum, uniform-expansion, uniaxial"
-refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/critical stretch: 0.05/fracture energy: 100 N\/m/; s/^selections:/  more: {material: steel, spacing: 0.1, shape: {box: {from: [2, 0, 0], to: [3, 0.5, 0.3]}}}\nselections:/" \
-  '' 'the materials differ in stiffness'
+softening='model: bilinear-softening, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N\/m'
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{$softening}/" \
+  4:3 "material 'clay' (bilinear-softening): a length of 0.7236 stores more at the peak than the fracture energy, so that the curve would snap back; it must be less than 2 E G_F / f_t^2 = 0.666667: take a finer spacing"
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic-brittle, density: 1, Young modulus: 1 GPa}/" \
+  4:3 "give either 'tensile strength' or 'fracture energy'"
 
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/shape: .*/shape: {cylinder: {from: [1, 1, -1], to: [1, 1, 1], radius: 0.5}}/; s/^peri.*/peridynamics: {space: plane strain}/' \
   '' "In the plane a cylinder is a strip; a disc is a 'sphere'"

@@ -369,8 +369,13 @@ static void plane_stress_of_any_law_has_no_stress_across_the_plane(void **state)
       material_of("elastic", "Young modulus=150000", "Poisson ratio=0.25", NULL),
       material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL)};
   const int32_t which[2] = {0, 1};
+  const Particles particles = {.slices = 2};
+  const Family family = {.particles = &particles};
   Points points;
-  assert_int_equal(points_create(&points, 2, SPACE_PLANE_STRESS, materials, which, true, NULL), 0);
+  assert_int_equal(points_create(&points,
+                                 &(PointsSpec){POINTS_ON_PARTICLES, SPACE_PLANE_STRESS, &family, materials, 2, which},
+                                 NULL),
+                   0);
   static double tangent[2][SLICE * 36];
   for (int step = 1; step <= 50; ++step) {
     for (int i = 0; i < 2 * SLICE; ++i) {

@@ -1,0 +1,87 @@
+/* What laws that soften in tension share: stress = (1 - damage) E strain while a point is strained, E strain in compression (cracks close);
+ * damage only grows, and unloading goes straight back to the origin. */
+#ifndef BRECCIA_CONSTITUTIVE_UNIAXIAL_SOFTENING_H
+#define BRECCIA_CONSTITUTIVE_UNIAXIAL_SOFTENING_H
+
+#include "constitutive/law.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { SOFTENING_YOUNG, SOFTENING_STRENGTH, SOFTENING_ENERGY, SOFTENING_LENGTH, SOFTENING_PARAMETERS };
+
+#define SOFTENING_PARAMETER_ROWS                                                                                       \
+  {"Young modulus", "stress", NULL, "(0, inf)", "E"}, {"tensile strength", "stress", NULL, "(0, inf)", "f_t"},         \
+      {"fracture energy", "fracture energy", NULL, "(0, inf)", "G_F per area of crack"}, {                             \
+    "length", "length", "", "(0, inf)",                                                                                \
+        "over which the fracture energy is spread; that of the formulation when absent"                                \
+  }
+
+typedef struct Softening {
+  double young, strength;
+  double peak, end; /* strains at the strength and where nothing is left */
+} Softening;
+
+/** Envelope beyond the peak: stress over strength at x = 0 (peak) to 1 (end), and its slope. */
+typedef double (*SofteningEnvelope)(const void *constants, double x, double *slope);
+
+/** Sets E, f_t and the two strains such that the area below the curve is G_F / length.
+ *  @param[in] area  below the envelope from x = 0 to 1 */
+static inline int softening_prepare(Softening *c, const double *values, double area, char *reason, size_t size)
+{
+  c->young = values[SOFTENING_YOUNG];
+  c->strength = values[SOFTENING_STRENGTH];
+  c->peak = c->strength / c->young;
+  if (isnan(values[SOFTENING_LENGTH])) {
+    snprintf(reason, size, "a fracture energy needs the 'length' over which it is spread");
+    return 1;
+  }
+  double left = values[SOFTENING_ENERGY] / values[SOFTENING_LENGTH] - c->strength * c->peak / 2;
+  c->end = c->peak + left / (c->strength * area);
+  if (left > 0) return 0;
+  snprintf(reason, size,
+           "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must be "
+           "less than 2 E G_F / f_t^2 = %g: take a finer spacing",
+           values[SOFTENING_LENGTH], 2 * values[SOFTENING_ENERGY] / (c->strength * c->peak));
+  return 1;
+}
+
+__attribute__((always_inline)) static inline int softening_update(const void *constants, const Softening *c,
+                                                                  SofteningEnvelope envelope, const breccia_batch *batch)
+{
+  for (int i = 0; i < batch->count; ++i) {
+    const double strain = batch->strain[0][i];
+    double damage = batch->committed[i], tangent = c->young;
+    batch->trial[i] = damage;
+    batch->stress[0][i] = c->young * strain;
+    if (strain > 0 && !batch->elastic_stage) {
+      batch->stress[0][i] *= 1 - damage;
+      tangent *= 1 - damage;
+      if (strain > c->peak) {
+        double slope = 0, x = (strain - c->peak) / (c->end - c->peak);
+        double stress = x < 1 ? c->strength * envelope(constants, x, &slope) : 0;
+        if (stress < batch->stress[0][i]) {
+          batch->trial[i] = x < 1 ? 1 - stress / (c->young * strain) : 1;
+          batch->stress[0][i] = stress;
+          tangent = x < 1 ? c->strength * slope / (c->end - c->peak) : 0;
+        }
+      }
+    }
+    if (batch->tangent) batch->tangent[i] = tangent;
+  }
+  return -1;
+}
+
+static inline int softening_history_values(const void *constants)
+{
+  (void)constants;
+  return 1;
+}
+
+static inline void softening_history_name(const void *constants, int k, char *name, size_t size)
+{
+  (void)constants, (void)k;
+  snprintf(name, size, "bond damage");
+}
+
+#endif

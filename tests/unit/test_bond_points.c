@@ -1,0 +1,229 @@
+/* Bonds whose laws have a history. */
+#include "support.h"
+
+#include "base/random.h"
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define SOFTENING                                                                                                      \
+  "model: bilinear-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m"
+#define LINEAR "model: elastic-1d, density: 2.4, Young modulus: 30 GPa"
+
+static breccia_model *bodies(const char *one, const char *other, const char *peridynamics)
+{
+  return model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {a: {%s}, b: {%s}}\n"
+      "peridynamics: {formulation: bond-based%s}\nbody:\n"
+      "  left: {material: a, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.11, 0.07, 0.05]}}}\n"
+      "  right: {material: b, spacing: 0.005, shape: {box: {from: [0.11, 0, 0], to: [0.16, 0.07, 0.05]}}}\n"
+      "cracks: [{cut: {line: [[0.055, -1], [0.055, 0.02]]}}]\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+      one, other, peridynamics);
+}
+
+static void shake(breccia_model *model, double amplitude)
+{
+  const Particles *p = model->domain.particles;
+  uint64_t seed = 11;
+  for (int32_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k) p->displacement[k][p->place_of[n]] = amplitude * (random_uniform(&seed) - 0.5);
+}
+
+static double largest_difference(const breccia_model *a, const breccia_model *b, double *largest)
+{
+  double off = 0;
+  *largest = 0;
+  for (int64_t i = 0; i < a->domain.particles->places; ++i)
+    for (int k = 0; k < 3; ++k) {
+      off = fmax(off, fabs(a->domain.particles->internal[k][i] - b->domain.particles->internal[k][i]));
+      *largest = fmax(*largest, fabs(a->domain.particles->internal[k][i]));
+    }
+  return off;
+}
+
+/** Below the strength a softening law is a linear one, between two lattices and two materials too. */
+static void points_below_their_strength_pull_like_springs(void **state)
+{
+  (void)state;
+  const char *const settings[] = {"", ", influence: conical, volume correction: partial, calibration: continuum"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *springs = bodies(LINEAR, "model: elastic-1d, density: 2.4, Young modulus: 10 GPa", settings[k]);
+    breccia_model *points = bodies(SOFTENING, "model: elastic-1d, density: 2.4, Young modulus: 10 GPa", settings[k]);
+    double largest, off;
+    shake(springs, 1e-7);
+    shake(points, 1e-7);
+    compute_forces(springs);
+    compute_forces(points);
+    off = largest_difference(springs, points, &largest);
+    assert_near(off, 0, 1e-13 * largest);
+    assert_true(largest > 0);
+    breccia_model_destroy(&springs);
+    breccia_model_destroy(&points);
+  }
+}
+
+static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
+{
+  (void)state;
+  breccia_model *model =
+      bodies(SOFTENING,
+             "model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 2 "
+             "MPa, fracture energy: 80 N/m",
+             "");
+  Domain *d = &model->domain;
+  for (int step = 1; step <= 3; ++step) {
+    shake(model, step * 6e-6);
+    compute_forces(model);
+    points_commit(&d->points);
+    double total[3] = {0}, size = 0;
+    for (int64_t i = 0; i < d->particles->places; ++i)
+      for (int k = 0; k < 3; ++k) {
+        double force = d->particles->internal[k][i] * d->particles->volume[i];
+        total[k] += force;
+        size += fabs(force);
+      }
+    for (int k = 0; k < 3; ++k) assert_near(total[k], 0, 1e-13 * size);
+  }
+  int damaged = 0, mixed = 0;
+  const Family *f = &d->family;
+  for (int64_t slice = 0; slice < d->particles->slices; ++slice)
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        if (!(f->intact[slot] >> lane & 1)) continue;
+        Bond bond = family_bond(f, slice, slot, lane);
+        int64_t back = f->first[bond.neighbour / SLICE];
+        while (!(f->intact[back] >> bond.neighbour % SLICE & 1) ||
+               family_bond(f, bond.neighbour / SLICE, back, bond.neighbour % SLICE).neighbour != slice * SLICE + lane)
+          ++back;
+        double there[3], here[3];
+        d->type->bond_force(d->formulation, slice, slot, lane, here);
+        d->type->bond_force(d->formulation, bond.neighbour / SLICE, back, bond.neighbour % SLICE, there);
+        for (int k = 0; k < 3; ++k) assert_near(here[k], -there[k], 1e-15 * fabs(here[k]));
+        damaged += points_bond_stress(&d->points, slice, slot, lane, false, 1e-6) < 0.999 * 30e6 * 1e-6;
+        mixed += d->material[slice] != d->material[bond.neighbour / SLICE];
+      }
+  assert_true(damaged > 1000 && mixed > 1000);
+  breccia_model_destroy(&model);
+}
+
+/** Two halves of a lattice are pulled apart: the work per area is G_F times the lattice's quadrature of the integral over bonds that
+ *  cross a plane (docs/theory.md 2), whatever the law. */
+static void parting_a_body_spends_its_fracture_energy(void **state)
+{
+  (void)state;
+  const char *const laws[] = {SOFTENING,
+                              "model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 "
+                              "MPa, fracture energy: 100 N/m"};
+  const struct {
+    const char *words, *shape;
+    double quadrature;
+  } spaces[] = {{"space: 3-D", "shape: {box: {particles: [8, 10, 10]}}", 0.911},
+                {"space: plane stress", "lattice: square, thickness: 0.1, shape: {box: {particles: [8, 20]}}", 0.853}};
+  for (int law = 0; law < 2; ++law)
+    for (int s = 0; s < 2; ++s) {
+      breccia_model *model = model_of(
+          "units: {length: m, force: kN, time: s}\nmaterials: {a: {%s}}\nperidynamics: {formulation: bond-based, "
+          "calibration: continuum, horizon: 0.00314159265358979, %s}\nbody: {b: {material: a, spacing: 0.001, "
+          "%s}}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+          laws[law], spaces[s].words, spaces[s].shape);
+      Domain *d = &model->domain;
+      const Particles *p = d->particles;
+      double work = 0, before = 0, opening = 0;
+      /* only rows along x that have all their neighbours beside them count */
+      const int margin = 3, across = s ? 20 : 10;
+      const double area = s ? (across - 2 * margin) * 0.001 * 0.1 : pow((across - 2 * margin) * 0.001, 2);
+      const double far = 12 * d->failure.limit[0] * 0.001; /* bonds that lean open last */
+      for (int step = 1; step <= 600; ++step) {
+        double next = far * pow(step / 600., 3), force = 0;
+        for (int32_t n = 0; n < p->count; ++n)
+          p->displacement[0][p->place_of[n]] = p->position[0][p->place_of[n]] > 0.004 ? next : 0;
+        compute_forces(model);
+        points_commit(&d->points);
+        for (int32_t n = 0; n < p->count; ++n) {
+          int32_t i = p->place_of[n];
+          bool inside =
+              p->position[0][i] < 0.004 && fabs(p->position[1][i] - across * 0.0005) < (across / 2 - margin) * 0.001;
+          if (!s) inside &= fabs(p->position[2][i] - across * 0.0005) < (across / 2 - margin) * 0.001;
+          if (inside) force += p->internal[0][i] * p->volume[i];
+        }
+        work += (before + force) / 2 * (next - opening);
+        before = force;
+        opening = next;
+      }
+      assert_near(before, 0, 1e-9);
+      assert_near(work / area / 0.1, spaces[s].quadrature, 2e-3);
+      breccia_model_destroy(&model);
+    }
+}
+
+static breccia_model *bar(int threads)
+{
+  breccia_model *model = model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {%s}, s: {model: elastic-brittle, density: 2.4, Young "
+      "modulus: 60 GPa, fracture energy: 500 N/m}}\nperidynamics: {formulation: bond-based}\nbody:\n"
+      "  b: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.2, 0.08, 0.08]}}}\n"
+      "  s: {material: s, spacing: 0.01, shape: {box: {from: [0.2, 0, 0], to: [0.3, 0.08, 0.08]}}}\n"
+      "loads:\n"
+      "  - {on: {face: x-, layers: 3}, velocity: [0, 0, 0]}\n"
+      "  - {on: {face: x+, layers: 3}, velocity: [2, 0, 0], history: {ramp to: 5e-5}}\n"
+      "solve: {explicit: {steps: 700}}\n",
+      SOFTENING);
+  model->threads = threads;
+  return model;
+}
+
+static void a_pulled_bar_softens_alike_for_any_number_of_threads_and_keeps_its_energy(void **state)
+{
+  (void)state;
+  double *reference = NULL;
+  for (int threads = 1; threads <= 3; ++threads) {
+    breccia_model *model = bar(threads);
+    breccia_error *error = breccia_error_create();
+    breccia_model_step(model, 700, error);
+    assert_string_equal(breccia_error_text(error), "");
+    breccia_error_destroy(&error);
+    const Particles *p = model->domain.particles;
+    double damage = 0;
+    for (int32_t n = 0; n < p->count; ++n)
+      if (!model->domain.material[p->place_of[n] / SLICE])
+        damage = fmax(damage, points_bond_history(&model->domain.points, p->place_of[n], 0));
+    assert_true(damage > 0.05 && damage < 1);
+    assert_true(breccia_model_broken_bonds(model) > 10);
+    assert_true(explicit_energy(&model->solver).imbalance < 0.01);
+    size_t bytes = sizeof(double) * (size_t)p->places;
+    if (!reference) reference = memcpy(malloc(bytes), p->displacement[0], bytes);
+    assert_memory_equal(reference, p->displacement[0], bytes);
+    breccia_model_destroy(&model);
+  }
+  free(reference);
+}
+
+static void each_material_has_its_own_limit_and_a_joint_the_smaller_one(void **state)
+{
+  (void)state;
+  breccia_model *model =
+      bodies("model: elastic-brittle, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa",
+             "model: elastic-brittle, density: 1, Young modulus: 10 GPa, tensile strength: 2 MPa", "");
+  const Failure *failure = &model->domain.failure;
+  assert_int_equal(model->domain.points.where, POINTS_NOWHERE);
+  assert_near(failure->limit[0], 1e-4, 1e-18);
+  assert_near(failure->limit[1], 2e-4, 1e-18);
+  const Particles *p = model->domain.particles;
+  int32_t left = particles_nearest(p, (const double[]){0.105, 0.035, 0.025});
+  int32_t right = particles_nearest(p, (const double[]){0.1125, 0.0325, 0.0225});
+  assert_near(failure_limit(failure, left, right), 1e-4, 1e-18);
+  assert_near(failure_limit(failure, right, right), 2e-4, 1e-18);
+  breccia_model_destroy(&model);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(points_below_their_strength_pull_like_springs),
+      cmocka_unit_test(damaged_bonds_balance_and_both_ends_remember_alike),
+      cmocka_unit_test(parting_a_body_spends_its_fracture_energy),
+      cmocka_unit_test(a_pulled_bar_softens_alike_for_any_number_of_threads_and_keeps_its_energy),
+      cmocka_unit_test(each_material_has_its_own_limit_and_a_joint_the_smaller_one),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
