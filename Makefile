@@ -28,7 +28,7 @@ test-external: setup all
 	@sh tests/external/run.sh
 
 bench: setup all
-	@build/release/breccia_bench
+	@build/release/breccia_bench build/release/bench.csv
 
 # Pages and pictures that the program makes itself.
 docs: all

@@ -7,8 +7,9 @@
 typedef struct Cells {
   double low[3], width;
   int64_t count[3];
-  int64_t *first;  /* [cells + 1] */
-  int32_t *places; /* ascending by number within a cell */
+  int64_t *first;   /* [cells + 1] */
+  int32_t *places;  /* cell by cell, ascending by number within one */
+  double *position; /* [particles][3] in the same order */
 } Cells;
 
 static int64_t cell_along(const Cells *cells, int k, double x)
@@ -38,7 +39,8 @@ static int cells_create(Cells *cells, const Particles *p, double reach, Error *e
   for (int k = 0; k < 3; ++k) cells->count[k] = (int64_t)floor((high[k] - cells->low[k]) / cells->width) + 1;
   cells->first = memory_zeroed((size_t)total + 1, sizeof(int64_t), "search cells", error);
   cells->places = memory_zeroed((size_t)p->count, sizeof(int32_t), "search cells", error);
-  if (!cells->first || !cells->places) return BRECCIA_FAILURE;
+  cells->position = memory_zeroed(3 * (size_t)p->count, sizeof(double), "search cells", error);
+  if (!cells->first || !cells->places || !cells->position) return BRECCIA_FAILURE;
   for (int64_t n = 0; n < p->count; ++n) ++cells->first[cell_of(cells, p, p->place_of[n]) + 1];
   for (int64_t c = 0; c < (int64_t)total; ++c) cells->first[c + 1] += cells->first[c];
   for (int64_t n = p->count - 1; n >= 0; --n) { /* backwards, so that shifting the starts down leaves ascending order */
@@ -47,6 +49,8 @@ static int cells_create(Cells *cells, const Particles *p, double reach, Error *e
   }
   for (int64_t c = 0; c < (int64_t)total; ++c) cells->first[c] = cells->first[c + 1];
   cells->first[(int64_t)total] = p->count;
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k) cells->position[3 * n + k] = p->position[k][cells->places[n]];
   return BRECCIA_OK;
 }
 
@@ -54,7 +58,15 @@ typedef struct Search {
   const Cells *cells;
   const Body *body;
   const StoredWeight *weight;
+  bool weighted;            /* bonds have other weights than 1 */
+  double farthest, nearest; /* squares of distances: none beyond are bonded, none within may be on top of each other */
 } Search;
+
+/** True if two particles of these blocks are nearer than a hundredth of their spacings. */
+static bool on_top(const Body *body, int own, int block, double square)
+{
+  return sqrt(square) < 0.005 * (body->lattices[own].spacing + body->lattices[block].spacing);
+}
 
 /** Finds the neighbours of a place that stand in no common lattice with it, cell by cell and by number within a cell.
  *  @param[out] neighbour, scale  where they go; either may be NULL
@@ -78,16 +90,21 @@ static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, 
     for (int64_t y = low[1]; y <= high[1]; ++y) {
       int64_t row = cells->count[0] * (y + cells->count[1] * z);
       for (int64_t k = cells->first[row + low[0]]; k < cells->first[row + high[0] + 1]; ++k) {
+        const double *there = cells->position + 3 * k;
+        double square = 0;
+        for (int i = 0; i < 3; ++i) square += (there[i] - here[i]) * (there[i] - here[i]);
+        if (square > search->farthest) continue;
         int32_t other = cells->places[k];
         int block = p->block[other / SLICE];
         if (block == own && (!own_too || other == place)) continue;
-        double there[3] = {p->position[0][other], p->position[1][other], p->position[2][other]}, square = 0;
-        for (int i = 0; i < 3; ++i) square += (there[i] - here[i]) * (there[i] - here[i]);
-        double length = sqrt(square), half = (body->lattices[own].spacing + body->lattices[block].spacing) / 4;
-        double reach = rule->horizon + (rule->correction == VOLUME_PARTIAL_BEYOND ? half : 0);
-        if (length > reach * (1 + 1e-9)) continue;
-        if (length < 0.02 * half) return -1;
-        double share = rule->share(rule->correction, length, rule->horizon, half);
+        if (square < search->nearest && on_top(body, own, block, square)) return -1;
+        double share = 1, length = 0;
+        if (search->weighted) {
+          double half = (body->lattices[own].spacing + body->lattices[block].spacing) / 4;
+          double reach = rule->horizon + (rule->correction == VOLUME_PARTIAL_BEYOND ? half : 0);
+          length = sqrt(square);
+          share = length > reach * (1 + 1e-9) ? 0 : rule->share(rule->correction, length, rule->horizon, half);
+        }
         if (share == 0 || (body->crack_count && body_cuts(body, here, there))) continue;
         if (neighbour) neighbour[count] = other;
         if (scale) scale[count] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
@@ -120,10 +137,14 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
 {
   const Particles *p = &body->particles;
   Cells cells = {0};
-  int status = cells_create(&cells, p, weight->horizon + body->largest_spacing / 2, error);
+  const double beyond = weight->correction == VOLUME_PARTIAL_BEYOND ? body->largest_spacing / 2 : 0;
+  const double farthest = (weight->horizon + beyond) * (1 + 1e-9);
+  int status = cells_create(&cells, p, farthest, error);
   stored->first = memory_zeroed((size_t)p->places + 1, sizeof(int64_t), "stored bonds", error);
   if (!stored->first) status = BRECCIA_FAILURE;
-  Search search = {&cells, body, weight};
+  const bool weighted = weight->correction != VOLUME_WHOLE || weight->influence != influence_find("constant");
+  const double nearest = 0.01 * body->largest_spacing;
+  Search search = {&cells, body, weight, weighted, farthest * farthest, nearest * nearest};
   int64_t bad = status ? -1 : sweep(&search, stored, false);
   if (bad >= 0)
     status = error_add(error, BRECCIA_USER_ERROR,
@@ -134,15 +155,15 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
     for (int64_t place = 0; place < p->places; ++place) stored->first[place + 1] += stored->first[place];
     size_t bonds = (size_t)stored->first[p->places];
     stored->neighbour = memory_zeroed(bonds, sizeof(int32_t), "stored bonds", error);
-    bool alike = weight->correction == VOLUME_WHOLE && weight->influence == influence_find("constant");
-    if (!alike) stored->scale = memory_zeroed(bonds, sizeof(double), "stored bonds", error);
-    if (!stored->neighbour || (!alike && !stored->scale))
+    if (weighted) stored->scale = memory_zeroed(bonds, sizeof(double), "stored bonds", error);
+    if (!stored->neighbour || (weighted && !stored->scale))
       status = BRECCIA_FAILURE;
     else
       sweep(&search, stored, true);
   }
   free(cells.first);
   free(cells.places);
+  free(cells.position);
   return status;
 }
 

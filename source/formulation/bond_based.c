@@ -75,7 +75,7 @@ static void *create(const FormulationParts *parts, Error *error)
     b->per_stress[block] = factor;
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
-  if (f->stored_slots && !(b->shown = places_array(8 * b->particles->places, "bond constants", error))) {
+  if (f->stored_slots && !(b->shown = places_array(BOND_SHOWN * b->particles->places, "bond constants", error))) {
     destroy(b);
     return NULL;
   }
@@ -117,8 +117,18 @@ static void stress(const void *formulation, int64_t place, double s[6])
 
 static void show_displacements(void *formulation, int64_t first, int64_t last)
 {
-  BondBased *b = formulation;
-  if (b->shown) bond_show_displacements(b, first, last);
+  const BondBased *b = formulation;
+  const Particles *p = b->particles;
+  const double *constant = b->points->where == POINTS_ON_BONDS ? b->per_stress : b->stiffness;
+  for (int64_t place = first * SLICE; b->shown && place < last * SLICE; ++place) {
+    double *shown = b->shown + BOND_SHOWN * place;
+    for (int k = 0; k < 3; ++k) {
+      shown[k] = p->position[k][place];
+      shown[4 + k] = p->displacement[k][place];
+    }
+    shown[3] = p->volume[place];
+    shown[7] = constant[p->block[place / SLICE]];
+  }
 }
 
 static void renew(void *formulation, int64_t slice)
@@ -137,7 +147,7 @@ static int64_t resist(void *formulation, int64_t first, int64_t last)
 static size_t bytes(const void *formulation)
 {
   const BondBased *b = formulation;
-  return 2 * (size_t)b->particles->slices + (b->shown ? 8 * sizeof(double) * (size_t)b->particles->places : 0);
+  return 2 * (size_t)b->particles->slices + (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0);
 }
 
 const FormulationType formulation_bond_based = {

@@ -37,8 +37,39 @@ void bond_note_gaps(BondBased *b, int64_t slice);
 /** Makes the tables of linear bonds. */
 int bond_springs_create(BondBased *b, Error *error);
 
-/** Brings `shown` up to date. */
-void bond_show_displacements(BondBased *b, int64_t first, int64_t last);
+/* What stored slots read of a neighbour lies together: x, y, z, V, u, v, w, and c (or c / E where bonds have points). */
+enum { BOND_SHOWN = 8 };
+
+/** Half a stored slot: y, d, weight / |xi| (0 where there is no intact bond), and the mean of both ends' constants. */
+typedef struct BondEnds {
+  Lanes y[3], d, weight_by_length, constant;
+} BondEnds;
+
+/** @param[in] own  displacements of the half slice */
+LANES_INLINE BondEnds bond_gather(const BondBased *b, int64_t slice, int64_t slot, int half, const Lanes own[3])
+{
+  const Family *f = b->family;
+  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
+  Lanes x[LANES], u[LANES], square = {0};
+  BondEnds ends = {.d = {0}};
+  lanes_gather_rows(b->shown, BOND_SHOWN, f->neighbour + at, x);
+  lanes_gather_rows(b->shown + LANES, BOND_SHOWN, f->neighbour + at, u);
+  for (int k = 0; k < 3; ++k) {
+    Lanes xi = x[k] - lanes_load(b->particles->position[k] + here), eta = u[k] - own[k];
+    ends.y[k] = xi + eta;
+    ends.d += eta * (xi + ends.y[k]);
+    square += xi * xi;
+  }
+  /* 1 / |xi| from its value to single precision by one step of third order */
+  Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(f->inverse_length + at));
+  Lanes off = lanes_set(1) - square * r * r;
+  r += r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
+  ends.d *= r * r;
+  ends.weight_by_length = x[3] * r;
+  if (f->scale) ends.weight_by_length *= lanes_load(f->scale + at);
+  ends.constant = lanes_set(0.5) * (lanes_set(b->shown[BOND_SHOWN * here + 7]) + u[3]);
+  return ends;
+}
 
 /** Forces on slices first .. last - 1 from linear bonds. */
 void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);

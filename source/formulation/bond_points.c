@@ -10,7 +10,7 @@ enum { SLOTS = BLOCK / SLICE };
 
 typedef struct Batch {
   double stretch[BLOCK], stress[BLOCK];
-  double lever[BLOCK]; /* weight / |y| */
+  double lever[BLOCK]; /* weight / |y|; of stored slots times the mean c / E */
   double y[3][BLOCK];
 } Batch;
 
@@ -45,32 +45,28 @@ LANES_INLINE void stretch_lattice(const BondBased *b, int64_t slice, int64_t slo
   lanes_store(batch->lever + at, lanes_set(row->weight_by_length) / ratio);
 }
 
-static void stretch_stored(const BondBased *b, int64_t slice, int64_t slot, int lane, Batch *batch, int at)
+LANES_INLINE void stretch_stored(const BondBased *b, int64_t slice, int64_t slot, int half, Batch *batch, int at)
 {
-  const Family *f = b->family;
-  batch->stretch[at] = batch->lever[at] = 0;
-  for (int k = 0; k < 3; ++k) batch->y[k][at] = 0;
-  if (!(f->intact[slot] >> lane & 1)) return;
-  Bond bond = family_bond(f, slice, slot, lane);
-  double eta[3], y[3], ratio;
-  for (int k = 0; k < 3; ++k)
-    eta[k] = b->particles->displacement[k][bond.neighbour] - b->particles->displacement[k][slice * SLICE + lane];
-  batch->stretch[at] = stretch_of(bond.xi, eta, bond.length, y, &ratio);
-  batch->lever[at] = bond.weight / (bond.length * ratio);
-  for (int k = 0; k < 3; ++k) batch->y[k][at] = y[k];
+  Lanes own[3];
+  for (int k = 0; k < 3; ++k) own[k] = lanes_load(b->particles->displacement[k] + slice * SLICE + LANES * half);
+  BondEnds ends = bond_gather(b, slice, slot, half, own);
+  Lanes ratio = lanes_root(lanes_set(1) + ends.d);
+  lanes_store(batch->stretch + at, ends.d / (lanes_set(1) + ratio));
+  lanes_store(batch->lever + at, ends.constant * ends.weight_by_length / ratio);
+  for (int k = 0; k < 3; ++k) lanes_store(batch->y[k] + at, ends.y[k]);
 }
 
-/** Makes c / E times the mean stress of both halves of a stored bond out of the stress of its own. Broken bonds (with stretch 0) too, so that
- *  both their histories stay what they were. @return the place of a failure or -1 */
-static int64_t join_stresses(const BondBased *b, int64_t slice, int64_t slot, int lane, Batch *batch, int at)
+/** Makes the mean stress of both halves of a bond, weighted by c / E, out of the stress of its own, where the other end may be of another
+ *  material. Broken bonds (with stretch 0) too, so that both their histories stay what they were. @return the place of a failure or -1 */
+static int64_t join_stresses(const BondBased *b, int64_t slice, int64_t slot, int lane, double stretch, double *stress)
 {
   const Family *f = b->family;
   const int32_t *block = b->particles->block;
-  int64_t other = f->neighbour[(int64_t)f->base[slot] * SLICE + lane] / SLICE, bad = -1;
-  double stress = batch->stress[at];
-  if (b->points->material[other] != b->points->material[slice])
-    bad = points_update_partner(b->points, slice, slot, lane, batch->stretch[at], &stress);
-  batch->stress[at] = 0.5 * (b->per_stress[block[slice]] * batch->stress[at] + b->per_stress[block[other]] * stress);
+  const int64_t other = f->neighbour[(int64_t)f->base[slot] * SLICE + lane] / SLICE;
+  if (b->points->material[other] == b->points->material[slice]) return -1;
+  double partner, own = b->per_stress[block[slice]], there = b->per_stress[block[other]];
+  int64_t bad = points_update_partner(b->points, slice, slot, lane, stretch, &partner);
+  *stress = (own * *stress + there * partner) / (own + there);
   return bad;
 }
 
@@ -90,11 +86,12 @@ LANES_INLINE int64_t resist_slice(const BondBased *b, int64_t slice)
         for (int half = 0; half < 2; ++half)
           stretch_lattice(b, slice, first + n, half, &batch, n * SLICE + LANES * half);
       else
-        for (int lane = 0; lane < SLICE; ++lane) stretch_stored(b, slice, first + n, lane, &batch, n * SLICE + lane);
+        for (int half = 0; half < 2; ++half)
+          stretch_stored(b, slice, first + n, half, &batch, n * SLICE + LANES * half);
     bad = points_update_bonds(b->points, slice, first, count, batch.stretch, batch.stress);
-    for (int n = 0; n < count; ++n)
-      for (int lane = 0; first + n >= stored && lane < SLICE && bad < 0; ++lane)
-        bad = join_stresses(b, slice, first + n, lane, &batch, n * SLICE + lane);
+    for (int n = 0; n < count * SLICE && b->points->partner_values && bad < 0; ++n)
+      if (first + n / SLICE >= stored)
+        bad = join_stresses(b, slice, first + n / SLICE, n % SLICE, batch.stretch[n], &batch.stress[n]);
     for (int n = 0; n < count; ++n)
       for (int half = 0; half < 2; ++half) {
         const int at = n * SLICE + LANES * half;
@@ -105,8 +102,7 @@ LANES_INLINE int64_t resist_slice(const BondBased *b, int64_t slice)
       }
   }
   for (int half = 0; half < 2; ++half)
-    for (int k = 0; k < 3; ++k)
-      lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
+    for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
   return bad;
 }
 

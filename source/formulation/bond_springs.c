@@ -130,53 +130,13 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool g
   for (int k = 0; k < 3; ++k) sum->force[k] += pull * twice[k];
 }
 
-/* What stored slots read of a neighbour lies together: x, y, z, V, u, v, w and c. */
-enum { SHOWN = 8 };
-
-void bond_show_displacements(BondBased *b, int64_t first, int64_t last)
-{
-  const Particles *p = b->particles;
-  for (int64_t place = first * SLICE; place < last * SLICE; ++place) {
-    double *shown = b->shown + SHOWN * place;
-    for (int k = 0; k < 3; ++k) {
-      shown[k] = p->position[k][place];
-      shown[4 + k] = p->displacement[k][place];
-    }
-    shown[3] = p->volume[place];
-    shown[7] = b->stiffness[p->block[place / SLICE]];
-  }
-}
-
-/** 1 / |xi| from its value to single precision by one step of third order; 0 where there is no intact bond. */
-LANES_INLINE Lanes inverse_length(const Family *f, int64_t slot, int half, const Lanes xi[3])
-{
-  const float *near = f->inverse_length + (int64_t)f->base[slot] * SLICE + LANES * half;
-  Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(near));
-  Lanes off = lanes_set(1) - (xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2]) * r * r;
-  return r + r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
-}
-
 /** Half a stored slot; its forces have their constants in them. */
 LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, Range range, Sum *sum)
 {
-  const Family *f = b->family;
-  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
-  Lanes x[LANES], u[LANES], d = {0}, y[3];
-  lanes_gather_rows(b->shown, SHOWN, f->neighbour + at, x);
-  lanes_gather_rows(b->shown + LANES, SHOWN, f->neighbour + at, u);
-  for (int k = 0; k < 3; ++k) {
-    Lanes eta = u[k] - sum->own[k];
-    x[k] -= lanes_load(b->particles->position[k] + slice * SLICE + LANES * half);
-    y[k] = x[k] + eta;
-    d += eta * (x[k] + y[k]);
-  }
-  Lanes inverse = inverse_length(f, slot, half, x);
-  d *= inverse * inverse;
-  sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
-  Lanes pull = lanes_set(0.5) * (lanes_set(b->stiffness[f->particles->block[slice]]) + u[3]) * x[3];
-  if (f->scale) pull *= lanes_load(f->scale + at);
-  pull *= inverse * shortening(d, range);
-  for (int k = 0; k < 3; ++k) sum->force[k] += pull * y[k];
+  BondEnds ends = bond_gather(b, slice, slot, half, sum->own);
+  sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
+  Lanes pull = ends.constant * ends.weight_by_length * shortening(ends.d, range);
+  for (int k = 0; k < 3; ++k) sum->force[k] += pull * ends.y[k];
 }
 
 /** Forces on a slice, all bonds by one way. @return the way that they should go */

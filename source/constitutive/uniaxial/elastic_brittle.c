@@ -14,7 +14,8 @@ static const breccia_parameter parameters[] = {
     {"Young modulus", "stress", NULL, "(0, inf)", "E"},
     {"tensile strength", "stress", "", "(0, inf)", "f_t; or give the fracture energy"},
     {"fracture energy", "fracture energy", "", "(0, inf)", "G_F per area of crack, from which the strength follows"},
-    {"length", "length", "", "(0, inf)", "over which the fracture energy is spread; that of the formulation when absent"},
+    {"length", "length", "", "(0, inf)",
+     "over which the fracture energy is spread; that of the formulation when absent"},
 };
 
 /** E s^2 / 2 = G_F / length. */

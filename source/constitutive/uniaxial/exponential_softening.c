@@ -50,7 +50,8 @@ static int update(const void *constants, const breccia_batch *batch)
 
 const breccia_law law_exponential_softening = {
     .name = "exponential-softening",
-    .about = "a straight line up to the strength, then an exponential fall with a long straight tail; elastic in compression",
+    .about = "a straight line up to the strength, then an exponential fall with a long straight tail; elastic in "
+             "compression",
     .source = "Hobbs 2021; docs/theory.md 2",
     .maturity = "verified against its closed form",
     LAW_PARAMETERS(parameters),

@@ -12,7 +12,8 @@ enum { SOFTENING_YOUNG, SOFTENING_STRENGTH, SOFTENING_ENERGY, SOFTENING_LENGTH, 
 
 #define SOFTENING_PARAMETER_ROWS                                                                                       \
   {"Young modulus", "stress", NULL, "(0, inf)", "E"}, {"tensile strength", "stress", NULL, "(0, inf)", "f_t"},         \
-      {"fracture energy", "fracture energy", NULL, "(0, inf)", "G_F per area of crack"}, {                             \
+      {"fracture energy", "fracture energy", NULL, "(0, inf)", "G_F per area of crack"},                               \
+  {                                                                                                                    \
     "length", "length", "", "(0, inf)",                                                                                \
         "over which the fracture energy is spread; that of the formulation when absent"                                \
   }
@@ -39,15 +40,16 @@ static inline int softening_prepare(Softening *c, const double *values, double a
   double left = values[SOFTENING_ENERGY] / values[SOFTENING_LENGTH] - c->strength * c->peak / 2;
   c->end = c->peak + left / (c->strength * area);
   if (left > 0) return 0;
-  snprintf(reason, size,
-           "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must be "
-           "less than 2 E G_F / f_t^2 = %g: take a finer spacing",
-           values[SOFTENING_LENGTH], 2 * values[SOFTENING_ENERGY] / (c->strength * c->peak));
+  snprintf(
+      reason, size,
+      "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must be "
+      "less than 2 E G_F / f_t^2 = %g: take a finer spacing",
+      values[SOFTENING_LENGTH], 2 * values[SOFTENING_ENERGY] / (c->strength * c->peak));
   return 1;
 }
 
-__attribute__((always_inline)) static inline int softening_update(const void *constants, const Softening *c,
-                                                                  SofteningEnvelope envelope, const breccia_batch *batch)
+__attribute__((always_inline)) static inline int
+softening_update(const void *constants, const Softening *c, SofteningEnvelope envelope, const breccia_batch *batch)
 {
   for (int i = 0; i < batch->count; ++i) {
     const double strain = batch->strain[0][i];

@@ -1,0 +1,29 @@
+/* What the parts of the bench share: repeats, medians, threads. */
+#ifndef BRECCIA_BENCH_MEASURE_H
+#define BRECCIA_BENCH_MEASURE_H
+
+#include "base/clock.h"
+#include "model/model.h"
+
+enum { REPEATS = 9 };
+
+int all_threads(void);
+void use_threads(int threads);
+
+/** Sorts the values. */
+double median(double *values, int count);
+
+/** What the machine allows: triad in GB/s on the threads in use, fused multiply-add in GFLOP/s on one. */
+double stream_bandwidth(void);
+double multiply_add_rate(void);
+
+/** Scalar kernels over plain neighbour rows, as most codes walk them: the yardstick of one formulation on one body. */
+typedef struct Plain Plain;
+Plain *plain_create(const Domain *domain);
+void plain_destroy(Plain *plain);
+/** Correspondence: elastic, small strain, constant influence, no control. */
+void plain_correspondence(Plain *plain);
+/** Bond-based: prototype microelastic, reference vectors from positions. */
+void plain_bonds(Plain *plain);
+
+#endif

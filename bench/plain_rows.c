@@ -1,0 +1,143 @@
+#include "measure.h"
+
+#include "base/tensor.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* The yardstick must stay scalar. */
+#ifdef __clang__
+#define PLAIN
+#else
+#define PLAIN __attribute__((optimize("no-tree-vectorize")))
+#endif
+
+typedef struct Rows {
+  int64_t *first;
+  int32_t *neighbour;
+} Rows;
+
+static Rows rows_of(const Domain *d)
+{
+  const Particles *p = d->particles;
+  Rows rows = {malloc(sizeof(int64_t) * (size_t)(p->count + 1)), malloc(sizeof(int32_t) * (size_t)d->family.bonds)};
+  int64_t n = 0;
+  for (int64_t i = 0; i < p->count; ++i) {
+    int32_t place = p->place_of[i];
+    rows.first[i] = n;
+    for (int64_t slot = d->family.first[place / SLICE]; slot < d->family.first[place / SLICE + 1]; ++slot)
+      if (d->family.intact[slot] >> (place % SLICE) & 1)
+        rows.neighbour[n++] = p->number[family_bond(&d->family, place / SLICE, slot, place % SLICE).neighbour];
+  }
+  rows.first[p->count] = n;
+  return rows;
+}
+
+struct Plain {
+  size_t count;
+  Rows rows;
+  double *x, *u, *force, *state, *inverse, *volume;
+};
+
+Plain *plain_create(const Domain *d)
+{
+  const Particles *p = d->particles;
+  size_t n = (size_t)p->count;
+  Plain *plain = malloc(sizeof *plain);
+  if (!plain) abort();
+  *plain = (Plain){
+      n, rows_of(d), malloc(24 * n), malloc(24 * n), malloc(24 * n), malloc(72 * n), malloc(48 * n), malloc(8 * n)};
+  for (size_t i = 0; i < n; ++i) {
+    double k[6] = {0};
+    int32_t here = p->place_of[i];
+    plain->volume[i] = p->volume[here];
+    for (int c = 0; c < 3; ++c) {
+      plain->x[3 * i + (size_t)c] = p->position[c][here];
+      plain->u[3 * i + (size_t)c] = 1e-6 * (double)(i % 7);
+    }
+    for (int64_t b = plain->rows.first[i]; b < plain->rows.first[i + 1]; ++b)
+      for (int c = 0; c < 6; ++c) {
+        int32_t j = p->place_of[plain->rows.neighbour[b]];
+        k[c] += p->volume[j] * (p->position[symmetric_row[c]][j] - p->position[symmetric_row[c]][here]) *
+                (p->position[symmetric_column[c]][j] - p->position[symmetric_column[c]][here]);
+      }
+    tensor_inverse(k, plain->inverse + 6 * i);
+  }
+  return plain;
+}
+
+void plain_destroy(Plain *plain)
+{
+  free(plain->rows.first);
+  free(plain->rows.neighbour);
+  free(plain->x);
+  free(plain->u);
+  free(plain->force);
+  free(plain->state);
+  free(plain->inverse);
+  free(plain->volume);
+  free(plain);
+}
+
+PLAIN void plain_bonds(Plain *plain)
+{
+  const double *x = plain->x, *u = plain->u, *volume = plain->volume, constant = 1e9;
+  const Rows *rows = &plain->rows;
+  for (size_t i = 0; i < plain->count; ++i) {
+    double force[3] = {0};
+    for (int64_t b = rows->first[i]; b < rows->first[i + 1]; ++b) {
+      size_t j = (size_t)rows->neighbour[b];
+      double y[3], reference = 0, length = 0;
+      for (int c = 0; c < 3; ++c) {
+        double xi = x[3 * j + (size_t)c] - x[3 * i + (size_t)c];
+        y[c] = xi + u[3 * j + (size_t)c] - u[3 * i + (size_t)c];
+        reference += xi * xi;
+        length += y[c] * y[c];
+      }
+      reference = sqrt(reference);
+      length = sqrt(length);
+      double pull = constant * volume[j] * (length - reference) / (reference * length);
+      for (int c = 0; c < 3; ++c) force[c] += pull * y[c];
+    }
+    for (int c = 0; c < 3; ++c) plain->force[3 * i + (size_t)c] = force[c];
+  }
+}
+
+PLAIN void plain_correspondence(Plain *plain)
+{
+  const double *x = plain->x, *u = plain->u, *volume = plain->volume, lambda = 60000, shear = 60000;
+  const Rows *rows = &plain->rows;
+  double *q = plain->state;
+  for (size_t i = 0; i < plain->count; ++i) {
+    double g[9] = {0}, grad[9], s[9];
+    const double *k = plain->inverse + 6 * i;
+    for (int64_t b = rows->first[i]; b < rows->first[i + 1]; ++b) {
+      size_t j = (size_t)rows->neighbour[b];
+      for (int c = 0; c < 3; ++c)
+        for (int e = 0; e < 3; ++e)
+          g[3 * c + e] +=
+              volume[j] * (u[3 * j + (size_t)c] - u[3 * i + (size_t)c]) * (x[3 * j + (size_t)e] - x[3 * i + (size_t)e]);
+    }
+    for (int c = 0; c < 3; ++c)
+      for (int e = 0; e < 3; ++e)
+        grad[3 * c + e] = g[3 * c] * k[symmetric_place[e]] + g[3 * c + 1] * k[symmetric_place[3 + e]] +
+                          g[3 * c + 2] * k[symmetric_place[6 + e]];
+    double trace = lambda * (grad[0] + grad[4] + grad[8]);
+    for (int c = 0; c < 3; ++c)
+      for (int e = 0; e < 3; ++e) s[3 * c + e] = shear * (grad[3 * c + e] + grad[3 * e + c]) + (c == e ? trace : 0);
+    for (int c = 0; c < 3; ++c)
+      for (int e = 0; e < 3; ++e)
+        q[9 * i + (size_t)(3 * c + e)] = s[3 * c] * k[symmetric_place[e]] + s[3 * c + 1] * k[symmetric_place[3 + e]] +
+                                         s[3 * c + 2] * k[symmetric_place[6 + e]];
+  }
+  for (size_t i = 0; i < plain->count; ++i) {
+    double force[3] = {0};
+    for (int64_t b = rows->first[i]; b < rows->first[i + 1]; ++b) {
+      size_t j = (size_t)rows->neighbour[b];
+      double xi[3] = {x[3 * j] - x[3 * i], x[3 * j + 1] - x[3 * i + 1], x[3 * j + 2] - x[3 * i + 2]};
+      for (int c = 0; c < 3; ++c)
+        for (int e = 0; e < 3; ++e)
+          force[c] += volume[j] * (q[9 * i + (size_t)(3 * c + e)] + q[9 * j + (size_t)(3 * c + e)]) * xi[e];
+    }
+    for (int c = 0; c < 3; ++c) plain->force[3 * i + (size_t)c] = force[c];
+  }
+}
