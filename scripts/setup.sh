@@ -2,6 +2,7 @@
 # Installs what is missing from the distribution's packages (Debian, Ubuntu). Asks nothing; does nothing when all is there.
 #   setup.sh build   what the program needs
 #   setup.sh test    what its tests need besides
+#   setup.sh peers   the programs that it is measured against
 set -eu
 
 build="gcc:C_compiler cmake:build ninja-build:build pkg-config:build libc6-dev:C_library libfyaml-dev:decks_in_YAML
@@ -10,7 +11,10 @@ gnuplot-nox:curves"
 test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing clang-format:layout_of_the_code gcovr:coverage
 python3:external_tests python3-venv:external_tests"
 
+peers="lammps:its_PERI_package"
+
 wanted=$build
+[ "${1:-build}" = peers ] && wanted="$build $peers"
 [ "${1:-build}" = test ] && wanted="$build $test"
 
 missing="" why=""

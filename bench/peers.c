@@ -1,0 +1,166 @@
+/* The same cubes in another program: LAMMPS with its PERI package (pmb and lps), run in turn with ours on one thread, and the accelerations
+ * of one random displacement field beside each other. */
+#include "measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { TURNS = 3 };
+
+static const double spacing = 0.03, horizon = 3.015 * 0.03, young = 150e3, density = 1.5;
+
+/** c = 12 E / (pi delta^4), which both programs are given. */
+static double constant(void)
+{
+  return 12 * young / (acos(-1) * pow(horizon, 4));
+}
+
+/** A lattice of so small a constant at the end switches LAMMPS's volume correction and short-range forces off. */
+static void write_input(const char *folder, int n, const char *style, int64_t steps)
+{
+  char *path = text_format("%s/in.peri", folder);
+  FILE *f = fopen(path, "w");
+  if (!f) abort();
+  fprintf(f,
+          "units si\nboundary s s s\natom_style peri\natom_modify map array\nneighbor %g bin\nlattice sc %.17g\n"
+          "region box block -0.5 %d.5 -0.5 %d.5 -0.5 %d.5\ncreate_box 1 box\ncreate_atoms 1 region box\n",
+          0.1 * spacing, spacing, n - 1, n - 1, n - 1);
+  if (!strcmp(style, "pmb"))
+    fprintf(f, "pair_style peri/pmb\npair_coeff * * %.17g %.17g 1e10 0.0\n", constant(), horizon);
+  else
+    fprintf(f, "pair_style peri/lps\npair_coeff * * %.17g %.17g %.17g 1e10 0.0\n", young / 1.5, young / 2.5, horizon);
+  fprintf(f,
+          "set group all density %.17g\nset group all volume %.17g\nvelocity all set 0 0 0\nfix 1 all nve\ntimestep "
+          "1e-12\nlattice sc 1e-6\nrun 0\ndisplace_atoms all random 1e-5 1e-5 1e-5 12345 units box\n",
+          density, pow(spacing, 3));
+  if (steps)
+    fprintf(f, "run %lld\n", (long long)steps);
+  else
+    fprintf(f, "dump d all custom 1 %s/dump.txt id x y z fx fy fz\ndump_modify d sort id format float %%.17g\nrun 0\n",
+            folder);
+  fclose(f);
+  free(path);
+}
+
+/** Runs LAMMPS. @return seconds of its last loop, and its number of bonds; NaN if it failed */
+static double run_lammps(const char *folder, double *bonds)
+{
+  char *command = text_format("cd %s && OMP_NUM_THREADS=1 lmp -in in.peri -log log.txt 2>&1", folder), line[512];
+  FILE *out = popen(command, "r");
+  double seconds = NAN, value;
+  while (out && fgets(line, sizeof line, out)) {
+    if (sscanf(line, " total # of bonds = %lf", &value) == 1) *bonds = value;
+    if (sscanf(line, "Loop time of %lf", &value) == 1) seconds = value;
+    if (!strncmp(line, "ERROR", 5)) fputs(line, stderr);
+  }
+  if (!out || pclose(out)) seconds = NAN;
+  free(command);
+  return seconds;
+}
+
+static breccia_model *ours(int n)
+{
+  char *deck =
+      text_format("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: %g, model: elastic-brittle, "
+                  "Young modulus: %g, tensile strength: %g}}\nperidynamics: {formulation: bond-based, calibration: "
+                  "continuum, horizon: %.17g}\nbody: {b: {material: m, spacing: %g, shape: {box: {particles: "
+                  "[%d, %d, %d]}}}}\nsolve: {explicit: {steps: 1000000, time step: 1e-12}}\n",
+                  density, young, young * 1000, horizon, spacing, n, n, n);
+  breccia_model *model = NULL;
+  breccia_error *error = breccia_error_create();
+  breccia_options options = {.threads = 1};
+  if (breccia_model_load_string(deck, "peers", &options, &model, error))
+    fprintf(stderr, "%s\n", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  free(deck);
+  if (model) model->threads = 1;
+  return model;
+}
+
+/** Takes up the positions that LAMMPS wrote. @return largest difference of accelerations over the largest acceleration */
+static double compare(const char *folder, int n)
+{
+  breccia_model *model = ours(n);
+  char *path = text_format("%s/dump.txt", folder), line[1024];
+  FILE *f = fopen(path, "r");
+  const Particles *p = model->domain.particles;
+  double *theirs = calloc(3 * (size_t)p->count, sizeof(double)), most = 0, off = 0;
+  if (!f || !theirs) abort();
+  int64_t read = 0;
+  while (fgets(line, sizeof line, f)) {
+    long long id;
+    double x[3], force[3];
+    if (sscanf(line, "%lld %lf %lf %lf %lf %lf %lf", &id, x, x + 1, x + 2, force, force + 1, force + 2) != 7) continue;
+    const int64_t number = id - 1, cell[3] = {number % n, number / n % n, number / n / n};
+    const int32_t place = p->place_of[number];
+    for (int k = 0; k < 3; ++k) {
+      p->displacement[k][place] = x[k] - spacing * (double)cell[k];
+      theirs[3 * number + k] = force[k] / density;
+    }
+    ++read;
+  }
+  fclose(f);
+  free(path);
+  if (read != p->count) fprintf(stderr, "LAMMPS wrote %lld of %lld particles\n", (long long)read, (long long)p->count);
+  domain_forces(&model->domain);
+  for (int32_t i = 0; i < p->count; ++i)
+    for (int k = 0; k < 3; ++k) {
+      double own = p->internal[k][p->place_of[i]] / p->density[p->place_of[i]];
+      most = fmax(most, fabs(own));
+      off = fmax(off, fabs(own - theirs[3 * i + k]));
+    }
+  free(theirs);
+  breccia_model_destroy(&model);
+  return read ? off / most : NAN;
+}
+
+int main(void)
+{
+  char folder[] = "/tmp/breccia-peers-XXXXXX";
+  if (!mkdtemp(folder)) return 1;
+  double bonds = 0;
+  write_input(folder, 16, "pmb", 0);
+  run_lammps(folder, &bonds);
+  const double difference = compare(folder, 16);
+  printf("Accelerations of a random field on 16³ particles, pmb without volume correction: they differ by %.1e of the "
+         "largest.\n\n| particles | directed bonds | LAMMPS pmb | ours | ratio | LAMMPS lps "
+         "|\n|---|---|---|---|---|---|\n",
+         difference);
+  int failed = !(difference < 1e-10);
+  const int sizes[] = {32, 40, 80};
+  for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
+    const int n = sizes[s];
+    breccia_model *model = ours(n);
+    if (!model) return 1;
+    const double our_bonds = (double)model->domain.family.bonds;
+    const int64_t steps = (int64_t)(3e7 / our_bonds) + 2;
+    double pmb[TURNS], lps[TURNS], own[TURNS], ratio[TURNS], their_bonds = 0, lps_bonds = 0;
+    breccia_model_step(model, steps, NULL);
+    for (int t = 0; t < TURNS; ++t) {
+      write_input(folder, n, "pmb", steps);
+      pmb[t] = 1e9 * run_lammps(folder, &their_bonds) / (double)steps / our_bonds;
+      double start = clock_seconds();
+      breccia_model_step(model, 8 * steps, NULL);
+      own[t] = 1e9 * (clock_seconds() - start) / (double)(8 * steps) / our_bonds;
+      write_input(folder, n, "lps", steps);
+      lps[t] = 1e9 * run_lammps(folder, &lps_bonds) / (double)steps / our_bonds;
+      ratio[t] = pmb[t] / own[t];
+    }
+    printf("| %d³ | %.0f%s | %.1f | %.2f | %.1f | %.1f |\n", n, our_bonds,
+           their_bonds == our_bonds ? "" : " (LAMMPS has another number)", median(pmb, TURNS), median(own, TURNS),
+           median(ratio, TURNS), median(lps, TURNS));
+    fflush(stdout);
+    failed |= their_bonds != our_bonds;
+    breccia_model_destroy(&model);
+  }
+  printf("\nns per directed bond and whole step on one thread, medians of %d, taken in turn; LAMMPS by its own loop "
+         "time.\n",
+         TURNS);
+  char *rest = text_format("rm -rf %s", folder);
+  failed |= system(rest) != 0;
+  free(rest);
+  return failed;
+}
