@@ -133,6 +133,18 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   return BRECCIA_OK;
 }
 
+static int create_contact(Domain *d, const ContactSpec *spec, Error *error)
+{
+  double *constant = memory_zeroed((size_t)d->body.block_count, sizeof(double), "contact", error);
+  if (!constant) return BRECCIA_FAILURE;
+  for (int64_t s = 0; s < d->particles->slices; ++s)
+    constant[d->particles->block[s]] =
+        micromodulus(&d->body, material_young(&d->materials[d->material[s]]), d->family.horizon) / d->family.horizon;
+  int status = contact_create(&d->contact, spec, &d->body, &d->family, constant, error);
+  free(constant);
+  return status;
+}
+
 /** Where material points are needed. */
 static PointsWhere points_where(const Domain *d)
 {
@@ -179,12 +191,15 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if ((status = share_out(d, error))) return status;
   FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};
   d->formulation = d->type->create(&parts, error);
-  return d->formulation ? create_failure(d, reader, spec->failure, length) : BRECCIA_USER_ERROR;
+  if (!d->formulation) return BRECCIA_USER_ERROR;
+  status = create_failure(d, reader, spec->failure, length);
+  return status ? status : create_contact(d, spec->contact, error);
 }
 
 void domain_destroy(Domain *d)
 {
   if (d->formulation) d->type->destroy(d->formulation);
+  contact_destroy(&d->contact);
   points_destroy(&d->points);
   family_destroy(&d->family);
   body_destroy(&d->body);
@@ -249,9 +264,13 @@ void domain_forces(Domain *d)
     if (!type->deform) d->block_failed[b] = failed;
     d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
   }
+  if (type->finish) {
+#pragma omp single
+    type->finish(d->formulation);
+  }
+  contact_resist(&d->contact);
 #pragma omp single
   {
-    if (type->finish) type->finish(d->formulation);
     d->force_sum = 0;
     d->failed_place = -1;
     for (int64_t b = 0; b < d->block_count; ++b) {
@@ -267,11 +286,13 @@ void domain_resume(Domain *d)
     for (int end = 0; end < 2; ++end) {
       int64_t slice = d->particles->place_of[end ? d->broken[n].b : d->broken[n].a] / SLICE;
       lattice_rows_mark(&d->family, slice);
+      if (d->contact.spec) d->contact.touched[d->particles->place_of[end ? d->broken[n].b : d->broken[n].a]] = 1;
       if (d->type->renew) d->type->renew(d->formulation, slice);
     }
   for (int64_t b = 0; d->type->show_displacements && b < d->block_count; ++b)
     d->type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
   for (int64_t b = 0; d->type->deform && b < d->block_count; ++b) answer(d, b, true);
+  if (d->contact.spec) contact_search(&d->contact);
 }
 
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
@@ -352,6 +373,7 @@ static bool judge(Domain *d, int64_t step, double time)
         int32_t b = d->particles->number[bond.neighbour];
         d->fracture_energy += released_energy(d, s, slot, lane, &bond);
         family_break(&d->family, place, bond.neighbour);
+        contact_bond_broke(&d->contact, place, bond.neighbour);
         d->suspects[bond.neighbour / SLICE] = 1; /* so that its family is renewed */
         BrokenBond event = {step, time, a < b ? a : b, a < b ? b : a};
         if (domain_record(d, &event)) return true;
@@ -362,6 +384,10 @@ static bool judge(Domain *d, int64_t step, double time)
 
 void domain_break(Domain *d, int64_t step, double time, double motion)
 {
+  if (d->contact.spec) {
+#pragma omp single
+    contact_follow(&d->contact, motion);
+  }
   if (!d->failure.criterion) return;
 #pragma omp single
   d->motion += motion;

@@ -4,6 +4,7 @@
 #ifndef BRECCIA_DOMAIN_DOMAIN_H
 #define BRECCIA_DOMAIN_DOMAIN_H
 
+#include "contact/contact.h"
 #include "failure/failure.h"
 #include "formulation/formulation.h"
 
@@ -28,6 +29,7 @@ typedef struct Domain {
   const FormulationType *type;
   void *formulation;
   Failure failure;
+  Contact contact;
   Span *blocks;
   int64_t block_count;
   bool rows_cut;         /* a row is longer than a block */
@@ -48,6 +50,7 @@ typedef struct DomainSpec {
   const SectionList *materials, *blocks, *cracks;
   const PeridynamicsSpec *peridynamics;
   const FailureSpec *failure; /* or NULL */
+  const ContactSpec *contact; /* or NULL */
 } DomainSpec;
 
 /** Builds everything that a step needs. `domain` must be zero; destroy it in any case. */

@@ -1,58 +1,8 @@
 #include "family/search.h"
 
+#include "family/cells.h"
 #include <math.h>
 #include <stdlib.h>
-
-/* Particles sorted into cubic cells at least as wide as the reach: all neighbours lie in the 27 cells around. */
-typedef struct Cells {
-  double low[3], width;
-  int64_t count[3];
-  int64_t *first;   /* [cells + 1] */
-  int32_t *places;  /* cell by cell, ascending by number within one */
-  double *position; /* [particles][3] in the same order */
-} Cells;
-
-static int64_t cell_along(const Cells *cells, int k, double x)
-{
-  int64_t c = (int64_t)floor((x - cells->low[k]) / cells->width);
-  return c < 0 ? 0 : c >= cells->count[k] ? cells->count[k] - 1 : c;
-}
-
-static int64_t cell_of(const Cells *cells, const Particles *p, int32_t place)
-{
-  int64_t c[3];
-  for (int k = 0; k < 3; ++k) c[k] = cell_along(cells, k, p->position[k][place]);
-  return c[0] + cells->count[0] * (c[1] + cells->count[1] * c[2]);
-}
-
-static int cells_create(Cells *cells, const Particles *p, double reach, Error *error)
-{
-  double high[3];
-  particles_bounds(p, cells->low, high);
-  cells->width = reach * (1 + 1e-6);
-  double total;
-  do { /* a thin body in a wide box: cells may be wider, never more than a few per particle */
-    total = 1;
-    for (int k = 0; k < 3; ++k) total *= floor((high[k] - cells->low[k]) / cells->width) + 1;
-    if (total > 4.0 * (double)p->count + 64) cells->width *= 2;
-  } while (total > 4.0 * (double)p->count + 64);
-  for (int k = 0; k < 3; ++k) cells->count[k] = (int64_t)floor((high[k] - cells->low[k]) / cells->width) + 1;
-  cells->first = memory_zeroed((size_t)total + 1, sizeof(int64_t), "search cells", error);
-  cells->places = memory_zeroed((size_t)p->count, sizeof(int32_t), "search cells", error);
-  cells->position = memory_zeroed(3 * (size_t)p->count, sizeof(double), "search cells", error);
-  if (!cells->first || !cells->places || !cells->position) return BRECCIA_FAILURE;
-  for (int64_t n = 0; n < p->count; ++n) ++cells->first[cell_of(cells, p, p->place_of[n]) + 1];
-  for (int64_t c = 0; c < (int64_t)total; ++c) cells->first[c + 1] += cells->first[c];
-  for (int64_t n = p->count - 1; n >= 0; --n) { /* backwards, so that shifting the starts down leaves ascending order */
-    int64_t c = cell_of(cells, p, p->place_of[n]);
-    cells->places[--cells->first[c + 1]] = p->place_of[n];
-  }
-  for (int64_t c = 0; c < (int64_t)total; ++c) cells->first[c] = cells->first[c + 1];
-  cells->first[(int64_t)total] = p->count;
-  for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) cells->position[3 * n + k] = p->position[k][cells->places[n]];
-  return BRECCIA_OK;
-}
 
 typedef struct Search {
   const Cells *cells;
@@ -80,36 +30,29 @@ static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, 
   const int own = p->block[place / SLICE];
   const bool own_too = !body->lattices[own].chunks;
   const double here[3] = {p->position[0][place], p->position[1][place], p->position[2][place]};
-  int64_t low[3], high[3], count = 0;
-  for (int k = 0; k < 3; ++k) {
-    int64_t centre = cell_along(cells, k, here[k]);
-    low[k] = centre > 0 ? centre - 1 : 0;
-    high[k] = centre + 1 < cells->count[k] ? centre + 1 : centre;
-  }
-  for (int64_t z = low[2]; z <= high[2]; ++z)
-    for (int64_t y = low[1]; y <= high[1]; ++y) {
-      int64_t row = cells->count[0] * (y + cells->count[1] * z);
-      for (int64_t k = cells->first[row + low[0]]; k < cells->first[row + high[0] + 1]; ++k) {
-        const double *there = cells->position + 3 * k;
-        double square = 0;
-        for (int i = 0; i < 3; ++i) square += (there[i] - here[i]) * (there[i] - here[i]);
-        if (square > search->farthest) continue;
-        int32_t other = cells->places[k];
-        int block = p->block[other / SLICE];
-        if (block == own && (!own_too || other == place)) continue;
-        if (square < search->nearest && on_top(body, own, block, square)) return -1;
-        double share = 1, length = 0;
-        if (search->weighted) {
-          double half = (body->lattices[own].spacing + body->lattices[block].spacing) / 4;
-          double reach = rule->horizon + (rule->correction == VOLUME_PARTIAL_BEYOND ? half : 0);
-          length = sqrt(square);
-          share = length > reach * (1 + 1e-9) ? 0 : rule->share(rule->correction, length, rule->horizon, half);
-        }
-        if (share == 0 || (body->crack_count && body_cuts(body, here, there))) continue;
-        if (neighbour) neighbour[count] = other;
-        if (scale) scale[count] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
-        ++count;
+  int64_t rows[9][2], count = 0;
+  const int row_count = cells_around(cells, here, rows);
+  for (int row = 0; row < row_count; ++row)
+    for (int64_t k = rows[row][0]; k < rows[row][1]; ++k) {
+      const double *there = cells->position + 3 * k;
+      double square = 0;
+      for (int i = 0; i < 3; ++i) square += (there[i] - here[i]) * (there[i] - here[i]);
+      if (square > search->farthest) continue;
+      int32_t other = cells->places[k];
+      int block = p->block[other / SLICE];
+      if (block == own && (!own_too || other == place)) continue;
+      if (square < search->nearest && on_top(body, own, block, square)) return -1;
+      double share = 1, length = 0;
+      if (search->weighted) {
+        double half = (body->lattices[own].spacing + body->lattices[block].spacing) / 4;
+        double reach = rule->horizon + (rule->correction == VOLUME_PARTIAL_BEYOND ? half : 0);
+        length = sqrt(square);
+        share = length > reach * (1 + 1e-9) ? 0 : rule->share(rule->correction, length, rule->horizon, half);
       }
+      if (share == 0 || (body->crack_count && body_cuts(body, here, there))) continue;
+      if (neighbour) neighbour[count] = other;
+      if (scale) scale[count] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
+      ++count;
     }
   return count;
 }
@@ -139,7 +82,7 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
   Cells cells = {0};
   const double beyond = weight->correction == VOLUME_PARTIAL_BEYOND ? body->largest_spacing / 2 : 0;
   const double farthest = (weight->horizon + beyond) * (1 + 1e-9);
-  int status = cells_create(&cells, p, farthest, error);
+  int status = cells_create(&cells, p, (const double *const *)p->position, farthest, error);
   stored->first = memory_zeroed((size_t)p->places + 1, sizeof(int64_t), "stored bonds", error);
   if (!stored->first) status = BRECCIA_FAILURE;
   const bool weighted = weight->correction != VOLUME_WHOLE || weight->influence != influence_find("constant");
@@ -161,9 +104,7 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
     else
       sweep(&search, stored, true);
   }
-  free(cells.first);
-  free(cells.places);
-  free(cells.position);
+  cells_destroy(&cells);
   return status;
 }
 

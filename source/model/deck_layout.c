@@ -39,6 +39,8 @@ static const Field deck_fields[] = {
      &peridynamics_section, NULL, 0},
     {"failure", FIELD_SECTION, offsetof(DeckSpec, failure), NULL, "", NULL, "when bonds break; never when absent",
      &failure_section, NULL, 0},
+    {"contact", FIELD_SECTION, offsetof(DeckSpec, contact), NULL, "", NULL,
+     "what keeps particles off each other that no bond joins; nothing when absent", &contact_section, NULL, 0},
     {"loads", FIELD_SECTIONS, offsetof(DeckSpec, loads), NULL, "", NULL, "forces and prescribed motions", &load_section,
      NULL, 0},
     {"solve", FIELD_SECTION, offsetof(DeckSpec, solve), NULL, NULL, NULL, "how it is solved", &solve_section, NULL, 0},

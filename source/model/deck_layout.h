@@ -25,6 +25,7 @@ typedef struct DeckSpec {
   SectionList materials, body, selections, cracks, loads, watches, pictures;
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;
+  ContactSpec *contact;
   SolveSpec *solve;
   ResultsSpec *results;
 } DeckSpec;

@@ -125,7 +125,7 @@ static int build(breccia_model *model, bool force, Error *error)
   if (!spec->peridynamics)
     spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
   if (!spec->peridynamics) return BRECCIA_FAILURE;
-  DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure};
+  DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure, spec->contact};
   int status = domain_create(&model->domain, &model->reader, &parts), bad;
   if (!model->domain.particles || !model->domain.particles->count) return status ? status : BRECCIA_USER_ERROR;
   /* What follows needs the body only: its mistakes are told together with those of the rest. */

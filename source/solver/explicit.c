@@ -303,6 +303,7 @@ static int retreat(Explicit *s, Error *error)
       p->displacement[k][i] -= dt * half;
       p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
     }
+  if (s->domain->contact.failed) return error_add(error, BRECCIA_FAILURE, "out of memory: contact");
   const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
   if (dt > s->stable)
     cause = "the time step is above the stable one";
@@ -333,7 +334,7 @@ int explicit_advance(Explicit *s, Error *error)
     domain_break(d, s->step + 1, s->time + s->time_step, sqrt(3) * s->motion);
     domain_forces(d);
 #pragma omp single
-    sound = isfinite(d->force_sum) && d->failed_place < 0;
+    sound = isfinite(d->force_sum) && d->failed_place < 0 && !d->contact.failed;
     if (sound) {
       loading_apply(s->loading, d->particles, s->time + s->time_step);
 #pragma omp for schedule(static)

@@ -157,7 +157,8 @@ int stable_step(Domain *d, double *step, Error *error)
                        "of a stiff body (largest eigenvalue %g)",
                        largest);
   else
-    *step = 2 / sqrt(largest * 1.005); /* what Lanczos' method may still lack after its stopping test */
+    *step = 2 / sqrt(largest * 1.005 +
+                     contact_eigenvalue(&d->contact)); /* what Lanczos' method may still lack after its stopping test */
 done:
   for (int k = 0; k < 3; ++k) {
     places_free(&trial.displacement[k]);

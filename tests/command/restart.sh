@@ -37,7 +37,7 @@ same() { # same FOLDER: all that a run leaves is as in the whole run
 "$breccia" run plate.yaml --output parts --restart > out 2>&1 || fail "restart: $(cat out)"
 same parts
 
-# bonds that remember, and particles that stand anywhere
+# bonds that remember, particles that stand anywhere, and contact
 {
   echo x,y,z,volume
   for k in 0 1 2 3; do for j in 0 1 2 3; do for i in 0 1 2 3 4 5 6 7 8 9; do
@@ -53,16 +53,19 @@ materials:
 body:
   grains: {material: c, spacing: 1, file: grains.csv}
   more: {material: s, spacing: 1, shape: {box: {from: [9.6, -0.5, -0.5], to: [14.6, 3.5, 3.5]}}}
+  hammer: {material: s, spacing: 1, shape: {box: {from: [6, 8, 0], to: [8, 10, 2]}}}
 peridynamics: {formulation: bond-based, calibration: continuum}
+contact: {}
 loads:
   - {on: {face: x-, layers: 2}, velocity: [0, 0, 0]}
-  - {on: {face: x+, layers: 2}, velocity: [10, 0, 0], history: {ramp to: 0.002}}
+  - {on: {block: more}, velocity: [10, 0, 0], history: {ramp to: 0.002}}
+  - {on: {block: hammer}, velocity: [0, -40, 0]}
 solve: {explicit: {steps: 300}}
 results: {number: 5, checkpoint steps: 37, precision: double, fields: [displacement, damage, bond damage]}
 Y
 "$breccia" run bonds.yaml --output whole-bonds > out 2>&1 || fail "bonds: $(cat out)"
 [ "$(json whole-bonds/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks, the test is too tame"
-"$breccia" run bonds.yaml --output part-bonds --steps 143 --threads 1 > out 2>&1
+"$breccia" run bonds.yaml --output part-bonds --steps 231 --threads 1 > out 2>&1
 "$breccia" run bonds.yaml --output part-bonds --restart > out 2>&1 || fail "restart: $(cat out)"
 for file in results.vtkhdf checkpoint.h5; do
   "$build/tests/compare_results" whole-bonds/$file part-bonds/$file || fail "bonds: $file differs"
