@@ -59,7 +59,7 @@ contact: {}
 loads:
   - {on: {face: x-, layers: 2}, velocity: [0, 0, 0]}
   - {on: {block: more}, velocity: [10, 0, 0], history: {ramp to: 0.002}}
-  - {on: {block: hammer}, velocity: [0, -40, 0]}
+  - {on: {block: hammer}, velocity: [0, -80, 0]}
 solve: {explicit: {steps: 300}}
 results: {number: 5, checkpoint steps: 37, precision: double, fields: [displacement, damage, bond damage]}
 Y
