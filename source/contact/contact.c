@@ -13,16 +13,17 @@ static const Field contact_fields[] = {
     {"share", FIELD_NUMBER, offsetof(ContactSpec, share), "1", "0.9", "(0, 1]",
      "of their distance at the beginning, if that is nearer", NULL, NULL, 0},
 };
-const Section contact_section = {"contact",
-                                 "Particles that no bond joins repel each other where they come near: bodies that meet, "
-                                 "crack faces that close. Without this section they pass through each other. It costs "
-                                 "a shorter time step.",
-                                 sizeof(ContactSpec),
-                                 FIELDS(contact_fields),
-                                 NULL,
-                                 NULL,
-                                 NULL,
-                                 0};
+const Section contact_section = {
+    "contact",
+    "Particles that no bond joins repel each other where they come near: bodies that meet, "
+    "crack faces that close. Without this section they pass through each other. It costs "
+    "a shorter time step.",
+    sizeof(ContactSpec),
+    FIELDS(contact_fields),
+    NULL,
+    NULL,
+    NULL,
+    0};
 
 int contact_create(Contact *c, const ContactSpec *spec, const Body *body, const Family *family, const double *constant,
                    Error *error)

@@ -50,6 +50,10 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
     return node_error(reader->document, section_place(spec->peridynamics, "zero-energy control"), reader->error,
                       "zero-energy control: is for correspondence; %s has no modes without energy: leave it out",
                       d->type->name);
+  if (!d->type->uniaxial && strcmp(spec->peridynamics->surface_correction, "none"))
+    return node_error(reader->document, section_place(spec->peridynamics, "surface correction"), reader->error,
+                      "surface correction: is for bond-based peridynamics; the strains of %s are exact at surfaces",
+                      d->type->name);
   if (d->body.plane == (space != SPACE_3D)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
                     d->body.plane ? "space: a square lattice needs 'plane strain' or 'plane stress'"

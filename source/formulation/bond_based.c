@@ -19,6 +19,7 @@ static void destroy(void *formulation)
   places_free(&b->numbers);
   places_free(&b->shown);
   free(b->range);
+  free(b->surface);
   free(b->gaps);
   free(b);
 }
@@ -74,6 +75,10 @@ static void *create(const FormulationParts *parts, Error *error)
     }
     b->per_stress[block] = factor;
     b->stiffness[block] = factor * material_young(bond_material(b, block));
+  }
+  if (!strcmp(parts->spec->surface_correction, "energy") && bond_correct_surface(b, error)) {
+    destroy(b);
+    return NULL;
   }
   if (f->stored_slots && !(b->shown = places_array(BOND_SHOWN * b->particles->places, "bond constants", error))) {
     destroy(b);
@@ -147,7 +152,8 @@ static int64_t resist(void *formulation, int64_t first, int64_t last)
 static size_t bytes(const void *formulation)
 {
   const BondBased *b = formulation;
-  return 2 * (size_t)b->particles->slices + (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0);
+  return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
+         (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0);
 }
 
 const FormulationType formulation_bond_based = {

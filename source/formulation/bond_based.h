@@ -1,5 +1,5 @@
 /* What the parts of bond-based peridynamics share: the table entry (bond_based.c), constants (bond_constants.c), sweeps over linear bonds
- * (bond_springs.c) and over bonds with points (bond_points.c). */
+ * (bond_springs.c) and over bonds with points (bond_points.c), surfaces (bond_surface.c). */
 #ifndef BRECCIA_FORMULATION_BOND_BASED_H
 #define BRECCIA_FORMULATION_BOND_BASED_H
 
@@ -24,6 +24,7 @@ typedef struct BondBased {
   SpringRow *rows;    /* [patterns] */
   double *numbers;    /* of these rows */
   double *shown;      /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  float *surface;     /* [slots][8] surface correction; NULL: none */
   uint8_t *range;     /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;      /* [slices] 1: a bond of a lattice slot is missing */
 } BondBased;
@@ -33,6 +34,18 @@ const Material *bond_material(const BondBased *b, int block);
 
 /** Finds out whether a slice has gaps. */
 void bond_note_gaps(BondBased *b, int64_t slice);
+
+/** True if the neighbours of a place fill the horizon to 95 %: of particles from a file, those that are inside. */
+bool bond_family_is_whole(const BondBased *b, int64_t place);
+
+/** Finds the surface correction (bond_surface.c). */
+int bond_correct_surface(BondBased *b, Error *error);
+
+/** Factor on the bonds of half a slot by the surface correction. */
+LANES_INLINE Lanes bond_surface(const BondBased *b, int64_t slot, int half)
+{
+  return lanes_widen(b->surface + slot * SLICE + LANES * half);
+}
 
 /** Makes the tables of linear bonds. */
 int bond_springs_create(BondBased *b, Error *error);

@@ -89,19 +89,24 @@ static double continuum_young(const BondBased *b)
   return b->space == SPACE_PLANE_STRAIN ? 16.0 / 15 : 1;
 }
 
-/** Half the sum of w L over the families of particles from a file: the mean of those whose neighbours fill the horizon to 95 %, so
- *  that surfaces do not count. NaN if there is none. */
+bool bond_family_is_whole(const BondBased *b, int64_t place)
+{
+  const double pi = acos(-1), horizon = b->family->horizon;
+  const double full = b->body->plane ? pi * horizon * horizon * thickness(b) : 4 * pi / 3 * pow(horizon, 3);
+  return b->particles->volume[place] + family_volume(b->family, (int32_t)place) >= 0.95 * full;
+}
+
+/** Half the sum of w L over the families of particles from a file: the mean of those that are whole, so that surfaces do not count.
+ *  NaN if there is none. */
 static double cloud_expansion(const BondBased *b, int block)
 {
   const Family *f = b->family;
-  const double pi = acos(-1), horizon = f->horizon;
-  const double full = b->body->plane ? pi * horizon * horizon * thickness(b) : 4 * pi / 3 * pow(horizon, 3);
   double sum = 0, volume = 0;
   for (int64_t slice = 0; slice < b->particles->slices; ++slice)
     for (int lane = 0; b->particles->block[slice] == block && lane < SLICE; ++lane) {
       int32_t place = (int32_t)(slice * SLICE + lane);
       double own = b->particles->volume[place], energy = 0;
-      if (own + family_volume(f, place) < 0.95 * full) continue;
+      if (!bond_family_is_whole(b, place)) continue;
       for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
         if (!(f->intact[slot] >> lane & 1)) continue;
         Bond bond = family_bond(f, slice, slot, lane);

@@ -97,6 +97,7 @@ LANES_INLINE int64_t resist_slice(const BondBased *b, int64_t slice)
         const int at = n * SLICE + LANES * half;
         Lanes pull = lanes_load(batch.stress + at) * lanes_load(batch.lever + at);
         pull = lanes_where(lanes_half(f->intact[first + n], half), pull);
+        if (b->surface) pull *= bond_surface(b, first + n, half);
         if (first + n < stored) pull *= per_stress;
         for (int k = 0; k < 3; ++k) force[half][k] += pull * lanes_load(batch.y[k] + at);
       }
@@ -131,6 +132,7 @@ double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, cons
     eta[k] = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][here];
   double stretch = stretch_of(bond->xi, eta, bond->length, y, &ratio);
   const Points *p = b->points;
+  if (b->surface) ratio /= b->surface[slot * SLICE + lane];
   if (p->where == POINTS_NOWHERE)
     return (b->stiffness[block[slice]] + b->stiffness[block[other]]) / 2 * stretch / (bond->length * ratio);
   double own = points_bond_stress(p, slice, slot, lane, false, stretch), partner = own;

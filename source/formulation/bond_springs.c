@@ -101,7 +101,8 @@ typedef struct Sum {
 } Sum;
 
 /** Half a slot between lattice neighbours; back is -eta, and middle 2 xi + eta. Polynomial by pairs: its chain is shorter so. */
-LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool gaps, Range range, Sum *sum)
+LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool gaps, bool corrected, Range range,
+                              Sum *sum)
 {
   const Family *f = b->family;
   const int pattern = f->pattern[slot];
@@ -127,6 +128,7 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool g
     sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
     pull = lanes_set(0.5 * f->patterns[pattern].weight_by_length) * shortening(d, range);
   }
+  if (corrected) pull *= bond_surface(b, slot, half);
   for (int k = 0; k < 3; ++k) sum->force[k] += pull * twice[k];
 }
 
@@ -136,11 +138,12 @@ LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, in
   BondEnds ends = bond_gather(b, slice, slot, half, sum->own);
   sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
   Lanes pull = ends.constant * ends.weight_by_length * shortening(ends.d, range);
+  if (b->surface) pull *= bond_surface(b, slot, half);
   for (int k = 0; k < 3; ++k) sum->force[k] += pull * ends.y[k];
 }
 
 /** Forces on a slice, all bonds by one way. @return the way that they should go */
-LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, Range range)
+LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, bool corrected, Range range)
 {
   const Family *f = b->family;
   const Particles *p = b->particles;
@@ -150,7 +153,8 @@ LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, Ra
   for (int half = 0; half < 2; ++half)
     for (int k = 0; k < 3; ++k) sum[half].own[k] = lanes_load(p->displacement[k] + slice * SLICE + LANES * half);
   for (int half = 0; half < 2; ++half)
-    for (int64_t slot = f->first[slice]; slot < stored; ++slot) add_lattice(b, slot, half, gaps, range, &sum[half]);
+    for (int64_t slot = f->first[slice]; slot < stored; ++slot)
+      add_lattice(b, slot, half, gaps, corrected, range, &sum[half]);
   for (int half = 0; half < 2; ++half)
     for (int k = 0; k < 3; ++k) sum[half].force[k] *= scale;
   for (int64_t slot = stored; slot < last; ++slot)
@@ -167,6 +171,13 @@ LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, Ra
                                              : RANGE_ANY;
 }
 
+LANES_INLINE Range resist_way(const BondBased *b, int64_t slice, bool gaps, bool corrected, Range range)
+{
+  if (range == RANGE_SERIES) return resist_slice(b, slice, gaps, corrected, RANGE_SERIES);
+  if (range == RANGE_NEWTON) return resist_slice(b, slice, gaps, corrected, RANGE_NEWTON);
+  return resist_slice(b, slice, gaps, corrected, RANGE_ANY);
+}
+
 BRECCIA_CLONES
 static void resist_springs(const BondBased *b, int64_t first, int64_t last)
 {
@@ -176,10 +187,9 @@ static void resist_springs(const BondBased *b, int64_t first, int64_t last)
     Range range = (Range)local.range[slice], next = range;
     for (int turn = 0; turn < 3; ++turn) {
       range = next;
-      next = range == RANGE_SERIES   ? local.gaps[slice] ? resist_slice(&local, slice, true, RANGE_SERIES)
-                                                         : resist_slice(&local, slice, false, RANGE_SERIES)
-               : range == RANGE_NEWTON ? resist_slice(&local, slice, true, RANGE_NEWTON)
-                                     : resist_slice(&local, slice, true, RANGE_ANY);
+      next = local.surface       ? resist_way(&local, slice, true, true, range)
+             : local.gaps[slice] ? resist_way(&local, slice, true, false, range)
+                                 : resist_way(&local, slice, false, false, range);
       if (next == range) break;
     }
     local.range[slice] = (uint8_t)range;

@@ -42,6 +42,12 @@ const char *calibration_word(int k)
   return words[k];
 }
 
+static const char *surface_word(int k)
+{
+  static const char *const words[] = {"none", "energy", NULL};
+  return words[k];
+}
+
 static const Field control_fields[] = {
     {"silling", FIELD_NUMBER, offsetof(ControlSpec, silling), "1", "", "[0, inf)",
      "strength G_s of Silling's (2017) control; 0.1 is just enough in 3-D, 0.2 in the plane; more stiffens crack tips",
@@ -79,6 +85,11 @@ static const Field peridynamics_fields[] = {
      "bond-based: which field shall have the energy of the continuum on this lattice, or whether the continuum's "
      "integrals are taken",
      NULL, calibration_word, 0},
+    {"surface correction", FIELD_CHOICE, offsetof(PeridynamicsSpec, surface_correction), NULL, "none", NULL,
+     "bond-based: stiffens bonds of particles near surfaces, whose families are not whole, such that stretching along "
+     "each "
+     "axis costs them as much energy as inside",
+     NULL, surface_word, 0},
     {"zero-energy control", FIELD_SECTION, offsetof(PeridynamicsSpec, control), NULL, "", NULL,
      "of correspondence; silling 0.1 in 3-D and 0.2 in the plane when absent", &control_section, NULL, 0},
 };

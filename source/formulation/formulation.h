@@ -14,7 +14,7 @@ typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
 
 typedef struct PeridynamicsSpec {
   SectionHead head;
-  const char *formulation, *space, *strain, *influence, *volume_correction, *calibration;
+  const char *formulation, *space, *strain, *influence, *volume_correction, *calibration, *surface_correction;
   Length horizon;
   ControlSpec *control;
 } PeridynamicsSpec;

@@ -305,6 +305,91 @@ static void a_single_bond_has_its_force_to_the_last_digits(void **state)
   remove("test_pair.csv");
 }
 
+/** Mean virial stress along x over the inner particles of a face (or of the middle) of a cube under that stretch. */
+static double stress_of_layer(const breccia_model *model, double x, double y)
+{
+  const Particles *p = model->domain.particles;
+  double sum = 0, count = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double strain[6], stress[6];
+    if (fabs(p->position[0][i] - x) > 0.5 || fabs(p->position[1][i] - y) > 0.5 || fabs(p->position[2][i] - 7) > 2)
+      continue;
+    domain_look(&model->domain, i, strain, stress);
+    sum += stress[XX];
+    ++count;
+  }
+  return sum / count;
+}
+
+static void surface_correction_evens_out_surfaces_and_leaves_the_inside_alone(void **state)
+{
+  (void)state;
+  const double f[9] = {1 + 1e-6, 0, 0, 0, 1, 0, 0, 0, 1};
+  double inside[2] = {0};
+  for (int on = 0; on < 2; ++on)
+    for (int law = 0; law < 2; ++law) {
+      breccia_model *model =
+          model_of("materials: {m: {%s, density: 1, Young modulus: 150}}\nperidynamics: {formulation: bond-based%s}\n"
+                   "body: {b: {material: m, spacing: 1, shape: {box: {particles: [14, 14, 14]}}}}\nsolve: {explicit: "
+                   "{steps: 1}}\n",
+                   law ? "model: bilinear-softening, tensile strength: 1, fracture energy: 1" : "model: elastic-1d",
+                   on ? ", surface correction: energy" : "");
+      deform_uniformly(model, f);
+      compute_forces(model);
+      double middle = stress_of_layer(model, 6.5, 6.5);
+      if (!on) inside[law] = middle;
+
+      double end = stress_of_layer(model, 0.5, 6.5) / middle, side = stress_of_layer(model, 6.5, 0.5) / middle;
+      if (on) {
+        assert_near(middle, inside[law], 0.01 * middle);
+        assert_near(side, 1, 0.01);
+        assert_near(end, 0.88, 0.02);
+      } else {
+        assert_near(side, 0.71, 0.01);
+        assert_near(end, 0.5, 0.01);
+      }
+      const Particles *p = model->domain.particles;
+      double total[3] = {0}, size = 0;
+      for (int64_t i = 0; i < p->places; ++i)
+        for (int k = 0; k < 3; ++k) {
+          total[k] += p->internal[k][i] * p->volume[i];
+          size += fabs(p->internal[k][i] * p->volume[i]);
+        }
+      for (int k = 0; k < 3; ++k) assert_near(total[k], 0, 1e-13 * size);
+      breccia_model_destroy(&model);
+    }
+}
+
+/** Validation A5: a bar of 1 m x 0.1 m x 0.1 m of steel pulled with 2 MN becomes 1 mm longer; on the way to rest. */
+static void a_bar_becomes_as_long_as_hooke_says(void **state)
+{
+  (void)state;
+  double longer[2];
+  for (int on = 0; on < 2; ++on) {
+    breccia_model *model =
+        model_of("units: {length: m, force: MN, time: s}\nmaterials: {m: {model: elastic-1d, density: 7.85e-3, Young "
+                 "modulus: 200 "
+                 "GPa}}\nperidynamics: {formulation: bond-based%s}\n"
+                 "body: {b: {material: m, spacing: 0.0333333333333333, shape: {box: {particles: [30, 3, 3]}}}}\n"
+                 "loads: [{on: {face: x-}, force: [-2, 0, 0]}, {on: {face: x+}, force: [2, 0, 0]}]\n"
+                 "solve: {explicit: {steps: 4000, damping: 4000}}\n",
+                 on ? ", surface correction: energy" : "");
+    breccia_model_step(model, 1500, NULL);
+    const Particles *p = model->domain.particles;
+    assert_true(explicit_energy(&model->solver).kinetic < 1e-6 * explicit_energy(&model->solver).external);
+    double ends[2] = {0};
+    for (int32_t n = 0; n < p->count; ++n) {
+      if (n % 30 == 2) ends[0] += p->displacement[0][p->place_of[n]] / 9; /* three layers in from the loaded ones */
+      if (n % 30 == 27) ends[1] += p->displacement[0][p->place_of[n]] / 9;
+    }
+    longer[on] = (ends[1] - ends[0]) / (25. / 30 * 1e-3);
+    breccia_model_destroy(&model);
+  }
+  assert_near(longer[1], 1, 0.02);
+  assert_true(longer[0] > 1.5); /* without correction it is far too soft */
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -315,6 +400,8 @@ int main(void)
       cmocka_unit_test(forces_are_sums_over_single_bonds_and_balance),
       cmocka_unit_test(rigid_rotation_makes_no_force),
       cmocka_unit_test(critical_stretch_follows_from_the_fracture_energy),
+      cmocka_unit_test(surface_correction_evens_out_surfaces_and_leaves_the_inside_alone),
+      cmocka_unit_test(a_bar_becomes_as_long_as_hooke_says),
       cmocka_unit_test(a_pulled_bar_breaks_alike_for_any_number_of_threads_and_keeps_its_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
