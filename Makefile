@@ -1,7 +1,7 @@
 # What people type. CMake does the work (CMakePresets.json); this says it in short.
 cores := $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: all setup demo test test-external bench bench-peers docs format check-format asan coverage clang fuzz install clean
+.PHONY: all setup demo test test-external bench bench-peers bench-report docs format check-format asan coverage clang fuzz install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -34,6 +34,11 @@ bench: setup all
 bench-peers: all
 	@sh scripts/setup.sh peers
 	@build/release/breccia_peers
+
+# The tables of docs/performance.md.
+bench-report: all
+	@sh scripts/setup.sh peers
+	@bash bench/report.sh
 
 # Pages and pictures that the program makes itself.
 docs: all
