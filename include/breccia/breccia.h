@@ -143,6 +143,7 @@ BRECCIA_API int64_t breccia_model_places(const breccia_model *model);
 BRECCIA_API const int32_t *breccia_model_numbers(const breccia_model *model);
 /** The living array itself, [places]; read it, write to it between steps. Names: "position x", "displacement x",
  *  "velocity x" (and y, z), "volume", "density"; read-only in meaning: "force x" (internal, per volume), "strain xx", "stress xx" ...
+ *  (with bonds: as of this call)
  *  @return NULL if there is no such array */
 BRECCIA_API double *breccia_model_array(breccia_model *model, const char *name);
 

@@ -72,16 +72,22 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
   points->history_size = (size_t)total;
   points->committed = memory_zeroed((size_t)total, sizeof(double), "histories", error);
   points->trial = memory_zeroed((size_t)total, sizeof(double), "histories", error);
-  int failed = !points->committed || !points->trial;
-  for (int k = 0; k < 6; ++k) {
-    failed |= !(points->strain[k] = places_array(points->places, "strains", error));
-    failed |= !(points->stress[k] = places_array(points->places, "stresses", error));
-  }
-  if (failed) return BRECCIA_FAILURE;
+  if (!points->committed || !points->trial) return BRECCIA_FAILURE;
+  if (spec->where == POINTS_ON_PARTICLES && points_show(points, error)) return BRECCIA_FAILURE;
 #pragma omp parallel for schedule(static)
   for (int64_t s = 0; s < slices; ++s) begin_slice(points, s);
   if (total) memcpy(points->trial, points->committed, sizeof(double) * (size_t)total);
   return BRECCIA_OK;
+}
+
+int points_show(Points *points, Error *error)
+{
+  int failed = 0;
+  for (int k = 0; k < 6; ++k) {
+    if (!points->strain[k]) failed |= !(points->strain[k] = places_array(points->places, "strains", error));
+    if (!points->stress[k]) failed |= !(points->stress[k] = places_array(points->places, "stresses", error));
+  }
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
 void points_destroy(Points *points)

@@ -19,7 +19,8 @@ typedef struct Points {
   PointsWhere where;
   Space space;
   int64_t places;
-  double *strain[6], *stress[6]; /* [places]; if points are not on particles, what domain_observe has found */
+  double *strain[6],
+      *stress[6]; /* [places]; if points are not on particles, what domain_observe has found, NULL before */
   double *committed, *trial;
   size_t history_size;    /* numbers in each of them */
   int64_t *history_start; /* [slices] */
@@ -41,6 +42,9 @@ typedef struct PointsSpec {
 
 int points_create(Points *points, const PointsSpec *spec, Error *error);
 void points_destroy(Points *points);
+
+/** Makes the arrays of strains and stresses, if they are not there. */
+int points_show(Points *points, Error *error);
 
 /** Stress and trial history of slices first .. last - 1 from their strains, of points on particles; the slices must be of one material
  *  and at most BLOCK places. In plane stress the strain zz is found such that the stress zz vanishes.

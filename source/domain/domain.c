@@ -318,9 +318,10 @@ void domain_look(const Domain *d, int64_t place, double strain[6], double stress
   }
 }
 
-void domain_observe(Domain *d)
+int domain_observe(Domain *d, Error *error)
 {
-  if (d->points.where == POINTS_ON_PARTICLES) return;
+  if (d->points.where == POINTS_ON_PARTICLES) return BRECCIA_OK;
+  if (points_show(&d->points, error)) return BRECCIA_FAILURE;
 #pragma omp parallel for schedule(static)
   for (int64_t n = 0; n < d->particles->count; ++n) {
     int32_t place = d->particles->place_of[n];
@@ -331,6 +332,7 @@ void domain_observe(Domain *d)
       d->points.stress[k][place] = stress[k];
     }
   }
+  return BRECCIA_OK;
 }
 
 int domain_record(Domain *d, const BrokenBond *bond)

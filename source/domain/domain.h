@@ -75,8 +75,8 @@ int domain_record(Domain *domain, const BrokenBond *bond);
  *  virial stress of the bonds. */
 void domain_look(const Domain *domain, int64_t place, double strain[6], double stress[6]);
 
-/** Brings the arrays of strains and stresses up to date where no law writes them. */
-void domain_observe(Domain *domain);
+/** Brings the arrays of strains and stresses up to date where no law writes them; makes them when they are first wanted. */
+int domain_observe(Domain *domain, Error *error);
 
 /** Broken share of the family of a place, 0 to 1. */
 double domain_damage(const Domain *domain, int32_t place);

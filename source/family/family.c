@@ -259,7 +259,7 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
     if (!cloud) status = add_patterns(family, &body->lattices[b], reach, spec->influence, spec->correction, error);
     stored_too |= cloud;
     family->pattern_begin[b + 1] = family->pattern_count;
-    if (!status && spec->row_sums) status = lattice_rows_choose(family, b, error);
+    if (!status && spec->row_sums && !cloud) status = lattice_rows_choose(family, b, error);
   }
   if (!status && stored_too) {
     StoredWeight weight = {spec->horizon, spec->influence, spec->correction, volume_share};

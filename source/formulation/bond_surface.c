@@ -37,7 +37,8 @@ static void inner_energies(const BondBased *b, int block, double energy[3])
     add_energies(f->patterns[k].xi, f->patterns[k].length, f->patterns[k].weight, energy);
   int64_t count = 0;
   for (int64_t place = 0; !b->body->lattices[block].chunks && place < b->particles->places; ++place)
-    if (b->particles->block[place / SLICE] == block && b->particles->number[place] >= 0 && bond_family_is_whole(b, place)) {
+    if (b->particles->block[place / SLICE] == block && b->particles->number[place] >= 0 &&
+        bond_family_is_whole(b, place)) {
       family_energies(f, NULL, place, energy);
       ++count;
     }

@@ -288,6 +288,8 @@ double *breccia_model_array(breccia_model *model, const char *name)
       snprintf(wanted, sizeof wanted, "%s %c", vectors[v].name, "xyz"[k]);
       if (!strcmp(wanted, name)) return vectors[v].arrays[k];
     }
+  const bool strain = !strncmp(name, "strain ", 7), stress = !strncmp(name, "stress ", 7);
+  if ((strain || stress) && domain_observe(&model->domain, NULL)) return NULL;
   for (int k = 0; k < 6; ++k) {
     snprintf(wanted, sizeof wanted, "stress %s", voigt[k]);
     if (!strcmp(wanted, name)) return model->domain.points.stress[k];

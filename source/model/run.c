@@ -101,7 +101,7 @@ static void update_peaks(breccia_model *model)
 static int write_results(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  domain_observe(&model->domain);
+  if (domain_observe(&model->domain, error)) return BRECCIA_FAILURE;
   update_peaks(model);
   return result_file_write(run->results, &model->domain, model->solver.step, model->solver.time, error);
 }

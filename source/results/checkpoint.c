@@ -39,7 +39,7 @@ static int list_arrays(const Explicit *s, SavedArray *list)
       list[n++].count = places;
     }
   }
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < 6 && d->points.where == POINTS_ON_PARTICLES; ++k) {
     snprintf(list[n].name, sizeof list[n].name, "strain %d", k);
     list[n].values = d->points.strain[k];
     list[n++].count = places;
@@ -239,6 +239,10 @@ int checkpoint_read(const char *folder, Explicit *s, const char *deck, double *e
   free(path);
   if (status) return status;
   /* Strains and stresses were saved because laws may not give the same bits twice; deform must not disturb them. */
+  if (d->points.where != POINTS_ON_PARTICLES) {
+    domain_resume(d);
+    return BRECCIA_OK;
+  }
   size_t places = (size_t)d->particles->places;
   double *strains = malloc(sizeof(double) * 6 * places);
   if (!strains) return error_add(error, BRECCIA_FAILURE, "out of memory: restart");
