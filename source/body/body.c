@@ -7,31 +7,40 @@
 
 static const char *lattice_word(int k)
 {
-  static const char *const words[] = {"cubic", "square", NULL};
+  static const char *const words[] = {"cubic", "square", "line", NULL};
   return words[k];
 }
 
 static void check_block(const DeckReader *reader, void *section)
 {
   const BlockSpec *block = section;
-  bool square = !strcmp(block->lattice, "square");
+  bool square = !strcmp(block->lattice, "square"), line = !strcmp(block->lattice, "line");
+  if (line && isnan(block->area))
+    node_error(reader->document, block->head.node, reader->error,
+               "block: a line needs the 'area' of the bar's cross-section");
+  if (!line && !isnan(block->area))
+    node_error(reader->document, section_place(section, "area"), reader->error,
+               "block: 'area' goes with 'lattice: line'");
   if (square && isnan(block->thickness))
     node_error(reader->document, block->head.node, reader->error,
                "block: a square lattice needs the 'thickness' of the plate (a plane body is 1 thick per unit depth)");
   if (!square && !isnan(block->thickness))
     node_error(reader->document, section_place(section, "thickness"), reader->error,
-               "block: 'thickness' goes with a square lattice; a cubic one has its own depth");
+               "block: 'thickness' goes with a square lattice; a cubic one has its own depth, a line an 'area'");
 }
 
 static const Field block_fields[] = {
     {"material", FIELD_TEXT, offsetof(BlockSpec, material), NULL, NULL, NULL, "name of one of the materials", NULL,
      NULL, 0},
     {"lattice", FIELD_CHOICE, offsetof(BlockSpec, lattice), NULL, "cubic", NULL,
-     "arrangement of the particles; square for plane bodies, also of particles from a file", NULL, lattice_word, 0},
+     "arrangement of the particles; square for plane bodies and line for bars along x, also of particles from a file",
+     NULL, lattice_word, 0},
     {"spacing", FIELD_NUMBER, offsetof(BlockSpec, spacing), "length", NULL, "(0, inf)",
      "distance of neighbouring particles; of particles from a file: their usual one", NULL, NULL, 0},
     {"thickness", FIELD_NUMBER, offsetof(BlockSpec, thickness), "length", "", "(0, inf)", "of a plane body", NULL, NULL,
      0},
+    {"area", FIELD_NUMBER, offsetof(BlockSpec, area), "area", "", "(0, inf)", "of the cross-section of a bar", NULL,
+     NULL, 0},
     {"shape", FIELD_SECTION, offsetof(BlockSpec, shape), NULL, "", NULL,
      "what the particles fill; one stands in the middle of each lattice cell whose centre is inside", &shape_section,
      NULL, 'A'},
@@ -66,7 +75,7 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
 {
   double low[3], high[3], spacing = block->spacing;
   lattice->spacing = spacing;
-  lattice->plane = !strcmp(block->lattice, "square");
+  lattice->dimensions = !strcmp(block->lattice, "cubic") ? 3 : !strcmp(block->lattice, "square") ? 2 : 1;
   if (block->file) {
     lattice->across[0] = 1;
     lattice->across[1] = 2;
@@ -78,7 +87,7 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
   if (box) box_corners(box, spacing, anchor, far);
   double total = 1;
   for (int k = 0; k < 3; ++k) {
-    if (k == 2 && lattice->plane) {
+    if (k >= lattice->dimensions) {
       lattice->origin[k] = 0;
       lattice->cells[k] = 1;
       continue;
@@ -108,7 +117,9 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
   lattice->across[0] = lattice->axis == 0 ? 1 : 0;
   lattice->across[1] = lattice->axis == 2 ? 1 : 2;
   lattice->chunks = (lattice->cells[lattice->axis] + SLICE - 1) / SLICE;
-  lattice->volume = lattice->plane ? spacing * spacing * block->thickness : spacing * spacing * spacing;
+  lattice->volume = lattice->dimensions == 3   ? spacing * spacing * spacing
+                    : lattice->dimensions == 2 ? spacing * spacing * block->thickness
+                                               : spacing * block->area;
   return BRECCIA_OK;
 }
 
@@ -124,7 +135,7 @@ static bool removed(const Body *body, const Lattice *lattice, const double point
 {
   for (int c = 0; c < body->crack_count; ++c)
     if (body->cracks[c]->remove &&
-        shape_contains(body->cracks[c]->remove, lattice->spacing, lattice->plane, point, 1e-6 * lattice->spacing))
+        shape_contains(body->cracks[c]->remove, lattice->spacing, lattice->dimensions, point, 1e-6 * lattice->spacing))
       return true;
   return false;
 }
@@ -136,7 +147,7 @@ static bool cell_present(const Body *body, const BlockSpec *block, const Lattice
     if (cell[k] >= lattice->cells[k]) return false;
     point[k] = lattice->origin[k] + lattice->spacing * (double)cell[k];
   }
-  return shape_contains(block->shape, lattice->spacing, lattice->plane, point, tolerance) &&
+  return shape_contains(block->shape, lattice->spacing, lattice->dimensions, point, tolerance) &&
          !removed(body, lattice, point);
 }
 
@@ -180,7 +191,7 @@ static int occupy_cloud(Body *body, int b, const DeckReader *reader, Filling *fi
   const BlockSpec *block = body->blocks[b];
   const Lattice *lattice = &body->lattices[b];
   Cloud *cloud = &filling->cloud;
-  int status = cloud_read(cloud, reader, section_place(block, "file"), block->file, lattice->plane);
+  int status = cloud_read(cloud, reader, section_place(block, "file"), block->file, lattice->dimensions);
   if (status) return status;
   uint8_t *gone = memory_zeroed((size_t)cloud->count, 1, "particles", reader->error);
   if (!gone) return BRECCIA_FAILURE;
@@ -206,11 +217,12 @@ static int occupy(Body *body, int b, const DeckReader *reader, Filling *filling,
   if (block->file)
     return node_error(reader->document, section_place(block, "file"), reader->error,
                       "block '%s': the cracks take out every particle of it", block->head.name);
-  return node_error(
-      reader->document, section_place(block, "shape"), reader->error,
-      "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?%s", block->head.name,
-      body->lattices[b].plane && block->shape->cylinder ? " In the plane a cylinder is a strip; a disc is a 'sphere'"
-                                                        : "");
+  return node_error(reader->document, section_place(block, "shape"), reader->error,
+                    "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?%s",
+                    block->head.name,
+                    body->lattices[b].dimensions == 2 && block->shape->cylinder
+                        ? " In the plane a cylinder is a strip; a disc is a 'sphere'"
+                        : "");
 }
 
 static void fill_lattice(Body *body, int b, const uint8_t *present, int32_t *number)
@@ -289,11 +301,11 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
     int bad = place_lattice(&body->lattices[b], reader, body->blocks[b]);
     if (bad) status = bad;
     body->largest_spacing = fmax(body->largest_spacing, body->blocks[b]->spacing);
-    if (b && body->lattices[b].plane != body->lattices[0].plane)
+    if (b && body->lattices[b].dimensions != body->lattices[0].dimensions)
       status = node_error(reader->document, section_place(body->blocks[b], "lattice"), error,
-                          "block: square and cubic lattices cannot stand in one body");
+                          "block: cubic and square lattices and lines cannot stand in one body");
   }
-  body->plane = body->lattices[0].plane;
+  body->dimensions = body->lattices[0].dimensions;
   if (!status) status = fill(body, reader, fillings);
   for (int b = 0; b < blocks->count; ++b) {
     free(fillings[b].present);

@@ -5,13 +5,13 @@
 #include "body/particles.h"
 #include "body/shape.h"
 
-typedef enum Space { SPACE_3D, SPACE_PLANE_STRAIN, SPACE_PLANE_STRESS } Space;
+typedef enum Space { SPACE_3D, SPACE_PLANE_STRAIN, SPACE_PLANE_STRESS, SPACE_BAR } Space;
 
 typedef struct BlockSpec {
   SectionHead head;
   const char *material;
-  const char *lattice; /* "cubic" or "square" */
-  double spacing, thickness;
+  const char *lattice; /* "cubic", "square" or "line" */
+  double spacing, thickness, area;
   Shape *shape; /* NULL: particles come from a file */
   const char *file;
 } BlockSpec;
@@ -40,7 +40,7 @@ typedef struct Lattice {
   int64_t chunks;      /* slices that a full row would have */
   int32_t *slice;      /* [cells[across[1]]][cells[across[0]]][chunks] slice there, or -1 */
   double volume;       /* of a particle */
-  bool plane;
+  int dimensions;      /* 3 cubic, 2 square, 1 line */
 } Lattice;
 
 typedef struct Body {
@@ -51,7 +51,7 @@ typedef struct Body {
   int crack_count;
   const CrackSpec **cracks;
   double largest_spacing;
-  bool plane; /* all lattices are square */
+  int dimensions; /* of all lattices */
 } Body;
 
 /** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */

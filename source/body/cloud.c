@@ -80,7 +80,7 @@ static int check_rows(const Cloud *cloud, const DeckReader *reader, const Node *
   return BRECCIA_OK;
 }
 
-int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, bool plane)
+int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, int dimensions)
 {
   static const char *const names[] = {"x", "y", "z", "volume"};
   *cloud = (Cloud){0};
@@ -88,14 +88,17 @@ int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const c
   if (!path) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
   int status = BRECCIA_OK;
   for (int k = 0; k < 4 && !status; ++k) {
-    if (plane && k == 2) continue;
+    if (k < 3 && k >= dimensions) continue;
     Error *words = breccia_error_create();
     int count;
     double *column = csv_column(path, names[k], CSV_FINISHED, &count, NULL, words);
     if (!column)
       status = node_error(reader->document, node, reader->error,
                           "file: %s; expected a CSV file with the columns %s, in the deck's units",
-                          breccia_error_text(words), plane ? "x, y, volume" : "x, y, z, volume");
+                          breccia_error_text(words),
+                          dimensions == 3   ? "x, y, z, volume"
+                          : dimensions == 2 ? "x, y, volume"
+                                            : "x, volume");
     *(k == 3 ? &cloud->volume : &cloud->position[k]) = column;
     cloud->count = count;
     breccia_error_destroy(&words);

@@ -7,14 +7,14 @@
 
 typedef struct Cloud {
   int64_t count;
-  double *position[3]; /* [count] in the file's order; the third is NULL for plane bodies */
+  double *position[3]; /* [count] in the file's order; those beyond the body's dimensions are NULL */
   double *volume;
   int32_t *order; /* [count] along a curve that fills space, so that neighbours come near each other */
 } Cloud;
 
-/** Reads a CSV file with columns x, y, z (not of plane bodies) and volume, in the deck's units; its place is relative to the deck.
+/** Reads a CSV file with columns x, y, z (as many as the body has dimensions) and volume, in the deck's units; its place is relative to the deck.
  *  @param[in] node  where the deck names the file */
-int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, bool plane);
+int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, int dimensions);
 void cloud_destroy(Cloud *cloud);
 
 /** Leaves out the particles whose entry in `gone` [count] is set. */

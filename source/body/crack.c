@@ -141,7 +141,8 @@ static bool crosses_middle(const Box *box, const Body *body, const double a[3], 
 {
   double low[3], high[3];
   box_corners(box, body->largest_spacing, low, high);
-  int dimensions = body->plane ? 2 : 3, thin = 0;
+  const int dimensions = body->dimensions;
+  int thin = 0;
   for (int k = 1; k < dimensions; ++k)
     if (high[k] - low[k] < high[thin] - low[thin]) thin = k;
   double middle = (low[thin] + high[thin]) / 2, t = crossing(a[thin] - middle, b[thin] - middle, length_of(a, b));

@@ -79,7 +79,7 @@ int selection_create(Selection *selection, const Body *body, const DeckReader *r
     double spacing = body->lattices[own].spacing;
     if (block >= 0 && own != block) continue;
     if (spec->face && sign * point[axis] < outermost - spacing * ((double)spec->layers - 0.5)) continue;
-    if (spec->inside && !shape_contains(spec->inside, spacing, body->plane, point, 1e-6 * spacing)) continue;
+    if (spec->inside && !shape_contains(spec->inside, spacing, body->dimensions, point, 1e-6 * spacing)) continue;
     if (nearest >= 0 && place != nearest) continue;
     selection->places[selection->count++] = place;
   }

@@ -124,9 +124,8 @@ bool polygon_contains(const double *corners, int count, double x, double y)
   return inside;
 }
 
-bool shape_contains(const Shape *shape, double spacing, bool plane, const double p[3], double tolerance)
+bool shape_contains(const Shape *shape, double spacing, int dimensions, const double p[3], double tolerance)
 {
-  int dimensions = plane ? 2 : 3;
   if (shape->box) {
     double low[3], high[3];
     box_corners(shape->box, spacing, low, high);
@@ -156,15 +155,15 @@ bool shape_contains(const Shape *shape, double spacing, bool plane, const double
   }
   if (shape->polygon) {
     const Polygon *polygon = shape->polygon;
-    bool level = plane || (p[2] >= polygon->bottom - tolerance && p[2] <= polygon->top + tolerance);
+    bool level = dimensions < 3 || (p[2] >= polygon->bottom - tolerance && p[2] <= polygon->top + tolerance);
     return level && polygon_contains(polygon->corners.values, polygon->corners.count, p[0], p[1]);
   }
   for (int k = 0; k < shape->together.count; ++k)
-    if (shape_contains(shape->together.items[k], spacing, plane, p, tolerance)) return true;
-  if (!shape->difference.count || !shape_contains(shape->difference.items[0], spacing, plane, p, tolerance))
+    if (shape_contains(shape->together.items[k], spacing, dimensions, p, tolerance)) return true;
+  if (!shape->difference.count || !shape_contains(shape->difference.items[0], spacing, dimensions, p, tolerance))
     return false;
   for (int k = 1; k < shape->difference.count; ++k)
-    if (shape_contains(shape->difference.items[k], spacing, plane, p, -tolerance)) return false;
+    if (shape_contains(shape->difference.items[k], spacing, dimensions, p, -tolerance)) return false;
   return true;
 }
 

@@ -42,8 +42,8 @@ extern const Section shape_section, box_section;
 void box_corners(const Box *box, double spacing, double low[3], double high[3]);
 
 /** True if a point lies inside; a surface belongs to the shape within `tolerance`.
- *  @param[in] plane  the third coordinate does not count */
-bool shape_contains(const Shape *shape, double spacing, bool plane, const double point[3], double tolerance);
+ *  @param[in] dimensions  further coordinates do not count */
+bool shape_contains(const Shape *shape, double spacing, int dimensions, const double point[3], double tolerance);
 
 /** Corners of a box that holds the shape. */
 void shape_bounds(const Shape *shape, double spacing, double low[3], double high[3]);

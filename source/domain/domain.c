@@ -54,10 +54,14 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
     return node_error(reader->document, section_place(spec->peridynamics, "surface correction"), reader->error,
                       "surface correction: is for bond-based peridynamics; the strains of %s are exact at surfaces",
                       d->type->name);
-  if (d->body.plane == (space != SPACE_3D)) return BRECCIA_OK;
+  if (d->body.dimensions == 1 && !d->type->uniaxial)
+    return node_error(reader->document, section_place(spec->peridynamics, "formulation"), reader->error,
+                      "formulation: %s has no strain along a line; bars take bond-based", d->type->name);
+  if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
-                    d->body.plane ? "space: a square lattice needs 'plane strain' or 'plane stress'"
-                                  : "space: '%s' needs a square lattice; this body's is cubic",
+                    d->body.dimensions == 1   ? "space: a line needs '1-D'"
+                    : d->body.dimensions == 2 ? "space: a square lattice needs 'plane strain' or 'plane stress'"
+                                              : "space: '%s' needs a square lattice; this body's is cubic",
                     spec->peridynamics->space);
 }
 

@@ -23,7 +23,7 @@ static int add_patterns(Family *family, const Lattice *lattice, double reach, co
                         VolumeCorrection correction, Error *error)
 {
   int cells = (int)floor(reach / lattice->spacing * (1 + 1e-9)), extent[3] = {cells, cells, cells};
-  if (lattice->plane) extent[2] = 0;
+  for (int k = lattice->dimensions; k < 3; ++k) extent[k] = 0;
   const int axes[3] = {lattice->axis, lattice->across[0], lattice->across[1]};
   const int first = family->pattern_count;
   for (int pass = 0; pass < 2; ++pass) {

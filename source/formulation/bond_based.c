@@ -100,7 +100,7 @@ static void bond_force(const void *formulation, int64_t slice, int64_t slot, int
 static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const BondBased *b = formulation;
-  ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->plane, 0);
+  ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->dimensions, 0);
   shape_gradient(b->family, (int32_t)place, shape.inverse, f);
 }
 

@@ -3,9 +3,11 @@
 
 #include <string.h>
 
+/** Thickness of a plane body, cross-section of a bar. */
 static double thickness(const BondBased *b)
 {
-  return b->body->plane ? b->body->blocks[0]->thickness : 1;
+  const BlockSpec *block = b->body->blocks[0];
+  return b->body->dimensions == 3 ? 1 : b->body->dimensions == 2 ? block->thickness : block->area;
 }
 
 /** Integral of omega(q) q^power over 0 <= q <= 1 by Simpson's rule. */
@@ -25,6 +27,7 @@ static double continuum_constant(const BondLength *of, double young, double thic
 {
   const double pi = acos(-1);
   if (of->space == SPACE_3D) return 12 * young / (pi * pow(of->horizon, 4)) * (1.0 / 4) / influence_moment(of, 3);
+  if (of->space == SPACE_BAR) return 2 * young / (thick * pow(of->horizon, 2)) * (1.0 / 2) / influence_moment(of, 1);
   double constant = of->space == SPACE_PLANE_STRESS ? 9.0 : 48.0 / 5;
   return constant * young / (pi * thick * pow(of->horizon, 3)) * (1.0 / 3) / influence_moment(of, 2);
 }
@@ -64,8 +67,8 @@ static double lattice_young(const BondBased *b, int block, const double n[3])
   mandel_of(n, m);
   memcpy(x, m, sizeof x);
   for (int k = 0; k < MANDEL; ++k)
-    if (b->body->plane && symmetric_row[k] != symmetric_column[k] ? k != XY : b->body->plane && k == ZZ)
-      c[k][k] = 1; /* the plane's network has nothing to say here */
+    if (symmetric_row[k] >= b->body->dimensions || symmetric_column[k] >= b->body->dimensions)
+      c[k][k] = 1; /* the network of a plane or a bar has nothing to say here */
   for (int k = 0; k < MANDEL; ++k) {
     if (!(c[k][k] > 1e-12 * c[XX][XX])) return NAN;
     for (int i = k + 1; i < MANDEL; ++i) {
@@ -92,7 +95,9 @@ static double continuum_young(const BondBased *b)
 bool bond_family_is_whole(const BondBased *b, int64_t place)
 {
   const double pi = acos(-1), horizon = b->family->horizon;
-  const double full = b->body->plane ? pi * horizon * horizon * thickness(b) : 4 * pi / 3 * pow(horizon, 3);
+  const double full = b->body->dimensions == 3   ? 4 * pi / 3 * pow(horizon, 3)
+                      : b->body->dimensions == 2 ? pi * horizon * horizon * thickness(b)
+                                                 : 2 * horizon * thickness(b);
   return b->particles->volume[place] + family_volume(b->family, (int32_t)place) >= 0.95 * full;
 }
 
@@ -133,8 +138,8 @@ double bond_calibration(const BondBased *b, int block, Calibration calibration)
   lattice_stiffness(b, block, c);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) sum += c[i][j];
-  /* Uniform expansion by s has the energy sum s^2 / 2: 6 E s^2 / 2 in space, 3 E and 3.2 E in the plane. */
-  double continuum = b->space == SPACE_3D ? 6 : b->space == SPACE_PLANE_STRESS ? 3 : 3.2;
+  /* Uniform expansion by s has the energy sum s^2 / 2: 6 E s^2 / 2 in space, 3 E and 3.2 E in the plane, E in a bar. */
+  double continuum = b->space == SPACE_3D ? 6 : b->space == SPACE_PLANE_STRESS ? 3 : b->space == SPACE_BAR ? 1 : 3.2;
   return continuum / (unit * sum);
 }
 
@@ -142,6 +147,7 @@ double bond_characteristic_length(const BondLength *of)
 {
   const double pi = acos(-1);
   double c = continuum_constant(of, 1, 1);
+  if (of->space == SPACE_BAR) return c * pow(of->horizon, 3) * influence_moment(of, 2);
   return of->space == SPACE_3D ? pi * c * pow(of->horizon, 5) * influence_moment(of, 4)
                                : 2 * c * pow(of->horizon, 4) * influence_moment(of, 3);
 }
@@ -159,11 +165,17 @@ void bond_describe(const void *formulation, Text *text)
                b->body->blocks[block]->head.name);
       continue;
     }
+    if (b->body->dimensions == 1) {
+      text_add(text, "%s: a stretched bar shows %.3f of the wanted modulus\n", b->body->blocks[block]->head.name,
+               c * lattice_young(b, block, axis) / wanted);
+      continue;
+    }
     text_add(text,
              "%s: a uniaxial patch shows %.3f of the wanted modulus along the axes, %.3f along the diagonals of the %s",
              b->body->blocks[block]->head.name, c * lattice_young(b, block, axis) / wanted,
-             c * lattice_young(b, block, plane) / wanted, b->body->plane ? "plane" : "faces");
-    if (!b->body->plane) text_add(text, ", %.3f along those of space", c * lattice_young(b, block, space) / wanted);
+             c * lattice_young(b, block, plane) / wanted, b->body->dimensions == 2 ? "plane" : "faces");
+    if (b->body->dimensions == 3)
+      text_add(text, ", %.3f along those of space", c * lattice_young(b, block, space) / wanted);
     text_add(text, "\n");
   }
 }

@@ -103,7 +103,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   c->family = parts->family;
   c->points = parts->points;
   c->body = parts->body;
-  c->plane = parts->body->plane;
+  c->plane = parts->body->dimensions == 2;
   c->finite = !strcmp(parts->spec->strain, "green-lagrange");
   const ControlSpec *control = parts->spec->control;
   c->control = CONTROL_SCALAR;

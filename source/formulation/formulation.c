@@ -25,7 +25,7 @@ static const char *formulation_word(int k)
   return k < COUNT ? formulations[k]->name : NULL;
 }
 
-static const char *const spaces[] = {"3-D", "plane strain", "plane stress", NULL};
+static const char *const spaces[] = {"3-D", "plane strain", "plane stress", "1-D", NULL};
 static const char *space_word(int k)
 {
   return spaces[k];
@@ -70,7 +70,7 @@ static const Field peridynamics_fields[] = {
     {"formulation", FIELD_CHOICE, offsetof(PeridynamicsSpec, formulation), NULL, "correspondence", NULL,
      "how displacements become strain and stress becomes force", NULL, formulation_word, 0},
     {"space", FIELD_CHOICE, offsetof(PeridynamicsSpec, space), NULL, "3-D", NULL,
-     "3-D for cubic lattices; plane strain or plane stress for square ones", NULL, space_word, 0},
+     "3-D for cubic lattices; plane strain or plane stress for square ones; 1-D for lines", NULL, space_word, 0},
     {"strain", FIELD_CHOICE, offsetof(PeridynamicsSpec, strain), NULL, "green-lagrange", NULL,
      "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations", NULL, strain_word, 0},
     {"horizon", FIELD_LENGTH, offsetof(PeridynamicsSpec, horizon), "length", "3.015 spacings", "(0, inf)",
@@ -112,6 +112,7 @@ Space peridynamics_space(const PeridynamicsSpec *spec)
 double micromodulus(const Body *body, double young, double horizon)
 {
   const double pi = acos(-1);
-  if (!body->plane) return 12 * young / (pi * pow(horizon, 4));
+  if (body->dimensions == 3) return 12 * young / (pi * pow(horizon, 4));
+  if (body->dimensions == 1) return 2 * young / (body->blocks[0]->area * horizon * horizon);
   return 9 * young / (pi * body->blocks[0]->thickness * pow(horizon, 3));
 }

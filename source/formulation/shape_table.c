@@ -11,7 +11,8 @@ static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t s
   for (int lane = 0; lane < SLICE; ++lane) {
     int32_t place = (int32_t)(slice * SLICE + lane);
     if (family->particles->number[place] < 0) continue;
-    ShapeTensor shape = shape_tensor(family, place, table->plane, first_time ? 0 : (double)table->roundness[place]);
+    ShapeTensor shape =
+        shape_tensor(family, place, table->plane ? 2 : 3, first_time ? 0 : (double)table->roundness[place]);
     for (int k = 0; k < 6; ++k) shapes.inverse[k][lane] = shape.inverse[k];
     for (int k = 0; k < 3; ++k) shapes.first_moment[k][lane] = shape.first_moment[k];
     shapes.weight_sum[lane] = shape.weight_sum;

@@ -2,9 +2,10 @@
 
 #include "base/tensor.h"
 
-static double roundness(const double k[6], bool plane)
+static double roundness(const double k[6], int dimensions)
 {
-  if (plane) {
+  if (dimensions == 1) return k[XX] > 0;
+  if (dimensions == 2) {
     double trace = (k[XX] + k[YY]) / 2;
     return trace > 0 ? (k[XX] * k[YY] - k[XY] * k[XY]) / (trace * trace) : 0;
   }
@@ -26,11 +27,11 @@ static void pseudo_inverse(const double k[6], double inverse[6])
   }
 }
 
-ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double initial_roundness)
+ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, double initial_roundness)
 {
   ShapeTensor shape = {.mode = SHAPE_REGULAR};
   int64_t slice = place / SLICE;
-  int lane = place % SLICE, dimensions = plane ? 2 : 3;
+  int lane = place % SLICE;
   double k[6] = {0}, volumes = 0;
   for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot) {
     if (!(family->intact[slot] >> lane & 1)) continue;
@@ -42,13 +43,15 @@ ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double
     ++shape.bonds;
   }
   shape.mean_influence = volumes > 0 ? shape.weight_sum / volumes : 0;
-  shape.roundness = roundness(k, plane);
+  shape.roundness = roundness(k, dimensions);
   if (!shape.bonds) {
     shape.mode = SHAPE_FREE;
   } else if (shape.bonds < dimensions + 1) {
     shape.mode = SHAPE_AXIAL;
   } else if (shape.roundness > 1e-4 * initial_roundness && shape.roundness > 1e-12) {
-    if (plane) {
+    if (dimensions == 1) {
+      shape.inverse[XX] = 1 / k[XX];
+    } else if (dimensions == 2) {
       double determinant = k[XX] * k[YY] - k[XY] * k[XY];
       shape.inverse[XX] = k[YY] / determinant;
       shape.inverse[YY] = k[XX] / determinant;

@@ -22,8 +22,9 @@ typedef struct ShapeTensor {
 } ShapeTensor;
 
 /** Shape tensor of a place from its intact bonds.
+ *  @param[in] dimensions         of the body
  *  @param[in] initial_roundness  what it was with all bonds; 0 while it is first asked for */
-ShapeTensor shape_tensor(const Family *family, int32_t place, bool plane, double initial_roundness);
+ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, double initial_roundness);
 
 /** Deformation gradient F = I + (sum w eta (x) xi) K^-1 at a place, row by row. */
 void shape_gradient(const Family *family, int32_t place, const double inverse[6], double f[9]);

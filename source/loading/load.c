@@ -116,8 +116,8 @@ static int check_constraints(const Loading *loading, const Particles *particles,
   return status;
 }
 
-/** In the plane nothing moves along z. */
-static int check_plane(const LoadSpec *spec, const DeckReader *reader)
+/** In the plane nothing moves along z, in a bar along x only. */
+static int check_directions(const LoadSpec *spec, int dimensions, const DeckReader *reader)
 {
   const struct {
     const char *key;
@@ -126,9 +126,11 @@ static int check_plane(const LoadSpec *spec, const DeckReader *reader)
                  {"gravity", spec->gravity},       {"displacement", spec->displacement},
                  {"velocity", spec->velocity},     {"along", spec->along ? spec->along->direction : NULL}};
   for (int v = 0; v < 6; ++v)
-    if (vectors[v].value && !isnan(vectors[v].value[2]) && vectors[v].value[2] != 0)
-      return node_error(reader->document, section_place(spec, vectors[v].key), reader->error,
-                        "%s: has a part along z, but the body is plane", vectors[v].key);
+    for (int k = dimensions; k < 3 && vectors[v].value; ++k)
+      if (!isnan(vectors[v].value[k]) && vectors[v].value[k] != 0)
+        return node_error(reader->document, section_place(spec, vectors[v].key), reader->error,
+                          "%s: has a part along %c, but the body is %s", vectors[v].key, "xyz"[k],
+                          dimensions == 2 ? "plane" : "a bar along x");
   return BRECCIA_OK;
 }
 
@@ -148,7 +150,7 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
     Reference reference = load->spec->on;
     if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
     int bad = selection_create(&load->selection, body, reader, selections, &reference);
-    if (!bad && body->plane) bad = check_plane(load->spec, reader);
+    if (!bad) bad = check_directions(load->spec, body->dimensions, reader);
     if (bad) status = bad;
     for (int64_t n = 0; n < load->selection.count; ++n)
       load->volume += body->particles.volume[load->selection.places[n]];

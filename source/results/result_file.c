@@ -235,7 +235,7 @@ static int write_geometry(hid_t root, const Domain *d)
     bad |= dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, 0, (hsize_t)p->count, positions);
     bad |= dataset_write(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 0, 1, &p->count);
     hid_t file = H5Iget_file_id(root), own = H5Gcreate2(file, "Breccia", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    int plane = d->body.plane;
+    int plane = d->body.dimensions < 3;
     bad |= attribute_text(own, "version", BRECCIA_VERSION);
     bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
     hid_t set = dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);

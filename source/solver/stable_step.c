@@ -111,7 +111,6 @@ int stable_step(Domain *d, double *step, Error *error)
   if (failed) goto done;
 
   double *const *u = d->particles->displacement;
-  int plane = d->body.plane;
   int elastic = d->points.elastic_stage;
   d->points.elastic_stage = 1;
   double **previous = v[0], **current = v[1], **next = v[2];
@@ -126,7 +125,7 @@ int stable_step(Domain *d, double *step, Error *error)
   for (int k = 0; k < 3; ++k)
     for (int64_t n = 0; n < d->particles->count; ++n) {
       double r = random_uniform(&seed) - 0.5;
-      current[k][d->particles->place_of[n]] = plane && k == 2 ? 0 : r;
+      current[k][d->particles->place_of[n]] = k < d->body.dimensions ? r : 0;
     }
   double norm = sqrt(mass_product(d, current, current));
   double alpha[MOST_ITERATIONS], beta[MOST_ITERATIONS + 1] = {0}, largest = 0, before = 0;

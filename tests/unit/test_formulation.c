@@ -132,7 +132,7 @@ static void shake(breccia_model *model, double amplitude)
   const Particles *p = model->domain.particles;
   uint64_t seed = 5;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < (model->domain.body.plane ? 2 : 3); ++k)
+    for (int k = 0; k < (model->domain.body.dimensions); ++k)
       p->displacement[k][p->place_of[n]] += amplitude * (random_uniform(&seed) - 0.5);
 }
 
