@@ -225,7 +225,9 @@ static void draw_axes(cairo_t *cr, const Page *page, const Scene *scene, const R
   cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
   cairo_set_line_width(cr, 0.8);
   for (int axis = 0; axis < 2; ++axis) {
-    double low = axis ? scene->y0 : scene->x0, high = axis ? scene->y1 : scene->x1, step = tick_distance(high - low);
+    double low = axis ? scene->y0 : scene->x0, high = axis ? scene->y1 : scene->x1;
+    double apart = axis ? 18 : 50; /* pixels that the words of a tick need */
+    double step = tick_distance(fmax(high - low, 5 * apart / page->scale));
     for (double v = ceil(low / step) * step; v <= high; v += step) {
       char words[32];
       tick_words(v, step, words, sizeof words);
