@@ -7,17 +7,18 @@
 #include <string.h>
 
 /** Laws take one strain or six; formulations offer one or the other. */
-static int check_law(const Domain *d, const DeckReader *reader, const SectionHead *section, const Material *m)
+static int check_law(const Domain *d, const DeckReader *reader, const MaterialSpec *spec)
 {
   const LawList *laws = reader->context;
-  if (m->law->uniaxial == d->type->uniaxial) return BRECCIA_OK;
+  const breccia_law *law = law_find(laws, spec->model);
+  if (law->uniaxial == d->type->uniaxial) return BRECCIA_OK;
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
     if (law_at(laws, k)->uniaxial == d->type->uniaxial)
       text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
-  node_error(reader->document, section_place(section, "model"), reader->error,
-             "material '%s': '%s' is a law of %s; %s takes %s", m->name, m->law->name,
-             m->law->uniaxial ? "one strain" : "strain in space", d->type->name, words.characters);
+  node_error(reader->document, section_place(spec, "model"), reader->error,
+             "material '%s': '%s' is a law of %s; %s takes %s", spec->head.name, law->name,
+             law->uniaxial ? "one strain" : "strain in space", d->type->name, words.characters);
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
@@ -29,9 +30,9 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
   if (!d->materials) return BRECCIA_FAILURE;
   int status = BRECCIA_OK;
   for (int k = 0; k < spec->materials->count; ++k) {
-    Material *m = &d->materials[d->material_count++];
-    int bad = material_create(m, reader, spec->materials->items[k], length);
-    if (!bad) bad = check_law(d, reader, spec->materials->items[k], m);
+    const MaterialSpec *material = spec->materials->items[k];
+    int bad = check_law(d, reader, material); /* what its parameters lack may follow from that */
+    if (!bad) bad = material_create(&d->materials[d->material_count++], reader, material, length);
     if (bad) status = bad;
   }
   for (int b = 0; b < spec->blocks->count; ++b) {

@@ -82,12 +82,14 @@ static void apply(Domain *d, Trial *trial, double *const base_u[3], double *cons
 {
   int64_t places = d->particles->places;
   for (int k = 0; k < 3; ++k)
+#pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < places; ++i) trial->displacement[k][i] = base_u[k][i] + h * v[k][i];
   exchange(d, trial);
 #pragma omp parallel
   domain_forces(d);
   exchange(d, trial);
   for (int k = 0; k < 3; ++k)
+#pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < places; ++i)
       out[k][i] = (base_f[k][i] - trial->internal[k][i]) / (h * d->particles->density[i]);
 }
@@ -137,12 +139,14 @@ int stable_step(Domain *d, double *step, Error *error)
     apply(d, &trial, u, base_f, h, current, next);
     alpha[n] = mass_product(d, next, current);
     for (int k = 0; k < 3; ++k)
+#pragma omp parallel for schedule(static)
       for (int64_t i = 0; i < places; ++i) next[k][i] -= alpha[n] * current[k][i] + beta[n] * previous[k][i];
     beta[n + 1] = sqrt(mass_product(d, next, next));
     largest = largest_eigenvalue(alpha, beta, n + 1);
     if (!(beta[n + 1] > 1e-9 * fabs(largest)) || (n > 12 && largest - before < 1e-4 * largest)) break;
     before = largest;
     for (int k = 0; k < 3; ++k)
+#pragma omp parallel for schedule(static)
       for (int64_t i = 0; i < places; ++i) next[k][i] /= beta[n + 1];
     double **spare = previous;
     previous = current;
