@@ -84,6 +84,14 @@ void particles_bounds(const Particles *particles, double low[3], double high[3])
   }
 }
 
+double particles_distance(const Particles *p, int32_t a, int32_t b)
+{
+  double square = 0;
+  for (int k = 0; k < 3; ++k)
+    square += (p->position[k][b] - p->position[k][a]) * (p->position[k][b] - p->position[k][a]);
+  return sqrt(square);
+}
+
 int32_t particles_nearest(const Particles *particles, const double point[3])
 {
   int32_t nearest = -1;

@@ -33,6 +33,9 @@ void particles_destroy(Particles *particles);
 /** Largest extent of the present particles: low and high corner of their centres. */
 void particles_bounds(const Particles *particles, double low[3], double high[3]);
 
+/** Reference distance of two places. */
+double particles_distance(const Particles *particles, int32_t a, int32_t b);
+
 /** @return the place of the particle nearest to a point (the lowest number among equals), or -1 if there is none */
 int32_t particles_nearest(const Particles *particles, const double point[3]);
 

@@ -62,7 +62,8 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
   return BRECCIA_OK;
 }
 
-int material_length_parameter(const breccia_law *law)
+/** Which parameter of a law is the length over which a fracture energy is spread, or -1. */
+static int length_parameter(const breccia_law *law)
 {
   for (int k = 0; k < law->parameter_count; ++k)
     if (!strcmp(law->parameters[k].name, "length")) return k;
@@ -78,7 +79,7 @@ int material_create(Material *material, const DeckReader *reader, const Material
 {
   char reason[512] = "";
   const breccia_law *law = law_find(reader->context, spec->model);
-  int at = material_length_parameter(law);
+  int at = length_parameter(law);
   if (at >= 0 && isnan(spec->values[at])) spec->values[at] = length;
   int status = material_prepare(material, law, spec->values, reason, sizeof reason);
   if (status)

@@ -26,9 +26,6 @@ typedef struct Material {
  *  @param[in] length  the formulation's, for laws that spread a fracture energy; NaN: it has none */
 int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length);
 
-/** Which parameter of a law is the length over which a fracture energy is spread, or -1. */
-int material_length_parameter(const breccia_law *law);
-
 /** Strain at which bonds of the material break; infinite: never. */
 double material_failure_strain(const Material *material);
 

@@ -52,24 +52,16 @@ void contact_destroy(Contact *c)
   *c = (Contact){.spec = NULL};
 }
 
-static double reference_distance(const Particles *p, int32_t a, int32_t b)
-{
-  double square = 0;
-  for (int k = 0; k < 3; ++k)
-    square += (p->position[k][b] - p->position[k][a]) * (p->position[k][b] - p->position[k][a]);
-  return sqrt(square);
-}
-
 static double contact_distance(const Contact *c, int32_t a, int32_t b)
 {
   const Particles *p = &c->body->particles;
   const Lattice *one = &c->body->lattices[p->block[a / SLICE]], *other = &c->body->lattices[p->block[b / SLICE]];
-  return fmin(c->spec->share * reference_distance(p, a, b), c->spec->distance * (one->spacing + other->spacing) / 2);
+  return fmin(c->spec->share * particles_distance(p, a, b), c->spec->distance * (one->spacing + other->spacing) / 2);
 }
 
 static bool bonded(const Contact *c, int32_t a, int32_t b)
 {
-  if (reference_distance(&c->body->particles, a, b) > c->family->horizon * (1 + 1e-9)) return false;
+  if (particles_distance(&c->body->particles, a, b) > c->family->horizon * (1 + 1e-9)) return false;
   return !c->touched[a] || family_joins(c->family, a, b);
 }
 

@@ -429,8 +429,8 @@ double domain_damage(const Domain *d, int32_t place)
 size_t domain_particle_bytes(const Domain *d)
 {
   size_t places = (size_t)d->particles->places;
-  return places * sizeof(double) * (15 + 2 + 12 + 1) + places * sizeof(int32_t) * 2 +
-         2 * d->points.history_size * sizeof(double);
+  size_t arrays = 15 + 2 + 1 + (d->points.where == POINTS_ON_PARTICLES ? 12 : 0);
+  return places * sizeof(double) * arrays + places * sizeof(int32_t) * 2 + 2 * d->points.history_size * sizeof(double);
 }
 
 size_t domain_bytes(const Domain *d)

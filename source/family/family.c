@@ -126,14 +126,6 @@ typedef struct Build {
   const StoredBonds *stored;
 } Build;
 
-static double distance(const Particles *p, int32_t a, int32_t b)
-{
-  double square = 0;
-  for (int k = 0; k < 3; ++k)
-    square += (p->position[k][b] - p->position[k][a]) * (p->position[k][b] - p->position[k][a]);
-  return sqrt(square);
-}
-
 /** Slots of one slice; writes them when `write` is set. @return their number; `stored_slots` of which are stored */
 static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_t *stored_slots, int64_t *bonds)
 {
@@ -175,7 +167,7 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
         if (family->scale) family->scale[row * SLICE + lane] = here ? stored->scale[at] : 0;
         if (here && family->inverse_length)
           family->inverse_length[row * SLICE + lane] =
-              1 / (float)distance(&build->body->particles, (int32_t)place, stored->neighbour[at]);
+              1 / (float)particles_distance(&build->body->particles, (int32_t)place, stored->neighbour[at]);
         if (here) family->intact[slot + k] |= (uint8_t)(1u << lane);
       }
     }

@@ -3,7 +3,6 @@
  * the last bit and so remember the same. A bond between two materials is half a fibre of each, side by side. */
 #include "formulation/bond_based.h"
 
-#include "base/tensor.h"
 #include <math.h>
 
 enum { SLOTS = BLOCK / SLICE };
