@@ -1,6 +1,7 @@
 #include "results/result_file.h"
 
 #include "results/result_view.h"
+#include "results/xdmf.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <hdf5.h>
@@ -352,52 +353,19 @@ static int grow_times(ResultFile *file)
 
 static int write_xdmf(const ResultFile *file)
 {
-  Text text = {0};
-  text_add(&text, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
-                  "  <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-  long long n = file->particles;
-  for (int64_t w = 0; w < file->writes; ++w) {
-    text_add(&text, "   <Grid Name=\"step %lld\">\n    <Time Value=\"%.17g\"/>\n", (long long)file->steps[w],
-             file->times[w]);
-    text_add(&text,
-             "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%lld\"/>\n"
-             "    <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
-             "Dimensions=\"%lld 3\">results.vtkhdf:/VTKHDF/Points</DataItem></Geometry>\n",
-             n, n);
-    for (int c = 0; c < file->column_count; ++c) {
-      const Column *column = &file->columns[c];
-      int k = column->components;
-      char shape[64], all[64], slab[128];
-      if (k > 1) {
-        snprintf(shape, sizeof shape, "%lld %d", n, k);
-        snprintf(all, sizeof all, "%lld %d", n * (long long)file->writes, k);
-        snprintf(slab, sizeof slab, "%lld 0 1 1 %lld %d", n * (long long)w, n, k);
-      } else {
-        snprintf(shape, sizeof shape, "%lld", n);
-        snprintf(all, sizeof all, "%lld", n * (long long)file->writes);
-        snprintf(slab, sizeof slab, "%lld 1 %lld", n * (long long)w, n);
-      }
-      text_add(&text,
-               "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" "
-               "Dimensions=\"%s\"><DataItem Dimensions=\"3 %d\" Format=\"XML\">%s</DataItem>"
-               "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%s\">"
-               "results.vtkhdf:/VTKHDF/PointData/%s</DataItem></DataItem></Attribute>\n",
-               column->name,
-               k == 1   ? "Scalar"
-               : k == 3 ? "Vector"
-                        : "Matrix",
-               shape, k > 1 ? 2 : 1, slab, file->single ? 4 : 8, all, column->name);
-    }
-    text_add(&text, "   </Grid>\n");
-  }
-  text_add(&text, "  </Grid>\n </Domain>\n</Xdmf>\n");
-  char *temporary = text_format("%s.part", file->xdmf);
-  FILE *out = temporary ? fopen(temporary, "w") : NULL;
-  int bad = !out || fwrite(text.characters, 1, text.length, out) != text.length;
-  if (out && fclose(out)) bad = 1;
-  bad = bad || rename(temporary, file->xdmf);
-  free(temporary);
-  text_free(&text);
+  XdmfField *fields = calloc((size_t)file->column_count + 1, sizeof *fields);
+  if (!fields) return 1;
+  for (int c = 0; c < file->column_count; ++c)
+    fields[c] = (XdmfField){file->columns[c].name, file->columns[c].components};
+  const XdmfSeries series = {.particles = file->particles,
+                             .writes = file->writes,
+                             .times = file->times,
+                             .steps = file->steps,
+                             .fields = fields,
+                             .count = file->column_count,
+                             .bytes = file->single ? 4 : 8};
+  int bad = xdmf_write(file->xdmf, &series);
+  free(fields);
   return bad;
 }
 
