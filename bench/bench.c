@@ -3,7 +3,6 @@
  *   breccia_bench [FILE.csv [WORD]]     WORD: only rows that have it in the name of formulation, law or body */
 #include "measure.h"
 
-#include "base/random.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,25 +38,6 @@ static const BenchBody bodies[] = {
     {"notched plate", "shape: {box: {particles: [160, 120, 6]}}", NOTCH},
     {"scattered", "file: scattered.csv", ""},
 };
-
-/** 40³ particles, each moved by up to 0.3 spacings from its lattice place, with volumes that differ by a tenth. */
-static void write_scattered(const char *folder)
-{
-  enum { N = 40 };
-  char *path = text_format("%s/scattered.csv", folder);
-  FILE *file = fopen(path, "w");
-  uint64_t seed = 1;
-  if (!file) abort();
-  fprintf(file, "x,y,z,volume\n");
-  for (int i = 0; i < N * N * N; ++i) {
-    double x[3];
-    for (int k = 0; k < 3; ++k)
-      x[k] = 0.03 * ((k == 0 ? i % N : k == 1 ? i / N % N : i / N / N) + 0.6 * (random_uniform(&seed) - 0.5));
-    fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", x[0], x[1], x[2], 2.7e-5 * (0.9 + 0.2 * random_uniform(&seed)));
-  }
-  fclose(file);
-  free(path);
-}
 
 static breccia_model *load(const char *folder, const BenchBody *body, const Case *c)
 {
@@ -181,7 +161,8 @@ int main(int count, char **words)
     fprintf(stderr, "cannot write %s\n", csv ? folder : path);
     return 1;
   }
-  write_scattered(folder);
+  char *cloud = text_format("%s/scattered.csv", folder);
+  write_scattered(cloud, NULL);
   use_threads(1);
   double flops = multiply_add_rate(), one = stream_bandwidth();
   use_threads(all);
@@ -229,7 +210,6 @@ int main(int count, char **words)
       breccia_model_destroy(&model);
     }
   fclose(csv);
-  char *cloud = text_format("%s/scattered.csv", folder);
   remove(cloud);
   rmdir(folder);
   free(cloud);

@@ -13,6 +13,10 @@ void use_threads(int threads);
 /** Sorts the values. */
 double median(double *values, int count);
 
+/** Writes 40³ particles, each moved by up to 0.3 spacings of 0.03 from its lattice place, with volumes that differ by a tenth:
+ *  a CSV file for a deck, or a data file for LAMMPS; either may be NULL. */
+void write_scattered(const char *csv, const char *lammps);
+
 /** What the machine allows: triad in GB/s on the threads in use, fused multiply-add in GFLOP/s on one. */
 double stream_bandwidth(void);
 double multiply_add_rate(void);

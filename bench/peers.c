@@ -1,5 +1,5 @@
-/* The same cubes in another program: LAMMPS with its PERI package (pmb and lps), run in turn with ours on one thread, and the accelerations
- * of one random displacement field beside each other. */
+/* The same bodies in another program: LAMMPS with its PERI package (pmb and lps), run in turn with ours on one thread, and the
+ * accelerations of one random displacement field beside each other. */
 #include "measure.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { TURNS = 3 };
+enum { TURNS = 3, SCATTERED = 0 };
 
 static const double spacing = 0.03, horizon = 3.015 * 0.03, young = 150e3, density = 1.5;
 
@@ -18,24 +18,30 @@ static double constant(void)
   return 12 * young / (acos(-1) * pow(horizon, 4));
 }
 
-/** A lattice of so small a constant at the end switches LAMMPS's volume correction and short-range forces off. */
+/** A cube of n particles each way, or scattered ones. A lattice of so small a constant at the end switches LAMMPS's volume
+ *  correction and short-range forces off. */
 static void write_input(const char *folder, int n, const char *style, int64_t steps)
 {
   char *path = text_format("%s/in.peri", folder);
   FILE *f = fopen(path, "w");
   if (!f) abort();
-  fprintf(f,
-          "units si\nboundary s s s\natom_style peri\natom_modify map array\nneighbor %g bin\nlattice sc %.17g\n"
-          "region box block -0.5 %d.5 -0.5 %d.5 -0.5 %d.5\ncreate_box 1 box\ncreate_atoms 1 region box\n",
-          0.1 * spacing, spacing, n - 1, n - 1, n - 1);
+  fprintf(f, "units si\nboundary s s s\natom_style peri\natom_modify map array\nneighbor %g bin\nlattice sc %.17g\n",
+          0.1 * spacing, spacing);
+  if (n == SCATTERED)
+    fprintf(f, "read_data scattered.data\n");
+  else
+    fprintf(f,
+            "region box block -0.5 %d.5 -0.5 %d.5 -0.5 %d.5\ncreate_box 1 box\ncreate_atoms 1 region box\n"
+            "set group all volume %.17g\n",
+            n - 1, n - 1, n - 1, pow(spacing, 3));
   if (!strcmp(style, "pmb"))
     fprintf(f, "pair_style peri/pmb\npair_coeff * * %.17g %.17g 1e10 0.0\n", constant(), horizon);
   else
     fprintf(f, "pair_style peri/lps\npair_coeff * * %.17g %.17g %.17g 1e10 0.0\n", young / 1.5, young / 2.5, horizon);
   fprintf(f,
-          "set group all density %.17g\nset group all volume %.17g\nvelocity all set 0 0 0\nfix 1 all nve\ntimestep "
-          "1e-12\nlattice sc 1e-6\nrun 0\ndisplace_atoms all random 1e-5 1e-5 1e-5 12345 units box\n",
-          density, pow(spacing, 3));
+          "set group all density %.17g\nvelocity all set 0 0 0\nfix 1 all nve\ntimestep "
+          "1e-12\nlattice sc 1e-12\nrun 0\ndisplace_atoms all random 1e-5 1e-5 1e-5 12345 units box\n",
+          density);
   if (steps)
     fprintf(f, "run %lld\n", (long long)steps);
   else
@@ -61,21 +67,26 @@ static double run_lammps(const char *folder, double *bonds)
   return seconds;
 }
 
-static breccia_model *ours(int n)
+static breccia_model *ours(const char *folder, int n)
 {
+  char *block = n == SCATTERED ? text_format("file: scattered.csv")
+                               : text_format("shape: {box: {particles: [%d, %d, %d]}}", n, n, n);
   char *deck =
       text_format("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: %g, model: elastic-brittle, "
                   "Young modulus: %g, tensile strength: %g}}\nperidynamics: {formulation: bond-based, calibration: "
-                  "continuum, horizon: %.17g}\nbody: {b: {material: m, spacing: %g, shape: {box: {particles: "
-                  "[%d, %d, %d]}}}}\nsolve: {explicit: {steps: 1000000, time step: 1e-12}}\n",
-                  density, young, young * 1000, horizon, spacing, n, n, n);
+                  "continuum, horizon: %.17g}\nbody: {b: {material: m, spacing: %g, %s}}\n"
+                  "solve: {explicit: {steps: 1000000, time step: 1e-12}}\n",
+                  density, young, young * 1000, horizon, spacing, block);
+  char *name = text_format("%s/deck", folder);
   breccia_model *model = NULL;
   breccia_error *error = breccia_error_create();
   breccia_options options = {.threads = 1};
-  if (breccia_model_load_string(deck, "peers", &options, &model, error))
+  if (breccia_model_load_string(deck, name, &options, &model, error))
     fprintf(stderr, "%s\n", breccia_error_text(error));
   breccia_error_destroy(&error);
   free(deck);
+  free(name);
+  free(block);
   if (model) model->threads = 1;
   return model;
 }
@@ -83,7 +94,7 @@ static breccia_model *ours(int n)
 /** Takes up the positions that LAMMPS wrote. @return largest difference of accelerations over the largest acceleration */
 static double compare(const char *folder, int n)
 {
-  breccia_model *model = ours(n);
+  breccia_model *model = ours(folder, n);
   char *path = text_format("%s/dump.txt", folder), line[1024];
   FILE *f = fopen(path, "r");
   const Particles *p = model->domain.particles;
@@ -94,10 +105,10 @@ static double compare(const char *folder, int n)
     long long id;
     double x[3], force[3];
     if (sscanf(line, "%lld %lf %lf %lf %lf %lf %lf", &id, x, x + 1, x + 2, force, force + 1, force + 2) != 7) continue;
-    const int64_t number = id - 1, cell[3] = {number % n, number / n % n, number / n / n};
+    const int64_t number = id - 1;
     const int32_t place = p->place_of[number];
     for (int k = 0; k < 3; ++k) {
-      p->displacement[k][place] = x[k] - spacing * (double)cell[k];
+      p->displacement[k][place] = x[k] - p->position[k][place];
       theirs[3 * number + k] = force[k] / density;
     }
     ++read;
@@ -121,19 +132,27 @@ int main(void)
 {
   char folder[] = "/tmp/breccia-peers-XXXXXX";
   if (!mkdtemp(folder)) return 1;
-  double bonds = 0;
-  write_input(folder, 16, "pmb", 0);
-  run_lammps(folder, &bonds);
-  const double difference = compare(folder, 16);
-  printf("Accelerations of a random field on 16³ particles, pmb without volume correction: they differ by %.1e of the "
-         "largest.\n\n| particles | directed bonds | LAMMPS pmb | ours | ratio | LAMMPS lps "
-         "|\n|---|---|---|---|---|---|\n",
-         difference);
-  int failed = !(difference < 1e-10);
-  const int sizes[] = {32, 40, 80};
+  char *csv = text_format("%s/scattered.csv", folder), *data = text_format("%s/scattered.data", folder);
+  write_scattered(csv, data);
+  free(csv);
+  free(data);
+  int failed = 0;
+  for (int k = 0; k < 2; ++k) {
+    const int n = k ? SCATTERED : 16;
+    double bonds = 0;
+    write_input(folder, n, "pmb", 0);
+    run_lammps(folder, &bonds);
+    const double difference = compare(folder, n);
+    printf("Accelerations of a random field on %s particles, pmb without volume correction: they differ by %.1e of the "
+           "largest.\n\n",
+           k ? "scattered" : "16³", difference);
+    failed |= !(difference < 1e-10);
+  }
+  printf("| particles | directed bonds | LAMMPS pmb | ours | ratio | LAMMPS lps |\n|---|---|---|---|---|---|\n");
+  const int sizes[] = {32, 40, 80, SCATTERED};
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
     const int n = sizes[s];
-    breccia_model *model = ours(n);
+    breccia_model *model = ours(folder, n);
     if (!model) return 1;
     const double our_bonds = (double)model->domain.family.bonds;
     const int64_t steps = (int64_t)(3e7 / our_bonds) + 2;
@@ -149,7 +168,9 @@ int main(void)
       lps[t] = 1e9 * run_lammps(folder, &lps_bonds) / (double)steps / our_bonds;
       ratio[t] = pmb[t] / own[t];
     }
-    printf("| %d³ | %.0f%s | %.1f | %.2f | %.1f | %.1f |\n", n, our_bonds,
+    char body[32];
+    snprintf(body, sizeof body, n == SCATTERED ? "64000 scattered" : "%d³", n);
+    printf("| %s | %.0f%s | %.1f | %.2f | %.1f | %.1f |\n", body, our_bonds,
            their_bonds == our_bonds ? "" : " (LAMMPS has another number)", median(pmb, TURNS), median(own, TURNS),
            median(ratio, TURNS), median(lps, TURNS));
     fflush(stdout);
