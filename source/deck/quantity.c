@@ -21,6 +21,7 @@ static const Dimension dimensions[] = {
     {"force", 0, 1, 0, "kN"},
     {"force per volume", -3, 1, 0, "kN/m3"},
     {"stress", -2, 1, 0, "kPa"},
+    {"per stress", 2, -1, 0, "1/kPa"},
     {"density", -4, 1, 2, "t/m3"},
     {"energy", 1, 1, 0, "kJ"},
     {"fracture energy", -1, 1, 0, "N/m"},

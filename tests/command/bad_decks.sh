@@ -106,14 +106,14 @@ bars='s/^  clay: .*/  clay: {model: elastic-1d, density: 1, Young modulus: 1 GPa
 refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic, density: 1, bulk modulus: 1 GPa, shear modulus: 1 GPa}/; s/^peri.*/peridynamics: {formulation: bond-based}/" \
   4:17 "'elastic' is a law of strain in space; bond-based takes elastic-1d"
 refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: elastic-1d, density: 7.85, Young modulus: 210 GPa/' \
-  5:18 "'elastic-1d' is a law of one strain; correspondence takes elastic, multi-yield-j2"
+  5:18 "'elastic-1d' is a law of one strain; correspondence takes elastic, j2"
 refuse 's/critical stretch: 0.05/critical stretch: 0.05, fracture energy: 100 N\/m/' 16:52 "give 'critical stretch' or 'fracture energy', not both"
 refuse 's/critical stretch: 0.05/fracture energy: 100 N\/m/' 16:28 'only bond-based peridynamics has a critical stretch that follows from it'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, zero-energy control: {none: yes}}/" 15:41 'zero-energy control: is for correspondence'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: elastic}/" 15:54 "calibration: 'elastic' is not known; choose from continuum, uniform-expansion, uniaxial"
 refuse 's/^peri.*/peridynamics: {surface correction: energy}/' 15:36 'surface correction: is for bond-based peridynamics; the strains of correspondence are exact at surfaces'
 refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: elastic-brittle, density: 7.85, Young modulus: 210 GPa, fracture energy: 1 N\/m/' \
-  5:18 "'elastic-brittle' is a law of one strain; correspondence takes elastic, multi-yield-j2"
+  5:18 "'elastic-brittle' is a law of one strain; correspondence takes elastic, j2"
 softening='model: bilinear-softening, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N\/m'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{$softening}/" \
   4:3 "material 'clay' (bilinear-softening): a length of 0.7236 stores more at the peak than the fracture energy, so that the curve would snap back; it must be less than 2 E G_F / f_t^2 = 0.666667: take a finer spacing"

@@ -52,39 +52,66 @@ void compute_forces(breccia_model *model)
   domain_forces(&model->domain);
 }
 
-Material material_of(const char *name, ...)
+/** Values of a law's parameters from "name=value" words and its defaults; units m, kN, s. */
+static void read_words(const breccia_law *law, const char *const *words, int count, double *values)
 {
-  const breccia_law *law = law_find(NULL, name);
-  assert_non_null(law);
   Error *error = breccia_error_create();
   Units *units = units_create("m", "kN", "s", error);
   assert_non_null(units);
-  double values[64];
   Text reason = {0};
   for (int k = 0; k < law->parameter_count; ++k) {
     const breccia_parameter *p = &law->parameters[k];
     values[k] = NAN;
     if (p->standard && *p->standard) units_read(units, dimension_find(p->dimension), p->standard, &values[k], &reason);
   }
-  va_list arguments;
-  va_start(arguments, name);
-  for (const char *word; (word = va_arg(arguments, const char *));) {
-    const char *equals = strchr(word, '=');
+  for (int w = 0; w < count; ++w) {
+    const char *equals = strchr(words[w], '=');
     int found = 0;
     for (int k = 0; k < law->parameter_count; ++k) {
       const breccia_parameter *p = &law->parameters[k];
-      if (strncmp(p->name, word, (size_t)(equals - word)) || p->name[equals - word]) continue;
+      if (strncmp(p->name, words[w], (size_t)(equals - words[w])) || p->name[equals - words[w]]) continue;
       found = 1;
       assert_int_equal(units_read(units, dimension_find(p->dimension), equals + 1, &values[k], &reason), 0);
     }
-    assert_true(found);
+    if (!found) fail_msg("%s has no parameter for '%s'", law->name, words[w]);
   }
-  va_end(arguments);
   text_free(&reason);
   units_destroy(&units);
   breccia_error_destroy(&error);
+}
+
+enum { MOST_WORDS = 64 };
+
+Material material_of(const char *name, ...)
+{
+  const breccia_law *law = law_find(NULL, name);
+  assert_non_null(law);
+  const char *words[MOST_WORDS];
+  int count = 0;
+  va_list arguments;
+  va_start(arguments, name);
+  while (count < MOST_WORDS && (words[count] = va_arg(arguments, const char *))) ++count;
+  va_end(arguments);
+  double values[MOST_WORDS];
+  read_words(law, words, count, values);
   Material material;
-  char words[512] = "";
-  if (material_prepare(&material, law, values, words, sizeof words)) fail_msg("material refused: %s", words);
+  char reason[512] = "";
+  if (material_prepare(&material, law, values, reason, sizeof reason)) fail_msg("material refused: %s", reason);
   return material;
+}
+
+int material_refusal(const char *name, const char *commas, char *reason, size_t size)
+{
+  const breccia_law *law = law_find(NULL, name);
+  assert_non_null(law);
+  char line[1024], *words[MOST_WORDS];
+  int count = 0;
+  snprintf(line, sizeof line, "%s", commas);
+  for (char *word = strtok(line, ","); word && count < MOST_WORDS; word = strtok(NULL, ",")) words[count++] = word;
+  double values[MOST_WORDS];
+  read_words(law, (const char *const *)words, count, values);
+  Material material;
+  int status = material_prepare(&material, law, values, reason, size);
+  if (!status) material_destroy(&material);
+  return status;
 }

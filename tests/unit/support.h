@@ -30,5 +30,7 @@ void deform_uniformly(breccia_model *model, const double f[9]);
 void compute_forces(breccia_model *model);
 /** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */
 Material material_of(const char *law, ...);
+/** Tries to prepare a material of "name=value" words with commas between. @return its status; `reason` tells why it is refused */
+int material_refusal(const char *law, const char *words, char *reason, size_t size);
 
 #endif

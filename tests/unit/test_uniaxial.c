@@ -1,5 +1,5 @@
 /* Laws of one strain. */
-#include "support.h"
+#include "point.h"
 
 #include "base/random.h"
 
@@ -45,6 +45,7 @@ static Material softening(int k)
   switch (k) {
   case 0: return material_of("bilinear-softening", STRONG, NULL);
   case 1: return material_of("exponential-softening", STRONG, NULL);
+  case 2: return material_of("trilinear-softening", STRONG, NULL);
   default: return material_of("elastic-brittle", CONCRETE, NULL);
   }
 }
@@ -52,7 +53,7 @@ static Material softening(int k)
 static void pulling_apart_spends_the_fracture_energy_over_the_length(void **state)
 {
   (void)state;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     Fibre f = fibre(softening(k));
     const double end = material_failure_strain(&f.material);
     const int steps = 400000;
@@ -97,7 +98,7 @@ static void softening_curves_go_through_their_points(void **state)
 static void softened_fibres_unload_to_the_origin_and_close_stiff(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 3; ++k) {
     Fibre f = fibre(softening(k));
     const double strain = 3e-4, stress = pull(&f, strain);
     assert_true(stress < 3000 && stress > 0);
@@ -115,7 +116,7 @@ static void softened_fibres_unload_to_the_origin_and_close_stiff(void **state)
 static void tangents_are_derivatives(void **state)
 {
   (void)state;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     Fibre f = fibre(softening(k));
     const double ways[] = {-1e-4, 5e-5, 1.3e-4, 3e-4, 1e-4, 9e-4, 2e-3, 0.02};
     for (size_t n = 0; n < sizeof ways / sizeof *ways; ++n) {
@@ -131,9 +132,9 @@ static void tangents_are_derivatives(void **state)
 static void walks_of_chance_never_make_energy_or_leave_the_curve(void **state)
 {
   (void)state;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     Fibre f = fibre(softening(k));
-    const double strength = k < 2 ? 3000 : 30e6 * material_failure_strain(&f.material);
+    const double strength = k < 3 ? 3000 : 30e6 * material_failure_strain(&f.material);
     uint64_t seed = 5;
     double strain = 0, stress = 0, work = 0, damage = 0;
     for (int n = 0; n < 200000; ++n) {
@@ -169,6 +170,196 @@ static void curves_that_would_snap_back_are_refused(void **state)
   assert_non_null(strstr(reason, "give either 'tensile strength' or 'fracture energy'"));
 }
 
+/* ---- laws of concrete and steel ---- */
+
+static Material any(int k)
+{
+  switch (k) {
+  case 0: return material_of("kent-scott-park", "compressive strength=30e3", "residual strength=6e3", NULL);
+  case 1: return material_of("concrete02", "compressive strength=30e3", "residual strength=6e3", NULL);
+  case 2:
+    return material_of("mander", "compressive strength=30e3", "Young modulus=27e6", "confining pressure=2e3", NULL);
+  case 3: return material_of("elastic-perfectly-plastic", "Young modulus=2e8", "yield stress=4e5", NULL);
+  case 4: return material_of("steel-bilinear", "Young modulus=2e8", "yield stress=4e5", NULL);
+  case 5:
+    return material_of("steel-bilinear", "Young modulus=2e8", "yield stress=4e5", "compression shift=0.1",
+                       "tension shift=0.2", NULL);
+  case 6: return material_of("menegotto-pinto", "Young modulus=2e8", "yield stress=4e5", NULL);
+  default: return softening(k - 7);
+  }
+}
+enum { LAWS = 11 };
+
+static void a_million_steps_of_any_size_stay_finite(void **state)
+{
+  (void)state;
+#ifdef __SANITIZE_ADDRESS__
+  enum { WALK = 100000 };
+#else
+  enum { WALK = 1000000 };
+#endif
+  for (int k = 0; k < LAWS; ++k) {
+    Material m = any(k);
+    Point p = point_start(&m);
+    uint64_t seed = 13;
+    double strain = 0, stress, tangent;
+    for (int n = 0; n < WALK; ++n) {
+      strain += pow(10, -12 * random_uniform(&seed)) * 2 * (random_uniform(&seed) - 0.5);
+      if (fabs(strain) > 2) strain *= 0.1;
+      if (n % 500 == 499) strain *= 1e-3;
+      point_try(&p, &strain, &stress, &tangent, 0);
+      if (!isfinite(stress) || !isfinite(tangent)) fail_msg("%s: %g, %g in step %d", m.law->name, stress, tangent, n);
+      if (k < 3 && stress < -50e3) fail_msg("%s: %g kPa in step %d", m.law->name, stress, n);
+      if (k == 3 && fabs(stress) > 4e5) fail_msg("%s: %g kPa in step %d", m.law->name, stress, n);
+      point_commit(&p);
+    }
+    point_stop(&p);
+    material_destroy(&m);
+  }
+}
+
+static void tangents_of_all_laws_are_derivatives(void **state)
+{
+  (void)state;
+  for (int k = 0; k < LAWS; ++k) {
+    Material m = any(k);
+    Point p = point_start(&m);
+    uint64_t seed = 19;
+    double strain = 0, young = material_young(&m);
+    int smooth = 0;
+    for (int n = 0; n < 3000; ++n) {
+      strain += 1e-3 * (random_uniform(&seed) - 0.52);
+      if (fabs(strain) > 6e-3) strain *= 0.5;
+      const double h = 1e-8;
+      double stress, tangent, at[2], ignored;
+      for (int side = 0; side < 2; ++side) {
+        const double aside = strain + (side ? h : -h);
+        point_try(&p, &aside, &at[side], &ignored, 0);
+      }
+      point_try(&p, &strain, &stress, &tangent, 0);
+      const double left = (stress - at[0]) / h, right = (at[1] - stress) / h;
+      if (fabs(left - right) < 1e-4 * young) {
+        ++smooth;
+        if (fabs((left + right) / 2 - tangent) > 2e-6 * young)
+          fail_msg("%s: tangent %g, derivative %g at strain %g", m.law->name, tangent, (left + right) / 2, strain);
+      }
+      point_commit(&p);
+    }
+    assert_true(smooth > 2900);
+    point_stop(&p);
+    material_destroy(&m);
+  }
+}
+
+static void a_trial_can_be_repeated(void **state)
+{
+  (void)state;
+  for (int k = 0; k < LAWS; ++k) {
+    Material m = any(k);
+    Point tried = point_start(&m), plain = point_start(&m);
+    uint64_t seed = 7;
+    double strain = 0, a, b, before[16];
+    for (int n = 0; n < 1000; ++n) {
+      strain += 2e-3 * (random_uniform(&seed) - 0.5);
+      memcpy(before, tried.committed, sizeof(double) * (size_t)m.history_values);
+      for (int wild = 0; wild < 3; ++wild) {
+        const double other = strain + 1e-2 * (random_uniform(&seed) - 0.5);
+        point_try(&tried, &other, &a, NULL, wild == 1);
+      }
+      assert_memory_equal(before, tried.committed, sizeof(double) * (size_t)m.history_values);
+      point_try(&tried, &strain, &a, NULL, 0);
+      point_try(&plain, &strain, &b, NULL, 0);
+      assert_memory_equal(&a, &b, sizeof a);
+      point_commit(&tried);
+      point_commit(&plain);
+    }
+    point_stop(&tried);
+    point_stop(&plain);
+    material_destroy(&m);
+  }
+}
+
+static void confined_concrete_follows_manders_curve(void **state)
+{
+  (void)state;
+  /* f_l / f_co = 1/15: f_cc = f_co (2.254 sqrt(1 + 7.94 / 15) - 2 / 15 - 1.254), e_cc = 0.002 (1 + 5 (f_cc / f_co - 1)). */
+  Material m = any(2);
+  Point p = point_start(&m);
+  const double gain = 2.254 * sqrt(1 + 7.94 / 15) - 2.0 / 15 - 1.254, peak = 0.002 * (1 + 5 * (gain - 1)),
+               r = 27e6 / (27e6 - gain * 30e3 / peak);
+  for (int k = 1; k <= 40; ++k) {
+    const double x = k / 10.0, strain = -x * peak, expected = k < 40 ? -gain * 30e3 * x * r / (r - 1 + pow(x, r)) : 0;
+    double stress;
+    point_try(&p, &strain, &stress, NULL, 0);
+    if (k < 40) assert_near(stress, expected, 1e-9 * 30e3);
+    point_commit(&p);
+  }
+  const double beyond = -4.001 * peak;
+  double stress;
+  point_try(&p, &beyond, &stress, NULL, 0);
+  assert_near(stress, 0, 0);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
+static void concrete_unloads_to_karsan_and_jirsas_strain(void **state)
+{
+  (void)state;
+  /* From strain 0.003 (1.5 times the peak's): 0.002 (0.145 1.5^2 + 0.13 1.5). */
+  Material m = any(0);
+  Point p = point_start(&m);
+  const double end = -0.002 * (0.145 * 2.25 + 0.13 * 1.5), top = -0.003;
+  double stress, first, half = (top + end) / 2;
+  point_try(&p, &top, &first, NULL, 0);
+  point_commit(&p);
+  assert_near(first, -(30e3 - 24e3 * 0.25), 1e-8);
+  point_try(&p, &half, &stress, NULL, 0);
+  point_commit(&p);
+  assert_near(stress, first / 2, 1e-8 * 30e3);
+  point_try(&p, &end, &stress, NULL, 0);
+  assert_near(stress, 0, 1e-8 * 30e3);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
+static void trilinear_softening_goes_through_its_kink(void **state)
+{
+  (void)state;
+  /* Petersson: a third of f_t at the opening 0.8 G_F / f_t, nothing at 3.6 G_F / f_t, if the elastic strain is small. */
+  Material m = material_of("trilinear-softening", "Young modulus=30e9", "fracture energy=0.1", "length=0.03",
+                           "tensile strength=3000", NULL);
+  Point p = point_start(&m);
+  const double kink = 0.8 * 0.1 / 3000 / 0.03;
+  double stress;
+  point_try(&p, &kink, &stress, NULL, 0);
+  assert_near(stress, 1000, 2);
+  assert_near(material_failure_strain(&m), 3.6 * 0.1 / 3000 / 0.03, 1e-5);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
+static void inadmissible_concrete_is_refused(void **state)
+{
+  (void)state;
+  const struct {
+    const char *law, *words, *reason;
+  } cases[] = {
+      {"kent-scott-park", "compressive strength=30,residual strength=31",
+       "must not be larger than 'compressive strength'"},
+      {"kent-scott-park", "compressive strength=30,crushing strain=0.001", "must be larger than 'peak strain'"},
+      {"mander", "compressive strength=30,Young modulus=14000", "must be larger than strength over strain"},
+      {"mander", "compressive strength=30,Young modulus=30000,crushing strain=0.001", "confined peak strain"},
+      {"trilinear-softening",
+       "Young modulus=30e6,tensile strength=3000,fracture energy=0.1,length=0.03,kink stress=0.9",
+       "below the straight line"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char reason[512] = "";
+    assert_int_equal(material_refusal(cases[k].law, cases[k].words, reason, sizeof reason), BRECCIA_USER_ERROR);
+    if (!strstr(reason, cases[k].reason)) fail_msg("%s: says '%s'", cases[k].law, reason);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -178,6 +369,13 @@ int main(void)
       cmocka_unit_test(tangents_are_derivatives),
       cmocka_unit_test(walks_of_chance_never_make_energy_or_leave_the_curve),
       cmocka_unit_test(curves_that_would_snap_back_are_refused),
+      cmocka_unit_test(a_million_steps_of_any_size_stay_finite),
+      cmocka_unit_test(tangents_of_all_laws_are_derivatives),
+      cmocka_unit_test(a_trial_can_be_repeated),
+      cmocka_unit_test(confined_concrete_follows_manders_curve),
+      cmocka_unit_test(concrete_unloads_to_karsan_and_jirsas_strain),
+      cmocka_unit_test(trilinear_softening_goes_through_its_kink),
+      cmocka_unit_test(inadmissible_concrete_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

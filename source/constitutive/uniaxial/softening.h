@@ -6,6 +6,7 @@
 #include "constitutive/law.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 enum { SOFTENING_YOUNG, SOFTENING_STRENGTH, SOFTENING_ENERGY, SOFTENING_LENGTH, SOFTENING_PARAMETERS };

@@ -1,0 +1,151 @@
+#include "constitutive/driver.h"
+
+#include "base/memory.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int driver_create(Driver *d, const Material *material, Error *error)
+{
+  const size_t values = (size_t)material->history_values + 1;
+  *d = (Driver){.material = material, .components = material->law->uniaxial ? 1 : 6};
+  d->committed = memory_zeroed(values, sizeof(double), "history", error);
+  d->trial = memory_zeroed(values, sizeof(double), "history", error);
+  if (!d->committed || !d->trial) return BRECCIA_FAILURE;
+  if (material->law->begin) {
+    material->law->begin(material->constants, d->committed);
+    material->law->begin(material->constants, d->trial);
+  }
+  return BRECCIA_OK;
+}
+
+void driver_destroy(Driver *d)
+{
+  free(d->committed);
+  free(d->trial);
+  *d = (Driver){0};
+}
+
+bool driver_try(Driver *d, const double *strain)
+{
+  breccia_batch batch = {.count = 1,
+                         .committed = d->committed,
+                         .trial = d->trial,
+                         .tangent = d->tangent,
+                         .elastic_stage = d->elastic};
+  if (strain != d->strain) memcpy(d->strain, strain, sizeof(double) * (size_t)d->components);
+  for (int k = 0; k < d->components; ++k) {
+    batch.strain[k] = &d->strain[k];
+    batch.stress[k] = &d->stress[k];
+  }
+  return d->material->law->update(d->material->constants, &batch) < 0;
+}
+
+void driver_commit(Driver *d)
+{
+  double *other = d->committed;
+  d->committed = d->trial;
+  d->trial = other;
+}
+
+/** Solves a[count][count] x = b by elimination with pivots, in place. @return false: singular */
+static bool solve(int count, double a[6][6], double b[6])
+{
+  for (int k = 0; k < count; ++k) {
+    int pivot = k;
+    for (int r = k + 1; r < count; ++r)
+      if (fabs(a[r][k]) > fabs(a[pivot][k])) pivot = r;
+    if (!(fabs(a[pivot][k]) > 0)) return false;
+    for (int n = 0; n < count; ++n) {
+      const double other = a[k][n];
+      a[k][n] = a[pivot][n];
+      a[pivot][n] = other;
+    }
+    const double other = b[k];
+    b[k] = b[pivot];
+    b[pivot] = other;
+    for (int r = k + 1; r < count; ++r) {
+      const double factor = a[r][k] / a[k][k];
+      for (int n = k; n < count; ++n) a[r][n] -= factor * a[k][n];
+      b[r] -= factor * b[k];
+    }
+  }
+  for (int k = count - 1; k >= 0; --k) {
+    for (int n = k + 1; n < count; ++n) b[k] -= a[k][n] * b[n];
+    b[k] /= a[k][k];
+  }
+  return true;
+}
+
+/** Stress residual of the unknown strains; NaN if the law gives up. */
+static double residual(Driver *d, const double *strain, const int *unknown, int count, const double *target, double *r)
+{
+  double sum = 0;
+  if (!driver_try(d, strain)) return NAN;
+  for (int k = 0; k < count; ++k) {
+    r[k] = target[unknown[k]] - d->stress[unknown[k]];
+    sum += r[k] * r[k];
+  }
+  return sqrt(sum);
+}
+
+static bool balance(Driver *d, const bool *by_stress, const double *target, double tolerance)
+{
+  enum { MOST_ITERATIONS = 200, MOST_HALVINGS = 12 };
+  int unknown[6], count = 0;
+  double strain[6], r[6];
+  for (int k = 0; k < d->components; ++k) {
+    strain[k] = by_stress[k] ? d->strain[k] : target[k];
+    if (by_stress[k]) unknown[count++] = k;
+  }
+  double size = residual(d, strain, unknown, count, target, r);
+  for (int iteration = 0; size > tolerance && iteration < MOST_ITERATIONS; ++iteration) {
+    /* Where flow leaves a strain free (perfect plasticity at an edge) a touch of stiffness picks the least change. */
+    const double touch = 1e-8 * (d->material->bulk + d->material->shear);
+    double matrix[6][6], step[6];
+    for (int i = 0; i < count; ++i) {
+      step[i] = r[i];
+      for (int k = 0; k < count; ++k)
+        matrix[i][k] = d->tangent[d->components * unknown[i] + unknown[k]] + (i == k ? touch : 0);
+    }
+    if (!solve(count, matrix, step)) return false;
+    double share = 1, now = INFINITY, tried[6];
+    for (int halving = 0; halving < MOST_HALVINGS; ++halving, share /= 2) {
+      memcpy(tried, strain, sizeof tried);
+      for (int k = 0; k < count; ++k) tried[unknown[k]] += share * step[k];
+      now = residual(d, tried, unknown, count, target, r);
+      if (now < size) break;
+    }
+    if (!(now < size) && !(now <= 4 * tolerance)) return false;
+    memcpy(strain, tried, sizeof strain);
+    size = now;
+  }
+  return size <= tolerance;
+}
+
+bool driver_step(Driver *d, const bool *by_stress, const double *target, double tolerance)
+{
+  enum { MOST_PARTS = 1024 };
+  double from[6], before[6];
+  memcpy(before, d->strain, sizeof before);
+  for (int k = 0; k < d->components; ++k) from[k] = by_stress[k] ? d->stress[k] : d->strain[k];
+  int done = 0, part = MOST_PARTS; /* in 1 / MOST_PARTS of the step */
+  while (done < MOST_PARTS) {
+    double aim[6];
+    if (part > MOST_PARTS - done) part = MOST_PARTS - done;
+    const double share = (double)(done + part) / MOST_PARTS;
+    for (int k = 0; k < d->components; ++k)
+      aim[k] = done + part == MOST_PARTS ? target[k] : from[k] + share * (target[k] - from[k]);
+    if (balance(d, by_stress, aim, tolerance)) {
+      driver_commit(d);
+      memcpy(before, d->strain, sizeof before);
+      done += part;
+      continue;
+    }
+    driver_try(d, before);
+    if (part == 1) return false;
+    part = part > 3 ? part / 4 : 1;
+    memcpy(d->strain, before, sizeof before);
+  }
+  return true;
+}

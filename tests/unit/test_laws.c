@@ -1,0 +1,554 @@
+/* What holds for every law of a point in space, whatever it is: properties, not paths. */
+#include "point.h"
+
+#include "base/random.h"
+#include "base/tensor.h"
+
+#ifdef __SANITIZE_ADDRESS__
+enum { WALK = 100000 };
+#else
+enum { WALK = 1000000 };
+#endif
+
+typedef struct Sample {
+  const char *name;
+  Material (*make)(void);
+  double strain;      /* at which the law is well beyond its elastic range */
+  bool consistent;    /* its tangent is the derivative of a whole step */
+  bool associated;    /* closed cycles of strain take work */
+  double (*over)(const Point *p, const double stress[6]); /* how far the stress is outside, over a strength; NULL: no such test */
+} Sample;
+
+static void invariants(const double s[6], double *i, double *length)
+{
+  const double mean = (s[0] + s[1] + s[2]) / 3;
+  double sum = 0;
+  for (int k = 0; k < 6; ++k) sum += (k < 3 ? 1 : 2) * pow(s[k] - (k < 3 ? mean : 0), 2);
+  *i = 3 * mean;
+  *length = sqrt(sum);
+}
+
+static Material elastic(void)
+{
+  return material_of("elastic", "Young modulus=30e6", "Poisson ratio=0.2", NULL);
+}
+
+static Material j2(void)
+{
+  return material_of("j2", "Young modulus=2e8", "Poisson ratio=0.3", "yield stress=2e5", "saturation stress=3e5",
+                     "saturation rate=20", "hardening modulus=1e6", "kinematic modulus=2e6", NULL);
+}
+static Material j2_fixed(void)
+{
+  return material_of("j2", "Young modulus=2e8", "Poisson ratio=0.3", "yield stress=2e5", "saturation stress=3e5",
+                     "saturation rate=20", "hardening modulus=1e6", NULL);
+}
+static double over_j2(const Point *p, const double s[6])
+{
+  double i, length, x = p->trial[6];
+  invariants(s, &i, &length);
+  return (length - sqrt(2.0 / 3) * (3e5 - 1e5 * exp(-20 * x) + 1e6 * x)) / 2e5;
+}
+
+static Material clay(void)
+{
+  return material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+}
+static double over_clay(const Point *p, const double s[6])
+{
+  double i, length;
+  (void)p;
+  invariants(s, &i, &length);
+  return (length / sqrt(3) - 30) / 30;
+}
+
+#define SEED_CAP                                                                                                       \
+  "bulk modulus=14478996", "shear modulus=11721092", "cap position=110320", "compaction rate=4.6412e-7",               \
+      "largest compaction=0.42", "cap ratio=4.43", "envelope drop=7997.9", "envelope slope=0.11",                      \
+      "envelope rate=6.3816e-5", "envelope strength=2.6614e4", "tension cut-off=2068.4"
+static Material cap(void)
+{
+  return material_of("cap", SEED_CAP, NULL);
+}
+static Material strict_cap(void)
+{
+  return material_of("cap", SEED_CAP, "strict cap=1", NULL);
+}
+static double cap_envelope(double i)
+{
+  return 2.6614e4 - 7997.9 * exp(-6.3816e-5 * i) + 0.11 * i;
+}
+static double over_envelope(const Point *p, const double s[6])
+{
+  double i, length;
+  (void)p;
+  invariants(s, &i, &length);
+  return fmax(length - cap_envelope(-i), i - 2068.4) / 2.6e4;
+}
+static double over_cap(const Point *p, const double s[6])
+{
+  double i, length;
+  const double k = p->trial[6];
+  invariants(s, &i, &length);
+  const double outside = -i > k ? sqrt(length * length + pow((-i - k) / 4.43, 2)) - cap_envelope(k) : 0;
+  return fmax(over_envelope(p, s), outside / 2.6e4);
+}
+
+static Material soil(void)
+{
+  return material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     "dilation angle=10", "tension cut-off=30", "hardening modulus=500", "saturation gain=10",
+                     "saturation rate=50", NULL);
+}
+static Material rock(void)
+{
+  return material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     NULL);
+}
+/* sin(30) = 1/2: a = 2 / (5 sqrt 3), k = 6 c cos(30) / (2.5 sqrt 3) = 1.2 c. */
+static double over_soil(const Point *p, const double s[6])
+{
+  double i, length, x = p->trial[6];
+  invariants(s, &i, &length);
+  const double yield = sqrt(3) * 24 + 500 * x + 10 * (1 - exp(-50 * x));
+  return fmax(length / sqrt(2) + 2 / (5 * sqrt(3)) * 2 / 2 * i - yield / sqrt(3), i - 30) / 24;
+}
+
+static Material coulomb(void)
+{
+  return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     "dilation angle=10", "tensile strength=15", NULL);
+}
+static Material coulomb_tip(void)
+{
+  return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     NULL);
+}
+static Material tresca(void)
+{
+  return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=0",
+                     NULL);
+}
+static void principal(const double s[6], double *most, double *least)
+{
+  double value[3], vector[9];
+  tensor_eigen(s, value, vector);
+  *most = fmax(value[0], fmax(value[1], value[2]));
+  *least = fmin(value[0], fmin(value[1], value[2]));
+}
+static double over_coulomb(const Point *p, const double s[6])
+{
+  double most, least;
+  (void)p;
+  principal(s, &most, &least);
+  return fmax(most - least + 0.5 * (most + least) - 40 * sqrt(0.75), most - 15) / 20;
+}
+static double over_tresca(const Point *p, const double s[6])
+{
+  double most, least;
+  (void)p;
+  principal(s, &most, &least);
+  return (most - least - 40) / 20;
+}
+
+static Material bounding(void)
+{
+  return material_of("bounding-surface-clay", "shear modulus=60000", "bulk modulus=100000", "undrained strength=30",
+                     "hardening modulus=60000", NULL);
+}
+static double over_bounding(const Point *p, const double s[6])
+{
+  double i, length;
+  (void)p;
+  invariants(s, &i, &length);
+  return length / (sqrt(8.0 / 3) * 30) - 1;
+}
+
+#define CONCRETE "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1", "length=0.03"
+static Material damage_plasticity(void)
+{
+  return material_of("damage-plasticity", CONCRETE, "compressive strength=34000", NULL);
+}
+static Material mazars(void)
+{
+  return material_of("mazars", CONCRETE, NULL);
+}
+static double over_tension(const Point *p, const double s[6])
+{
+  double most, least;
+  (void)p;
+  principal(s, &most, &least);
+  return least > 0 ? (most - 3000 * 1.0) / 3000 - 0.2 : 0; /* all in tension: Mazars' strain lets more than f_t pass */
+}
+
+static const Sample samples[] = {
+    {"elastic", elastic, 1e-3, true, true, NULL},
+    {"j2", j2, 5e-3, true, true, NULL},
+    {"j2 fixed", j2_fixed, 5e-3, true, true, over_j2},
+    {"multi-yield-j2", clay, 5e-3, false, false, over_clay},
+    {"cap", cap, 5e-3, true, false, over_envelope},
+    {"strict cap", strict_cap, 5e-3, true, true, over_cap},
+    {"drucker-prager", soil, 5e-3, true, false, over_soil},
+    {"drucker-prager associated", rock, 5e-3, true, true, NULL},
+    {"mohr-coulomb", coulomb, 5e-3, true, false, over_coulomb},
+    {"mohr-coulomb associated", coulomb_tip, 5e-3, true, true, NULL},
+    {"tresca", tresca, 5e-3, true, true, over_tresca},
+    {"bounding-surface-clay", bounding, 5e-3, true, false, over_bounding},
+    {"damage-plasticity", damage_plasticity, 2e-3, true, false, NULL},
+    {"mazars", mazars, 1e-3, true, true, over_tension},
+};
+enum { SAMPLES = sizeof samples / sizeof *samples };
+
+static double stiffness(const Material *m)
+{
+  return m->bulk + 4 * m->shear / 3;
+}
+
+/** A random walk that returns: strains keep within a few times `size`. */
+static void wander(uint64_t *seed, double size, double step, double strain[6])
+{
+  const double volume = random_uniform(seed) < 0.5 ? 0 : 2 * (random_uniform(seed) - 0.5);
+  for (int k = 0; k < 6; ++k) {
+    strain[k] += step * (2 * (random_uniform(seed) - 0.5) + (k < 3 ? volume : 0));
+    if (fabs(strain[k]) > 3 * size) strain[k] *= 0.5;
+  }
+}
+
+static void tangents_are_derivatives_of_steps(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    if (!samples[n].consistent) continue;
+    Material m = samples[n].make();
+    Point p = point_start(&m);
+    uint64_t seed = 17;
+    const double size = samples[n].strain, whole = stiffness(&m);
+    double strain[6] = {0};
+    int smooth = 0, kinks = 0;
+    for (int step = 0; step < 3000; ++step) {
+      const double length = size * pow(10, -2 * random_uniform(&seed));
+      wander(&seed, size, length, strain);
+      double s[6], tangent[36], worst = 0;
+      point_try(&p, strain, s, tangent, 0);
+      bool kink = false;
+      const double h = 1e-4 * length;
+      for (int k = 0; k < 6; ++k) {
+        double at[4][6]; /* -2h, -h, h, 2h */
+        for (int i = 0; i < 4; ++i) {
+          double e[6];
+          memcpy(e, strain, sizeof e);
+          e[k] += (i < 2 ? i - 2 : i - 1) * h;
+          point_try(&p, e, at[i], NULL, 0);
+        }
+        for (int r = 0; r < 6; ++r) {
+          const double near = (at[2][r] - at[1][r]) / (2 * h), far = (at[3][r] - at[0][r]) / (4 * h);
+          const double left = (s[r] - at[1][r]) / h, right = (at[2][r] - s[r]) / h,
+                       left2 = (at[1][r] - at[0][r]) / h, right2 = (at[3][r] - at[2][r]) / h;
+          const double bend = fabs(right - left) / whole, bend2 = fabs(right2 - right) / whole,
+                       bend3 = fabs(left2 - left) / whole;
+          if (fmax(bend, fmax(bend2, bend3)) > 3e-3) kink = true;
+          worst = fmax(worst, fabs((4 * near - far) / 3 - tangent[6 * r + k]) / whole);
+        }
+      }
+      if (kink)
+        ++kinks;
+      else {
+        ++smooth;
+        if (worst > 1e-6) fail_msg("%s: tangent off by %.2e in step %d", samples[n].name, worst, step);
+      }
+      point_try(&p, strain, s, NULL, 0);
+      point_commit(&p);
+    }
+    assert_true(smooth > 2500);
+    point_stop(&p);
+    material_destroy(&m);
+  }
+}
+
+/** Where a point of the cap model stands: 1 cut-off, 2 its corner, 3 cap, 4 corner of envelope and cap, 5 envelope, 6 inside. */
+static int cap_region(const Point *p, const double s[6])
+{
+  double i, length;
+  invariants(s, &i, &length);
+  i = -i;
+  const double k = p->trial[6], small = 1e-7 * 2.6e4;
+  if (fabs(i + 2068.4) < small) return fabs(length - cap_envelope(i)) < small ? 2 : 1;
+  if (fabs(i - k) < small && fabs(length - cap_envelope(k)) < small) return 4;
+  if (i < k) return fabs(length - cap_envelope(i)) < small ? 5 : 6;
+  return fabs(sqrt(length * length + pow((i - k) / 4.43, 2)) - cap_envelope(k)) < small ? 3 : 6;
+}
+
+static void the_walk_of_tangents_visits_every_region_of_the_cap(void **state)
+{
+  (void)state;
+  Material m = cap();
+  Point p = point_start(&m);
+  uint64_t seed = 17;
+  double strain[6] = {0}, s[6];
+  int visits[7] = {0};
+  for (int step = 0; step < 3000; ++step) {
+    wander(&seed, 5e-3, 5e-3 * pow(10, -2 * random_uniform(&seed)), strain);
+    point_try(&p, strain, s, NULL, 0);
+    ++visits[cap_region(&p, s)];
+    point_commit(&p);
+  }
+  for (int k = 1; k < 7; ++k) assert_true(visits[k] > 20);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
+static void a_million_steps_of_any_size_stay_finite_and_inside(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    Point p = point_start(&m);
+    uint64_t seed = 23;
+    double strain[6] = {0};
+    for (int step = 0; step < WALK; ++step) {
+      double s[6];
+      wander(&seed, 1, pow(10, -12 * random_uniform(&seed)), strain);
+      if (step % 1000 == 999)
+        for (int k = 0; k < 6; ++k) strain[k] *= 1e-3;
+      if (!point_may_try(&p, strain, s, NULL, 0)) fail_msg("%s gave up in step %d", samples[n].name, step);
+      for (int k = 0; k < 6; ++k)
+        if (!isfinite(s[k])) fail_msg("%s: stress %g in step %d", samples[n].name, s[k], step);
+      const double over = samples[n].over ? samples[n].over(&p, s) : 0;
+      /* Stresses are differences of elastic ones, which carry rounding of their own size. */
+      double most = 0;
+      for (int k = 0; k < 6; ++k) most = fmax(most, fabs(strain[k]));
+      if (over > 1e-8 + 1e-13 * stiffness(&m) * most / 10)
+        fail_msg("%s: stress outside by %.2e of its strength in step %d", samples[n].name, over, step);
+      point_commit(&p);
+    }
+    point_stop(&p);
+    material_destroy(&m);
+  }
+}
+
+static void turned(const double q[9], const double a[6], double shear, double b[6])
+{
+  for (int k = 0; k < 6; ++k) {
+    const int r = symmetric_row[k], c = symmetric_column[k];
+    b[k] = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        b[k] += q[3 * r + i] * a[symmetric_place[3 * i + j]] * (i == j ? 1 : shear) * q[3 * c + j];
+    b[k] /= r == c ? 1 : shear;
+  }
+}
+
+static void stress_turns_with_the_strain(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    Point a = point_start(&m), b = point_start(&m);
+    uint64_t seed = 3;
+    double some[6], value[3], q[9], strain[6] = {0}, turned_strain[6], s[6], t[6], expected[6], largest = 1;
+    for (int k = 0; k < 6; ++k) some[k] = random_uniform(&seed);
+    tensor_eigen(some, value, q); /* an orthonormal basis */
+    for (int step = 0; step < 2000; ++step) {
+      wander(&seed, samples[n].strain, samples[n].strain / 20, strain);
+      turned(q, strain, 0.5, turned_strain);
+      point_try(&a, strain, s, NULL, 0);
+      point_try(&b, turned_strain, t, NULL, 0);
+      turned(q, s, 1, expected);
+      for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(s[k]));
+      for (int k = 0; k < 6; ++k)
+        if (fabs(t[k] - expected[k]) > 1e-8 * largest)
+          fail_msg("%s: turned stress off by %.2e of %.2e in step %d", samples[n].name, fabs(t[k] - expected[k]), largest,
+                   step);
+      point_commit(&a);
+      point_commit(&b);
+    }
+    point_stop(&a);
+    point_stop(&b);
+    material_destroy(&m);
+  }
+}
+
+static void a_trial_can_be_repeated_and_leaves_the_committed_state_alone(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    Point tried = point_start(&m), plain = point_start(&m);
+    uint64_t seed = 7;
+    double strain[6] = {0}, a[6], b[6];
+    const size_t bytes = sizeof(double) * (size_t)m.history_values;
+    double *before = malloc(bytes + 1);
+    for (int step = 0; step < 400; ++step) {
+      wander(&seed, samples[n].strain, samples[n].strain / 10, strain);
+      memcpy(before, tried.committed, bytes);
+      for (int wild = 0; wild < 3; ++wild) {
+        double other[6];
+        memcpy(other, strain, sizeof other);
+        wander(&seed, 1, samples[n].strain, other);
+        point_try(&tried, other, a, NULL, wild == 1);
+      }
+      assert_memory_equal(before, tried.committed, bytes);
+      point_try(&tried, strain, a, NULL, 0);
+      point_try(&plain, strain, b, NULL, 0);
+      assert_memory_equal(a, b, sizeof a);
+      point_commit(&tried);
+      point_commit(&plain);
+    }
+    free(before);
+    point_stop(&tried);
+    point_stop(&plain);
+    material_destroy(&m);
+  }
+}
+
+static void points_of_a_batch_do_not_know_of_each_other(void **state)
+{
+  (void)state;
+  enum { POINTS = 37, STEPS = 40 };
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    const size_t values = (size_t)m.history_values;
+    static double strain[6][POINTS], stress[6][POINTS];
+    double *committed = calloc(values * POINTS + 1, sizeof(double)), *trial = calloc(values * POINTS + 1, sizeof(double));
+    Point alone[POINTS];
+    uint64_t seed = 29;
+    memset(strain, 0, sizeof strain);
+    for (int i = 0; i < POINTS; ++i) {
+      alone[i] = point_start(&m);
+      memcpy(committed + values * (size_t)i, alone[i].committed, sizeof(double) * values);
+      memcpy(trial + values * (size_t)i, alone[i].committed, sizeof(double) * values);
+    }
+    for (int step = 0; step < STEPS; ++step) {
+      breccia_batch batch = {.count = POINTS, .committed = committed, .trial = trial};
+      for (int i = 0; i < POINTS; ++i) {
+        double e[6];
+        for (int k = 0; k < 6; ++k) e[k] = strain[k][i];
+        wander(&seed, samples[n].strain, samples[n].strain / 5, e);
+        for (int k = 0; k < 6; ++k) strain[k][i] = e[k];
+      }
+      for (int k = 0; k < 6; ++k) {
+        batch.strain[k] = strain[k];
+        batch.stress[k] = stress[k];
+      }
+      assert_int_equal(m.law->update(m.constants, &batch), -1);
+      for (int i = 0; i < POINTS; ++i) {
+        double e[6], s[6];
+        for (int k = 0; k < 6; ++k) e[k] = strain[k][i];
+        point_try(&alone[i], e, s, NULL, 0);
+        for (int k = 0; k < 6; ++k) assert_near(stress[k][i], s[k], 1e-12 * fabs(s[k]));
+        point_commit(&alone[i]);
+      }
+      double *other = committed;
+      committed = trial;
+      trial = other;
+    }
+    for (int i = 0; i < POINTS; ++i) point_stop(&alone[i]);
+    free(committed);
+    free(trial);
+    material_destroy(&m);
+  }
+}
+
+static void closed_cycles_of_strain_take_work(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    if (!samples[n].associated) continue;
+    Material m = samples[n].make();
+    uint64_t seed = 31;
+    for (int cycle = 0; cycle < 20; ++cycle) {
+      enum { CORNERS = 6, PARTS = 400 };
+      Point p = point_start(&m);
+      double corner[CORNERS + 1][6] = {{0}}, s[6] = {0}, before[6] = {0}, strain[6] = {0}, work = 0, flow = 0;
+      for (int c = 1; c < CORNERS; ++c) wander(&seed, samples[n].strain, samples[n].strain, corner[c]);
+      for (int c = 0; c < CORNERS; ++c)
+        for (int part = 1; part <= PARTS; ++part) {
+          double next[6];
+          for (int k = 0; k < 6; ++k) next[k] = corner[c][k] + (corner[c + 1][k] - corner[c][k]) * part / PARTS;
+          point_try(&p, next, s, NULL, 0);
+          for (int k = 0; k < 6; ++k) {
+            const double done = (s[k] + before[k]) / 2 * (next[k] - strain[k]);
+            work += done;
+            flow += fabs(done);
+          }
+          memcpy(before, s, sizeof s);
+          memcpy(strain, next, sizeof strain);
+          point_commit(&p);
+        }
+      if (work < -1e-3 * flow) fail_msg("%s: cycle %d makes %.3e of %.3e", samples[n].name, cycle, -work, flow);
+      point_stop(&p);
+    }
+    material_destroy(&m);
+  }
+}
+
+static void smaller_steps_change_little(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    uint64_t seed = 41;
+    for (int path = 0; path < 10; ++path) {
+      enum { CORNERS = 4, MOST = 1600 };
+      const int parts[3] = {100, 400, MOST};
+      double corner[CORNERS + 1][6] = {{0}}, end[3][6], largest = 0;
+      for (int c = 1; c <= CORNERS; ++c) {
+        memcpy(corner[c], corner[c - 1], sizeof corner[c]);
+        wander(&seed, samples[n].strain, samples[n].strain / 2, corner[c]);
+      }
+      for (int way = 0; way < 3; ++way) {
+        Point p = point_start(&m);
+        for (int c = 0; c < CORNERS; ++c)
+          for (int part = 1; part <= parts[way]; ++part) {
+            double strain[6];
+            for (int k = 0; k < 6; ++k)
+              strain[k] = corner[c][k] + (corner[c + 1][k] - corner[c][k]) * part / parts[way];
+            point_try(&p, strain, end[way], NULL, 0);
+            for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(end[way][k]));
+            point_commit(&p);
+          }
+        point_stop(&p);
+      }
+      double coarse = 0, fine = 0;
+      for (int k = 0; k < 6; ++k) {
+        coarse = fmax(coarse, fabs(end[0][k] - end[2][k]));
+        fine = fmax(fine, fabs(end[1][k] - end[2][k]));
+      }
+      if (fine > 0.01 * largest || fine > 0.6 * coarse + 1e-6 * largest)
+        fail_msg("%s: 100, 400 and 1600 parts differ by %.2e and %.2e of %.2e", samples[n].name, coarse, fine, largest);
+    }
+    material_destroy(&m);
+  }
+}
+
+static void the_elastic_stage_is_elastic(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    Point p = point_start(&m);
+    const double lambda = m.bulk - 2 * m.shear / 3;
+    double s[6], strain[6] = {2e-2, -1e-2, 5e-3, 1e-2, 3e-2, -2e-2};
+    point_try(&p, strain, s, NULL, 1);
+    for (int k = 0; k < 6; ++k)
+      assert_near(s[k], (k < 3 ? 2 : 1) * m.shear * strain[k] + (k < 3 ? lambda * 1.5e-2 : 0), 1e-10 * fabs(s[k]));
+    point_stop(&p);
+    material_destroy(&m);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(tangents_are_derivatives_of_steps),
+      cmocka_unit_test(the_walk_of_tangents_visits_every_region_of_the_cap),
+      cmocka_unit_test(a_million_steps_of_any_size_stay_finite_and_inside),
+      cmocka_unit_test(stress_turns_with_the_strain),
+      cmocka_unit_test(a_trial_can_be_repeated_and_leaves_the_committed_state_alone),
+      cmocka_unit_test(points_of_a_batch_do_not_know_of_each_other),
+      cmocka_unit_test(closed_cycles_of_strain_take_work),
+      cmocka_unit_test(smaller_steps_change_little),
+      cmocka_unit_test(the_elastic_stage_is_elastic),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
