@@ -94,6 +94,35 @@ LANES_INLINE Lanes lanes_where(LaneMask mask, Lanes lanes)
   return (Lanes)((LaneMask)lanes & mask);
 }
 
+/** a where the mask is set, b elsewhere. */
+LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
+{
+  return (Lanes)(((LaneMask)a & mask) | ((LaneMask)b & ~mask));
+}
+
+/** e^x - 1 to its last digits, also for small x; below -708 it is -1, above 709 it is 8e307. x must be a number. */
+LANES_INLINE Lanes lanes_exponential_less_one(Lanes x)
+{
+  x = lanes_choose(x < lanes_set(-708), lanes_set(-708), x);
+  x = lanes_choose(x > lanes_set(709), lanes_set(709), x);
+  /* x = n ln 2 + r: adding 3 * 2^51 leaves n in the low bits. */
+  const Lanes round = lanes_set(6755399441055744.0), shifted = x * lanes_set(1.4426950408889634) + round,
+              n = shifted - round;
+  const Lanes r = (x - n * lanes_set(6.93147180369123816490e-01)) - n * lanes_set(1.90821492927058770002e-10),
+              r2 = r * r;
+  /* Taylor's series in pairs: less to wait for than one term after another. */
+  Lanes p = lanes_set(1.0 / 6227020800) * r + lanes_set(1.0 / 479001600);
+  p = p * r2 + (lanes_set(1.0 / 39916800) * r + lanes_set(1.0 / 3628800));
+  p = p * r2 + (lanes_set(1.0 / 362880) * r + lanes_set(1.0 / 40320));
+  p = p * r2 + (lanes_set(1.0 / 5040) * r + lanes_set(1.0 / 720));
+  p = p * r2 + (lanes_set(1.0 / 120) * r + lanes_set(1.0 / 24));
+  p = p * r2 + (lanes_set(1.0 / 6) * r + lanes_set(0.5));
+  p = p * r2 + r;
+  const LaneMask one = (LaneMask)lanes_set(1);
+  const Lanes power = (Lanes)(one + ((LaneMask)shifted << 52));
+  return power * p + (power - lanes_set(1));
+}
+
 LANES_INLINE Lanes lanes_root(Lanes x)
 {
   return (Lanes){__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};

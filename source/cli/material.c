@@ -32,52 +32,6 @@ static void keep_settings(void *context, int option, const char *value)
   if (option == SET && settings->count < 128) settings->items[settings->count++] = value;
 }
 
-/** Reads KEY=VALUE words into the law's parameter values. */
-static int read_parameters(const breccia_law *law, const Settings *settings, const Units *units, double *values,
-                           breccia_error *error)
-{
-  int status = BRECCIA_OK;
-  bool given[128] = {false};
-  for (int s = 0; s < settings->count; ++s) {
-    const char *equals = strchr(settings->items[s], '=');
-    size_t n = equals ? (size_t)(equals - settings->items[s]) : 0;
-    int which = -1;
-    for (int k = 0; k < law->parameter_count; ++k)
-      if (equals && strlen(law->parameters[k].name) == n && !strncmp(law->parameters[k].name, settings->items[s], n))
-        which = k;
-    if (which < 0) {
-      Text names = {0};
-      for (int k = 0; k < law->parameter_count; ++k) text_add(&names, "%s'%s'", k ? ", " : "", law->parameters[k].name);
-      status = error_add(error, BRECCIA_USER_ERROR, "--set %s: expected KEY=VALUE with one of the keys %s",
-                         settings->items[s], names.characters);
-      text_free(&names);
-      continue;
-    }
-    Text reason = {0};
-    if (units_read(units, dimension_find(law->parameters[which].dimension), equals + 1, &values[which], &reason))
-      status = error_add(error, BRECCIA_USER_ERROR, "--set %s: %s", settings->items[s], reason.characters);
-    else if (!interval_contains(law->parameters[which].range, values[which])) {
-      char words[128];
-      interval_describe(law->parameters[which].range, words, sizeof words);
-      status = error_add(error, BRECCIA_USER_ERROR, "--set %s: must be %s", settings->items[s], words);
-    }
-    text_free(&reason);
-    given[which] = true;
-  }
-  for (int k = 0; k < law->parameter_count; ++k) {
-    const breccia_parameter *p = &law->parameters[k];
-    Text reason = {0};
-    if (given[k]) continue;
-    values[k] = NAN;
-    if (!p->standard)
-      status = error_add(error, BRECCIA_USER_ERROR, "missing --set '%s=...' (%s)", p->name, p->meaning);
-    else if (*p->standard)
-      units_read(units, dimension_find(p->dimension), p->standard, &values[k], &reason);
-    text_free(&reason);
-  }
-  return status;
-}
-
 static const char *const strains[] = {"e11", "e22", "e33", "g12", "g23", "g31"};
 static const char *const stresses[] = {"s11", "s22", "s33", "s12", "s23", "s31"};
 
@@ -170,14 +124,10 @@ static int run(int argc, char **argv, const Verb *verb)
     return fail(error, BRECCIA_USER_ERROR);
   }
   Units *units = units_create("m", "kN", "s", error);
-  double numbers[128];
   Material material = {0};
-  int count = 0, status = units ? read_parameters(law, &settings, units, numbers, error) : BRECCIA_FAILURE;
-  if (!status) {
-    char reason[512];
-    status = material_prepare(&material, law, numbers, reason, sizeof reason);
-    if (status) error_add(error, status, "%s: %s", law->name, reason);
-  }
+  int count = 0,
+      status = units ? material_from_words(&material, law, settings.items, settings.count, units, "--set ", error)
+                     : BRECCIA_FAILURE;
   double *rows = status ? NULL : read_path(values[STRAIN], law->uniaxial ? 1 : 6, &count, error);
   if (!status && !rows) status = BRECCIA_USER_ERROR;
   FILE *out = stdout;

@@ -1,5 +1,6 @@
 #include "constitutive/material.h"
 
+#include "base/memory.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -88,6 +89,64 @@ int material_create(Material *material, const DeckReader *reader, const Material
   material->name = spec->head.name;
   material->density = spec->density;
   return BRECCIA_OK;
+}
+
+/** Reads "key=value" words into a law's parameter values, and defaults for the rest. */
+static int read_words(const breccia_law *law, const char *const *words, int count, const Units *units,
+                      const char *before, double *values, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < law->parameter_count; ++k) values[k] = NAN;
+  for (int w = 0; w < count; ++w) {
+    const char *equals = strchr(words[w], '=');
+    const size_t n = equals ? (size_t)(equals - words[w]) : 0;
+    int which = -1;
+    for (int k = 0; k < law->parameter_count; ++k)
+      if (equals && strlen(law->parameters[k].name) == n && !strncmp(law->parameters[k].name, words[w], n)) which = k;
+    if (which < 0) {
+      Text names = {0};
+      for (int k = 0; k < law->parameter_count; ++k) text_add(&names, "%s'%s'", k ? ", " : "", law->parameters[k].name);
+      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: expected KEY=VALUE with one of the keys %s", before,
+                         words[w], names.characters);
+      text_free(&names);
+      continue;
+    }
+    Text reason = {0};
+    if (units_read(units, dimension_find(law->parameters[which].dimension), equals + 1, &values[which], &reason))
+      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: %s", before, words[w], reason.characters);
+    else if (!interval_contains(law->parameters[which].range, values[which])) {
+      char range[128];
+      interval_describe(law->parameters[which].range, range, sizeof range);
+      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: must be %s", before, words[w], range);
+    }
+    text_free(&reason);
+  }
+  for (int k = 0; k < law->parameter_count && !status; ++k) {
+    const breccia_parameter *p = &law->parameters[k];
+    Text reason = {0};
+    if (!isnan(values[k])) continue;
+    if (!p->standard)
+      status = error_add(error, BRECCIA_USER_ERROR, "missing %s'%s=...' (%s)", before, p->name, p->meaning);
+    else if (*p->standard)
+      units_read(units, dimension_find(p->dimension), p->standard, &values[k], &reason);
+    text_free(&reason);
+  }
+  return status;
+}
+
+int material_from_words(Material *material, const breccia_law *law, const char *const *words, int count,
+                        const Units *units, const char *before, Error *error)
+{
+  char reason[512] = "";
+  double *values = memory_zeroed((size_t)law->parameter_count + 1, sizeof(double), "parameters", error);
+  if (!values) return BRECCIA_FAILURE;
+  int status = read_words(law, words, count, units, before, values, error);
+  if (!status) {
+    status = material_prepare(material, law, values, reason, sizeof reason);
+    if (status) error_add(error, status, "%s: %s", law->name, reason);
+  }
+  free(values);
+  return status;
 }
 
 void material_destroy(Material *material)

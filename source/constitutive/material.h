@@ -31,6 +31,10 @@ double material_failure_strain(const Material *material);
 
 /** Prepares a material from a law and its parameter values; `reason` tells what is inadmissible. */
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size);
+/** Prepares a material of a law from "key=value" words, with or without units, and its defaults.
+ *  @param[in] before  stands before each word in messages, like "--set " */
+int material_from_words(Material *material, const breccia_law *law, const char *const *words, int count,
+                        const Units *units, const char *before, Error *error);
 void material_destroy(Material *material);
 
 /** Young's modulus of the undamaged material. */

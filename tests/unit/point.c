@@ -32,7 +32,7 @@ bool point_may_try(Point *p, const double *strain, double *stress, double *tange
 
 void point_try(Point *p, const double *strain, double *stress, double *tangent, int elastic)
 {
-  assert_true(point_may_try(p, strain, stress, tangent, elastic));
+  if (!point_may_try(p, strain, stress, tangent, elastic)) fail_msg("%s gave up", p->m->law->name);
 }
 
 void point_commit(Point *p)

@@ -52,66 +52,46 @@ void compute_forces(breccia_model *model)
   domain_forces(&model->domain);
 }
 
-/** Values of a law's parameters from "name=value" words and its defaults; units m, kN, s. */
-static void read_words(const breccia_law *law, const char *const *words, int count, double *values)
-{
-  Error *error = breccia_error_create();
-  Units *units = units_create("m", "kN", "s", error);
-  assert_non_null(units);
-  Text reason = {0};
-  for (int k = 0; k < law->parameter_count; ++k) {
-    const breccia_parameter *p = &law->parameters[k];
-    values[k] = NAN;
-    if (p->standard && *p->standard) units_read(units, dimension_find(p->dimension), p->standard, &values[k], &reason);
-  }
-  for (int w = 0; w < count; ++w) {
-    const char *equals = strchr(words[w], '=');
-    int found = 0;
-    for (int k = 0; k < law->parameter_count; ++k) {
-      const breccia_parameter *p = &law->parameters[k];
-      if (strncmp(p->name, words[w], (size_t)(equals - words[w])) || p->name[equals - words[w]]) continue;
-      found = 1;
-      assert_int_equal(units_read(units, dimension_find(p->dimension), equals + 1, &values[k], &reason), 0);
-    }
-    if (!found) fail_msg("%s has no parameter for '%s'", law->name, words[w]);
-  }
-  text_free(&reason);
-  units_destroy(&units);
-  breccia_error_destroy(&error);
-}
-
 enum { MOST_WORDS = 64 };
 
-Material material_of(const char *name, ...)
+static int material_of_words(Material *material, const char *name, const char *const *words, int count, Error *error)
 {
   const breccia_law *law = law_find(NULL, name);
   assert_non_null(law);
+  Units *units = units_create("m", "kN", "s", error);
+  assert_non_null(units);
+  int status = material_from_words(material, law, words, count, units, "", error);
+  units_destroy(&units);
+  return status;
+}
+
+Material material_of(const char *name, ...)
+{
   const char *words[MOST_WORDS];
   int count = 0;
   va_list arguments;
   va_start(arguments, name);
   while (count < MOST_WORDS && (words[count] = va_arg(arguments, const char *))) ++count;
   va_end(arguments);
-  double values[MOST_WORDS];
-  read_words(law, words, count, values);
+  Error *error = breccia_error_create();
   Material material;
-  char reason[512] = "";
-  if (material_prepare(&material, law, values, reason, sizeof reason)) fail_msg("material refused: %s", reason);
+  if (material_of_words(&material, name, words, count, error))
+    fail_msg("material refused: %s", breccia_error_text(error));
+  breccia_error_destroy(&error);
   return material;
 }
 
 int material_refusal(const char *name, const char *commas, char *reason, size_t size)
 {
-  const breccia_law *law = law_find(NULL, name);
-  assert_non_null(law);
   char line[1024], *words[MOST_WORDS];
   int count = 0;
   snprintf(line, sizeof line, "%s", commas);
   for (char *word = strtok(line, ","); word && count < MOST_WORDS; word = strtok(NULL, ",")) words[count++] = word;
-  double values[MOST_WORDS];
-  read_words(law, (const char *const *)words, count, values);
+  Error *error = breccia_error_create();
   Material material;
-  int status = material_prepare(&material, law, values, reason, size);
+  int status = material_of_words(&material, name, (const char *const *)words, count, error);
   if (!status) material_destroy(&material);
+  snprintf(reason, size, "%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
   return status;
 }

@@ -13,10 +13,11 @@ enum { WALK = 1000000 };
 typedef struct Sample {
   const char *name;
   Material (*make)(void);
-  double strain;      /* at which the law is well beyond its elastic range */
-  bool consistent;    /* its tangent is the derivative of a whole step */
-  bool associated;    /* closed cycles of strain take work */
-  double (*over)(const Point *p, const double stress[6]); /* how far the stress is outside, over a strength; NULL: no such test */
+  double strain;   /* at which the law is well beyond its elastic range */
+  bool consistent; /* its tangent is the derivative of a whole step */
+  bool associated; /* closed cycles of strain take work */
+  double (*over)(const Point *p,
+                 const double stress[6]); /* how far the stress is outside, over a strength; NULL: no such test */
 } Sample;
 
 static void invariants(const double s[6], double *i, double *length)
@@ -164,7 +165,8 @@ static double over_bounding(const Point *p, const double s[6])
   return length / (sqrt(8.0 / 3) * 30) - 1;
 }
 
-#define CONCRETE "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1", "length=0.03"
+#define CONCRETE                                                                                                       \
+  "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1", "length=0.03"
 static Material damage_plasticity(void)
 {
   return material_of("damage-plasticity", CONCRETE, "compressive strength=34000", NULL);
@@ -242,8 +244,8 @@ static void tangents_are_derivatives_of_steps(void **state)
         }
         for (int r = 0; r < 6; ++r) {
           const double near = (at[2][r] - at[1][r]) / (2 * h), far = (at[3][r] - at[0][r]) / (4 * h);
-          const double left = (s[r] - at[1][r]) / h, right = (at[2][r] - s[r]) / h,
-                       left2 = (at[1][r] - at[0][r]) / h, right2 = (at[3][r] - at[2][r]) / h;
+          const double left = (s[r] - at[1][r]) / h, right = (at[2][r] - s[r]) / h, left2 = (at[1][r] - at[0][r]) / h,
+                       right2 = (at[3][r] - at[2][r]) / h;
           const double bend = fabs(right - left) / whole, bend2 = fabs(right2 - right) / whole,
                        bend3 = fabs(left2 - left) / whole;
           if (fmax(bend, fmax(bend2, bend3)) > 3e-3) kink = true;
@@ -357,8 +359,8 @@ static void stress_turns_with_the_strain(void **state)
       for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(s[k]));
       for (int k = 0; k < 6; ++k)
         if (fabs(t[k] - expected[k]) > 1e-8 * largest)
-          fail_msg("%s: turned stress off by %.2e of %.2e in step %d", samples[n].name, fabs(t[k] - expected[k]), largest,
-                   step);
+          fail_msg("%s: turned stress off by %.2e of %.2e in step %d", samples[n].name, fabs(t[k] - expected[k]),
+                   largest, step);
       point_commit(&a);
       point_commit(&b);
     }
@@ -409,7 +411,8 @@ static void points_of_a_batch_do_not_know_of_each_other(void **state)
     Material m = samples[n].make();
     const size_t values = (size_t)m.history_values;
     static double strain[6][POINTS], stress[6][POINTS];
-    double *committed = calloc(values * POINTS + 1, sizeof(double)), *trial = calloc(values * POINTS + 1, sizeof(double));
+    double *committed = calloc(values * POINTS + 1, sizeof(double)),
+           *trial = calloc(values * POINTS + 1, sizeof(double));
     Point alone[POINTS];
     uint64_t seed = 29;
     memset(strain, 0, sizeof strain);

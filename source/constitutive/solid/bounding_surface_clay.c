@@ -26,7 +26,8 @@ static const breccia_parameter parameters[] = {
     {"least hardening", "stress", "0", "[0, inf)", "H0"},
     {"implicit share", "1", "0.5", "[0, 1]", "weight of the step's end in its mean hardening"},
     {"opensees steps", "1", "0", "[0, 1]",
-     "1: stop Newton's method where the OpenSees class J2CyclicBoundingSurface does, to compare with it; its first step after a "
+     "1: stop Newton's method where the OpenSees class J2CyclicBoundingSurface does, to compare with it; its first "
+     "step after a "
      "reversal is a tenth off"},
 };
 
@@ -138,8 +139,7 @@ static bool solve_as_opensees(const Bounding *c, const Step *step, bool fresh, d
     double rise, a[6], to_psi = 0, to_k = 0;
     const double h = y < 0 ? 1e-10 : hardening(c, y, &rise), term = 3 * shear * (step->before + share / h);
     if (y < 0) rise = 0;
-    for (int n = 0; n < 6; ++n)
-      a[n] = step->s[n] + (1 + y) * x * step->de[n] + y * (step->s[n] - step->reversal[n]);
+    for (int n = 0; n < 6; ++n) a[n] = step->s[n] + (1 + y) * x * step->de[n] + y * (step->s[n] - step->reversal[n]);
     const double length = norm(a), r1 = x * (1 + term) / (2 * shear) - 1, r2 = length / c->radius - 1;
     const double size = sqrt(r1 * r1 + r2 * r2);
     if (!iteration) first = size;
@@ -236,7 +236,8 @@ static int update(const void *constants, const breccia_batch *batch)
 
 const breccia_law law_bounding_surface_clay = {
     .name = "bounding-surface-clay",
-    .about = "clay under cycles: stiffness falls from the last reversal towards a bounding surface, without an elastic range",
+    .about = "clay under cycles: stiffness falls from the last reversal towards a bounding surface, without an elastic "
+             "range",
     .source = "Borja and Amies 1994",
     .maturity = "verified against OpenSees J2CyclicBoundingSurface",
     LAW_PARAMETERS(parameters),

@@ -5,6 +5,8 @@
  * region returns along the trial deviator: the unknowns are I and |s|. Compaction W (1 - exp(-D X(k))) moves the cap. */
 #include "constitutive/solid/solid_law.h"
 
+#include "base/lanes.h"
+
 typedef struct Cap {
   Elasticity elastic;
   double alpha, lambda, beta, theta;   /* of the envelope */
@@ -30,12 +32,14 @@ enum { PLASTIC = 0, CAP = 6, HISTORY };
 
 static const breccia_parameter parameters[] = {
     ELASTIC_PARAMETER_ROWS,
-    {"envelope strength", "stress", NULL, "(0, inf)", "alpha of the failure envelope |s| = alpha - lambda exp(-beta I) + theta I"},
+    {"envelope strength", "stress", NULL, "(0, inf)",
+     "alpha of the failure envelope |s| = alpha - lambda exp(-beta I) + theta I"},
     {"envelope drop", "stress", "0", "[0, inf)", "lambda, by how much the envelope lies lower at I = 0"},
     {"envelope rate", "per stress", "0", "[0, inf)", "beta, how fast that fades with pressure"},
     {"envelope slope", "1", "0", "[0, inf)", "theta, at high pressure"},
     {"cap ratio", "1", NULL, "(0, inf)", "R, width of the elliptic cap over its height"},
-    {"cap position", "stress", NULL, "(0, inf)", "X, I = -(sum of normal stresses) at which hydrostatic compaction begins"},
+    {"cap position", "stress", NULL, "(0, inf)",
+     "X, I = -(sum of normal stresses) at which hydrostatic compaction begins"},
     {"largest compaction", "1", NULL, "(0, inf)", "W, plastic volume strain at infinite pressure"},
     {"compaction rate", "per stress", NULL, "(0, inf)", "D, of compaction with the cap's position"},
     {"tension cut-off", "stress", NULL, "(0, inf)", "largest sum of normal stresses in tension"},
@@ -113,30 +117,27 @@ static void begin(const void *constants, double *history)
   history[CAP] = ((const Cap *)constants)->start;
 }
 
-/** Where the flow along the envelope ends: 9 K F'(I) (length - F(I)) / 2G + trial - I = 0, which falls from low to high. */
-static double return_to_envelope(const Cap *c, double trial, double length, double low, double high,
+/** Where the flow along the envelope ends: 9 K F'(I) (length - F(I)) / 2G + trial - I = 0, which falls from low to high.
+ *  @param[out] returned  F there */
+static double return_to_envelope(const Cap *c, double trial, double length, double low, double high, double *returned,
                                  ReturnSlopes *slopes)
 {
   const double stiff = 9 * c->elastic.bulk / (2 * c->elastic.shear);
-  double i = fmin(fmax(trial, low), high), slope = 0, bend = 0;
+  double i = fmin(fmax(trial, low), high), slope = 0, fall = -1;
   for (int iteration = 0; iteration < 200; ++iteration) {
-    const double f = envelope(c, i, &slope);
-    bend = -c->beta * (slope - c->theta);
-    const double residual = stiff * slope * (length - f) + trial - i,
-                 fall = stiff * (bend * (length - f) - slope * slope) - 1;
+    *returned = envelope(c, i, &slope);
+    const double bend = -c->beta * (slope - c->theta), residual = stiff * slope * (length - *returned) + trial - i;
+    fall = stiff * (bend * (length - *returned) - slope * slope) - 1;
     if (residual > 0)
       low = i;
     else
       high = i;
     double next = i - residual / fall;
     if (!(next > low && next < high)) next = (low + high) / 2;
-    const double step = next - i;
+    const double least = 4e-16 * (fabs(i) + c->alpha);
+    if (fabs(next - i) <= least || high - low <= least) break;
     i = next;
-    if (fabs(step) <= 4e-16 * (fabs(i) + c->alpha) || high - low <= 4e-16 * (fabs(i) + c->alpha)) break;
   }
-  const double f = envelope(c, i, &slope);
-  bend = -c->beta * (slope - c->theta);
-  const double fall = stiff * (bend * (length - f) - slope * slope) - 1;
   slopes->invariant_invariant = -1 / fall;
   slopes->invariant_length = -stiff * slope / fall;
   slopes->length_invariant = slope * slopes->invariant_invariant;
@@ -144,73 +145,67 @@ static double return_to_envelope(const Cap *c, double trial, double length, doub
   return i;
 }
 
-/** Flow on the cap: finds the new k, and from it I and |s| (docs/theory.md 8.3, region 3). With g = dgamma / F(k):
- *  |s| = length / (1 + 2 G g), I = trial - 3 K H(k), g = R^2 H / (3 (I - k)). */
+/** Flow on the cap: finds by how much k moves, d, and from it I and |s| (docs/theory.md 8.3, region 3). With g = dgamma / F(k):
+ *  |s| = length / (1 + 2 G g), I = trial - 3 K H, g = R^2 H / (3 (I - k)). F and H are written by their changes, because both move little. */
 static double return_to_cap(const Cap *c, double trial, double length, double k, double *invariant, double *returned,
                             ReturnSlopes *slopes)
 {
   const double bulk3 = 3 * c->elastic.bulk, shear2 = 2 * c->elastic.shear, R = c->ratio, square3 = R * R / 3;
+  const double past = trial - k;
   double slope;
-  const double before = exp(-c->rate * (k + R * envelope(c, k, &slope)));
-  double low = k, high = trial, residual_slope = 0, past = trial - k;
+  const double first = envelope(c, k, &slope), bent = slope - c->theta, before = exp(-c->rate * (k + R * first));
   if (past <= 1e-9 * (fabs(k) + c->at_cut)) { /* the ellipse's top: H and I - k vanish together */
-    const double f = envelope(c, k, &slope), g = (length / f - 1) / shear2;
-    const double grows = c->compaction * c->rate * (1 + R * slope) * before;
+    const double g = (length / first - 1) / shear2, grows = c->compaction * c->rate * (1 + R * slope) * before;
     const double follows = g / (square3 * grows + g * (1 + bulk3 * grows));
     *slopes = (ReturnSlopes){1 - bulk3 * grows * follows, 0, slope * follows, 0};
     *invariant = trial - bulk3 * grows * follows * past;
     *returned = envelope(c, k + follows * past, &slope);
     return k + follows * past;
   }
-  double f, f1, gone, H, H1, m, g, a, b, dilute, narrow, g1, a1, S;
+  double low = 0, high = past, d = 0, f, H1, m, g, a, b, dilute, narrow, a1, S, H, residual_slope;
   for (int iteration = 0;; ++iteration) {
-    f = envelope(c, k, &f1);
-    gone = exp(-c->rate * (k + R * f));
-    H = c->compaction * (before - gone);
-    H1 = c->compaction * c->rate * (1 + R * f1) * gone;
-    m = trial - bulk3 * H - k;
-    if (!(m > 0)) { /* beyond the top: the flow would be infinite */
-      high = k;
-      k = (low + high) / 2;
-      if (iteration > 300) return NAN;
-      continue;
+    const double fade = c->beta > 0 ? expm1(-c->beta * d) : 0,
+                 rise = (c->beta > 0 ? -bent / c->beta * fade : 0) + c->theta * d;
+    const double f1 = bent * (1 + fade) + c->theta, pressed = expm1(-c->rate * (d + R * rise));
+    f = first + rise;
+    H = -c->compaction * before * pressed;
+    H1 = c->compaction * c->rate * (1 + R * f1) * before * (1 + pressed);
+    m = past - bulk3 * H - d;
+    double next = 0, step = INFINITY;
+    if (m > 0) {
+      g = square3 * H / m;
+      const double g1 = (square3 * H1 + g * (bulk3 * H1 + 1)) / m;
+      dilute = 1 / (1 + shear2 * g);
+      narrow = 1 / (R + 3 * bulk3 * g / R);
+      a = length * dilute;
+      a1 = -a * dilute * shear2 * g1;
+      b = (past - d) * narrow;
+      S = sqrt(a * a + b * b);
+      residual_slope = (a * a1 - b * (1 + b * 3 * bulk3 * g1 / R) * narrow) / S - f1;
+      step = (f - S) / residual_slope;
+      if (fabs(S - f) <= 1e-13 * f || iteration > 200) break;
+      if (S > f)
+        low = d;
+      else
+        high = d;
+      next = d + step;
+    } else { /* beyond the top: the flow would be infinite */
+      high = d;
     }
-    const double m1 = -bulk3 * H1 - 1;
-    g = square3 * H / m;
-    g1 = square3 * (H1 * m - H * m1) / (m * m);
-    dilute = 1 / (1 + shear2 * g);
-    narrow = 1 / (R + 3 * bulk3 * g / R);
-    a = length * dilute;
-    a1 = -a * dilute * shear2 * g1;
-    b = (trial - k) * narrow;
-    const double b1 = -(1 + b * 3 * bulk3 * g1 / R) * narrow;
-    S = sqrt(a * a + b * b);
-    const double residual = S - f;
-    residual_slope = (a * a1 + b * b1) / S - f1;
-    if (residual > 0)
-      low = k;
-    else
-      high = k;
-    const double step = residual / residual_slope;
-    if (fabs(residual) <= 2e-16 * f || fabs(step) <= 1e-16 * k || iteration > 300) break;
-    double next = k - step;
-    if (!(next > low && next < high)) {
-      if (next >= high && high - low <= 1e-15 * high) break;
-      next = fabs(step) <= 1e-15 * k ? k : (low + high) / 2;
-      if (next == k || next == low || next == high) break;
-    }
-    k = next;
+    if (!(next > low && next < high)) next = (low + high) / 2;
+    if (m > 0 && (fabs(next - d) <= 1e-15 * d || high - low <= 1e-15 * high)) break;
+    d = next;
   }
-  /* Near the top of the ellipse after great compaction g hangs on the last digits of k: what is left goes radially. */
+  /* Near the top of the ellipse after great compaction g hangs on the last digits of d: what is left goes radially. */
   const double radial = fabs(S - f) > 1e-12 * f ? f / S : 1;
-  *invariant = radial == 1 ? trial - bulk3 * H : k + R * b * radial;
+  *invariant = radial == 1 ? trial - bulk3 * H : k + d + R * b * radial;
   *returned = a * radial;
   const double g_trial = -g / m, a_trial = -a * dilute * shear2 * g_trial,
                b_trial = narrow * (1 - b * 3 * bulk3 * g_trial / R);
-  const double k_trial = -(a * a_trial + b * b_trial) / S / residual_slope, k_length = -a * dilute / S / residual_slope;
-  *slopes = (ReturnSlopes){1 - bulk3 * H1 * k_trial, -bulk3 * H1 * k_length, a_trial + a1 * k_trial,
-                           dilute + a1 * k_length};
-  return k;
+  const double d_trial = -(a * a_trial + b * b_trial) / S / residual_slope, d_length = -a * dilute / S / residual_slope;
+  *slopes =
+      (ReturnSlopes){1 - bulk3 * H1 * d_trial, -bulk3 * H1 * d_length, a_trial + a1 * d_trial, dilute + a1 * d_length};
+  return k + d;
 }
 
 /** The cap after dilation by `grown` (trace of the plastic strain increment, compaction positive, so `grown` < 0). */
@@ -220,72 +215,314 @@ static double draw_cap_back(const Cap *c, double k, double grown, double invaria
   const double rest = exp(-c->rate * (k + c->ratio * envelope(c, k, &slope))) - grown / c->compaction;
   const double position = -log(rest) / c->rate;
   if (position < c->ratio * envelope(c, 0, &slope)) return k; /* k would be negative */
-  const double back = cap_of_position(c, position, 0);
+  const double back = cap_of_position(c, position, k);
   return back < 0 || (c->strict && back < fmax(invariant, 0)) ? k : back;
+}
+
+/** Where a trial state, elastic trial I and |s| with the cap at k, returns to. */
+typedef struct Return {
+  bool plastic, on_cap; /* on_cap: left to the iteration on the cap */
+  double invariant, length, cap;
+  ReturnSlopes slopes;
+} Return;
+
+/** All regions but the cap. @param[in] at  the envelope at the lesser of trial and k */
+static Return return_outside_cap(const Cap *c, double trial, double length, double k, double at)
+{
+  const double ratio = 2 * c->elastic.shear / (9 * c->elastic.bulk);
+  Return r = {.plastic = true, .invariant = trial, .length = length, .cap = k};
+  if (trial > k) {
+    const double along = (trial - k) / c->ratio;
+    r.on_cap = r.plastic = length * length + along * along > at * at * (1 + 1e-12); /* roundings count as on the cap */
+    return r;
+  }
+  if (trial >= c->cut && length <= at) {
+    r.plastic = false;
+    return r;
+  }
+  if (trial <= c->cut && length <= c->at_cut) {
+    r.invariant = c->cut;
+    r.slopes.length_length = 1;
+  } else if (trial <= c->cut && length <= c->at_cut + ratio * (c->cut - trial) / c->slope_at_cut) {
+    r.invariant = c->cut;
+    r.length = c->at_cut;
+  } else {
+    double slope;
+    const double at_cap = envelope(c, k, &slope);
+    if (length >= at_cap + ratio * (k - trial) / slope) {
+      r.invariant = k;
+      r.length = at_cap;
+      return r;
+    }
+    r.invariant = return_to_envelope(c, trial, length, fmax(trial, c->cut), k, &r.length, &r.slopes);
+  }
+  if (trial < r.invariant) r.cap = draw_cap_back(c, k, (trial - r.invariant) / (3 * c->elastic.bulk), r.invariant);
+  return r;
 }
 
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const Cap *c = constants;
-  const double bulk = c->elastic.bulk, ratio = 2 * c->elastic.shear / (9 * bulk);
   double s[6], length, slope;
-  const double trial = -elastic_trial(&c->elastic, p->strain, p->committed + PLASTIC, s, &length);
-  double k = p->committed[CAP], i = trial, returned = length;
-  ReturnSlopes slopes = {0};
-  bool plastic = !p->elastic;
-  if (!plastic) {
-  } else if (trial <= c->cut && length <= c->at_cut) {
-    i = c->cut;
-    slopes.length_length = 1;
-  } else if (trial <= c->cut && length <= c->at_cut + ratio * (c->cut - trial) / c->slope_at_cut) {
-    i = c->cut;
-    returned = c->at_cut;
-  } else {
-    const double f = envelope(c, trial <= k ? trial : k, &slope);
-    if (trial > k) {
-      const double along = (trial - k) / c->ratio;
-      if (length * length + along * along <= f * f * (1 + 1e-12)) /* roundings count as on the cap */
-        plastic = false;
-      else
-        k = return_to_cap(c, trial, length, k, &i, &returned, &slopes);
-    } else if (length <= f && trial >= c->cut) {
-      plastic = false;
-    } else {
-      const double at_cap = envelope(c, k, &slope);
-      if (length >= at_cap + ratio * (k - trial) / slope) {
-        i = k;
-        returned = at_cap;
-      } else {
-        i = return_to_envelope(c, trial, length, fmax(trial, c->cut), k, &slopes);
-        returned = envelope(c, i, &slope);
-      }
-    }
+  const double trial = -elastic_trial(&c->elastic, p->strain, p->committed + PLASTIC, s, &length),
+               k = p->committed[CAP];
+  Return r = return_outside_cap(c, trial, length, k, envelope(c, fmin(trial, k), &slope));
+  if (p->elastic) r = (Return){.invariant = trial, .length = length, .cap = k};
+  if (r.on_cap) r.cap = return_to_cap(c, trial, length, k, &r.invariant, &r.length, &r.slopes);
+  if (!isfinite(r.cap)) return false;
+  const double shrink = length > 0 ? r.length / length : 1;
+  double returned[6];
+  for (int n = 0; n < 6; ++n) {
+    returned[n] = s[n] * shrink;
+    p->stress[n] = returned[n] - (n < 3 ? r.invariant / 3 : 0);
   }
-  if (!isfinite(k)) return false;
-  if (plastic && i != k && trial < i) k = draw_cap_back(c, k, (trial - i) / (3 * bulk), i);
-  const double shrink = length > 0 ? returned / length : 1;
-  for (int n = 0; n < 6; ++n) s[n] *= shrink;
-  for (int n = 0; n < 6; ++n) p->stress[n] = s[n] - (n < 3 ? i / 3 : 0);
-  if (plastic)
-    plastic_rest(&c->elastic, p->strain, -i, s, p->trial + PLASTIC);
+  if (r.plastic)
+    plastic_rest(&c->elastic, p->strain, -r.invariant, returned, p->trial + PLASTIC);
   else
     memcpy(p->trial, p->committed, sizeof(double) * CAP);
-  p->trial[CAP] = k;
-  if (!p->tangent) return true;
-  if (!plastic) {
-    elastic_tangent(&c->elastic, p->tangent);
-    return true;
+  p->trial[CAP] = r.cap;
+  if (p->tangent && !r.plastic) elastic_tangent(&c->elastic, p->tangent);
+  if (p->tangent && r.plastic) {
+    r.slopes.invariant_length = -r.slopes.invariant_length; /* to tension positive */
+    r.slopes.length_invariant = -r.slopes.length_invariant;
+    return_tangent(&c->elastic, &r.slopes, r.length, length, s, p->tangent);
   }
-  slopes.invariant_length = -slopes.invariant_length; /* to tension positive */
-  slopes.length_invariant = -slopes.length_invariant;
-  for (int n = 0; n < 6; ++n) s[n] *= shrink > 0 ? 1 / shrink : 0;
-  return_tangent(&c->elastic, &slopes, returned, length, s, p->tangent);
   return true;
+}
+
+/* ---- many points at once: the same returns, with vectors wherever points go the same way ---- */
+
+enum { CHUNK = 64 };
+
+typedef struct Chunk {
+  double s[6][CHUNK], trial[CHUNK], length[CHUNK], at[CHUNK], fall[CHUNK]; /* elastic trial; F and its falling part */
+  double invariant[CHUNK], shrink[CHUNK], cap[CHUNK];                      /* where they return to */
+  bool flows[CHUNK];
+  double on_trial[CHUNK], on_length[CHUNK], on_k[CHUNK], on_at[CHUNK], on_fall[CHUNK],
+      returned[CHUNK]; /* of those on the cap, side by side */
+  int which[CHUNK];
+} Chunk;
+
+/** Number `at` of four rows of history. */
+LANES_INLINE Lanes column(const double *rows, int at)
+{
+  return (Lanes){rows[at], rows[HISTORY + at], rows[2 * HISTORY + at], rows[3 * HISTORY + at]};
+}
+
+BRECCIA_CLONES
+static void try_chunk(const Cap *c, const double *rows, const double *const strain[6], Chunk *chunk)
+{
+  const Lanes twice = lanes_set(2 * c->elastic.shear), third = lanes_set(1.0 / 3), half = lanes_set(0.5);
+  for (int p = 0; p < CHUNK; p += LANES, rows += LANES * HISTORY) {
+    Lanes e[6], volume, square;
+    for (int n = 0; n < 3; ++n) e[n] = lanes_load(strain[n] + p) - column(rows, n);
+    for (int n = 3; n < 6; ++n) e[n] = half * lanes_load(strain[n] + p) - column(rows, n);
+    volume = e[0] + e[1] + e[2];
+    for (int n = 0; n < 3; ++n) e[n] -= volume * third;
+    for (int n = 0; n < 6; ++n) {
+      e[n] *= twice;
+      lanes_store(chunk->s[n] + p, e[n]);
+    }
+    square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + lanes_set(2) * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
+    const Lanes trial = lanes_set(-3 * c->elastic.bulk) * volume, k = column(rows, CAP);
+    const Lanes length = lanes_root(square), i = lanes_least(trial, k),
+                fall = lanes_set(c->lambda) * (lanes_set(1) + lanes_exponential_less_one(lanes_set(-c->beta) * i)),
+                at = lanes_set(c->alpha) - fall + lanes_set(c->theta) * i;
+    const Lanes past = (trial - k) * lanes_set(1 / c->ratio),
+                along = lanes_choose(past > lanes_set(0), past, lanes_set(0));
+    const LaneMask outside =
+        (trial < lanes_set(c->cut)) | (length * length + along * along > at * at * lanes_set(1 + 1e-12));
+    lanes_store(chunk->trial + p, trial);
+    lanes_store(chunk->length + p, length);
+    lanes_store(chunk->fall + p, fall);
+    lanes_store(chunk->at + p, at);
+    lanes_store(chunk->invariant + p, trial);
+    lanes_store(chunk->shrink + p, lanes_set(1));
+    for (int l = 0; l < LANES; ++l) chunk->flows[p + l] = outside[l] != 0;
+  }
+}
+
+/** The iteration of return_to_cap for four points; each stops where it would alone. */
+typedef struct CapLanes {
+  Lanes past, length, first, bent, before, d, low, high, shift, returned; /* shift: I - k */
+  LaneMask ended;
+} CapLanes;
+
+LANES_INLINE void advance_cap_lanes(const Cap *c, CapLanes *x)
+{
+  const Lanes bulk3 = lanes_set(3 * c->elastic.bulk), shear2 = lanes_set(2 * c->elastic.shear), R = lanes_set(c->ratio),
+              square3 = lanes_set(c->ratio * c->ratio / 3), one = lanes_set(1),
+              bulk9 = lanes_set(9 * c->elastic.bulk / c->ratio);
+  const Lanes d = x->d, fade = lanes_exponential_less_one(lanes_set(-c->beta) * d),
+              rise = lanes_set(c->beta > 0 ? -1 / c->beta : 0) * x->bent * fade + lanes_set(c->theta) * d,
+              f = x->first + rise, f1 = x->bent * (one + fade) + lanes_set(c->theta),
+              pressed = lanes_exponential_less_one(lanes_set(-c->rate) * (d + R * rise)),
+              H = lanes_set(-c->compaction) * x->before * pressed,
+              H1 = lanes_set(c->compaction * c->rate) * (one + R * f1) * x->before * (one + pressed),
+              gap = x->past - bulk3 * H - d;
+  const LaneMask inside = gap > lanes_set(0);
+  const Lanes inverse = one / lanes_choose(inside, gap, one), g = square3 * H * inverse,
+              g1 = (square3 * H1 + g * (bulk3 * H1 + one)) * inverse;
+  const Lanes dilute = one / (one + shear2 * g), narrow = one / (R + bulk9 * g);
+  const Lanes a = x->length * dilute, a1 = -a * dilute * shear2 * g1, b = (x->past - d) * narrow,
+              S = lanes_root(a * a + b * b), slope = (a * a1 - b * (one + b * bulk9 * g1) * narrow) / S - f1;
+  const LaneMask above = inside & (S > f);
+  const Lanes low = lanes_choose(above, d, x->low), high = lanes_choose(above, x->high, d);
+  const Lanes newton = d - (S - f) / slope;
+  const LaneMask good = inside & (newton > low) & (newton < high);
+  const Lanes next = lanes_choose(good, newton, (low + high) * lanes_set(0.5));
+  const LaneMask ended = x->ended | (inside & ((lanes_absolute(S - f) <= lanes_set(1e-13) * f) |
+                                               (lanes_absolute(next - d) <= lanes_set(1e-15) * d) |
+                                               (high - low <= lanes_set(1e-15) * high)));
+  /* Near the top of the ellipse what is left goes radially, as in return_to_cap. */
+  const LaneMask off = lanes_absolute(S - f) > lanes_set(1e-12) * f;
+  const Lanes radial = lanes_choose(off, f / S, one);
+  x->returned = a * radial;
+  x->shift = lanes_choose(off, d + R * b * radial, x->past - bulk3 * H);
+  x->d = lanes_choose(ended, d, next);
+  x->low = lanes_choose(ended, x->low, low);
+  x->high = lanes_choose(ended, x->high, high);
+  x->ended = ended;
+}
+
+LANES_INLINE bool all_ended(const CapLanes *x)
+{
+  return x->ended[0] & x->ended[1] & x->ended[2] & x->ended[3];
+}
+
+/** Returns `count` points, which fill lanes two vectors at a time. What does not end has a NaN for k. */
+BRECCIA_CLONES
+static void return_chunk_to_cap(const Cap *c, Chunk *chunk, int count)
+{
+  enum { MOST_ITERATIONS = 100 };
+  for (int first = 0; first < count; first += 2 * LANES) {
+    CapLanes x[2]; /* two, because one waits for itself */
+    for (int v = 0; v < 2; ++v) {
+      const int at = first + v * LANES;
+      const Lanes k = lanes_load(chunk->on_k + at), past = lanes_load(chunk->on_trial + at) - k,
+                  first_value = lanes_load(chunk->on_at + at), none = lanes_set(0);
+      x[v] = (CapLanes){.past = past,
+                        .length = lanes_load(chunk->on_length + at),
+                        .first = first_value,
+                        .bent = lanes_set(c->beta) * lanes_load(chunk->on_fall + at),
+                        .before = lanes_set(1) + lanes_exponential_less_one(lanes_set(-c->rate) *
+                                                                            (k + lanes_set(c->ratio) * first_value)),
+                        .d = none,
+                        .low = none,
+                        .high = past,
+                        .ended = (LaneMask){0}};
+    }
+    for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
+      for (int v = 0; v < 2; ++v) advance_cap_lanes(c, &x[v]);
+      if (all_ended(&x[0]) && all_ended(&x[1])) break;
+    }
+    for (int v = 0; v < 2; ++v) {
+      const int at = first + v * LANES;
+      const Lanes k = lanes_load(chunk->on_k + at);
+      lanes_store(chunk->on_k + at, lanes_choose(x[v].ended, k + x[v].d, lanes_set(NAN)));
+      lanes_store(chunk->on_trial + at, k + x[v].shift);
+      lanes_store(chunk->returned + at, x[v].returned);
+    }
+  }
+}
+
+/** Stresses, and histories of what flows. */
+BRECCIA_CLONES
+static void finish_chunk(const Cap *c, const breccia_batch *batch, int first, int count, const Chunk *chunk)
+{
+  const double half = 1 / (2 * c->elastic.shear), ninth = 1 / (9 * c->elastic.bulk);
+  for (int n = 0; n < 6; ++n) {
+    double *stress = batch->stress[n] + first;
+    const double part = n < 3 ? 1.0 / 3 : 0;
+    for (int p = 0; p < count; ++p) stress[p] = chunk->s[n][p] * chunk->shrink[p] - part * chunk->invariant[p];
+  }
+  const double *rows = batch->committed + (ptrdiff_t)HISTORY * first;
+  double *out = batch->trial + (ptrdiff_t)HISTORY * first;
+  memcpy(out, rows, sizeof(double) * HISTORY * (size_t)count);
+  for (int p = 0; p < count; ++p) {
+    if (!chunk->flows[p]) continue;
+    for (int n = 0; n < 6; ++n)
+      out[HISTORY * p + n] = batch->strain[n][first + p] * (n < 3 ? 1 : 0.5) -
+                             chunk->s[n][p] * chunk->shrink[p] * half + (n < 3 ? chunk->invariant[p] * ninth : 0);
+    out[HISTORY * p + CAP] = chunk->cap[p];
+  }
+}
+
+/** Returns the points of a chunk. @return -1, or the first that could not be integrated */
+static int return_chunk(const Cap *c, const breccia_batch *batch, int first, int count, Chunk *chunk)
+{
+  const double *rows = batch->committed + (ptrdiff_t)HISTORY * first;
+  int on_cap = 0;
+  for (int p = 0; p < count; ++p) {
+    if (!chunk->flows[p]) continue;
+    const double k = rows[HISTORY * p + CAP], trial = chunk->trial[p], length = chunk->length[p];
+    if (batch->elastic_stage) {
+      chunk->flows[p] = false;
+      continue;
+    }
+    Return r = return_outside_cap(c, trial, length, k, chunk->at[p]);
+    chunk->flows[p] = r.plastic;
+    if (!r.plastic) continue;
+    if (r.on_cap && trial - k > 1e-9 * (fabs(k) + c->at_cut)) {
+      chunk->on_trial[on_cap] = trial;
+      chunk->on_length[on_cap] = length;
+      chunk->on_k[on_cap] = k;
+      chunk->on_at[on_cap] = chunk->at[p];
+      chunk->on_fall[on_cap] = chunk->fall[p];
+      chunk->which[on_cap++] = p;
+      continue;
+    }
+    if (r.on_cap) r.cap = return_to_cap(c, trial, length, k, &r.invariant, &r.length, &r.slopes);
+    if (!isfinite(r.cap)) return first + p;
+    chunk->invariant[p] = r.invariant;
+    chunk->shrink[p] = length > 0 ? r.length / length : 1;
+    chunk->cap[p] = r.cap;
+  }
+  if (!on_cap) return -1;
+  for (int n = on_cap; n % SLICE; ++n) { /* spare lanes repeat the last */
+    chunk->on_trial[n] = chunk->on_trial[on_cap - 1];
+    chunk->on_length[n] = chunk->on_length[on_cap - 1];
+    chunk->on_k[n] = chunk->on_k[on_cap - 1];
+    chunk->on_at[n] = chunk->on_at[on_cap - 1];
+    chunk->on_fall[n] = chunk->on_fall[on_cap - 1];
+  }
+  return_chunk_to_cap(c, chunk, on_cap);
+  for (int n = 0; n < on_cap; ++n) {
+    const int p = chunk->which[n];
+    const double length = chunk->length[p];
+    if (!isfinite(chunk->on_k[n])) return first + p;
+    chunk->cap[p] = chunk->on_k[n];
+    chunk->invariant[p] = chunk->on_trial[n];
+    chunk->shrink[p] = length > 0 ? chunk->returned[n] / length : 1;
+  }
+  return -1;
 }
 
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return solid_update(constants, batch, HISTORY, update_point);
+  if (batch->tangent) return solid_update(constants, batch, HISTORY, update_point);
+  Chunk chunk;
+  double padded[6][CHUNK], rows[CHUNK * HISTORY];
+  for (int first = 0; first < batch->count; first += CHUNK) {
+    const int count = batch->count - first < CHUNK ? batch->count - first : CHUNK;
+    const double *history = batch->committed + (ptrdiff_t)HISTORY * first, *strain[6];
+    for (int n = 0; n < 6; ++n) strain[n] = batch->strain[n] + first;
+    if (count < CHUNK) {
+      memset(rows, 0, sizeof rows);
+      memset(padded, 0, sizeof padded);
+      memcpy(rows, history, sizeof(double) * HISTORY * (size_t)count);
+      history = rows;
+      for (int n = 0; n < 6; ++n) {
+        memcpy(padded[n], strain[n], sizeof(double) * (size_t)count);
+        strain[n] = padded[n];
+      }
+    }
+    try_chunk(constants, history, strain, &chunk);
+    const int bad = return_chunk(constants, batch, first, count, &chunk);
+    if (bad >= 0) return bad;
+    finish_chunk(constants, batch, first, count, &chunk);
+  }
+  return -1;
 }
 
 const breccia_law law_cap = {

@@ -38,16 +38,14 @@ static const breccia_parameter parameters[] = {
     {"compressive strength", "stress", NULL, "(0, inf)", "f_c, uniaxial"},
     {"first yield", "1", "0.5", "(0, 1)", "share of the compressive strength at which compression becomes plastic"},
     {"fracture energy", "fracture energy", NULL, "(0, inf)", "G_F per area of crack"},
-    {"crushing energy", "fracture energy", "", "(0, inf)",
-     "per area of crushing zone; (f_c / f_t)^2 G_F when absent"},
+    {"crushing energy", "fracture energy", "", "(0, inf)", "per area of crushing zone; (f_c / f_t)^2 G_F when absent"},
     {"biaxial ratio", "1", "1.16", "(1, 2]", "biaxial over uniaxial compressive strength"},
     {"meridian ratio", "1", "0.6667", "(0.5, 1]", "K_c, of the tensile to the compressive meridian"},
     {"dilation angle", "angle", "35 deg", "(0, 56]", "of the flow"},
     {"eccentricity", "1", "0.1", "(0, 1]", "rounding of the flow potential's tip"},
     {"tension damage", "1", "0.75", "[0, 1)", "share of the softening in tension that is loss of stiffness"},
     {"compression damage", "1", "0.5", "[0, 1)", "the same in compression"},
-    {"length", "length", "", "(0, inf)",
-     "over which the energies are spread; that of the formulation when absent"},
+    {"length", "length", "", "(0, inf)", "over which the energies are spread; that of the formulation when absent"},
 };
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
@@ -140,8 +138,7 @@ static Flow flow_by(const DamagePlasticity *c, const double trial[3], double mul
   const double triple = 3 * c->elastic.shear, e2 = c->rounding * c->rounding;
   Dual q = dual_constant(q_trial.value * shrink_of(c, q_trial.value, multiplier));
   /* Derivatives of q from its equation. */
-  const double root = sqrt(e2 + q.value * q.value),
-               stiff = 1 + triple * multiplier * e2 / (root * root * root);
+  const double root = sqrt(e2 + q.value * q.value), stiff = 1 + triple * multiplier * e2 / (root * root * root);
   q = dual_chain(q.value, 1 / stiff, q_trial, -triple * q.value / root / stiff, dl);
   const Dual shrink = q_trial.value > 0 ? dual_quotient(q, q_trial) : dual_constant(1);
   const Dual whole = dual_sum(1, sum, -3 * c->elastic.bulk * c->dilation, dl);
@@ -158,9 +155,8 @@ static Flow flow_by(const DamagePlasticity *c, const double trial[3], double mul
   const Dual largest = dual_sum(1, dual_product(steep, s[0]), c->dilation / 3, dl),
              least = dual_sum(1, dual_product(steep, s[2]), c->dilation / 3, dl);
   f.tension = dual_shift(dual_product(f.share, dual_positive(largest)), committed[IN_TENSION]);
-  f.compression = dual_shift(
-      dual_product(dual_shift(dual_scale(-1, f.share), 1), dual_positive(dual_scale(-1, least))),
-      committed[IN_COMPRESSION]);
+  f.compression = dual_shift(dual_product(dual_shift(dual_scale(-1, f.share), 1), dual_positive(dual_scale(-1, least))),
+                             committed[IN_COMPRESSION]);
   const double bt = c->tension_rate * (1 - c->tension_share), b = c->compression_rate, m = c->compression_share;
   Dual strength = dual_scale(c->tension, dual_exp(dual_scale(-bt, f.tension)));
   strength = dual_larger(strength, dual_constant(1e-9 * c->tension)); /* a crack cannot carry, but divides */
@@ -268,7 +264,8 @@ static int update(const void *constants, const breccia_batch *batch)
 
 const breccia_law law_damage_plasticity = {
     .name = "damage-plasticity",
-    .about = "concrete: plasticity with damage of its own in tension and compression; cracks close; energies hold for any spacing",
+    .about = "concrete: plasticity with damage of its own in tension and compression; cracks close; energies hold for "
+             "any spacing",
     .source = "Lubliner, Oliver, Oller and Onate 1989; Lee and Fenves 1998",
     .maturity = "verified against its closed forms",
     LAW_PARAMETERS(parameters),

@@ -27,10 +27,12 @@ static const double root23 = 0.81649658092772603;
 
 static const breccia_parameter parameters[] = {
     ELASTIC_PARAMETER_ROWS,
-    {"cohesion", "stress", "", "(0, inf)", "c of the Mohr-Coulomb surface whose compressive edges the cone touches; goes with the friction angle"},
+    {"cohesion", "stress", "", "(0, inf)",
+     "c of the Mohr-Coulomb surface whose compressive edges the cone touches; goes with the friction angle"},
     {"friction angle", "angle", "", "[0, 80]", "of that surface"},
     {"dilation angle", "angle", "", "[0, 80]", "of the flow; the friction angle when absent"},
-    {"cone strength", "stress", "", "(0, inf)", "k of sqrt(J2) + a I1 = k, instead of the angles; goes with the cone slope"},
+    {"cone strength", "stress", "", "(0, inf)",
+     "k of sqrt(J2) + a I1 = k, instead of the angles; goes with the cone slope"},
     {"cone slope", "1", "", "[0, inf)", "a of sqrt(J2) + a I1 = k"},
     {"dilation slope", "1", "", "[0, inf)", "a of the flow; the cone slope when absent"},
     {"tension cut-off", "stress", "", "(0, inf)", "largest sum of normal stresses; the tip of the cone when absent"},
@@ -50,7 +52,8 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
              "'dilation slope')");
     return 1;
   }
-  double strength = v[CONE_STRENGTH], slope = v[CONE_SLOPE], flow = isnan(v[DILATION_SLOPE]) ? slope : v[DILATION_SLOPE];
+  double strength = v[CONE_STRENGTH], slope = v[CONE_SLOPE],
+         flow = isnan(v[DILATION_SLOPE]) ? slope : v[DILATION_SLOPE];
   if (angles) {
     const double degree = acos(-1) / 180, friction = sin(v[FRICTION] * degree),
                  dilation = isnan(v[DILATION_ANGLE]) ? friction : sin(v[DILATION_ANGLE] * degree);
@@ -101,8 +104,7 @@ static double multiplier(const DruckerPrager *c, double excess, double stiffness
   const double before = strength(c, x, slope);
   double flow = 0, now = before;
   for (int iteration = 0; iteration < 100; ++iteration) {
-    const double step =
-        (excess - stiffness * flow - root23 * (now - before)) / (stiffness + 2 * *slope / 3);
+    const double step = (excess - stiffness * flow - root23 * (now - before)) / (stiffness + 2 * *slope / 3);
     flow += step;
     now = strength(c, x + root23 * flow, slope);
     if (fabs(step) <= 1e-15 * flow) break;

@@ -40,10 +40,11 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->compression_share = v[COMPRESSION_SHARE];
   c->compression_rate = v[COMPRESSION_RATE];
   if (decay > 0) return 0;
-  snprintf(reason, size,
-           "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must "
-           "be less than 2 E G_F / f_t^2 = %g: take a finer spacing",
-           v[LENGTH], 2 * young * v[ENERGY] / (v[STRENGTH] * v[STRENGTH]));
+  snprintf(
+      reason, size,
+      "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must "
+      "be less than 2 E G_F / f_t^2 = %g: take a finer spacing",
+      v[LENGTH], 2 * young * v[ENERGY] / (v[STRENGTH] * v[STRENGTH]));
   return 1;
 }
 
@@ -66,7 +67,8 @@ static void begin(const void *constants, double *history)
 }
 
 /** Principal stresses and damage at principal strains, which come as the variables 0, 1, 2. */
-static void respond(const Mazars *c, const Dual strain[3], const double *committed, Dual stress[3], Dual *largest, Dual *damage)
+static void respond(const Mazars *c, const Dual strain[3], const double *committed, Dual stress[3], Dual *largest,
+                    Dual *damage)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const Dual volume = dual_sum(1, dual_sum(1, strain[0], 1, strain[1]), 1, strain[2]);
@@ -92,13 +94,13 @@ static void respond(const Mazars *c, const Dual strain[3], const double *committ
       share = dual_positive(dual_quotient(share, square));
       if (share.value > 1) share = dual_constant(1);
     }
-    const Dual past = dual_shift(*largest, -c->threshold), relative = dual_quotient(dual_constant(c->threshold), *largest);
-    const Dual in_tension = dual_shift(
-        dual_scale(-1, dual_product(relative, dual_exp(dual_scale(-c->tension_rate, past)))), 1);
-    Dual in_compression =
-        dual_shift(dual_sum(-(1 - c->compression_share), relative, -c->compression_share,
-                            dual_exp(dual_scale(-c->compression_rate, past))),
-                   1);
+    const Dual past = dual_shift(*largest, -c->threshold),
+               relative = dual_quotient(dual_constant(c->threshold), *largest);
+    const Dual in_tension =
+        dual_shift(dual_scale(-1, dual_product(relative, dual_exp(dual_scale(-c->tension_rate, past)))), 1);
+    Dual in_compression = dual_shift(dual_sum(-(1 - c->compression_share), relative, -c->compression_share,
+                                              dual_exp(dual_scale(-c->compression_rate, past))),
+                                     1);
     in_compression = dual_positive(in_compression);
     if (in_compression.value > 1) in_compression = dual_constant(1);
     *damage = dual_larger(
@@ -143,7 +145,8 @@ static int update(const void *constants, const breccia_batch *batch)
 
 const breccia_law law_mazars = {
     .name = "mazars",
-    .about = "concrete: isotropic damage, quick in tension and slow in compression; the fracture energy holds for any spacing",
+    .about = "concrete: isotropic damage, quick in tension and slow in compression; the fracture energy holds for any "
+             "spacing",
     .source = "Mazars and Pijaudier-Cabot 1989",
     .maturity = "verified against its closed forms",
     LAW_PARAMETERS(parameters),

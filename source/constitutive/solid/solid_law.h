@@ -127,8 +127,7 @@ static inline double elastic_trial(const Elasticity *e, const double strain[6], 
 static inline void plastic_rest(const Elasticity *e, const double strain[6], double invariant, const double s[6],
                                 double plastic[6])
 {
-  for (int k = 0; k < 6; ++k)
-    plastic[k] = strain[k] - s[k] / (2 * e->shear) - (k < 3 ? invariant / (9 * e->bulk) : 0);
+  for (int k = 0; k < 6; ++k) plastic[k] = strain[k] - s[k] / (2 * e->shear) - (k < 3 ? invariant / (9 * e->bulk) : 0);
 }
 
 /** Tangent a 1x1 + b 1xn + c nx1 + d nxn + e (deviatoric identity) with a unit deviator n. */
@@ -164,7 +163,8 @@ static inline void return_tangent(const Elasticity *e, const ReturnSlopes *slope
   for (int k = 0; k < 6; ++k) n[k] = trial_length > 0 ? trial[k] / trial_length : 0;
   const double ratio = trial_length > 0 ? length / trial_length : slopes->length_length;
   solid_tangent(e->bulk * slopes->invariant_invariant, 2 * e->shear / 3 * slopes->invariant_length,
-                3 * e->bulk * slopes->length_invariant, 2 * e->shear * (slopes->length_length - ratio), 2 * e->shear * ratio, n, tangent);
+                3 * e->bulk * slopes->length_invariant, 2 * e->shear * (slopes->length_length - ratio),
+                2 * e->shear * ratio, n, tangent);
 }
 
 #endif

@@ -61,10 +61,9 @@ static inline void spectral_tangent(const Spectrum *strain, const double stress[
   for (int n = 3; n < 6; ++n) {
     const int a = symmetric_row[n], b = symmetric_column[n];
     const double apart = strain->value[a] - strain->value[b];
-    const double turn =
-        fabs(apart) > 1e-9 * widest
-            ? (stress[a] - stress[b]) / apart
-            : (slopes[4 * a] - slopes[3 * a + b] + slopes[4 * b] - slopes[3 * b + a]) / 2;
+    const double turn = fabs(apart) > 1e-9 * widest
+                            ? (stress[a] - stress[b]) / apart
+                            : (slopes[4 * a] - slopes[3 * a + b] + slopes[4 * b] - slopes[3 * b + a]) / 2;
     for (int i = 0; i < 6; ++i)
       for (int k = 0; k < 6; ++k) tangent[6 * i + k] += 2 * turn * basis[n][i] * basis[n][k];
   }

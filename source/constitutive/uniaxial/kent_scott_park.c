@@ -49,7 +49,8 @@ static int update(const void *constants, const breccia_batch *batch)
 
 const breccia_law law_kent_scott_park = {
     .name = "kent-scott-park",
-    .about = "concrete in compression: parabola, line and residual strength, unloading along lines; no tension (Concrete01)",
+    .about =
+        "concrete in compression: parabola, line and residual strength, unloading along lines; no tension (Concrete01)",
     .source = "Kent and Park 1971; Scott, Park and Priestley 1982; Karsan and Jirsa 1969",
     .maturity = "verified against OpenSees Concrete01",
     LAW_PARAMETERS(parameters),

@@ -14,14 +14,14 @@ static const breccia_parameter parameters[] = {
     {"peak strain", "1", "0.002", "(0, inf)", "compressive strain at the unconfined strength"},
     {"Young modulus", "stress", NULL, "(0, inf)", "E"},
     {"confining pressure", "stress", "0", "[0, inf)", "f_l, effective lateral pressure of the hoops at yield"},
-    {"crushing strain", "1", "", "(0, inf)", "beyond which nothing is left; four times the confined peak strain when absent"},
+    {"crushing strain", "1", "", "(0, inf)",
+     "beyond which nothing is left; four times the confined peak strain when absent"},
 };
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
   Mander *c = constants;
-  const double relative = v[CONFINEMENT] / v[STRENGTH],
-               gain = 2.254 * sqrt(1 + 7.94 * relative) - 2 * relative - 1.254;
+  const double relative = v[CONFINEMENT] / v[STRENGTH], gain = 2.254 * sqrt(1 + 7.94 * relative) - 2 * relative - 1.254;
   c->young = v[YOUNG];
   c->strength = gain * v[STRENGTH];
   c->strain = v[PEAK] * (1 + 5 * (gain - 1));

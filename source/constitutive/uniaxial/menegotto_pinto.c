@@ -94,9 +94,9 @@ static void update_point(const void *constants, UniaxialPoint *p)
     cross(s, steel_shift(s, tension, h[LEAST], h[MOST]), tension ? 1 : -1, h);
     h[EXTREME] = tension ? h[MOST] : h[LEAST];
   }
-  const double past = fabs(h[EXTREME] - h[CROSS]) / first, R = c->roundness * (1 - c->fall * past / (c->fall_range + past)),
-               wide = h[CROSS] - h[FROM], high = h[CROSS_STRESS] - h[FROM_STRESS], x = (strain - h[FROM]) / wide,
-               size = fabs(x);
+  const double past = fabs(h[EXTREME] - h[CROSS]) / first,
+               R = c->roundness * (1 - c->fall * past / (c->fall_range + past)), wide = h[CROSS] - h[FROM],
+               high = h[CROSS_STRESS] - h[FROM_STRESS], x = (strain - h[FROM]) / wide, size = fabs(x);
   /* x / (1 + |x|^R)^(1/R) and its slope (1 + |x|^R)^(-1 - 1/R), without overflow for large x. */
   const double power = size > 1 ? pow(size, -R) : pow(size, R), root = pow(1 + power, -1 / R);
   const double bent = size > 1 ? (x > 0 ? root : -root) : x * root,

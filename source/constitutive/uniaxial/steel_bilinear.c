@@ -41,8 +41,8 @@ static void update_point(const void *constants, UniaxialPoint *p)
   const Steel *c = constants;
   const double *old = p->committed;
   double *new = p->trial;
-  const double step = p->strain - old[LAST], trial = old[LAST_STRESS] + c->young * step, height = c->yield * (1 - c->ratio),
-               line = c->ratio * c->young * p->strain;
+  const double step = p->strain - old[LAST], trial = old[LAST_STRESS] + c->young * step,
+               height = c->yield * (1 - c->ratio), line = c->ratio * c->young * p->strain;
   p->stress = fmax(line - old[SHIFT_LOW] * height, fmin(line + old[SHIFT_HIGH] * height, trial));
   p->tangent = p->stress == trial ? c->young : c->ratio * c->young;
   if (step == 0) return;

@@ -28,7 +28,8 @@ static int prepare(const double *values, void *constants, char *reason, size_t s
   c->stress = values[STRESS];
   c->place = values[PLACE];
   if (c->stress > 1 - c->place) {
-    snprintf(reason, size, "the kink must lie below the straight line from peak to end: 'kink stress' at most 1 - 'kink place'");
+    snprintf(reason, size,
+             "the kink must lie below the straight line from peak to end: 'kink stress' at most 1 - 'kink place'");
     return 1;
   }
   return softening_prepare(&c->curve, values, (c->place + c->stress) / 2, reason, size);
