@@ -16,7 +16,8 @@ typedef struct Sample {
   double strain;                       /* at which the law begins to yield, about */
 } Sample;
 
-#define CONCRETE "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1", "length=0.03"
+#define CONCRETE                                                                                                       \
+  "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1", "length=0.03"
 static const Sample samples[] = {
     {"elastic", {"Young modulus=30e6", "Poisson ratio=0.2"}, 1e-4},
     {"j2", {"Young modulus=2e8", "Poisson ratio=0.3", "yield stress=2e5", "hardening modulus=1e6"}, 1e-3},
@@ -150,7 +151,8 @@ int main(void)
     fflush(stdout);
     for (int way = 0; way < 3; ++way) release(&batch[way]);
   }
-  printf("\nns per point on one thread, medians of %d: points that stay elastic, half of them and all of them straining on beyond "
+  printf("\nns per point on one thread, medians of %d: points that stay elastic, half of them and all of them "
+         "straining on beyond "
          "yield; memory: what moving strain, stress and both histories takes at %.1f GB/s (triad). %d points.\n",
          REPEATS, bandwidth, POINTS);
   units_destroy(&units);

@@ -136,6 +136,14 @@ static inline double distance(const double a[6], const double b[6])
   return sqrt(1.5 * product(d, d));
 }
 
+/** Whether d = a - b is longer than a size in that measure. */
+static inline bool beyond(const double a[6], const double b[6], double size)
+{
+  double d[6];
+  for (int k = 0; k < 6; ++k) d[k] = a[k] - b[k];
+  return 1.5 * product(d, d) > size * size;
+}
+
 /** What one point works on: constants scaled for it, and its surfaces. */
 typedef struct Point {
   const MultiYield *law;
@@ -204,7 +212,7 @@ static void advance(Point *p, double s[6], const double de2g[6])
   double trial[6];
   for (int k = 0; k < 6; ++k) trial[k] = s[k] + de2g[k];
   if (p->active == 0) {
-    if (distance(trial, centre_of(p, 1)) < size_of(p, 1)) {
+    if (!beyond(trial, centre_of(p, 1), size_of(p, 1))) {
       memcpy(s, trial, sizeof trial);
       return;
     }
@@ -215,8 +223,8 @@ static void advance(Point *p, double s[6], const double de2g[6])
     const double *a = centre_of(p, m);
     double size = size_of(p, m), normal[6], radius = distance(trial, a), excess = 0;
     /* normal = r / |r|; the contact point lies where r leaves the surface. */
-    double norm = radius / sqrt(1.5), contact = size / sqrt(1.5);
-    for (int k = 0; k < 6; ++k) normal[k] = norm > 0 ? (trial[k] - a[k]) / norm : 0;
+    double norm = radius / sqrt(1.5), contact = size / sqrt(1.5), inverse = norm > 0 ? 1 / norm : 0;
+    for (int k = 0; k < 6; ++k) normal[k] = (trial[k] - a[k]) * inverse;
     excess = norm - contact;
     double loading = excess / (2 * p->shear + plastic_of(p, m));
     if (pass) loading *= (plastic_of(p, m - 1) - plastic_of(p, m)) / plastic_of(p, m - 1);
@@ -226,13 +234,14 @@ static void advance(Point *p, double s[6], const double de2g[6])
       for (int k = 0; k < 6; ++k) s[k] *= radial;
       return;
     }
-    for (int guard = 0; guard < 100; ++guard) { /* roundings and coarse steps may leave s inside: push it back out */
+    for (int guard = 0; guard < 100 && !beyond(s, a, size);
+         ++guard) { /* roundings and coarse steps may leave s inside: push it back out */
       double d = distance(s, a);
       if (d >= size || d == 0) break;
       double factor = 1 + fmax((size - d) / d, 1e-13);
       for (int k = 0; k < 6; ++k) s[k] = a[k] + factor * (s[k] - a[k]);
     }
-    if (distance(s, centre_of(p, m + 1)) <= size_of(p, m + 1)) break;
+    if (!beyond(s, centre_of(p, m + 1), size_of(p, m + 1))) break;
     p->active = m + 1;
     memcpy(trial, s, sizeof trial);
   }
@@ -310,6 +319,18 @@ static int update(const void *constants, const breccia_batch *batch)
   for (int i = 0; i < batch->count; ++i) {
     const double *old = batch->committed + (size_t)row * (size_t)i;
     double *new = batch->trial + (size_t)row *(size_t)i;
+    if (i + 4 < batch->count) /* rows lie a kilobyte apart, and a point reads few places of its own */
+      for (int line = 0; line < 3; ++line) {
+        __builtin_prefetch(old + 4 * row + 8 * line);
+        __builtin_prefetch(new + 4 * row + 8 * line, 1);
+      }
+    if (i + 2 < batch->count) {
+      const double *centre = old + 2 * row + HEAD + 6 * (int)fmax(old[2 * row + ACTIVE] - 1, 0);
+      __builtin_prefetch(centre);
+      __builtin_prefetch(centre + 8);
+      __builtin_prefetch(new + (centre - old), 1);
+      __builtin_prefetch(new + (centre - old) + 8, 1);
+    }
     int low = (int)fmin(old[LOW], new[LOW]), high = (int)fmax(old[HIGH], new[HIGH]);
     if (low <= high)
       memcpy(new + HEAD + 6 * (low - 1), old + HEAD + 6 * (low - 1), sizeof(double) * 6 * (size_t)(high - low + 1));
