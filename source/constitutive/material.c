@@ -1,6 +1,7 @@
 #include "constitutive/material.h"
 
 #include "base/memory.h"
+#include "constitutive/min_max.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,6 +37,11 @@ static const Field material_fields[] = {
     {"model", FIELD_TEXT, offsetof(MaterialSpec, model), NULL, NULL, NULL,
      "constitutive model; `breccia models` lists them", NULL, NULL, 0},
     {"density", FIELD_NUMBER, offsetof(MaterialSpec, density), "density", NULL, "(0, inf)", "mass per volume", NULL,
+     NULL, 0},
+    {"smallest strain", FIELD_NUMBER, offsetof(MaterialSpec, smallest_strain), "1", "", "(-inf, 0)",
+     "of laws of one strain: a point that goes below carries nothing any more (MinMax)", NULL, NULL, 0},
+    {"largest strain", FIELD_NUMBER, offsetof(MaterialSpec, largest_strain), "1", "", "(0, inf)",
+     "of laws of one strain: a point that goes above carries nothing any more, and its bond breaks (MinMax)", NULL,
      NULL, 0},
 };
 const Section material_section = {"material",
@@ -86,6 +92,9 @@ int material_create(Material *material, const DeckReader *reader, const Material
   if (status)
     return node_error(reader->document, spec->head.node, reader->error, "material '%s' (%s): %s", spec->head.name,
                       spec->model, reason);
+  if (material_limit(material, spec->smallest_strain, spec->largest_strain, reason, sizeof reason))
+    return node_error(reader->document, spec->head.node, reader->error, "material '%s' (%s): %s", spec->head.name,
+                      spec->model, reason);
   material->name = spec->head.name;
   material->density = spec->density;
   return BRECCIA_OK;
@@ -134,15 +143,32 @@ static int read_words(const breccia_law *law, const char *const *words, int coun
   return status;
 }
 
+enum { MOST_WORDS = 128 };
+
 int material_from_words(Material *material, const breccia_law *law, const char *const *words, int count,
                         const Units *units, const char *before, Error *error)
 {
   char reason[512] = "";
   double *values = memory_zeroed((size_t)law->parameter_count + 1, sizeof(double), "parameters", error);
   if (!values) return BRECCIA_FAILURE;
-  int status = read_words(law, words, count, units, before, values, error);
+  const char *own[MOST_WORDS];
+  double limits[2] = {NAN, NAN};
+  int own_count = 0, status = BRECCIA_OK;
+  for (int w = 0; w < count && own_count < MOST_WORDS; ++w) {
+    static const char *const names[2] = {"smallest strain=", "largest strain="};
+    int which = 0;
+    while (which < 2 && (!law->uniaxial || strncmp(words[w], names[which], strlen(names[which])))) ++which;
+    if (which == 2)
+      own[own_count++] = words[w];
+    else if (sscanf(words[w] + strlen(names[which]), "%lf", &limits[which]) != 1 ||
+             (which ? limits[1] : -limits[0]) <= 0)
+      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: must be a number %s 0", before, words[w],
+                         which ? "above" : "below");
+  }
+  if (!status) status = read_words(law, own, own_count, units, before, values, error);
   if (!status) {
     status = material_prepare(material, law, values, reason, sizeof reason);
+    if (!status) status = material_limit(material, limits[0], limits[1], reason, sizeof reason);
     if (status) error_add(error, status, "%s: %s", law->name, reason);
   }
   free(values);
@@ -151,6 +177,7 @@ int material_from_words(Material *material, const breccia_law *law, const char *
 
 void material_destroy(Material *material)
 {
+  if (material->law == &law_min_max) material_destroy(min_max_base(material->constants));
   free(material->constants);
   *material = (Material){0};
 }

@@ -9,7 +9,8 @@ typedef struct MaterialSpec {
   SectionHead head;
   const char *model;
   double density;
-  double *values; /* of the law's parameters, in table order */
+  double smallest_strain, largest_strain; /* of laws of one strain; NaN: none */
+  double *values;                         /* of the law's parameters, in table order */
 } MaterialSpec;
 
 extern const Section material_section;
@@ -31,7 +32,12 @@ double material_failure_strain(const Material *material);
 
 /** Prepares a material from a law and its parameter values; `reason` tells what is inadmissible. */
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size);
-/** Prepares a material of a law from "key=value" words, with or without units, and its defaults.
+/** Wraps a prepared material of a law of one strain so that points fail for good outside a range of strains (MinMax of OpenSees);
+ *  a NaN is no limit. */
+int material_limit(Material *material, double smallest, double largest, char *reason, size_t size);
+
+/** Prepares a material of a law from "key=value" words, with or without units, and its defaults. "smallest strain" and "largest
+ *  strain" go to material_limit.
  *  @param[in] before  stands before each word in messages, like "--set " */
 int material_from_words(Material *material, const breccia_law *law, const char *const *words, int count,
                         const Units *units, const char *before, Error *error);

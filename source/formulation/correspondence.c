@@ -451,5 +451,6 @@ const FormulationType formulation_correspondence = {
     .finish = correspondence_finish,
     .bond_force = correspondence_bond_force,
     .gradient = correspondence_gradient,
+    .characteristic_length = correspondence_characteristic_length,
     .bytes = correspondence_bytes,
 };

@@ -84,4 +84,8 @@ size_t correspondence_bytes(const void *formulation);
 void correspondence_finish(void *formulation);
 void correspondence_bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
 
+/** Width of the band of particles whose families a plane crack divides: all of them follow their law to its end as it opens. A bar pulled
+ *  apart so spends 0.9 of the fracture energy where control is negligible (docs/theory.md 8.7). */
+double correspondence_characteristic_length(const BondLength *of);
+
 #endif

@@ -168,3 +168,8 @@ size_t correspondence_bytes(const void *formulation)
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
          (size_t)c->particles->count * sizeof(int32_t);
 }
+
+double correspondence_characteristic_length(const BondLength *of)
+{
+  return 2 * of->horizon;
+}

@@ -76,7 +76,7 @@ typedef struct FormulationType {
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
   /** Virial stress of the bonds at a place; NULL where points have a stress. */
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
-  /** Length over which a law of bonds must spread a fracture energy: G_F over the area below stress against stretch. NULL: unknown. */
+  /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */
   double (*characteristic_length)(const BondLength *of);
   /** Adds what a user should know before a run, as one line; NULL: nothing. */
   void (*describe)(const void *formulation, Text *text);

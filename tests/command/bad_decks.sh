@@ -114,6 +114,10 @@ refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: el
 refuse 's/^peri.*/peridynamics: {surface correction: energy}/' 15:36 'surface correction: is for bond-based peridynamics; the strains of correspondence are exact at surfaces'
 refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: elastic-brittle, density: 7.85, Young modulus: 210 GPa, fracture energy: 1 N\/m/' \
   5:18 "'elastic-brittle' is a law of one strain; correspondence takes elastic, j2"
+refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: j2, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3, yield stress: 400 MPa, largest strain: 0.1/' \
+  5:3 "material 'steel' (j2): 'smallest strain' and 'largest strain' are for laws of one strain"
+refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: j2, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3, yield stress: 400 MPa, saturation stress: 300 MPa/' \
+  5:3 "material 'steel' (j2): 'saturation stress' must not lie below 'yield stress'"
 softening='model: bilinear-softening, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N\/m'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{$softening}/" \
   4:3 "material 'clay' (bilinear-softening): a length of 0.7236 stores more at the peak than the fracture energy, so that the curve would snap back; it must be less than 2 E G_F / f_t^2 = 0.666667: take a finer spacing"

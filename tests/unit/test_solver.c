@@ -278,6 +278,44 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
   breccia_model_destroy(&m);
 }
 
+static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(void **state)
+{
+  (void)state;
+  /* Damage spreads over the 2 delta of particles whose families the crack divides; control, which would hold it together, is negligible. */
+  double spent[2];
+  for (int fine = 0; fine < 2; ++fine) {
+    const int half = fine ? 20 : 10, rows = fine ? 9 : 5;
+    const double spacing = fine ? 0.005 : 0.01;
+    breccia_model *model =
+        model_of("units: {length: m, force: kN, time: s}\n"
+                 "materials:\n"
+                 "  c: {density: 2.4, model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, "
+                 "tensile strength: 3000}\n"
+                 "  w: {density: 2.4, model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, "
+                 "tensile strength: 2700}\n"
+                 "body:\n"
+                 "  a: {material: c, lattice: square, thickness: 1, spacing: %g, shape: {box: {particles: [%d, %d], "
+                 "first particle: "
+                 "[0, 0]}}}\n"
+                 "  b: {material: w, lattice: square, thickness: 1, spacing: %g, shape: {box: {particles: [1, %d], "
+                 "first particle: "
+                 "[%g, 0]}}}\n"
+                 "  c: {material: c, lattice: square, thickness: 1, spacing: %g, shape: {box: {particles: [%d, %d], "
+                 "first particle: "
+                 "[%g, 0]}}}\n"
+                 "peridynamics: {space: plane strain, zero-energy control: {silling: 1e-4}}\n"
+                 "loads: [{on: {face: x-, layers: 3}, velocity: [-0.01, 0, 0], history: {ramp to: 0.001}},\n"
+                 "        {on: {face: x+, layers: 3}, velocity: [0.01, 0, 0], history: {ramp to: 0.001}}]\n"
+                 "solve: {explicit: {end time: 0.015}}\n",
+                 spacing, half, rows, spacing, rows, half * spacing, spacing, half, rows, (half + 1) * spacing);
+    assert_int_equal(breccia_model_step(model, INT64_MAX, NULL), 0);
+    spent[fine] = explicit_energy(&model->solver).external / (rows * spacing);
+    assert_near(spent[fine], 0.1, 0.03);
+    breccia_model_destroy(&model);
+  }
+  assert_near(spent[0], spent[1], 0.2 * 0.1);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -293,6 +331,7 @@ int main(void)
       cmocka_unit_test(a_burst_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),
       cmocka_unit_test(plate_with_crack_opens_at_rest_as_finite_elements_say),
+      cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -185,10 +185,13 @@ static Material any(int k)
     return material_of("steel-bilinear", "Young modulus=2e8", "yield stress=4e5", "compression shift=0.1",
                        "tension shift=0.2", NULL);
   case 6: return material_of("menegotto-pinto", "Young modulus=2e8", "yield stress=4e5", NULL);
-  default: return softening(k - 7);
+  case 7:
+    return material_of("menegotto-pinto", "Young modulus=2e8", "yield stress=4e5", "smallest strain=-0.02",
+                       "largest strain=0.01", NULL);
+  default: return softening(k - 8);
   }
 }
-enum { LAWS = 11 };
+enum { LAWS = 12 };
 
 static void a_million_steps_of_any_size_stay_finite(void **state)
 {
@@ -360,6 +363,31 @@ static void inadmissible_concrete_is_refused(void **state)
   }
 }
 
+static void steel_fails_for_good_outside_its_range_of_strains(void **state)
+{
+  (void)state;
+  Material limited = any(7), plain = any(6);
+  Point a = point_start(&limited), b = point_start(&plain);
+  const double path[] = {0.002, 0.009, -0.01, 0.0099, 0.0101, 0.005, -0.001};
+  assert_near(material_failure_strain(&limited), 0.01, 0);
+  assert_near(material_young(&limited), material_young(&plain), 0);
+  for (int k = 0; k < 7; ++k) {
+    double s, t;
+    point_try(&a, &path[k], &s, NULL, 0);
+    point_try(&b, &path[k], &t, NULL, 0);
+    assert_near(s, k < 4 ? t : 0, 0);
+    point_commit(&a);
+    point_commit(&b);
+  }
+  point_stop(&a);
+  point_stop(&b);
+  material_destroy(&limited);
+  material_destroy(&plain);
+  char reason[512];
+  assert_int_equal(material_refusal("elastic-1d", "Young modulus=1,largest strain=-1", reason, sizeof reason), 2);
+  assert_non_null(strstr(reason, "must be a number above 0"));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -376,6 +404,7 @@ int main(void)
       cmocka_unit_test(concrete_unloads_to_karsan_and_jirsas_strain),
       cmocka_unit_test(trilinear_softening_goes_through_its_kink),
       cmocka_unit_test(inadmissible_concrete_is_refused),
+      cmocka_unit_test(steel_fails_for_good_outside_its_range_of_strains),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

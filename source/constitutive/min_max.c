@@ -1,0 +1,116 @@
+#include "constitutive/min_max.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct MinMax {
+  Material base; /* owned by the material around it */
+  double smallest, largest;
+} MinMax;
+
+/* A row of history is that of the law inside and, last, 1 for a point that failed. */
+
+Material *min_max_base(void *constants)
+{
+  return &((MinMax *)constants)->base;
+}
+
+static void moduli(const void *constants, double *bulk, double *shear)
+{
+  const MinMax *c = constants;
+  *bulk = c->base.bulk;
+  *shear = c->base.shear;
+}
+
+static double failure_strain(const void *constants)
+{
+  const MinMax *c = constants;
+  return fmin(c->largest, material_failure_strain(&c->base));
+}
+
+static int history_values(const void *constants)
+{
+  return ((const MinMax *)constants)->base.history_values + 1;
+}
+
+static void history_name(const void *constants, int k, char *name, size_t size)
+{
+  const MinMax *c = constants;
+  if (k == c->base.history_values)
+    snprintf(name, size, "failed");
+  else if (c->base.law->history_name)
+    c->base.law->history_name(c->base.constants, k, name, size);
+  else
+    *name = 0;
+}
+
+static void begin(const void *constants, double *history)
+{
+  const MinMax *c = constants;
+  history[c->base.history_values] = 0;
+  if (c->base.law->begin) c->base.law->begin(c->base.constants, history);
+}
+
+static int update(const void *constants, const breccia_batch *batch)
+{
+  const MinMax *c = constants;
+  const int last = c->base.history_values;
+  for (int i = 0; i < batch->count; ++i) {
+    const double *old = batch->committed + (ptrdiff_t)(last + 1) * i, strain = batch->strain[0][i];
+    double *new = batch->trial + (ptrdiff_t)(last + 1) * i;
+    const bool failed = old[last] > 0 || (!batch->elastic_stage && (strain < c->smallest || strain > c->largest));
+    new[last] = failed;
+    if (failed) {
+      memcpy(new, old, sizeof(double) * (size_t)last);
+      batch->stress[0][i] = 0;
+      if (batch->tangent) batch->tangent[i] = 0;
+      continue;
+    }
+    const breccia_batch one = {.count = 1,
+                               .strain = {batch->strain[0] + i},
+                               .stress = {batch->stress[0] + i},
+                               .committed = old,
+                               .trial = new,
+                               .tangent = batch->tangent ? batch->tangent + i : NULL,
+                               .elastic_stage = batch->elastic_stage};
+    if (c->base.law->update(c->base.constants, &one) >= 0) return i;
+  }
+  return -1;
+}
+
+const breccia_law law_min_max = {
+    .name = "min-max",
+    .about = "another law of one strain, whose points fail for good outside a range of strains",
+    .source = "MinMax of OpenSees",
+    .maturity = "verified against its definition",
+    .constants_size = sizeof(MinMax),
+    .uniaxial = 1,
+    .moduli = moduli,
+    .failure_strain = failure_strain,
+    .history_values = history_values,
+    .history_name = history_name,
+    .begin = begin,
+    .update = update,
+};
+
+int material_limit(Material *material, double smallest, double largest, char *reason, size_t size)
+{
+  if (isnan(smallest) && isnan(largest)) return BRECCIA_OK;
+  const bool uniaxial = material->law->uniaxial;
+  MinMax *c = uniaxial ? calloc(1, sizeof *c) : NULL;
+  if (!c) {
+    snprintf(reason, size, "%s",
+             uniaxial ? "out of memory" : "'smallest strain' and 'largest strain' are for laws of one strain");
+    material_destroy(material);
+    return uniaxial ? BRECCIA_FAILURE : BRECCIA_USER_ERROR;
+  }
+  c->base = *material;
+  c->smallest = isnan(smallest) ? -INFINITY : smallest;
+  c->largest = isnan(largest) ? INFINITY : largest;
+  material->law = &law_min_max;
+  material->constants = c;
+  material->history_values = history_values(c);
+  return BRECCIA_OK;
+}

@@ -1,0 +1,12 @@
+/* A law of one strain around another: outside a range of strains a point fails for good (the MinMax material of OpenSees). */
+#ifndef BRECCIA_CONSTITUTIVE_MIN_MAX_H
+#define BRECCIA_CONSTITUTIVE_MIN_MAX_H
+
+#include "constitutive/material.h"
+
+extern const breccia_law law_min_max;
+
+/** The material inside. */
+Material *min_max_base(void *constants);
+
+#endif
