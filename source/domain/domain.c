@@ -86,7 +86,7 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   if (spec && !isnan(spec->critical_stretch) && !isnan(spec->fracture_energy))
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
-  if (spec && !isnan(spec->fracture_energy) && isnan(length))
+  if (spec && !isnan(spec->fracture_energy) && !d->type->uniaxial)
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
                       "'critical stretch'");
