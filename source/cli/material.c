@@ -1,23 +1,52 @@
-/* One material point driven through a strain path. */
-#include "constitutive/material.h"
+/* One material point driven through a strain path or a laboratory test. */
 #include "base/csv.h"
 #include "base/memory.h"
 #include "cli/verbs.h"
+#include "model/element_deck.h"
+#include "results/curve.h"
+#include "results/picture.h"
+#include "results/plot.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MODEL, SET, STRAIN, OUTPUT, TANGENT, ELASTIC, COUNT };
+enum {
+  MODEL,
+  SET,
+  STRAIN,
+  TEST,
+  TO,
+  BACK,
+  CONFINING,
+  CYCLES,
+  STEPS,
+  AGAINST,
+  PICTURE,
+  OUTPUT,
+  TANGENT,
+  ELASTIC,
+  COUNT
+};
 
 static const Option options[] = {
     {"model", "NAME", "constitutive model"},
     {"set", "KEY=VALUE", "a parameter, with or without unit (repeat for each)"},
     {"strain", "PATH.csv", "total strains: columns e11,e22,e33,g12,g23,g31; e11 alone for laws of one strain"},
+    {"test", "KIND",
+     "instead: uniaxial, triaxial, 'undrained triaxial', oedometer, biaxial, isotropic, 'simple shear', 'undrained "
+     "shear'"},
+    {"to", "STRAIN", "strain that the test goes to, tension positive"},
+    {"return", "STRAIN", "other end of its cycles (minus the first)"},
+    {"confining", "PRESSURE", "isotropic pressure before anything else"},
+    {"cycles", "N", "cycles of the test (0: once to the strain)"},
+    {"steps", "N", "steps from end to end (200)"},
+    {"against", "DATA.csv", "measured points: x and y of the test's curve in the first two columns"},
+    {"picture", "FILE", "draw the test's curve (.png, .svg, .pdf)"},
     {"output", "OUT.csv", "where strains and stresses go (standard output)"},
     {"tangent", NULL, "add the tangent: columns C11 ... C66, row by row, or C11"},
-    {"elastic-rows", "N", "respond elastically in the first N rows (gravity stage)"},
+    {"elastic-rows", "N", "respond elastically in the first N rows of a strain path (gravity stage)"},
     {0},
 };
 
@@ -61,46 +90,175 @@ static double *read_path(const char *path, int components, int *count, breccia_e
   return rows;
 }
 
-static int drive(const Material *m, const double *rows, int count, long long elastic, bool tangent, FILE *out,
-                 breccia_error *error)
+static void print_heading(FILE *out, int components, bool tangent)
 {
-  size_t size = (size_t)m->history_values + 1;
-  double *histories = calloc(2 * size, sizeof(double)), *committed = histories, *trial = histories + size;
-  double strain[6], stress[6], d[36];
-  const int components = m->law->uniaxial ? 1 : 6;
-  if (!histories) return error_add(error, BRECCIA_FAILURE, "out of memory");
-  if (m->law->begin) {
-    m->law->begin(m->constants, committed);
-    m->law->begin(m->constants, trial);
-  }
   for (int k = 0; k < components; ++k) fprintf(out, "%s%s", k ? "," : "", strains[k]);
   for (int k = 0; k < components; ++k) fprintf(out, ",%s", stresses[k]);
   for (int k = 0; tangent && k < components * components; ++k)
     fprintf(out, ",C%d%d", k / components + 1, k % components + 1);
   fprintf(out, "\n");
-  int status = BRECCIA_OK;
-  for (int i = 0; i < count && !status; ++i) {
-    breccia_batch batch = {.count = 1,
-                           .committed = committed,
-                           .trial = trial,
-                           .tangent = tangent ? d : NULL,
-                           .elastic_stage = i < elastic};
-    for (int k = 0; k < components; ++k) {
-      strain[k] = rows[6 * i + k];
-      batch.strain[k] = &strain[k];
-      batch.stress[k] = &stress[k];
-    }
-    if (m->law->update(m->constants, &batch) >= 0)
+}
+
+static void print_row(FILE *out, int components, const double *strain, const double *stress, const double *tangent)
+{
+  for (int k = 0; k < components; ++k) fprintf(out, "%s%.17g", k ? "," : "", strain[k]);
+  for (int k = 0; k < components; ++k) fprintf(out, ",%.17g", stress[k]);
+  for (int k = 0; tangent && k < components * components; ++k) fprintf(out, ",%.17g", tangent[k]);
+  fprintf(out, "\n");
+}
+
+static int follow_path(const Material *m, const char *path, long long elastic, bool tangent, FILE *out, Error *error)
+{
+  Driver d;
+  int count = 0, status = driver_create(&d, m, error);
+  if (status) return status;
+  double *rows = read_path(path, d.components, &count, error);
+  if (!rows) status = BRECCIA_USER_ERROR;
+  if (rows) print_heading(out, d.components, tangent);
+  for (int i = 0; rows && i < count && !status; ++i) {
+    d.elastic = i < elastic;
+    if (!driver_try(&d, rows + 6 * i))
       status = error_add(error, BRECCIA_FAILURE, "row %d: the law could not be integrated at this strain", i + 1);
-    for (int k = 0; k < components; ++k) fprintf(out, "%s%.17g", k ? "," : "", strain[k]);
-    for (int k = 0; k < components; ++k) fprintf(out, ",%.17g", stress[k]);
-    for (int k = 0; tangent && k < components * components; ++k) fprintf(out, ",%.17g", d[k]);
-    fprintf(out, "\n");
-    double *other = committed;
-    committed = trial;
-    trial = other;
+    print_row(out, d.components, d.strain, d.stress, tangent ? d.tangent : NULL);
+    driver_commit(&d);
   }
-  free(histories);
+  free(rows);
+  driver_destroy(&d);
+  return status;
+}
+
+/** What a test is to be held against and where its curve goes. */
+typedef struct Outputs {
+  const char *title, *against, *picture;
+  bool tangent, quiet; /* quiet: rows go to standard output, words elsewhere */
+  FILE *out;
+} Outputs;
+
+static int show_curve(const ElementTest *test, const ElementCurve *c, const Units *units, const Outputs *o,
+                      Error *error)
+{
+  double *x = NULL, *y = NULL;
+  int count = 0, status = o->against ? curve_points(o->against, &x, &y, &count, error) : BRECCIA_OK;
+  if (!status && count) {
+    double mean, most;
+    element_curve_compare(c, x, y, count, &mean, &most);
+    fprintf(o->quiet ? stderr : stdout,
+            "%d measured points lie %.2f %% of their range from the curve (rms), %.2f %% at most\n", count, 100 * mean,
+            100 * most);
+  }
+  if (!status && o->picture) {
+    char unit[64], label[160];
+    units_name(units, dimension_find("stress"), unit, sizeof unit);
+    snprintf(label, sizeof label, "%s (%s)", test->y_label, unit);
+    const PlotLine lines[2] = {{"computed", c->x, c->y, c->count, false}, {"measured", x, y, count, true}};
+    const PlotOptions plot = {o->title, test->x_label, label, NAN, NAN};
+    status = plot_draw(lines, count ? 2 : 1, &plot, o->picture, error);
+    if (!status) fprintf(o->quiet ? stderr : stdout, "%s\n", o->picture);
+  }
+  free(x);
+  free(y);
+  return status;
+}
+
+static int run_test(const ElementTest *test, const Material *m, const Units *units, const Outputs *o, Error *error)
+{
+  ElementCurve c;
+  int status = element_test_run(test, m, &c, error);
+  const int n = c.components;
+  if (c.count) print_heading(o->out, n, o->tangent);
+  for (int i = 0; i < c.count; ++i)
+    print_row(o->out, n, c.strain + 6 * i, c.stress + 6 * i, o->tangent ? c.tangent + n * n * i : NULL);
+  const int shown = c.count > 1 ? show_curve(test, &c, units, o, error) : BRECCIA_OK;
+  element_curve_destroy(&c);
+  return status ? status : shown;
+}
+
+/** The test of the command line's words. */
+static int read_test(const char **values, const Units *units, TestSpec *spec, Error *error)
+{
+  const struct {
+    int option;
+    const char *dimension;
+    double *value;
+  } numbers[] = {{TO, "1", &spec->strain}, {BACK, "1", &spec->back}, {CONFINING, "stress", &spec->confining}};
+  *spec = (TestSpec){.kind = values[TEST], .strain = NAN, .back = NAN, .steps = 200};
+  int status = BRECCIA_OK, kind = 0;
+  while (test_kind_word(kind) && strcmp(test_kind_word(kind), values[TEST])) ++kind;
+  if (!test_kind_word(kind)) {
+    Text words = {0};
+    for (int k = 0; test_kind_word(k); ++k) text_add(&words, "%s'%s'", k ? ", " : "", test_kind_word(k));
+    status = error_add(error, BRECCIA_USER_ERROR, "--test '%s' is not known; the tests are %s", values[TEST],
+                       words.characters);
+    text_free(&words);
+  }
+  for (int k = 0; k < 3; ++k) {
+    Text reason = {0};
+    const char *words = values[numbers[k].option];
+    if (words && units_read(units, dimension_find(numbers[k].dimension), words, numbers[k].value, &reason))
+      status = error_add(error, BRECCIA_USER_ERROR, "--%s %s: %s", options[numbers[k].option].name, words,
+                         reason.characters);
+    text_free(&reason);
+  }
+  if (!values[TO]) status = error_add(error, BRECCIA_USER_ERROR, "--test needs --to STRAIN, what it goes to");
+  if (spec->confining < 0)
+    status = error_add(error, BRECCIA_USER_ERROR, "--confining: must not be negative: it is a pressure");
+  long long count;
+  if (values[CYCLES]) {
+    if (read_whole(values[CYCLES], "cycles", 0, &count)) status = BRECCIA_USER_ERROR;
+    spec->cycles = count;
+  }
+  if (values[STEPS]) {
+    if (read_whole(values[STEPS], "steps", 1, &count)) status = BRECCIA_USER_ERROR;
+    spec->steps = count;
+  }
+  return status;
+}
+
+/** A model and its test or path from the command line, in m, kN, s. */
+static int run_words(const char **values, const Settings *settings, const Outputs *o, Error *error)
+{
+  long long elastic = 0;
+  if (values[ELASTIC] && read_whole(values[ELASTIC], "elastic-rows", 0, &elastic)) return BRECCIA_USER_ERROR;
+  const breccia_law *law = law_find(NULL, values[MODEL]);
+  if (!law)
+    return error_add(error, BRECCIA_USER_ERROR, "breccia material: there is no model '%s'; 'breccia models' lists them",
+                     values[MODEL]);
+  Units *units = units_create("m", "kN", "s", error);
+  if (!units) return BRECCIA_FAILURE;
+  Material material = {0};
+  int status = material_from_words(&material, law, settings->items, settings->count, units, "--set ", error);
+  if (!status && values[STRAIN]) {
+    status = follow_path(&material, values[STRAIN], elastic, o->tangent, o->out, error);
+  } else if (!status) {
+    TestSpec spec;
+    ElementTest test = {0};
+    const DeckReader reader = {.document = &(Document){.name = "breccia material"}, .units = units, .error = error};
+    static const Node nowhere = {.kind = NODE_MAP, .line = 1, .column = 1};
+    status = read_test(values, units, &spec, error);
+    spec.head.node = &nowhere;
+    if (!status) status = element_test_create(&test, &reader, &spec, NULL, law->uniaxial);
+    if (!status) status = run_test(&test, &material, units, o, error);
+    element_test_destroy(&test);
+  }
+  material_destroy(&material);
+  units_destroy(&units);
+  return status;
+}
+
+static int run_file(const char *path, const Outputs *given, Error *error)
+{
+  ElementDeck deck;
+  int status = element_deck_load(&deck, path, error);
+  Outputs o = *given;
+  if (!status) {
+    if (deck.spec->title)
+      o.title = deck.spec->title;
+    else
+      o.title = deck.law->name;
+    if (!o.against) o.against = deck.against;
+    status = run_test(&deck.test, &deck.material, deck.units, &o, error);
+  }
+  element_deck_destroy(&deck);
   return status;
 }
 
@@ -110,42 +268,38 @@ static int run(int argc, char **argv, const Verb *verb)
   Settings settings = {.count = 0};
   int first = read_options(argc, argv, verb, values, keep_settings, &settings);
   if (first < 0) return first == -2 ? 0 : 2;
-  if (first < argc || !values[MODEL] || !values[STRAIN]) {
-    fprintf(stderr, "breccia material: --model and --strain are needed; see 'breccia material --help'\n");
+  const bool file = argc - first == 1 && !values[MODEL];
+  if (!file && (first < argc || !values[MODEL] || !values[STRAIN] == !values[TEST])) {
+    fprintf(stderr,
+            "breccia material: give a file TEST.yaml, or --model with --strain or --test; see 'breccia material "
+            "--help'\n");
     return 2;
   }
-  long long elastic = 0;
-  if (values[ELASTIC] && read_whole(values[ELASTIC], "elastic-rows", 0, &elastic)) return 2;
-  breccia_error *error = breccia_error_create();
-  const breccia_law *law = law_find(NULL, values[MODEL]);
-  if (!law) {
-    error_add(error, BRECCIA_USER_ERROR, "breccia material: there is no model '%s'; 'breccia models' lists them",
-              values[MODEL]);
-    return fail(error, BRECCIA_USER_ERROR);
+  if (values[PICTURE] && !picture_format(values[PICTURE])) {
+    fprintf(stderr, "breccia material: --picture: '%s' should end in .png, .svg or .pdf\n", values[PICTURE]);
+    return 2;
   }
-  Units *units = units_create("m", "kN", "s", error);
-  Material material = {0};
-  int count = 0,
-      status = units ? material_from_words(&material, law, settings.items, settings.count, units, "--set ", error)
-                     : BRECCIA_FAILURE;
-  double *rows = status ? NULL : read_path(values[STRAIN], law->uniaxial ? 1 : 6, &count, error);
-  if (!status && !rows) status = BRECCIA_USER_ERROR;
-  FILE *out = stdout;
-  if (!status && values[OUTPUT] && !(out = fopen(values[OUTPUT], "w")))
-    status = error_add(error, BRECCIA_USER_ERROR, "%s: cannot be written: %s", values[OUTPUT], strerror(errno));
-  if (!status) status = drive(&material, rows, count, elastic, values[TANGENT] != NULL, out, error);
-  if (out && out != stdout && fclose(out) && !status)
+  breccia_error *error = breccia_error_create();
+  Outputs o = {.title = values[MODEL],
+               .against = values[AGAINST],
+               .picture = values[PICTURE],
+               .tangent = values[TANGENT] != NULL,
+               .quiet = !values[OUTPUT],
+               .out = stdout};
+  if (values[OUTPUT] && !(o.out = fopen(values[OUTPUT], "w")))
+    return fail(error,
+                error_add(error, BRECCIA_USER_ERROR, "%s: cannot be written: %s", values[OUTPUT], strerror(errno)));
+  int status = file ? run_file(argv[first], &o, error) : run_words(values, &settings, &o, error);
+  if (o.out != stdout && fclose(o.out) && !status)
     status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", values[OUTPUT], strerror(errno));
-  free(rows);
-  material_destroy(&material);
-  units_destroy(&units);
   return fail(error, status);
 }
 
-const Verb verb_material = {"material",
-                            "--model NAME --set KEY=VALUE ... --strain PATH.csv [options]",
-                            "drive one material point through a strain path",
-                            options,
-                            "Plain numbers are in m, kN, s (stress in kPa); shear strains are engineering, tension is\n"
-                            "positive. Lines of the path that begin with # are comments.",
-                            run};
+const Verb verb_material = {
+    "material",
+    "TEST.yaml | --model NAME --set KEY=VALUE ... (--strain PATH.csv | --test KIND --to STRAIN) [options]",
+    "drive one material point through a laboratory test or a strain path",
+    options,
+    "TEST.yaml holds units, a material as in a deck, and a test or stages (docs/models.md). On the command\n"
+    "line plain numbers are in m, kN, s (stress in kPa); shear strains are engineering, tension is positive.",
+    run};

@@ -20,7 +20,8 @@ typedef struct Verb {
   int (*run)(int argc, char **argv, const struct Verb *verb);
 } Verb;
 
-extern const Verb verb_run, verb_check, verb_schema, verb_models, verb_material, verb_plot, verb_new, verb_completion;
+extern const Verb verb_run, verb_check, verb_schema, verb_models, verb_material, verb_calibrate, verb_plot, verb_new,
+    verb_completion;
 
 /** All verbs, ending in NULL. */
 extern const Verb *const verbs[];

@@ -81,3 +81,21 @@ void *section_standard(const DeckReader *reader, const Section *section, const N
   *empty = (Node){.kind = NODE_MAP, .line = place->line, .column = place->column};
   return section_read(reader, empty, section);
 }
+
+int deck_units(const Document *document, const LawList *laws, Units **units, Error *error)
+{
+  const Node *root = document->root, *node = node_get(root, "units");
+  Units *plain = units_create("m", "N", "s", error);
+  if (!plain) return BRECCIA_FAILURE;
+  const DeckReader reader = {document, plain, laws, error};
+  const int before = error_count(error);
+  const UnitsSpec *spec =
+      node ? section_read(&reader, node, &units_section) : section_standard(&reader, &units_section, root);
+  units_destroy(&plain);
+  if (!spec || error_count(error) > before) return BRECCIA_USER_ERROR;
+  Error *reason = breccia_error_create();
+  *units = units_create(spec->length, spec->force, spec->time, reason);
+  if (!*units) node_error(document, node ? node : root, error, "units: %s", breccia_error_text(reason));
+  breccia_error_destroy(&reason);
+  return *units ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}

@@ -35,6 +35,9 @@ extern const Section deck_section, units_section;
 /** Parameter tables of all laws, for the descriptions; to be freed. */
 ParameterTable *law_tables(const LawList *laws, int *count);
 
+/** What plain numbers mean in a file. It comes first: nothing else can be read without it. */
+int deck_units(const Document *document, const LawList *laws, Units **units, Error *error);
+
 /** A section as if it stood in the deck with nothing in it, so that all its defaults hold. */
 void *section_standard(const DeckReader *reader, const Section *section, const Node *place);
 

@@ -28,24 +28,11 @@ int64_t model_step_at(const breccia_model *model, double time)
 
 /* ---- loading ---- */
 
-/** Units come first: nothing else can be read without them. */
-static int read_units(breccia_model *model, Error *error)
+static int model_units(breccia_model *model, Error *error)
 {
-  const Node *root = model->document->root, *node = node_get(root, "units");
-  Units *plain = units_create("m", "N", "s", error);
-  if (!plain) return BRECCIA_FAILURE;
-  model->reader = (DeckReader){model->document, plain, &model->laws, error};
-  int before = error_count(error);
-  const UnitsSpec *spec = node ? section_read(&model->reader, node, &units_section)
-                               : section_standard(&model->reader, &units_section, root);
-  units_destroy(&plain);
-  if (!spec || error_count(error) > before) return BRECCIA_USER_ERROR;
-  Error *reason = breccia_error_create();
-  model->units = units_create(spec->length, spec->force, spec->time, reason);
-  if (!model->units) node_error(model->document, node ? node : root, error, "units: %s", breccia_error_text(reason));
-  breccia_error_destroy(&reason);
-  model->reader.units = model->units;
-  return model->units ? BRECCIA_OK : BRECCIA_USER_ERROR;
+  int status = deck_units(model->document, &model->laws, &model->units, error);
+  model->reader = (DeckReader){model->document, model->units, &model->laws, error};
+  return status;
 }
 
 static int check_names(const breccia_model *model, const Domain *domain, const TextList *names, const Node *place)
@@ -167,7 +154,7 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
     model->threads = options->threads;
     set_threads(model);
     model->document = document_parse(deck, strlen(deck), name, error);
-    status = model->document ? read_units(model, error) : BRECCIA_USER_ERROR;
+    status = model->document ? model_units(model, error) : BRECCIA_USER_ERROR;
     if (!status) status = build(model, options->force, error);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
   }

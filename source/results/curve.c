@@ -2,12 +2,12 @@
 
 #include "base/csv.h"
 #include "base/text.h"
+#include "results/plot.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
 /** Splits "watch.column" at its last dot and reads that column, with the steps of its rows. */
 static double *history_column(const char *folder, const char *name, double **steps, int *count, char *label,
@@ -41,123 +41,88 @@ static void trim(char *words)
   memmove(words, words + lead, n - lead + 1);
 }
 
-static void quote(Text *script, const char *words)
-{
-  text_add(script, "\"");
-  for (; *words; ++words) text_add(script, *words == '"' || *words == '\\' ? "\\%c" : "%c", *words);
-  text_add(script, "\"");
-}
-
 typedef struct Axes {
   char x[160], y[160], x_label[128], y_label[128];
 } Axes;
 
-static int add_data(Text *script, const char *folder, int number, Axes *axes, Error *error)
+/** The two columns of a folder's histories, on rows of the same step, into `x` and `y` (to be freed). @return their number, or -1 */
+static int read_line(const char *folder, Axes *axes, double **x, double **y, Error *error)
 {
-  int nx = 0, ny = 0;
-  double *sx = NULL, *sy = NULL, *x = history_column(folder, axes->x, &sx, &nx, axes->x_label, error), *y = NULL;
-  if (x) y = history_column(folder, axes->y, &sy, &ny, axes->y_label, error);
-  if (x && y) {
-    text_add(script, "$data%d << END\n", number);
-    for (int i = 0, j = 0; i < nx && j < ny;) { /* rows of the same step */
+  int nx = 0, ny = 0, count = -1;
+  double *sx = NULL, *sy = NULL;
+  *x = history_column(folder, axes->x, &sx, &nx, axes->x_label, error);
+  *y = *x ? history_column(folder, axes->y, &sy, &ny, axes->y_label, error) : NULL;
+  if (*x && *y) {
+    count = 0;
+    for (int i = 0, j = 0; i < nx && j < ny;) {
       if (sx[i] < sy[j])
         ++i;
       else if (sx[i] > sy[j])
         ++j;
-      else {
-        if (isfinite(x[i]) && isfinite(y[j])) text_add(script, "%.9g %.9g\n", x[i], y[j]);
-        ++i;
-        ++j;
+      else { /* never further than what was read of either */
+        (*x)[count] = (*x)[i++];
+        (*y)[count++] = (*y)[j++];
       }
     }
-    text_add(script, "END\n");
   }
-  int failed = !x || !y;
-  free(x);
-  free(y);
   free(sx);
   free(sy);
-  return failed ? BRECCIA_USER_ERROR : BRECCIA_OK;
+  return count;
 }
 
-/** The first two columns of a CSV file; rows that do not begin with a number are headings. */
-static int add_overlay(Text *script, const char *path, Error *error)
+static const char *name_of(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  return slash && slash[1] ? slash + 1 : path;
+}
+
+int curve_points(const char *path, double **x, double **y, int *count, Error *error)
 {
   char *text = text_read_file(path, NULL);
+  *x = *y = NULL;
+  *count = 0;
   if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
-  text_add(script, "$overlay << END\n");
+  size_t rows = 1;
+  for (const char *c = text; *c; ++c) rows += *c == '\n';
+  *x = malloc(sizeof(double) * rows);
+  *y = malloc(sizeof(double) * rows);
   char *rest = NULL;
-  for (char *row = strtok_r(text, "\n", &rest); row; row = strtok_r(NULL, "\n", &rest)) {
-    double x, y;
-    if (sscanf(row, "%lf ,%lf", &x, &y) == 2) text_add(script, "%.9g %.9g\n", x, y);
-  }
-  text_add(script, "END\n");
+  for (char *row = strtok_r(text, "\n", &rest); *x && *y && row; row = strtok_r(NULL, "\n", &rest))
+    if (sscanf(row, "%lf ,%lf", &(*x)[*count], &(*y)[*count]) == 2) ++*count;
   free(text);
-  return BRECCIA_OK;
-}
-
-static int run_gnuplot(const Text *script, const char *path, Error *error)
-{
-  fflush(NULL);
-  FILE *pipe = popen("gnuplot 2>/dev/null", "w");
-  if (!pipe) return error_add(error, BRECCIA_FAILURE, "gnuplot cannot be started: %s", strerror(errno));
-  fwrite(script->characters, 1, script->length, pipe);
-  int status = pclose(pipe);
-  if (status == 0) return BRECCIA_OK;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return error_add(error, BRECCIA_FAILURE, "%s: curves are drawn by gnuplot, which is not installed (gnuplot-nox)",
-                     path);
-  return error_add(error, BRECCIA_FAILURE, "%s: gnuplot could not draw it", path);
+  if (*count) return BRECCIA_OK;
+  return error_add(error, BRECCIA_USER_ERROR, "%s: no row begins with two numbers, x and y with a comma between", path);
 }
 
 int curve_draw(const char *const *folders, int folder_count, const char *curve, const CurveOptions *o, const char *path,
                Error *error)
 {
   Axes axes = {0};
-  const char *colon = strchr(curve, ':'), *dot = strrchr(path, '.');
+  const char *colon = strchr(curve, ':');
   if (!colon) return error_add(error, BRECCIA_USER_ERROR, "curve: '%s' should be 'watch.column : watch.column'", curve);
   snprintf(axes.x, sizeof axes.x, "%.*s", (int)(colon - curve), curve);
   snprintf(axes.y, sizeof axes.y, "%s", colon + 1);
   trim(axes.x);
   trim(axes.y);
-  Text script = {0};
-  int status = BRECCIA_OK;
-  for (int k = 0; k < folder_count && !status; ++k) status = add_data(&script, folders[k], k, &axes, error);
-  const char *overlay = o->overlay;
-  if (overlay && !status) status = add_overlay(&script, overlay, error);
-  if (!status) {
-    const char *terminal = !dot || !strcmp(dot, ".png") ? "pngcairo size 760,520 font \"sans,12\""
-                           : !strcmp(dot, ".svg")       ? "svg size 760,520 font \"sans,12\""
-                                                        : "pdfcairo size 16cm,11cm font \"sans,11\"";
-    text_add(&script, "set terminal %s\nset output ", terminal);
-    quote(&script, path);
-    text_add(&script, "\nset title ");
-    quote(&script, o->title);
-    text_add(&script, " noenhanced\nset xlabel ");
-    quote(&script, axes.x_label);
-    text_add(&script, " noenhanced\nset ylabel ");
-    quote(&script, axes.y_label);
-    text_add(&script, " noenhanced\nset grid lc rgb \"#dddddd\"\nset border lc rgb \"#333333\"\n");
-    text_add(&script, folder_count > 1 || overlay ? "set key bottom right opaque\n" : "unset key\n");
-    text_add(&script, "set datafile separator whitespace\n");
-    if (isfinite(o->low) && isfinite(o->high)) text_add(&script, "set xrange [%.9g:%.9g]\n", o->low, o->high);
-    text_add(&script, "plot ");
-    for (int k = 0; k < folder_count; ++k) {
-      static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e"};
-      const char *slash = strrchr(folders[k], '/');
-      text_add(&script, "%s$data%d using 1:2 with lines lw 2 lc rgb \"%s\" title ", k ? ", " : "", k, colours[k % 5]);
-      quote(&script, slash && slash[1] ? slash + 1 : folders[k]);
-      text_add(&script, " noenhanced");
-    }
-    if (overlay) {
-      text_add(&script, ", $overlay using 1:2 with points pt 6 ps 1.3 lc rgb \"#000000\" title ");
-      const char *slash = strrchr(overlay, '/');
-      quote(&script, slash ? slash + 1 : overlay);
-      text_add(&script, " noenhanced");
-    }
-    text_add(&script, "\n");
-    status = run_gnuplot(&script, path, error);
+  const int most = folder_count + 1;
+  PlotLine *lines = calloc((size_t)most, sizeof *lines);
+  double **values = calloc((size_t)most * 2, sizeof *values);
+  int status = lines && values ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: curves"), count = 0;
+  for (int k = 0; k < folder_count && !status; ++k) {
+    int rows = read_line(folders[k], &axes, &values[2 * k], &values[2 * k + 1], error);
+    if (rows < 0) status = BRECCIA_USER_ERROR;
+    lines[count++] = (PlotLine){name_of(folders[k]), values[2 * k], values[2 * k + 1], rows, false};
   }
-  text_free(&script);
+  if (o->overlay && !status) {
+    int rows;
+    status = curve_points(o->overlay, &values[2 * count], &values[2 * count + 1], &rows, error);
+    lines[count] = (PlotLine){name_of(o->overlay), values[2 * count], values[2 * count + 1], rows, true};
+    ++count;
+  }
+  const PlotOptions plot = {o->title, axes.x_label, axes.y_label, o->low, o->high};
+  if (!status) status = plot_draw(lines, count, &plot, path, error);
+  for (int k = 0; values && k < 2 * most; ++k) free(values[k]);
+  free(values);
+  free(lines);
   return status;
 }

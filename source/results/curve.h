@@ -1,4 +1,4 @@
-/* Curves of histories, drawn by gnuplot. */
+/* Curves of histories, and of measured points. */
 #ifndef BRECCIA_RESULTS_CURVE_H
 #define BRECCIA_RESULTS_CURVE_H
 
@@ -15,5 +15,8 @@ typedef struct CurveOptions {
  *  @param[in] path     .png, .svg or .pdf */
 int curve_draw(const char *const *folders, int folder_count, const char *curve, const CurveOptions *options,
                const char *path, Error *error);
+
+/** The first two columns of a CSV file; rows that do not begin with two numbers are headings. To be freed, also after a failure. */
+int curve_points(const char *path, double **x, double **y, int *count, Error *error);
 
 #endif

@@ -70,6 +70,57 @@ equal "material of one strain" "$(cat bar.csv)" "e11,s11,C11
 contains "material, wrong key" "$(cat out)" "expected KEY=VALUE with one of the keys 'Young modulus'"
 "$breccia" material --model multi-yield-j2 --strain path.csv 2> out; equal "material, nothing set: status" $? 2
 contains "material, nothing set" "$(cat out)" "missing --set 'shear modulus=...'"
+clay='--model multi-yield-j2 --set shear~modulus=60~MPa --set bulk~modulus=100~MPa --set octahedral~strength=30'
+words() { echo "$1" | sed 's/ /\n/g' | tr '~' ' '; }
+mapfile -t clay < <(words "$clay")
+"$breccia" material "${clay[@]}" --test uniaxial --to 0.3 --steps 3000 --output uniaxial.csv > out; equal "uniaxial test: status" $? 0
+equal "uniaxial test: strength 3 tau / sqrt 2" "$(tail -1 uniaxial.csv | cut -d, -f7 | cut -c1-6)" 63.639
+"$breccia" material "${clay[@]}" --test "simple shear" --to 0.002 --cycles 2 --steps 50 > shear.csv; equal "shear test: rows" "$(wc -l < shear.csv)" 202
+awk -F, 'NR > 1 {print $4 "," $10}' shear.csv > measured.csv
+"$breccia" material "${clay[@]}" --test "undrained shear" --to 0.002 --cycles 2 --steps 50 --against measured.csv --picture shear.png --output again.csv > out
+contains "measured points" "$(cat out)" "201 measured points lie 0.00 % of their range from the curve (rms)"
+[ -s shear.png ] || fail "material: no picture"
+"$breccia" material "${clay[@]}" --test shear 2> out; equal "unknown test: status" $? 2
+contains "unknown test" "$(cat out)" "the tests are 'uniaxial', 'triaxial'"
+contains "test without its strain" "$(cat out)" "--test needs --to STRAIN"
+"$breccia" material --model elastic-1d --set "Young modulus=1" --test triaxial --to 1 2> out; equal "triaxial test of a fibre" $? 2
+"$breccia" material "${clay[@]}" 2> out; equal "material without a test" $? 2
+cat > test.yaml <<END
+title: Consolidated and sheared
+units: {length: m, force: kN, time: s}
+material: {model: drucker-prager, density: 2 t/m3, Young modulus: 50 MPa, Poisson ratio: 0.3, cohesion: 20 kPa, friction angle: 30 deg}
+stages:
+  - {stress xx: -50, stress yy: -50, stress zz: -50, steps: 10}
+  - {strain xx: -0.02, stress yy: -50, stress zz: -50}
+END
+"$breccia" material test.yaml > stages.csv; equal "stages: status" $? 0
+# a cone that touches the compressive edges: 3 s3 + 2 sqrt(3) c
+equal "stages: strength" "$(tail -1 stages.csv | cut -d, -f7 | cut -c1-8)" -219.282
+sed -i 's/strain xx: -0.02/stress xx: -400/' test.yaml
+"$breccia" material test.yaml > stages.csv 2> out; equal "stress beyond the strength: status" $? 1
+contains "stress beyond the strength" "$(cat out)" "stage 2, step 49 of 100: the stresses asked for cannot be reached"
+sed -i 's/stages:/stage:/' test.yaml
+"$breccia" material test.yaml 2> out; equal "test with a wrong key: status" $? 2
+contains "test with a wrong key" "$(cat out)" "test.yaml:4:1: element test: unknown key 'stage'; did you mean 'stages'?"
+"$breccia" material "${clay[@]}" --test "simple shear" --to 0.01 --steps 25 | awk -F, 'NR > 1 {print $4 "," $10}' > measured.csv
+cat > fit.yaml <<END
+units: {length: m, force: kN, time: s}
+material: {model: multi-yield-j2, density: 2 t/m3, shear modulus: 30 MPa, bulk modulus: 100 MPa, octahedral strength: 50}
+test: {kind: simple shear, strain: 0.01, steps: 100}
+against: measured.csv
+fit: {shear modulus: {from: 1e4, to: 2e5}, octahedral strength: {from: 10, to: 100}, bulk modulus: {from: 5e4, to: 2e5}}
+END
+"$breccia" calibrate fit.yaml --picture fit.png > out; equal "calibrate: status" $? 0
+[ -s fit.png ] || fail "calibrate: no picture"
+fitted() { sed -n "s/^  $1: \([0-9.e+]*\) .*/\1/p" out; }
+awk -v g="$(fitted "shear modulus")" -v t="$(fitted "octahedral strength")" \
+  'BEGIN {exit !(g > 59700 && g < 60300 && t > 29.9 && t < 30.1)}' || fail "calibrate does not find 60 MPa and 30 kPa: $(cat out)"
+contains "calibrate: what does not matter" "$(grep "bulk modulus" out)" "these points do not tell it"
+sed -i 's/fit: {shear modulus/fit: {modulus/' fit.yaml
+"$breccia" calibrate fit.yaml 2> out; equal "calibrate with a wrong name: status" $? 2
+contains "calibrate with a wrong name" "$(cat out)" "fit.yaml:5:16: fit: multi-yield-j2 has no parameter 'modulus'"
+sed -i '/^fit:/d' fit.yaml
+"$breccia" calibrate fit.yaml 2> out; contains "calibrate nothing" "$(cat out)" "nothing to calibrate"
 "$breccia" models > out; contains "models" "$(cat out)" "multi-yield-j2"
 contains "models" "$(cat out)" "octahedral strength"
 "$breccia" models elastic > out; contains "models elastic" "$(cat out)" "Poisson ratio"

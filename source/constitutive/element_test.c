@@ -1,0 +1,293 @@
+#include "constitutive/element_test.h"
+
+#include "base/memory.h"
+#include "base/tensor.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { COMPONENTS = 6 };
+static const char *const component_words[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+
+#define STRAIN_FIELD(name, k)                                                                                          \
+  {                                                                                                                    \
+    "strain " name, FIELD_NUMBER, offsetof(StageSpec, strain) + sizeof(double) * (k), "1", "", NULL,                   \
+        "at the stage's end; shear is engineering strain", NULL, NULL, 0                                               \
+  }
+#define STRESS_FIELD(name, k)                                                                                          \
+  {                                                                                                                    \
+    "stress " name, FIELD_NUMBER, offsetof(StageSpec, stress) + sizeof(double) * (k), "stress", "", NULL,              \
+        "at the stage's end", NULL, NULL, 0                                                                            \
+  }
+static const Field stage_fields[] = {
+    STRAIN_FIELD("xx", XX), STRAIN_FIELD("yy", YY), STRAIN_FIELD("zz", ZZ), STRAIN_FIELD("xy", XY),
+    STRAIN_FIELD("yz", YZ), STRAIN_FIELD("zx", ZX), STRESS_FIELD("xx", XX), STRESS_FIELD("yy", YY),
+    STRESS_FIELD("zz", ZZ), STRESS_FIELD("xy", XY), STRESS_FIELD("yz", YZ), STRESS_FIELD("zx", ZX),
+    {"steps", FIELD_COUNT, offsetof(StageSpec, steps), NULL, "100", "[1, 1e7]", "equal parts", NULL, NULL, 0},
+};
+
+static void check_stage(const DeckReader *reader, void *section)
+{
+  const StageSpec *stage = section;
+  for (int k = 0; k < COMPONENTS; ++k)
+    if (!isnan(stage->strain[k]) && !isnan(stage->stress[k]))
+      node_error(reader->document, stage->head.node, reader->error,
+                 "stage: give 'strain %s' or 'stress %s', not both", component_words[k], component_words[k]);
+}
+
+const Section stage_section = {"stage",
+                               "A straight part of a path. Components that are not given keep their strain.",
+                               sizeof(StageSpec),
+                               FIELDS(stage_fields),
+                               check_stage,
+                               NULL,
+                               NULL,
+                               0};
+
+enum { UNIAXIAL, TRIAXIAL, UNDRAINED_TRIAXIAL, OEDOMETER, BIAXIAL, ISOTROPIC, SIMPLE_SHEAR, UNDRAINED_SHEAR, KINDS };
+static const char *const kinds[KINDS + 1] = {"uniaxial", "triaxial",  "undrained triaxial", "oedometer",
+                                             "biaxial",  "isotropic", "simple shear",       "undrained shear",
+                                             NULL};
+
+const char *test_kind_word(int k)
+{
+  return kinds[k];
+}
+
+static const Field test_fields[] = {
+    {"kind", FIELD_CHOICE, offsetof(TestSpec, kind), NULL, NULL, NULL,
+     "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral strain 0; biaxial: zz strain "
+     "0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
+     NULL, test_kind_word, 0},
+    {"strain", FIELD_NUMBER, offsetof(TestSpec, strain), "1", NULL, NULL,
+     "reached after the confinement: axial (xx), of each axis (isotropic) or shear (xy); tension is positive", NULL,
+     NULL, 0},
+    {"return strain", FIELD_NUMBER, offsetof(TestSpec, back), "1", "", NULL,
+     "other end of cycles; minus the strain when absent", NULL, NULL, 0},
+    {"confining pressure", FIELD_NUMBER, offsetof(TestSpec, confining), "stress", "0", "[0, inf)",
+     "isotropic, before anything else", NULL, NULL, 0},
+    {"cycles", FIELD_COUNT, offsetof(TestSpec, cycles), NULL, "0", "[0, 10000]",
+     "to the strain and the return strain; 0: once to the strain", NULL, NULL, 0},
+    {"steps", FIELD_COUNT, offsetof(TestSpec, steps), NULL, "200", "[1, 1e6]", "from end to end", NULL, NULL, 0},
+};
+const Section test_section = {"test", "A laboratory test on one material point.", sizeof(TestSpec),
+                              FIELDS(test_fields), NULL, NULL, NULL, 0};
+
+static void label_curve(ElementTest *t, int kind)
+{
+  static const double axial[6] = {1}, shear[6] = {0, 0, 0, 1}, volume[6] = {1, 1, 1}, mean[6] = {1. / 3, 1. / 3, 1. / 3},
+                      difference[6] = {1, 0, -1};
+  const bool sheared = kind == SIMPLE_SHEAR || kind == UNDRAINED_SHEAR,
+             triaxial = kind == TRIAXIAL || kind == UNDRAINED_TRIAXIAL;
+  memcpy(t->x_weight, sheared ? shear : kind == ISOTROPIC ? volume : axial, sizeof axial);
+  memcpy(t->y_weight, sheared ? shear : kind == ISOTROPIC ? mean : triaxial ? difference : axial, sizeof axial);
+  t->x_label = sheared ? "shear strain" : kind == ISOTROPIC ? "volume strain" : "axial strain";
+  t->y_label = sheared             ? "shear stress"
+               : kind == ISOTROPIC ? "mean stress"
+               : triaxial          ? "axial less lateral stress"
+                                   : "axial stress";
+}
+
+/** Which components follow the driven strain, and by which share; which keep their stress. */
+static void drive(Stage *stage, int kind, double confining)
+{
+  static const double share[KINDS][6] = {
+      [UNIAXIAL] = {1},     [TRIAXIAL] = {1},        [UNDRAINED_TRIAXIAL] = {1, -0.5, -0.5}, [OEDOMETER] = {1},
+      [BIAXIAL] = {1},      [ISOTROPIC] = {1, 1, 1}, [SIMPLE_SHEAR] = {0, 0, 0, 1},
+      [UNDRAINED_SHEAR] = {0, 0, 0, 1}};
+  for (int k = 0; k < COMPONENTS; ++k) {
+    stage->by_strain[k] = share[kind][k] != 0;
+    stage->target[k] = share[kind][k]; /* times the strain */
+  }
+  const bool yy = kind == UNIAXIAL || kind == TRIAXIAL || kind == BIAXIAL || kind == SIMPLE_SHEAR,
+             zz = kind == UNIAXIAL || kind == TRIAXIAL;
+  stage->by_stress[YY] = yy;
+  stage->by_stress[ZZ] = zz;
+  if (yy) stage->target[YY] = kind == UNIAXIAL ? 0 : -confining;
+  if (zz) stage->target[ZZ] = kind == UNIAXIAL ? 0 : -confining;
+}
+
+static int from_kind(ElementTest *t, const DeckReader *reader, const TestSpec *spec, bool uniaxial)
+{
+  int kind = 0;
+  while (strcmp(kinds[kind], spec->kind)) ++kind;
+  if (uniaxial && kind != UNIAXIAL)
+    return node_error(reader->document, section_place(spec, "kind"), reader->error,
+                      "kind: a law of one strain knows the test 'uniaxial' only");
+  if (kind == UNIAXIAL && spec->confining > 0)
+    return node_error(reader->document, section_place(spec, "confining pressure"), reader->error,
+                      "confining pressure: the test 'uniaxial' has none; take 'triaxial'");
+  t->stages = memory_zeroed(2 * (size_t)spec->cycles + 4, sizeof *t->stages, "stages", reader->error);
+  if (!t->stages) return BRECCIA_FAILURE;
+  label_curve(t, kind);
+  if (spec->confining > 0) {
+    Stage *stage = &t->stages[t->count++];
+    stage->steps = 20;
+    for (int k = 0; k < 3; ++k) {
+      stage->by_stress[k] = true;
+      stage->target[k] = -spec->confining;
+    }
+  }
+  const double back = isnan(spec->back) ? -spec->strain : spec->back;
+  double at = 0;
+  for (int64_t n = 0; n < (spec->cycles ? 2 * spec->cycles : 1); ++n) {
+    Stage *stage = &t->stages[t->count++];
+    const double to = n % 2 ? back : spec->strain;
+    drive(stage, kind, spec->confining);
+    for (int k = 0; k < COMPONENTS; ++k)
+      if (stage->by_strain[k]) stage->target[k] *= to - at;
+    stage->relative = true;
+    stage->steps = (int)spec->steps;
+    at = to;
+  }
+  if (uniaxial)
+    for (int n = 0; n < t->count; ++n)
+      for (int k = 1; k < COMPONENTS; ++k) t->stages[n].by_stress[k] = t->stages[n].by_strain[k] = false;
+  return BRECCIA_OK;
+}
+
+static int from_stages(ElementTest *t, const DeckReader *reader, const SectionList *list, bool uniaxial)
+{
+  t->stages = memory_zeroed((size_t)list->count + 1, sizeof *t->stages, "stages", reader->error);
+  if (!t->stages) return BRECCIA_FAILURE;
+  label_curve(t, UNIAXIAL);
+  double widest = 0;
+  int drawn = XX;
+  for (int n = 0; n < list->count; ++n) {
+    const StageSpec *spec = list->items[n];
+    Stage *stage = &t->stages[t->count++];
+    stage->steps = (int)spec->steps;
+    for (int k = 0; k < COMPONENTS; ++k) {
+      stage->by_strain[k] = !isnan(spec->strain[k]);
+      stage->by_stress[k] = !isnan(spec->stress[k]);
+      stage->target[k] = stage->by_stress[k] ? spec->stress[k] : spec->strain[k];
+      if (k && uniaxial && (stage->by_strain[k] || stage->by_stress[k]))
+        return node_error(reader->document, spec->head.node, reader->error,
+                          "stage: a law of one strain has no component '%s'", component_words[k]);
+      if (stage->by_strain[k] && fabs(spec->strain[k]) > widest) {
+        widest = fabs(spec->strain[k]);
+        drawn = k;
+      }
+    }
+  }
+  static const char *const x_labels[] = {"strain xx", "strain yy", "strain zz", "strain xy", "strain yz", "strain zx"};
+  static const char *const y_labels[] = {"stress xx", "stress yy", "stress zz", "stress xy", "stress yz", "stress zx"};
+  memset(t->x_weight, 0, sizeof t->x_weight);
+  memset(t->y_weight, 0, sizeof t->y_weight);
+  t->x_weight[drawn] = t->y_weight[drawn] = 1;
+  t->x_label = x_labels[drawn];
+  t->y_label = y_labels[drawn];
+  return BRECCIA_OK;
+}
+
+int element_test_create(ElementTest *test, const DeckReader *reader, const TestSpec *spec, const SectionList *stages,
+                        bool uniaxial)
+{
+  *test = (ElementTest){0};
+  return spec ? from_kind(test, reader, spec, uniaxial) : from_stages(test, reader, stages, uniaxial);
+}
+
+void element_test_destroy(ElementTest *test)
+{
+  free(test->stages);
+  *test = (ElementTest){0};
+}
+
+static int create_curve(ElementCurve *c, const ElementTest *test, int components, Error *error)
+{
+  size_t rows = 1;
+  for (int n = 0; n < test->count; ++n) rows += (size_t)test->stages[n].steps;
+  *c = (ElementCurve){.components = components};
+  c->strain = memory_zeroed(6 * rows, sizeof(double), "curve", error);
+  c->stress = memory_zeroed(6 * rows, sizeof(double), "curve", error);
+  c->tangent = memory_zeroed((size_t)(components * components) * rows, sizeof(double), "curve", error);
+  c->x = memory_zeroed(rows, sizeof(double), "curve", error);
+  c->y = memory_zeroed(rows, sizeof(double), "curve", error);
+  return c->strain && c->stress && c->tangent && c->x && c->y ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
+void element_curve_destroy(ElementCurve *c)
+{
+  free(c->strain);
+  free(c->stress);
+  free(c->tangent);
+  free(c->x);
+  free(c->y);
+  *c = (ElementCurve){0};
+}
+
+static void keep(ElementCurve *c, const ElementTest *test, const Driver *d)
+{
+  const int row = c->count++, n = c->components;
+  memcpy(c->strain + 6 * row, d->strain, sizeof(double) * (size_t)n);
+  memcpy(c->stress + 6 * row, d->stress, sizeof(double) * (size_t)n);
+  memcpy(c->tangent + n * n * row, d->tangent, sizeof(double) * (size_t)(n * n));
+  for (int k = 0; k < n; ++k) {
+    c->x[row] += test->x_weight[k] * d->strain[k];
+    c->y[row] += test->y_weight[k] * d->stress[k];
+  }
+}
+
+int element_test_run(const ElementTest *test, const Material *material, ElementCurve *curve, Error *error)
+{
+  Driver d;
+  int status = driver_create(&d, material, error);
+  if (status) return status;
+  status = create_curve(curve, test, d.components, error);
+  const double none[6] = {0};
+  if (!status && !driver_try(&d, none))
+    status = error_add(error, BRECCIA_FAILURE, "%s: the unstrained point could not be integrated", material->name);
+  if (!status) keep(curve, test, &d);
+  for (int n = 0; n < test->count && !status; ++n) {
+    const Stage *stage = &test->stages[n];
+    double from[6] = {0}, to[6] = {0}, largest = 1e-6;
+    for (int k = 0; k < d.components; ++k) {
+      from[k] = stage->by_stress[k] ? d.stress[k] : d.strain[k];
+      to[k] = stage->by_stress[k]                      ? stage->target[k]
+              : stage->by_strain[k] && stage->relative ? d.strain[k] + stage->target[k]
+              : stage->by_strain[k]                    ? stage->target[k]
+                                                       : d.strain[k];
+      if (!stage->by_stress[k]) largest = fmax(largest, fabs(to[k]));
+    }
+    const double tolerance = 1e-10 * (material->bulk + material->shear) * fmin(largest, 1e-2);
+    for (int step = 1; step <= stage->steps && !status; ++step) {
+      double target[6];
+      for (int k = 0; k < d.components; ++k)
+        target[k] = step == stage->steps ? to[k] : from[k] + (to[k] - from[k]) * step / stage->steps;
+      if (driver_step(&d, stage->by_stress, target, tolerance))
+        keep(curve, test, &d);
+      else
+        status = error_add(error, BRECCIA_FAILURE,
+                           "stage %d, step %d of %d: the stresses asked for cannot be reached; a material that softens or "
+                           "flows must be driven by strain along that component",
+                           n + 1, step, stage->steps);
+    }
+  }
+  driver_destroy(&d);
+  return status;
+}
+
+void element_curve_compare(const ElementCurve *curve, const double *x, const double *y, int count, double *mean,
+                           double *most)
+{
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, sum = 0;
+  for (int i = 0; i < count; ++i) {
+    low[0] = fmin(low[0], x[i]);
+    high[0] = fmax(high[0], x[i]);
+    low[1] = fmin(low[1], y[i]);
+    high[1] = fmax(high[1], y[i]);
+  }
+  const double wide = high[0] > low[0] ? high[0] - low[0] : 1, tall = high[1] > low[1] ? high[1] - low[1] : 1;
+  *most = 0;
+  for (int i = 0; i < count; ++i) {
+    double nearest = INFINITY;
+    for (int k = 0; k + 1 < curve->count; ++k) {
+      const double px = (x[i] - curve->x[k]) / wide, py = (y[i] - curve->y[k]) / tall,
+                   dx = (curve->x[k + 1] - curve->x[k]) / wide, dy = (curve->y[k + 1] - curve->y[k]) / tall,
+                   length = dx * dx + dy * dy, t = length > 0 ? fmax(0, fmin(1, (px * dx + py * dy) / length)) : 0;
+      nearest = fmin(nearest, (px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy));
+    }
+    sum += nearest;
+    *most = fmax(*most, sqrt(nearest));
+  }
+  *mean = sqrt(sum / (count ? count : 1));
+}

@@ -1,0 +1,63 @@
+/* Laboratory tests on one material point: which strains and stresses are driven, and the curve that comes out. */
+#ifndef BRECCIA_CONSTITUTIVE_ELEMENT_TEST_H
+#define BRECCIA_CONSTITUTIVE_ELEMENT_TEST_H
+
+#include "constitutive/driver.h"
+
+typedef struct StageSpec {
+  SectionHead head;
+  double strain[6], stress[6]; /* NaN: not given; strains are total */
+  int64_t steps;
+} StageSpec;
+
+typedef struct TestSpec {
+  SectionHead head;
+  const char *kind;
+  double strain, back, confining;
+  int64_t cycles, steps;
+} TestSpec;
+
+extern const Section stage_section, test_section;
+
+/** k-th kind of test, for the deck; NULL after the last. */
+const char *test_kind_word(int k);
+
+/** A straight part of a path. Components that are neither given keep their strain. */
+typedef struct Stage {
+  bool by_stress[6], by_strain[6];
+  bool relative; /* strains count from the stage's beginning */
+  double target[6];
+  int steps;
+} Stage;
+
+typedef struct ElementTest {
+  Stage *stages;
+  int count;
+  double x_weight[6], y_weight[6]; /* the curve: sums of strains against sums of stresses */
+  const char *x_label, *y_label;
+} ElementTest;
+
+/** Makes a test from a kind with its numbers, or from stages (one of them is NULL).
+ *  @param[in] uniaxial  of the law: such laws know the uniaxial test and stages along xx only */
+int element_test_create(ElementTest *test, const DeckReader *reader, const TestSpec *spec, const SectionList *stages,
+                        bool uniaxial);
+void element_test_destroy(ElementTest *test);
+
+/** What a point went through, the unstrained state first. */
+typedef struct ElementCurve {
+  int count, components;
+  double *strain, *stress, *tangent; /* [count][6], [count][6], [count][components^2] */
+  double *x, *y;                     /* [count] the curve */
+} ElementCurve;
+
+/** Runs a test. What came before a failure is kept in the curve. */
+int element_test_run(const ElementTest *test, const Material *material, ElementCurve *curve, Error *error);
+void element_curve_destroy(ElementCurve *curve);
+
+/** How far measured points lie from a curve: the distance to its nearest piece, both axes in parts of the range of the points.
+ *  @param[out] mean  root mean square
+ *  @param[out] most  largest */
+void element_curve_compare(const ElementCurve *curve, const double *x, const double *y, int count, double *mean,
+                           double *most);
+
+#endif

@@ -1,0 +1,88 @@
+#include "model/element_deck.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Field fit_fields[] = {
+    {"from", FIELD_NUMBER, offsetof(FitSpec, from), "1", NULL, NULL, "smallest value, in the file's units", NULL, NULL,
+     0},
+    {"to", FIELD_NUMBER, offsetof(FitSpec, to), "1", NULL, NULL, "largest value, in the file's units", NULL, NULL, 0},
+};
+static const Section fit_section = {
+    "fit", "The range in which `breccia calibrate` may choose a parameter.", sizeof(FitSpec), FIELDS(fit_fields), NULL,
+    NULL, NULL, 0};
+
+static const Field element_fields[] = {
+    {"title", FIELD_TEXT, offsetof(ElementDeckSpec, title), NULL, "", NULL, "stands over the picture", NULL, NULL, 0},
+    {"units", FIELD_SECTION, offsetof(ElementDeckSpec, units), NULL, "", NULL, "m, N, s when absent", &units_section,
+     NULL, 0},
+    {"material", FIELD_SECTION, offsetof(ElementDeckSpec, material), NULL, NULL, NULL, "as in a deck",
+     &material_section, NULL, 0},
+    {"test", FIELD_SECTION, offsetof(ElementDeckSpec, test), NULL, "", NULL, "a laboratory test, or give stages",
+     &test_section, NULL, 0},
+    {"stages", FIELD_SECTIONS, offsetof(ElementDeckSpec, stages), NULL, "", NULL, "a path of one's own", &stage_section,
+     NULL, 0},
+    {"against", FIELD_TEXT, offsetof(ElementDeckSpec, against), NULL, "", NULL,
+     "CSV file of measured points, beside this file: abscissa and ordinate of the curve in the first two columns", NULL,
+     NULL, 0},
+    {"fit", FIELD_NAMED, offsetof(ElementDeckSpec, fit), NULL, "", NULL,
+     "parameters that `breccia calibrate` chooses, by name", &fit_section, NULL, 0},
+};
+
+static void check_element(const DeckReader *reader, void *section)
+{
+  const ElementDeckSpec *spec = section;
+  if ((spec->test != NULL) == (spec->stages.count > 0))
+    node_error(reader->document, spec->head.node, reader->error, "give either 'test' or 'stages'");
+}
+
+const Section element_deck_section = {"element test",
+                                      "A test on one material point, for `breccia material` and `breccia calibrate`.",
+                                      sizeof(ElementDeckSpec),
+                                      FIELDS(element_fields),
+                                      check_element,
+                                      NULL,
+                                      NULL,
+                                      0};
+
+static char *beside(const char *path, const char *file)
+{
+  const char *slash = strrchr(path, '/');
+  if (*file == '/' || !slash) return text_format("%s", file);
+  return text_format("%.*s/%s", (int)(slash - path), path, file);
+}
+
+int element_deck_load(ElementDeck *deck, const char *path, Error *error)
+{
+  *deck = (ElementDeck){0};
+  size_t length;
+  char *text = text_read_file(path, &length);
+  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+  deck->document = document_parse(text, length, path, error);
+  free(text);
+  if (!deck->document) return BRECCIA_USER_ERROR;
+  int status = deck_units(deck->document, &deck->laws, &deck->units, error);
+  if (status) return status;
+  const int before = error_count(error);
+  deck->reader = (DeckReader){deck->document, deck->units, &deck->laws, error};
+  deck->spec = section_read(&deck->reader, deck->document->root, &element_deck_section);
+  if (!deck->spec || error_count(error) > before) return BRECCIA_USER_ERROR;
+  deck->law = law_find(&deck->laws, deck->spec->material->model);
+  status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN);
+  if (!status)
+    status = element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages, deck->law->uniaxial);
+  if (!status && deck->spec->against) deck->against = beside(path, deck->spec->against);
+  return status;
+}
+
+void element_deck_destroy(ElementDeck *deck)
+{
+  element_test_destroy(&deck->test);
+  material_destroy(&deck->material);
+  units_destroy(&deck->units);
+  document_destroy(&deck->document);
+  free(deck->against);
+  *deck = (ElementDeck){0};
+}
