@@ -42,7 +42,7 @@ bench-report: all
 
 # Pages and pictures that the program makes itself.
 docs: all
-	@build/release/breccia schema --markdown > docs/deck.md
+	@sh scripts/docs.sh
 
 format:
 	@clang-format -i $$(git ls-files '*.c' '*.h')

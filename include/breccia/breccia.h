@@ -63,6 +63,8 @@ typedef struct breccia_batch {
 typedef struct breccia_law {
   const char *name, *about, *source; /* deck name; one line; paper and equations */
   const char *maturity;              /* "verified against ...", "validated against ..." or "experimental" */
+  const char *equations;             /* for the page of models, lines of Markdown; may be NULL */
+  const char *opensees;              /* command of the same law there; may be NULL */
   const breccia_parameter *parameters;
   int parameter_count;
   size_t constants_size; /* bytes that `prepare` fills */

@@ -27,8 +27,8 @@ static void print_fit(const ElementDeck *deck, const ParameterFit *c, int points
     char unit[64];
     units_name(deck->units, dimension_find(law->dimension), unit, sizeof unit);
     const double edge = 1e-3 * (p->to - p->from);
-    printf("  %s: %.6g%s%s   (between %g and %g; a change by 1 %% of the range moves the points by %.2g %%%s)\n", law->name,
-           p->value, *unit ? " " : "", unit, p->from, p->to, 100 * p->sensitivity,
+    printf("  %s: %.6g%s%s   (between %g and %g; a change by 1 %% of the range moves the points by %.2g %%%s)\n",
+           law->name, p->value, *unit ? " " : "", unit, p->from, p->to, 100 * p->sensitivity,
            p->value - p->from < edge || p->to - p->value < edge ? "; it stands at the end of its range"
            : p->sensitivity < 1e-5                              ? "; these points do not tell it"
                                                                 : "");
@@ -44,7 +44,8 @@ static int draw(const ElementDeck *deck, const double *x, const double *y, int c
     units_name(deck->units, dimension_find("stress"), unit, sizeof unit);
     snprintf(label, sizeof label, "%s (%s)", deck->test.y_label, unit);
     const PlotLine lines[2] = {{"fitted", c.x, c.y, c.count, false}, {"measured", x, y, count, true}};
-    const PlotOptions plot = {deck->spec->title ? deck->spec->title : deck->law->name, deck->test.x_label, label, NAN, NAN};
+    const PlotOptions plot = {deck->spec->title ? deck->spec->title : deck->law->name, deck->test.x_label, label, NAN,
+                              NAN};
     status = plot_draw(lines, 2, &plot, path, error);
     if (!status) printf("%s\n", path);
   }
@@ -84,10 +85,11 @@ static int run(int argc, char **argv, const Verb *verb)
   return fail(error, status);
 }
 
-const Verb verb_calibrate = {"calibrate",
-                             "TEST.yaml [options]",
-                             "fit parameters of a law to a measured curve",
-                             options,
-                             "TEST.yaml is a file as for 'breccia material', with the measured points under 'against' and under 'fit'\n"
-                             "the parameters to choose with their ranges: fit: {cohesion: {from: 5, to: 50}}.",
-                             run};
+const Verb verb_calibrate = {
+    "calibrate",
+    "TEST.yaml [options]",
+    "fit parameters of a law to a measured curve",
+    options,
+    "TEST.yaml is a file as for 'breccia material', with the measured points under 'against' and under 'fit'\n"
+    "the parameters to choose with their ranges: fit: {cohesion: {from: 5, to: 50}}.",
+    run};

@@ -5,7 +5,42 @@
 
 #include <string.h>
 
-static const Option options[] = {{0}};
+static const Option options[] = {{"markdown", NULL, "the page of models instead (docs/models.md)"}, {0}};
+
+static void print_page(void)
+{
+  printf("# Constitutive models\n\nMade from the program's own tables by `breccia models --markdown`, with pictures by "
+         "`make docs`; do not "
+         "edit.\n\nTension is positive unless a page says otherwise. Each picture is the test of a file in "
+         "examples/materials, "
+         "run by `breccia material FILE --picture OUT.png`; parameters with their units, defaults and ranges stand in "
+         "[the deck reference](deck.md) and in `breccia models NAME`. All laws of one strain can be told to fail for "
+         "good outside a range of "
+         "strains (`smallest strain`, `largest strain`; MinMax of OpenSees).\n\n| model | what it is | OpenSees | "
+         "checked |\n|---|---|---|---|\n");
+  for (int k = 0; law_at(NULL, k); ++k) {
+    const breccia_law *law = law_at(NULL, k);
+    printf("| [%s](#%s) | %s | %s | %s |\n", law->name, law->name, law->about, law->opensees ? law->opensees : "",
+           law->maturity);
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    printf("\n## %s\n", pass ? "Along one direction: bonds, bars, links" : "In space");
+    for (int k = 0; law_at(NULL, k); ++k) {
+      const breccia_law *law = law_at(NULL, k);
+      if (law->uniaxial != pass) continue;
+      printf("\n### %s\n\n%s. Source: %s. %c%s.%s%s%s\n\n", law->name, law->about, law->source,
+             law->maturity[0] - 'a' + 'A', law->maturity + 1, law->opensees ? " In OpenSees: `" : "",
+             law->opensees ? law->opensees : "", law->opensees ? "`." : "");
+      for (const char *line = law->equations; line && *line;) {
+        const size_t length = strcspn(line, "\n");
+        printf("- %.*s\n", (int)length, line);
+        line += length + (line[length] != 0);
+      }
+      printf("\n![%s](models/%s.png)\n\n[examples/materials/%s.yaml](../examples/materials/%s.yaml)\n", law->name,
+             law->name, law->name, law->name);
+    }
+  }
+}
 
 static void print_law(const breccia_law *law)
 {
@@ -25,8 +60,13 @@ static void print_law(const breccia_law *law)
 
 static int run(int argc, char **argv, const Verb *verb)
 {
-  int first = read_options(argc, argv, verb, NULL, NULL, NULL);
+  const char *values[1];
+  int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
+  if (values[0]) {
+    print_page();
+    return 0;
+  }
   if (first < argc) {
     const breccia_law *law = law_find(NULL, argv[first]);
     if (!law) {

@@ -19,9 +19,18 @@ static const char *const component_words[] = {"xx", "yy", "zz", "xy", "yz", "zx"
         "at the stage's end", NULL, NULL, 0                                                                            \
   }
 static const Field stage_fields[] = {
-    STRAIN_FIELD("xx", XX), STRAIN_FIELD("yy", YY), STRAIN_FIELD("zz", ZZ), STRAIN_FIELD("xy", XY),
-    STRAIN_FIELD("yz", YZ), STRAIN_FIELD("zx", ZX), STRESS_FIELD("xx", XX), STRESS_FIELD("yy", YY),
-    STRESS_FIELD("zz", ZZ), STRESS_FIELD("xy", XY), STRESS_FIELD("yz", YZ), STRESS_FIELD("zx", ZX),
+    STRAIN_FIELD("xx", XX),
+    STRAIN_FIELD("yy", YY),
+    STRAIN_FIELD("zz", ZZ),
+    STRAIN_FIELD("xy", XY),
+    STRAIN_FIELD("yz", YZ),
+    STRAIN_FIELD("zx", ZX),
+    STRESS_FIELD("xx", XX),
+    STRESS_FIELD("yy", YY),
+    STRESS_FIELD("zz", ZZ),
+    STRESS_FIELD("xy", XY),
+    STRESS_FIELD("yz", YZ),
+    STRESS_FIELD("zx", ZX),
     {"steps", FIELD_COUNT, offsetof(StageSpec, steps), NULL, "100", "[1, 1e7]", "equal parts", NULL, NULL, 0},
 };
 
@@ -30,8 +39,8 @@ static void check_stage(const DeckReader *reader, void *section)
   const StageSpec *stage = section;
   for (int k = 0; k < COMPONENTS; ++k)
     if (!isnan(stage->strain[k]) && !isnan(stage->stress[k]))
-      node_error(reader->document, stage->head.node, reader->error,
-                 "stage: give 'strain %s' or 'stress %s', not both", component_words[k], component_words[k]);
+      node_error(reader->document, stage->head.node, reader->error, "stage: give 'strain %s' or 'stress %s', not both",
+                 component_words[k], component_words[k]);
 }
 
 const Section stage_section = {"stage",
@@ -44,9 +53,8 @@ const Section stage_section = {"stage",
                                0};
 
 enum { UNIAXIAL, TRIAXIAL, UNDRAINED_TRIAXIAL, OEDOMETER, BIAXIAL, ISOTROPIC, SIMPLE_SHEAR, UNDRAINED_SHEAR, KINDS };
-static const char *const kinds[KINDS + 1] = {"uniaxial", "triaxial",  "undrained triaxial", "oedometer",
-                                             "biaxial",  "isotropic", "simple shear",       "undrained shear",
-                                             NULL};
+static const char *const kinds[KINDS + 1] = {"uniaxial",  "triaxial",     "undrained triaxial", "oedometer", "biaxial",
+                                             "isotropic", "simple shear", "undrained shear",    NULL};
 
 const char *test_kind_word(int k)
 {
@@ -55,7 +63,8 @@ const char *test_kind_word(int k)
 
 static const Field test_fields[] = {
     {"kind", FIELD_CHOICE, offsetof(TestSpec, kind), NULL, NULL, NULL,
-     "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral strain 0; biaxial: zz strain "
+     "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral strain 0; "
+     "biaxial: zz strain "
      "0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
      NULL, test_kind_word, 0},
     {"strain", FIELD_NUMBER, offsetof(TestSpec, strain), "1", NULL, NULL,
@@ -69,13 +78,13 @@ static const Field test_fields[] = {
      "to the strain and the return strain; 0: once to the strain", NULL, NULL, 0},
     {"steps", FIELD_COUNT, offsetof(TestSpec, steps), NULL, "200", "[1, 1e6]", "from end to end", NULL, NULL, 0},
 };
-const Section test_section = {"test", "A laboratory test on one material point.", sizeof(TestSpec),
-                              FIELDS(test_fields), NULL, NULL, NULL, 0};
+const Section test_section = {
+    "test", "A laboratory test on one material point.", sizeof(TestSpec), FIELDS(test_fields), NULL, NULL, NULL, 0};
 
 static void label_curve(ElementTest *t, int kind)
 {
-  static const double axial[6] = {1}, shear[6] = {0, 0, 0, 1}, volume[6] = {1, 1, 1}, mean[6] = {1. / 3, 1. / 3, 1. / 3},
-                      difference[6] = {1, 0, -1};
+  static const double axial[6] = {1}, shear[6] = {0, 0, 0, 1}, volume[6] = {1, 1, 1},
+                      mean[6] = {1. / 3, 1. / 3, 1. / 3}, difference[6] = {1, 0, -1};
   const bool sheared = kind == SIMPLE_SHEAR || kind == UNDRAINED_SHEAR,
              triaxial = kind == TRIAXIAL || kind == UNDRAINED_TRIAXIAL;
   memcpy(t->x_weight, sheared ? shear : kind == ISOTROPIC ? volume : axial, sizeof axial);
@@ -90,10 +99,14 @@ static void label_curve(ElementTest *t, int kind)
 /** Which components follow the driven strain, and by which share; which keep their stress. */
 static void drive(Stage *stage, int kind, double confining)
 {
-  static const double share[KINDS][6] = {
-      [UNIAXIAL] = {1},     [TRIAXIAL] = {1},        [UNDRAINED_TRIAXIAL] = {1, -0.5, -0.5}, [OEDOMETER] = {1},
-      [BIAXIAL] = {1},      [ISOTROPIC] = {1, 1, 1}, [SIMPLE_SHEAR] = {0, 0, 0, 1},
-      [UNDRAINED_SHEAR] = {0, 0, 0, 1}};
+  static const double share[KINDS][6] = {[UNIAXIAL] = {1},
+                                         [TRIAXIAL] = {1},
+                                         [UNDRAINED_TRIAXIAL] = {1, -0.5, -0.5},
+                                         [OEDOMETER] = {1},
+                                         [BIAXIAL] = {1},
+                                         [ISOTROPIC] = {1, 1, 1},
+                                         [SIMPLE_SHEAR] = {0, 0, 0, 1},
+                                         [UNDRAINED_SHEAR] = {0, 0, 0, 1}};
   for (int k = 0; k < COMPONENTS; ++k) {
     stage->by_strain[k] = share[kind][k] != 0;
     stage->target[k] = share[kind][k]; /* times the strain */
@@ -256,10 +269,11 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
       if (driver_step(&d, stage->by_stress, target, tolerance))
         keep(curve, test, &d);
       else
-        status = error_add(error, BRECCIA_FAILURE,
-                           "stage %d, step %d of %d: the stresses asked for cannot be reached; a material that softens or "
-                           "flows must be driven by strain along that component",
-                           n + 1, step, stage->steps);
+        status =
+            error_add(error, BRECCIA_FAILURE,
+                      "stage %d, step %d of %d: the stresses asked for cannot be reached; a material that softens or "
+                      "flows must be driven by strain along that component",
+                      n + 1, step, stage->steps);
     }
   }
   driver_destroy(&d);

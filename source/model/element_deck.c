@@ -10,9 +10,14 @@ static const Field fit_fields[] = {
      0},
     {"to", FIELD_NUMBER, offsetof(FitSpec, to), "1", NULL, NULL, "largest value, in the file's units", NULL, NULL, 0},
 };
-static const Section fit_section = {
-    "fit", "The range in which `breccia calibrate` may choose a parameter.", sizeof(FitSpec), FIELDS(fit_fields), NULL,
-    NULL, NULL, 0};
+static const Section fit_section = {"fit",
+                                    "The range in which `breccia calibrate` may choose a parameter.",
+                                    sizeof(FitSpec),
+                                    FIELDS(fit_fields),
+                                    NULL,
+                                    NULL,
+                                    NULL,
+                                    0};
 
 static const Field element_fields[] = {
     {"title", FIELD_TEXT, offsetof(ElementDeckSpec, title), NULL, "", NULL, "stands over the picture", NULL, NULL, 0},
@@ -72,7 +77,8 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   deck->law = law_find(&deck->laws, deck->spec->material->model);
   status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN);
   if (!status)
-    status = element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages, deck->law->uniaxial);
+    status =
+        element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages, deck->law->uniaxial);
   if (!status && deck->spec->against) deck->against = beside(path, deck->spec->against);
   return status;
 }

@@ -31,7 +31,8 @@ static double value_at(const FittedParameter *p, double place)
 
 static double place_of(const FittedParameter *p, double value)
 {
-  const double place = by_ratio(p) ? log(value / p->from) / log(p->to / p->from) : (value - p->from) / (p->to - p->from);
+  const double place =
+      by_ratio(p) ? log(value / p->from) / log(p->to / p->from) : (value - p->from) / (p->to - p->from);
   return fmin(1, fmax(0, place));
 }
 
@@ -75,8 +76,9 @@ static int find_parameters(const ElementDeck *deck, ParameterFit *c, const doubl
                !interval_contains(deck->law->parameters[k].range, spec->to)) {
       char range[128];
       interval_describe(deck->law->parameters[k].range, range, sizeof range);
-      status = node_error(deck->document, spec->head.node, deck->reader.error,
-                          "fit: '%s' needs 'from' below 'to', and both %s", spec->head.name, *range ? range : "numbers");
+      status =
+          node_error(deck->document, spec->head.node, deck->reader.error,
+                     "fit: '%s' needs 'from' below 'to', and both %s", spec->head.name, *range ? range : "numbers");
     } else {
       FittedParameter *p = &c->parameters[c->count++];
       *p = (FittedParameter){.index = k, .from = spec->from, .to = spec->to, .start = values[k]};

@@ -7,13 +7,15 @@
 typedef struct FittedParameter {
   int index; /* in the law's table */
   double from, to, start, value;
-  double sensitivity; /* growth of the mean distance for a change of the value by one per cent of its range, in range of the points */
+  double
+      sensitivity; /* growth of the mean distance for a change of the value by one per cent of its range, in range of the points */
 } FittedParameter;
 
 typedef struct ParameterFit {
   FittedParameter *parameters;
-  int count, runs;     /* runs of the test */
-  double before, after, most; /* mean distance of the points from the curve before and after, and the largest after (element_curve_compare) */
+  int count, runs; /* runs of the test */
+  double before, after,
+      most; /* mean distance of the points from the curve before and after, and the largest after (element_curve_compare) */
 } ParameterFit;
 
 /** Chooses the parameters under `fit` such that the points lie nearest to the curve of the test, with NLopt's Subplex from the deck's values

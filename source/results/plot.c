@@ -53,7 +53,7 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
   quote(&script, o->y_label);
   text_add(&script, " noenhanced\nset grid lc rgb \"#dddddd\"\nset border lc rgb \"#333333\"\n");
   text_add(&script, count > 1 ? "set key bottom right opaque\n" : "unset key\n");
-  text_add(&script, "set datafile separator whitespace\n");
+  text_add(&script, "set datafile separator whitespace\nset offsets 0, 0, graph 0.04, graph 0.04\n");
   if (isfinite(o->low) && isfinite(o->high)) text_add(&script, "set xrange [%.9g:%.9g]\n", o->low, o->high);
   text_add(&script, "plot ");
   for (int k = 0; k < count; ++k) {

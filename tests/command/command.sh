@@ -118,7 +118,7 @@ awk -v g="$(fitted "shear modulus")" -v t="$(fitted "octahedral strength")" \
 contains "calibrate: what does not matter" "$(grep "bulk modulus" out)" "these points do not tell it"
 sed -i 's/fit: {shear modulus/fit: {modulus/' fit.yaml
 "$breccia" calibrate fit.yaml 2> out; equal "calibrate with a wrong name: status" $? 2
-contains "calibrate with a wrong name" "$(cat out)" "fit.yaml:5:16: fit: multi-yield-j2 has no parameter 'modulus'"
+contains "calibrate with a wrong name" "$(cat out)" "fit.yaml:5:7: fit: multi-yield-j2 has no parameter 'modulus'"
 sed -i '/^fit:/d' fit.yaml
 "$breccia" calibrate fit.yaml 2> out; contains "calibrate nothing" "$(cat out)" "nothing to calibrate"
 "$breccia" models > out; contains "models" "$(cat out)" "multi-yield-j2"

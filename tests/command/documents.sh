@@ -2,12 +2,19 @@
 . "$(dirname "$0")/common.sh"
 "$breccia" schema --markdown > "$work/deck.md"
 cmp -s "$work/deck.md" "$source/docs/deck.md" || fail "docs/deck.md is not current: run 'make docs'"
+"$breccia" models --markdown > "$work/models.md"
+cmp -s "$work/models.md" "$source/docs/models.md" || fail "docs/models.md is not current: run 'make docs'"
+for name in $("$breccia" models | sed -n '/^Formulations/q; s/^\([a-z0-9-]*\): .*/\1/p'); do
+  [ -s "$source/docs/models/$name.png" ] || fail "docs/models/$name.png is missing: run 'make docs'"
+  "$breccia" material "$source/examples/materials/$name.yaml" > "$work/curve.csv" || fail "examples/materials/$name.yaml does not run"
+  checks=$((checks + 1))
+done
 "$breccia" schema > "$work/schema.json"
 contains "schema" "$(cat "$work/schema.json")" '"$schema": "https://json-schema.org/draft/2020-12/schema"'
 if command -v python3 > /dev/null; then
   python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/schema.json" || fail "the schema is not JSON"
 fi
-for deck in "$source"/examples/*/*.yaml; do
+for deck in "$source"/examples/plate*/*.yaml; do
   "$breccia" check "$deck" > "$work/out" 2>&1 || fail "$deck is refused: $(cat "$work/out")"
   checks=$((checks + 1))
 done

@@ -240,6 +240,9 @@ const breccia_law law_bounding_surface_clay = {
              "range",
     .source = "Borja and Amies 1994",
     .maturity = "verified against OpenSees J2CyclicBoundingSurface",
+    .equations = "bounding surface ‖s‖ = R = √(8/3) s_u; the last reversal at s₀; k from ‖s + k (s − s₀)‖ = R\n"
+                 "ds = 2G / (1 + 3G/H) de, H = h kᵐ + H₀; a new reversal when (k/(1+k) s₀ − s) : de > 0; dp = K tr dε",
+    .opensees = "nDMaterial J2CyclicBoundingSurface",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Bounding),
     .prepare = prepare,

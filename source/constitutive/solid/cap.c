@@ -530,6 +530,10 @@ const breccia_law law_cap = {
     .about = "concrete and soil: failure envelope, tension cut-off and a cap that compaction moves",
     .source = "DiMaggio and Sandler 1971; Hofstetter, Simo and Taylor 1993",
     .maturity = "verified against OpenSees CapPlasticity",
+    .equations = "compression positive here: I = −tr σ; envelope ‖s‖ = F(I) = α − λ exp(−β I) + θ I; cut-off I = T\n"
+                 "cap ‖s‖² + ((I − k)/R)² = F(k)² for I ≥ k, ending at X(k) = k + R F(k)\n"
+                 "compaction tr εᵖ = W (1 − exp(−D X)) moves the cap; flow is associated on all surfaces",
+    .opensees = "nDMaterial CapPlasticity",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Cap),
     .prepare = prepare,

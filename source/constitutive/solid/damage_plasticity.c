@@ -268,6 +268,13 @@ const breccia_law law_damage_plasticity = {
              "any spacing",
     .source = "Lubliner, Oliver, Oller and Onate 1989; Lee and Fenves 1998",
     .maturity = "verified against its closed forms",
+    .equations = "effective stress: (q + α I₁ + β⟨σ₁⟩ − γ⟨−σ₁⟩) / (1 − α) ≤ S_c, β = (1 − α) S_c/S_t − (1 + α), α from "
+                 "the biaxial ratio, γ from the meridian ratio\n"
+                 "flow along √((e f_t tan ψ)² + q²) + tan ψ I₁/3\n"
+                 "tension over plastic strain f_t exp(−b x), compression f_c0 ((1 + a) exp(−b x) − a exp(−2 b x)), "
+                 "with areas G_F/l and G_c/l\n"
+                 "σ = (1 − D) σ_eff, 1 − D = (1 − D_c)(1 − r D_t), r the share of tension in the principal stresses",
+    .opensees = "nDMaterial ASDConcrete3D (similar)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(DamagePlasticity),
     .prepare = prepare,

@@ -172,6 +172,11 @@ const breccia_law law_drucker_prager = {
     .about = "soil and rock: a cone with tension cut-off, associated or not, with isotropic hardening",
     .source = "Drucker and Prager 1952",
     .maturity = "verified against OpenSees DruckerPrager (isotropic hardening) and TruncatedDP",
+    .equations = "√J₂ + a I₁ ≤ k, tension positive; tr σ ≤ T; flow along √J₂ + a′ I₁\n"
+                 "from angles, touching the compressive edges of Mohr–Coulomb: a = 2 sin φ / (√3 (3 − sin φ)), k = 6 c "
+                 "cos φ / (√3 (3 − sin φ)), a′ likewise from ψ\n"
+                 "√3 k + H x + ΔY (1 − exp(−d x)) with the equivalent plastic strain x",
+    .opensees = "nDMaterial DruckerPrager",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(DruckerPrager),
     .prepare = prepare,

@@ -36,6 +36,8 @@ const breccia_law law_elastic = {
     .about = "linear isotropic elasticity",
     .source = "Hooke's law",
     .maturity = "verified against OpenSees ElasticIsotropic3D",
+    .equations = "σ = λ tr(ε) 1 + 2 G ε, λ = K − 2G/3",
+    .opensees = "nDMaterial ElasticIsotropic",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Elasticity),
     .prepare = prepare,

@@ -105,6 +105,10 @@ const breccia_law law_j2 = {
     .about = "metal-like plasticity (von Mises) with linear and saturating isotropic and linear kinematic hardening",
     .source = "Simo and Hughes 1998, ch. 3",
     .maturity = "verified against OpenSees J2Plasticity",
+    .equations =
+        "f = ‖s − b‖ − √(2/3) Y(x) ≤ 0, s the stress deviator, b the back stress\n"
+        "Y = Y₁ + (Y₀ − Y₁) exp(−d x) + H x; flow dεᵖ = dγ n, n = (s − b)/‖s − b‖; dx = √(2/3) dγ, db = ⅔ Hₖ dγ n",
+    .opensees = "nDMaterial J2Plasticity (without the kinematic part)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(J2),
     .prepare = prepare,

@@ -149,6 +149,10 @@ const breccia_law law_mazars = {
              "spacing",
     .source = "Mazars and Pijaudier-Cabot 1989",
     .maturity = "verified against its closed forms",
+    .equations =
+        "σ = (1 − D) C ε; equivalent strain e = √Σ⟨εᵢ⟩², k its largest value so far, at least k₀ = f_t/E\n"
+        "D_t = 1 − k₀/k exp(−B_t (k − k₀)), 1/B_t = G_F/(l f_t) − k₀/2; D_c = 1 − k₀ (1 − A)/k − A exp(−B (k − k₀))\n"
+        "D = a_t D_t + (1 − a_t) D_c, a_t the share of strain that tensile stresses make; D never falls",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Mazars),
     .prepare = prepare,

@@ -226,6 +226,8 @@ const breccia_law law_mohr_coulomb = {
     .about = "soil and rock: the hexagonal pyramid with a tension cut-off, associated or not, perfectly plastic",
     .source = "de Souza Neto, Peric and Owen 2008, ch. 8",
     .maturity = "verified against its closed forms",
+    .equations = "σ₁ − σ₃ + (σ₁ + σ₃) sin φ ≤ 2 c cos φ, σ₁ ≤ f_t, tension positive, σ₁ ≥ σ₂ ≥ σ₃\n"
+                 "flow with ψ instead of φ on the pyramid, normal to the cut-off; no hardening",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(MohrCoulomb),
     .prepare = prepare,

@@ -385,6 +385,12 @@ const breccia_law law_multi_yield_j2 = {
     .about = "clay: nested yield surfaces on a hyperbolic backbone, kinematic hardening by Mroz' rule",
     .source = "Iwan 1967, Mroz 1967, Prevost 1977; scheme of OpenSees PressureIndependMultiYield",
     .maturity = "verified against OpenSees PressureIndependMultiYield",
+    .equations =
+        "backbone τ = G γ / (1 + γ/γᵣ) of octahedral stress and strain, through the strength at the peak strain\n"
+        "N nested surfaces √(3/2) ‖s − αₘ‖ = Kₘ, Kₘ = 3 m τ_max / (√2 N), with plastic moduli from the backbone's "
+        "chords; the active one moves towards the next (Mroz)\n"
+        "pressure: dp = K tr dε, elastic",
+    .opensees = "nDMaterial PressureIndependMultiYield",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(MultiYield),
     .prepare = prepare,

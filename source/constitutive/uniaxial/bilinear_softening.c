@@ -35,6 +35,7 @@ const breccia_law law_bilinear_softening = {
     .about = "a straight line up to the strength and a straight one down to nothing; elastic in compression",
     .source = "docs/theory.md 2 (linear softening of bonds)",
     .maturity = "verified against its closed form",
+    .equations = "σ = E ε up to f_t, then a line to 0; area G_F/l; unloading to the origin",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Softening),
     .uniaxial = 1,

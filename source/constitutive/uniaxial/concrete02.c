@@ -104,6 +104,9 @@ const breccia_law law_concrete02 = {
     .about = "concrete in compression as kent-scott-park, with linear softening in tension and stiffness that degrades",
     .source = "Yassin 1994; Kent and Park 1971",
     .maturity = "verified against OpenSees Concrete02",
+    .equations = "compression as kent-scott-park; lines of reloading meet in one point of slope λE at ε_u\n"
+                 "tension from where compression ends: E to f_t, then softening with a slope; unloading to that point",
+    .opensees = "uniaxialMaterial Concrete02",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Concrete02),
     .uniaxial = 1,

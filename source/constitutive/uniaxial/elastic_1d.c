@@ -35,6 +35,8 @@ const breccia_law law_elastic_1d = {
     .about = "linear elasticity along one direction",
     .source = "Hooke's law",
     .maturity = "verified against its closed form",
+    .equations = "σ = E ε",
+    .opensees = "uniaxialMaterial Elastic",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Elastic1d),
     .uniaxial = 1,

@@ -76,6 +76,7 @@ const breccia_law law_elastic_brittle = {
     .about = "linear until it breaks for good, by strength or fracture energy; a broken point carries nothing",
     .source = "Silling and Askari 2005",
     .maturity = "verified against its closed form",
+    .equations = "σ = E ε up to f_t or to E s²/2 = G_F/l, then nothing for good",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Brittle),
     .uniaxial = 1,

@@ -65,6 +65,8 @@ const breccia_law law_elastic_perfectly_plastic = {
     .about = "elastic up to a yield stress in tension and another in compression (ElasticPP)",
     .source = "Prandtl 1928",
     .maturity = "verified against OpenSees ElasticPP",
+    .equations = "σ = E (ε − εᵖ) between −f_y⁻ and f_y",
+    .opensees = "uniaxialMaterial ElasticPP",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Perfect),
     .uniaxial = 1,

@@ -54,6 +54,8 @@ const breccia_law law_exponential_softening = {
              "compression",
     .source = "Hobbs 2021; docs/theory.md 2",
     .maturity = "verified against its closed form",
+    .equations = "σ/f_t = (1 − (1 − e^(−k x))/(1 − e^(−k)) + α (1 − x))/(1 + α), x from the peak to the end; area "
+                 "G_F/l; unloading to the origin",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Exponential),
     .uniaxial = 1,

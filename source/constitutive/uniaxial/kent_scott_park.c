@@ -53,6 +53,11 @@ const breccia_law law_kent_scott_park = {
         "concrete in compression: parabola, line and residual strength, unloading along lines; no tension (Concrete01)",
     .source = "Kent and Park 1971; Scott, Park and Priestley 1982; Karsan and Jirsa 1969",
     .maturity = "verified against OpenSees Concrete01",
+    .equations =
+        "compression positive: f_c (2 x − x²), x = ε/ε₀ ≤ 1; a line to the residual strength at ε_u; constant\n"
+        "unloading to εₚ/ε₀ = 0.145 x² + 0.13 x, x < 2, else 0.707 (x − 2) + 0.834\n"
+        "confined by hoops: K f_c and 0.002 K with K = 1 + ρ_s f_yh/f_c",
+    .opensees = "uniaxialMaterial Concrete01",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(ConcreteEnvelope),
     .uniaxial = 1,

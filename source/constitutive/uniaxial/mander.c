@@ -85,6 +85,10 @@ const breccia_law law_mander = {
     .about = "confined concrete in compression, unloading along lines; no tension",
     .source = "Mander, Priestley and Park 1988; Karsan and Jirsa 1969",
     .maturity = "verified against its closed form",
+    .equations = "compression positive: f_cc x r/(r − 1 + xʳ), x = ε/ε_cc, r = E/(E − f_cc/ε_cc)\n"
+                 "f_cc = f_co (2.254 √(1 + 7.94 f_l/f_co) − 2 f_l/f_co − 1.254), ε_cc = ε_co (1 + 5 (f_cc/f_co − 1)); "
+                 "unloading as kent-scott-park",
+    .opensees = "uniaxialMaterial Concrete04 (similar)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Mander),
     .uniaxial = 1,

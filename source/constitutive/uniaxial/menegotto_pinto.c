@@ -115,6 +115,10 @@ const breccia_law law_menegotto_pinto = {
     .about = "steel with rounded cycles, kinematic and optional isotropic hardening (Steel02)",
     .source = "Menegotto and Pinto 1973; Filippou, Popov and Bertero 1983",
     .maturity = "verified against OpenSees Steel02",
+    .equations =
+        "σ* = b ε* + (1 − b) ε*/(1 + |ε*|ᴿ)^(1/R) between the last reversal and the crossing of the asymptotes\n"
+        "R = R₀ (1 − c₁ ξ/(c₂ + ξ)), ξ the last plastic excursion over f_y/E",
+    .opensees = "uniaxialMaterial Steel02",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Pinto),
     .uniaxial = 1,

@@ -69,6 +69,9 @@ const breccia_law law_steel_bilinear = {
     .about = "steel with two straight lines, kinematic hardening and optional isotropic hardening (Steel01)",
     .source = "Filippou, Popov and Bertero 1983 (isotropic hardening)",
     .maturity = "verified against OpenSees Steel01",
+    .equations = "σ = σₙ + E dε between b E ε − s⁻ f_y (1 − b) and b E ε + s⁺ f_y (1 − b)\n"
+                 "s = 1 + a₁ (range/(2 a₂ f_y/E))^0.8 after reversals",
+    .opensees = "uniaxialMaterial Steel01",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Steel),
     .uniaxial = 1,

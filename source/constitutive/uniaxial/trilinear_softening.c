@@ -55,6 +55,7 @@ const breccia_law law_trilinear_softening = {
     .about = "a straight line up to the strength and two down, the first steeper; elastic in compression",
     .source = "Petersson 1981",
     .maturity = "verified against its closed form",
+    .equations = "σ = E ε up to f_t, a line to the kink and a line to 0; area G_F/l; unloading to the origin",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Trilinear),
     .uniaxial = 1,

@@ -1,0 +1,11 @@
+#!/bin/sh
+# The pages that the program makes itself, and the pictures of its models.
+set -eu
+breccia=build/release/breccia
+$breccia schema --markdown > docs/deck.md
+$breccia models --markdown > docs/models.md
+mkdir -p docs/models
+for file in examples/materials/*.yaml; do
+  name=$(basename "$file" .yaml)
+  $breccia material "$file" --picture "docs/models/$name.png" --output /dev/null > /dev/null
+done
