@@ -29,6 +29,7 @@ test-external: setup all
 
 bench: setup all
 	@build/release/breccia_bench build/release/bench.csv
+	@build/release/breccia_bench_laws
 
 # LAMMPS from the distribution, on the same cubes in the same run.
 bench-peers: all

@@ -4,6 +4,7 @@ set -eu
 cd "$(dirname "$0")/.."
 build/release/breccia_bench build/release/bench.csv > build/release/bench.md
 build/release/breccia_peers > build/release/peers.md
+build/release/breccia_bench_laws > build/release/laws.md
 page=docs/performance.md
 {
   sed '/^<!-- bench -->$/q' $page
@@ -11,6 +12,8 @@ page=docs/performance.md
   cat build/release/bench.md
   echo
   cat build/release/peers.md
+  echo
+  cat build/release/laws.md
   echo
   sed -n '/^<!-- end of bench -->$/,$p' $page
 } > build/release/page.md

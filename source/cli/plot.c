@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { FIELD, COMPONENT, STEP, TIME, DEFORMED, RANGE, VIEW, BROKEN, CURVE, OVERLAY, TITLE, OUTPUT, COUNT };
+enum { FIELD, COMPONENT, STEP, TIME, DEFORMED, RANGE, VIEW, BROKEN, SIZE, CURVE, OVERLAY, TITLE, OUTPUT, COUNT };
 
 static const Option options[] = {
     {"field", "NAME", "what the particles are coloured by (octahedral shear stress)"},
@@ -19,6 +19,7 @@ static const Option options[] = {
     {"range", "LOW:HIGH", "ends of the colour scale; with --curve of the horizontal axis"},
     {"view", "AZIMUTH:ELEVATION", "where the eye is, in degrees, for bodies in space"},
     {"broken-bonds", NULL, "draw the bonds that have broken"},
+    {"size", "PIXELS", "largest width of the body in the picture (640)"},
     {"curve", "X:Y", "instead: columns of histories against each other, like 'opening.distance:pull.value'"},
     {"overlay", "FILE.csv", "with --curve: two columns drawn as points"},
     {"title", "WORDS", "with --curve: title of the picture"},
@@ -131,6 +132,9 @@ static int run(int argc, char **argv, const Verb *verb)
                       .high = NAN,
                       .broken_bonds = values[BROKEN] != NULL};
   if (values[DEFORMED] && read_number(values[DEFORMED], "deformed", &o.deformed)) return 2;
+  long long size;
+  if (values[SIZE] && read_whole(values[SIZE], "size", 50, &size)) return 2;
+  if (values[SIZE]) o.size = (double)size;
   if (values[RANGE] && read_pair(values[RANGE], "range", &o.low, &o.high)) return 2;
   if (values[VIEW] && read_pair(values[VIEW], "view", &o.azimuth, &o.elevation)) return 2;
   if (values[OUTPUT] && !picture_format(values[OUTPUT])) {

@@ -304,6 +304,15 @@ void domain_resume(Domain *d)
   if (d->contact.spec) contact_search(&d->contact);
 }
 
+double domain_history(const Domain *d, int64_t place, int k)
+{
+  if (d->points.where == POINTS_NOWHERE) return 0;
+  if (d->points.where == POINTS_ON_BONDS) return points_bond_history(&d->points, place, k);
+  const int64_t slice = place / SLICE;
+  return d->points
+      .committed[d->points.history_start[slice] + place % SLICE * d->materials[d->material[slice]].history_values + k];
+}
+
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
 {
   if (d->points.where == POINTS_ON_PARTICLES) {

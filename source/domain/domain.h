@@ -75,6 +75,9 @@ int domain_record(Domain *domain, const BrokenBond *bond);
  *  virial stress of the bonds. */
 void domain_look(const Domain *domain, int64_t place, double strain[6], double stress[6]);
 
+/** History number k of the law at a place, as committed; of bonds the mean over the family. */
+double domain_history(const Domain *domain, int64_t place, int k);
+
 /** Brings the arrays of strains and stresses up to date where no law writes them; makes them when they are first wanted. */
 int domain_observe(Domain *domain, Error *error);
 

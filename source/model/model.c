@@ -119,8 +119,8 @@ static int build(breccia_model *model, bool force, Error *error)
   bad = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, &spec->selections);
   if (bad) status = bad;
   if (model->domain.family.first) {
-    bad = watches_create(&model->watches, &model->domain.body, &model->domain.family, &model->loading, &model->reader,
-                         &spec->watches, &spec->selections);
+    bad = watches_create(&model->watches, &model->domain, &model->loading, &model->reader, &spec->watches,
+                         &spec->selections);
     if (bad) status = bad;
   }
   bad = check_results(model);

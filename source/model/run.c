@@ -190,11 +190,14 @@ static int nearest_write(const ResultView *view, double time)
 static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, int step, Error *error)
 {
   char name[160], words[256];
-  PictureOptions o = {spec->field, spec->component, spec->deformed, NAN, NAN, NAN, NAN, spec->broken_bonds};
-  o.azimuth = spec->view[0];
-  o.elevation = spec->view[1];
-  o.low = spec->range[0];
-  o.high = spec->range[1];
+  const PictureOptions o = {.field = spec->field,
+                            .component = spec->component,
+                            .deformed = spec->deformed,
+                            .azimuth = spec->view[0],
+                            .elevation = spec->view[1],
+                            .low = spec->range[0],
+                            .high = spec->range[1],
+                            .broken_bonds = spec->broken_bonds};
   snprintf(words, sizeof words, "%s%s%s step %lld", spec->field, spec->component ? " " : "",
            spec->component ? spec->component : "", (long long)view->step_numbers[step]);
   text_file_name(words, name, sizeof name);

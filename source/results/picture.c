@@ -185,9 +185,9 @@ typedef struct Page {
   double scale;                 /* points per length */
 } Page;
 
-static Page lay_out(const Scene *scene)
+static Page lay_out(const Scene *scene, double size)
 {
-  const double most_wide = 640, most_high = 560;
+  const double most_wide = size > 0 ? size : 640, most_high = most_wide * 7 / 8;
   Page page = {.left = 72, .top = 64};
   double w = scene->x1 - scene->x0, h = scene->y1 - scene->y0;
   page.scale = fmin(most_wide / w, most_high / h);
@@ -434,7 +434,7 @@ static cairo_surface_t *open_surface(const char *path, const Page *page)
 static int render(const Scene *scene, const ResultView *view, int step, const PictureOptions *o, const char *label,
                   const char *path, Error *error)
 {
-  Page page = lay_out(scene);
+  Page page = lay_out(scene, o->size);
   cairo_surface_t *surface = open_surface(path, &page);
   cairo_t *cr = cairo_create(surface);
   cairo_set_source_rgb(cr, 1, 1, 1);

@@ -21,6 +21,7 @@ typedef struct PictureOptions {
   double azimuth, elevation;     /* degrees; NaN: chosen from the body's shape */
   double low, high;              /* ends of the colour scale; NaN: from the data */
   bool broken_bonds;
+  double size; /* largest width of the drawing in pixels; 0: 640 */
 } PictureOptions;
 
 /** Draws one step of a result file to a .png, .svg or .pdf file. */

@@ -149,22 +149,14 @@ static int write_cells(hid_t root, int64_t particles)
   return bad;
 }
 
-/** A named history number of all particles, of bonds the mean over a family; 0 where the material has none of that name. */
+/** A named history number of all particles; 0 where the material has none of that name. */
 static void history_values(const Domain *d, const char *name, double *values)
 {
-  const Particles *p = d->particles;
   for (int m = 0; m < d->material_count; ++m) {
-    int k = history_field_index(&d->materials[m], name);
-    for (int64_t n = 0; n < p->count; ++n) {
-      int64_t slice = p->place_of[n] / SLICE, lane = p->place_of[n] % SLICE;
-      if (d->material[slice] != m) continue;
-      const double *rows = d->points.committed + d->points.history_start[slice];
-      if (k < 0 || d->points.where == POINTS_NOWHERE)
-        values[n] = 0;
-      else if (d->points.where == POINTS_ON_BONDS)
-        values[n] = points_bond_history(&d->points, p->place_of[n], k);
-      else
-        values[n] = rows[lane * d->materials[m].history_values + k];
+    const int k = history_field_index(&d->materials[m], name);
+    for (int64_t n = 0; n < d->particles->count; ++n) {
+      const int64_t place = d->particles->place_of[n];
+      if (d->material[place / SLICE] == m) values[n] = k < 0 ? 0 : domain_history(d, place, k);
     }
   }
 }

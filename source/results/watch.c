@@ -32,6 +32,9 @@ static const Field watch_fields[] = {
      &selection_section, NULL, 'A'},
     {"stress and strain of", FIELD_REFERENCE, offsetof(WatchSpec, stress), NULL, "", NULL, "mean strain and stress",
      &selection_section, NULL, 'A'},
+    {"history of", FIELD_REFERENCE, offsetof(WatchSpec, history), NULL, "", NULL,
+     "mean of the named histories of the first particle's material (plastic strains, damage, cap ...)",
+     &selection_section, NULL, 'A'},
     {"damage of", FIELD_REFERENCE, offsetof(WatchSpec, damage), NULL, "", NULL, "mean and largest damage",
      &selection_section, NULL, 'A'},
     {"opening between", FIELD_POINTS, offsetof(WatchSpec, opening), "length", "", NULL,
@@ -57,9 +60,14 @@ typedef struct Kind {
   void (*row)(const Watch *watch, const Explicit *solver, double *values);
 } Kind;
 
+enum { MOST_COLUMNS = 16 };
+
 struct Watch {
   const WatchSpec *spec;
   const Kind *kind;
+  Kind own; /* of histories, whose columns the material names */
+  char columns[512];
+  int history[MOST_COLUMNS]; /* which numbers they are */
   Selection selection;
   int32_t ends[2];
   const LoadSpec *load;
@@ -111,6 +119,14 @@ static void stress_row(const Watch *w, const Explicit *s, double *values)
   values[12] = 2 * tensor_octahedral_shear(tensor);
   values[13] = tensor_octahedral_shear(stress);
   values[14] = (stress[XX] + stress[YY] + stress[ZZ]) / 3;
+}
+static void history_row(const Watch *w, const Explicit *s, double *values)
+{
+  for (int c = 0; c < MOST_COLUMNS && w->history[c] >= 0; ++c) {
+    values[c] = 0;
+    for (int64_t n = 0; n < w->selection.count; ++n)
+      values[c] += domain_history(s->domain, w->selection.places[n], w->history[c]) / (double)w->selection.count;
+  }
 }
 static void damage_row(const Watch *w, const Explicit *s, double *values)
 {
@@ -191,8 +207,6 @@ static const Kind *load_kind(const LoadSpec *l)
   return &load_kinds[4];
 }
 
-enum { MOST_COLUMNS = 16 };
-
 static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
 {
   const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;
@@ -207,10 +221,42 @@ static int resolve_ends(Watch *w, const Body *body, const Family *family, const 
   return BRECCIA_OK;
 }
 
-static int resolve(Watch *w, const Body *body, const Family *family, const Loading *loading, const DeckReader *reader,
+/** Columns for the named histories of the material at the first particle of the selection. */
+static int name_histories(Watch *w, const Domain *domain, const DeckReader *reader)
+{
+  const int material = domain->material[w->selection.places[0] / SLICE];
+  const Material *m = &domain->materials[material];
+  int count = 0;
+  for (int64_t n = 0; n < w->selection.count; ++n)
+    if (domain->material[w->selection.places[n] / SLICE] != material)
+      return node_error(reader->document, section_place(w->spec, "history of"), reader->error,
+                        "history of: the particles are of several materials, whose histories are not the same");
+  for (int k = 0; m->law->history_name && k < m->history_values && count < MOST_COLUMNS - 1; ++k) {
+    char name[64] = "";
+    m->law->history_name(m->constants, k, name, sizeof name);
+    if (!*name) continue;
+    const size_t used = strlen(w->columns);
+    snprintf(w->columns + used, sizeof w->columns - used, "%s%s:1", used ? "," : "", name);
+    w->history[count++] = k;
+  }
+  w->history[count] = -1;
+  w->own = (Kind){w->columns, history_row};
+  w->kind = &w->own;
+  if (count) return BRECCIA_OK;
+  return node_error(reader->document, section_place(w->spec, "history of"), reader->error,
+                    "history of: %s has no named history", m->law->name);
+}
+
+static int resolve(Watch *w, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *selections)
 {
   const WatchSpec *spec = w->spec;
+  const Body *body = &domain->body;
+  const Family *family = &domain->family;
+  if (spec->history.node) {
+    int status = selection_create(&w->selection, body, reader, selections, &spec->history);
+    return status ? status : name_histories(w, domain, reader);
+  }
   const struct {
     const Reference *reference;
     const Kind *kind;
@@ -243,8 +289,8 @@ static int resolve(Watch *w, const Body *body, const Family *family, const Loadi
                     "load: no load has the name '%s'; give it one with 'name:'", spec->load);
 }
 
-int watches_create(Watches **out, const Body *body, const Family *family, const Loading *loading,
-                   const DeckReader *reader, const SectionList *specs, const SectionList *selections)
+int watches_create(Watches **out, const Domain *domain, const Loading *loading, const DeckReader *reader,
+                   const SectionList *specs, const SectionList *selections)
 {
   Watches *watches = *out = calloc(1, sizeof *watches);
   if (!watches || !(watches->items = calloc((size_t)specs->count + 1, sizeof(Watch))))
@@ -254,7 +300,7 @@ int watches_create(Watches **out, const Body *body, const Family *family, const 
     Watch *w = &watches->items[watches->count++];
     w->spec = specs->items[k];
     w->last_step = -1;
-    int bad = resolve(w, body, family, loading, reader, selections);
+    int bad = resolve(w, domain, loading, reader, selections);
     if (bad) status = bad;
   }
   return status;

@@ -7,7 +7,7 @@
 typedef struct WatchSpec {
   SectionHead head;
   int64_t every;
-  Reference displacement, velocity, force, stress, damage;
+  Reference displacement, velocity, force, stress, history, damage;
   NumberList opening, bond;
   const char *load;
   bool energy;
@@ -18,8 +18,8 @@ extern const Section watch_section;
 typedef struct Watches Watches;
 
 /** Resolves the watches of a deck on a body. */
-int watches_create(Watches **watches, const Body *body, const Family *family, const Loading *loading,
-                   const DeckReader *reader, const SectionList *specs, const SectionList *selections);
+int watches_create(Watches **watches, const Domain *domain, const Loading *loading, const DeckReader *reader,
+                   const SectionList *specs, const SectionList *selections);
 /** Opens <folder>/<name>.csv for each; with `resume_after` >= 0 old files are kept up to that step and continued. */
 int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */

@@ -5,6 +5,7 @@
 
 #include "solver/stable_step.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC, MOTION };
@@ -290,6 +291,23 @@ static int32_t first_bad_particle(const Particles *p)
   return p->place_of[0];
 }
 
+/** Which law could not be integrated, and at which strain. */
+static const char *describe_failed_law(const Domain *d, int64_t place, char *words, size_t size)
+{
+  const Material *m = &d->materials[d->material[place / SLICE]];
+  if (d->points.where != POINTS_ON_PARTICLES) {
+    snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law->name,
+             m->name);
+    return words;
+  }
+  double e[6];
+  for (int k = 0; k < 6; ++k) e[k] = d->points.strain[k][place];
+  snprintf(words, size,
+           "the law %s of material '%s' could not be integrated at the strain xx %g, yy %g, zz %g, xy %g, yz %g, zx %g",
+           m->law->name, m->name, e[0], e[1], e[2], e[3], e[4], e[5]);
+  return words;
+}
+
 /** Takes displacements and velocities back to the start of the step, and says what happened. */
 static int retreat(Explicit *s, Error *error)
 {
@@ -304,11 +322,12 @@ static int retreat(Explicit *s, Error *error)
       p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
     }
   if (s->domain->contact.failed) return error_add(error, BRECCIA_FAILURE, "out of memory: contact");
+  char words[320];
   const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
   if (dt > s->stable)
     cause = "the time step is above the stable one";
   else if (failed >= 0)
-    cause = "its constitutive law could not be integrated at this strain";
+    cause = describe_failed_law(s->domain, failed, words, sizeof words);
   else if (family_count(&s->domain->family, bad) < 4)
     cause = "it has lost nearly all its bonds";
   error_add(

@@ -102,6 +102,10 @@ refuse 's/^title: .*/title: *other/' '' 'aliases (*name) are not understood'
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/\[1, 0, 0\]/[1, 0, 2]/; s/^peri.*/peridynamics: {space: plane strain}/' \
   20:27 'has a part along z, but the body is plane'
 
+refuse 's/  tip: .*/  tip: {history of: end}/; s/material: clay/material: steel/' 21:21 'history of: elastic has no named history'
+refuse 's/  tip: .*/  tip: {history of: {face: z-}}/; s/^selections:/  foot: {material: steel, spacing: 0.1, shape: {box: {particles: [3, 5, 3], first particle: [1.05, 0.05, 0.05]}}}\nselections:/' \
+  22:9 'history of: the particles are of several materials'
+
 bars='s/^  clay: .*/  clay: {model: elastic-1d, density: 1, Young modulus: 1 GPa}/; s/^  steel: .*/  steel: {model: elastic-1d, density: 1, Young modulus: 2 GPa}/'
 refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic, density: 1, bulk modulus: 1 GPa, shear modulus: 1 GPa}/; s/^peri.*/peridynamics: {formulation: bond-based}/" \
   4:17 "'elastic' is a law of strain in space; bond-based takes elastic-1d"

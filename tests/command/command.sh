@@ -5,7 +5,7 @@ cd "$work"
 "$breccia" --version > out; equal "version: status" $? 0
 contains "version" "$(cat out)" "breccia 0."
 "$breccia" --help > out; equal "help: status" $? 0
-for verb in run check new plot models material schema completion; do
+for verb in run check new plot models material calibrate schema completion; do
   contains "help" "$(cat out)" "  $verb "
   "$breccia" $verb --help > verb 2>&1; equal "$verb --help: status" $? 0
   contains "$verb --help" "$(cat verb)" "usage: breccia $verb"
@@ -53,6 +53,11 @@ contains "burst" "$(cat errors)" "is not a number; likely cause: the time step i
 contains "burst" "$(cat out)" "stopped by a failure"
 [ -e burst/results.vtkhdf ] && [ -e burst/summary.json ] || fail "a burst leaves no results"
 contains "burst: summary" "$(cat burst/summary.json)" '"problem": "step '
+
+# histories of a material at one particle
+"$breccia" run "$source/examples/block-with-hole/block.yaml" --steps 20 --output block > out 2>&1; equal "block: status" $? 0
+equal "history watched: heading" "$(head -1 block/p-history.csv)" "step,time (s),cap parameter"
+equal "history watched: the first cap" "$(sed -n 2p block/p-history.csv | cut -d, -f3 | cut -c1-8)" 8634.069
 
 # material: one point against closed forms
 printf 'e11,e22,e33,g12,g23,g31\n0.001,0,0,0,0,0\n0,0,0,0.002,0,0\n' > path.csv

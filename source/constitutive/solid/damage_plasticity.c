@@ -207,6 +207,16 @@ static double find_multiplier(const DamagePlasticity *c, const double trial[3], 
   return NAN;
 }
 
+/** True for a point that was never plastic and whose effective stress lies inside even by the bounds of its principal values. */
+static bool is_untouched(const DamagePlasticity *c, const double *committed, const double effective[6])
+{
+  if (committed[IN_TENSION] > 0 || committed[IN_COMPRESSION] > 0) return false;
+  double mean;
+  const double radius = spectral_radius(effective, &mean), most = fmax(0, mean + 2 * radius);
+  const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
+  return 3 * radius + c->alpha * 3 * mean + fmax(0, beta) * most <= (1 - c->alpha) * c->compression;
+}
+
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const DamagePlasticity *c = constants;
@@ -216,7 +226,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   const double volume = lambda * trace(elastic);
   for (int k = 0; k < 6; ++k) effective[k] = twice * elastic[k] + (k < 3 ? volume : 0);
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
-  if (p->elastic) {
+  if (p->elastic || is_untouched(c, p->committed, effective)) {
     memcpy(p->stress, effective, sizeof effective);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;

@@ -113,16 +113,18 @@ static void respond(const Mazars *c, const Dual strain[3], const double *committ
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const Mazars *c = constants;
-  const Spectrum spectrum = spectrum_of(p->strain);
-  Dual strain[3], stress[3], largest, damage;
-  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
-  if (p->elastic) {
+  /* The equivalent strain is never larger than the norm of all strains. */
+  const bool untouched = p->committed[LARGEST] <= c->threshold && norm(p->strain) <= c->threshold;
+  if (p->elastic || untouched) {
     const double share = (c->elastic.bulk - 2 * c->elastic.shear / 3) * trace(p->strain);
     for (int k = 0; k < 6; ++k) p->stress[k] = 2 * c->elastic.shear * p->strain[k] + (k < 3 ? share : 0);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
   }
+  const Spectrum spectrum = spectrum_of(p->strain);
+  Dual strain[3], stress[3], largest, damage;
+  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
   respond(c, strain, p->committed, stress, &largest, &damage);
   p->trial[LARGEST] = largest.value;
   p->trial[DAMAGE] = damage.value;

@@ -171,14 +171,22 @@ static bool update_point(const void *constants, SolidPoint *p)
   const MohrCoulomb *c = constants;
   double elastic[6], plastic[6];
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[PLASTIC + k];
-  const Spectrum strain = spectrum_of(elastic);
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
-  const double volume = lambda * (strain.value[0] + strain.value[1] + strain.value[2]);
-  double trial[3], stress[3], slopes[9];
-  for (int k = 0; k < 3; ++k) trial[k] = stress[k] = volume + twice * strain.value[k];
-  if (p->elastic || (excess_of(c, SHEAR13, trial) <= 0 && excess_of(c, TENSION1, trial) <= 0)) {
-    const double mean = volume;
-    for (int k = 0; k < 6; ++k) p->stress[k] = twice * elastic[k] + (k < 3 ? mean : 0);
+  const double volume = lambda * trace(elastic);
+  double mean, trial[3], stress[3], slopes[9];
+  const double radius = spectral_radius(elastic, &mean) * twice;
+  mean = 3 * c->elastic.bulk * mean;
+  /* Bounds of the principal stresses tell most points that stay elastic. */
+  bool inside = p->elastic ||
+                (2 * radius * (sqrt(3) + c->sine) + 2 * mean * c->sine <= c->limit && mean + 2 * radius <= c->tensile);
+  Spectrum strain = {0};
+  if (!inside) {
+    strain = spectrum_of(elastic);
+    for (int k = 0; k < 3; ++k) trial[k] = stress[k] = volume + twice * strain.value[k];
+    inside = excess_of(c, SHEAR13, trial) <= 0 && excess_of(c, TENSION1, trial) <= 0;
+  }
+  if (inside) {
+    for (int k = 0; k < 6; ++k) p->stress[k] = twice * elastic[k] + (k < 3 ? volume : 0);
     memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
