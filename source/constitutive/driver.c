@@ -88,7 +88,7 @@ static double residual(Driver *d, const double *strain, const int *unknown, int 
 
 static bool balance(Driver *d, const bool *by_stress, const double *target, double tolerance)
 {
-  enum { MOST_ITERATIONS = 200, MOST_HALVINGS = 12 };
+  enum { MOST_ITERATIONS = 60 };
   int unknown[6], count = 0;
   double strain[6], r[6];
   for (int k = 0; k < d->components; ++k) {
@@ -106,16 +106,8 @@ static bool balance(Driver *d, const bool *by_stress, const double *target, doub
         matrix[i][k] = d->tangent[d->components * unknown[i] + unknown[k]] + (i == k ? touch : 0);
     }
     if (!solve(count, matrix, step)) return false;
-    double share = 1, now = INFINITY, tried[6];
-    for (int halving = 0; halving < MOST_HALVINGS; ++halving, share /= 2) {
-      memcpy(tried, strain, sizeof tried);
-      for (int k = 0; k < count; ++k) tried[unknown[k]] += share * step[k];
-      now = residual(d, tried, unknown, count, target, r);
-      if (now < size) break;
-    }
-    if (!(now < size) && !(now <= 4 * tolerance)) return false;
-    memcpy(strain, tried, sizeof strain);
-    size = now;
+    for (int k = 0; k < count; ++k) strain[unknown[k]] += step[k];
+    size = residual(d, strain, unknown, count, target, r);
   }
   return size <= tolerance;
 }

@@ -403,6 +403,34 @@ static void a_trial_can_be_repeated_and_leaves_the_committed_state_alone(void **
   }
 }
 
+static void stress_and_history_do_not_hang_on_the_tangent(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    Point with = point_start(&m), without = point_start(&m);
+    uint64_t seed = 37;
+    double strain[6] = {0}, a[6], b[6], tangent[36], largest = 0;
+    for (int step = 0; step < 3000; ++step) {
+      wander(&seed, samples[n].strain, samples[n].strain * pow(10, -2 * random_uniform(&seed)), strain);
+      point_try(&with, strain, a, tangent, 0);
+      memcpy(without.committed, with.committed, sizeof(double) * (size_t)m.history_values);
+      point_try(&without, strain, b, NULL, 0);
+      for (int k = 0; k < 6; ++k) {
+        largest = fmax(largest, fabs(a[k]));
+        if (fabs(a[k] - b[k]) > 1e-10 * largest)
+          fail_msg("%s: stress %.17g with and %.17g without the tangent in step %d", samples[n].name, a[k], b[k], step);
+      }
+      for (int k = 0; k < m.history_values; ++k)
+        assert_near(without.trial[k], with.trial[k], 1e-10 * fabs(with.trial[k]) + 1e-14);
+      point_commit(&with);
+    }
+    point_stop(&with);
+    point_stop(&without);
+    material_destroy(&m);
+  }
+}
+
 static void points_of_a_batch_do_not_know_of_each_other(void **state)
 {
   (void)state;
@@ -548,6 +576,7 @@ int main(void)
       cmocka_unit_test(a_million_steps_of_any_size_stay_finite_and_inside),
       cmocka_unit_test(stress_turns_with_the_strain),
       cmocka_unit_test(a_trial_can_be_repeated_and_leaves_the_committed_state_alone),
+      cmocka_unit_test(stress_and_history_do_not_hang_on_the_tangent),
       cmocka_unit_test(points_of_a_batch_do_not_know_of_each_other),
       cmocka_unit_test(closed_cycles_of_strain_take_work),
       cmocka_unit_test(smaller_steps_change_little),

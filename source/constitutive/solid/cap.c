@@ -194,6 +194,7 @@ static double return_to_cap(const Cap *c, double trial, double length, double k,
     }
     if (!(next > low && next < high)) next = (low + high) / 2;
     if (m > 0 && (fabs(next - d) <= 1e-15 * d || high - low <= 1e-15 * high)) break;
+    if (iteration > 2000) return NAN;
     d = next;
   }
   /* Near the top of the ellipse after great compaction g hangs on the last digits of d: what is left goes radially. */

@@ -50,6 +50,7 @@ static int history_values(const void *constants)
 /* Planes: shear between principal directions 1 and 3, 1 and 2, 2 and 3; tension in 1, 2, 3. */
 enum { SHEAR13, SHEAR12, SHEAR23, TENSION1, TENSION2, TENSION3, PLANES };
 
+/** Normal of a plane, or with the dilation angle's sine its direction of flow; the cut-off's are one. */
 static void normal_of(int plane, double sine, double normal[3])
 {
   static const int larger[3] = {0, 0, 1}, smaller[3] = {2, 1, 2};
@@ -130,7 +131,7 @@ static double return_to(const MohrCoulomb *c, const PlaneSet *set, const double 
   for (int r = 0; r < set->count; ++r) {
     double normal[3], flow[3];
     normal_of(set->plane[r], c->sine, normal);
-    normal_of(set->plane[r], set->plane[r] < TENSION1 ? c->dilation : 0, flow);
+    normal_of(set->plane[r], c->dilation, flow);
     for (int k = 0; k < 3; ++k) {
       stiff_flow[r][k] = lambda * (flow[0] + flow[1] + flow[2]) + twice * flow[k];
       stiff_normal[r][k] = lambda * (normal[0] + normal[1] + normal[2]) + twice * normal[k];
