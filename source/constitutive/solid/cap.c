@@ -154,14 +154,6 @@ static double return_to_cap(const Cap *c, double trial, double length, double k,
   const double past = trial - k;
   double slope;
   const double first = envelope(c, k, &slope), bent = slope - c->theta, before = exp(-c->rate * (k + R * first));
-  if (past <= 1e-9 * (fabs(k) + c->at_cut)) { /* the ellipse's top: H and I - k vanish together */
-    const double g = (length / first - 1) / shear2, grows = c->compaction * c->rate * (1 + R * slope) * before;
-    const double follows = g / (square3 * grows + g * (1 + bulk3 * grows));
-    *slopes = (ReturnSlopes){1 - bulk3 * grows * follows, 0, slope * follows, 0};
-    *invariant = trial - bulk3 * grows * follows * past;
-    *returned = envelope(c, k + follows * past, &slope);
-    return k + follows * past;
-  }
   double low = 0, high = past, d = 0, f, H1, m, g, a, b, dilute, narrow, a1, S, H, residual_slope;
   for (int iteration = 0;; ++iteration) {
     const double fade = c->beta > 0 ? expm1(-c->beta * d) : 0,
@@ -464,7 +456,7 @@ static int return_chunk(const Cap *c, const breccia_batch *batch, int first, int
     Return r = return_outside_cap(c, trial, length, k, chunk->at[p]);
     chunk->flows[p] = r.plastic;
     if (!r.plastic) continue;
-    if (r.on_cap && trial - k > 1e-9 * (fabs(k) + c->at_cut)) {
+    if (r.on_cap) {
       chunk->on_trial[on_cap] = trial;
       chunk->on_length[on_cap] = length;
       chunk->on_k[on_cap] = k;
@@ -473,7 +465,6 @@ static int return_chunk(const Cap *c, const breccia_batch *batch, int first, int
       chunk->which[on_cap++] = p;
       continue;
     }
-    if (r.on_cap) r.cap = return_to_cap(c, trial, length, k, &r.invariant, &r.length, &r.slopes);
     if (!isfinite(r.cap)) return first + p;
     chunk->invariant[p] = r.invariant;
     chunk->shrink[p] = length > 0 ? r.length / length : 1;
