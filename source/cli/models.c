@@ -2,6 +2,7 @@
 #include "constitutive/law.h"
 #include "deck/section.h"
 #include "formulation/formulation.h"
+#include "model/element_deck.h"
 
 #include <string.h>
 
@@ -42,6 +43,28 @@ static void print_page(void)
   }
 }
 
+/** What may stand in the file of a laboratory test. */
+static void print_tests(void)
+{
+  const Section *const sections[] = {&element_deck_section, &test_section,  &stage_section,
+                                     &fit_section,          &units_section, &material_section};
+  Text text = {0};
+  text_add(&text, "\n## Files of laboratory tests\n\nA file for `breccia material` holds units, a material as in a "
+                  "deck, and a test or stages; with measured "
+                  "points under `against` their distance from the curve is told, and `breccia calibrate` chooses the "
+                  "parameters under `fit` such that it is least "
+                  "(NLopt's Subplex from five starts; ranges of more than a decade are searched by ratios).\n\n"
+                  "    units: {length: m, force: kN, time: s}\n"
+                  "    material: {model: drucker-prager, density: 2 t/m3, Young modulus: 50 MPa, Poisson ratio: 0.3,\n"
+                  "               cohesion: 5 kPa, friction angle: 33 deg}\n"
+                  "    test: {kind: triaxial, strain: -0.03, confining pressure: 100 kPa}\n"
+                  "    against: measured.csv              # axial strain, axial less lateral stress\n"
+                  "    fit: {cohesion: {from: 1, to: 20}, friction angle: {from: 25, to: 40}}\n");
+  for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) describe_section(sections[k], &text);
+  fputs(text.characters, stdout);
+  text_free(&text);
+}
+
 static void print_law(const breccia_law *law)
 {
   printf("%s: %s\n  source: %s\n  %s\n", law->name, law->about, law->source, law->maturity);
@@ -65,6 +88,7 @@ static int run(int argc, char **argv, const Verb *verb)
   if (first < 0) return first == -2 ? 0 : 2;
   if (values[0]) {
     print_page();
+    print_tests();
     return 0;
   }
   if (first < argc) {

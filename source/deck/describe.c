@@ -71,6 +71,30 @@ void describe_parameters(const breccia_parameter *parameters, int count, Text *t
   }
 }
 
+void describe_section(const Section *section, Text *text)
+{
+  text_add(text, "\n## %s\n\n%s\n\n", section->name, section->about);
+  text_add(text, "| key | value | default | range | meaning |\n|---|---|---|---|---|\n");
+  for (int f = 0; f < section->field_count; ++f) {
+    const Field *field = &section->fields[f];
+    text_add(text, "| `%s` | %s", field->key, value_words(field));
+    if (field->section) {
+      text_add(text, " [%s](#", field->section->name);
+      add_anchor(text, field->section->name);
+      text_add(text, ")");
+    }
+    for (int k = 0; field->choice && field->choice(k); ++k) text_add(text, "%s `%s`", k ? "," : "", field->choice(k));
+    if (field->dimension && field->kind != FIELD_NUMBER && strcmp(field->dimension, "1"))
+      text_add(text, " (%s)", field->dimension);
+    text_add(text, " | ");
+    if (field->group)
+      text_add(text, "one of group %c", field->group);
+    else
+      add_default(text, field->standard);
+    text_add(text, " | %s | %s |\n", field->range ? field->range : "", field->meaning);
+  }
+}
+
 void describe_markdown(const Section *root, const ParameterTable *tables, int table_count, Text *text)
 {
   Walk walk = {0};
@@ -82,26 +106,7 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
            "`4000 psi`, `145 pcf`) may stand anywhere. Axes are x, y, z; stress is tension-positive.\n");
   for (int s = 0; s < walk.count; ++s) {
     const Section *section = walk.sections[s];
-    text_add(text, "\n## %s\n\n%s\n\n", section->name, section->about);
-    text_add(text, "| key | value | default | range | meaning |\n|---|---|---|---|---|\n");
-    for (int f = 0; f < section->field_count; ++f) {
-      const Field *field = &section->fields[f];
-      text_add(text, "| `%s` | %s", field->key, value_words(field));
-      if (field->section) {
-        text_add(text, " [%s](#", field->section->name);
-        add_anchor(text, field->section->name);
-        text_add(text, ")");
-      }
-      for (int k = 0; field->choice && field->choice(k); ++k) text_add(text, "%s `%s`", k ? "," : "", field->choice(k));
-      if (field->dimension && field->kind != FIELD_NUMBER && strcmp(field->dimension, "1"))
-        text_add(text, " (%s)", field->dimension);
-      text_add(text, " | ");
-      if (field->group)
-        text_add(text, "one of group %c", field->group);
-      else
-        add_default(text, field->standard);
-      text_add(text, " | %s | %s |\n", field->range ? field->range : "", field->meaning);
-    }
+    describe_section(section, text);
     if (section->parameters) text_add(text, "\nFurther keys, by the word under `%s`:\n", section->chooser);
     for (int t = 0; section->parameters && t < table_count; ++t) {
       text_add(text, "\n### %s\n\n%s\n\n", tables[t].word, tables[t].about);

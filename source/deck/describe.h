@@ -14,6 +14,9 @@ typedef struct ParameterTable {
 /** Appends docs/deck.md: a table per section, reachable from `root`, and the dimensions with their units. */
 void describe_markdown(const Section *root, const ParameterTable *tables, int table_count, Text *text);
 
+/** Appends the table of one section under a heading of its name. */
+void describe_section(const Section *section, Text *text);
+
 /** Appends a JSON Schema (draft 2020-12) of the whole deck. */
 void describe_json_schema(const Section *root, const ParameterTable *tables, int table_count, Text *text);
 

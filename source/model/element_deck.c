@@ -10,14 +10,14 @@ static const Field fit_fields[] = {
      0},
     {"to", FIELD_NUMBER, offsetof(FitSpec, to), "1", NULL, NULL, "largest value, in the file's units", NULL, NULL, 0},
 };
-static const Section fit_section = {"fit",
-                                    "The range in which `breccia calibrate` may choose a parameter.",
-                                    sizeof(FitSpec),
-                                    FIELDS(fit_fields),
-                                    NULL,
-                                    NULL,
-                                    NULL,
-                                    0};
+const Section fit_section = {"fit",
+                             "The range in which `breccia calibrate` may choose a parameter.",
+                             sizeof(FitSpec),
+                             FIELDS(fit_fields),
+                             NULL,
+                             NULL,
+                             NULL,
+                             0};
 
 static const Field element_fields[] = {
     {"title", FIELD_TEXT, offsetof(ElementDeckSpec, title), NULL, "", NULL, "stands over the picture", NULL, NULL, 0},

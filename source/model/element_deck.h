@@ -19,7 +19,7 @@ typedef struct ElementDeckSpec {
   SectionList stages, fit;
 } ElementDeckSpec;
 
-extern const Section element_deck_section;
+extern const Section element_deck_section, fit_section;
 
 typedef struct ElementDeck {
   Document *document;
