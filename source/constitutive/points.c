@@ -109,30 +109,81 @@ void points_commit(Points *points)
   points->committed = trial;
 }
 
-/** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once. */
+/** True if the stress zz of point i of a batch is nothing beside its other stresses and what its strain zz would make
+ *  elastically. */
+static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i)
+{
+  double scale = (m->bulk + 4 * m->shear / 3) * fabs(batch->strain[ZZ][i]);
+  for (int k = 0; k < 6; ++k) scale += fabs(batch->stress[k][i]);
+  return fabs(batch->stress[ZZ][i]) <= 1e-12 * scale;
+}
+
+/** Strain zz of one point where Newton's method does not end: between two strains whose stresses zz differ in sign. The stress of some
+ *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken.
+ *  @return true if it was found */
+static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double *strain_zz)
+{
+  enum { MOST_DOUBLINGS = 60, MOST_HALVINGS = 200 };
+  const ptrdiff_t row = (ptrdiff_t)m->history_values * at;
+  breccia_batch one = {.count = 1,
+                       .committed = batch->committed + row,
+                       .trial = batch->trial + row,
+                       .tangent = batch->tangent + 36 * at,
+                       .elastic_stage = batch->elastic_stage};
+  for (int k = 0; k < 6; ++k) {
+    one.strain[k] = batch->strain[k] + at;
+    one.stress[k] = batch->stress[k] + at;
+  }
+  double *const x = strain_zz + at, ends[2] = {*x, *x}, values[2];
+  if (m->law->update(m->constants, &one) >= 0) return false;
+  values[0] = values[1] = one.stress[ZZ][0];
+  double step = -values[0] / (m->bulk + 4 * m->shear / 3);
+  for (int n = 0; n < MOST_DOUBLINGS && values[0] * values[1] > 0; ++n, step *= 2) {
+    ends[0] = ends[1];
+    values[0] = values[1];
+    *x = ends[1] += step;
+    if (m->law->update(m->constants, &one) >= 0) return false;
+    values[1] = one.stress[ZZ][0];
+  }
+  for (int n = 0; n < MOST_HALVINGS && !is_free_of_zz(m, &one, 0); ++n) {
+    /* The secant where it lies well inside, otherwise the middle. */
+    const double share = values[0] / (values[0] - values[1]);
+    *x = ends[0] + (n % 3 != 2 && share > 0.01 && share < 0.99 ? share : 0.5) * (ends[1] - ends[0]);
+    if (m->law->update(m->constants, &one) >= 0) return false;
+    const int side = one.stress[ZZ][0] * values[0] > 0 ? 0 : 1;
+    ends[side] = *x;
+    values[side] = one.stress[ZZ][0];
+  }
+  if (is_free_of_zz(m, &one, 0)) return true;
+  *x = ends[fabs(values[0]) < fabs(values[1]) ? 0 : 1];
+  return values[0] * values[1] <= 0 && m->law->update(m->constants, &one) < 0;
+}
+
+/** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
+ *  not end: at corners, in softening, and with tangents that are not those of whole steps. */
 static int plane_stress(const Material *m, breccia_batch *batch, double *strain_zz, double *tangent)
 {
-  enum { MOST_ITERATIONS = 50 };
+  enum { MOST_ITERATIONS = 20 };
   double local[BLOCK * 36];
   batch->tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
-    int bad = m->law->update(m->constants, batch);
+    int bad = m->law->update(m->constants, batch), worst = -1;
     if (bad >= 0) return bad;
-    int worst = -1;
     for (int i = 0; i < batch->count; ++i) {
-      double scale = 0, zz = batch->stress[ZZ][i], stiffness = batch->tangent[36 * i + 7 * ZZ];
-      for (int k = 0; k < 6; ++k) scale += fabs(batch->stress[k][i]);
-      if (fabs(zz) <= 1e-12 * (scale + fabs(stiffness * strain_zz[i]))) continue;
-      if (!(stiffness > 0)) return i;
-      strain_zz[i] -= zz / stiffness;
+      if (is_free_of_zz(m, batch, i)) continue;
       worst = i;
+      if (iteration == MOST_ITERATIONS) {
+        if (!bisect_zz(m, batch, i, strain_zz)) return i;
+        continue;
+      }
+      const double stiffness = batch->tangent[36 * i + 7 * ZZ];
+      strain_zz[i] -= batch->stress[ZZ][i] / (stiffness > 0 ? stiffness : m->bulk + 4 * m->shear / 3);
     }
-    if (worst < 0) break;
-    if (iteration == MOST_ITERATIONS) return worst;
+    if (worst < 0 || iteration == MOST_ITERATIONS) break;
   }
   for (int i = 0; tangent && i < batch->count; ++i) {
     double *d = tangent + 36 * i;
-    double column[6], row[6], pivot = d[7 * ZZ];
+    double column[6], row[6], pivot = d[7 * ZZ] > 0 ? d[7 * ZZ] : m->bulk + 4 * m->shear / 3;
     for (int k = 0; k < 6; ++k) {
       column[k] = d[6 * k + ZZ];
       row[k] = d[6 * ZZ + k];

@@ -49,7 +49,7 @@ static void history_name(const void *constants, int k, char *name, size_t size)
 
 static double strength(const J2 *c, double x, double *slope)
 {
-  const double fall = (c->saturation - c->yield) * exp(-c->rate * x);
+  const double fall = c->saturation > c->yield ? (c->saturation - c->yield) * exp(-c->rate * x) : 0;
   *slope = c->rate * fall + c->hardening;
   return c->saturation - fall + c->hardening * x;
 }
