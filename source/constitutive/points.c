@@ -64,6 +64,8 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
   for (int k = 0; spec->material_count > 1 && k < spec->material_count; ++k)
     if (spec->materials[k].history_values > points->partner_values)
       points->partner_values = spec->materials[k].history_values;
+  if (spec->may_give_up && !(points->gave_up = memory_zeroed((size_t)points->places, 1, "failed laws", error)))
+    return BRECCIA_FAILURE;
   int64_t total = 0;
   for (int64_t s = 0; s < slices && spec->where != POINTS_NOWHERE; ++s) {
     points->history_start[s] = total;
@@ -99,6 +101,7 @@ void points_destroy(Points *points)
   free(points->committed);
   free(points->trial);
   free(points->history_start);
+  free(points->gave_up);
   *points = (Points){0};
 }
 
@@ -194,6 +197,40 @@ static int plane_stress(const Material *m, breccia_batch *batch, double *strain_
   return -1;
 }
 
+/** Part of a batch. */
+static breccia_batch batch_from(const breccia_batch *whole, const Material *m, int first, int count)
+{
+  breccia_batch part = *whole;
+  part.count = count;
+  part.committed += (ptrdiff_t)m->history_values * first;
+  part.trial += (ptrdiff_t)m->history_values * first;
+  for (int k = 0; k < 6; ++k) {
+    if (part.strain[k]) part.strain[k] += first;
+    if (part.stress[k]) part.stress[k] += first;
+  }
+  if (part.tangent) part.tangent += 36 * first;
+  return part;
+}
+
+static int update_batch(const Points *points, const Material *m, breccia_batch *batch, double *strain_zz)
+{
+  return points->space == SPACE_PLANE_STRESS ? plane_stress(m, batch, strain_zz, batch->tangent)
+                                             : m->law->update(m->constants, batch);
+}
+
+/** One point after the other: those that cannot be integrated are marked, carry nothing and keep their history. */
+static void update_one_by_one(const Points *points, const Material *m, const breccia_batch *batch, int64_t place)
+{
+  for (int i = 0; i < batch->count; ++i) {
+    breccia_batch one = batch_from(batch, m, i, 1);
+    if (update_batch(points, m, &one, points->strain[ZZ] + place + i) < 0) continue;
+    points->gave_up[place + i] = 1;
+    for (int k = 0; k < 6; ++k) one.stress[k][0] = 0;
+    memcpy(one.trial, one.committed, sizeof(double) * (size_t)m->history_values);
+    for (int k = 0; batch->tangent && k < 36; ++k) batch->tangent[36 * i + k] = 0;
+  }
+}
+
 int64_t points_update(Points *points, int64_t first, int64_t last, double *tangent)
 {
   const Material *m = &points->materials[points->material[first]];
@@ -209,9 +246,12 @@ int64_t points_update(Points *points, int64_t first, int64_t last, double *tange
     batch.strain[k] = points->strain[k] + place;
     batch.stress[k] = points->stress[k] + place;
   }
-  int bad = points->space == SPACE_PLANE_STRESS ? plane_stress(m, &batch, points->strain[ZZ] + place, tangent)
-                                                : m->law->update(m->constants, &batch);
-  return bad < 0 ? -1 : place + bad;
+  const int bad = update_batch(points, m, &batch, points->strain[ZZ] + place);
+  if (bad < 0) return -1;
+  if (!points->gave_up) return place + bad;
+  batch.tangent = tangent;
+  update_one_by_one(points, m, &batch, place);
+  return -1;
 }
 
 int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int count, const double *strain,
@@ -226,7 +266,16 @@ int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int cou
                          .trial = points->trial + row,
                          .elastic_stage = points->elastic_stage};
   int bad = m->law->update(m->constants, &batch);
-  return bad < 0 ? -1 : slice * SLICE + bad % SLICE;
+  if (bad < 0) return -1;
+  if (!points->gave_up) return slice * SLICE + bad % SLICE;
+  for (int i = 0; i < batch.count; ++i) {
+    breccia_batch one = batch_from(&batch, m, i, 1);
+    if (m->law->update(m->constants, &one) < 0) continue;
+    points->gave_up[slice * SLICE + i % SLICE] = 1;
+    one.stress[0][0] = 0;
+    memcpy(one.trial, one.committed, sizeof(double) * (size_t)m->history_values);
+  }
+  return -1;
 }
 
 int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int lane, double strain, double *stress)
@@ -239,7 +288,12 @@ int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int l
                          .committed = points->committed + row,
                          .trial = points->trial + row,
                          .elastic_stage = points->elastic_stage};
-  return m->law->update(m->constants, &batch) < 0 ? -1 : slice * SLICE + lane;
+  if (m->law->update(m->constants, &batch) < 0) return -1;
+  if (!points->gave_up) return slice * SLICE + lane;
+  points->gave_up[slice * SLICE + lane] = 1;
+  *stress = 0;
+  memcpy(batch.trial, batch.committed, sizeof(double) * (size_t)m->history_values);
+  return -1;
 }
 
 double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain)

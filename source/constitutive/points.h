@@ -29,6 +29,8 @@ typedef struct Points {
   const int32_t *material; /* [slices] */
   const Family *family;
   int elastic_stage; /* laws respond elastically while it is set */
+  uint8_t *
+      gave_up; /* [places] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
 } Points;
 
 typedef struct PointsSpec {
@@ -38,6 +40,7 @@ typedef struct PointsSpec {
   const Material *materials;
   int material_count;
   const int32_t *material; /* [slices] which of the materials; all arrays are borrowed */
+  bool may_give_up;        /* points that cannot be integrated are marked and carry nothing */
 } PointsSpec;
 
 int points_create(Points *points, const PointsSpec *spec, Error *error);

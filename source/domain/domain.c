@@ -195,7 +195,13 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   for (int32_t place = 0; place < (int32_t)d->particles->places; ++place)
     d->family_volume[place] = family_volume(&d->family, place);
 
-  const PointsSpec points = {points_where(d), space, &d->family, d->materials, d->material_count, d->material};
+  const PointsSpec points = {.where = points_where(d),
+                             .space = space,
+                             .family = &d->family,
+                             .materials = d->materials,
+                             .material_count = d->material_count,
+                             .material = d->material,
+                             .may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break")};
   if ((status = points_create(&d->points, &points, error))) return status;
   if ((status = share_out(d, error))) return status;
   FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};
@@ -388,8 +394,11 @@ static bool judge(Domain *d, int64_t step, double time)
       for (int lane = 0; lane < SLICE; ++lane) {
         if (!(f->intact[slot] >> lane & 1)) continue;
         Bond bond = family_bond(f, s, slot, lane);
-        if (!d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)) continue;
         int32_t place = (int32_t)(s * SLICE + lane), a = d->particles->number[place];
+        const uint8_t *gave_up = d->points.gave_up;
+        if (!(gave_up && (gave_up[place] || gave_up[bond.neighbour])) &&
+            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)))
+          continue;
         int32_t b = d->particles->number[bond.neighbour];
         d->fracture_energy += released_energy(d, s, slot, lane, &bond);
         family_break(&d->family, place, bond.neighbour);
@@ -408,15 +417,17 @@ void domain_break(Domain *d, int64_t step, double time, double motion)
 #pragma omp single
     contact_follow(&d->contact, motion);
   }
-  if (!d->failure.criterion) return;
+  if (!d->failure.criterion && !d->points.gave_up) return;
 #pragma omp single
   d->motion += motion;
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b)
     for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
       d->suspects[s] = 0;
-      if (d->motion < d->look_again[s]) continue;
-      d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);
+      if (d->failure.criterion && d->motion >= d->look_again[s])
+        d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);
+      for (int lane = 0; d->points.gave_up && lane < SLICE; ++lane)
+        if (d->points.gave_up[s * SLICE + lane]) d->suspects[s] = 1;
     }
 #pragma omp single
   {
@@ -425,6 +436,7 @@ void domain_break(Domain *d, int64_t step, double time, double motion)
     if (any && judge(d, step, time))
       for (int64_t s = 0; s < d->particles->slices; ++s)
         if (d->suspects[s] && d->type->renew) d->type->renew(d->formulation, s);
+    if (any && d->points.gave_up) memset(d->points.gave_up, 0, (size_t)d->points.places);
   }
 }
 

@@ -9,6 +9,7 @@
 typedef struct FailureSpec {
   SectionHead head;
   double critical_stretch, fracture_energy; /* NaN: not given */
+  const char *failed_laws;                  /* "stop" or "break" */
 } FailureSpec;
 
 extern const Section failure_section;

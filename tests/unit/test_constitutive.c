@@ -113,7 +113,12 @@ static void plane_stress_of_any_law_has_no_stress_across_the_plane(void **state)
   const Family family = {.particles = &particles};
   Points points;
   assert_int_equal(points_create(&points,
-                                 &(PointsSpec){POINTS_ON_PARTICLES, SPACE_PLANE_STRESS, &family, materials, 2, which},
+                                 &(PointsSpec){.where = POINTS_ON_PARTICLES,
+                                               .space = SPACE_PLANE_STRESS,
+                                               .family = &family,
+                                               .materials = materials,
+                                               .material_count = 2,
+                                               .material = which},
                                  NULL),
                    0);
   static double tangent[2][SLICE * 36];

@@ -563,8 +563,15 @@ static void plane_stress_holds_whatever_the_path(void **state)
     Points points;
     uint64_t seed[SLICE];
     double tangent[SLICE * 36];
-    assert_int_equal(
-        points_create(&points, &(PointsSpec){POINTS_ON_PARTICLES, SPACE_PLANE_STRESS, &family, &m, 1, which}, NULL), 0);
+    assert_int_equal(points_create(&points,
+                                   &(PointsSpec){.where = POINTS_ON_PARTICLES,
+                                                 .space = SPACE_PLANE_STRESS,
+                                                 .family = &family,
+                                                 .materials = &m,
+                                                 .material_count = 1,
+                                                 .material = which},
+                                   NULL),
+                     0);
     for (int i = 0; i < SLICE; ++i) seed[i] = 50 + (uint64_t)i;
     for (int step = 0; step < 2000; ++step) {
       for (int i = 0; i < SLICE; ++i) {

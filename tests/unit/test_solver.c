@@ -278,6 +278,74 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Elastic until a strain xx of 1e-3; there it gives up. */
+static int glass_prepare(const double *values, void *constants, char *reason, size_t size)
+{
+  (void)values, (void)constants, (void)reason, (void)size;
+  return 0;
+}
+static void glass_moduli(const void *constants, double *bulk, double *shear)
+{
+  (void)constants;
+  *bulk = 1e5;
+  *shear = 6e4;
+}
+static int glass_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    if (batch->strain[0][i] > 1e-3) return i;
+    const double volumetric = 6e4 * (batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i]);
+    for (int k = 0; k < 6; ++k)
+      batch->stress[k][i] = (k < 3 ? volumetric : 0) + (k < 3 ? 2 : 1) * 6e4 * batch->strain[k][i];
+  }
+  return -1;
+}
+static const breccia_law glass = {.name = "glass",
+                                  .about = "gives up",
+                                  .source = "this test",
+                                  .maturity = "experimental",
+                                  .constants_size = 1,
+                                  .prepare = glass_prepare,
+                                  .moduli = glass_moduli,
+                                  .update = glass_update};
+
+static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **state)
+{
+  (void)state;
+  const breccia_law *const laws[] = {&glass};
+  for (int breaks = 0; breaks < 2; ++breaks) {
+    const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1 + breaks};
+    breccia_error *error = breccia_error_create();
+    breccia_model *model = NULL;
+    char deck[1024];
+    snprintf(deck, sizeof deck,
+             "units: {length: m, force: kN, time: s}\nmaterials: {vase: {model: glass, density: 2}}\n"
+             "body: {b: {material: vase, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\n"
+             "failure: {failed laws: %s}\n"
+             "loads: [{on: {face: x-, layers: 3}, velocity: [0, 0, 0]}, {on: {face: x+, layers: 3}, velocity: [0.5, 0, "
+             "0]}]\n"
+             "solve: {explicit: {steps: 400}}\n",
+             breaks ? "break" : "stop");
+    assert_int_equal(breccia_model_load_string(deck, "deck", &options, &model, error), 0);
+    const int status = breccia_model_step(model, INT64_MAX, error);
+    if (breaks) {
+      assert_int_equal(status, 0);
+      assert_true(breccia_model_broken_bonds(model) > 100);
+      for (int64_t i = 0; i < model->domain.particles->places; ++i)
+        for (int k = 0; k < 3; ++k) assert_true(isfinite(model->domain.particles->displacement[k][i]));
+      assert_true(model->domain.points.gave_up != NULL);
+    } else {
+      assert_int_equal(status, BRECCIA_FAILURE);
+      assert_non_null(strstr(breccia_error_text(error),
+                             "the law glass of material 'vase' could not be integrated at the strain xx 0.001"));
+      assert_int_equal(breccia_model_broken_bonds(model), 0);
+    }
+    breccia_model_destroy(&model);
+    breccia_error_destroy(&error);
+  }
+}
+
 static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(void **state)
 {
   (void)state;
@@ -331,6 +399,7 @@ int main(void)
       cmocka_unit_test(a_burst_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),
       cmocka_unit_test(plate_with_crack_opens_at_rest_as_finite_elements_say),
+      cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
