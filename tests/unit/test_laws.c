@@ -216,6 +216,19 @@ static void wander(uint64_t *seed, double size, double step, double strain[6])
   }
 }
 
+/** The walk of the tangents, which begins anew now and then: dilation would press a point that wanders for long. */
+static void wander_anew(uint64_t *seed, const Material *m, Point *p, double size, int step, double *length,
+                        double strain[6])
+{
+  if (step % 12 == 11) {
+    point_stop(p);
+    *p = point_start(m);
+    memset(strain, 0, sizeof(double) * 6);
+  }
+  *length = size * pow(10, -2 * random_uniform(seed));
+  wander(seed, size, *length, strain);
+}
+
 static void tangents_are_derivatives_of_steps(void **state)
 {
   (void)state;
@@ -228,8 +241,8 @@ static void tangents_are_derivatives_of_steps(void **state)
     double strain[6] = {0};
     int smooth = 0, kinks = 0;
     for (int step = 0; step < 3000; ++step) {
-      const double length = size * pow(10, -2 * random_uniform(&seed));
-      wander(&seed, size, length, strain);
+      double length;
+      wander_anew(&seed, &m, &p, size, step, &length, strain);
       double s[6], tangent[36], worst = 0;
       point_try(&p, strain, s, tangent, 0);
       bool kink = false;
@@ -289,12 +302,48 @@ static void the_walk_of_tangents_visits_every_region_of_the_cap(void **state)
   double strain[6] = {0}, s[6];
   int visits[7] = {0};
   for (int step = 0; step < 3000; ++step) {
-    wander(&seed, 5e-3, 5e-3 * pow(10, -2 * random_uniform(&seed)), strain);
+    double length;
+    wander_anew(&seed, &m, &p, 5e-3, step, &length, strain);
     point_try(&p, strain, s, NULL, 0);
     ++visits[cap_region(&p, s)];
     point_commit(&p);
   }
   for (int k = 1; k < 7; ++k) assert_true(visits[k] > 20);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
+/** Which planes of the Mohr-Coulomb sample a stress lies on: 1 shear, 2 an edge with two equal stresses, 4, 8, 16 the cut-off by one, two, three. */
+static int coulomb_planes(const double s[6])
+{
+  double value[3], vector[9];
+  tensor_eigen(s, value, vector);
+  const double most = fmax(value[0], fmax(value[1], value[2])), least = fmin(value[0], fmin(value[1], value[2])),
+               middle = value[0] + value[1] + value[2] - most - least, small = 1e-7 * 20;
+  const int cuts = (most > 15 - small) + (middle > 15 - small) + (least > 15 - small);
+  const bool shear = fabs(most - least + 0.5 * (most + least) - 40 * sqrt(0.75)) < small;
+  return shear + (shear && (most - middle < small || middle - least < small) ? 2 : 0) + (cuts ? 2 << cuts : 0);
+}
+
+static void the_walk_of_tangents_visits_the_planes_edges_and_corners_of_mohr_and_coulomb(void **state)
+{
+  (void)state;
+  Material m = coulomb();
+  Point p = point_start(&m);
+  uint64_t seed = 17;
+  double strain[6] = {0}, s[6];
+  int visits[32] = {0};
+  for (int step = 0; step < 3000; ++step) {
+    double length;
+    wander_anew(&seed, &m, &p, 5e-3, step, &length, strain);
+    point_try(&p, strain, s, NULL, 0);
+    ++visits[coulomb_planes(s)];
+    point_commit(&p);
+  }
+  /* Inside; shear; an edge; cut-off once, twice, at its corner; shear with one cut-off, and both corners of that. */
+  const int wanted[] = {0, 1, 3, 4, 8, 16, 5, 7, 11};
+  for (size_t k = 0; k < sizeof wanted / sizeof *wanted; ++k)
+    if (visits[wanted[k]] < 5) fail_msg("%d visits of kind %d", visits[wanted[k]], wanted[k]);
   point_stop(&p);
   material_destroy(&m);
 }
@@ -309,9 +358,15 @@ static void a_million_steps_of_any_size_stay_finite_and_inside(void **state)
     double strain[6] = {0};
     for (int step = 0; step < WALK; ++step) {
       double s[6];
-      wander(&seed, 1, pow(10, -12 * random_uniform(&seed)), strain);
-      if (step % 1000 == 999)
+      /* Steps from 1e-12 to 1 in turn with such as a laboratory makes, and a fresh point now and then. */
+      const double size = step / 1000 % 2 ? 3 * samples[n].strain : 1;
+      wander(&seed, size, size * pow(10, -12 * random_uniform(&seed)), strain);
+      if (step % 50 == 49)
         for (int k = 0; k < 6; ++k) strain[k] *= 1e-3;
+      if (step % 100 == 99) {
+        point_stop(&p);
+        p = point_start(&m);
+      }
       if (!point_may_try(&p, strain, s, NULL, 0)) fail_msg("%s gave up in step %d", samples[n].name, step);
       for (int k = 0; k < 6; ++k)
         if (!isfinite(s[k])) fail_msg("%s: stress %g in step %d", samples[n].name, s[k], step);
@@ -621,6 +676,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tangents_are_derivatives_of_steps),
       cmocka_unit_test(the_walk_of_tangents_visits_every_region_of_the_cap),
+      cmocka_unit_test(the_walk_of_tangents_visits_the_planes_edges_and_corners_of_mohr_and_coulomb),
       cmocka_unit_test(a_million_steps_of_any_size_stay_finite_and_inside),
       cmocka_unit_test(stress_turns_with_the_strain),
       cmocka_unit_test(a_trial_can_be_repeated_and_leaves_the_committed_state_alone),
