@@ -396,7 +396,7 @@ static bool judge(Domain *d, int64_t step, double time)
         Bond bond = family_bond(f, s, slot, lane);
         int32_t place = (int32_t)(s * SLICE + lane), a = d->particles->number[place];
         const uint8_t *gave_up = d->points.gave_up;
-        if (!(gave_up && (gave_up[place] || gave_up[bond.neighbour])) &&
+        if (!(gave_up && gave_up[place]) &&
             !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)))
           continue;
         int32_t b = d->particles->number[bond.neighbour];

@@ -75,6 +75,7 @@ typedef struct PlaneSet {
   int count, plane[3];
 } PlaneSet;
 
+/* The tip of the pyramid is a corner of the cut-off, which never lies beyond it. */
 static const PlaneSet sets[] = {
     {1, {SHEAR13}},
     {1, {TENSION1}},
@@ -84,10 +85,7 @@ static const PlaneSet sets[] = {
     {2, {TENSION1, TENSION2}},
     {3, {SHEAR13, SHEAR12, TENSION1}},
     {3, {SHEAR13, TENSION1, TENSION2}},
-    {3, {SHEAR13, SHEAR23, TENSION1}},
-    {3, {SHEAR13, SHEAR23, TENSION2}},
     {3, {TENSION1, TENSION2, TENSION3}},
-    {3, {SHEAR13, SHEAR12, SHEAR23}},
 };
 
 /** Solves the m x m system in place by elimination with pivots; `right` holds several columns. @return false: singular */
