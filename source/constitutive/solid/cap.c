@@ -154,7 +154,8 @@ static double return_to_cap(const Cap *c, double trial, double length, double k,
   const double past = trial - k;
   double slope;
   const double first = envelope(c, k, &slope), bent = slope - c->theta, before = exp(-c->rate * (k + R * first));
-  double low = 0, high = past, d = 0, f, H1, m, g, a, b, dilute, narrow, a1, S, H, residual_slope;
+  double low = 0, high = past, d = 0, f = 0, H = 0, H1 = 0, m = 0, g = 0, a = 0, a1 = 0, b = 0, dilute = 1, narrow = 1,
+         S = 0, residual_slope = 0;
   for (int iteration = 0;; ++iteration) {
     const double fade = c->beta > 0 ? expm1(-c->beta * d) : 0,
                  rise = (c->beta > 0 ? -bent / c->beta * fade : 0) + c->theta * d;
