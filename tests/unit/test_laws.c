@@ -655,6 +655,26 @@ static void plane_stress_holds_whatever_the_path(void **state)
   }
 }
 
+static void a_strain_that_is_no_number_is_reported(void **state)
+{
+  (void)state;
+  for (int n = 0; n < SAMPLES; ++n) {
+    if (samples[n].make == elastic || samples[n].make == clay) continue; /* their forces tell */
+    Material m = samples[n].make();
+    Point p = point_start(&m);
+    const double values[] = {NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 6; ++k)
+      for (int v = 0; v < 3; ++v) {
+        double strain[6] = {0}, s[6], tangent[36];
+        strain[k] = values[v];
+        if (point_may_try(&p, strain, s, NULL, 0) || point_may_try(&p, strain, s, tangent, 0))
+          fail_msg("%s takes a strain of %g", samples[n].name, values[v]);
+      }
+    point_stop(&p);
+    material_destroy(&m);
+  }
+}
+
 static void the_elastic_stage_is_elastic(void **state)
 {
   (void)state;
@@ -685,6 +705,7 @@ int main(void)
       cmocka_unit_test(closed_cycles_of_strain_take_work),
       cmocka_unit_test(smaller_steps_change_little),
       cmocka_unit_test(plane_stress_holds_whatever_the_path),
+      cmocka_unit_test(a_strain_that_is_no_number_is_reported),
       cmocka_unit_test(the_elastic_stage_is_elastic),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -448,6 +448,7 @@ static int return_chunk(const Cap *c, const breccia_batch *batch, int first, int
   const double *rows = batch->committed + (ptrdiff_t)HISTORY * first;
   int on_cap = 0;
   for (int p = 0; p < count; ++p) {
+    if (!isfinite(chunk->trial[p]) || !isfinite(chunk->length[p])) return first + p;
     if (!chunk->flows[p]) continue;
     const double k = rows[HISTORY * p + CAP], trial = chunk->trial[p], length = chunk->length[p];
     if (batch->elastic_stage) {
