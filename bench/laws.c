@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS = 1 << 17, STEPS = 8, MOST_WORDS = 12 };
+enum { POINTS = 1 << 17, FEW = 1 << 11, STEPS = 8, MOST_WORDS = 12 };
 
 typedef struct Sample {
   const char *law, *words[MOST_WORDS]; /* m, kN */
@@ -46,7 +46,7 @@ static const Sample samples[] = {
 
 typedef struct Batch {
   Material material;
-  int components;
+  int components, count;
   double *strain[6], *stress[6], *committed, *trial, *direction[6];
   uint8_t *plastic;
 } Batch;
@@ -59,7 +59,7 @@ static double *numbers(size_t count)
 }
 
 /** Half of the directions are compression with shear, so that laws with pressure see both their cones and their caps. */
-static void prepare(Batch *b, const Sample *sample, const Units *units, double share)
+static void prepare(Batch *b, const Sample *sample, const Units *units, double share, int points)
 {
   breccia_error *error = breccia_error_create();
   int count = 0;
@@ -69,18 +69,19 @@ static void prepare(Batch *b, const Sample *sample, const Units *units, double s
     abort();
   }
   breccia_error_destroy(&error);
+  b->count = points;
   const size_t values = (size_t)b->material.history_values;
   b->components = b->material.law->uniaxial ? 1 : 6;
-  b->committed = numbers(values * POINTS);
-  b->trial = numbers(values * POINTS);
-  b->plastic = malloc(POINTS);
+  b->committed = numbers(values * (size_t)points);
+  b->trial = numbers(values * (size_t)points);
+  b->plastic = malloc((size_t)points);
   uint64_t seed = 5;
   for (int k = 0; k < b->components; ++k) {
-    b->strain[k] = numbers(POINTS);
-    b->stress[k] = numbers(POINTS);
-    b->direction[k] = numbers(POINTS);
+    b->strain[k] = numbers((size_t)points);
+    b->stress[k] = numbers((size_t)points);
+    b->direction[k] = numbers((size_t)points);
   }
-  for (int i = 0; i < POINTS; ++i) {
+  for (int i = 0; i < points; ++i) {
     const double pressed = random_uniform(&seed) < 0.5 ? -0.7 : 0;
     for (int k = 0; k < b->components; ++k)
       b->direction[k][i] = 2 * (random_uniform(&seed) - 0.5) + (k < 3 && b->components > 1 ? pressed : 0);
@@ -107,13 +108,13 @@ static void release(Batch *b)
 /** Plastic points are strained on from step to step, the others go up and down within a twentieth of the yield strain. */
 static double step(Batch *b, double yield, int number)
 {
-  for (int i = 0; i < POINTS; ++i) {
+  for (int i = 0; i < b->count; ++i) {
     const double size = yield * (b->plastic[i] ? 4 + 0.02 * number : number % 2 ? 0.05 : 0.02);
     for (int k = 0; k < b->components; ++k) b->strain[k][i] = size * b->direction[k][i];
   }
   const ptrdiff_t values = b->material.history_values;
   const double start = clock_seconds();
-  for (int first = 0; first < POINTS; first += BLOCK) {
+  for (int first = 0; first < b->count; first += BLOCK) {
     breccia_batch batch = {
         .count = BLOCK, .committed = b->committed + values * first, .trial = b->trial + values * first};
     for (int k = 0; k < b->components; ++k) {
@@ -135,26 +136,34 @@ int main(void)
   Units *units = units_create("m", "kN", "s", error);
   use_threads(1);
   const double bandwidth = stream_bandwidth();
-  printf("| law | elastic | half plastic | all plastic | memory |\n|---|---|---|---|---|\n");
+  printf("| law | elastic | half plastic | all plastic | few, elastic | few, plastic | memory "
+         "|\n|---|---|---|---|---|---|---|\n");
   for (size_t s = 0; s < sizeof samples / sizeof *samples; ++s) {
-    double seconds[3][REPEATS], memory = 0;
-    Batch batch[3];
-    for (int way = 0; way < 3; ++way) {
-      prepare(&batch[way], &samples[s], units, way / 2.0);
+    enum { WAYS = 5 };
+    static const double shares[WAYS] = {0, 0.5, 1, 0, 1};
+    double seconds[WAYS][REPEATS], nanoseconds[WAYS], memory = 0;
+    Batch batch[WAYS];
+    for (int way = 0; way < WAYS; ++way) {
+      prepare(&batch[way], &samples[s], units, shares[way], way < 3 ? POINTS : FEW);
       for (int n = 0; n < STEPS; ++n) step(&batch[way], samples[s].strain, n);
     }
     for (int r = 0; r < REPEATS; ++r)
-      for (int way = 0; way < 3; ++way) seconds[way][r] = step(&batch[way], samples[s].strain, STEPS + r);
+      for (int way = 0; way < WAYS; ++way) seconds[way][r] = step(&batch[way], samples[s].strain, STEPS + r);
     memory = 1e-9 * 8 * (2 * batch[0].components + 2 * batch[0].material.history_values) / bandwidth;
-    printf("| %s | %.1f | %.0f | %.0f | %.1f |\n", samples[s].law, 1e9 * median(seconds[0], REPEATS) / POINTS,
-           1e9 * median(seconds[1], REPEATS) / POINTS, 1e9 * median(seconds[2], REPEATS) / POINTS, 1e9 * memory);
+    for (int way = 0; way < WAYS; ++way) {
+      nanoseconds[way] = 1e9 * median(seconds[way], REPEATS) / batch[way].count;
+      release(&batch[way]);
+    }
+    printf("| %s | %.1f | %.0f | %.0f | %.1f | %.0f | %.1f |\n", samples[s].law, nanoseconds[0], nanoseconds[1],
+           nanoseconds[2], nanoseconds[3], nanoseconds[4], 1e9 * memory);
     fflush(stdout);
-    for (int way = 0; way < 3; ++way) release(&batch[way]);
   }
   printf("\nns per point on one thread, medians of %d: points that stay elastic, half of them and all of them "
          "straining on beyond "
-         "yield; memory: what moving strain, stress and both histories takes at %.1f GB/s (triad). %d points.\n",
-         REPEATS, bandwidth, POINTS);
+         "yield, of %d points; the same of %d points, whose numbers stay in the caches; memory: what moving strain, "
+         "stress and both "
+         "histories takes at %.1f GB/s (triad).\n",
+         REPEATS, POINTS, FEW, bandwidth);
   units_destroy(&units);
   breccia_error_destroy(&error);
   return 0;

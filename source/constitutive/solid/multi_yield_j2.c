@@ -289,11 +289,14 @@ static void integrate(Point *p, double s[6], const double de[6])
     }
   }
   double stiffness = m ? plastic_of(p, m) / (twice + plastic_of(p, m)) : 1; /* of 2 G */
-  double reach = sqrt(1.5 * product(de2g, de2g));
-  if (reach == 0) return;
-  double count = floor(stiffness * reach / (size_of(p, last) / last) + 1);
-  int parts = count < last ? (int)count : last;
-  for (int k = 0; k < 6; ++k) de2g[k] /= parts;
+  double square = 1.5 * product(de2g, de2g), whole = size_of(p, last) / last;
+  if (square == 0) return;
+  int parts = 1;
+  if (stiffness * stiffness * square >= whole * whole) {
+    double count = floor(stiffness * sqrt(square) / whole + 1);
+    parts = count < last ? (int)count : last;
+    for (int k = 0; k < 6; ++k) de2g[k] /= parts;
+  }
   for (int part = 0; part < parts; ++part) advance(p, s, de2g);
 }
 
