@@ -44,7 +44,7 @@ static const Option options[] = {
     {"steps", "N", "steps from end to end (200)"},
     {"against", "DATA.csv", "measured points: x and y of the test's curve in the first two columns"},
     {"picture", "FILE", "draw the test's curve (.png, .svg, .pdf)"},
-    {"output", "OUT.csv", "where strains and stresses go (standard output)"},
+    {"output", "OUT.csv", "where strains and stresses go (standard output; nowhere with --picture or --against)"},
     {"tangent", NULL, "add the tangent: columns C11 ... C66, row by row, or C11"},
     {"elastic-rows", "N", "respond elastically in the first N rows of a strain path (gravity stage)"},
     {0},
@@ -165,8 +165,8 @@ static int run_test(const ElementTest *test, const Material *m, const Units *uni
   ElementCurve c;
   int status = element_test_run(test, m, &c, error);
   const int n = c.components;
-  if (c.count) print_heading(o->out, n, o->tangent);
-  for (int i = 0; i < c.count; ++i)
+  if (o->out && c.count) print_heading(o->out, n, o->tangent);
+  for (int i = 0; o->out && i < c.count; ++i)
     print_row(o->out, n, c.strain + 6 * i, c.stress + 6 * i, o->tangent ? c.tangent + n * n * i : NULL);
   const int shown = c.count > 1 ? show_curve(test, &c, units, o, error) : BRECCIA_OK;
   element_curve_destroy(&c);
@@ -284,13 +284,14 @@ static int run(int argc, char **argv, const Verb *verb)
                .against = values[AGAINST],
                .picture = values[PICTURE],
                .tangent = values[TANGENT] != NULL,
-               .quiet = !values[OUTPUT],
                .out = stdout};
+  if ((values[PICTURE] || values[AGAINST]) && !values[STRAIN]) o.out = NULL; /* rows only where they are asked for */
+  o.quiet = o.out && !values[OUTPUT];
   if (values[OUTPUT] && !(o.out = fopen(values[OUTPUT], "w")))
     return fail(error,
                 error_add(error, BRECCIA_USER_ERROR, "%s: cannot be written: %s", values[OUTPUT], strerror(errno)));
   int status = file ? run_file(argv[first], &o, error) : run_words(values, &settings, &o, error);
-  if (o.out != stdout && fclose(o.out) && !status)
+  if (o.out && o.out != stdout && fclose(o.out) && !status)
     status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", values[OUTPUT], strerror(errno));
   return fail(error, status);
 }
