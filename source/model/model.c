@@ -74,6 +74,15 @@ static int by_value(const void *a, const void *b)
   return x < y ? -1 : x > y;
 }
 
+static void warn_of_late_picture(breccia_model *model, const PictureSpec *picture, double time)
+{
+  const double end = (double)model->solver.steps * model->solver.time_step;
+  if (time <= end * (1 + 1e-9)) return;
+  const Node *place = section_place(picture, "at");
+  text_add(&model->warnings, "%swarning: %s:%d:%d: the run ends at %g, before the picture at %g, which is not made",
+           model->warnings.length ? "\n" : "", model->document->name, place->line, place->column, end, time);
+}
+
 /** Steps at which results are written: evenly, and where pictures and the deck ask for them. Does not depend on how far a
  *  run goes, so that a restarted run writes the same. */
 static int make_schedule(breccia_model *model, Error *error)
@@ -96,7 +105,10 @@ static int make_schedule(breccia_model *model, Error *error)
   for (int k = 0; k < r->times.count; ++k) list[n++] = model_step_at(model, r->times.values[k]);
   for (int p = 0; p < model->spec->pictures.count; ++p) {
     const PictureSpec *picture = model->spec->pictures.items[p];
-    for (int k = 0; k < picture->times.count; ++k) list[n++] = model_step_at(model, picture->times.values[k]);
+    for (int k = 0; k < picture->times.count; ++k) {
+      list[n++] = model_step_at(model, picture->times.values[k]);
+      warn_of_late_picture(model, picture, picture->times.values[k]);
+    }
   }
   qsort(list, (size_t)n, sizeof *list, by_value);
   for (int64_t k = 0; k < n; ++k)

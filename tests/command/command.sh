@@ -54,6 +54,11 @@ contains "burst" "$(cat out)" "stopped by a failure"
 [ -e burst/results.vtkhdf ] && [ -e burst/summary.json ] || fail "a burst leaves no results"
 contains "burst: summary" "$(cat burst/summary.json)" '"problem": "step '
 
+# a picture of a time that the run does not reach
+sed 's/at: \[6.2 ms, 6.4 ms\]/at: [6.2 ms, 64 ms]/' "$source/examples/block-with-hole/block.yaml" > late.yaml
+"$breccia" check late.yaml > out 2> errors; equal "a late picture: status" $? 0
+contains "a late picture" "$(cat errors)" "warning: late.yaml:72:21: the run ends at 0.008, before the picture at 0.064, which is not made"
+
 # histories of a material at one particle
 "$breccia" run "$source/examples/block-with-hole/block.yaml" --steps 20 --output block > out 2>&1; equal "block: status" $? 0
 equal "history watched: heading" "$(head -1 block/p-history.csv)" "step,time (s),cap parameter"
