@@ -98,6 +98,13 @@ void text_file_name(const char *words, char *name, size_t size)
   name[n] = 0;
 }
 
+char *text_beside(const char *path, const char *file)
+{
+  const char *slash = path ? strrchr(path, '/') : NULL;
+  if (*file == '/' || !slash) return text_format("%s", file);
+  return text_format("%.*s/%s", (int)(slash - path), path, file);
+}
+
 char *text_read_file(const char *path, size_t *length)
 {
   FILE *file = fopen(path, "rb");

@@ -32,6 +32,9 @@ bool text_resembles(const char *word, const char *candidate, int distance);
 /** Copies `words` into `name` (size bytes) with everything but letters, digits, - and . replaced by -. */
 void text_file_name(const char *words, char *name, size_t size);
 
+/** Path of a file whose name, unless it begins at the root, is relative to the folder of another. To be freed. */
+char *text_beside(const char *path, const char *file);
+
 /** Reads a whole file. @return its content, zero-terminated, to be freed; NULL with errno set on failure */
 char *text_read_file(const char *path, size_t *length);
 

@@ -56,14 +56,6 @@ int cloud_sort(Cloud *cloud, Error *error)
   return BRECCIA_OK;
 }
 
-/** File names in a deck are relative to the deck. */
-static char *beside_deck(const Document *document, const char *file)
-{
-  const char *slash = document->name ? strrchr(document->name, '/') : NULL;
-  if (*file == '/' || !slash) return text_format("%s", file);
-  return text_format("%.*s/%s", (int)(slash - document->name), document->name, file);
-}
-
 static int check_rows(const Cloud *cloud, const DeckReader *reader, const Node *node, const char *file)
 {
   static const char *const names[] = {"x", "y", "z"};
@@ -84,7 +76,7 @@ int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const c
 {
   static const char *const names[] = {"x", "y", "z", "volume"};
   *cloud = (Cloud){0};
-  char *path = beside_deck(reader->document, file);
+  char *path = text_beside(reader->document->name, file);
   if (!path) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
   int status = BRECCIA_OK;
   for (int k = 0; k < 4 && !status; ++k) {

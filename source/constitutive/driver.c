@@ -1,5 +1,6 @@
 #include "constitutive/driver.h"
 
+#include "base/linear.h"
 #include "base/memory.h"
 #include <math.h>
 #include <stdlib.h>
@@ -45,35 +46,6 @@ void driver_commit(Driver *d)
   d->trial = other;
 }
 
-/** Solves a[count][count] x = b by elimination with pivots, in place. @return false: singular */
-static bool solve(int count, double a[6][6], double b[6])
-{
-  for (int k = 0; k < count; ++k) {
-    int pivot = k;
-    for (int r = k + 1; r < count; ++r)
-      if (fabs(a[r][k]) > fabs(a[pivot][k])) pivot = r;
-    if (!(fabs(a[pivot][k]) > 0)) return false;
-    for (int n = 0; n < count; ++n) {
-      const double other = a[k][n];
-      a[k][n] = a[pivot][n];
-      a[pivot][n] = other;
-    }
-    const double other = b[k];
-    b[k] = b[pivot];
-    b[pivot] = other;
-    for (int r = k + 1; r < count; ++r) {
-      const double factor = a[r][k] / a[k][k];
-      for (int n = k; n < count; ++n) a[r][n] -= factor * a[k][n];
-      b[r] -= factor * b[k];
-    }
-  }
-  for (int k = count - 1; k >= 0; --k) {
-    for (int n = k + 1; n < count; ++n) b[k] -= a[k][n] * b[n];
-    b[k] /= a[k][k];
-  }
-  return true;
-}
-
 /** Stress residual of the unknown strains; NaN if the law gives up. */
 static double residual(Driver *d, const double *strain, const int *unknown, int count, const double *target, double *r)
 {
@@ -99,13 +71,13 @@ static bool balance(Driver *d, const bool *by_stress, const double *target, doub
   for (int iteration = 0; size > tolerance && iteration < MOST_ITERATIONS; ++iteration) {
     /* Where flow leaves a strain free (perfect plasticity at an edge) a touch of stiffness picks the least change. */
     const double touch = 1e-8 * (d->material->bulk + d->material->shear);
-    double matrix[6][6], step[6];
+    double matrix[36], step[6];
     for (int i = 0; i < count; ++i) {
       step[i] = r[i];
       for (int k = 0; k < count; ++k)
-        matrix[i][k] = d->tangent[d->components * unknown[i] + unknown[k]] + (i == k ? touch : 0);
+        matrix[count * i + k] = d->tangent[d->components * unknown[i] + unknown[k]] + (i == k ? touch : 0);
     }
-    if (!solve(count, matrix, step)) return false;
+    if (!linear_solve(count, matrix, 1, step)) return false;
     for (int k = 0; k < count; ++k) strain[unknown[k]] += step[k];
     size = residual(d, strain, unknown, count, target, r);
   }

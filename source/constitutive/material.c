@@ -100,12 +100,14 @@ int material_create(Material *material, const DeckReader *reader, const Material
   return BRECCIA_OK;
 }
 
+enum { MOST_WORDS = 128 };
+
 /** Reads "key=value" words into a law's parameter values, and defaults for the rest. */
 static int read_words(const breccia_law *law, const char *const *words, int count, const Units *units,
                       const char *before, double *values, Error *error)
 {
   int status = BRECCIA_OK;
-  for (int k = 0; k < law->parameter_count; ++k) values[k] = NAN;
+  bool given[MOST_WORDS] = {false};
   for (int w = 0; w < count; ++w) {
     const char *equals = strchr(words[w], '=');
     const size_t n = equals ? (size_t)(equals - words[w]) : 0;
@@ -128,12 +130,14 @@ static int read_words(const breccia_law *law, const char *const *words, int coun
       interval_describe(law->parameters[which].range, range, sizeof range);
       status = error_add(error, BRECCIA_USER_ERROR, "%s%s: must be %s", before, words[w], range);
     }
+    given[which] = true;
     text_free(&reason);
   }
-  for (int k = 0; k < law->parameter_count && !status; ++k) {
+  for (int k = 0; k < law->parameter_count; ++k) {
     const breccia_parameter *p = &law->parameters[k];
     Text reason = {0};
-    if (!isnan(values[k])) continue;
+    if (given[k]) continue;
+    values[k] = NAN;
     if (!p->standard)
       status = error_add(error, BRECCIA_USER_ERROR, "missing %s'%s=...' (%s)", before, p->name, p->meaning);
     else if (*p->standard)
@@ -142,8 +146,6 @@ static int read_words(const breccia_law *law, const char *const *words, int coun
   }
   return status;
 }
-
-enum { MOST_WORDS = 128 };
 
 int material_from_words(Material *material, const breccia_law *law, const char *const *words, int count,
                         const Units *units, const char *before, Error *error)

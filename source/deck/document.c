@@ -3,6 +3,7 @@
 #include "deck/document.h"
 
 #include "base/text.h"
+#include <errno.h>
 #include <libfyaml.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,4 +177,17 @@ int node_error(const Document *document, const Node *node, Error *error, const c
             words.characters ? words.characters : "");
   text_free(&words);
   return BRECCIA_USER_ERROR;
+}
+
+char *document_text(const char *path, size_t *length, Error *error)
+{
+  char *text = text_read_file(path, length);
+  if (!text) {
+    error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+  } else if (strlen(text) != *length) {
+    error_add(error, BRECCIA_USER_ERROR, "%s:1:1: is not text: it holds a zero byte", path);
+    free(text);
+    text = NULL;
+  }
+  return text;
 }

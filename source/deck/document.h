@@ -28,6 +28,8 @@ typedef struct Document {
 /** Reads YAML text. Problems of syntax become lines "name:line:column: ...".
  *  @return NULL if the text is not one YAML document */
 Document *document_parse(const char *text, size_t length, const char *name, Error *error);
+/** The characters of a deck's file, to be freed; NULL with a message if it cannot be read or is not text. */
+char *document_text(const char *path, size_t *length, Error *error);
 void document_destroy(Document **document);
 
 /** @return the value of the first entry with that key, or NULL */

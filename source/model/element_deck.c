@@ -1,6 +1,5 @@
 #include "model/element_deck.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,19 +51,12 @@ const Section element_deck_section = {"element test",
                                       NULL,
                                       0};
 
-static char *beside(const char *path, const char *file)
-{
-  const char *slash = strrchr(path, '/');
-  if (*file == '/' || !slash) return text_format("%s", file);
-  return text_format("%.*s/%s", (int)(slash - path), path, file);
-}
-
 int element_deck_load(ElementDeck *deck, const char *path, Error *error)
 {
   *deck = (ElementDeck){0};
   size_t length;
-  char *text = text_read_file(path, &length);
-  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+  char *text = document_text(path, &length, error);
+  if (!text) return BRECCIA_USER_ERROR;
   deck->document = document_parse(text, length, path, error);
   free(text);
   if (!deck->document) return BRECCIA_USER_ERROR;
@@ -79,7 +71,7 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   if (!status)
     status =
         element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages, deck->law->uniaxial);
-  if (!status && deck->spec->against) deck->against = beside(path, deck->spec->against);
+  if (!status && deck->spec->against) deck->against = text_beside(path, deck->spec->against);
   return status;
 }
 

@@ -1,7 +1,6 @@
 #include "model/model.h"
 
 #include "base/clock.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -184,13 +183,9 @@ int breccia_model_load_file(const char *path, const breccia_options *options, br
 {
   *model = NULL;
   size_t length;
-  char *text = text_read_file(path, &length);
-  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, strerror(errno));
-  int status = BRECCIA_USER_ERROR;
-  if (strlen(text) != length)
-    error_add(error, status, "%s:1:1: is not text: it holds a zero byte", path);
-  else
-    status = breccia_model_load_string(text, path, options, model, error);
+  char *text = document_text(path, &length, error);
+  if (!text) return BRECCIA_USER_ERROR;
+  int status = breccia_model_load_string(text, path, options, model, error);
   free(text);
   return status;
 }

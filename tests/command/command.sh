@@ -80,6 +80,10 @@ equal "material of one strain" "$(cat bar.csv)" "e11,s11,C11
 contains "material, wrong key" "$(cat out)" "expected KEY=VALUE with one of the keys 'Young modulus'"
 "$breccia" material --model multi-yield-j2 --strain path.csv 2> out; equal "material, nothing set: status" $? 2
 contains "material, nothing set" "$(cat out)" "missing --set 'shear modulus=...'"
+contains "material, nothing set: all at once" "$(cat out)" "missing --set 'bulk modulus=...'"
+printf 'units: \000\n' > zero.yaml
+"$breccia" material zero.yaml 2> out; equal "test with a zero byte: status" $? 2
+contains "test with a zero byte" "$(cat out)" "zero.yaml:1:1: is not text"
 clay='--model multi-yield-j2 --set shear~modulus=60~MPa --set bulk~modulus=100~MPa --set octahedral~strength=30'
 words() { echo "$1" | sed 's/ /\n/g' | tr '~' ' '; }
 mapfile -t clay < <(words "$clay")

@@ -224,7 +224,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   double elastic[6], effective[6];
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[PLASTIC + k];
   const double volume = lambda * trace(elastic);
-  for (int k = 0; k < 6; ++k) effective[k] = twice * elastic[k] + (k < 3 ? volume : 0);
+  elastic_stress(&c->elastic, elastic, effective);
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
   if (p->elastic || is_untouched(c, p->committed, effective)) {
     memcpy(p->stress, effective, sizeof effective);
@@ -244,8 +244,7 @@ static bool update_point(const void *constants, SolidPoint *p)
     double value[3];
     for (int k = 0; k < 3; ++k) value[k] = flow.stress[k].value;
     spectral_tensor(&strain, value, effective);
-    const double share = (1 / (9 * c->elastic.bulk) - 1 / (3 * twice)) * trace(effective);
-    for (int k = 0; k < 6; ++k) p->trial[PLASTIC + k] = p->strain[k] - effective[k] / twice - (k < 3 ? share : 0);
+    plastic_strain(&c->elastic, p->strain, effective, p->trial + PLASTIC);
     p->trial[IN_TENSION] = flow.tension.value;
     p->trial[IN_COMPRESSION] = flow.compression.value;
   }

@@ -1,12 +1,13 @@
 /* Drucker-Prager plasticity with a tension cut-off (Drucker and Prager 1952; docs/theory.md 8.4), tension positive:
  * sqrt(J2) + a I1 = k, flow along sqrt(J2) + a' I1, I1 <= T. Inside, |s| + A I1 = sqrt(2/3) Y(x) with A = sqrt(2) a and
  * Y = sqrt(3) k + H x + dY (1 - exp(-d x)), x the equivalent plastic strain. */
-#include "constitutive/solid/solid_law.h"
+#include "constitutive/solid/hardening.h"
 
 typedef struct DruckerPrager {
   Elasticity elastic;
   double slope, dilation; /* A and A' */
-  double yield, hardening, gain, rate, cut;
+  Hardening hardening;
+  double cut;
 } DruckerPrager;
 
 enum {
@@ -22,8 +23,6 @@ enum {
   RATE
 };
 enum { PLASTIC = 0, EQUIVALENT = 6, HISTORY };
-
-static const double root23 = 0.81649658092772603;
 
 static const breccia_parameter parameters[] = {
     ELASTIC_PARAMETER_ROWS,
@@ -67,10 +66,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   }
   c->slope = sqrt(2) * slope;
   c->dilation = sqrt(2) * flow;
-  c->yield = sqrt(3) * strength;
-  c->hardening = v[HARDENING];
-  c->gain = v[GAIN];
-  c->rate = v[RATE];
+  c->hardening = (Hardening){sqrt(3) * strength, v[GAIN], v[RATE], v[HARDENING]};
   const double tip = slope > 0 ? strength / slope : INFINITY;
   c->cut = isnan(v[CUT]) ? tip : v[CUT];
   if (c->cut <= tip * (1 + 1e-12)) return 0;
@@ -90,35 +86,14 @@ static void history_name(const void *constants, int k, char *name, size_t size)
   snprintf(name, size, "%s", k == EQUIVALENT ? "equivalent plastic strain" : "");
 }
 
-static double strength(const DruckerPrager *c, double x, double *slope)
-{
-  const double fall = c->gain > 0 ? c->gain * exp(-c->rate * x) : 0;
-  *slope = c->rate * fall + c->hardening;
-  return c->yield + c->gain - fall + c->hardening * x;
-}
-
-/** Multiplier g >= 0 of excess - stiffness g = sqrt(2/3) (Y(x + sqrt(2/3) g) - Y(x)); Newton's method never overshoots, because Y is
- *  concave. */
-static double multiplier(const DruckerPrager *c, double excess, double stiffness, double x, double *slope)
-{
-  const double before = strength(c, x, slope);
-  double flow = 0, now = before;
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const double step = (excess - stiffness * flow - root23 * (now - before)) / (stiffness + 2 * *slope / 3);
-    flow += step;
-    now = strength(c, x + root23 * flow, slope);
-    if (fabs(step) <= 1e-15 * flow) break;
-  }
-  return flow;
-}
-
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const DruckerPrager *c = constants;
   const double shear = c->elastic.shear, bulk9 = 9 * c->elastic.bulk, x = p->committed[EQUIVALENT];
-  double s[6], length, hard;
+  double s[6], length, hard, strength;
   const double trial = elastic_trial(&c->elastic, p->strain, p->committed + PLASTIC, s, &length);
-  const double radius = root23 * strength(c, x, &hard), excess = length + c->slope * trial - radius;
+  const double radius = root23 * hardening_strength(&c->hardening, x, &hard),
+               excess = length + c->slope * trial - radius;
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
   double i = trial, returned = length, flow = 0;
   ReturnSlopes slopes = {0};
@@ -130,7 +105,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   bool cone = false;
   if (excess > 0) {
     const double stiffness = 2 * shear + bulk9 * c->slope * c->dilation;
-    flow = multiplier(c, excess, stiffness, x, &hard);
+    flow = hardening_multiplier(&c->hardening, excess, stiffness, x, &strength, &hard);
     i = trial - bulk9 * c->dilation * flow;
     returned = length - 2 * shear * flow;
     cone = i <= c->cut && returned >= 0;
@@ -145,7 +120,7 @@ static bool update_point(const void *constants, SolidPoint *p)
     flow = 0;
     slopes = (ReturnSlopes){0, 0, 0, 1};
     if (length > at_cut) { /* where the cone meets the cut-off */
-      flow = multiplier(c, length - at_cut, 2 * shear, x, &hard);
+      flow = hardening_multiplier(&c->hardening, length - at_cut, 2 * shear, x, &strength, &hard);
       returned = fmax(0, length - 2 * shear * flow);
       slopes.length_length = 1 - 2 * shear / (2 * shear + 2 * hard / 3);
     }

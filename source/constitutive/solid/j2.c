@@ -1,17 +1,16 @@
 /* J2 plasticity: the yield stress grows linearly and towards a saturation, the yield surface may travel (docs/theory.md 8.2, Simo and
  * Hughes 1998, ch. 3): |s - b| = sqrt(2/3) Y(x), Y = Y1 + (Y0 - Y1) exp(-d x) + H x, db = 2/3 Hk dg n, dx = sqrt(2/3) dg. */
-#include "constitutive/solid/solid_law.h"
+#include "constitutive/solid/hardening.h"
 
 typedef struct J2 {
   Elasticity elastic;
-  double yield, saturation, rate, hardening, kinematic;
+  Hardening hardening;
+  double kinematic;
 } J2;
 
 enum { YIELD = ELASTIC_PARAMETERS, SATURATION, RATE, HARDENING, KINEMATIC };
 /* History: plastic strain, equivalent plastic strain, and the back stress if it can move. */
 enum { PLASTIC = 0, EQUIVALENT = 6, BACK = 7 };
-
-static const double root23 = 0.81649658092772603;
 
 static const breccia_parameter parameters[] = {
     ELASTIC_PARAMETER_ROWS,
@@ -26,12 +25,10 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
   J2 *c = constants;
   if (elasticity_prepare(&c->elastic, v, reason, size)) return 1;
-  c->yield = v[YIELD];
-  c->saturation = isnan(v[SATURATION]) ? c->yield : v[SATURATION];
-  c->rate = v[RATE];
-  c->hardening = v[HARDENING];
+  const double saturation = isnan(v[SATURATION]) ? v[YIELD] : v[SATURATION];
+  c->hardening = (Hardening){v[YIELD], saturation - v[YIELD], v[RATE], v[HARDENING]};
   c->kinematic = v[KINEMATIC];
-  if (c->saturation >= c->yield) return 0;
+  if (saturation >= v[YIELD]) return 0;
   snprintf(reason, size, "'saturation stress' must not lie below 'yield stress': this law does not soften");
   return 1;
 }
@@ -47,13 +44,6 @@ static void history_name(const void *constants, int k, char *name, size_t size)
   snprintf(name, size, "%s", k == EQUIVALENT ? "equivalent plastic strain" : "");
 }
 
-static double strength(const J2 *c, double x, double *slope)
-{
-  const double fall = c->saturation > c->yield ? (c->saturation - c->yield) * exp(-c->rate * x) : 0;
-  *slope = c->rate * fall + c->hardening;
-  return c->saturation - fall + c->hardening * x;
-}
-
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const J2 *c = constants;
@@ -64,21 +54,15 @@ static bool update_point(const void *constants, SolidPoint *p)
   for (int k = 0; k < 6; ++k) distance[k] = s[k] - (travels ? old[BACK + k] : 0);
   const double length = travels ? norm(distance) : trial_length, x = old[EQUIVALENT];
   memcpy(p->trial, old, sizeof(double) * (travels ? 13 : 7));
-  double radius = root23 * strength(c, x, &slope);
+  double strength = hardening_strength(&c->hardening, x, &slope), radius = root23 * strength;
   if (p->elastic || length <= radius) {
     for (int k = 0; k < 6; ++k) p->stress[k] = s[k] + (k < 3 ? invariant / 3 : 0);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
   }
-  /* The residual is convex and falls, so that Newton's method from zero never overshoots. */
   const double straight = 2 * shear + 2 * c->kinematic / 3;
-  double flow = 0;
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const double step = (length - straight * flow - radius) / (straight + 2 * slope / 3);
-    flow += step;
-    radius = root23 * strength(c, x + root23 * flow, &slope);
-    if (fabs(step) <= 1e-15 * flow) break;
-  }
+  const double flow = hardening_multiplier(&c->hardening, length - radius, straight, x, &strength, &slope);
+  radius = root23 * strength;
   for (int k = 0; k < 6; ++k) {
     distance[k] /= length;
     const double back = travels ? old[BACK + k] + 2 * c->kinematic / 3 * flow * distance[k] : 0;

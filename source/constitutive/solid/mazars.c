@@ -117,8 +117,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   /* The equivalent strain is never larger than the norm of all strains. */
   const bool untouched = p->committed[LARGEST] <= c->threshold && norm(p->strain) <= c->threshold;
   if (p->elastic || untouched) {
-    const double share = (c->elastic.bulk - 2 * c->elastic.shear / 3) * trace(p->strain);
-    for (int k = 0; k < 6; ++k) p->stress[k] = 2 * c->elastic.shear * p->strain[k] + (k < 3 ? share : 0);
+    elastic_stress(&c->elastic, p->strain, p->stress);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
   }
@@ -134,8 +133,8 @@ static bool update_point(const void *constants, SolidPoint *p)
     for (int n = 0; n < 3; ++n) slopes[3 * k + n] = stress[k].slope[n];
   }
   /* Stress follows the strain itself, so that nothing is lost to the decomposition. */
-  const double share = (c->elastic.bulk - 2 * c->elastic.shear / 3) * trace(p->strain), whole = 1 - damage.value;
-  for (int k = 0; k < 6; ++k) p->stress[k] = whole * (2 * c->elastic.shear * p->strain[k] + (k < 3 ? share : 0));
+  elastic_stress(&c->elastic, p->strain, p->stress);
+  for (int k = 0; k < 6; ++k) p->stress[k] *= 1 - damage.value;
   if (p->tangent) spectral_tangent(&spectrum, value, slopes, p->tangent);
   return true;
 }

@@ -6,6 +6,8 @@
  * stress are admissible is it. */
 #include "constitutive/solid/spectral.h"
 
+#include "base/linear.h"
+
 typedef struct MohrCoulomb {
   Elasticity elastic;
   double sine, dilation, limit; /* sin(phi), sin(psi), 2 c cos(phi) */
@@ -88,36 +90,6 @@ static const PlaneSet sets[] = {
     {3, {TENSION1, TENSION2, TENSION3}},
 };
 
-/** Solves the m x m system in place by elimination with pivots; `right` holds several columns. @return false: singular */
-static bool solve_small(int m, double a[3][3], int columns, double right[3][4])
-{
-  for (int k = 0; k < m; ++k) {
-    int pivot = k;
-    for (int r = k + 1; r < m; ++r)
-      if (fabs(a[r][k]) > fabs(a[pivot][k])) pivot = r;
-    if (fabs(a[pivot][k]) < 1e-12 * fabs(a[0][0]) || a[pivot][k] == 0) return false;
-    for (int n = 0; n < m; ++n) {
-      double other = a[k][n];
-      a[k][n] = a[pivot][n];
-      a[pivot][n] = other;
-    }
-    for (int n = 0; n < columns; ++n) {
-      double other = right[k][n];
-      right[k][n] = right[pivot][n];
-      right[pivot][n] = other;
-    }
-    for (int r = 0; r < m; ++r) {
-      if (r == k) continue;
-      const double factor = a[r][k] / a[k][k];
-      for (int n = k; n < m; ++n) a[r][n] -= factor * a[k][n];
-      for (int n = 0; n < columns; ++n) right[r][n] -= factor * right[k][n];
-    }
-  }
-  for (int k = 0; k < m; ++k)
-    for (int n = 0; n < columns; ++n) right[k][n] /= a[k][k];
-  return true;
-}
-
 /** Returns a sorted trial stress to a set of planes.
  *  @param[out] slopes  [3][3] d stress / d principal strain, or NULL
  *  @return the least multiplier, scaled as a strain; NaN: the set has no return */
@@ -125,7 +97,7 @@ static double return_to(const MohrCoulomb *c, const PlaneSet *set, const double 
                         double slopes[9])
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
-  double system[3][3], right[3][4], stiff_flow[3][3], stiff_normal[3][3];
+  double system[9], right[3][4], stiff_flow[3][3], stiff_normal[3][3];
   for (int r = 0; r < set->count; ++r) {
     double normal[3], flow[3];
     normal_of(set->plane[r], c->sine, normal);
@@ -141,9 +113,10 @@ static double return_to(const MohrCoulomb *c, const PlaneSet *set, const double 
     double normal[3];
     normal_of(set->plane[r], c->sine, normal);
     for (int k = 0; k < set->count; ++k)
-      system[r][k] = normal[0] * stiff_flow[k][0] + normal[1] * stiff_flow[k][1] + normal[2] * stiff_flow[k][2];
+      system[set->count * r + k] =
+          normal[0] * stiff_flow[k][0] + normal[1] * stiff_flow[k][1] + normal[2] * stiff_flow[k][2];
   }
-  if (!solve_small(set->count, system, 4, right)) return NAN;
+  if (!linear_solve(set->count, system, 4, &right[0][0])) return NAN;
   double least = INFINITY;
   for (int k = 0; k < 3; ++k) stress[k] = trial[k];
   for (int r = 0; r < set->count; ++r) {
@@ -168,7 +141,7 @@ static bool admissible(const MohrCoulomb *c, const double stress[3], double tole
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const MohrCoulomb *c = constants;
-  double elastic[6], plastic[6];
+  double elastic[6];
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[PLASTIC + k];
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const double volume = lambda * trace(elastic);
@@ -185,7 +158,7 @@ static bool update_point(const void *constants, SolidPoint *p)
     inside = excess_of(c, SHEAR13, trial) <= 0 && excess_of(c, TENSION1, trial) <= 0;
   }
   if (inside) {
-    for (int k = 0; k < 6; ++k) p->stress[k] = twice * elastic[k] + (k < 3 ? volume : 0);
+    elastic_stress(&c->elastic, elastic, p->stress);
     memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
@@ -216,9 +189,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   if (!best) return false;
   return_to(c, best, trial, stress, slopes);
   spectral_tensor(&strain, stress, p->stress);
-  const double sum = trace(p->stress), share = (1 / (9 * c->elastic.bulk) - 1 / (3 * twice)) * sum;
-  for (int k = 0; k < 6; ++k) plastic[k] = p->strain[k] - p->stress[k] / twice - (k < 3 ? share : 0);
-  memcpy(p->trial + PLASTIC, plastic, sizeof plastic);
+  plastic_strain(&c->elastic, p->strain, p->stress, p->trial + PLASTIC);
   if (p->tangent) spectral_tangent(&strain, stress, slopes, p->tangent);
   return true;
 }
