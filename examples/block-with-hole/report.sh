@@ -41,6 +41,12 @@ first_break() { sed -n 's/.*"first_broken_bond": {[^}]*"time": \([^,]*\),.*"at":
 row_at() { awk -F, -v t="$3" -v c="$4" 'NR > 1 && $2 >= t - 1e-9 {print $c; exit}' "$1/$2.csv"; }
 damages() { printf "%.3f, %.3f" "$(row_at "$1" beside "$2" 3)" "$(row_at "$1" above "$2" 3)"; }
 growth() { awk -v x="$(row_at "$1" "$2" "$3" 4)" 'BEGIN {printf "%+.2f", 1000 * x}'; }
+# Uniaxial compressive stress of the law at a strain of 0.004 and at 0.02, the critical stretch (MPa).
+strength() {
+  sed 's/^test:.*/test: {kind: uniaxial, strain: -'"$1"'}/' ../materials/cap.yaml > uniaxial.yaml
+  $breccia material uniaxial.yaml | awk -F, 'NR > 1 && $7 < least {least = $7} END {printf "%.1f", -least / 1000}'
+  rm uniaxial.yaml
+}
 row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") |"; }
 {
   sed '/^<!-- computed -->$/q' README.md
@@ -57,6 +63,10 @@ row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") |"; }
   row "growth of the width along x at 5.6 ms (mm)" "the block widens" growth width 0.0056
   row "growth of the height along z at 5.6 ms (mm)" "the block shortens" growth height 0.0056
   row "largest distance outside the surfaces" "" outside
+  echo
+  echo "Pressed along one axis the law yields on its cap and carries $(strength 0.004) MPa at a strain of 0.4 %, $(strength 0.02) MPa at 2 %. The"
+  echo "net section, two thirds of the block, reaches these under $(strength 0.004 | awk '{printf "%.1f", $1 * 2 / 3}') and" \
+    "$(strength 0.02 | awk '{printf "%.1f", $1 * 2 / 3}') MPa."
   echo
   sed -n '/^<!-- end of computed -->$/,$p' README.md
 } > README.new
