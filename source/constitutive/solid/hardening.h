@@ -25,8 +25,7 @@ static inline double hardening_multiplier(const Hardening *h, double excess, dou
   double flow = 0;
   *strength = before;
   for (int iteration = 0; iteration < 100; ++iteration) {
-    const double step =
-        (excess - stiffness * flow - root23 * (*strength - before)) / (stiffness + 2 * *slope / 3);
+    const double step = (excess - stiffness * flow - root23 * (*strength - before)) / (stiffness + 2 * *slope / 3);
     flow += step;
     *strength = hardening_strength(h, x + root23 * flow, slope);
     if (fabs(step) <= 1e-15 * flow) break;
