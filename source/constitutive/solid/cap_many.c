@@ -154,7 +154,7 @@ static void finish_chunk(const Cap *c, const breccia_batch *batch, int first, in
     if (!chunk->flows[p]) continue;
     for (int n = 0; n < 6; ++n)
       out[CAP_HISTORY * p + n] = batch->strain[n][first + p] * (n < 3 ? 1 : 0.5) -
-                             chunk->s[n][p] * chunk->shrink[p] * half + (n < 3 ? chunk->invariant[p] * ninth : 0);
+                                 chunk->s[n][p] * chunk->shrink[p] * half + (n < 3 ? chunk->invariant[p] * ninth : 0);
     out[CAP_HISTORY * p + CAP_PARAMETER] = chunk->cap[p];
   }
 }
