@@ -56,12 +56,9 @@ LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
   return (Lanes){from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
 }
 
-/** Four numbers side by side in each of four rows of an array, turned round: out[k] has the k-th of each row.
- *  @param[in] stride  numbers per row */
-LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_t *index, Lanes out[LANES])
+/** Four rows of four numbers, turned round: out[k] has the k-th of each row. */
+LANES_INLINE void lanes_turn(Lanes a, Lanes b, Lanes c, Lanes d, Lanes out[LANES])
 {
-  Lanes a = lanes_load(from + (int64_t)index[0] * stride), b = lanes_load(from + (int64_t)index[1] * stride);
-  Lanes c = lanes_load(from + (int64_t)index[2] * stride), d = lanes_load(from + (int64_t)index[3] * stride);
   Lanes ac = __builtin_shufflevector(a, c, 0, 1, 4, 5), bd = __builtin_shufflevector(b, d, 0, 1, 4, 5);
   out[0] = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
   out[1] = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
@@ -69,6 +66,14 @@ LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_
   bd = __builtin_shufflevector(b, d, 2, 3, 6, 7);
   out[2] = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
   out[3] = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
+}
+
+/** Four numbers side by side in each of four rows of an array, turned round.
+ *  @param[in] stride  numbers per row */
+LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_t *index, Lanes out[LANES])
+{
+  lanes_turn(lanes_load(from + (int64_t)index[0] * stride), lanes_load(from + (int64_t)index[1] * stride),
+             lanes_load(from + (int64_t)index[2] * stride), lanes_load(from + (int64_t)index[3] * stride), out);
 }
 
 /** All bits set in the lanes whose bit (0 to 3) is set in `bits`. Looked up: computing it took two registers that the sweeps

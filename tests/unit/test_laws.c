@@ -14,7 +14,6 @@ typedef struct Sample {
   const char *name;
   Material (*make)(void);
   double strain;   /* at which the law is well beyond its elastic range */
-  bool consistent; /* its tangent is the derivative of a whole step */
   bool associated; /* closed cycles of strain take work */
   double (*over)(const Point *p,
                  const double stress[6]); /* how far the stress is outside, over a strength; NULL: no such test */
@@ -184,20 +183,20 @@ static double over_tension(const Point *p, const double s[6])
 }
 
 static const Sample samples[] = {
-    {"elastic", elastic, 1e-3, true, true, NULL},
-    {"j2", j2, 5e-3, true, true, NULL},
-    {"j2 fixed", j2_fixed, 5e-3, true, true, over_j2},
-    {"multi-yield-j2", clay, 5e-3, false, false, over_clay},
-    {"cap", cap, 5e-3, true, false, over_envelope},
-    {"strict cap", strict_cap, 5e-3, true, true, over_cap},
-    {"drucker-prager", soil, 5e-3, true, false, over_soil},
-    {"drucker-prager associated", rock, 5e-3, true, true, NULL},
-    {"mohr-coulomb", coulomb, 5e-3, true, false, over_coulomb},
-    {"mohr-coulomb associated", coulomb_tip, 5e-3, true, true, NULL},
-    {"tresca", tresca, 5e-3, true, true, over_tresca},
-    {"bounding-surface-clay", bounding, 5e-3, true, false, over_bounding},
-    {"damage-plasticity", damage_plasticity, 2e-3, true, false, NULL},
-    {"mazars", mazars, 1e-3, true, true, over_tension},
+    {"elastic", elastic, 1e-3, true, NULL},
+    {"j2", j2, 5e-3, true, NULL},
+    {"j2 fixed", j2_fixed, 5e-3, true, over_j2},
+    {"multi-yield-j2", clay, 5e-3, false, over_clay},
+    {"cap", cap, 5e-3, false, over_envelope},
+    {"strict cap", strict_cap, 5e-3, true, over_cap},
+    {"drucker-prager", soil, 5e-3, false, over_soil},
+    {"drucker-prager associated", rock, 5e-3, true, NULL},
+    {"mohr-coulomb", coulomb, 5e-3, false, over_coulomb},
+    {"mohr-coulomb associated", coulomb_tip, 5e-3, true, NULL},
+    {"tresca", tresca, 5e-3, true, over_tresca},
+    {"bounding-surface-clay", bounding, 5e-3, false, over_bounding},
+    {"damage-plasticity", damage_plasticity, 2e-3, false, NULL},
+    {"mazars", mazars, 1e-3, true, over_tension},
 };
 enum { SAMPLES = sizeof samples / sizeof *samples };
 
@@ -229,48 +228,49 @@ static void wander_anew(uint64_t *seed, const Material *m, Point *p, double size
   wander(seed, size, *length, strain);
 }
 
+/** How far the tangent of a strain is from central differences of steps of size h, over the stiffness; -1 at a kink. */
+static double tangent_error(Point *p, const double strain[6], double h)
+{
+  const double whole = stiffness(p->m);
+  double s[6], tangent[36], worst = 0;
+  point_try(p, strain, s, tangent, 0);
+  bool kink = false;
+  for (int k = 0; k < 6; ++k) {
+    double at[4][6]; /* -2h, -h, h, 2h */
+    for (int i = 0; i < 4; ++i) {
+      double e[6];
+      memcpy(e, strain, sizeof e);
+      e[k] += (i < 2 ? i - 2 : i - 1) * h;
+      point_try(p, e, at[i], NULL, 0);
+    }
+    for (int r = 0; r < 6; ++r) {
+      const double near = (at[2][r] - at[1][r]) / (2 * h), far = (at[3][r] - at[0][r]) / (4 * h);
+      const double left = (s[r] - at[1][r]) / h, right = (at[2][r] - s[r]) / h, left2 = (at[1][r] - at[0][r]) / h,
+                   right2 = (at[3][r] - at[2][r]) / h;
+      const double bend = fabs(right - left) / whole, bend2 = fabs(right2 - right) / whole,
+                   bend3 = fabs(left2 - left) / whole;
+      if (fmax(bend, fmax(bend2, bend3)) > 3e-3) kink = true;
+      worst = fmax(worst, fabs((4 * near - far) / 3 - tangent[6 * r + k]) / whole);
+    }
+  }
+  return kink ? -1 : worst;
+}
+
 static void tangents_are_derivatives_of_steps(void **state)
 {
   (void)state;
   for (int n = 0; n < SAMPLES; ++n) {
-    if (!samples[n].consistent) continue;
     Material m = samples[n].make();
     Point p = point_start(&m);
     uint64_t seed = 17;
-    const double size = samples[n].strain, whole = stiffness(&m);
-    double strain[6] = {0};
-    int smooth = 0, kinks = 0;
+    double strain[6] = {0}, s[6], length;
+    int smooth = 0;
     for (int step = 0; step < 3000; ++step) {
-      double length;
-      wander_anew(&seed, &m, &p, size, step, &length, strain);
-      double s[6], tangent[36], worst = 0;
-      point_try(&p, strain, s, tangent, 0);
-      bool kink = false;
-      const double h = 1e-4 * length;
-      for (int k = 0; k < 6; ++k) {
-        double at[4][6]; /* -2h, -h, h, 2h */
-        for (int i = 0; i < 4; ++i) {
-          double e[6];
-          memcpy(e, strain, sizeof e);
-          e[k] += (i < 2 ? i - 2 : i - 1) * h;
-          point_try(&p, e, at[i], NULL, 0);
-        }
-        for (int r = 0; r < 6; ++r) {
-          const double near = (at[2][r] - at[1][r]) / (2 * h), far = (at[3][r] - at[0][r]) / (4 * h);
-          const double left = (s[r] - at[1][r]) / h, right = (at[2][r] - s[r]) / h, left2 = (at[1][r] - at[0][r]) / h,
-                       right2 = (at[3][r] - at[2][r]) / h;
-          const double bend = fabs(right - left) / whole, bend2 = fabs(right2 - right) / whole,
-                       bend3 = fabs(left2 - left) / whole;
-          if (fmax(bend, fmax(bend2, bend3)) > 3e-3) kink = true;
-          worst = fmax(worst, fabs((4 * near - far) / 3 - tangent[6 * r + k]) / whole);
-        }
-      }
-      if (kink)
-        ++kinks;
-      else {
-        ++smooth;
-        if (worst > 1e-6) fail_msg("%s: tangent off by %.2e in step %d", samples[n].name, worst, step);
-      }
+      wander_anew(&seed, &m, &p, samples[n].strain, step, &length, strain);
+      double error = tangent_error(&p, strain, 1e-4 * length);
+      if (error > 1e-6) error = tangent_error(&p, strain, 1e-6 * length); /* a slight kink nearby? */
+      if (error > 1e-6) fail_msg("%s: tangent off by %.2e in step %d", samples[n].name, error, step);
+      smooth += error >= 0;
       point_try(&p, strain, s, NULL, 0);
       point_commit(&p);
     }
@@ -643,7 +643,7 @@ static void plane_stress_holds_whatever_the_path(void **state)
         double most = 0;
         for (int k = 0; k < 6; ++k) most = fmax(most, fabs(points.stress[k][i]));
         /* Two laws jump: one where its number of parts changes, the other where a step becomes a reversal. */
-        const bool jumps = !samples[n].consistent || samples[n].make == bounding;
+        const bool jumps = samples[n].make == clay || samples[n].make == bounding;
         const double part = jumps ? 0.1 : 1e-9;
         if (fabs(points.stress[ZZ][i]) > part * (most + stiffness(&m) * fabs(points.strain[ZZ][i])))
           fail_msg("%s: stress zz %g of %g in step %d", samples[n].name, points.stress[ZZ][i], most, step);
