@@ -187,20 +187,23 @@ LANES_INLINE void translate(Four *f, LaneMask where)
   }
 }
 
-/** Points of `where` go along their rays from a centre to a distance. @param[in] d  derivatives of the centre, or NULL: it stays */
-LANES_INLINE void pull_to(Four *f, LaneMask where, const Tensors *centre, Lanes distance, const Tensors *d)
+/** Points of `where` go along their rays from a centre to a distance. */
+LANES_INLINE void pull_to(Four *f, LaneMask where, const Tensors *centre, Lanes distance)
 {
   const Tensors u = difference(&f->s, centre);
-  const Lanes square = product(&u, &u), factor = distance / lanes_root(square);
-  const Tensors to = combine(lanes_set(1), centre, factor, &u);
+  const Tensors to = combine(lanes_set(1), centre, distance / lanes_root(product(&u, &u)), &u);
   assign(where, &f->s, &to);
+}
+
+/** Points of `where` end on the outermost surface, which never moves. */
+LANES_INLINE void pull_to_outermost(Four *f, LaneMask where)
+{
+  const Lanes zero = lanes_set(0), square = product(&f->s, &f->s), factor = f->radius / lanes_root(square);
   for (int j = 0; f->d && j < 6; ++j) {
-    Tensors du = f->d->s[j];
-    if (d) du = difference(&du, &d[j]);
-    du = combine(factor, &du, -factor * product(&u, &du) / square, &u);
-    if (d) du = combine(lanes_set(1), &d[j], lanes_set(1), &du);
-    assign(where, &f->d->s[j], &du);
+    const Tensors *ds = &f->d->s[j], to = combine(factor, ds, -factor * product(&f->s, ds) / square, &f->s);
+    assign(where, &f->d->s[j], &to);
   }
+  pull_to(f, where, &(Tensors){{zero, zero, zero, zero, zero, zero}}, f->radius);
 }
 
 /** Adds the derivatives of an elastic deviator to those of s. */
@@ -245,16 +248,16 @@ LANES_INLINE void advance(Four *f, const Tensors *step, Lanes twice, LaneMask ru
     }
     const LaneMask outermost = run & at_least(f->active, last);
     if (any(outermost)) {
-      pull_to(f, outermost, &(Tensors){{zero, zero, zero, zero, zero, zero}}, f->radius, NULL);
+      pull_to_outermost(f, outermost);
       run &= ~outermost;
       ends &= ~outermost;
     }
-    for (int guard = 0; guard < 100; ++guard) { /* roundings and coarse steps may leave s inside: push it back out */
+    for (int guard = 0; guard < 100; ++guard) { /* roundings may leave s inside: push it back out */
       const Tensors u = difference(&f->s, &f->centre);
       const Lanes square = product(&u, &u);
       const LaneMask inside = run & (square < f->radius * f->radius) & (square > zero);
       if (!any(inside)) break;
-      pull_to(f, inside, &f->centre, f->radius * lanes_set(guard ? 1 + 1e-13 : 1), f->d ? f->d->centre : NULL);
+      pull_to(f, inside, &f->centre, f->radius * lanes_set(guard ? 1 + 1e-13 : 1));
     }
     locate_next(f);
     const Tensors past = difference(&f->s, &f->next);
@@ -319,7 +322,6 @@ LANES_INLINE void integrate(Four *f, const Tensors *de)
 {
   const int last = f->law->surfaces;
   const Lanes one = lanes_set(1), twice = lanes_set(2) * f->shear;
-  const Tensors start = f->s;
   Tensors step = *de;
   for (int k = 0; k < 6; ++k) step.at[k] *= twice;
   locate(f);
@@ -332,8 +334,8 @@ LANES_INLINE void integrate(Four *f, const Tensors *de)
   }
   const Lanes stiffness = one - look_up(f->law->flow, f->active), square = product(&step, &step),
               whole = f->scale * lanes_set(f->law->radius[last] / last);
-  const LaneMask still = square == lanes_set(0), coarse = stiffness * stiffness * square >= whole * whole;
-  int parts[LANES] = {1, 1, 1, 1}, most = 1, before[LANES];
+  const LaneMask coarse = stiffness * stiffness * square >= whole * whole;
+  int parts[LANES] = {1, 1, 1, 1}, most = 1;
   Lanes share = one;
   if (any(coarse)) {
     for (int l = 0; l < LANES; ++l) {
@@ -345,12 +347,7 @@ LANES_INLINE void integrate(Four *f, const Tensors *de)
     }
     for (int k = 0; k < 6; ++k) step.at[k] *= share;
   }
-  for (int l = 0; l < LANES; ++l) before[l] = f->active[l];
   for (int part = 0; part < most; ++part) advance(f, &step, twice * share, at_least(parts, part + 1));
-  /* Where nothing moves only the derivative was wanted. */
-  assign(still, &f->s, &start);
-  for (int l = 0; l < LANES; ++l)
-    if (still[l]) f->active[l] = before[l];
 }
 
 /** Heads of four rows of history, turned round. */
