@@ -21,9 +21,11 @@ LANES_INLINE Lanes column(const double *rows, int at)
 }
 
 BRECCIA_CLONES
-static void try_chunk(const Cap *c, const double *rows, const double *const strain[6], Chunk *chunk)
+static void try_chunk(const Cap *c, const double *rows, const double *const strain[6], double *const stress[6],
+                      Chunk *chunk)
 {
-  const Lanes twice = lanes_set(2 * c->elastic.shear), third = lanes_set(1.0 / 3), half = lanes_set(0.5);
+  const Lanes bulk = lanes_set(c->elastic.bulk), twice = lanes_set(2 * c->elastic.shear), third = lanes_set(1.0 / 3),
+              half = lanes_set(0.5);
   for (int p = 0; p < CHUNK; p += LANES, rows += LANES * CAP_HISTORY) {
     Lanes e[6], volume, square;
     for (int n = 0; n < 3; ++n) e[n] = lanes_load(strain[n] + p) - column(rows, n);
@@ -33,6 +35,7 @@ static void try_chunk(const Cap *c, const double *rows, const double *const stra
     for (int n = 0; n < 6; ++n) {
       e[n] *= twice;
       lanes_store(chunk->s[n] + p, e[n]);
+      lanes_store(stress[n] + p, n < 3 ? e[n] + bulk * volume : e[n]);
     }
     square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + lanes_set(2) * (e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
     const Lanes trial = lanes_set(-3 * c->elastic.bulk) * volume, k = column(rows, CAP_PARAMETER);
@@ -137,24 +140,19 @@ static void return_chunk_to_cap(const Cap *c, Chunk *chunk, int count)
   }
 }
 
-/** Stresses, and histories of what flows. */
+/** Stresses and histories of what flows. */
 BRECCIA_CLONES
 static void finish_chunk(const Cap *c, const breccia_batch *batch, int first, int count, const Chunk *chunk)
 {
   const double half = 1 / (2 * c->elastic.shear), ninth = 1 / (9 * c->elastic.bulk);
-  for (int n = 0; n < 6; ++n) {
-    double *stress = batch->stress[n] + first;
-    const double part = n < 3 ? 1.0 / 3 : 0;
-    for (int p = 0; p < count; ++p) stress[p] = chunk->s[n][p] * chunk->shrink[p] - part * chunk->invariant[p];
-  }
-  const double *rows = batch->committed + (ptrdiff_t)CAP_HISTORY * first;
   double *out = batch->trial + (ptrdiff_t)CAP_HISTORY * first;
-  memcpy(out, rows, sizeof(double) * CAP_HISTORY * (size_t)count);
   for (int p = 0; p < count; ++p) {
     if (!chunk->flows[p]) continue;
-    for (int n = 0; n < 6; ++n)
-      out[CAP_HISTORY * p + n] = batch->strain[n][first + p] * (n < 3 ? 1 : 0.5) -
-                                 chunk->s[n][p] * chunk->shrink[p] * half + (n < 3 ? chunk->invariant[p] * ninth : 0);
+    for (int n = 0; n < 6; ++n) {
+      const double s = chunk->s[n][p] * chunk->shrink[p], i = n < 3 ? chunk->invariant[p] : 0;
+      batch->stress[n][first + p] = s - i / 3;
+      out[CAP_HISTORY * p + n] = batch->strain[n][first + p] * (n < 3 ? 1 : 0.5) - s * half + i * ninth;
+    }
     out[CAP_HISTORY * p + CAP_PARAMETER] = chunk->cap[p];
   }
 }
@@ -212,11 +210,16 @@ static int return_chunk(const Cap *c, const breccia_batch *batch, int first, int
 int cap_update_many(const Cap *c, const breccia_batch *batch)
 {
   Chunk chunk;
-  double padded[6][CHUNK], rows[CHUNK * CAP_HISTORY];
+  double padded[6][CHUNK], padded_stress[6][CHUNK], rows[CHUNK * CAP_HISTORY];
   for (int first = 0; first < batch->count; first += CHUNK) {
     const int count = batch->count - first < CHUNK ? batch->count - first : CHUNK;
     const double *history = batch->committed + (ptrdiff_t)CAP_HISTORY * first, *strain[6];
-    for (int n = 0; n < 6; ++n) strain[n] = batch->strain[n] + first;
+    double *stress[6];
+    for (int n = 0; n < 6; ++n) {
+      strain[n] = batch->strain[n] + first;
+      stress[n] = count < CHUNK ? padded_stress[n] : batch->stress[n] + first;
+    }
+    memcpy(batch->trial + (ptrdiff_t)CAP_HISTORY * first, history, sizeof(double) * CAP_HISTORY * (size_t)count);
     if (count < CHUNK) {
       memset(rows, 0, sizeof rows);
       memset(padded, 0, sizeof padded);
@@ -227,7 +230,9 @@ int cap_update_many(const Cap *c, const breccia_batch *batch)
         strain[n] = padded[n];
       }
     }
-    try_chunk(c, history, strain, &chunk);
+    try_chunk(c, history, strain, stress, &chunk);
+    for (int n = 0; count < CHUNK && n < 6; ++n)
+      memcpy(batch->stress[n] + first, stress[n], sizeof(double) * (size_t)count);
     const int bad = return_chunk(c, batch, first, count, &chunk);
     if (bad >= 0) return bad;
     finish_chunk(c, batch, first, count, &chunk);

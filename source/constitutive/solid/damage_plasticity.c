@@ -7,6 +7,7 @@
  *
  * The flow keeps the direction of the trial deviator, and all else follows from one multiplier: its equation has one unknown. */
 #include "constitutive/solid/dual.h"
+#include "constitutive/solid/elastic_first.h"
 #include "constitutive/solid/spectral.h"
 
 typedef struct DamagePlasticity {
@@ -207,16 +208,6 @@ static double find_multiplier(const DamagePlasticity *c, const double trial[3], 
   return NAN;
 }
 
-/** True for a point that was never plastic and whose effective stress lies inside even by the bounds of its principal values. */
-static bool is_untouched(const DamagePlasticity *c, const double *committed, const double effective[6])
-{
-  if (committed[IN_TENSION] > 0 || committed[IN_COMPRESSION] > 0) return false;
-  double mean;
-  const double radius = spectral_radius(effective, &mean), most = fmax(0, mean + 2 * radius);
-  const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
-  return 3 * radius + c->alpha * 3 * mean + fmax(0, beta) * most <= (1 - c->alpha) * c->compression;
-}
-
 static bool update_point(const void *constants, SolidPoint *p)
 {
   const DamagePlasticity *c = constants;
@@ -226,11 +217,6 @@ static bool update_point(const void *constants, SolidPoint *p)
   const double volume = lambda * trace(elastic);
   elastic_stress(&c->elastic, elastic, effective);
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
-  if (p->elastic || is_untouched(c, p->committed, effective)) {
-    memcpy(p->stress, effective, sizeof effective);
-    if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
-    return true;
-  }
   const Spectrum strain = spectrum_of(elastic);
   double trial[3], scale = c->compression;
   for (int k = 0; k < 3; ++k) {
@@ -266,9 +252,22 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
+LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+{
+  const DamagePlasticity *c = constants;
+  const Lanes zero = lanes_set(0), radius = trial_radius(t),
+              most = lanes_greatest(zero, t->invariant / lanes_set(3) + lanes_set(2) * radius);
+  const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
+  const Lanes stress = lanes_set(3) * radius + lanes_set(c->alpha) * t->invariant + lanes_set(fmax(0, beta)) * most;
+  return (trial_history(t, IN_TENSION) <= zero) & (trial_history(t, IN_COMPRESSION) <= zero) &
+         (stress <= lanes_set((1 - c->alpha) * c->compression));
+}
+
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return solid_update(constants, batch, HISTORY, update_point);
+  const DamagePlasticity *c = constants;
+  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, true, inside, update_point);
 }
 
 const breccia_law law_damage_plasticity = {

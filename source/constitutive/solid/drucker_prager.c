@@ -1,6 +1,7 @@
 /* Drucker-Prager plasticity with a tension cut-off (Drucker and Prager 1952; docs/theory.md 8.4), tension positive:
  * sqrt(J2) + a I1 = k, flow along sqrt(J2) + a' I1, I1 <= T. Inside, |s| + A I1 = sqrt(2/3) Y(x) with A = sqrt(2) a and
  * Y = sqrt(3) k + H x + dY (1 - exp(-d x)), x the equivalent plastic strain. */
+#include "constitutive/solid/elastic_first.h"
 #include "constitutive/solid/hardening.h"
 
 typedef struct DruckerPrager {
@@ -97,7 +98,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
   double i = trial, returned = length, flow = 0;
   ReturnSlopes slopes = {0};
-  if (p->elastic || (excess <= 0 && trial <= c->cut)) {
+  if (excess <= 0 && trial <= c->cut) {
     for (int k = 0; k < 6; ++k) p->stress[k] = s[k] + (k < 3 ? i / 3 : 0);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
@@ -137,9 +138,18 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
+LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+{
+  const DruckerPrager *c = constants;
+  const Lanes radius = hardening_least(&c->hardening, trial_history(t, EQUIVALENT));
+  return (t->length + lanes_set(c->slope) * t->invariant <= radius) & (t->invariant <= lanes_set(c->cut));
+}
+
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return solid_update(constants, batch, HISTORY, update_point);
+  const DruckerPrager *c = constants;
+  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, true, inside, update_point);
 }
 
 const breccia_law law_drucker_prager = {

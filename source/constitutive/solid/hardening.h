@@ -3,6 +3,7 @@
 #ifndef BRECCIA_CONSTITUTIVE_HARDENING_H
 #define BRECCIA_CONSTITUTIVE_HARDENING_H
 
+#include "base/lanes.h"
 #include "constitutive/solid/solid_law.h"
 
 typedef struct Hardening {
@@ -14,6 +15,12 @@ static inline double hardening_strength(const Hardening *h, double x, double *sl
   const double fall = h->gain > 0 ? h->gain * exp(-h->rate * x) : 0;
   *slope = h->rate * fall + h->modulus;
   return h->first + h->gain - fall + h->modulus * x;
+}
+
+/** sqrt(2/3) times a strength that is reached at least. */
+LANES_INLINE Lanes hardening_least(const Hardening *h, Lanes x)
+{
+  return lanes_set(root23) * (lanes_set(h->first) + lanes_set(h->modulus) * x);
 }
 
 /** Multiplier g >= 0 of excess - stiffness g = sqrt(2/3) (Y(x + sqrt(2/3) g) - Y(x)); Newton's method never overshoots, because Y is concave.

@@ -1,5 +1,6 @@
 /* J2 plasticity: the yield stress grows linearly and towards a saturation, the yield surface may travel (docs/theory.md 8.2, Simo and
  * Hughes 1998, ch. 3): |s - b| = sqrt(2/3) Y(x), Y = Y1 + (Y0 - Y1) exp(-d x) + H x, db = 2/3 Hk dg n, dx = sqrt(2/3) dg. */
+#include "constitutive/solid/elastic_first.h"
 #include "constitutive/solid/hardening.h"
 
 typedef struct J2 {
@@ -55,7 +56,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   const double length = travels ? norm(distance) : trial_length, x = old[EQUIVALENT];
   memcpy(p->trial, old, sizeof(double) * (travels ? 13 : 7));
   double strength = hardening_strength(&c->hardening, x, &slope), radius = root23 * strength;
-  if (p->elastic || length <= radius) {
+  if (length <= radius) {
     for (int k = 0; k < 6; ++k) p->stress[k] = s[k] + (k < 3 ? invariant / 3 : 0);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
     return true;
@@ -79,9 +80,27 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
+LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+{
+  const J2 *c = constants;
+  Lanes length = t->length;
+  if (c->kinematic > 0) {
+    Lanes square = lanes_set(0);
+    for (int k = 0; k < 6; ++k) {
+      const Lanes distance = t->s[k] - trial_history(t, BACK + k);
+      square += lanes_set(k < 3 ? 1 : 2) * distance * distance;
+    }
+    length = lanes_root(square);
+  }
+  return length <= hardening_least(&c->hardening, trial_history(t, EQUIVALENT));
+}
+
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return solid_update(constants, batch, history_values(constants), update_point);
+  const J2 *c = constants;
+  return solid_update_elastic_first(constants, batch, c->kinematic > 0 ? 13 : 7, &c->elastic, true, inside,
+                                    update_point);
 }
 
 const breccia_law law_j2 = {

@@ -5,6 +5,7 @@
  * In tension D_t = 1 - k0 / k exp(-B_t (k - k0)) with 1 / B_t = G_F / (l E k0) - k0 / 2: the curve peaks at E k0 and spends G_F over the
  * length l whatever that is. In compression D_c = 1 - k0 (1 - A) / k - A exp(-B (k - k0)). */
 #include "constitutive/solid/dual.h"
+#include "constitutive/solid/elastic_first.h"
 #include "constitutive/solid/spectral.h"
 
 typedef struct Mazars {
@@ -114,13 +115,6 @@ static bool update_point(const void *constants, SolidPoint *p)
 {
   const Mazars *c = constants;
   memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
-  /* The equivalent strain is never larger than the norm of all strains. */
-  const bool untouched = p->committed[LARGEST] <= c->threshold && norm(p->strain) <= c->threshold;
-  if (p->elastic || untouched) {
-    elastic_stress(&c->elastic, p->strain, p->stress);
-    if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
-    return true;
-  }
   const Spectrum spectrum = spectrum_of(p->strain);
   Dual strain[3], stress[3], largest, damage;
   for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
@@ -139,9 +133,21 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
+/** Points that were never damaged and whose strains, all together, are less than what damages. */
+LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+{
+  const Mazars *c = constants;
+  const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
+              mean = t->invariant * lanes_set(1 / (9 * c->elastic.bulk)),
+              square = deviator * deviator + lanes_set(3) * mean * mean;
+  return (trial_history(t, LARGEST) <= lanes_set(c->threshold)) & (square <= lanes_set(c->threshold * c->threshold));
+}
+
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return solid_update(constants, batch, HISTORY, update_point);
+  const Mazars *c = constants;
+  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, false, inside, update_point);
 }
 
 const breccia_law law_mazars = {

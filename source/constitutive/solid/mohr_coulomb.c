@@ -4,6 +4,7 @@
  * In principal stresses all surfaces are planes and the law does not harden, so that the return to any set of planes is one linear
  * system. The sets that a sorted stress can end on are few: they are tried in turn, and the first whose multipliers and
  * stress are admissible is it. */
+#include "constitutive/solid/elastic_first.h"
 #include "constitutive/solid/spectral.h"
 
 #include "base/linear.h"
@@ -145,19 +146,10 @@ static bool update_point(const void *constants, SolidPoint *p)
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[PLASTIC + k];
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const double volume = lambda * trace(elastic);
-  double mean, trial[3], stress[3], slopes[9];
-  const double radius = spectral_radius(elastic, &mean) * twice;
-  mean = 3 * c->elastic.bulk * mean;
-  /* Bounds of the principal stresses tell most points that stay elastic. */
-  bool inside = p->elastic ||
-                (2 * radius * (sqrt(3) + c->sine) + 2 * mean * c->sine <= c->limit && mean + 2 * radius <= c->tensile);
-  Spectrum strain = {0};
-  if (!inside) {
-    strain = spectrum_of(elastic);
-    for (int k = 0; k < 3; ++k) trial[k] = stress[k] = volume + twice * strain.value[k];
-    inside = excess_of(c, SHEAR13, trial) <= 0 && excess_of(c, TENSION1, trial) <= 0;
-  }
-  if (inside) {
+  double trial[3], stress[3], slopes[9];
+  const Spectrum strain = spectrum_of(elastic);
+  for (int k = 0; k < 3; ++k) trial[k] = stress[k] = volume + twice * strain.value[k];
+  if (excess_of(c, SHEAR13, trial) <= 0 && excess_of(c, TENSION1, trial) <= 0) {
     elastic_stress(&c->elastic, elastic, p->stress);
     memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
     if (p->tangent) elastic_tangent(&c->elastic, p->tangent);
@@ -194,9 +186,19 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
+LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+{
+  const MohrCoulomb *c = constants;
+  const Lanes radius = trial_radius(t), mean = t->invariant / lanes_set(3), two = lanes_set(2);
+  return (two * (radius * lanes_set(sqrt(3) + c->sine) + mean * lanes_set(c->sine)) <= lanes_set(c->limit)) &
+         (mean + two * radius <= lanes_set(c->tensile));
+}
+
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return solid_update(constants, batch, HISTORY, update_point);
+  const MohrCoulomb *c = constants;
+  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, true, inside, update_point);
 }
 
 const breccia_law law_mohr_coulomb = {

@@ -72,21 +72,29 @@ typedef struct SolidPoint {
 /** @return true if the point could be integrated */
 typedef bool (*SolidPointUpdate)(const void *constants, SolidPoint *point);
 
+/** Point i of a batch. @return true if it could be integrated */
+static inline bool solid_update_one(const void *constants, const breccia_batch *batch, int history_values, int i,
+                                    SolidPointUpdate update_point)
+{
+  SolidPoint point = {.committed = batch->committed + (ptrdiff_t)history_values * i,
+                      .trial = batch->trial + (ptrdiff_t)history_values * i,
+                      .tangent = batch->tangent ? batch->tangent + 36 * i : NULL,
+                      .elastic = batch->elastic_stage};
+  for (int k = 0; k < 6; ++k) point.strain[k] = batch->strain[k][i] * (k < 3 ? 1 : 0.5);
+  if (!update_point(constants, &point)) return false;
+  for (int k = 0; k < 6; ++k) {
+    if (!isfinite(point.stress[k])) return false;
+    batch->stress[k][i] = point.stress[k];
+  }
+  return true;
+}
+
+/** `update` of a law, point after point. */
 __attribute__((always_inline)) static inline int solid_update(const void *constants, const breccia_batch *batch,
                                                               int history_values, SolidPointUpdate update_point)
 {
-  for (int i = 0; i < batch->count; ++i) {
-    SolidPoint point = {.committed = batch->committed + (ptrdiff_t)history_values * i,
-                        .trial = batch->trial + (ptrdiff_t)history_values * i,
-                        .tangent = batch->tangent ? batch->tangent + 36 * i : NULL,
-                        .elastic = batch->elastic_stage};
-    for (int k = 0; k < 6; ++k) point.strain[k] = batch->strain[k][i] * (k < 3 ? 1 : 0.5);
-    if (!update_point(constants, &point)) return i;
-    for (int k = 0; k < 6; ++k) {
-      if (!isfinite(point.stress[k])) return i;
-      batch->stress[k][i] = point.stress[k];
-    }
-  }
+  for (int i = 0; i < batch->count; ++i)
+    if (!solid_update_one(constants, batch, history_values, i, update_point)) return i;
   return -1;
 }
 

@@ -27,16 +27,6 @@ static inline Spectrum spectrum_of(const double a[6])
   return sorted;
 }
 
-/** Bounds of the eigenvalues from mean and deviator alone, for points so far inside that no decomposition is needed: none is larger than
- *  mean + 2 r, the largest less the smallest no more than 2 sqrt(3) r. @return r = sqrt(J2 / 3) */
-static inline double spectral_radius(const double a[6], double *mean)
-{
-  double d[6];
-  deviator(a, d);
-  *mean = trace(a) / 3;
-  return sqrt(contract(d, d) / 6);
-}
-
 /** The symmetric tensor with these eigenvalues and the spectrum's eigenvectors. */
 static inline void spectral_tensor(const Spectrum *s, const double value[3], double tensor[6])
 {

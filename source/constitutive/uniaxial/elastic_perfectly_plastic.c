@@ -48,9 +48,9 @@ static void update_point(const void *constants, UniaxialPoint *p)
 {
   const Perfect *c = constants;
   const double trial = c->young * (p->strain - p->committed[0]);
-  p->stress = fmax(-c->compression, fmin(trial, c->tension));
+  p->stress = uniaxial_between(-c->compression, trial, c->tension);
   /* A point that stands at yield, roundings apart, counts as plastic. */
-  const double room = fmin(c->tension - trial, c->compression + trial);
+  const double room = c->tension - trial < c->compression + trial ? c->tension - trial : c->compression + trial;
   p->tangent = room > c->young * 2.3e-16 ? c->young : 0;
   if (p->stress != trial) p->trial[0] = p->strain - p->stress / c->young;
 }

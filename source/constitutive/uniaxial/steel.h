@@ -42,6 +42,7 @@ static inline void steel_prepare(Steel *c, const double *v)
 /** Yield line over f_y after strains have run from `low` to `high`. */
 static inline double steel_shift(const Steel *c, int tension, double low, double high)
 {
+  if (c->shift[tension] == 0) return 1;
   return 1 + c->shift[tension] * pow((high - low) / (2 * c->range[tension] * c->yield / c->young), 0.8);
 }
 

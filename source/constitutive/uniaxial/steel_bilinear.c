@@ -43,7 +43,7 @@ static void update_point(const void *constants, UniaxialPoint *p)
   double *new = p->trial;
   const double step = p->strain - old[LAST], trial = old[LAST_STRESS] + c->young * step,
                height = c->yield * (1 - c->ratio), line = c->ratio * c->young * p->strain;
-  p->stress = fmax(line - old[SHIFT_LOW] * height, fmin(line + old[SHIFT_HIGH] * height, trial));
+  p->stress = uniaxial_between(line - old[SHIFT_LOW] * height, trial, line + old[SHIFT_HIGH] * height);
   p->tangent = p->stress == trial ? c->young : c->ratio * c->young;
   if (step == 0) return;
   const double direction = step > 0 ? 1 : -1;

@@ -16,6 +16,13 @@ typedef struct UniaxialPoint {
   double *trial; /* a copy of the committed history at first */
 } UniaxialPoint;
 
+/** x, but not below `low` nor above `high`. By comparisons, which cost a tenth of fmin and fmax; NaN stays NaN. */
+static inline double uniaxial_between(double low, double x, double high)
+{
+  x = x > high ? high : x;
+  return x < low ? low : x;
+}
+
 typedef void (*UniaxialPointUpdate)(const void *constants, UniaxialPoint *point);
 
 /** In the elastic stage stress is `young` times strain, and history numbers 0 and 1, which are the last strain and stress if
