@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const Verb *const verbs[] = {&verb_run,      &verb_check,     &verb_new,    &verb_plot,       &verb_models,
-                             &verb_material, &verb_calibrate, &verb_schema, &verb_completion, NULL};
+const Verb *const verbs[] = {&verb_run,       &verb_check, &verb_new,    &verb_plot,       &verb_models, &verb_material,
+                             &verb_calibrate, &verb_serve, &verb_schema, &verb_completion, NULL};
 
 enum { MOST_OPTIONS = 32 };
 

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const breccia_parameter *law_parameters(const DeckReader *reader, const Node *chooser, int *count)
 {
@@ -34,8 +35,28 @@ static const breccia_parameter *law_parameters(const DeckReader *reader, const N
 }
 
 static const Field material_fields[] = {
-    {"model", FIELD_TEXT, offsetof(MaterialSpec, model), NULL, NULL, NULL,
-     "constitutive model; `breccia models` lists them", NULL, NULL, 0},
+    {"model", FIELD_TEXT, offsetof(MaterialSpec, model), NULL, "", NULL,
+     "constitutive model; `breccia models` lists them", NULL, NULL, 'm'},
+    {"opensees", FIELD_TEXT, offsetof(MaterialSpec, opensees), NULL, "", NULL,
+     "instead of a model: a command of OpenSees that makes one point, like `nDMaterial ElasticIsotropic3D $tag 1e5 "
+     "0.3` "
+     "or `uniaxialMaterial Concrete01 $tag ...`; its law then lives in OpenSees (docs/material-server.md)",
+     NULL, NULL, 'm'},
+    {"remote", FIELD_TEXT, offsetof(MaterialSpec, remote), NULL, "", NULL,
+     "instead of a model: a command for the material servers named under `server`; of `breccia serve` it is `LAW; "
+     "KEY=VALUE; ...`",
+     NULL, NULL, 'm'},
+    {"server", FIELD_TEXTS, offsetof(MaterialSpec, servers), NULL, "", NULL,
+     "servers that run already, each of which holds a part of the points: tcp://HOST:PORT, unix:/PATH, udp://HOST:PORT",
+     NULL, NULL, 0},
+    {"processes", FIELD_COUNT, offsetof(MaterialSpec, processes), NULL, "", "[1, 256]",
+     "of `opensees`: how many to start; one per core when absent", NULL, NULL, 0},
+    {"stage", FIELD_COUNT, offsetof(MaterialSpec, stage), NULL, "", "[0, 1]",
+     "of laws that begin elastically in a server: 0 elastic, 1 plastic", NULL, NULL, 0},
+    {"stress unit", FIELD_TEXT, offsetof(MaterialSpec, stress_unit), NULL, "", NULL,
+     "in which the command of a server counts stresses; the deck's when absent", NULL, NULL, 0},
+    {"timeout", FIELD_NUMBER, offsetof(MaterialSpec, timeout), "1", "60", "(0, inf)",
+     "seconds that a server may take for an answer", NULL, NULL, 0},
     {"density", FIELD_NUMBER, offsetof(MaterialSpec, density), "density", NULL, "(0, inf)", "mass per volume", NULL,
      NULL, 0},
     {"smallest strain", FIELD_NUMBER, offsetof(MaterialSpec, smallest_strain), "1", "", "(-inf, 0)",
@@ -82,8 +103,69 @@ double material_failure_strain(const Material *material)
   return material->law->failure_strain ? material->law->failure_strain(material->constants) : INFINITY;
 }
 
+/** A command of OpenSees is words only, and the second names the kind. */
+static int check_command(const DeckReader *reader, const MaterialSpec *spec)
+{
+  const char *c = spec->opensees;
+  const bool solid = !strncmp(c, "nDMaterial ", 11), uniaxial = !strncmp(c, "uniaxialMaterial ", 17);
+  const char *kind = c + (solid ? 11 : 17), *tag = solid || uniaxial ? strchr(kind, ' ') : NULL;
+  if (tag && !strncmp(tag, " $tag", 5) && (tag[5] == ' ' || !tag[5]) && !strpbrk(c, "[];{}\"\\\n")) return BRECCIA_OK;
+  return node_error(reader->document, section_place(spec, "opensees"), reader->error,
+                    "opensees: expected 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...', plain words");
+}
+
+static int create_remote(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length)
+{
+  static const char *const dimensions[] = {"length", "force", "time"};
+  char names[3][64];
+  if (spec->opensees && check_command(reader, spec)) return BRECCIA_USER_ERROR;
+  if (spec->remote && !spec->servers.count)
+    return node_error(reader->document, section_place(spec, "remote"), reader->error,
+                      "remote: give the addresses of its servers under 'server'");
+  RemoteSpec remote = {.material = spec->head.name ? spec->head.name : "of the test",
+                       .command = spec->opensees ? spec->opensees : spec->remote,
+                       .stage = (int)spec->stage,
+                       .servers = spec->servers.items,
+                       .server_count = spec->servers.count,
+                       .processes = spec->processes > 0 ? (int)spec->processes : (int)sysconf(_SC_NPROCESSORS_ONLN),
+                       .timeout = spec->timeout,
+                       .stress_unit = 1,
+                       .length = length};
+  for (int k = 0; k < 3; ++k) {
+    units_name(reader->units, dimension_find(dimensions[k]), names[k], sizeof names[k]);
+    remote.units[k] = names[k];
+  }
+  if (spec->stress_unit) {
+    Text reason = {0};
+    char *one = text_format("1 %s", spec->stress_unit);
+    const int bad = !one || units_read(reader->units, dimension_find("stress"), one, &remote.stress_unit, &reason);
+    if (bad)
+      node_error(reader->document, section_place(spec, "stress unit"), reader->error, "stress unit: %s",
+                 reason.characters ? reason.characters : "out of memory");
+    free(one);
+    text_free(&reason);
+    if (bad) return BRECCIA_USER_ERROR;
+  }
+  Error *error = breccia_error_create();
+  int status = remote_open(&material->remote, &remote, error);
+  if (status)
+    node_error(reader->document, section_place(spec, spec->opensees ? "opensees" : "remote"), reader->error, "%s",
+               breccia_error_text(error));
+  breccia_error_destroy(&error);
+  if (status) return status;
+  material->law = remote_law(material->remote);
+  if (!(material->constants = memory_zeroed(1, sizeof(Remote *), "material", reader->error))) return BRECCIA_FAILURE;
+  memcpy(material->constants, &material->remote, sizeof(Remote *));
+  material->law->moduli(material->constants, &material->bulk, &material->shear);
+  material->history_values = material->law->history_values(material->constants);
+  return BRECCIA_OK;
+}
+
 int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length)
 {
+  material->name = spec->head.name;
+  material->density = spec->density;
+  if (!spec->model) return create_remote(material, reader, spec, length);
   char reason[512] = "";
   const breccia_law *law = law_find(reader->context, spec->model);
   int at = length_parameter(law);
@@ -180,6 +262,7 @@ int material_from_words(Material *material, const breccia_law *law, const char *
 void material_destroy(Material *material)
 {
   if (material->law == &law_min_max) material_destroy(min_max_base(material->constants));
+  remote_close(&material->remote);
   free(material->constants);
   *material = (Material){0};
 }

@@ -3,11 +3,16 @@
 #define BRECCIA_CONSTITUTIVE_MATERIAL_H
 
 #include "constitutive/law.h"
+#include "constitutive/remote/remote.h"
 #include "deck/section.h"
 
 typedef struct MaterialSpec {
   SectionHead head;
-  const char *model;
+  const char *model, *opensees, *remote; /* one of them */
+  int64_t stage, processes;              /* of remote materials; -1: not said */
+  TextList servers;
+  double timeout;
+  const char *stress_unit;
   double density;
   double smallest_strain, largest_strain; /* of laws of one strain; NaN: none */
   double *values;                         /* of the law's parameters, in table order */
@@ -21,6 +26,7 @@ typedef struct Material {
   void *constants; /* owned */
   double density, bulk, shear;
   int history_values;
+  Remote *remote; /* owned; NULL: the law is in this program */
 } Material;
 
 /** Prepares a material from its section (reader->context is the LawList).

@@ -1,6 +1,7 @@
 #include "constitutive/points.h"
 
 #include "base/tensor.h"
+#include "constitutive/remote_points.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,8 +15,7 @@ static int64_t slice_values(const Points *points, int64_t slice)
                   (f->first[slice + 1] - f->stored[slice]) * points->partner_values);
 }
 
-/** Where the row of a bond's point begins, of its own law or of that at the other end. */
-static int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner)
+int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner)
 {
   const Family *f = points->family;
   int64_t own = points->materials[points->material[slice]].history_values, start = points->history_start[slice];
@@ -24,7 +24,7 @@ static int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int l
          ((slot - f->stored[slice]) * SLICE + lane) * points->partner_values;
 }
 
-static const Material *partner_material(const Points *points, int64_t slot, int lane)
+const Material *partner_material(const Points *points, int64_t slot, int lane)
 {
   const Family *f = points->family;
   return &points->materials[points->material[f->neighbour[(int64_t)f->base[slot] * SLICE + lane] / SLICE]];
@@ -79,7 +79,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
 #pragma omp parallel for schedule(static)
   for (int64_t s = 0; s < slices; ++s) begin_slice(points, s);
   if (total) memcpy(points->trial, points->committed, sizeof(double) * (size_t)total);
-  return BRECCIA_OK;
+  return remote_points_create(points, spec->material_count, error);
 }
 
 int points_show(Points *points, Error *error)
@@ -102,6 +102,7 @@ void points_destroy(Points *points)
   free(points->trial);
   free(points->history_start);
   free(points->gave_up);
+  remote_points_destroy(points);
   *points = (Points){0};
 }
 
@@ -110,6 +111,7 @@ void points_commit(Points *points)
   double *trial = points->trial;
   points->trial = points->committed;
   points->committed = trial;
+  remote_points_commit(points);
 }
 
 /** True if the stress zz of point i of a batch is nothing beside its other stresses and what its strain zz would make
@@ -302,6 +304,7 @@ double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int
   const Material *m = partner ? partner_material(points, slot, lane) : &points->materials[points->material[slice]];
   const double *row = points->committed + bond_row(points, slice, slot, lane, partner);
   double stress = NAN, scratch[MOST_VALUES];
+  if (m->remote) return remote_last_stress(row); /* a law elsewhere need not be able to try */
   if (m->history_values > MOST_VALUES) return NAN;
   memcpy(scratch, row, sizeof(double) * (size_t)m->history_values);
   breccia_batch batch = {.count = 1,

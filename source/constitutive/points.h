@@ -10,6 +10,7 @@
 #include "constitutive/material.h"
 #include "family/family.h"
 
+enum { MOST_REMOTE = 16 };
 enum { BLOCK = 128 }; /* points worked on together: their strains, stresses and states stay in the first-level cache */
 
 /** Where points are: nowhere if laws act on bonds and all are linear. */
@@ -28,6 +29,12 @@ typedef struct Points {
   const Material *materials;
   const int32_t *material; /* [slices] */
   const Family *family;
+  int32_t *server; /* [slices] which of its material's servers holds the points of a slice; NULL: no law is remote */
+  int64_t *starts
+      [MOST_REMOTE]; /* of each material: first point of each of its servers, and behind the last; NULL: not remote */
+  double *identity;  /* by which the servers are found again after a restart */
+  size_t identity_size;
+  bool begun;        /* servers have their points */
   int elastic_stage; /* laws respond elastically while it is set */
   uint8_t *
       gave_up; /* [places] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
@@ -73,5 +80,26 @@ double points_bond_history(const Points *points, int64_t place, int k);
 
 /** Makes the trial state the committed one. */
 void points_commit(Points *points);
+
+/* ---- laws that live in other processes (constitutive/remote); nothing happens where none does ---- */
+
+/** Whether the servers have their points. */
+bool points_begun(const Points *points);
+/** Makes the points in the servers: nothing was strained yet. */
+int points_begin(Points *points, Error *error);
+/** Brings histories and `identity` up to date, to be saved. */
+int points_save(Points *points, Error *error);
+/** Takes up servers and their points from histories and `identity` as they were saved. */
+int points_resume(Points *points, Error *error);
+/** Writes strains of slices first .. last - 1, of one material and server, to where they are sent from. */
+void points_pack(Points *points, int64_t first, int64_t last);
+/** Sends the strains of all points of a material in a server. */
+void points_post(Points *points, int material, int server);
+/** Waits for their stresses. @return -1, or the place of a point whose law failed */
+int64_t points_collect(Points *points, int material, int server);
+/** Stresses of slices first .. last - 1 out of what was collected. */
+void points_unpack(Points *points, int64_t first, int64_t last);
+/** What went wrong in a server, one line; "" if nothing did. */
+const char *points_problem(const Points *points);
 
 #endif

@@ -369,6 +369,17 @@ static void read_parameters(const DeckReader *reader, const Node *node, const Se
   }
 }
 
+/** Whether a key of the chooser's group is given instead of it. */
+static bool stands_for(const Node *node, const Section *section)
+{
+  char group = 0;
+  for (int k = 0; k < section->field_count; ++k)
+    if (!strcmp(section->fields[k].key, section->chooser)) group = section->fields[k].group;
+  for (int k = 0; group && k < section->field_count; ++k)
+    if (section->fields[k].group == group && node_get(node, section->fields[k].key)) return true;
+  return false;
+}
+
 void *section_read(const DeckReader *reader, const Node *node, const Section *section)
 {
   if (node->kind != NODE_MAP) {
@@ -384,7 +395,7 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
   bool chosen = true; /* whether unknown keys can be told from known ones */
   if (section->parameters) {
     const Node *chooser = node_get(node, section->chooser);
-    chosen = chooser != NULL;
+    chosen = chooser != NULL || stands_for(node, section);
     if (chooser) {
       int before = error_count(reader->error);
       parameters = section->parameters(reader, chooser, &parameter_count);

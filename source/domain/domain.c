@@ -7,18 +7,22 @@
 #include <string.h>
 
 /** Laws take one strain or six; formulations offer one or the other. */
-static int check_law(const Domain *d, const DeckReader *reader, const MaterialSpec *spec)
+static int check_law(const Domain *d, const DeckReader *reader, const MaterialSpec *spec, const breccia_law *made)
 {
   const LawList *laws = reader->context;
-  const breccia_law *law = law_find(laws, spec->model);
+  const breccia_law *law = spec->model ? law_find(laws, spec->model) : made;
   if (law->uniaxial == d->type->uniaxial) return BRECCIA_OK;
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
     if (law_at(laws, k)->uniaxial == d->type->uniaxial)
       text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
-  node_error(reader->document, section_place(spec, "model"), reader->error,
-             "material '%s': '%s' is a law of %s; %s takes %s", spec->head.name, law->name,
-             law->uniaxial ? "one strain" : "strain in space", d->type->name, words.characters);
+  node_error(reader->document,
+             section_place(spec, spec->model      ? "model"
+                                 : spec->opensees ? "opensees"
+                                                  : "remote"),
+             reader->error, "material '%s': '%s' is a law of %s; %s takes %s", spec->head.name,
+             spec->model ? law->name : law->source, law->uniaxial ? "one strain" : "strain in space", d->type->name,
+             words.characters);
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
@@ -31,8 +35,14 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
   int status = BRECCIA_OK;
   for (int k = 0; k < spec->materials->count; ++k) {
     const MaterialSpec *material = spec->materials->items[k];
-    int bad = check_law(d, reader, material); /* what its parameters lack may follow from that */
-    if (!bad) bad = material_create(&d->materials[d->material_count++], reader, material, length);
+    Material *new = &d->materials[d->material_count];
+    int bad =
+        material->model ? check_law(d, reader, material, NULL) : 0; /* what its parameters lack may follow from that */
+    if (!bad) {
+      ++d->material_count;
+      bad = material_create(new, reader, material, length);
+    }
+    if (!bad && new->remote) bad = check_law(d, reader, material, new->law);
     if (bad) status = bad;
   }
   for (int b = 0; b < spec->blocks->count; ++b) {
@@ -103,6 +113,11 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   return BRECCIA_OK;
 }
 
+static bool same_server(const Domain *d, int64_t a, int64_t b)
+{
+  return !d->points.server || d->points.server[a] == d->points.server[b];
+}
+
 /* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
  * in the cache. */
 static int share_out(Domain *d, Error *error)
@@ -112,9 +127,10 @@ static int share_out(Domain *d, Error *error)
   if (!d->blocks) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < slices;) {
     int64_t end = s + 1, row_end = row_goes_on(d, s) ? s : end;
-    for (; end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s]; ++end)
+    for (; end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s] && same_server(d, s, end);
+         ++end)
       if (!row_goes_on(d, end)) row_end = end + 1;
-    if (row_end > s) end = row_end;
+    if (row_end > s && same_server(d, s, row_end - 1)) end = row_end;
     d->rows_cut |= row_goes_on(d, end - 1);
     d->blocks[d->block_count++] = (Span){s, end};
     s = end;
@@ -123,6 +139,32 @@ static int share_out(Domain *d, Error *error)
   d->block_failed = memory_zeroed((size_t)d->block_count, sizeof(int64_t), "block sums", error);
   if (!d->block_sum || !d->block_failed) return BRECCIA_FAILURE;
   for (int64_t b = 0; b < d->block_count; ++b) d->block_failed[b] = -1;
+  return BRECCIA_OK;
+}
+
+/** Blocks whose laws live in one server, to be sent together. In plane stress each block finds its strain across the plane by itself. */
+static int make_parts(Domain *d, Error *error)
+{
+  const Points *p = &d->points;
+  if (!p->server || p->where != POINTS_ON_PARTICLES || p->space == SPACE_PLANE_STRESS) return BRECCIA_OK;
+  int most = 0;
+  for (int k = 0; k < d->material_count; ++k)
+    if (d->materials[k].remote) most += remote_servers(d->materials[k].remote);
+  d->parts = memory_zeroed((size_t)most, sizeof(Part), "servers", error);
+  d->part_of = memory_zeroed((size_t)d->block_count, sizeof(int32_t), "servers", error);
+  d->carry = memory_zeroed((size_t)d->block_count * CARRY * BLOCK, sizeof(double), "servers", error);
+  if (!d->parts || !d->part_of || !d->carry) return BRECCIA_FAILURE;
+  for (int64_t b = 0; b < d->block_count; ++b) {
+    const int64_t slice = d->blocks[b].first;
+    d->part_of[b] = -1;
+    if (!d->materials[d->material[slice]].remote) continue;
+    int k = 0;
+    while (k < d->part_count && (d->parts[k].material != d->material[slice] || d->parts[k].server != p->server[slice]))
+      ++k;
+    if (k == d->part_count) d->parts[d->part_count++] = (Part){d->material[slice], p->server[slice], b, b};
+    d->parts[k].last = b + 1;
+    d->part_of[b] = k;
+  }
   return BRECCIA_OK;
 }
 
@@ -203,7 +245,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                              .material = d->material,
                              .may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break")};
   if ((status = points_create(&d->points, &points, error))) return status;
-  if ((status = share_out(d, error))) return status;
+  if ((status = share_out(d, error)) || (status = make_parts(d, error))) return status;
   FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};
   d->formulation = d->type->create(&parts, error);
   if (!d->formulation) return BRECCIA_USER_ERROR;
@@ -222,6 +264,9 @@ void domain_destroy(Domain *d)
   free(d->materials);
   free(d->material);
   free(d->blocks);
+  free(d->parts);
+  free(d->part_of);
+  free(d->carry);
   free(d->block_sum);
   free(d->block_failed);
   free(d->family_volume);
@@ -253,6 +298,43 @@ static void answer(Domain *d, int64_t block, bool resume)
   d->type->respond(d->formulation, span.first, span.last, carry);
 }
 
+/** The same of all blocks, where some have laws in servers: strains go out part by part, so that servers work while further
+ *  parts are deformed. */
+static void answer_in_parts(Domain *d)
+{
+  const FormulationType *type = d->type;
+  for (int k = 0; k < d->part_count; ++k) {
+    const Part *part = &d->parts[k];
+#pragma omp for schedule(static)
+    for (int64_t b = part->first; b < part->last; ++b) {
+      if (d->part_of[b] != k) continue;
+      type->deform(d->formulation, d->blocks[b].first, d->blocks[b].last, d->carry + b * CARRY * BLOCK);
+      points_pack(&d->points, d->blocks[b].first, d->blocks[b].last);
+    }
+#pragma omp single nowait
+    points_post(&d->points, part->material, part->server);
+  }
+#pragma omp for schedule(static)
+  for (int64_t b = 0; b < d->block_count; ++b)
+    if (d->part_of[b] < 0) answer(d, b, false);
+  for (int k = 0; k < d->part_count; ++k) {
+    const Part *part = &d->parts[k];
+#pragma omp single
+    {
+      const int64_t failed = points_collect(&d->points, part->material, part->server);
+      for (int64_t b = part->first; b < part->last; ++b)
+        if (d->part_of[b] == k)
+          d->block_failed[b] = failed >= d->blocks[b].first * SLICE && failed < d->blocks[b].last * SLICE ? failed : -1;
+    }
+#pragma omp for schedule(static)
+    for (int64_t b = part->first; b < part->last; ++b) {
+      if (d->part_of[b] != k) continue;
+      points_unpack(&d->points, d->blocks[b].first, d->blocks[b].last);
+      type->respond(d->formulation, d->blocks[b].first, d->blocks[b].last, d->carry + b * CARRY * BLOCK);
+    }
+  }
+}
+
 void domain_forces(Domain *d)
 {
   const FormulationType *type = d->type;
@@ -261,10 +343,12 @@ void domain_forces(Domain *d)
     for (int64_t b = 0; b < d->block_count; ++b)
       type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
   }
+  const bool parts = d->part_count && !d->points.elastic_stage && points_begun(&d->points);
   if (type->deform) {
+    if (parts) answer_in_parts(d);
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < d->block_count; ++b) {
-      answer(d, b, false);
+      if (!parts) answer(d, b, false);
       if (type->row_sums && !d->rows_cut) type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
     }
   }

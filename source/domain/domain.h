@@ -12,6 +12,11 @@ typedef struct Span { /* slices first .. last - 1, of one material, at most BLOC
   int64_t first, last;
 } Span;
 
+typedef struct Part { /* blocks first .. last - 1, those of them whose points are in a server of a material */
+  int material, server;
+  int64_t first, last;
+} Part;
+
 typedef struct BrokenBond {
   int64_t step;
   double time;
@@ -32,6 +37,10 @@ typedef struct Domain {
   Contact contact;
   Span *blocks;
   int64_t block_count;
+  Part *parts; /* of laws in other processes */
+  int part_count;
+  int32_t *part_of;      /* [blocks] or -1; NULL: no law is elsewhere */
+  double *carry;         /* [blocks][CARRY][BLOCK], where there are parts */
   bool rows_cut;         /* a row is longer than a block */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */

@@ -66,8 +66,8 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   deck->reader = (DeckReader){deck->document, deck->units, &deck->laws, error};
   deck->spec = section_read(&deck->reader, deck->document->root, &element_deck_section);
   if (!deck->spec || error_count(error) > before) return BRECCIA_USER_ERROR;
-  deck->law = law_find(&deck->laws, deck->spec->material->model);
   status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN);
+  deck->law = deck->material.law;
   if (!status)
     status =
         element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages, deck->law->uniaxial);

@@ -211,16 +211,21 @@ void breccia_model_destroy(breccia_model **out)
 
 /* ---- stepping ---- */
 
-void model_begin(breccia_model *model)
+int model_begin(breccia_model *model, Error *error)
 {
   set_threads(model);
-  if (!model->begun) explicit_begin(&model->solver);
+  if (model->begun) return BRECCIA_OK;
+  const int status = points_begin(&model->domain.points, error);
+  if (status) return status;
+  explicit_begin(&model->solver);
   model->begun = true;
+  return BRECCIA_OK;
 }
 
 int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error)
 {
-  model_begin(model);
+  const int bad = model_begin(model, error);
+  if (bad) return bad;
   for (int64_t k = 0; k < steps && model->solver.step < model->solver.steps; ++k) {
     int status = explicit_advance(&model->solver, error);
     if (status) return status;

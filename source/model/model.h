@@ -32,7 +32,7 @@ struct breccia_model {
 };
 
 /** Prepares forces and accelerations of the first state, once. */
-void model_begin(breccia_model *model);
+int model_begin(breccia_model *model, Error *error);
 
 /** Step nearest to a time. */
 int64_t model_step_at(const breccia_model *model, double time);

@@ -451,10 +451,8 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
       model->begun = true;
     }
   }
-  if (!status) {
-    model_begin(model);
-    status = open_files(&run, error);
-  }
+  if (!status) status = model_begin(model, error);
+  if (!status) status = open_files(&run, error);
   if (!status) {
     run.started = run.last_checkpoint = clock_seconds();
     status = finish(&run, loop(&run, error), error);

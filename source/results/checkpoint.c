@@ -48,6 +48,7 @@ static int list_arrays(const Explicit *s, SavedArray *list)
     list[n++].count = places;
   }
   list[n++] = (SavedArray){"history", d->points.committed, d->points.history_size, false};
+  if (d->points.identity_size) list[n++] = (SavedArray){"servers", d->points.identity, d->points.identity_size, false};
   list[n++] = (SavedArray){"intact", d->family.intact, (size_t)d->family.slots, true};
   return n;
 }
@@ -120,6 +121,8 @@ static int64_t load_count(hid_t file, const char *name)
 
 int checkpoint_write(const char *folder, const Explicit *s, const char *deck, const double *extras, Error *error)
 {
+  /* What a lost server held cannot be saved: the checkpoint before stays. */
+  if (points_save(&s->domain->points, error)) return BRECCIA_FAILURE;
   char *path = text_format("%s/checkpoint.h5", folder), *temporary = text_format("%s/checkpoint.h5.part", folder);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   errno = 0;
@@ -233,6 +236,7 @@ int checkpoint_read(const char *folder, Explicit *s, const char *deck, double *e
     else {
       give_scalars(s, scalars);
       if (d->points.history_size) memcpy(d->points.trial, d->points.committed, sizeof(double) * d->points.history_size);
+      status = points_resume(&s->domain->points, error);
     }
   }
   if (file >= 0) H5Fclose(file);

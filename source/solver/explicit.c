@@ -322,6 +322,9 @@ static int retreat(Explicit *s, Error *error)
       p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
     }
   if (s->domain->contact.failed) return error_add(error, BRECCIA_FAILURE, "out of memory: contact");
+  if (*points_problem(&s->domain->points))
+    return error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->step + 1, s->time + dt,
+                     points_problem(&s->domain->points));
   char words[320];
   const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
   if (dt > s->stable)

@@ -1,0 +1,513 @@
+#!/usr/bin/env python3
+"""Lends the constitutive models of an unmodified OpenSees to Breccia over a socket.
+
+The protocol stands in docs/material-server.md. Points are OpenSees objects, one tag each; NDTest (in space) and
+testUniaxialMaterial (one strain) drive them, a whole batch per message. Needs the package openseespy and nothing else.
+"""
+
+import argparse
+import array
+import importlib
+import os
+import secrets
+import select
+import signal
+import socket
+import struct
+import sys
+import tempfile
+import time
+import zlib
+
+MAGIC, VERSION, HEADER = b"BRMS", 1, struct.Struct("<4sHHIIIIII")
+MOST_PAYLOAD = 1 << 28
+HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE = range(1, 12)
+ERROR, ANSWER = 0x7F, 0x80
+COMMITS_BEFORE, WANTS_TANGENT = 1, 2
+
+# Factories that take no strain themselves: a copy inside this wrapper does.
+WRAPPED = {"ElasticIsotropic", "J2Plasticity", "DruckerPrager", "ManzariDafalias", "BoundingCamClay"}
+# How the elastic or plastic stage is told, by kind: parameter number, and whether it is an integer.
+STAGES = {
+    "PressureIndependMultiYield": (1, True),
+    "PressureDependMultiYield": (1, True),
+    "PressureDependMultiYield02": (1, True),
+    "J2CyclicBoundingSurface": (1, True),
+    "ManzariDafalias": (5, False),
+    "BoundingCamClay": (5, False),
+}
+# Two strains only: driven by six they write where they should not.
+PLANE_ONLY = {"PM4Sand", "PM4Silt"}
+PROBE_TAG, BASE_OFFSET = 2_000_000_000, 1_000_000_000
+
+
+class Refusal(Exception):
+    """What a client is told; `point` is the number of a point that failed."""
+
+    def __init__(self, words, point=None):
+        super().__init__(words)
+        self.point = point
+
+
+class Gone(Exception):
+    """The client has left."""
+
+
+class Quiet:
+    """Keeps what OpenSees prints, to be told if something fails."""
+
+    def __enter__(self):
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self.file = tempfile.TemporaryFile()
+        self.kept = [os.dup(1), os.dup(2)]
+        os.dup2(self.file.fileno(), 1)
+        os.dup2(self.file.fileno(), 2)
+        return self
+
+    def words(self):
+        self.file.seek(0)
+        text = self.file.read().decode(errors="replace")
+        return " ".join(text.split())[:600]
+
+    def __exit__(self, *exception):
+        for number, kept in zip((1, 2), self.kept):
+            os.dup2(kept, number)
+            os.close(kept)
+        if exception[0] is SystemExit or exception[0] is None:
+            pass
+        self.file.close()
+        return False
+
+
+def parse_lines(payload):
+    lines = {}
+    for line in payload.decode(errors="replace").split("\n"):
+        key, colon, value = line.partition(":")
+        if colon:
+            lines[key.strip()] = value.strip()
+    return lines
+
+
+def format_lines(pairs):
+    return "".join(f"{key}: {value}\n" for key, value in pairs).encode()
+
+
+def number_of(word):
+    """A word of a command as OpenSees wants it: whole numbers as int, others as float, the rest as text."""
+    for kind in (int, float):
+        try:
+            return kind(word)
+        except ValueError:
+            pass
+    return word
+
+
+class Command:
+    """The words of 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'; never evaluated."""
+
+    def __init__(self, lines):
+        words = lines.get("command", "").split()
+        if len(words) < 3 or words[0] not in ("nDMaterial", "uniaxialMaterial") or words[2] != "$tag":
+            raise Refusal("a command is 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'")
+        self.uniaxial = words[0] == "uniaxialMaterial"
+        self.kind = words[1]
+        if self.kind in PLANE_ONLY:
+            raise Refusal(f"{self.kind} knows plane strain only; OpenSees offers no way to drive it from outside")
+        length = lines.get("length")
+        if "$length" in words and length is None:
+            raise Refusal("the command asks for $length, and the client told none")
+        self.arguments = [float(length) if word == "$length" else number_of(word) for word in words[3:]]
+        self.stage = int(lines["stage"]) if "stage" in lines else None
+        if self.stage is not None and self.kind not in STAGES:
+            raise Refusal(f"{self.kind} has no stages: leave 'stage' out")
+
+
+class Points:
+    """The points of a session in OpenSees."""
+
+    def __init__(self, ops):
+        self.ops = ops
+        self.session = 0
+        self.clear()
+
+    def clear(self):
+        self.command, self.tags = None, []
+        self.tried = False
+        self.commits, self.seconds, self.evaluations = 0, 0.0, 0
+
+    def build(self, command, tag):
+        ops = self.ops
+        try:
+            if command.uniaxial:
+                ops.uniaxialMaterial(command.kind, tag, *command.arguments)
+                return
+            base = tag + BASE_OFFSET if command.kind in WRAPPED and tag != PROBE_TAG else tag
+            if command.kind in WRAPPED and tag == PROBE_TAG:
+                base = PROBE_TAG - 1
+            ops.nDMaterial(command.kind, base, *command.arguments)
+            if base != tag:
+                ops.nDMaterial("InitStrain", tag, base, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            if command.stage is not None:
+                number, whole = STAGES[command.kind]
+                if whole:
+                    ops.NDTest("UpdateIntegerParameter", base, number, command.stage)
+                else:
+                    ops.NDTest("UpdateDoubleParameter", base, number, float(command.stage))
+        except Exception as problem:  # openseespy raises its own kinds
+            raise Refusal(str(problem)) from None
+
+    def probe(self, command):
+        """Components and moduli of what the command makes, from its tangent before any strain."""
+        ops = self.ops
+        ops.model("basic", "-ndm", 3, "-ndf", 3)
+        with Quiet() as quiet:
+            # Some classes end the process on bad input: what they said must not be lost with it.
+            sys.stderr.flush()
+            try:
+                self.build(command, PROBE_TAG)
+                if command.uniaxial:
+                    ops.testUniaxialMaterial(PROBE_TAG)
+                    young = ops.getTangent()
+                    bulk, shear = young / 1.5, young / 2.5
+                else:
+                    ops.NDTest("SetStrain", PROBE_TAG, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+                    if len(ops.NDTest("GetStress", PROBE_TAG)) != 6:
+                        raise Refusal(f"{command.kind} does not take six strains")
+                    tangent = ops.NDTest("GetTangentStiffness", PROBE_TAG)
+                    bulk = sum(tangent[6 * row + column] for row in range(3) for column in range(3)) / 9
+                    shear = (tangent[21] + tangent[28] + tangent[35]) / 3
+            except Refusal as refusal:
+                words = quiet.words()
+                raise Refusal(f"OpenSees refuses '{command.kind}': {refusal}{'; it said: ' + words if words else ''}") from None
+            except Exception as problem:
+                raise Refusal(f"OpenSees refuses '{command.kind}': {problem}; it said: {quiet.words()}") from None
+        if not (bulk > 0 and shear > 0):
+            raise Refusal(f"OpenSees tells no stiffness of '{command.kind}' (bulk {bulk:g}, shear {shear:g})")
+        self.forget_probe(command)
+        return bulk, shear
+
+    def forget_probe(self, command):
+        """Tags cannot be removed one by one: while nothing is held all go; otherwise the spare tags move on."""
+        global PROBE_TAG
+        if not self.tags:
+            self.ops.wipe()
+        else:
+            PROBE_TAG -= 2
+
+    def create(self, command, count):
+        self.clear()
+        self.ops.wipe()
+        bulk, shear = self.probe(command)
+        self.ops.model("basic", "-ndm", 3, "-ndf", 3)
+        self.command, self.tags = command, list(range(1, count + 1))
+        with Quiet() as quiet:
+            try:
+                for tag in self.tags:
+                    self.build(command, tag)
+            except Refusal as refusal:
+                raise Refusal(f"OpenSees refuses '{command.kind}': {refusal}; it said: {quiet.words()}") from None
+        self.session = secrets.randbits(32) | 1
+        return bulk, shear
+
+    def commit(self):
+        if not self.tried:
+            raise Refusal("there is no trial to commit")
+        if not self.command.uniaxial:  # of one strain, setStrain has committed already
+            commit = self.ops.NDTest
+            for tag in self.tags:
+                commit("CommitState", tag)
+        self.tried = False
+        self.commits += 1
+
+    def trial(self, flags, first, count, strains):
+        """Stresses, and tangents if wanted, of strains given point after point."""
+        if first + count > len(self.tags):
+            raise Refusal(f"points {first} to {first + count - 1} were asked for; there are {len(self.tags)}")
+        start = time.perf_counter()
+        if flags & COMMITS_BEFORE:
+            self.commit()
+        stresses, tangents = array.array("d"), array.array("d")
+        tags = self.tags[first : first + count]
+        wanted = bool(flags & WANTS_TANGENT)
+        if self.command.uniaxial:
+            choose, strain = self.ops.testUniaxialMaterial, self.ops.setStrain
+            stress, tangent = self.ops.getStress, self.ops.getTangent
+            keep = stresses.append
+            for tag, (value,) in zip(tags, struct.iter_unpack("<d", strains)):
+                choose(tag)
+                strain(value)
+                keep(stress())
+                if wanted:
+                    tangents.append(tangent())
+        else:
+            test, keep = self.ops.NDTest, stresses.extend
+            for tag, row in zip(tags, struct.iter_unpack("<6d", strains)):
+                test("SetStrain", tag, *row)
+                keep(test("GetStress", tag))
+                if wanted:
+                    tangents.extend(test("GetTangentStiffness", tag))
+        self.tried = True
+        self.seconds += time.perf_counter() - start
+        self.evaluations += count
+        return stresses.tobytes() + tangents.tobytes()
+
+
+class Server:
+    def __init__(self, points, secret, program):
+        self.points, self.secret, self.program = points, secret, program
+        self.greeted = False
+        self.last = None  # sequence number and answer of the frame answered last
+        self.leaving = False
+
+    def begin(self):
+        self.greeted, self.last, self.leaving = False, None, False
+
+    def answer(self, header, payload):
+        """The frame that answers a frame."""
+        _, version, operation, sequence, flags, count, _, session, _ = header
+        if self.last and self.last[0] == sequence and operation != HELLO:
+            return self.last[1]
+        try:
+            if version != VERSION:
+                raise Refusal(f"this server speaks version {VERSION} of the protocol, the client version {version}")
+            points, body = self.obey(operation, flags, count, session, payload)
+            frame = self.seal(operation | ANSWER, sequence, 0, points, body)
+        except Refusal as refusal:
+            point = refusal.point
+            frame = self.seal(ERROR, sequence, int(point is not None), point or 0, str(refusal).encode())
+        self.last = (sequence, frame)
+        return frame
+
+    def seal(self, operation, sequence, flags, count, body):
+        head = HEADER.pack(MAGIC, VERSION, operation, sequence, flags, count, len(body), self.points.session, 0)
+        checksum = zlib.crc32(body, zlib.crc32(head[:28]))
+        return head[:28] + struct.pack("<I", checksum) + body
+
+    def obey(self, operation, flags, count, session, payload):
+        points = self.points
+        if operation == HELLO:
+            given = parse_lines(payload).get("secret", "")
+            if self.secret and not secrets.compare_digest(given.encode(), self.secret.encode()):
+                self.leaving = True
+                raise Refusal("the secret is wrong")
+            self.greeted = True
+            return 0, format_lines(
+                [("program", self.program), ("session", points.session), ("points", len(points.tags)), ("commits", points.commits)]
+            )
+        if not self.greeted:
+            raise Refusal("a client says HELLO first")
+        if operation == PROBE:
+            command = Command(parse_lines(payload))
+            return 0, self.law(command, *points.probe(command))
+        if operation == CREATE:
+            command = Command(parse_lines(payload))
+            return 0, self.law(command, *points.create(command, count))
+        if operation == STATISTICS:
+            return 0, format_lines(
+                [("seconds", f"{points.seconds:.6f}"), ("evaluations", points.evaluations), ("commits", points.commits)]
+            )
+        if operation == BYE:
+            self.leaving = True
+            return 0, b""
+        if not points.session or session != points.session:
+            raise Refusal(f"session {session} is not held here")
+        if operation == ATTACH or operation == REVERT:
+            points.tried = points.tried and operation == ATTACH
+            return 0, b""
+        if operation == COMMIT:
+            points.commit()
+            return 0, b""
+        if operation == TRIAL:
+            components = 1 if points.command.uniaxial else 6
+            if len(payload) != 8 + 8 * components * count:
+                raise Refusal(f"{count} strains were announced, and {len(payload)} bytes came")
+            (first,) = struct.unpack_from("<I", payload)
+            return count, points.trial(flags, first, count, memoryview(payload)[8:])
+        if operation in (SAVE, RESTORE):
+            raise Refusal("OpenSees can neither save nor restore the state of a material")
+        raise Refusal(f"operation {operation} is unknown")
+
+    def law(self, command, bulk, shear):
+        return format_lines(
+            [
+                ("components", 1 if command.uniaxial else 6),
+                ("bulk", repr(float(bulk))),
+                ("shear", repr(float(shear))),
+                ("state", 0),
+                ("iterates", 0 if command.uniaxial else 1),
+                ("saves", 0),
+                ("session", self.points.session),
+            ]
+        )
+
+
+# ---- sockets ----
+
+
+def read_exactly(connection, size):
+    data = bytearray(size)
+    view, done = memoryview(data), 0
+    while done < size:
+        n = connection.recv_into(view[done:])
+        if n == 0:
+            raise Gone
+        done += n
+    return data
+
+
+def check(head, body):
+    header = HEADER.unpack(head)
+    return zlib.crc32(body, zlib.crc32(head[:28])) == header[8]
+
+
+def read_frame(connection):
+    head = bytes(read_exactly(connection, HEADER.size))
+    header = HEADER.unpack(head)
+    if header[0] != MAGIC or header[6] > MOST_PAYLOAD:
+        raise Refusal("what came is no frame of this protocol")
+    body = read_exactly(connection, header[6])
+    if not check(head, body):
+        raise Refusal("a frame came damaged (its checksum does not hold)")
+    return header, body
+
+
+def turn_away(server, connection):
+    """A second client is told that it is one too many, after its first frame has been read."""
+    try:
+        connection.settimeout(0.2)
+        header, _ = read_frame(connection)
+        connection.sendall(server.seal(ERROR, header[3], 0, 0, b"the server is busy with another client"))
+    except (OSError, Gone, Refusal):
+        pass
+    connection.close()
+
+
+def serve_stream(server, listener, once):
+    client = None
+    while True:
+        ready, _, _ = select.select([listener] + ([client] if client else []), [], [])
+        if listener in ready:
+            connection, _ = listener.accept()
+            if connection.family != socket.AF_UNIX:
+                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            if client:
+                turn_away(server, connection)
+            else:
+                client = connection
+                server.begin()
+            continue
+        try:
+            client.settimeout(60)
+            header, body = read_frame(client)
+            client.sendall(server.answer(header, body))
+            if not server.leaving:
+                continue
+        except Refusal as refusal:
+            try:
+                client.sendall(server.seal(ERROR, 0, 0, 0, str(refusal).encode()))
+            except OSError:
+                pass
+        except (OSError, Gone):
+            pass
+        client.close()
+        client = None
+        if once:
+            return
+
+
+def serve_datagrams(server, listener, once):
+    while True:
+        data, peer = listener.recvfrom(65535)
+        if len(data) < HEADER.size:
+            continue
+        header, body = HEADER.unpack_from(data), data[HEADER.size :]
+        if header[0] != MAGIC or header[6] != len(body) or not check(data[: HEADER.size], body):
+            continue  # as if it had been lost
+        if header[2] == HELLO and not (server.last and server.last[0] == header[3]):
+            server.begin()
+        frame = server.answer(header, body)
+        if len(frame) > 65507:
+            frame = server.seal(ERROR, header[3], 0, 0, b"the answer does not fit a datagram; use tcp:// or unix:")
+        listener.sendto(frame, peer)
+        if server.leaving and once:
+            return
+
+
+def is_loopback(host):
+    return host in ("localhost", "::1") or host.startswith("127.")
+
+
+def open_listener(address, open_to_all):
+    """The socket that listens at an address, where it listens in words, and the file to remove at the end."""
+    if address.startswith("unix:"):
+        path = address[5:]
+        try:
+            probe = socket.socket(socket.AF_UNIX)
+            probe.connect(path)
+            probe.close()
+        except ConnectionRefusedError:
+            os.unlink(path)  # left behind by a server that was killed
+        except OSError:
+            pass
+        listener = socket.socket(socket.AF_UNIX)
+        mask = os.umask(0o177)
+        try:
+            listener.bind(path)
+        finally:
+            os.umask(mask)
+        listener.listen(8)
+        return listener, address, path
+    kind, _, rest = address.partition("://")
+    host, _, port = rest.rpartition(":")
+    host = host.strip("[]")
+    if kind not in ("tcp", "udp") or not host or not port.isdigit():
+        raise ValueError("an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH")
+    if not is_loopback(host) and not open_to_all:
+        raise ValueError("a server listens on this machine only, unless a secret guards it (--secret-file)")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM if kind == "tcp" else socket.SOCK_DGRAM)
+    if kind == "tcp":
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listener.bind((host, int(port)))
+    if kind == "tcp":
+        listener.listen(8)
+    where = listener.getsockname()
+    return listener, f"{kind}://{'[' + where[0] + ']' if ':' in where[0] else where[0]}:{where[1]}", None
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="breccia-opensees", description=__doc__.split("\n")[0])
+    parser.add_argument("--listen", required=True, metavar="ADDRESS", help="tcp://127.0.0.1:PORT, unix:/PATH or udp://127.0.0.1:PORT")
+    parser.add_argument("--secret-file", metavar="FILE", help="clients must know the words in this file; then any interface may be listened to")
+    parser.add_argument("--once", action="store_true", help="end when the first client has gone")
+    options = parser.parse_args()
+    secret = None
+    if options.secret_file:
+        with open(options.secret_file, encoding="utf-8") as file:
+            secret = file.readline().strip()
+        if not secret:
+            parser.error(f"{options.secret_file}: no secret stands there")
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    try:
+        ops = importlib.import_module("openseespy.opensees")
+    except ImportError as problem:
+        sys.exit(f"breccia-opensees: the package openseespy is not there: {problem}")
+    try:
+        listener, where, path = open_listener(options.listen, secret is not None)
+    except (OSError, ValueError) as problem:
+        sys.exit(f"breccia-opensees: {options.listen}: cannot be listened to: {problem}")
+    print(f"listening at {where}", flush=True)
+    server = Server(Points(ops), secret, f"OpenSees {ops.version()}")
+    try:
+        if listener.type == socket.SOCK_DGRAM:
+            serve_datagrams(server, listener, options.once)
+        else:
+            serve_stream(server, listener, options.once)
+    finally:
+        if path and os.path.exists(path):
+            os.unlink(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+#include "cli/verbs.h"
+#include "constitutive/remote/server.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LISTEN, SECRET, ONCE, ZEROS };
+static const Option options[] = {
+    {"listen", "ADDRESS", "tcp://127.0.0.1:PORT (0: any free port), unix:/PATH or udp://127.0.0.1:PORT"},
+    {"secret-file", "FILE", "clients must know the words in this file; then any interface may be listened to"},
+    {"once", NULL, "end when the first client has gone"},
+    {"zeros", NULL, "answer with zeros instead of stresses, to time the protocol itself"},
+    {0}};
+
+static volatile int interrupted;
+
+static void interrupt(int signal_number)
+{
+  (void)signal_number;
+  interrupted = 1;
+}
+
+static void tell(const char *address)
+{
+  printf("listening at %s\n", address);
+  fflush(stdout);
+}
+
+static int serve_verb(int argc, char **argv, const Verb *verb)
+{
+  const char *values[sizeof options / sizeof *options];
+  const int next = read_options(argc, argv, verb, values, NULL, NULL);
+  if (next < 0) return next == -2 ? 0 : 2;
+  if (next < argc || !values[LISTEN]) {
+    fprintf(stderr, "usage: breccia serve %s\n", verb->arguments);
+    return 2;
+  }
+  Error *error = breccia_error_create();
+  char *secret = NULL;
+  if (values[SECRET]) {
+    size_t length;
+    secret = text_read_file(values[SECRET], &length);
+    if (secret) secret[strcspn(secret, "\r\n")] = 0;
+    if (!secret || !*secret) {
+      free(secret);
+      return fail(error, error_add(error, BRECCIA_USER_ERROR, "%s: no secret can be read there", values[SECRET]));
+    }
+  }
+  const struct sigaction action = {.sa_handler = interrupt};
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  const ServeSpec spec = {.address = values[LISTEN],
+                          .secret = secret,
+                          .once = values[ONCE] != NULL,
+                          .zeros = values[ZEROS] != NULL,
+                          .interrupted = &interrupted,
+                          .listening = tell};
+  const int status = serve_materials(&spec, error);
+  free(secret);
+  return fail(error, status);
+}
+
+const Verb verb_serve = {
+    "serve",
+    "--listen ADDRESS [options]",
+    "lend the program's own laws to other programs over a socket",
+    options,
+    "A client names a law as 'LAW; KEY=VALUE; ...'. The protocol stands in docs/material-server.md. Without a "
+    "secret only this machine is listened to; the line is not encrypted.",
+    serve_verb};

@@ -1,0 +1,55 @@
+/* Frames over sockets: TCP (tcp://host:port), a socket in the file system (unix:/path) or datagrams (udp://host:port). Every wait has
+ * an end. What goes wrong is told in words: one line, without the address. */
+#ifndef BRECCIA_REMOTE_CHANNEL_H
+#define BRECCIA_REMOTE_CHANNEL_H
+
+#include "constitutive/remote/frame.h"
+
+typedef struct Channel Channel;
+typedef struct Listener Listener;
+
+typedef enum ChannelStatus {
+  CHANNEL_OK,
+  CHANNEL_LATE,   /* nothing came in time */
+  CHANNEL_CLOSED, /* the other side is gone */
+  CHANNEL_BROKEN  /* what came makes no sense */
+} ChannelStatus;
+
+/** Reaches a server, trying again until `seconds` are over or `stop` says so.
+ *  @return NULL with the reason */
+Channel *channel_connect(const char *address, double seconds, int (*stop)(void *context), void *context, Text *reason);
+void channel_close(Channel **channel);
+
+/** Whether a sent frame may be lost, so that it is to be sent again when no answer comes. */
+bool channel_may_lose(const Channel *channel);
+/** Largest payload that a frame can have here. */
+size_t channel_most_payload(const Channel *channel);
+
+/** Room for the payload of the next frame to be sent; stays the same while `length` does not grow. @return NULL: out of memory */
+uint8_t *channel_payload(Channel *channel, size_t length);
+/** Sends a frame whose payload stands in channel_payload; channel_repeat sends the same once more. */
+ChannelStatus channel_send(Channel *channel, const Frame *frame, double seconds, Text *reason);
+ChannelStatus channel_repeat(Channel *channel, double seconds, Text *reason);
+/** Receives one frame. @param[out] payload  borrowed until the next is received; a zero byte stands behind it */
+ChannelStatus channel_receive(Channel *channel, Frame *frame, uint8_t **payload, double seconds, Text *reason);
+/** Bytes sent and received so far. */
+void channel_bytes(const Channel *channel, double bytes[2]);
+
+/** Waits for clients at an address: loopback or a socket file that only its owner reaches, unless `open` allows any interface.
+ *  tcp://127.0.0.1:0 takes any free port. @return NULL with the reason */
+Listener *listener_open(const char *address, bool open, Text *reason);
+/** Where it listens, with the port that it got. */
+const char *listener_address(const Listener *listener);
+/** Next frame of the one client that is served; new clients are told that it is busy while one is there. Between clients
+ *  `*frame` may be the first of a new one.
+ *  @param[out] fresh  the frame is the first of a client
+ *  @return CHANNEL_CLOSED when a client has gone, CHANNEL_LATE after `seconds` without a frame */
+ChannelStatus listener_receive(Listener *listener, Frame *frame, uint8_t **payload, bool *fresh, double seconds,
+                               Text *reason);
+/** The channel to the client that is served. */
+Channel *listener_channel(Listener *listener);
+/** Lets the client go. */
+void listener_drop(Listener *listener);
+void listener_close(Listener **listener);
+
+#endif

@@ -1,0 +1,253 @@
+#include "constitutive/remote_points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** Calls for the row of every point of a slice whose law is remote, in a fixed order. */
+typedef void (*RowVisit)(Points *points, const Material *m, int64_t slice, int64_t row, bool real, void *context);
+
+static void each_row(Points *points, int64_t slice, RowVisit visit, void *context)
+{
+  const Family *f = points->family;
+  const Material *m = &points->materials[points->material[slice]];
+  if (points->where == POINTS_ON_PARTICLES) {
+    for (int lane = 0; m->remote && lane < SLICE; ++lane)
+      visit(points, m, slice, points->history_start[slice] + lane * m->history_values,
+            f->particles->number[slice * SLICE + lane] >= 0, context);
+    return;
+  }
+  if (points->where != POINTS_ON_BONDS) return;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const bool real = f->intact[slot] >> lane & 1;
+      if (m->remote) visit(points, m, slice, bond_row(points, slice, slot, lane, false), real, context);
+      const Material *partner =
+          points->partner_values && slot >= f->stored[slice] ? partner_material(points, slot, lane) : NULL;
+      if (partner && partner->remote)
+        visit(points, partner, slice, bond_row(points, slice, slot, lane, true), real && partner != m, context);
+    }
+}
+
+typedef struct Counts {
+  int64_t points[MOST_REMOTE];
+} Counts;
+
+static void number_row(Points *points, const Material *m, int64_t slice, int64_t row, bool real, void *context)
+{
+  Counts *counts = context;
+  (void)slice;
+  const double id = real ? (double)counts->points[m - points->materials]++ : -1;
+  points->committed[row] = points->trial[row] = id;
+}
+
+int remote_points_create(Points *points, int material_count, Error *error)
+{
+  const int64_t slices = points->family->particles->slices;
+  size_t servers = 0;
+  int64_t *before = NULL;
+  for (int k = 0; k < material_count; ++k) {
+    if (!points->materials[k].remote) continue;
+    if (k >= MOST_REMOTE)
+      return error_add(error, BRECCIA_USER_ERROR, "materials in servers must be among the first %d", MOST_REMOTE);
+    servers += (size_t)remote_servers(points->materials[k].remote);
+  }
+  if (!servers) return BRECCIA_OK;
+  points->identity_size = 2 * servers;
+  points->identity = memory_zeroed(points->identity_size, sizeof(double), "servers", error);
+  points->server = memory_zeroed((size_t)slices, sizeof(int32_t), "servers", error);
+  before = memory_zeroed((size_t)slices, sizeof(int64_t), "servers", error);
+  if (!points->identity || !points->server || !before) {
+    free(before);
+    return BRECCIA_FAILURE;
+  }
+  Counts counts = {{0}};
+  for (int64_t s = 0; s < slices; ++s) {
+    if (points->material[s] < MOST_REMOTE) before[s] = counts.points[points->material[s]];
+    each_row(points, s, number_row, &counts);
+  }
+  /* Whole slices go to a server, as equal in points as that allows; bonds are asked for by number, wherever they are. */
+  for (int k = 0; k < material_count; ++k) {
+    const Remote *remote = points->materials[k].remote;
+    if (!remote) continue;
+    const int count = remote_servers(remote);
+    int64_t *starts = points->starts[k] = memory_zeroed((size_t)count + 1, sizeof(int64_t), "servers", error);
+    if (!starts) {
+      free(before);
+      return BRECCIA_FAILURE;
+    }
+    for (int n = 0; n <= count; ++n) starts[n] = counts.points[k];
+    int32_t server = 0;
+    starts[0] = 0;
+    for (int64_t s = 0; s < slices; ++s) {
+      if (points->material[s] != k) continue;
+      while (server + 1 < count && before[s] * count >= counts.points[k] * (server + 1)) starts[++server] = before[s];
+      points->server[s] = server;
+    }
+  }
+  free(before);
+  return BRECCIA_OK;
+}
+
+void remote_points_destroy(Points *points)
+{
+  for (int k = 0; k < MOST_REMOTE; ++k) free(points->starts[k]);
+  free(points->server);
+  free(points->identity);
+}
+
+void remote_points_commit(Points *points)
+{
+  for (int k = 0; points->server && k < MOST_REMOTE; ++k)
+    if (points->starts[k]) remote_commit(points->materials[k].remote);
+}
+
+double remote_last_stress(const double *row)
+{
+  return row[2];
+}
+
+bool points_begun(const Points *points)
+{
+  return points->begun;
+}
+
+int points_begin(Points *points, Error *error)
+{
+  points->begun = true;
+  for (int k = 0; points->server && k < MOST_REMOTE; ++k) {
+    const int status = points->starts[k] ? remote_begin(points->materials[k].remote, points->starts[k], error) : 0;
+    if (status) return status;
+  }
+  return BRECCIA_OK;
+}
+
+/** Moves what servers save between rows of history and one array per material, by number of point. */
+typedef struct States {
+  double *of[MOST_REMOTE];
+  bool in;
+} States;
+
+static void move_state(Points *points, const Material *m, int64_t slice, int64_t row, bool real, void *context)
+{
+  const States *states = context;
+  const int values = remote_state_values(m->remote);
+  const int64_t id = (int64_t)points->committed[row];
+  (void)slice, (void)real;
+  if (!values || id < 0) return;
+  double *own = points->committed + row + remote_state_at(m->remote),
+         *theirs = states->of[m - points->materials] + id * values;
+  memcpy(states->in ? own : theirs, states->in ? theirs : own, sizeof(double) * (size_t)values);
+}
+
+static int states_create(const Points *points, States *states, Error *error)
+{
+  for (int k = 0; k < MOST_REMOTE; ++k) {
+    if (!points->starts[k]) continue;
+    const Remote *r = points->materials[k].remote;
+    const size_t size = (size_t)points->starts[k][remote_servers(r)] * (size_t)remote_state_values(r);
+    if (!(states->of[k] = memory_zeroed(size, sizeof(double), "states of servers", error))) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+static void states_move(Points *points, States *states)
+{
+  for (int64_t s = 0; s < points->family->particles->slices; ++s) each_row(points, s, move_state, states);
+}
+
+static void states_destroy(States *states)
+{
+  for (int k = 0; k < MOST_REMOTE; ++k) free(states->of[k]);
+}
+
+int points_save(Points *points, Error *error)
+{
+  if (!points->server) return BRECCIA_OK;
+  States states = {.in = true};
+  int status = states_create(points, &states, error);
+  double *identity = points->identity;
+  for (int k = 0; !status && k < MOST_REMOTE; ++k) {
+    if (!points->starts[k]) continue;
+    Remote *r = points->materials[k].remote;
+    status = remote_identify(r, identity, error);
+    if (!status) status = remote_save(r, states.of[k], error);
+    identity += 2 * remote_servers(r);
+  }
+  if (!status) states_move(points, &states);
+  states_destroy(&states);
+  return status;
+}
+
+int points_resume(Points *points, Error *error)
+{
+  points->begun = true;
+  if (!points->server) return BRECCIA_OK;
+  States states = {.in = false};
+  int status = states_create(points, &states, error);
+  if (!status) states_move(points, &states);
+  const double *identity = points->identity;
+  for (int k = 0; !status && k < MOST_REMOTE; ++k) {
+    if (!points->starts[k]) continue;
+    Remote *r = points->materials[k].remote;
+    status = remote_resume(r, points->starts[k], states.of[k], identity, error);
+    identity += 2 * remote_servers(r);
+  }
+  states_destroy(&states);
+  return status;
+}
+
+/* ---- a step, of points on particles ---- */
+
+void points_pack(Points *points, int64_t first, int64_t last)
+{
+  const int k = points->material[first], server = points->server[first];
+  const Material *m = &points->materials[k];
+  double *to = remote_strains(m->remote, server);
+  for (int64_t s = first; to && s < last; ++s)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int64_t id = (int64_t)points->committed[points->history_start[s] + lane * m->history_values];
+      for (int n = 0; id >= 0 && n < 6; ++n)
+        to[6 * (id - points->starts[k][server]) + n] = points->strain[n][s * SLICE + lane];
+    }
+}
+
+void points_post(Points *points, int material, int server)
+{
+  remote_post(points->materials[material].remote, server);
+}
+
+int64_t points_collect(Points *points, int material, int server)
+{
+  const Material *m = &points->materials[material];
+  int64_t bad;
+  if (remote_collect(m->remote, server, &bad)) return -1;
+  for (int64_t s = 0; s < points->family->particles->slices; ++s)
+    for (int lane = 0; points->material[s] == material && points->server[s] == server && lane < SLICE; ++lane)
+      if (points->committed[points->history_start[s] + lane * m->history_values] ==
+          (double)(points->starts[material][server] + bad))
+        return s * SLICE + lane;
+  return 0;
+}
+
+void points_unpack(Points *points, int64_t first, int64_t last)
+{
+  const int k = points->material[first], server = points->server[first];
+  const Material *m = &points->materials[k];
+  const double *from = remote_stresses(m->remote, server);
+  for (int64_t s = first; s < last; ++s)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int64_t row = points->history_start[s] + lane * m->history_values, id = (int64_t)points->committed[row];
+      points->trial[row] = points->committed[row];
+      for (int n = 0; n < 6; ++n)
+        points->stress[n][s * SLICE + lane] = id < 0 ? 0 : from ? from[6 * (id - points->starts[k][server]) + n] : NAN;
+    }
+}
+
+const char *points_problem(const Points *points)
+{
+  for (int k = 0; points->server && k < MOST_REMOTE; ++k)
+    if (points->starts[k] && *remote_problem(points->materials[k].remote))
+      return remote_problem(points->materials[k].remote);
+  return "";
+}

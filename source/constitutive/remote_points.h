@@ -1,0 +1,19 @@
+/* Points of laws that live in other processes: which server holds which, and what goes to and fro. */
+#ifndef BRECCIA_CONSTITUTIVE_REMOTE_POINTS_H
+#define BRECCIA_CONSTITUTIVE_REMOTE_POINTS_H
+
+#include "constitutive/points.h"
+
+/** Numbers the points and divides them among the servers. */
+int remote_points_create(Points *points, int material_count, Error *error);
+void remote_points_destroy(Points *points);
+/** Tells the servers that the trial state is the committed one. */
+void remote_points_commit(Points *points);
+/** Stress of a point of a law of one strain, as of its last answer. */
+double remote_last_stress(const double *row);
+
+/** Where the row of a bond's point begins, of its own law or of that at the other end (points.c). */
+int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner);
+const Material *partner_material(const Points *points, int64_t slot, int lane);
+
+#endif
