@@ -256,6 +256,11 @@ int64_t points_update(Points *points, int64_t first, int64_t last, double *tange
   return -1;
 }
 
+static int update_bonds(const Points *points, const Material *m, const breccia_batch *batch)
+{
+  return m->remote ? remote_points_bonds(points, m, batch) : m->law->update(m->constants, batch);
+}
+
 int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int count, const double *strain,
                             double *stress)
 {
@@ -267,9 +272,9 @@ int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int cou
                          .committed = points->committed + row,
                          .trial = points->trial + row,
                          .elastic_stage = points->elastic_stage};
-  int bad = m->law->update(m->constants, &batch);
+  int bad = update_bonds(points, m, &batch);
   if (bad < 0) return -1;
-  if (!points->gave_up) return slice * SLICE + bad % SLICE;
+  if (!points->gave_up || m->remote) return slice * SLICE + bad % SLICE;
   for (int i = 0; i < batch.count; ++i) {
     breccia_batch one = batch_from(&batch, m, i, 1);
     if (m->law->update(m->constants, &one) < 0) continue;
@@ -290,8 +295,8 @@ int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int l
                          .committed = points->committed + row,
                          .trial = points->trial + row,
                          .elastic_stage = points->elastic_stage};
-  if (m->law->update(m->constants, &batch) < 0) return -1;
-  if (!points->gave_up) return slice * SLICE + lane;
+  if (update_bonds(points, m, &batch) < 0) return -1;
+  if (!points->gave_up || m->remote) return slice * SLICE + lane;
   points->gave_up[slice * SLICE + lane] = 1;
   *stress = 0;
   memcpy(batch.trial, batch.committed, sizeof(double) * (size_t)m->history_values);

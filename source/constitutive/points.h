@@ -16,6 +16,9 @@ enum { BLOCK = 128 }; /* points worked on together: their strains, stresses and 
 /** Where points are: nowhere if laws act on bonds and all are linear. */
 typedef enum PointsWhere { POINTS_NOWHERE, POINTS_ON_PARTICLES, POINTS_ON_BONDS } PointsWhere;
 
+/** Bonds whose laws are in servers are gone through twice: strains are gathered and sent, then answers are given out. */
+typedef enum PointsPass { PASS_NONE, PASS_GATHER, PASS_ANSWER } PointsPass;
+
 typedef struct Points {
   PointsWhere where;
   Space space;
@@ -34,6 +37,7 @@ typedef struct Points {
       [MOST_REMOTE]; /* of each material: first point of each of its servers, and behind the last; NULL: not remote */
   double *identity;  /* by which the servers are found again after a restart */
   size_t identity_size;
+  PointsPass pass;
   bool begun;        /* servers have their points */
   int elastic_stage; /* laws respond elastically while it is set */
   uint8_t *
@@ -99,6 +103,15 @@ void points_post(Points *points, int material, int server);
 int64_t points_collect(Points *points, int material, int server);
 /** Stresses of slices first .. last - 1 out of what was collected. */
 void points_unpack(Points *points, int64_t first, int64_t last);
+/** Whether bonds are to be gone through to gather their strains before points_update_bonds gives stresses; if so,
+ *  points_ask_bonds is to be called in between, by one thread. */
+bool points_gather_bonds(Points *points);
+/** Sends what was gathered and waits for all answers. @return -1, or a place of a bond whose law failed */
+int64_t points_ask_bonds(Points *points);
+/** Whether all that points remember can still be saved: not, when a server is lost that remembers for them. */
+bool points_can_save(const Points *points);
+/** A line per server: points per second, waiting, bytes; as objects of a JSON list if `json`. */
+void points_report(const Points *points, double run_seconds, bool json, Text *text);
 /** What went wrong in a server, one line; "" if nothing did. */
 const char *points_problem(const Points *points);
 

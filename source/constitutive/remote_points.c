@@ -244,6 +244,71 @@ void points_unpack(Points *points, int64_t first, int64_t last)
     }
 }
 
+/* ---- a step, of points on bonds ---- */
+
+bool points_gather_bonds(Points *points)
+{
+  points->pass = PASS_NONE;
+  if (!points->server || points->where != POINTS_ON_BONDS || !points->begun || points->elastic_stage) return false;
+  points->pass = PASS_GATHER;
+  return true;
+}
+
+int64_t points_ask_bonds(Points *points)
+{
+  int64_t bad = 0, failed = -1;
+  points->pass = PASS_ANSWER;
+  for (int pass = 0; pass < 2; ++pass)
+    for (int k = 0; k < MOST_REMOTE; ++k)
+      for (int n = 0; points->starts[k] && n < remote_servers(points->materials[k].remote); ++n)
+        if (!pass)
+          remote_post(points->materials[k].remote, n);
+        else if (!remote_collect(points->materials[k].remote, n, &bad))
+          failed = 0;
+  return failed;
+}
+
+int remote_points_bonds(const Points *points, const Material *m, const breccia_batch *batch)
+{
+  if (points->pass == PASS_NONE) return m->law->update(m->constants, batch);
+  const int64_t *starts = points->starts[m - points->materials];
+  int server = 0;
+  for (int i = 0; i < batch->count; ++i) {
+    const ptrdiff_t row = (ptrdiff_t)m->history_values * i;
+    const int64_t id = (int64_t)batch->committed[row];
+    batch->stress[0][i] = 0;
+    batch->trial[row] = batch->committed[row];
+    if (id < 0) continue;
+    while (id < starts[server]) --server;
+    while (id >= starts[server + 1]) ++server;
+    if (points->pass == PASS_GATHER) {
+      double *to = remote_strains(m->remote, server);
+      if (to) to[id - starts[server]] = batch->strain[0][i];
+      continue;
+    }
+    const double *from = remote_stresses(m->remote, server);
+    if (!from) return i;
+    batch->trial[row + 1] = batch->strain[0][i];
+    batch->trial[row + 2] = batch->stress[0][i] = from[id - starts[server]];
+  }
+  return -1;
+}
+
+bool points_can_save(const Points *points)
+{
+  for (int k = 0; points->server && k < MOST_REMOTE; ++k) {
+    const Remote *r = points->starts[k] ? points->materials[k].remote : NULL;
+    if (r && *remote_problem(r) && remote_state_values(r)) return false;
+  }
+  return true;
+}
+
+void points_report(const Points *points, double run_seconds, bool json, Text *text)
+{
+  for (int k = 0; points->server && k < MOST_REMOTE; ++k)
+    if (points->starts[k]) remote_report(points->materials[k].remote, run_seconds, json, text);
+}
+
 const char *points_problem(const Points *points)
 {
   for (int k = 0; points->server && k < MOST_REMOTE; ++k)

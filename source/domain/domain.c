@@ -335,6 +335,12 @@ static void answer_in_parts(Domain *d)
   }
 }
 
+/** Laws act on bonds, and some live in servers. */
+static bool points_on_bonds_elsewhere(const Domain *d)
+{
+  return d->points.server && d->points.where == POINTS_ON_BONDS;
+}
+
 void domain_forces(Domain *d)
 {
   const FormulationType *type = d->type;
@@ -356,6 +362,16 @@ void domain_forces(Domain *d)
 #pragma omp for schedule(static)
     for (int64_t b = 0; b < d->block_count; ++b)
       type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
+  }
+  if (points_on_bonds_elsewhere(d)) {
+#pragma omp single
+    d->gathering = points_gather_bonds(&d->points);
+    if (d->gathering) {
+#pragma omp for schedule(static)
+      for (int64_t b = 0; b < d->block_count; ++b) type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
+#pragma omp single
+      points_ask_bonds(&d->points);
+    }
   }
 #pragma omp for schedule(static)
   for (int64_t b = 0; b < d->block_count; ++b) {

@@ -348,7 +348,12 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
     add_number(&t, "peak", load_peak(l, s->time));
     text_add(&t, "}");
   }
-  text_add(&t, "]\n}\n");
+  text_add(&t, "]");
+  Text servers = {0};
+  points_report(&d->points, model->run_seconds, true, &servers);
+  if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", servers.characters);
+  text_free(&servers);
+  text_add(&t, "\n}\n");
   char *path = text_format("%s/summary.json", run->wish->folder),
        *part = text_format("%s/summary.json.part", run->wish->folder);
   errno = 0;
@@ -400,6 +405,7 @@ static void tell_outcome(Run *run, int status)
       t,
       "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + damping %.4g, imbalance %.2g %%\n",
       energy, e.external, e.kinetic, e.internal, e.fracture, e.damping, 100 * e.imbalance);
+  points_report(&d->points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", run->files.characters ? run->files.characters : "");
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
 }

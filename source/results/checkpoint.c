@@ -121,7 +121,7 @@ static int64_t load_count(hid_t file, const char *name)
 
 int checkpoint_write(const char *folder, const Explicit *s, const char *deck, const double *extras, Error *error)
 {
-  /* What a lost server held cannot be saved: the checkpoint before stays. */
+  if (!points_can_save(&s->domain->points)) return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
   if (points_save(&s->domain->points, error)) return BRECCIA_FAILURE;
   char *path = text_format("%s/checkpoint.h5", folder), *temporary = text_format("%s/checkpoint.h5.part", folder);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);

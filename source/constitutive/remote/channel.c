@@ -242,7 +242,8 @@ static ChannelStatus await(int s, short events, double end, Text *reason)
 
 static ChannelStatus lost(Text *reason, int code)
 {
-  text_add(reason, "%s", code ? strerror(code) : "it has closed the connection");
+  const bool closed = !code || code == ECONNRESET || code == EPIPE;
+  text_add(reason, "%s", closed ? "it has closed the connection" : strerror(code));
   return CHANNEL_CLOSED;
 }
 

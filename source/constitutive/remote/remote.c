@@ -341,6 +341,10 @@ int remote_servers(const Remote *remote)
 {
   return remote->count;
 }
+int remote_processes(const Remote *remote)
+{
+  return remote->folder ? remote->count : 0;
+}
 bool remote_iterates(const Remote *remote)
 {
   return remote->iterates;
@@ -504,7 +508,7 @@ void remote_close(Remote **remote)
 /** Makes room for the strains of all points of a server, so that threads can fill it in together. */
 static int make_room(Remote *r, Error *error)
 {
-  for (int k = 0; k < r->count && r->components == 6; ++k) {
+  for (int k = 0; k < r->count; ++k) {
     RemoteServer *s = &r->servers[k];
     if (trial_size(r, s->count) > channel_most_payload(s->channel))
       problem(r, s, "its points do not fit one frame: use more servers, or tcp:// or unix: instead of udp://");
@@ -566,19 +570,46 @@ int remote_identify(Remote *r, double *identity, Error *error)
   return BRECCIA_OK;
 }
 
+/** SAVE or RESTORE of all points of a server, in pieces that fit its frames. */
+static int move_states(Remote *r, RemoteServer *s, Operation operation, double *state)
+{
+  const size_t row = sizeof(double) * (size_t)r->state;
+  const int64_t most = (int64_t)((channel_most_payload(s->channel) / 4 - TRIAL_HEAD) / row);
+  for (int64_t first = 0; first < s->count;) {
+    const int64_t count = s->count - first < most ? s->count - first : most;
+    const size_t size = row * (size_t)count;
+    const uint32_t from[2] = {(uint32_t)first, 0};
+    Text piece = {.characters = malloc(TRIAL_HEAD + size)}; /* bytes, not words */
+    Frame frame;
+    uint8_t *reply;
+    if (!piece.characters) {
+      problem(r, s, "out of memory: histories");
+      return 1;
+    }
+    piece.length = TRIAL_HEAD + (operation == OPERATION_RESTORE ? size : 0);
+    memcpy(piece.characters, from, TRIAL_HEAD);
+    if (operation == OPERATION_RESTORE) memcpy(piece.characters + TRIAL_HEAD, state + r->state * first, size);
+    const int bad = ask(r, s, operation, (uint32_t)count, &piece, &frame, &reply);
+    free(piece.characters);
+    if (bad) return 1;
+    if (operation == OPERATION_SAVE) {
+      if (frame.length != size) {
+        problem(r, s, "it saved less or more than it had told");
+        return 1;
+      }
+      memcpy(state + r->state * first, reply, size);
+    }
+    first += count;
+  }
+  return 0;
+}
+
 int remote_save(Remote *r, double *state, Error *error)
 {
   for (int k = 0; k < r->count && r->state; ++k) {
     RemoteServer *s = &r->servers[k];
-    Frame frame;
-    uint8_t *reply;
-    const size_t size = sizeof(double) * (size_t)r->state * (size_t)s->count;
-    if (r->problem.length || flush(r, s) || ask(r, s, OPERATION_SAVE, 0, NULL, &frame, &reply)) return tell(r, error);
-    if (frame.length != size) {
-      problem(r, s, "it saved less or more than it had told");
+    if (r->problem.length || flush(r, s) || move_states(r, s, OPERATION_SAVE, state + r->state * s->first))
       return tell(r, error);
-    }
-    memcpy(state + r->state * s->first, reply, size);
   }
   return BRECCIA_OK;
 }
@@ -613,7 +644,7 @@ static int take_up(Remote *r, RemoteServer *s, const double identity[IDENTITY], 
   return ask(r, s, OPERATION_ATTACH, 0, NULL, &frame, &reply) ? tell(r, error) : BRECCIA_OK;
 }
 
-int remote_resume(Remote *r, const int64_t *starts, const double *state, const double *identity, Error *error)
+int remote_resume(Remote *r, const int64_t *starts, double *state, const double *identity, Error *error)
 {
   if (!r->saves) {
     divide(r, starts);
@@ -625,14 +656,9 @@ int remote_resume(Remote *r, const int64_t *starts, const double *state, const d
   }
   const int status = remote_begin(r, starts, error);
   if (status) return status;
-  for (int k = 0; k < r->count; ++k) {
-    RemoteServer *s = &r->servers[k];
-    Frame frame;
-    uint8_t *reply;
-    const Text text = {.characters = (char *)(void *)(state + r->state * s->first),
-                       .length = sizeof(double) * (size_t)r->state * (size_t)s->count};
-    if (ask(r, s, OPERATION_RESTORE, 0, &text, &frame, &reply)) return tell(r, error);
-  }
+  for (int k = 0; k < r->count && r->state; ++k)
+    if (move_states(r, &r->servers[k], OPERATION_RESTORE, state + r->state * r->servers[k].first))
+      return tell(r, error);
   return BRECCIA_OK;
 }
 

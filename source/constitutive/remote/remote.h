@@ -35,6 +35,8 @@ void remote_close(Remote **remote);
 /** The law as others see it. Its constants are a Remote *. */
 const breccia_law *remote_law(const Remote *remote);
 int remote_servers(const Remote *remote);
+/** How many of them the run has started itself. */
+int remote_processes(const Remote *remote);
 /** Whether a trial can be repeated from the committed state. */
 bool remote_iterates(const Remote *remote);
 /** Where the server's own numbers begin in a row of history, and how many there are. */
@@ -45,7 +47,7 @@ int remote_state_values(const Remote *remote);
 int remote_begin(Remote *remote, const int64_t *starts, Error *error);
 /** The same after a restart. `state` are all points' saved numbers, [points][remote_state_values], or NULL where servers save none:
  *  then servers that still hold the sessions of `identity` are taken up again, and others are told of. */
-int remote_resume(Remote *remote, const int64_t *starts, const double *state, const double *identity, Error *error);
+int remote_resume(Remote *remote, const int64_t *starts, double *state, const double *identity, Error *error);
 /** Numbers by which servers are found again: session and count of commits of each, [servers][2]. Commits what is due. */
 int remote_identify(Remote *remote, double *identity, Error *error);
 /** Fetches what servers save of all points, [points][remote_state_values]. */

@@ -39,30 +39,6 @@ typedef struct Server {
 
 /* ---- answers ---- */
 
-static ChannelStatus answer(Server *s, const Frame *asked, uint32_t count, uint32_t length)
-{
-  Text words = {0};
-  const Frame frame = {.version = FRAME_VERSION,
-                       .operation = (uint16_t)(asked->operation | OPERATION_ANSWER),
-                       .sequence = asked->sequence,
-                       .count = count,
-                       .length = length,
-                       .session = s->held.number};
-  const ChannelStatus status = channel_send(listener_channel(s->listener), &frame, SEND_SECONDS, &words);
-  text_free(&words);
-  return status;
-}
-
-static ChannelStatus answer_text(Server *s, const Frame *asked, Text *text)
-{
-  const uint32_t length = (uint32_t)text->length;
-  uint8_t *payload = channel_payload(listener_channel(s->listener), length);
-  if (!payload) return CHANNEL_BROKEN;
-  if (length) memcpy(payload, text->characters, length);
-  text_free(text);
-  return answer(s, asked, 0, length);
-}
-
 /** @param[in] point  that could not be integrated, or -1 */
 __attribute__((format(printf, 4, 5))) static ChannelStatus refuse(Server *s, const Frame *asked, int64_t point,
                                                                   const char *format, ...)
@@ -89,6 +65,32 @@ __attribute__((format(printf, 4, 5))) static ChannelStatus refuse(Server *s, con
   text_free(&text);
   text_free(&words);
   return status;
+}
+
+static ChannelStatus answer(Server *s, const Frame *asked, uint32_t count, uint32_t length)
+{
+  Text words = {0};
+  if (length > channel_most_payload(listener_channel(s->listener)))
+    return refuse(s, asked, -1, "the answer does not fit a datagram; use tcp:// or unix:");
+  const Frame frame = {.version = FRAME_VERSION,
+                       .operation = (uint16_t)(asked->operation | OPERATION_ANSWER),
+                       .sequence = asked->sequence,
+                       .count = count,
+                       .length = length,
+                       .session = s->held.number};
+  const ChannelStatus status = channel_send(listener_channel(s->listener), &frame, SEND_SECONDS, &words);
+  text_free(&words);
+  return status;
+}
+
+static ChannelStatus answer_text(Server *s, const Frame *asked, Text *text)
+{
+  const uint32_t length = (uint32_t)text->length;
+  uint8_t *payload = channel_payload(listener_channel(s->listener), length);
+  if (!payload) return CHANNEL_BROKEN;
+  if (length) memcpy(payload, text->characters, length);
+  text_free(text);
+  return answer(s, asked, 0, length);
 }
 
 /* ---- sessions ---- */
@@ -290,27 +292,30 @@ static ChannelStatus trial(Server *s, const Frame *asked, const uint8_t *payload
   return answer(s, asked, asked->count, asked->count * per_point);
 }
 
-/** SAVE: committed histories out. RESTORE: in, and the count of commits with them. */
+/** SAVE: committed histories of a range of points out. RESTORE: in. */
 static ChannelStatus move_state(Server *s, const Frame *asked, const uint8_t *payload)
 {
   Session *h = &s->held;
-  const size_t size = sizeof(double) * (size_t)h->material.history_values * (size_t)h->points;
-  if (size > FRAME_MOST_PAYLOAD) return refuse(s, asked, -1, "the histories are too long for one frame");
-  if (asked->operation == OPERATION_RESTORE) {
-    if (asked->length != size)
-      return refuse(s, asked, -1, "%zu bytes of histories were expected, and %lu came", size,
-                    (unsigned long)asked->length);
+  const size_t row = sizeof(double) * (size_t)h->material.history_values, size = row * asked->count;
+  const bool restore = asked->operation == OPERATION_RESTORE;
+  uint32_t first = 0;
+  if (asked->length >= 8) memcpy(&first, payload, sizeof first);
+  if ((int64_t)first + asked->count > h->points || size > FRAME_MOST_PAYLOAD ||
+      asked->length != 8 + (restore ? size : 0))
+    return refuse(s, asked, -1, "histories of %lu points from %lu on were asked for; there are %lld points",
+                  (unsigned long)asked->count, (unsigned long)first, (long long)h->points);
+  if (restore) {
     if (size) {
-      memcpy(h->committed, payload, size);
-      memcpy(h->trial, payload, size);
+      memcpy((uint8_t *)h->committed + row * first, payload + 8, size);
+      memcpy((uint8_t *)h->trial + row * first, payload + 8, size);
     }
     h->tried = false;
     return answer(s, asked, 0, 0);
   }
   uint8_t *out = channel_payload(listener_channel(s->listener), size);
   if (!out) return refuse(s, asked, -1, "out of memory: histories");
-  if (size) memcpy(out, h->committed, size);
-  return answer(s, asked, (uint32_t)h->points, (uint32_t)size);
+  if (size) memcpy(out, (const uint8_t *)h->committed + row * first, size);
+  return answer(s, asked, asked->count, (uint32_t)size);
 }
 
 static ChannelStatus statistics(Server *s, const Frame *asked)

@@ -1,0 +1,183 @@
+#!/bin/bash
+# Laws in other processes: the same bits as at home, over every transport, through restarts; and what is said when servers fail.
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+
+deck() { # MATERIAL > a small plate of clay, 60 steps
+  cat << END
+units: {length: m, force: kN, time: s}
+materials:
+  clay: {$1, density: 1.5}
+body:
+  plate: {material: clay, lattice: cubic, spacing: 0.03, shape: {box: {particles: [11, 9, 2], first particle: [0, 0, 0]}}}
+peridynamics: {formulation: correspondence, horizon: 3.015 spacings, zero-energy control: {silling: 0.1}}
+loads:
+  - {on: {face: x-, layers: 3}, body force: [-900, 0, 0], history: {ramp to: 1e-4}}
+  - {on: {face: x+, layers: 3}, body force: [900, 0, 0], history: {ramp to: 1e-4}}
+solve: {explicit: {time step: 8e-6, steps: 60}}
+results: {number: 3, precision: double, checkpoint steps: 20}
+END
+}
+clay='shear modulus: 60000, bulk modulus: 100000, octahedral strength: 30'
+served="remote: multi-yield-j2; shear modulus=60000; bulk modulus=100000; octahedral strength=30"
+
+serve() { # ADDRESS [options]; sets $server
+  "$breccia" serve --listen "$@" > serve.out 2> serve.err &
+  server=$!
+  for _ in $(seq 100); do grep -q listening serve.out && return; kill -0 $server 2> /dev/null || break; sleep 0.05; done
+  fail "serve $1: $(cat serve.err)"
+}
+stop() { kill "$server" 2> /dev/null; wait "$server" 2> /dev/null; }
+same() { "$build/tests/compare_results" "$1/$3" "$2/$3" > differences || fail "$2: $3: $(cat differences)"; }
+
+deck "model: multi-yield-j2, $clay" > home.yaml
+"$breccia" run home.yaml > out 2>&1 || fail "home: $(cat out)"
+
+# ---- the same bits wherever the law lives ----
+serve "unix:$PWD/one" ; first=$server
+serve "tcp://127.0.0.1:0"; second=$server
+tcp=$(sed 's/listening at //' serve.out)
+deck "$served, server: ['unix:$PWD/one', '$tcp']" > two.yaml
+"$breccia" run two.yaml > out 2>&1 || fail "two servers: $(cat out)"
+same home two results.vtkhdf
+contains "outcome tells of servers" "$(cat out)" "server 2 at $tcp: "
+"$breccia" run two.yaml --steps 30 > /dev/null 2>&1
+"$breccia" run two.yaml --restart > out 2>&1 || fail "restart with servers: $(cat out)"
+same home two results.vtkhdf
+# A fresh server is given what the checkpoint saved.
+"$breccia" run two.yaml --steps 30 > /dev/null 2>&1
+server=$second; stop
+server=$first; stop
+serve "unix:$PWD/one"; first=$server
+serve "$tcp"; second=$server
+"$breccia" run two.yaml --restart --threads 1 > out 2>&1 || fail "restart with fresh servers: $(cat out)"
+same home two results.vtkhdf
+server=$second; stop
+
+serve "udp://127.0.0.1:0"; udp=$(sed 's/listening at //' serve.out)
+deck "$served, server: ['$udp']" > datagrams.yaml
+"$breccia" run datagrams.yaml > out 2>&1 || fail "datagrams: $(cat out)"
+same home datagrams results.vtkhdf
+stop
+
+# Plane stress iterates with the server's tangents, block by block.
+flat() { sed "s/cubic/square/; s/spacing: 0.03/spacing: 0.03, thickness: 0.06/; s/\[11, 9, 2\]/[11, 9]/; s/first particle: \[0, 0, 0\]/first particle: [0, 0]/
+  s/{formulation: correspondence/{formulation: correspondence, space: plane stress/" "$1"; }
+flat home.yaml > flat.yaml
+deck "$served, server: ['unix:$PWD/one']" > served.yaml
+flat served.yaml > flat-served.yaml
+"$breccia" run flat.yaml > out 2>&1 || fail "flat: $(cat out)"
+"$breccia" run flat-served.yaml > out 2>&1 || fail "flat, served: $(cat out)"
+same flat flat-served results.vtkhdf
+
+# Bonds, each with a law of one strain.
+bonds() { deck "$1" | sed 's/correspondence, horizon/bond-based, horizon/; s/, zero-energy control: {silling: 0.1}//; s/900/2e5/g'; }
+softening='Young modulus=3e7; tensile strength=3000; fracture energy=0.1; length=0.03'
+bonds "model: bilinear-softening, Young modulus: 3e7, tensile strength: 3000, fracture energy: 0.1, length: 0.03" > bonds.yaml
+bonds "remote: 'bilinear-softening; $softening', server: ['unix:$PWD/one']" > bonds-served.yaml
+"$breccia" run bonds.yaml > out 2>&1 || fail "bonds: $(cat out)"
+"$breccia" run bonds-served.yaml > out 2>&1 || fail "bonds, served: $(cat out)"
+"$build/tests/compare_results" bonds/results.vtkhdf bonds-served/results.vtkhdf 1e-13 displacement stress damage > differences ||
+  fail "bonds: $(cat differences)"
+
+# ---- faults: one line, in time, and what was committed stays ----
+relay() { # FAULT
+  python3 "$source/tests/command/faulty_relay.py" "$PWD/relay" "$PWD/one" "$1" 30 &
+  relay=$!
+  for _ in $(seq 100); do [ -S relay ] && break; sleep 0.05; done
+}
+deck "$served, server: ['unix:$PWD/relay'], timeout: 2" > faulty.yaml
+fault() { # FAULT WORDS
+  relay "$1"
+  local start=$SECONDS
+  "$breccia" run faulty.yaml > out 2> err
+  equal "$1: status" $? 1
+  equal "$1: lines" "$(wc -l < err)" 1
+  contains "$1: message" "$(cat err)" "step 29 (time 0.000232): material 'clay': server at unix:$PWD/relay: $2"
+  [ $((SECONDS - start)) -le 10 ] || fail "$1: took $((SECONDS - start)) s"
+  [ -f faulty/checkpoint.h5 ] || fail "$1: no checkpoint"
+  kill $relay 2> /dev/null; wait $relay 2> /dev/null
+  # From the last checkpoint, with a server that is well, to the same end.
+  relay none
+  "$breccia" run faulty.yaml --restart > out 2>&1 || fail "$1: restart: $(cat out)"
+  same home faulty results.vtkhdf
+  kill $relay 2> /dev/null; wait $relay 2> /dev/null
+}
+fault close 'it has closed the connection'
+fault hang 'it does not answer within 2 s'
+fault length 'a frame of 1073741824 bytes was announced; the most is 268435456'
+fault short 'it answered with 198 points in 9496 bytes where 198 points in 9504 bytes were due'
+fault sequence 'it answered 133 to frame '
+fault nan 'it returned a stress that is not a number for its point 0'
+fault damage 'a frame came damaged (its checksum does not hold)'
+fault garbage 'what came is no frame of a material server (it begins with 48 54 54 50)'
+fault version 'it speaks version 9 of the protocol, this program version 1'
+relay late
+"$breccia" run faulty.yaml > out 2>&1 || fail "late: $(cat out)"
+same home faulty results.vtkhdf
+kill $relay 2> /dev/null; wait $relay 2> /dev/null
+
+refuse() { # MATERIAL WORDS
+  deck "$1" > refused.yaml
+  "$breccia" run refused.yaml > out 2> err
+  equal "refused: status" $? 2
+  equal "refused: lines of: $(cat err)" "$(wc -l < err)" 1
+  contains "refused" "$(cat err)" "$2"
+}
+refuse "$served, server: ['unix:$PWD/nobody']" "material 'clay': server at unix:$PWD/nobody: it cannot be reached: No such file"
+refuse "$served, server: ['gopher://x']" "server at gopher://x: it cannot be reached: an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH"
+refuse "$served" "refused.yaml:3:18: remote: give the addresses of its servers under 'server'"
+refuse "remote: jelly, server: ['unix:$PWD/one']" "there is no law 'jelly'; a command is 'LAW; KEY=VALUE; ...' with one of elastic, j2, "
+refuse "remote: j2; Young modulus=1, server: ['unix:$PWD/one']" "missing 'yield stress=...'"
+refuse "remote: elastic-1d; Young modulus=1, server: ['unix:$PWD/one']" "'elastic-1d; Young modulus=1' is a law of one strain; correspondence takes elastic,"
+refuse "opensees: nDMaterial ElasticIsotropic3D 1 1e5 0.3" "opensees: expected 'nDMaterial KIND \$tag ...'"
+refuse "opensees: 'nDMaterial X \$tag [exec rm]'" "opensees: expected 'nDMaterial KIND \$tag ...'"
+refuse "$served, model: elastic, Young modulus: 1, Poisson ratio: 0, server: ['unix:$PWD/one']" "more than one of 'model', 'opensees', 'remote'; give exactly one"
+refuse "$served, jelly: 3, server: ['unix:$PWD/one']" "unknown key 'jelly'"
+BRECCIA_OPENSEES=$PWD/nowhere refuse "opensees: nDMaterial ElasticIsotropic3D \$tag 1e5 0.3" "the OpenSees server '$PWD/nowhere' cannot be started: No such file or directory; \`make demo-opensees\` sets one up"
+printf '#!/bin/sh\necho out of cheese >&2\nexit 3\n' > ends; chmod +x ends
+BRECCIA_OPENSEES=$PWD/ends refuse "opensees: nDMaterial ElasticIsotropic3D \$tag 1e5 0.3, processes: 1" "its process has ended with status 3; its last words: out of cheese"
+
+# Two clients at once: the second is turned away, and the first goes on.
+relay hang
+"$breccia" run faulty.yaml > /dev/null 2>&1 & client=$!
+for _ in $(seq 100); do [ -S relay ] || break; sleep 0.05; done
+sleep 0.3
+refuse "$served, server: ['unix:$PWD/one']" "server at unix:$PWD/one: the server is busy with another client"
+kill $relay $client 2> /dev/null; wait $relay $client 2> /dev/null
+
+# Addresses that are taken, or that others could reach.
+"$breccia" serve --listen "unix:$PWD/one" > out 2> err; equal "taken: status" $? 2
+contains "taken" "$(cat err)" "unix:$PWD/one: cannot be listened to: Address already in use"
+"$breccia" serve --listen tcp://0.0.0.0:0 > out 2> err; equal "open: status" $? 2
+contains "open" "$(cat err)" "a server listens on this machine only, unless a secret guards it (--secret-file)"
+equal "socket for its owner only" "$(stat -c %a one)" 600
+server=$first; stop
+[ -e one ] && fail "the socket's file stays behind"
+
+# A secret.
+echo sesame > secret
+serve tcp://127.0.0.1:0 --secret-file secret; tcp=$(sed 's/listening at //' serve.out)
+refuse "$served, server: ['$tcp']" "server at $tcp: the secret is wrong"
+deck "$served, server: ['$tcp']" > guarded.yaml
+BRECCIA_SECRET=sesame "$breccia" run guarded.yaml > out 2>&1 || fail "secret: $(cat out)"
+same home guarded results.vtkhdf
+stop
+
+# Killed in the middle of a run.
+serve "unix:$PWD/one"
+relay hang
+deck "$served, server: ['unix:$PWD/relay'], timeout: 30" > killed.yaml
+"$breccia" run killed.yaml > out 2> err & client=$!
+for _ in $(seq 100); do [ -f killed/checkpoint.h5 ] && break; sleep 0.05; done
+kill -9 "$server"; kill -9 $relay; wait "$server" 2> /dev/null
+wait $client; equal "killed: status" $? 1
+contains "killed" "$(cat err)" "material 'clay': server at unix:$PWD/relay: it has closed the connection"
+serve "unix:$PWD/one" # over the file that the killed one left
+relay none
+"$breccia" run killed.yaml --restart > out 2>&1 || fail "killed: restart: $(cat out)"
+same home killed results.vtkhdf
+stop
+kill $relay 2> /dev/null
+wait 2> /dev/null
+finish
