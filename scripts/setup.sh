@@ -3,6 +3,7 @@
 #   setup.sh build   what the program needs
 #   setup.sh test    what its tests need besides
 #   setup.sh peers   the programs that it is measured against
+#   setup.sh opensees   what OpenSees from the Python index needs
 set -eu
 
 build="gcc:C_compiler cmake:build ninja-build:build pkg-config:build libc6-dev:C_library libfyaml-dev:decks_in_YAML
@@ -12,10 +13,12 @@ test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing clang-format:la
 python3:external_tests python3-venv:external_tests"
 
 peers="lammps:its_PERI_package"
+opensees="python3:OpenSees python3-venv:OpenSees libblas3:OpenSees"
 
 wanted=$build
 [ "${1:-build}" = peers ] && wanted="$build $peers"
 [ "${1:-build}" = test ] && wanted="$build $test"
+[ "${1:-build}" = opensees ] && wanted="$build $opensees"
 
 missing="" why=""
 for entry in $wanted; do

@@ -53,31 +53,36 @@ class Gone(Exception):
     """The client has left."""
 
 
-class Quiet:
-    """Keeps what OpenSees prints, to be told if something fails."""
+class Words:
+    """What OpenSees prints goes to a file, to be told if something fails. Some classes end the process when an argument is wrong:
+    a child that outlives it says then what was printed last."""
 
-    def __enter__(self):
-        sys.stdout.flush()
-        sys.stderr.flush()
+    def __init__(self):
         self.file = tempfile.TemporaryFile()
-        self.kept = [os.dup(1), os.dup(2)]
-        os.dup2(self.file.fileno(), 1)
-        os.dup2(self.file.fileno(), 2)
-        return self
+        reading, self.writing = os.pipe()
+        if os.fork() == 0:
+            os.close(self.writing)
+            signal.signal(signal.SIGTERM, signal.SIG_IGN)
+            if os.read(reading, 1) == b"":
+                os.write(2, (self.since(0) + "\n").encode())
+            os._exit(0)
+        os.close(reading)
+        sys.stdout.flush()
+        for number in (1, 2):
+            os.dup2(self.file.fileno(), number)
 
-    def words(self):
-        self.file.seek(0)
-        text = self.file.read().decode(errors="replace")
-        return " ".join(text.split())[:600]
+    def mark(self):
+        """Forgets what was printed so far."""
+        os.ftruncate(self.file.fileno(), 0)
+        os.lseek(self.file.fileno(), 0, os.SEEK_SET)
 
-    def __exit__(self, *exception):
-        for number, kept in zip((1, 2), self.kept):
-            os.dup2(kept, number)
-            os.close(kept)
-        if exception[0] is SystemExit or exception[0] is None:
-            pass
-        self.file.close()
-        return False
+    def since(self, start=0):
+        size = os.fstat(self.file.fileno()).st_size
+        text = os.pread(self.file.fileno(), 600, max(start, size - 600)).decode(errors="replace")
+        return " ".join(text.split())
+
+    def end(self):
+        os.write(self.writing, b".")
 
 
 def parse_lines(payload):
@@ -126,8 +131,8 @@ class Command:
 class Points:
     """The points of a session in OpenSees."""
 
-    def __init__(self, ops):
-        self.ops = ops
+    def __init__(self, ops, words):
+        self.ops, self.words = ops, words
         self.session = 0
         self.clear()
 
@@ -138,50 +143,43 @@ class Points:
 
     def build(self, command, tag):
         ops = self.ops
-        try:
-            if command.uniaxial:
-                ops.uniaxialMaterial(command.kind, tag, *command.arguments)
-                return
-            base = tag + BASE_OFFSET if command.kind in WRAPPED and tag != PROBE_TAG else tag
-            if command.kind in WRAPPED and tag == PROBE_TAG:
-                base = PROBE_TAG - 1
-            ops.nDMaterial(command.kind, base, *command.arguments)
-            if base != tag:
-                ops.nDMaterial("InitStrain", tag, base, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-            if command.stage is not None:
-                number, whole = STAGES[command.kind]
-                if whole:
-                    ops.NDTest("UpdateIntegerParameter", base, number, command.stage)
-                else:
-                    ops.NDTest("UpdateDoubleParameter", base, number, float(command.stage))
-        except Exception as problem:  # openseespy raises its own kinds
-            raise Refusal(str(problem)) from None
+        if command.uniaxial:
+            ops.uniaxialMaterial(command.kind, tag, *command.arguments)
+            return
+        base = tag
+        if command.kind in WRAPPED:
+            base = tag - 1 if tag >= PROBE_TAG else tag + BASE_OFFSET
+        ops.nDMaterial(command.kind, base, *command.arguments)
+        if base != tag:
+            ops.nDMaterial("InitStrain", tag, base, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if command.stage is not None:
+            number, whole = STAGES[command.kind]
+            if whole:
+                ops.NDTest("UpdateIntegerParameter", base, number, command.stage)
+            else:
+                ops.NDTest("UpdateDoubleParameter", base, number, float(command.stage))
 
     def probe(self, command):
         """Components and moduli of what the command makes, from its tangent before any strain."""
         ops = self.ops
         ops.model("basic", "-ndm", 3, "-ndf", 3)
-        with Quiet() as quiet:
-            # Some classes end the process on bad input: what they said must not be lost with it.
-            sys.stderr.flush()
-            try:
-                self.build(command, PROBE_TAG)
-                if command.uniaxial:
-                    ops.testUniaxialMaterial(PROBE_TAG)
-                    young = ops.getTangent()
-                    bulk, shear = young / 1.5, young / 2.5
-                else:
-                    ops.NDTest("SetStrain", PROBE_TAG, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-                    if len(ops.NDTest("GetStress", PROBE_TAG)) != 6:
-                        raise Refusal(f"{command.kind} does not take six strains")
-                    tangent = ops.NDTest("GetTangentStiffness", PROBE_TAG)
-                    bulk = sum(tangent[6 * row + column] for row in range(3) for column in range(3)) / 9
-                    shear = (tangent[21] + tangent[28] + tangent[35]) / 3
-            except Refusal as refusal:
-                words = quiet.words()
-                raise Refusal(f"OpenSees refuses '{command.kind}': {refusal}{'; it said: ' + words if words else ''}") from None
-            except Exception as problem:
-                raise Refusal(f"OpenSees refuses '{command.kind}': {problem}; it said: {quiet.words()}") from None
+        self.words.mark()
+        try:
+            self.build(command, PROBE_TAG)
+            if command.uniaxial:
+                ops.testUniaxialMaterial(PROBE_TAG)
+                young = ops.getTangent()
+                bulk, shear = young / 1.5, young / 2.5
+            else:
+                ops.NDTest("SetStrain", PROBE_TAG, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+                if len(ops.NDTest("GetStress", PROBE_TAG)) != 6:
+                    raise Refusal(f"{command.kind} does not take six strains")
+                tangent = ops.NDTest("GetTangentStiffness", PROBE_TAG)
+                bulk = sum(tangent[6 * row + column] for row in range(3) for column in range(3)) / 9
+                shear = (tangent[21] + tangent[28] + tangent[35]) / 3
+        except Exception as problem:  # openseespy raises its own kinds
+            said = self.words.since()
+            raise Refusal(f"OpenSees refuses '{command.kind}': {'it said: ' + said if said else problem}") from None
         if not (bulk > 0 and shear > 0):
             raise Refusal(f"OpenSees tells no stiffness of '{command.kind}' (bulk {bulk:g}, shear {shear:g})")
         self.forget_probe(command)
@@ -193,7 +191,7 @@ class Points:
         if not self.tags:
             self.ops.wipe()
         else:
-            PROBE_TAG -= 2
+            PROBE_TAG += 2
 
     def create(self, command, count):
         self.clear()
@@ -201,12 +199,9 @@ class Points:
         bulk, shear = self.probe(command)
         self.ops.model("basic", "-ndm", 3, "-ndf", 3)
         self.command, self.tags = command, list(range(1, count + 1))
-        with Quiet() as quiet:
-            try:
-                for tag in self.tags:
-                    self.build(command, tag)
-            except Refusal as refusal:
-                raise Refusal(f"OpenSees refuses '{command.kind}': {refusal}; it said: {quiet.words()}") from None
+        for tag in self.tags:
+            self.build(command, tag)
+        self.words.mark()
         self.session = secrets.randbits(32) | 1
         return bulk, shear
 
@@ -498,13 +493,15 @@ def main():
     except (OSError, ValueError) as problem:
         sys.exit(f"breccia-opensees: {options.listen}: cannot be listened to: {problem}")
     print(f"listening at {where}", flush=True)
-    server = Server(Points(ops), secret, f"OpenSees {ops.version()}")
+    words = Words()
+    server = Server(Points(ops, words), secret, f"OpenSees {ops.version()}")
     try:
         if listener.type == socket.SOCK_DGRAM:
             serve_datagrams(server, listener, options.once)
         else:
             serve_stream(server, listener, options.once)
     finally:
+        words.end()
         if path and os.path.exists(path):
             os.unlink(path)
 

@@ -8,6 +8,9 @@ if ! cmp -s tests/external/requirements.txt "$environment/installed" 2> /dev/nul
   "$environment/bin/python" -m pip install --quiet --disable-pip-version-check -r tests/external/requirements.txt
   cp tests/external/requirements.txt "$environment/installed"
 fi
+sh scripts/opensees.sh
+cmake --preset test > /dev/null
+cmake --build --preset test --target compare_results > /dev/null
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 passed=0 failed=0

@@ -28,10 +28,24 @@ char *process_folder(void)
   return NULL;
 }
 
+/** The server that stands beside this program. */
+static bool find_beside(char *path, size_t size)
+{
+  static const char name[] = "breccia-opensees";
+  const ssize_t length = readlink("/proc/self/exe", path, size - sizeof name);
+  if (length <= 0) return false;
+  path[length] = 0;
+  char *slash = strrchr(path, '/');
+  if (!slash) return false;
+  memcpy(slash + 1, name, sizeof name);
+  return !access(path, X_OK);
+}
+
 int process_start(Process *process, const char *folder, int number, Text *reason)
 {
-  const char *program = getenv("BRECCIA_OPENSEES");
-  if (!program || !*program) program = "breccia-opensees";
+  const char *named = getenv("BRECCIA_OPENSEES");
+  char beside[1024];
+  const char *program = named && *named ? named : find_beside(beside, sizeof beside) ? beside : "breccia-opensees";
   *process = (Process){.log = text_format("%s/%d.log", folder, number),
                        .address = text_format("unix:%s/%d.socket", folder, number)};
   if (!process->log || !process->address) {

@@ -15,7 +15,7 @@ typedef struct Process {
 /** A folder that only this user can enter. @return its path, to be freed, or NULL */
 char *process_folder(void);
 
-/** Starts the OpenSees server ('breccia-opensees', or what BRECCIA_OPENSEES names) on a socket in the folder.
+/** Starts the OpenSees server on a socket in the folder: what BRECCIA_OPENSEES names, or 'breccia-opensees' beside the program or in PATH.
  *  @return 0, or 1 with the reason */
 int process_start(Process *process, const char *folder, int number, Text *reason);
 /** Whether it has ended; that can be asked again and again. */

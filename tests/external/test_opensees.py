@@ -1,0 +1,243 @@
+"""Laws in an unmodified OpenSees: the same as ours, the same alone and in company, and its refusals in words.
+
+test_opensees.py BRECCIA WORK_FOLDER, with breccia-opensees beside BRECCIA, and build/test/tests/compare_results
+"""
+
+import os
+import random
+import socket
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+BRECCIA, WORK = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+SERVER = os.path.join(os.path.dirname(BRECCIA), "breccia-opensees")
+HEADER = struct.Struct("<4sHHIIIIII")
+failures = 0
+
+# Ten laws in space that soil, rock and concrete are computed with, and three along bonds.
+LAWS = {
+    "ElasticIsotropic3D": "nDMaterial ElasticIsotropic3D $tag 1.5e5 0.25 0.0",
+    "ElasticIsotropic": "nDMaterial ElasticIsotropic $tag 1.5e5 0.25",
+    "J2Plasticity": "nDMaterial J2Plasticity $tag 1.0e5 6.0e4 100. 150. 80. 500.",
+    "PressureIndependMultiYield": "nDMaterial PressureIndependMultiYield $tag 3 1.5 6.0e4 1.0e5 31.8198051534 0.1 0. 100. 0. 20",
+    "PressureDependMultiYield": "nDMaterial PressureDependMultiYield $tag 3 1.9 7.5e4 2.0e5 33. 0.1 80. 0.5 27. 0.07 0.4 2. 10. 0.01 1.0 20",
+    "DruckerPrager": "nDMaterial DruckerPrager $tag 1.0e5 6.0e4 50. 0.25 0.15 0. 0. 0. 0. 2000. 0.5 1.5",
+    "TruncatedDP": "nDMaterial TruncatedDP $tag 3 2.0 6.0e4 1.0e5 0.2 40. -30. 1e-8",
+    "ManzariDafalias": "nDMaterial ManzariDafalias $tag 125. 0.05 0.735 1.25 0.712 0.019 0.934 0.7 100. 0.02 7.05 0.968 1.1 0.704 3.5 5. 600. 1.5",
+    "CapPlasticity": "nDMaterial CapPlasticity $tag 3 2400. 1.1721e10 1.4479e10",
+    "ASDConcrete3D": "nDMaterial ASDConcrete3D $tag 36000. 0.18 -fc 45. -ft 3.5 -Kc 0.7",
+    "Steel01": "uniaxialMaterial Steel01 $tag 400. 2.0e5 0.01",
+    "Steel02": "uniaxialMaterial Steel02 $tag 400. 2.0e5 0.01 18. 0.925 0.15",
+    "Concrete02": "uniaxialMaterial Concrete02 $tag -30. -0.002 -6. -0.006 0.1 3. 3000.",
+}
+STAGES = {"PressureIndependMultiYield": 1, "PressureDependMultiYield": 1}
+
+
+def check(what, good, more=""):
+    global failures
+    if not good:
+        failures += 1
+        print(f"FAIL: {what} {more}")
+
+
+class Client:
+    def __init__(self, path):
+        self.process = subprocess.Popen([SERVER, "--listen", f"unix:{path}"], stdout=subprocess.PIPE, text=True)
+        self.process.stdout.readline()
+        self.line = socket.socket(socket.AF_UNIX)
+        self.line.connect(path)
+        self.number = self.session = 0
+        self.ask(1, b"client: test\n")
+
+    def ask(self, operation, body=b"", count=0, flags=0):
+        self.number += 1
+        head = HEADER.pack(b"BRMS", 1, operation, self.number, flags, count, len(body), self.session, 0)[:28]
+        self.line.sendall(head + struct.pack("<I", zlib.crc32(body, zlib.crc32(head))) + body)
+        head = self.line.recv(32, socket.MSG_WAITALL)
+        if len(head) < 32:
+            sys.exit(f"the server has ended at operation {operation}: {body[:200]}")
+        header = HEADER.unpack(head)
+        reply = self.line.recv(header[6], socket.MSG_WAITALL) if header[6] else b""
+        if header[2] == 127:
+            raise RuntimeError(reply.decode())
+        return header, reply
+
+    def create(self, name, points):
+        text = f"command: {LAWS[name]}\n" + (f"stage: {STAGES[name]}\n" if name in STAGES else "")
+        header, reply = self.ask(3, text.encode(), count=points)
+        self.session = header[7]
+        return 1 if b"components: 1\n" in reply else 6
+
+    def trial(self, strains, components, first=0):
+        count = len(strains) // components
+        body = struct.pack(f"<II{len(strains)}d", first, 0, *strains)
+        return struct.unpack(f"<{count * components}d", self.ask(5, body, count=count)[1])
+
+    def end(self):
+        self.line.close()
+        self.process.terminate()
+        self.process.wait()
+
+
+def path_of(point, components, steps):
+    """A path of strains of its own for each point: proportional, with one reversal."""
+    chance = random.Random(point)
+    direction = [chance.uniform(-1, 1) for _ in range(components)]
+    size = 1e-4 if components == 6 else 3e-3
+    if components == 6:
+        direction = [d - 0.4 * (k < 3) for k, d in enumerate(direction)]
+    turn = chance.randint(2, steps - 1)
+    for step in range(1, steps + 1):
+        along = size * (step if step <= turn else 2 * turn - step) / steps
+        yield [along * d for d in direction]
+
+
+def laws_do_not_hang_on_their_company(client):
+    """OpenSees classes share static memory: a thousand points side by side must answer as each would alone."""
+    points, steps = 1000, 6
+    for name in LAWS:
+        try:
+            components = client.create(name, points)
+        except RuntimeError as problem:
+            check(f"{name} is served", False, str(problem))
+            continue
+        paths = [list(path_of(point, components, steps)) for point in range(points)]
+        together = []
+        for step in range(steps):
+            strains = [value for path in paths for value in path[step]]
+            together.append(client.trial(strains, components))
+            client.ask(6)
+        for point in random.Random(1).sample(range(points), 12):
+            client.create(name, 1)
+            for step in range(steps):
+                alone = client.trial(paths[point][step], components)
+                client.ask(6)
+                seen = together[step][components * point : components * (point + 1)]
+                if alone != seen:
+                    check(f"{name}: point {point} alone and in company", False, f"in step {step}: {alone} {seen}")
+                    break
+        check(f"{name} answers", any(together[-1]))
+
+
+def trials_are_repeatable(client):
+    components = client.create("J2Plasticity", 3)
+    strains = [2e-3, -1e-3, -1e-3, 1e-3, 0, 0] * 3
+    first = client.trial(strains, components)
+    client.trial([5 * value for value in strains], components)
+    check("a trial begins at the committed state", client.trial(strains, components) == first)
+
+
+def decks_agree():
+    """A small plate with its law at home and in OpenSees."""
+    deck = """units: {{length: m, force: kN, time: s}}
+materials: {{clay: {{{material}, density: 1.5}}}}
+body:
+  plate: {{material: clay, lattice: cubic, spacing: 0.03, shape: {{box: {{particles: [20, 18, 2], first particle: [0, 0, 0]}}}}}}
+cracks: [{{remove: {{box: {{from: [0.285, -0.015, -0.015], to: [0.315, 0.2, 0.045]}}}}, cut faces: yes}}]
+peridynamics: {{{formulation}, horizon: 3.015 spacings}}
+loads:
+  - {{on: {{face: x-, layers: 3}}, body force: [{left}, 0, 0], history: {{ramp to: 0.001}}}}
+  - {{on: {{face: x+, layers: 3}}, body force: [{right}, 0, 0], history: {{ramp to: 0.001}}}}
+solve: {{explicit: {{time step: {step}, steps: 500}}}}
+results: {{number: 2, precision: double}}
+"""
+    space = "formulation: correspondence, zero-energy control: {silling: 0.1}"
+    pairs = {
+        "clay": (
+            "model: multi-yield-j2, shear modulus: 6e4, bulk modulus: 1e5, octahedral strength: 30",
+            f"opensees: {LAWS['PressureIndependMultiYield']}, stage: 1",
+            space,
+            900,
+            "4e-6",
+        ),
+        "elastic": (
+            "model: elastic, Young modulus: 1.5e5, Poisson ratio: 0.25",
+            f"opensees: {LAWS['ElasticIsotropic3D']}",
+            space,
+            5000,
+            "4e-6",
+        ),
+        "bonds": (
+            "model: kent-scott-park, compressive strength: 30e3, peak strain: 0.002, residual strength: 6e3, crushing strain: 0.006",
+            "opensees: uniaxialMaterial Concrete01 $tag -30e3 -0.002 -6e3 -0.006",
+            "formulation: bond-based",
+            -300000,
+            "1e-6",
+        ),
+    }
+    compare = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
+    for name, (home, away, formulation, force, step) in pairs.items():
+        for place, material in (("home", home), ("away", away)):
+            with open(f"{WORK}/{name}-{place}.yaml", "w", encoding="utf-8") as file:
+                file.write(deck.format(material=material, formulation=formulation, left=-force, right=force, step=step))
+            run = subprocess.run([BRECCIA, "run", f"{WORK}/{name}-{place}.yaml"], capture_output=True, text=True)
+            check(f"{name} {place} runs", run.returncode == 0, run.stderr)
+        result = subprocess.run(
+            [compare, f"{WORK}/{name}-home/results.vtkhdf", f"{WORK}/{name}-away/results.vtkhdf", "1e-8", "displacement", "stress"],
+            capture_output=True,
+            text=True,
+        )
+        check(f"{name}: at home and in OpenSees", result.returncode == 0, result.stdout)
+
+
+def refusals_are_told(client):
+    for command, words in {
+        "nDMaterial Nonsense $tag 1": "material type Nonsense is unknown",
+        "nDMaterial ElasticIsotropic3D $tag": "ElasticIsotropic3D",
+        "nDMaterial PM4Sand $tag 0.5 500. 0.5 1.7": "knows plane strain only",
+        "nDMaterial ElasticIsotropic3D 7 1. 0.": "a command is",
+        "__import__('os') x $tag": "a command is",
+    }.items():
+        try:
+            client.ask(3, f"command: {command}\n".encode(), count=1)
+            check(f"'{command}' is refused", False)
+        except RuntimeError as problem:
+            check(f"'{command}' is refused in words", words in str(problem), str(problem))
+
+
+def a_server_keeps_its_points():
+    """A run that was stopped goes on with the server that still holds its points, and only with that."""
+    path = f"{WORK}/keeps"
+    client = Client(path)
+    client.line.close()
+    with open(f"{WORK}/clay-away.yaml", encoding="utf-8") as file:
+        text = file.read().replace("stage: 1", f"stage: 1, server: ['unix:{path}']")
+    deck = f"{WORK}/kept.yaml"
+    with open(deck, "w", encoding="utf-8") as file:
+        file.write(text)
+    time.sleep(0.2)
+    run = subprocess.run([BRECCIA, "run", deck, "--steps", "200"], capture_output=True, text=True)
+    check("first part runs", run.returncode == 0, run.stderr)
+    run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True)
+    check("the run is taken up", run.returncode == 0, run.stderr)
+    compare = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
+    same = subprocess.run([compare, f"{WORK}/clay-away/results.vtkhdf", f"{WORK}/kept/results.vtkhdf"], capture_output=True, text=True)
+    check("to the same bits", same.returncode == 0, same.stdout)
+    subprocess.run([BRECCIA, "run", deck, "--steps", "100"], capture_output=True, text=True)
+    client.process.terminate()
+    client.process.wait()
+    client = Client(path)
+    client.line.close()
+    time.sleep(0.2)
+    run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True)
+    check("a fresh server is told of", run.returncode == 2 and "it cannot restore them" in run.stderr, run.stderr)
+    client.process.terminate()
+    client.process.wait()
+
+
+def main():
+    client = Client(f"{WORK}/socket")
+    laws_do_not_hang_on_their_company(client)
+    trials_are_repeatable(client)
+    refusals_are_told(client)
+    client.end()
+    decks_agree()
+    a_server_keeps_its_points()
+    print(f"OpenSees: {len(LAWS)} laws, {failures} failures")
+    sys.exit(failures > 0)
+
+
+main()
