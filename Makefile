@@ -1,7 +1,7 @@
 # What people type. CMake does the work (CMakePresets.json); this says it in short.
 cores := $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-report docs format check-format asan coverage clang fuzz install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report docs format check-format asan coverage clang fuzz install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -35,6 +35,11 @@ test-external: setup all
 bench: setup all
 	@build/release/breccia_bench build/release/bench.csv
 	@build/release/breccia_bench_laws
+
+# The same law at home, in a server of our own and in OpenSees; the table of docs/material-server.md.
+bench-servers: setup all
+	@sh scripts/opensees.sh
+	@python3 bench/servers.py build/release/breccia
 
 # LAMMPS from the distribution, on the same cubes in the same run.
 bench-peers: all
@@ -74,11 +79,11 @@ clang:
 	@cmake --preset clang > /dev/null
 	@cmake --build --preset clang --parallel $(cores)
 
-# The deck reader against decks of chance, for FUZZ_SECONDS.
+# The deck reader against decks of chance, then the protocol of material servers against frames of chance, for FUZZ_SECONDS each.
 fuzz:
 	@sh scripts/setup.sh test
 	@cmake --preset fuzz > /dev/null
-	@cmake --build --preset fuzz --target fuzz_deck --parallel $(cores)
+	@cmake --build --preset fuzz --target fuzz_deck fuzz_server --parallel $(cores)
 	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
 
 install: all

@@ -21,6 +21,7 @@ import zlib
 
 MAGIC, VERSION, HEADER = b"BRMS", 1, struct.Struct("<4sHHIIIIII")
 MOST_PAYLOAD = 1 << 28
+MOST_POINTS = 1_000_000  # OpenSees takes a time that grows with the square to make them
 HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE = range(1, 12)
 ERROR, ANSWER = 0x7F, 0x80
 COMMITS_BEFORE, WANTS_TANGENT = 1, 2
@@ -194,6 +195,8 @@ class Points:
             PROBE_TAG += 2
 
     def create(self, command, count):
+        if count > MOST_POINTS:
+            raise Refusal(f"{count} points are more than a server takes ({MOST_POINTS})")
         self.clear()
         self.ops.wipe()
         bulk, shear = self.probe(command)
@@ -382,7 +385,7 @@ def serve_stream(server, listener, once):
     client = None
     while True:
         ready, _, _ = select.select([listener] + ([client] if client else []), [], [])
-        if listener in ready:
+        if client not in ready:  # if it has just left, whoever knocks is the next one
             connection, _ = listener.accept()
             if connection.family != socket.AF_UNIX:
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

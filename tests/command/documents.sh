@@ -16,6 +16,13 @@ if command -v python3 > /dev/null; then
 fi
 for deck in "$source"/examples/*/*.yaml; do
   case "$deck" in */materials/*) continue ;; esac
+  # Its law needs OpenSees, which `make test-external` sets up; here the rest of the deck is read with a server of our own.
+  if grep -q ' opensees: ' "$deck"; then
+    "$breccia" serve --listen "unix:$work/socket" --once > /dev/null &
+    for _ in $(seq 100); do [ -S "$work/socket" ] && break; sleep 0.05; done
+    sed "s|    opensees: .*|    remote: elastic; Young modulus=1e5; Poisson ratio=0.25\n    server: ['unix:$work/socket']|" "$deck" > "$work/deck.yaml"
+    deck=$work/deck.yaml
+  fi
   "$breccia" check "$deck" > "$work/out" 2>&1 || fail "$deck is refused: $(cat "$work/out")"
   checks=$((checks + 1))
 done

@@ -173,7 +173,7 @@ results: {{number: 2, precision: double}}
         for place, material in (("home", home), ("away", away)):
             with open(f"{WORK}/{name}-{place}.yaml", "w", encoding="utf-8") as file:
                 file.write(deck.format(material=material, formulation=formulation, left=-force, right=force, step=step))
-            run = subprocess.run([BRECCIA, "run", f"{WORK}/{name}-{place}.yaml"], capture_output=True, text=True)
+            run = subprocess.run([BRECCIA, "run", f"{WORK}/{name}-{place}.yaml"], capture_output=True, text=True, timeout=300)
             check(f"{name} {place} runs", run.returncode == 0, run.stderr)
         result = subprocess.run(
             [compare, f"{WORK}/{name}-home/results.vtkhdf", f"{WORK}/{name}-away/results.vtkhdf", "1e-8", "displacement", "stress"],
@@ -198,6 +198,51 @@ def refusals_are_told(client):
             check(f"'{command}' is refused in words", words in str(problem), str(problem))
 
 
+def runs_tell_what_opensees_said():
+    """A command that OpenSees refuses, and one that makes it end its process."""
+    with open(f"{WORK}/clay-away.yaml", encoding="utf-8") as file:
+        text = file.read()
+    for command, words in {
+        "nDMaterial PressureIndependMultiYield $tag 3 1.5": "it said: WARNING insufficient arguments",
+        "nDMaterial TruncatedDP $tag 1 1.5 1.0e5 6.0e4 50. 0.2": "its last words:",
+    }.items():
+        with open(f"{WORK}/refused.yaml", "w", encoding="utf-8") as file:
+            file.write(text.replace(LAWS["PressureIndependMultiYield"] + ", stage: 1", command))
+        run = subprocess.run([BRECCIA, "run", f"{WORK}/refused.yaml"], capture_output=True, text=True, timeout=60)
+        check(f"'{command}'", run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1, run.stderr)
+
+
+def chance_does_no_harm():
+    """Frames and bytes of chance: the server answers in frames or closes the line, and serves the next client."""
+    path, chance = f"{WORK}/chance", random.Random(3)
+    client = Client(path)
+    client.line.close()
+    for n in range(150):
+        line = socket.socket(socket.AF_UNIX)
+        line.settimeout(20)
+        line.connect(path)
+        body = bytes(chance.randrange(256) for _ in range(chance.randrange(80)))
+        if n % 3:
+            texts = [b"command: nDMaterial ElasticIsotropic3D $tag 1. 0.2\n", b"client: x\n", b"command: " + body, body]
+            for number in range(1, 6):
+                body = chance.choice(texts)
+                head = HEADER.pack(
+                    b"BRMS", chance.choice((1, 1, 1, 2)), chance.randrange(13), number, chance.randrange(4), chance.choice((0, 1, 3, 2**32 - 1)), len(body), 0, 0
+                )[:28]
+                try:
+                    line.sendall(head + struct.pack("<I", zlib.crc32(body, zlib.crc32(head))) + body)
+                    if not line.recv(65536):
+                        break
+                except (BrokenPipeError, ConnectionResetError):
+                    break
+        else:
+            line.sendall(body)
+        line.close()
+        check("the server lives", client.process.poll() is None)
+    client.process.terminate()
+    client.process.wait()
+
+
 def a_server_keeps_its_points():
     """A run that was stopped goes on with the server that still holds its points, and only with that."""
     path = f"{WORK}/keeps"
@@ -209,20 +254,20 @@ def a_server_keeps_its_points():
     with open(deck, "w", encoding="utf-8") as file:
         file.write(text)
     time.sleep(0.2)
-    run = subprocess.run([BRECCIA, "run", deck, "--steps", "200"], capture_output=True, text=True)
+    run = subprocess.run([BRECCIA, "run", deck, "--steps", "200"], capture_output=True, text=True, timeout=300)
     check("first part runs", run.returncode == 0, run.stderr)
-    run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True)
+    run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True, timeout=300)
     check("the run is taken up", run.returncode == 0, run.stderr)
     compare = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
-    same = subprocess.run([compare, f"{WORK}/clay-away/results.vtkhdf", f"{WORK}/kept/results.vtkhdf"], capture_output=True, text=True)
+    same = subprocess.run([compare, f"{WORK}/clay-away/results.vtkhdf", f"{WORK}/kept/results.vtkhdf"], capture_output=True, text=True, timeout=300)
     check("to the same bits", same.returncode == 0, same.stdout)
-    subprocess.run([BRECCIA, "run", deck, "--steps", "100"], capture_output=True, text=True)
+    subprocess.run([BRECCIA, "run", deck, "--steps", "100"], capture_output=True, text=True, timeout=300)
     client.process.terminate()
     client.process.wait()
     client = Client(path)
     client.line.close()
     time.sleep(0.2)
-    run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True)
+    run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True, timeout=300)
     check("a fresh server is told of", run.returncode == 2 and "it cannot restore them" in run.stderr, run.stderr)
     client.process.terminate()
     client.process.wait()
@@ -235,6 +280,8 @@ def main():
     refusals_are_told(client)
     client.end()
     decks_agree()
+    runs_tell_what_opensees_said()
+    chance_does_no_harm()
     a_server_keeps_its_points()
     print(f"OpenSees: {len(LAWS)} laws, {failures} failures")
     sys.exit(failures > 0)

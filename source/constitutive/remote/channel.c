@@ -476,8 +476,9 @@ ChannelStatus listener_receive(Listener *l, Frame *frame, uint8_t **payload, boo
     const int n = poll(p, l->client ? 2 : 1, left > 0 ? (int)(1000 * left) + 1 : 0);
     if (n < 0 && errno != EINTR) return lost(reason, errno);
     if (n == 0) return CHANNEL_LATE;
-    if (n > 0 && p[0].revents) answer_knock(l);
+    /* First the client: if it has just left, whoever knocks is the next one. */
     if (n > 0 && l->client && p[1].revents) break;
+    if (n > 0 && p[0].revents) answer_knock(l);
   }
   if (!l->client) return CHANNEL_BROKEN;
   const ChannelStatus status =

@@ -186,6 +186,9 @@ static ChannelStatus create(Server *s, const Frame *asked, const char *text)
   ChannelStatus status;
   int bad = read_material(s, &fresh, text, asked->length, error);
   fresh.points = asked->operation == OPERATION_CREATE ? (int64_t)asked->count : 0;
+  if (!bad && fresh.points > FRAME_MOST_PAYLOAD / 64) /* all strains of a step must fit a frame */
+    bad = error_add(error, BRECCIA_USER_ERROR, "%lld points are more than a server takes (%d)", (long long)fresh.points,
+                    FRAME_MOST_PAYLOAD / 64);
   const size_t values = (size_t)fresh.material.history_values;
   if (!bad && fresh.points) {
     fresh.number = new_number();
