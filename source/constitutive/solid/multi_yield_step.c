@@ -165,7 +165,8 @@ LANES_INLINE void translate(Four *f, LaneMask where)
               half = lanes_set(0.5) / length, small = half * (-linear - root), large = half * (root - linear);
   const Lanes y = lanes_choose(small < zero, large, small);
   where &= ~still & (y >= zero);
-  const Tensors to = combine(one, &f->centre, y, &mu);
+  Tensors to = combine(one, &f->centre, y, &mu);
+  to.at[ZZ] = -(to.at[XX] + to.at[YY]); /* as it is when it is read again, which other points may bring about */
   assign(where, &f->centre, &to);
   for (int l = 0; l < LANES; ++l) {
     if (!where[l]) continue;
