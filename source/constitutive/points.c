@@ -15,7 +15,7 @@ static int64_t slice_values(const Points *points, int64_t slice)
                   (f->first[slice + 1] - f->stored[slice]) * points->partner_values);
 }
 
-int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner)
+int64_t points_bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner)
 {
   const Family *f = points->family;
   int64_t own = points->materials[points->material[slice]].history_values, start = points->history_start[slice];
@@ -24,7 +24,7 @@ int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bo
          ((slot - f->stored[slice]) * SLICE + lane) * points->partner_values;
 }
 
-const Material *partner_material(const Points *points, int64_t slot, int lane)
+const Material *points_partner(const Points *points, int64_t slot, int lane)
 {
   const Family *f = points->family;
   return &points->materials[points->material[f->neighbour[(int64_t)f->base[slot] * SLICE + lane] / SLICE]];
@@ -44,9 +44,10 @@ static void begin_slice(Points *points, int64_t slice)
   if (points->where != POINTS_ON_BONDS) return;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
-      begin_row(m, points->committed + bond_row(points, slice, slot, lane, false));
+      begin_row(m, points->committed + points_bond_row(points, slice, slot, lane, false));
       if (points->partner_values && slot >= f->stored[slice])
-        begin_row(partner_material(points, slot, lane), points->committed + bond_row(points, slice, slot, lane, true));
+        begin_row(points_partner(points, slot, lane),
+                  points->committed + points_bond_row(points, slice, slot, lane, true));
     }
 }
 
@@ -57,6 +58,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
                      .space = spec->space,
                      .places = slices * SLICE,
                      .materials = spec->materials,
+                     .material_count = spec->material_count,
                      .material = spec->material,
                      .family = spec->family};
   points->history_start = memory_zeroed((size_t)slices, sizeof(int64_t), "history rows", error);
@@ -79,7 +81,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
 #pragma omp parallel for schedule(static)
   for (int64_t s = 0; s < slices; ++s) begin_slice(points, s);
   if (total) memcpy(points->trial, points->committed, sizeof(double) * (size_t)total);
-  return remote_points_create(points, spec->material_count, error);
+  return remote_points_create(points, error);
 }
 
 int points_show(Points *points, Error *error)
@@ -265,7 +267,7 @@ int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int cou
                             double *stress)
 {
   const Material *m = &points->materials[points->material[slice]];
-  const int64_t row = bond_row(points, slice, slot, 0, false);
+  const int64_t row = points_bond_row(points, slice, slot, 0, false);
   breccia_batch batch = {.count = count * SLICE,
                          .strain = {strain},
                          .stress = {stress},
@@ -287,8 +289,8 @@ int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int cou
 
 int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int lane, double strain, double *stress)
 {
-  const Material *m = partner_material(points, slot, lane);
-  const int64_t row = bond_row(points, slice, slot, lane, true);
+  const Material *m = points_partner(points, slot, lane);
+  const int64_t row = points_bond_row(points, slice, slot, lane, true);
   breccia_batch batch = {.count = 1,
                          .strain = {&strain},
                          .stress = {stress},
@@ -306,8 +308,8 @@ int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int l
 double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain)
 {
   enum { MOST_VALUES = 256 };
-  const Material *m = partner ? partner_material(points, slot, lane) : &points->materials[points->material[slice]];
-  const double *row = points->committed + bond_row(points, slice, slot, lane, partner);
+  const Material *m = partner ? points_partner(points, slot, lane) : &points->materials[points->material[slice]];
+  const double *row = points->committed + points_bond_row(points, slice, slot, lane, partner);
   double stress = NAN, scratch[MOST_VALUES];
   if (m->remote) return remote_last_stress(row); /* a law elsewhere need not be able to try */
   if (m->history_values > MOST_VALUES) return NAN;
@@ -331,7 +333,7 @@ double points_bond_history(const Points *points, int64_t place, int k)
   int count = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     if (f->intact[slot] >> lane & 1) {
-      sum += points->committed[bond_row(points, slice, slot, lane, false) + k];
+      sum += points->committed[points_bond_row(points, slice, slot, lane, false) + k];
       ++count;
     }
   return count ? sum / count : 0;

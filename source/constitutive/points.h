@@ -10,7 +10,6 @@
 #include "constitutive/material.h"
 #include "family/family.h"
 
-enum { MOST_REMOTE = 16 };
 enum { BLOCK = 128 }; /* points worked on together: their strains, stresses and states stay in the first-level cache */
 
 /** Where points are: nowhere if laws act on bonds and all are linear. */
@@ -30,15 +29,15 @@ typedef struct Points {
   int64_t *history_start; /* [slices] */
   int partner_values;     /* numbers of a bond's point of the other end's material */
   const Material *materials;
+  int material_count;
   const int32_t *material; /* [slices] */
   const Family *family;
   int32_t *server; /* [slices] which of its material's servers holds the points of a slice; NULL: no law is remote */
-  int64_t *starts
-      [MOST_REMOTE]; /* of each material: first point of each of its servers, and behind the last; NULL: not remote */
-  double *identity;  /* by which the servers are found again after a restart */
+  int64_t **
+      starts; /* [material_count], of each: first point of each of its servers, and behind the last; NULL: not remote */
+  double *identity; /* by which the servers are found again after a restart */
   size_t identity_size;
   PointsPass pass;
-  bool begun;        /* servers have their points */
   int elastic_stage; /* laws respond elastically while it is set */
   uint8_t *
       gave_up; /* [places] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
@@ -103,9 +102,9 @@ void points_post(Points *points, int material, int server);
 int64_t points_collect(Points *points, int material, int server);
 /** Stresses of slices first .. last - 1 out of what was collected. */
 void points_unpack(Points *points, int64_t first, int64_t last);
-/** Whether bonds are to be gone through to gather their strains before points_update_bonds gives stresses; if so,
- *  points_ask_bonds is to be called in between, by one thread. */
-bool points_gather_bonds(Points *points);
+/** Begins a step of bonds: if pass is PASS_GATHER then, they are to be gone through to gather their strains, and points_ask_bonds called by
+ *  one thread, before points_update_bonds gives stresses. */
+void points_gather_bonds(Points *points);
 /** Sends what was gathered and waits for all answers. @return -1, or a place of a bond whose law failed */
 int64_t points_ask_bonds(Points *points);
 /** Whether all that points remember can still be saved: not, when a server is lost that remembers for them. */

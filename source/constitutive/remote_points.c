@@ -21,84 +21,75 @@ static void each_row(Points *points, int64_t slice, RowVisit visit, void *contex
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       const bool real = f->intact[slot] >> lane & 1;
-      if (m->remote) visit(points, m, slice, bond_row(points, slice, slot, lane, false), real, context);
+      if (m->remote) visit(points, m, slice, points_bond_row(points, slice, slot, lane, false), real, context);
       const Material *partner =
-          points->partner_values && slot >= f->stored[slice] ? partner_material(points, slot, lane) : NULL;
+          points->partner_values && slot >= f->stored[slice] ? points_partner(points, slot, lane) : NULL;
       if (partner && partner->remote)
-        visit(points, partner, slice, bond_row(points, slice, slot, lane, true), real && partner != m, context);
+        visit(points, partner, slice, points_bond_row(points, slice, slot, lane, true), real && partner != m, context);
     }
 }
-
-typedef struct Counts {
-  int64_t points[MOST_REMOTE];
-} Counts;
 
 static void number_row(Points *points, const Material *m, int64_t slice, int64_t row, bool real, void *context)
 {
-  Counts *counts = context;
+  int64_t *counts = context; /* of points numbered so far, by material */
   (void)slice;
-  const double id = real ? (double)counts->points[m - points->materials]++ : -1;
+  const double id = real ? (double)counts[m - points->materials]++ : -1;
   points->committed[row] = points->trial[row] = id;
 }
 
-int remote_points_create(Points *points, int material_count, Error *error)
+/** Whole slices go to a server, as equal in points as that allows; bonds are asked for by number, wherever they are.
+ *  @param[in] before  [slices] points of a slice's material in slices before it */
+static int divide(Points *points, int material, int64_t count, const int64_t *before, Error *error)
 {
-  const int64_t slices = points->family->particles->slices;
-  size_t servers = 0;
-  int64_t *before = NULL;
-  for (int k = 0; k < material_count; ++k) {
-    if (!points->materials[k].remote) continue;
-    if (k >= MOST_REMOTE)
-      return error_add(error, BRECCIA_USER_ERROR, "materials in servers must be among the first %d", MOST_REMOTE);
-    servers += (size_t)remote_servers(points->materials[k].remote);
+  const int servers = remote_servers(points->materials[material].remote);
+  int64_t *starts = points->starts[material] = memory_zeroed((size_t)servers + 1, sizeof(int64_t), "servers", error);
+  if (!starts) return BRECCIA_FAILURE;
+  for (int n = 1; n <= servers; ++n) starts[n] = count;
+  int32_t server = 0;
+  for (int64_t s = 0; s < points->family->particles->slices; ++s) {
+    if (points->material[s] != material) continue;
+    while (server + 1 < servers && before[s] * servers >= count * (server + 1)) starts[++server] = before[s];
+    points->server[s] = server;
   }
+  return BRECCIA_OK;
+}
+
+int remote_points_create(Points *points, Error *error)
+{
+  const size_t slices = (size_t)points->family->particles->slices, materials = (size_t)points->material_count;
+  size_t servers = 0;
+  for (size_t k = 0; k < materials; ++k)
+    if (points->materials[k].remote) servers += (size_t)remote_servers(points->materials[k].remote);
   if (!servers) return BRECCIA_OK;
   points->identity_size = 2 * servers;
   points->identity = memory_zeroed(points->identity_size, sizeof(double), "servers", error);
-  points->server = memory_zeroed((size_t)slices, sizeof(int32_t), "servers", error);
-  before = memory_zeroed((size_t)slices, sizeof(int64_t), "servers", error);
-  if (!points->identity || !points->server || !before) {
-    free(before);
-    return BRECCIA_FAILURE;
+  points->starts = memory_zeroed(materials, sizeof(int64_t *), "servers", error);
+  points->server = memory_zeroed(slices, sizeof(int32_t), "servers", error);
+  int64_t *before = memory_zeroed(slices, sizeof(int64_t), "servers", error),
+          *counts = memory_zeroed(materials, sizeof(int64_t), "servers", error);
+  int status = points->identity && points->starts && points->server && before && counts ? BRECCIA_OK : BRECCIA_FAILURE;
+  for (int64_t s = 0; !status && s < (int64_t)slices; ++s) {
+    before[s] = counts[points->material[s]];
+    each_row(points, s, number_row, counts);
   }
-  Counts counts = {{0}};
-  for (int64_t s = 0; s < slices; ++s) {
-    if (points->material[s] < MOST_REMOTE) before[s] = counts.points[points->material[s]];
-    each_row(points, s, number_row, &counts);
-  }
-  /* Whole slices go to a server, as equal in points as that allows; bonds are asked for by number, wherever they are. */
-  for (int k = 0; k < material_count; ++k) {
-    const Remote *remote = points->materials[k].remote;
-    if (!remote) continue;
-    const int count = remote_servers(remote);
-    int64_t *starts = points->starts[k] = memory_zeroed((size_t)count + 1, sizeof(int64_t), "servers", error);
-    if (!starts) {
-      free(before);
-      return BRECCIA_FAILURE;
-    }
-    for (int n = 0; n <= count; ++n) starts[n] = counts.points[k];
-    int32_t server = 0;
-    starts[0] = 0;
-    for (int64_t s = 0; s < slices; ++s) {
-      if (points->material[s] != k) continue;
-      while (server + 1 < count && before[s] * count >= counts.points[k] * (server + 1)) starts[++server] = before[s];
-      points->server[s] = server;
-    }
-  }
+  for (int k = 0; !status && k < points->material_count; ++k)
+    if (points->materials[k].remote) status = divide(points, k, counts[k], before, error);
   free(before);
-  return BRECCIA_OK;
+  free(counts);
+  return status;
 }
 
 void remote_points_destroy(Points *points)
 {
-  for (int k = 0; k < MOST_REMOTE; ++k) free(points->starts[k]);
+  for (int k = 0; points->starts && k < points->material_count; ++k) free(points->starts[k]);
+  free(points->starts);
   free(points->server);
   free(points->identity);
 }
 
 void remote_points_commit(Points *points)
 {
-  for (int k = 0; points->server && k < MOST_REMOTE; ++k)
+  for (int k = 0; points->server && k < points->material_count; ++k)
     if (points->starts[k]) remote_commit(points->materials[k].remote);
 }
 
@@ -109,13 +100,14 @@ double remote_last_stress(const double *row)
 
 bool points_begun(const Points *points)
 {
-  return points->begun;
+  for (int k = 0; points->server && k < points->material_count; ++k)
+    if (points->starts[k] && !remote_begun(points->materials[k].remote)) return false;
+  return true;
 }
 
 int points_begin(Points *points, Error *error)
 {
-  points->begun = true;
-  for (int k = 0; points->server && k < MOST_REMOTE; ++k) {
+  for (int k = 0; points->server && k < points->material_count; ++k) {
     const int status = points->starts[k] ? remote_begin(points->materials[k].remote, points->starts[k], error) : 0;
     if (status) return status;
   }
@@ -124,7 +116,7 @@ int points_begin(Points *points, Error *error)
 
 /** Moves what servers save between rows of history and one array per material, by number of point. */
 typedef struct States {
-  double *of[MOST_REMOTE];
+  double **of; /* [material_count] */
   bool in;
 } States;
 
@@ -142,13 +134,14 @@ static void move_state(Points *points, const Material *m, int64_t slice, int64_t
 
 static int states_create(const Points *points, States *states, Error *error)
 {
-  for (int k = 0; k < MOST_REMOTE; ++k) {
+  states->of = memory_zeroed((size_t)points->material_count, sizeof(double *), "states of servers", error);
+  for (int k = 0; states->of && k < points->material_count; ++k) {
     if (!points->starts[k]) continue;
     const Remote *r = points->materials[k].remote;
     const size_t size = (size_t)points->starts[k][remote_servers(r)] * (size_t)remote_state_values(r);
     if (!(states->of[k] = memory_zeroed(size, sizeof(double), "states of servers", error))) return BRECCIA_FAILURE;
   }
-  return BRECCIA_OK;
+  return states->of ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 static void states_move(Points *points, States *states)
@@ -156,9 +149,10 @@ static void states_move(Points *points, States *states)
   for (int64_t s = 0; s < points->family->particles->slices; ++s) each_row(points, s, move_state, states);
 }
 
-static void states_destroy(States *states)
+static void states_destroy(const Points *points, States *states)
 {
-  for (int k = 0; k < MOST_REMOTE; ++k) free(states->of[k]);
+  for (int k = 0; states->of && k < points->material_count; ++k) free(states->of[k]);
+  free(states->of);
 }
 
 int points_save(Points *points, Error *error)
@@ -167,7 +161,7 @@ int points_save(Points *points, Error *error)
   States states = {.in = true};
   int status = states_create(points, &states, error);
   double *identity = points->identity;
-  for (int k = 0; !status && k < MOST_REMOTE; ++k) {
+  for (int k = 0; !status && k < points->material_count; ++k) {
     if (!points->starts[k]) continue;
     Remote *r = points->materials[k].remote;
     status = remote_identify(r, identity, error);
@@ -175,25 +169,24 @@ int points_save(Points *points, Error *error)
     identity += 2 * remote_servers(r);
   }
   if (!status) states_move(points, &states);
-  states_destroy(&states);
+  states_destroy(points, &states);
   return status;
 }
 
 int points_resume(Points *points, Error *error)
 {
-  points->begun = true;
   if (!points->server) return BRECCIA_OK;
   States states = {.in = false};
   int status = states_create(points, &states, error);
   if (!status) states_move(points, &states);
   const double *identity = points->identity;
-  for (int k = 0; !status && k < MOST_REMOTE; ++k) {
+  for (int k = 0; !status && k < points->material_count; ++k) {
     if (!points->starts[k]) continue;
     Remote *r = points->materials[k].remote;
     status = remote_resume(r, points->starts[k], states.of[k], identity, error);
     identity += 2 * remote_servers(r);
   }
-  states_destroy(&states);
+  states_destroy(points, &states);
   return status;
 }
 
@@ -246,12 +239,10 @@ void points_unpack(Points *points, int64_t first, int64_t last)
 
 /* ---- a step, of points on bonds ---- */
 
-bool points_gather_bonds(Points *points)
+void points_gather_bonds(Points *points)
 {
   points->pass = PASS_NONE;
-  if (!points->server || points->where != POINTS_ON_BONDS || !points->begun || points->elastic_stage) return false;
-  points->pass = PASS_GATHER;
-  return true;
+  if (points_begun(points) && !points->elastic_stage) points->pass = PASS_GATHER;
 }
 
 int64_t points_ask_bonds(Points *points)
@@ -259,7 +250,7 @@ int64_t points_ask_bonds(Points *points)
   int64_t bad = 0, failed = -1;
   points->pass = PASS_ANSWER;
   for (int pass = 0; pass < 2; ++pass)
-    for (int k = 0; k < MOST_REMOTE; ++k)
+    for (int k = 0; k < points->material_count; ++k)
       for (int n = 0; points->starts[k] && n < remote_servers(points->materials[k].remote); ++n)
         if (!pass)
           remote_post(points->materials[k].remote, n);
@@ -296,7 +287,7 @@ int remote_points_bonds(const Points *points, const Material *m, const breccia_b
 
 bool points_can_save(const Points *points)
 {
-  for (int k = 0; points->server && k < MOST_REMOTE; ++k) {
+  for (int k = 0; points->server && k < points->material_count; ++k) {
     const Remote *r = points->starts[k] ? points->materials[k].remote : NULL;
     if (r && *remote_problem(r) && remote_state_values(r)) return false;
   }
@@ -305,13 +296,13 @@ bool points_can_save(const Points *points)
 
 void points_report(const Points *points, double run_seconds, bool json, Text *text)
 {
-  for (int k = 0; points->server && k < MOST_REMOTE; ++k)
+  for (int k = 0; points->server && k < points->material_count; ++k)
     if (points->starts[k]) remote_report(points->materials[k].remote, run_seconds, json, text);
 }
 
 const char *points_problem(const Points *points)
 {
-  for (int k = 0; points->server && k < MOST_REMOTE; ++k)
+  for (int k = 0; points->server && k < points->material_count; ++k)
     if (points->starts[k] && *remote_problem(points->materials[k].remote))
       return remote_problem(points->materials[k].remote);
   return "";

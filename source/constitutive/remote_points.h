@@ -5,7 +5,7 @@
 #include "constitutive/points.h"
 
 /** Numbers the points and divides them among the servers. */
-int remote_points_create(Points *points, int material_count, Error *error);
+int remote_points_create(Points *points, Error *error);
 void remote_points_destroy(Points *points);
 /** Tells the servers that the trial state is the committed one. */
 void remote_points_commit(Points *points);
@@ -16,7 +16,7 @@ double remote_last_stress(const double *row);
 int remote_points_bonds(const Points *points, const Material *m, const breccia_batch *batch);
 
 /** Where the row of a bond's point begins, of its own law or of that at the other end (points.c). */
-int64_t bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner);
-const Material *partner_material(const Points *points, int64_t slot, int lane);
+int64_t points_bond_row(const Points *points, int64_t slice, int64_t slot, int lane, bool partner);
+const Material *points_partner(const Points *points, int64_t slot, int lane);
 
 #endif

@@ -41,7 +41,6 @@ typedef struct Domain {
   int part_count;
   int32_t *part_of;      /* [blocks] or -1; NULL: no law is elsewhere */
   double *carry;         /* [blocks][CARRY][BLOCK], where there are parts */
-  bool gathering;        /* strains of bonds whose laws are elsewhere were gathered first */
   bool rows_cut;         /* a row is longer than a block */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */

@@ -40,7 +40,7 @@ tcp=$(sed 's/listening at //' serve.out)
 deck "$served, server: ['unix:$PWD/one', '$tcp']" > two.yaml
 "$breccia" run two.yaml > out 2>&1 || fail "two servers: $(cat out)"
 same home two results.vtkhdf
-contains "outcome tells of servers" "$(cat out)" "server 2 at $tcp: "
+contains "outcome tells of servers" "$(cat out)" "server 2 of 2 at $tcp: "
 "$breccia" run two.yaml --steps 30 > /dev/null 2>&1
 "$breccia" run two.yaml --restart > out 2>&1 || fail "restart with servers: $(cat out)"
 same home two results.vtkhdf
@@ -59,6 +59,15 @@ deck "$served, server: ['$udp']" > datagrams.yaml
 "$breccia" run datagrams.yaml > out 2>&1 || fail "datagrams: $(cat out)"
 same home datagrams results.vtkhdf
 stop
+
+# A command that counts stresses in another unit: the same numbers up to roundings.
+deck "model: elastic, Young modulus: 1e5, Poisson ratio: 0.25" > elastic.yaml
+deck "remote: elastic; Young modulus=1e8; Poisson ratio=0.25, stress unit: Pa, server: ['unix:$PWD/one']" > pascals.yaml
+"$breccia" run elastic.yaml > out 2>&1 || fail "elastic: $(cat out)"
+"$breccia" run pascals.yaml > out 2>&1 || fail "pascals: $(cat out)"
+contains "overview tells the law" "$(cat out)" "correspondence; clay (elastic of a server); "
+"$build/tests/compare_results" elastic/results.vtkhdf pascals/results.vtkhdf 1e-12 displacement stress > differences ||
+  fail "pascals: $(cat differences)"
 
 # Plane stress iterates with the server's tangents, block by block.
 flat() { sed "s/cubic/square/; s/spacing: 0.03/spacing: 0.03, thickness: 0.06/; s/\[11, 9, 2\]/[11, 9]/; s/first particle: \[0, 0, 0\]/first particle: [0, 0]/

@@ -6,7 +6,6 @@
 #include "constitutive/remote/frame.h"
 
 typedef struct Channel Channel;
-typedef struct Listener Listener;
 
 typedef enum ChannelStatus {
   CHANNEL_OK,
@@ -32,24 +31,11 @@ ChannelStatus channel_send(Channel *channel, const Frame *frame, double seconds,
 ChannelStatus channel_repeat(Channel *channel, double seconds, Text *reason);
 /** Receives one frame. @param[out] payload  borrowed until the next is received; a zero byte stands behind it */
 ChannelStatus channel_receive(Channel *channel, Frame *frame, uint8_t **payload, double seconds, Text *reason);
+/** A channel over a socket that is connected, or, with a `borrowed` one of datagrams, to whoever sent the last frame.
+ *  @return NULL, with the socket closed unless it is borrowed: out of memory */
+Channel *channel_over(int socket, bool datagrams, bool borrowed);
+int channel_socket(const Channel *channel);
 /** Bytes sent and received so far. */
 void channel_bytes(const Channel *channel, double bytes[2]);
-
-/** Waits for clients at an address: loopback or a socket file that only its owner reaches, unless `open` allows any interface.
- *  tcp://127.0.0.1:0 takes any free port. @return NULL with the reason */
-Listener *listener_open(const char *address, bool open, Text *reason);
-/** Where it listens, with the port that it got. */
-const char *listener_address(const Listener *listener);
-/** Next frame of the one client that is served; new clients are told that it is busy while one is there. Between clients
- *  `*frame` may be the first of a new one.
- *  @param[out] fresh  the frame is the first of a client
- *  @return CHANNEL_CLOSED when a client has gone, CHANNEL_LATE after `seconds` without a frame */
-ChannelStatus listener_receive(Listener *listener, Frame *frame, uint8_t **payload, bool *fresh, double seconds,
-                               Text *reason);
-/** The channel to the client that is served. */
-Channel *listener_channel(Listener *listener);
-/** Lets the client go. */
-void listener_drop(Listener *listener);
-void listener_close(Listener **listener);
 
 #endif

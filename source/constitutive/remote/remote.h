@@ -35,6 +35,8 @@ void remote_close(Remote **remote);
 /** The law as others see it. Its constants are a Remote *. */
 const breccia_law *remote_law(const Remote *remote);
 int remote_servers(const Remote *remote);
+/** Whether the servers have their points. */
+bool remote_begun(const Remote *remote);
 /** How many of them the run has started itself. */
 int remote_processes(const Remote *remote);
 /** Whether a trial can be repeated from the committed state. */

@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "constitutive/remote/channel.h"
+#include "constitutive/remote/listener.h"
 
 #include <fcntl.h>
 #include <math.h>

@@ -1,0 +1,122 @@
+/* What servers remember: commits, saved states, and how a restart finds them again. */
+#include "constitutive/remote/remote_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/** Commits what is due with a frame of its own. */
+static int remote_flush(Remote *r, RemoteServer *s)
+{
+  Frame frame;
+  uint8_t *reply;
+  if (!s->commit_due) return 0;
+  if (remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return 1;
+  s->commit_due = s->tried = false;
+  ++s->commits;
+  return 0;
+}
+
+int remote_identify(Remote *r, double *identity, Error *error)
+{
+  for (int k = 0; k < r->count; ++k) {
+    identity[IDENTITY * k] = identity[IDENTITY * k + 1] = 0;
+    if (!r->begun) continue;
+    /* A server that is lost cannot commit any more; what it holds is as of its last commit. */
+    if (!r->problem.length && remote_flush(r, &r->servers[k])) return remote_tell(r, error);
+    identity[IDENTITY * k] = r->servers[k].session;
+    identity[IDENTITY * k + 1] = (double)(r->servers[k].commits + r->servers[k].commit_due);
+  }
+  return BRECCIA_OK;
+}
+
+/** SAVE or RESTORE of all points of a server, in pieces that fit its frames. */
+static int move_states(Remote *r, RemoteServer *s, Operation operation, double *state)
+{
+  const size_t row = sizeof(double) * (size_t)r->state;
+  const int64_t most = (int64_t)((channel_most_payload(s->channel) / 4 - TRIAL_HEAD) / row);
+  for (int64_t first = 0; first < s->count;) {
+    const int64_t count = s->count - first < most ? s->count - first : most;
+    const size_t size = row * (size_t)count;
+    const uint32_t from[2] = {(uint32_t)first, 0};
+    Text piece = {.characters = malloc(TRIAL_HEAD + size)}; /* bytes, not words */
+    Frame frame;
+    uint8_t *reply;
+    if (!piece.characters) {
+      remote_complain(r, s, "out of memory: histories");
+      return 1;
+    }
+    piece.length = TRIAL_HEAD + (operation == OPERATION_RESTORE ? size : 0);
+    memcpy(piece.characters, from, TRIAL_HEAD);
+    if (operation == OPERATION_RESTORE) memcpy(piece.characters + TRIAL_HEAD, state + r->state * first, size);
+    const int bad = remote_ask(r, s, operation, (uint32_t)count, &piece, &frame, &reply);
+    free(piece.characters);
+    if (bad) return 1;
+    if (operation == OPERATION_SAVE) {
+      if (frame.length != size) {
+        remote_complain(r, s, "it saved less or more than it had told");
+        return 1;
+      }
+      memcpy(state + r->state * first, reply, size);
+    }
+    first += count;
+  }
+  return 0;
+}
+
+int remote_save(Remote *r, double *state, Error *error)
+{
+  for (int k = 0; k < r->count && r->state; ++k) {
+    RemoteServer *s = &r->servers[k];
+    if (r->problem.length || remote_flush(r, s) || move_states(r, s, OPERATION_SAVE, state + r->state * s->first))
+      return remote_tell(r, error);
+  }
+  return BRECCIA_OK;
+}
+
+/** A server that saves nothing: it must hold the session still, as it was. */
+static int take_up(Remote *r, RemoteServer *s, const double identity[IDENTITY], Error *error)
+{
+  Frame frame;
+  uint8_t *reply;
+  if (remote_ask(r, s, OPERATION_HELLO, 0, NULL, &frame, &reply)) return remote_tell(r, error);
+  const char *text = (const char *)reply;
+  const double session = frame_number(text, frame.length, "session", 0),
+               points = frame_number(text, frame.length, "points", 0),
+               commits = frame_number(text, frame.length, "commits", 0);
+  if (session != identity[0] || points != (double)s->count)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "material '%s': the server at %s does not hold the points of the checkpoint any more, and it "
+                     "cannot restore them; run without --restart",
+                     r->material, s->address);
+  /* The checkpoint may count a commit that was to go with the trial which was never answered. */
+  if (commits == identity[1] - 1) {
+    s->session = (uint32_t)session;
+    if (remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return remote_tell(r, error);
+  } else if (commits != identity[1])
+    return error_add(
+        error, BRECCIA_USER_ERROR,
+        "material '%s': the server at %s has gone on to commit %.0f, the checkpoint is of commit %.0f, and "
+        "it cannot go back; run without --restart",
+        r->material, s->address, commits, identity[1]);
+  s->session = (uint32_t)session;
+  s->commits = (int64_t)identity[1];
+  return remote_ask(r, s, OPERATION_ATTACH, 0, NULL, &frame, &reply) ? remote_tell(r, error) : BRECCIA_OK;
+}
+
+int remote_resume(Remote *r, const int64_t *starts, double *state, const double *identity, Error *error)
+{
+  if (!r->saves) {
+    remote_divide(r, starts);
+    for (int k = 0; k < r->count; ++k) {
+      const int status = take_up(r, &r->servers[k], identity + IDENTITY * k, error);
+      if (status) return status;
+    }
+    return remote_make_room(r, error);
+  }
+  const int status = remote_begin(r, starts, error);
+  if (status) return status;
+  for (int k = 0; k < r->count && r->state; ++k)
+    if (move_states(r, &r->servers[k], OPERATION_RESTORE, state + r->state * r->servers[k].first))
+      return remote_tell(r, error);
+  return BRECCIA_OK;
+}
