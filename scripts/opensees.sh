@@ -1,13 +1,13 @@
 #!/bin/sh
-# Sets up an unmodified OpenSees from its Python package, in an environment of the project's own, as a material server beside the
-# program: build/release/breccia-opensees. Does nothing when it is there.
+# Sets up an unmodified OpenSees from its Python packages, in an environment of the project's own, as material servers beside the
+# program: build/release/breccia-opensees and breccia-opensees-tcl. Does nothing when they are there.
 set -eu
 cd "$(dirname "$0")/.."
 environment=.venv/opensees
 if ! cmp -s servers/requirements.txt "$environment/installed" 2> /dev/null; then
   sh scripts/setup.sh opensees
   python3 -m venv --clear "$environment"
-  "$environment/bin/python" -m pip install --quiet --disable-pip-version-check -r servers/requirements.txt
+  "$environment/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps -r servers/requirements.txt
   cp servers/requirements.txt "$environment/installed"
 fi
 mkdir -p build/release
@@ -15,4 +15,11 @@ cat > build/release/breccia-opensees << END
 #!/bin/sh
 exec "$PWD/$environment/bin/python" "$PWD/servers/opensees_server.py" "\$@"
 END
-chmod +x build/release/breccia-opensees
+# Python would note an interrupt and wait for Tcl to come back, which it does not: let the signal end the process.
+cat > build/release/breccia-opensees-tcl << END
+#!/bin/sh
+exec "$PWD/$environment/bin/python" -c "import runpy, signal, sys
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+runpy.run_module('opensees', run_name='__main__', alter_sys=True)" "$PWD/servers/opensees_server.tcl" "\$@" < /dev/null
+END
+chmod +x build/release/breccia-opensees build/release/breccia-opensees-tcl

@@ -114,7 +114,8 @@ class Command:
 
     def __init__(self, lines):
         words = lines.get("command", "").split()
-        if len(words) < 3 or words[0] not in ("nDMaterial", "uniaxialMaterial") or words[2] != "$tag":
+        known = len(words) >= 3 and words[0] in ("nDMaterial", "uniaxialMaterial") and words[2] == "$tag"
+        if not known or not words[1].isidentifier():  # no path: OpenSees may look for kinds in shared libraries
             raise Refusal("a command is 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'")
         self.uniaxial = words[0] == "uniaxialMaterial"
         self.kind = words[1]

@@ -44,13 +44,24 @@ def check(what, good, more=""):
 
 
 class Client:
-    def __init__(self, path):
-        self.process = subprocess.Popen([SERVER, "--listen", f"unix:{path}"], stdout=subprocess.PIPE, text=True)
-        self.process.stdout.readline()
-        self.line = socket.socket(socket.AF_UNIX)
-        self.line.connect(path)
+    """A server of its own, the Python one at a path or, without one, the Tcl one at a port, and a line to it."""
+
+    def __init__(self, path=None, options=()):
+        self.path = path
+        words = [SERVER, "--listen", f"unix:{path}"] if path else [SERVER + "-tcl", "--listen", "tcp://127.0.0.1:0"]
+        self.process = subprocess.Popen([*words, *options], stdout=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().split()[-1]
         self.number = self.session = 0
-        self.ask(1, b"client: test\n")
+        self.line = self.connect()
+        if not options:
+            self.ask(1, b"client: test\n")
+
+    def connect(self):
+        if self.path:
+            line = socket.socket(socket.AF_UNIX)
+            line.connect(self.path)
+            return line
+        return socket.create_connection(("127.0.0.1", int(self.address.rpartition(":")[2])))
 
     def ask(self, operation, body=b"", count=0, flags=0):
         self.number += 1
@@ -69,12 +80,15 @@ class Client:
         text = f"command: {LAWS[name]}\n" + (f"stage: {STAGES[name]}\n" if name in STAGES else "")
         header, reply = self.ask(3, text.encode(), count=points)
         self.session = header[7]
+        self.iterates = b"iterates: 1\n" in reply
         return 1 if b"components: 1\n" in reply else 6
 
-    def trial(self, strains, components, first=0):
+    def trial(self, strains, components, first=0, flags=0):
+        """Stresses, and after them the tangents if flag 2 wants them."""
         count = len(strains) // components
         body = struct.pack(f"<II{len(strains)}d", first, 0, *strains)
-        return struct.unpack(f"<{count * components}d", self.ask(5, body, count=count)[1])
+        answer = self.ask(5, body, count=count, flags=flags)[1]
+        return struct.unpack(f"<{len(answer) // 8}d", answer)
 
     def end(self):
         self.line.close()
@@ -95,10 +109,10 @@ def path_of(point, components, steps):
         yield [along * d for d in direction]
 
 
-def laws_do_not_hang_on_their_company(client):
+def laws_do_not_hang_on_their_company(client, laws):
     """OpenSees classes share static memory: a thousand points side by side must answer as each would alone."""
     points, steps = 1000, 6
-    for name in LAWS:
+    for name in laws:
         try:
             components = client.create(name, points)
         except RuntimeError as problem:
@@ -122,16 +136,48 @@ def laws_do_not_hang_on_their_company(client):
         check(f"{name} answers", any(together[-1]))
 
 
-def trials_are_repeatable(client):
-    components = client.create("J2Plasticity", 3)
-    strains = [2e-3, -1e-3, -1e-3, 1e-3, 0, 0] * 3
-    first = client.trial(strains, components)
+def trials_are_repeatable(client, name, strain):
+    """A trial begins at the committed state, in one that is not the first too; tangents are those of the stresses."""
+    components = client.create(name, 3)
+    check(f"{name}: the server says that it iterates", client.iterates)
+    client.trial([0.7 * value for value in strain] * 3, components)
+    strains = strain * 3
+    first = client.trial(strains, components, flags=1)
     client.trial([5 * value for value in strains], components)
-    check("a trial begins at the committed state", client.trial(strains, components) == first)
+    again = client.trial(strains, components, flags=2)
+    check(f"{name}: a trial begins at the committed state", again[: len(first)] == first)
+    small = 1e-7
+    moved = client.trial([value + small * (k % components == 0) for k, value in enumerate(strains)], components)
+    row, change = again[len(first)], (moved[0] - first[0]) / small
+    check(f"{name}: the tangent is the slope", abs(row - change) < 1e-2 * abs(change), f"{row} {change}")
 
 
-def decks_agree():
-    """A small plate with its law at home and in OpenSees."""
+def a_client_at_a_time(client):
+    second = client.connect()
+    head = HEADER.pack(b"BRMS", 1, 1, 77, 0, 0, 0, 0, 0)[:28]
+    second.sendall(head + struct.pack("<I", zlib.crc32(head)))
+    answer = second.recv(4096)
+    check("a second client is told", b"busy with another client" in answer and HEADER.unpack(answer[:32])[3] == 77, repr(answer))
+    second.close()
+    client.ask(10)
+
+
+def secrets_guard(path):
+    with open(f"{WORK}/secret", "w", encoding="utf-8") as file:
+        file.write("plagioclase\n")
+    client = Client(path, ("--secret-file", f"{WORK}/secret"))
+    for words, good in ((b"", False), (b"secret: plagioclas\n", False), (b"secret: plagioclase\n", True)):
+        try:
+            client.ask(1, words)
+            check("the secret is asked for", good)
+        except RuntimeError as problem:
+            check("a wrong secret is told", not good and "the secret is wrong" in str(problem), str(problem))
+            client.line = client.connect()
+    client.end()
+
+
+def decks_agree(tcl):
+    """A small plate with its law at home and in OpenSees; laws along bonds also in that of Tcl."""
     deck = """units: {{length: m, force: kN, time: s}}
 materials: {{clay: {{{material}, density: 1.5}}}}
 body:
@@ -141,7 +187,7 @@ peridynamics: {{{formulation}, horizon: 3.015 spacings}}
 loads:
   - {{on: {{face: x-, layers: 3}}, body force: [{left}, 0, 0], history: {{ramp to: 0.001}}}}
   - {{on: {{face: x+, layers: 3}}, body force: [{right}, 0, 0], history: {{ramp to: 0.001}}}}
-solve: {{explicit: {{time step: {step}, steps: 500}}}}
+solve: {{explicit: {{{stepping}}}}}
 results: {{number: 2, precision: double}}
 """
     space = "formulation: correspondence, zero-energy control: {silling: 0.1}"
@@ -151,51 +197,71 @@ results: {{number: 2, precision: double}}
             f"opensees: {LAWS['PressureIndependMultiYield']}, stage: 1",
             space,
             900,
-            "4e-6",
+            "time step: 4e-6, steps: 500",
         ),
         "elastic": (
             "model: elastic, Young modulus: 1.5e5, Poisson ratio: 0.25",
             f"opensees: {LAWS['ElasticIsotropic3D']}",
             space,
             5000,
-            "4e-6",
+            "time step: 4e-6, steps: 500",
         ),
         "bonds": (
             "model: kent-scott-park, compressive strength: 30e3, peak strain: 0.002, residual strength: 6e3, crushing strain: 0.006",
             "opensees: uniaxialMaterial Concrete01 $tag -30e3 -0.002 -6e3 -0.006",
             "formulation: bond-based",
             -300000,
-            "1e-6",
+            "time step: 5e-6, steps: 100",
         ),
     }
     compare = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
-    for name, (home, away, formulation, force, step) in pairs.items():
-        for place, material in (("home", home), ("away", away)):
+    for name, (home, away, formulation, force, stepping) in pairs.items():
+        places = {"home": home, "away": away}
+        if "uniaxialMaterial" in away:
+            tcl.line.close()
+            places["tcl"] = f"{away}, server: ['{tcl.address}']"
+        for place, material in places.items():
             with open(f"{WORK}/{name}-{place}.yaml", "w", encoding="utf-8") as file:
-                file.write(deck.format(material=material, formulation=formulation, left=-force, right=force, step=step))
+                file.write(deck.format(material=material, formulation=formulation, left=-force, right=force, stepping=stepping))
             run = subprocess.run([BRECCIA, "run", f"{WORK}/{name}-{place}.yaml"], capture_output=True, text=True, timeout=300)
             check(f"{name} {place} runs", run.returncode == 0, run.stderr)
-        result = subprocess.run(
-            [compare, f"{WORK}/{name}-home/results.vtkhdf", f"{WORK}/{name}-away/results.vtkhdf", "1e-8", "displacement", "stress"],
-            capture_output=True,
-            text=True,
-        )
-        check(f"{name}: at home and in OpenSees", result.returncode == 0, result.stdout)
+        for place in list(places)[1:]:
+            files = [f"{WORK}/{name}-{where}/results.vtkhdf" for where in ("home", place)]
+            result = subprocess.run([compare, *files, "1e-8", "displacement", "stress"], capture_output=True, text=True)
+            check(f"{name}: at home and {place}", result.returncode == 0, result.stdout)
 
 
 def refusals_are_told(client):
     for command, words in {
+        f"nDMaterial {WORK}/evil $tag 1": "a command is",
         "nDMaterial Nonsense $tag 1": "material type Nonsense is unknown",
         "nDMaterial ElasticIsotropic3D $tag": "ElasticIsotropic3D",
         "nDMaterial PM4Sand $tag 0.5 500. 0.5 1.7": "knows plane strain only",
         "nDMaterial ElasticIsotropic3D 7 1. 0.": "a command is",
         "__import__('os') x $tag": "a command is",
     }.items():
-        try:
-            client.ask(3, f"command: {command}\n".encode(), count=1)
-            check(f"'{command}' is refused", False)
-        except RuntimeError as problem:
-            check(f"'{command}' is refused in words", words in str(problem), str(problem))
+        refusal_is_told(client, command, words)
+
+
+def refusals_of_tcl_are_told(client):
+    for command, words in {
+        "uniaxialMaterial Nonsense $tag 1": "Could not create uniaxialMaterial Nonsense",
+        "uniaxialMaterial Steel01 $tag": "it said:",
+        "uniaxialMaterial Steel01 $tag 400. 2e5 [exit]": "invalid b.",
+        "uniaxialMaterial Steel01 $tag 400. 2e5 $length": "asks for $length",
+        "uniaxialMaterial ../evil $tag 1": "a command is",
+        "nDMaterial ElasticIsotropic3D $tag 1. 0.": "offers no way to drive",
+        "exec touch x": "a command is",
+    }.items():
+        refusal_is_told(client, command, words)
+
+
+def refusal_is_told(client, command, words):
+    try:
+        client.ask(3, f"command: {command}\n".encode(), count=1)
+        check(f"'{command}' is refused", False)
+    except RuntimeError as problem:
+        check(f"'{command}' is refused in words", words in str(problem), str(problem))
 
 
 def runs_tell_what_opensees_said():
@@ -212,18 +278,17 @@ def runs_tell_what_opensees_said():
         check(f"'{command}'", run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1, run.stderr)
 
 
-def chance_does_no_harm():
+def chance_does_no_harm(path):
     """Frames and bytes of chance: the server answers in frames or closes the line, and serves the next client."""
-    path, chance = f"{WORK}/chance", random.Random(3)
+    chance = random.Random(3)
     client = Client(path)
     client.line.close()
     for n in range(150):
-        line = socket.socket(socket.AF_UNIX)
+        line = client.connect()
         line.settimeout(20)
-        line.connect(path)
         body = bytes(chance.randrange(256) for _ in range(chance.randrange(80)))
         if n % 3:
-            texts = [b"command: nDMaterial ElasticIsotropic3D $tag 1. 0.2\n", b"client: x\n", b"command: " + body, body]
+            texts = [b"command: uniaxialMaterial Elastic $tag 1.\n", b"command: nDMaterial ElasticIsotropic3D $tag 1. 0.2\n", b"client: x\n", b"command: " + body, body]
             for number in range(1, 6):
                 body = chance.choice(texts)
                 head = HEADER.pack(
@@ -239,8 +304,11 @@ def chance_does_no_harm():
             line.sendall(body)
         line.close()
         check("the server lives", client.process.poll() is None)
-    client.process.terminate()
-    client.process.wait()
+    client.line = client.connect()
+    client.ask(1, b"")
+    client.create("Steel01", 1)
+    check("and serves", client.trial([1e-4], 1) == (20.0,))
+    client.end()
 
 
 def a_server_keeps_its_points():
@@ -275,13 +343,25 @@ def a_server_keeps_its_points():
 
 def main():
     client = Client(f"{WORK}/socket")
-    laws_do_not_hang_on_their_company(client)
-    trials_are_repeatable(client)
+    laws_do_not_hang_on_their_company(client, LAWS)
+    trials_are_repeatable(client, "J2Plasticity", [2e-3, -1e-3, -1e-3, 1e-3, 0, 0])
+    client.create("Steel01", 1)
+    check("the Python package cannot iterate along bonds, and says so", not client.iterates)
     refusals_are_told(client)
+    a_client_at_a_time(client)
     client.end()
-    decks_agree()
+    client = Client()
+    laws_do_not_hang_on_their_company(client, [name for name in LAWS if LAWS[name].startswith("uniaxial")])
+    trials_are_repeatable(client, "Steel02", [2.5e-3])
+    trials_are_repeatable(client, "Concrete02", [-2.5e-3])
+    refusals_of_tcl_are_told(client)
+    a_client_at_a_time(client)
+    decks_agree(client)
+    client.end()
     runs_tell_what_opensees_said()
-    chance_does_no_harm()
+    for path in (f"{WORK}/chance", None):
+        chance_does_no_harm(path)
+        secrets_guard(path)
     a_server_keeps_its_points()
     print(f"OpenSees: {len(LAWS)} laws, {failures} failures")
     sys.exit(failures > 0)
