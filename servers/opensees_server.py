@@ -8,7 +8,9 @@ testUniaxialMaterial (one strain) drive them, a whole batch per message. Needs t
 import argparse
 import array
 import importlib
+import mmap
 import os
+import re
 import secrets
 import select
 import signal
@@ -22,7 +24,7 @@ import zlib
 MAGIC, VERSION, HEADER = b"BRMS", 1, struct.Struct("<4sHHIIIIII")
 MOST_PAYLOAD = 1 << 28
 MOST_POINTS = 1_000_000  # OpenSees takes a time that grows with the square to make them
-HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE = range(1, 12)
+HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE, LAWS = range(1, 13)
 ERROR, ANSWER = 0x7F, 0x80
 COMMITS_BEFORE, WANTS_TANGENT = 1, 2
 
@@ -39,7 +41,25 @@ STAGES = {
 }
 # Two strains only: driven by six they write where they should not.
 PLANE_ONLY = {"PM4Sand", "PM4Silt"}
+# Names of kinds for planes, plates, beams and interfaces.
+NOT_IN_SPACE = re.compile("plane|plate|beam|contact|2d|PM4|FSAM|Mcft|SmearedSteel", re.IGNORECASE)
 PROBE_TAG, BASE_OFFSET = 2_000_000_000, 1_000_000_000
+# Commands to begin with, the unit of their stresses and the stage: laws that were tried (tests/external/test_opensees.py).
+TRIED = [
+    ("nDMaterial ElasticIsotropic3D $tag 1.5e5 0.25 0.0", "kPa", None),
+    ("nDMaterial ElasticIsotropic $tag 1.5e5 0.25", "kPa", None),
+    ("nDMaterial J2Plasticity $tag 1.0e5 6.0e4 100. 150. 80. 500.", "kPa", None),
+    ("nDMaterial PressureIndependMultiYield $tag 3 1.5 6.0e4 1.0e5 31.8198051534 0.1 0. 100. 0. 20", "kPa", 1),
+    ("nDMaterial PressureDependMultiYield $tag 3 1.9 7.5e4 2.0e5 33. 0.1 80. 0.5 27. 0.07 0.4 2. 10. 0.01 1.0 20", "kPa", 1),
+    ("nDMaterial DruckerPrager $tag 1.0e5 6.0e4 50. 0.25 0.15 0. 0. 0. 0. 2000. 0.5 1.5", "kPa", None),
+    ("nDMaterial TruncatedDP $tag 3 2.0 6.0e4 1.0e5 0.2 40. -30. 1e-8", "kPa", None),
+    ("nDMaterial ManzariDafalias $tag 125. 0.05 0.735 1.25 0.712 0.019 0.934 0.7 100. 0.02 7.05 0.968 1.1 0.704 3.5 5. 600. 1.5", "kPa", None),
+    ("nDMaterial CapPlasticity $tag 3 2400. 1.1721e10 1.4479e10", "Pa", None),
+    ("nDMaterial ASDConcrete3D $tag 36000. 0.18 -fc 45. -ft 3.5 -Kc 0.7", "MPa", None),
+    ("uniaxialMaterial Steel01 $tag 400. 2.0e5 0.01", "MPa", None),
+    ("uniaxialMaterial Steel02 $tag 400. 2.0e5 0.01 18. 0.925 0.15", "MPa", None),
+    ("uniaxialMaterial Concrete02 $tag -30. -0.002 -6. -0.006 0.1 3. 3000.", "MPa", None),
+]
 
 
 class Refusal(Exception):
@@ -252,6 +272,99 @@ class Points:
         return stresses.tobytes() + tangents.tobytes()
 
 
+# ---- which laws there are ----
+
+
+def in_a_child(work):
+    """What work(write) wrote in a process of its own, which OpenSees may end in the middle."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.close(reading)
+        try:
+            work(lambda text: os.write(writing, text.encode()))
+        finally:
+            os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, encoding="utf-8") as pipe:
+        written = pipe.read()
+    os.waitpid(child, 0)
+    return written
+
+
+def constants_of(path):
+    """The section .rodata of a shared library (ELF, 64 bits, little-endian), where its texts stand."""
+    with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+        (table,) = struct.unpack_from("<Q", data, 40)
+        size, count, names = struct.unpack_from("<3H", data, 58)
+        sections = [struct.unpack_from("<IIQQQQ", data, table + size * k) for k in range(count)]
+        for name, _, _, _, offset, length in sections:
+            start = sections[names][4] + name
+            if data[start : start + 8] == b".rodata\0":
+                return data[offset : offset + length]
+    return b""
+
+
+def candidates():
+    """Words among the texts of the OpenSees library; linkers share tails of texts, so that tails are words too."""
+    with open("/proc/self/maps", encoding="utf-8") as file:
+        paths = {line.split(maxsplit=5)[5].strip() for line in file if "opensees" in line.rpartition("/")[2]}
+    words = set()
+    for path in paths:
+        for found in re.findall(rb"[A-Za-z0-9_]{2,40}(?=\0)", constants_of(path)):
+            text = found.decode()
+            words.add(text)
+            words.update(text[k:] for k in range(1, len(text) - 1) if not text[k].islower())
+    return sorted(word for word in words if word[0] != "_")
+
+
+def known_kinds(ops, words, command):
+    """The kinds that a command knows: OpenSees is asked for each candidate, without arguments, and says which are unknown to it."""
+    names, known, start = candidates(), [], 0
+
+    def ask(write):
+        ops.model("basic", "-ndm", 3, "-ndf", 3)
+        for number in range(start, len(names)):
+            words.mark()
+            write(f"{number} ")  # the last to be written ends the process, or all are through
+            try:
+                getattr(ops, command)(names[number], 1)
+            except Exception:  # openseespy raises its own kinds
+                pass
+            if "is unknown" not in words.since():
+                write(f"{number}! ")
+
+    while start < len(names):
+        told = in_a_child(ask).split()
+        known += [names[int(word[:-1])] for word in told if word[-1] == "!"]
+        last = int(told[-1].rstrip("!")) if told else len(names)
+        if last < len(names) - 1 and told[-1][-1] != "!":
+            known.append(names[last])
+        start = last + 1
+    words.mark()
+    return known
+
+
+def offered_laws(points, program):
+    """Pairs for an answer to LAWS: commands to begin with, with what OpenSees makes of them, and the names of all kinds."""
+    yield "program", program
+    for text, unit, stage in TRIED:
+        command = Command({"command": text} if stage is None else {"command": text, "stage": str(stage)})
+
+        def probe(write):
+            try:
+                bulk, shear = points.probe(command)
+                young = 9 * bulk * shear / (3 * bulk + shear)
+                write(f"Young modulus {young:.4g} {unit}" if command.uniaxial else f"moduli: bulk {bulk:.4g} {unit}, shear {shear:.4g} {unit}")
+            except Refusal as refusal:
+                write(str(refusal))
+
+        made = in_a_child(probe) or "it ends the process of OpenSees"
+        yield "tried", f"{text}; {'' if stage is None else f'stage: {stage}; '}stress unit: {unit}; {made}"
+    yield "space", " ".join(kind for kind in known_kinds(points.ops, points.words, "nDMaterial") if not NOT_IN_SPACE.search(kind))
+    yield "uniaxial", " ".join(known_kinds(points.ops, points.words, "uniaxialMaterial"))
+
+
 class Server:
     def __init__(self, points, secret, program):
         self.points, self.secret, self.program = points, secret, program
@@ -306,6 +419,8 @@ class Server:
             return 0, format_lines(
                 [("seconds", f"{points.seconds:.6f}"), ("evaluations", points.evaluations), ("commits", points.commits)]
             )
+        if operation == LAWS:
+            return 0, format_lines(offered_laws(points, self.program))
         if operation == BYE:
             self.leaving = True
             return 0, b""

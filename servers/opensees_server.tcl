@@ -11,7 +11,7 @@ namespace eval server {
   variable MOST_PAYLOAD [expr {1 << 28}]
   variable MOST_POINTS 1000000
   variable OPERATIONS
-  array set OPERATIONS {1 hello 2 probe 3 create 4 attach 5 trial 6 commit 7 revert 8 save 9 restore 10 statistics 11 bye}
+  array set OPERATIONS {1 hello 2 probe 3 create 4 attach 5 trial 6 commit 7 revert 8 save 9 restore 10 statistics 11 bye 12 laws}
   variable ERROR 127
   # What is held, and the client that is served.
   variable held
@@ -229,6 +229,10 @@ proc server::obey_restore {flags count payload} {
 proc server::obey_statistics {flags count payload} {
   variable held
   return "seconds: $held(seconds)\nevaluations: $held(evaluations)\ncommits: $held(commits)\n"
+}
+
+proc server::obey_laws {flags count payload} {
+  refuse "a Tcl OpenSees does not tell which materials it has"
 }
 
 proc server::obey_bye {flags count payload} {

@@ -1,12 +1,16 @@
 #include "cli/verbs.h"
 #include "constitutive/law.h"
+#include "constitutive/remote/remote.h"
 #include "deck/section.h"
 #include "formulation/formulation.h"
 #include "model/element_deck.h"
 
 #include <string.h>
 
-static const Option options[] = {{"markdown", NULL, "the page of models instead (docs/models.md)"}, {0}};
+enum { MARKDOWN, OPENSEES, PAGE_WIDTH = 100 };
+static const Option options[] = {{"markdown", NULL, "the page of models instead (docs/models.md)"},
+                                 {"opensees", NULL, "the laws that the installed OpenSees offers to a deck"},
+                                 {0}};
 
 static void print_page(void)
 {
@@ -81,12 +85,53 @@ static void print_law(const breccia_law *law)
   }
 }
 
+/** Words of a line, as wide as a page. */
+static void print_words(const char *words, int length)
+{
+  int column = 0;
+  for (int at = 0, size; at < length; at += size + 1) {
+    size = (int)strcspn(words + at, " \n");
+    const bool fresh = column == 0 || column + 1 + size > PAGE_WIDTH;
+    column = fresh ? 2 + size : column + 1 + size;
+    printf("%s%.*s", fresh ? at ? "\n  " : "  " : " ", size, words + at);
+  }
+  printf("\n");
+}
+
+/** What the OpenSees server says that it offers. */
+static int print_opensees(void)
+{
+  Text lines = {0};
+  Error *error = breccia_error_create();
+  const int status = remote_list_laws(&lines, error);
+  for (const char *line = status ? NULL : lines.characters; line && *line;) {
+    const int length = (int)strcspn(line, "\n"), key = (int)strcspn(line, ":"), at = key < length ? key + 2 : length;
+    if (!strncmp(line, "program:", 8))
+      printf("%.*s. Commands to begin with, and what it makes of them:\n\n", length - at, line + at);
+    else if (!strncmp(line, "tried:", 6)) {
+      const int command = (int)strcspn(line + at, ";\n");
+      printf("  %.*s\n", command, line + at);
+      if (command < length - at) printf("     %.*s\n", length - at - command - 1, line + at + command + 1);
+    } else {
+      printf(key == 5 ? "\nKinds of nDMaterial; a run tells whether one takes strain in space:\n\n"
+                      : "\nKinds of uniaxialMaterial, for laws per bond:\n\n");
+      print_words(line + at, length - at);
+    }
+    line += length + (line[length] != 0);
+  }
+  text_free(&lines);
+  if (status) return fail(error, status == BRECCIA_USER_ERROR ? 2 : 1);
+  breccia_error_destroy(&error);
+  return 0;
+}
+
 static int run(int argc, char **argv, const Verb *verb)
 {
-  const char *values[1];
+  const char *values[sizeof options / sizeof *options];
   int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
-  if (values[0]) {
+  if (values[OPENSEES]) return print_opensees();
+  if (values[MARKDOWN]) {
     print_page();
     print_tests();
     return 0;

@@ -17,23 +17,11 @@ SERVER = os.path.join(os.path.dirname(BRECCIA), "breccia-opensees")
 HEADER = struct.Struct("<4sHHIIIIII")
 failures = 0
 
-# Ten laws in space that soil, rock and concrete are computed with, and three along bonds.
-LAWS = {
-    "ElasticIsotropic3D": "nDMaterial ElasticIsotropic3D $tag 1.5e5 0.25 0.0",
-    "ElasticIsotropic": "nDMaterial ElasticIsotropic $tag 1.5e5 0.25",
-    "J2Plasticity": "nDMaterial J2Plasticity $tag 1.0e5 6.0e4 100. 150. 80. 500.",
-    "PressureIndependMultiYield": "nDMaterial PressureIndependMultiYield $tag 3 1.5 6.0e4 1.0e5 31.8198051534 0.1 0. 100. 0. 20",
-    "PressureDependMultiYield": "nDMaterial PressureDependMultiYield $tag 3 1.9 7.5e4 2.0e5 33. 0.1 80. 0.5 27. 0.07 0.4 2. 10. 0.01 1.0 20",
-    "DruckerPrager": "nDMaterial DruckerPrager $tag 1.0e5 6.0e4 50. 0.25 0.15 0. 0. 0. 0. 2000. 0.5 1.5",
-    "TruncatedDP": "nDMaterial TruncatedDP $tag 3 2.0 6.0e4 1.0e5 0.2 40. -30. 1e-8",
-    "ManzariDafalias": "nDMaterial ManzariDafalias $tag 125. 0.05 0.735 1.25 0.712 0.019 0.934 0.7 100. 0.02 7.05 0.968 1.1 0.704 3.5 5. 600. 1.5",
-    "CapPlasticity": "nDMaterial CapPlasticity $tag 3 2400. 1.1721e10 1.4479e10",
-    "ASDConcrete3D": "nDMaterial ASDConcrete3D $tag 36000. 0.18 -fc 45. -ft 3.5 -Kc 0.7",
-    "Steel01": "uniaxialMaterial Steel01 $tag 400. 2.0e5 0.01",
-    "Steel02": "uniaxialMaterial Steel02 $tag 400. 2.0e5 0.01 18. 0.925 0.15",
-    "Concrete02": "uniaxialMaterial Concrete02 $tag -30. -0.002 -6. -0.006 0.1 3. 3000.",
-}
-STAGES = {"PressureIndependMultiYield": 1, "PressureDependMultiYield": 1}
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "servers"))
+from opensees_server import TRIED  # noqa: E402  ten laws in space that soil, rock and concrete are computed with, and three along bonds
+
+LAWS = {command.split()[1]: command for command, _, _ in TRIED}
+STAGES = {command.split()[1]: stage for command, _, stage in TRIED if stage is not None}
 
 
 def check(what, good, more=""):
@@ -278,6 +266,20 @@ def runs_tell_what_opensees_said():
         check(f"'{command}'", run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1, run.stderr)
 
 
+def offers_are_told():
+    """What `breccia models --opensees` lists: every law that is served here, with its moduli, and kinds that OpenSees knows."""
+    run = subprocess.run([BRECCIA, "models", "--opensees"], capture_output=True, text=True, timeout=120)
+    check("laws are listed", run.returncode == 0, run.stderr)
+    head, _, kinds = run.stdout.partition("Kinds of nDMaterial")
+    for name, command in LAWS.items():
+        check(f"{name} is among the commands to begin with", f"  {command}\n" in head)
+        check(f"{name} is among the kinds", name in kinds.split())
+    check("all of them are made", head.count("modul") == len(LAWS), head)
+    check("moduli are those of the command", "moduli: bulk 1.448e+10 Pa, shear 1.172e+10 Pa" in head and "Young modulus 3e+04 MPa" in head, head)
+    check("others are listed", {"Simplified3DJ2", "ElasticPP", "Hysteretic", "Masonry"} <= set(kinds.split()))
+    check("nothing else is", not {"PlaneStress", "PM4Sand", "Nonsense", "Domain", "Concrete"} & set(kinds.split()))
+
+
 def chance_does_no_harm(path):
     """Frames and bytes of chance: the server answers in frames or closes the line, and serves the next client."""
     chance = random.Random(3)
@@ -359,6 +361,7 @@ def main():
     decks_agree(client)
     client.end()
     runs_tell_what_opensees_said()
+    offers_are_told()
     for path in (f"{WORK}/chance", None):
         chance_does_no_harm(path)
         secrets_guard(path)

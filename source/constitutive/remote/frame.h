@@ -20,6 +20,7 @@ typedef enum Operation {
   OPERATION_RESTORE,
   OPERATION_STATISTICS,
   OPERATION_BYE,
+  OPERATION_LAWS,
   OPERATION_ERROR = 0x7f,
   OPERATION_ANSWER = 0x80 /* added to the operation that is answered */
 } Operation;

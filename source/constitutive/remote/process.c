@@ -69,7 +69,7 @@ int process_start(Process *process, const char *folder, int number, Text *reason
   if (!code) return 0;
   process->number = 0;
   text_add(reason,
-           "the OpenSees server '%s' cannot be started: %s; `make demo-opensees` sets one up, and BRECCIA_OPENSEES can "
+           "'%s' cannot be started: %s; `make demo-opensees` sets one up, and BRECCIA_OPENSEES can "
            "name it",
            program, strerror(code));
   return 1;

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double START_SECONDS = 60, REACH_SECONDS = 3, LEAVE_SECONDS = 2;
+static const double START_SECONDS = 60, REACH_SECONDS = 3, LEAVE_SECONDS = 2, LIST_SECONDS = 300;
 
 const breccia_law *remote_law(const Remote *remote)
 {
@@ -110,7 +110,8 @@ static char *name_law(const char *command)
   return text_format("%.*s of a server", (int)strcspn(command, ";"), command);
 }
 
-int remote_open(Remote **out, const RemoteSpec *spec, Error *error)
+/** Starts or reaches the servers. */
+static int reach(Remote **out, const RemoteSpec *spec, Error *error)
 {
   const bool own = spec->server_count == 0;
   Remote *r = *out = calloc(1, sizeof *r);
@@ -129,27 +130,45 @@ int remote_open(Remote **out, const RemoteSpec *spec, Error *error)
   if (!r->servers || !r->material || !r->command || !r->name || !r->units[0] || !r->units[1] || !r->units[2])
     return error_add(error, BRECCIA_FAILURE, "out of memory: material server");
   if (own && !(r->folder = process_folder()))
-    return error_add(error, BRECCIA_FAILURE, "material '%s': no folder for its servers' sockets can be made",
-                     spec->material);
+    return error_add(error, BRECCIA_FAILURE, "no folder for the sockets of material servers can be made");
   for (int k = 0; k < r->count; ++k) { /* all start at once */
     RemoteServer *s = &r->servers[k];
     Text words = {0};
     int bad = own && process_start(&s->process, r->folder, k + 1, &words);
     s->address = text_format("%s", own ? s->process.address : spec->servers[k]);
     if (bad || !s->address) {
-      error_add(error, BRECCIA_USER_ERROR, "material '%s': %s", spec->material,
-                words.length ? words.characters : "out of memory");
+      remote_complain(r, s, words.length ? words.characters : "out of memory");
       text_free(&words);
-      return BRECCIA_USER_ERROR;
+      return error_add(error, BRECCIA_USER_ERROR, "%s", remote_problem(r));
     }
   }
   for (int k = 0; k < r->count; ++k)
-    if (greet(r, &r->servers[k]) || (k == 0 && probe(r, &r->servers[k]))) {
-      error_add(error, BRECCIA_USER_ERROR, "%s", remote_problem(r));
-      return BRECCIA_USER_ERROR;
-    }
-  remote_make_law(r);
+    if (greet(r, &r->servers[k])) return error_add(error, BRECCIA_USER_ERROR, "%s", remote_problem(r));
   return BRECCIA_OK;
+}
+
+int remote_open(Remote **remote, const RemoteSpec *spec, Error *error)
+{
+  const int status = reach(remote, spec, error);
+  if (status) return status;
+  if (probe(*remote, (*remote)->servers)) return error_add(error, BRECCIA_USER_ERROR, "%s", remote_problem(*remote));
+  remote_make_law(*remote);
+  return BRECCIA_OK;
+}
+
+int remote_list_laws(Text *lines, Error *error)
+{
+  Remote *r = NULL;
+  const RemoteSpec spec = {
+      .material = "", .command = "", .processes = 1, .timeout = LIST_SECONDS, .units = {"", "", ""}};
+  int status = reach(&r, &spec, error);
+  Frame frame;
+  uint8_t *reply;
+  if (!status && remote_ask(r, r->servers, OPERATION_LAWS, 0, NULL, &frame, &reply))
+    status = error_add(error, BRECCIA_FAILURE, "%s", remote_problem(r));
+  if (!status) text_add(lines, "%.*s", (int)frame.length, (const char *)reply);
+  remote_close(&r);
+  return status;
 }
 
 void remote_close(Remote **remote)

@@ -32,6 +32,9 @@ int remote_open(Remote **remote, const RemoteSpec *spec, Error *error);
 /** Takes leave of the servers and ends those that it started. */
 void remote_close(Remote **remote);
 
+/** What the OpenSees server that the program would start offers: the text of its answer to LAWS (docs/material-server.md). */
+int remote_list_laws(Text *lines, Error *error);
+
 /** The law as others see it. Its constants are a Remote *. */
 const breccia_law *remote_law(const Remote *remote);
 int remote_servers(const Remote *remote);

@@ -11,7 +11,8 @@ static const double ASK_AGAIN_SECONDS = 0.25;
 void remote_name_server(const Remote *r, const RemoteServer *s, Text *text)
 {
   const bool own = s->process.address != NULL;
-  text_add(text, "material '%s': %sserver", r->material, own ? "OpenSees " : "");
+  if (*r->material) text_add(text, "material '%s': ", r->material);
+  text_add(text, "%sserver", own ? "OpenSees " : "");
   if (r->count > 1) text_add(text, " %d of %d", (int)(s - r->servers) + 1, r->count);
   if (!own) text_add(text, " at %s", s->address);
 }

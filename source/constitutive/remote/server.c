@@ -329,6 +329,19 @@ static ChannelStatus statistics(Server *s, const Frame *asked)
   return answer_text(s, asked, &reply);
 }
 
+/** The names of all laws, those in space and those of one strain. */
+static ChannelStatus laws(Server *s, const Frame *asked)
+{
+  Text reply = {0};
+  for (int uniaxial = 0; uniaxial < 2; ++uniaxial) {
+    text_add(&reply, "%s", uniaxial ? "uniaxial:" : "space:");
+    for (int k = 0; law_at(s->spec->laws, k); ++k)
+      if (law_at(s->spec->laws, k)->uniaxial == uniaxial) text_add(&reply, " %s", law_at(s->spec->laws, k)->name);
+    text_add(&reply, "\n");
+  }
+  return answer_text(s, asked, &reply);
+}
+
 /* ---- the conversation ---- */
 
 static ChannelStatus obey(Server *s, const Frame *asked, const uint8_t *payload)
@@ -344,6 +357,7 @@ static ChannelStatus obey(Server *s, const Frame *asked, const uint8_t *payload)
   case OPERATION_PROBE:
   case OPERATION_CREATE: return create(s, asked, text);
   case OPERATION_STATISTICS: return statistics(s, asked);
+  case OPERATION_LAWS: return laws(s, asked);
   case OPERATION_BYE: s->leaving = true; return answer(s, asked, 0, 0);
   default: break;
   }
