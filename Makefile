@@ -39,7 +39,7 @@ bench: setup all
 # The same law at home, in a server of our own and in OpenSees; the table of docs/material-server.md.
 bench-servers: setup all
 	@sh scripts/opensees.sh
-	@python3 bench/servers.py build/release/breccia
+	@python3 bench/servers.py build/release/breccia docs/material-server.md
 
 # LAMMPS from the distribution, on the same cubes in the same run.
 bench-peers: all

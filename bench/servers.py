@@ -1,6 +1,6 @@
 """What laws in other processes cost: the plate of the first example with its law at home, in `breccia serve` and in OpenSees.
 
-servers.py BRECCIA   prints a Markdown table (needs breccia-opensees beside BRECCIA)
+servers.py BRECCIA PAGE   writes a table between the marks of a Markdown page (needs breccia-opensees beside BRECCIA)
 """
 
 import json
@@ -78,7 +78,19 @@ def one_by_one(address, command, requests=3000):
     return seconds
 
 
+def write(page, lines):
+    """Puts lines between the marks of a page."""
+    with open(page, encoding="utf-8") as file:
+        before, mark, rest = file.read().partition("<!-- bench -->\n")
+        _, end, after = rest.partition("<!-- end of bench -->\n")
+    if not mark or not end:
+        sys.exit(f"{page}: the marks '<!-- bench -->' and '<!-- end of bench -->' are missing")
+    with open(page, "w", encoding="utf-8") as file:
+        file.write("\n".join([before + mark, *lines, "", end + after]))
+
+
 def main():
+    lines = []
     with tempfile.TemporaryDirectory(prefix="breccia-bench-") as folder:
         seconds = {}
         ways = {
@@ -101,13 +113,13 @@ def main():
                 taken, servers = run(folder, material)
                 seconds.setdefault(name, []).append(taken)
                 waited.setdefault(name, []).append(sum(s["waiting_share"] for s in servers))
-        print("| where the law lives | ms per step | µs per point and step beyond home | part of the time waited for servers | 23000 steps |")
-        print("|---|---|---|---|---|")
+        lines.append("| where the law lives | ms per step | µs per point and step beyond home | part of the time waited for servers | 23000 steps |")
+        lines.append("|---|---|---|---|---|")
         median = {name: sorted(values)[REPEATS // 2] for name, values in seconds.items()}
         for name, value in median.items():
             beyond = 1e6 * (value - median["at home"]) / POINTS
             share = sorted(waited[name])[REPEATS // 2]
-            print(f"| {name} | {1e3 * value:.2f} | {beyond:.2f} | {100 * share:.0f} % | {23000 * value / 60:.1f} min |")
+            lines.append(f"| {name} | {1e3 * value:.2f} | {beyond:.2f} | {100 * share:.0f} % | {23000 * value / 60:.1f} min |")
         alone, address = start(OPENSEES, f"unix:{folder}/alone")
         for name, where, command in (
             ("one point per request, breccia serve, unix", kept[1][1], "multi-yield-j2; shear modulus=60000; bulk modulus=100000; octahedral strength=30"),
@@ -115,10 +127,11 @@ def main():
             ("one point per request, OpenSees, unix", address, "nDMaterial PressureIndependMultiYield $tag 3 1.5 6.0e4 1.0e5 31.8198051534 0.1 0. 100. 0. 20"),
         ):
             each = one_by_one(where, command)
-            print(f"| {name} | {1e3 * each * POINTS:.0f} | {1e6 * each:.0f} | | {23000 * each * POINTS / 3600:.1f} h |")
-        print(f"\n8910 points, medians of {REPEATS} runs of {STEPS} steps, taken in turn; requests of one point: 3000 of them.")
+            lines.append(f"| {name} | {1e3 * each * POINTS:.0f} | {1e6 * each:.0f} | | {23000 * each * POINTS / 3600:.1f} h |")
+        lines += ["", f"8910 points, medians of {REPEATS} runs of {STEPS} steps, taken in turn; requests of one point: 3000 of them."]
         for process, _ in kept + [(alone, None)]:
             process.terminate()
+    write(sys.argv[2], lines)
 
 
 main()

@@ -229,22 +229,28 @@ class Points:
         self.session = secrets.randbits(32) | 1
         return bulk, shear
 
-    def commit(self):
+    def begin_commit(self):
         if not self.tried:
             raise Refusal("there is no trial to commit")
+        self.tried = False
+        self.commits += 1
+
+    def commit(self):
+        self.begin_commit()
         if not self.command.uniaxial:  # of one strain, setStrain has committed already
             commit = self.ops.NDTest
             for tag in self.tags:
                 commit("CommitState", tag)
-        self.tried = False
-        self.commits += 1
 
     def trial(self, flags, first, count, strains):
         """Stresses, and tangents if wanted, of strains given point after point."""
         if first + count > len(self.tags):
             raise Refusal(f"points {first} to {first + count - 1} were asked for; there are {len(self.tags)}")
         start = time.perf_counter()
-        if flags & COMMITS_BEFORE:
+        together = flags & COMMITS_BEFORE and count == len(self.tags) and not self.command.uniaxial
+        if together:
+            self.begin_commit()
+        elif flags & COMMITS_BEFORE:
             self.commit()
         stresses, tangents = array.array("d"), array.array("d")
         tags = self.tags[first : first + count]
@@ -262,6 +268,8 @@ class Points:
         else:
             test, keep = self.ops.NDTest, stresses.extend
             for tag, row in zip(tags, struct.iter_unpack("<6d", strains)):
+                if together:  # a fifth less time than all commits first: a point's memory is touched once
+                    test("CommitState", tag)
                 test("SetStrain", tag, *row)
                 keep(test("GetStress", tag))
                 if wanted:

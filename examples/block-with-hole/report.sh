@@ -1,7 +1,8 @@
 #!/bin/bash
 # Runs the block with the ramp to 40 MPa and with one that stops at 30 MPa, and writes the table and pictures of README.md.
-#   report.sh          run everything (a quarter of a minute on two cores), then write
-#   report.sh --only-write   write from the results that are there
+#   report.sh                  run everything at home (a quarter of a minute on two cores), then write
+#   report.sh --with-opensees  run the block with its law in OpenSees too (some ten minutes more)
+#   report.sh --only-write     write from the results that are there
 set -eu
 cd "$(dirname "$0")"
 breccia=../../build/release/breccia
@@ -11,6 +12,7 @@ if [ "${1:-}" != --only-write ]; then
   $breccia run block-30.yaml --quiet
   rm block-30.yaml
 fi
+[ "${1:-}" != --with-opensees ] || $breccia run block-opensees.yaml --quiet
 
 # Surfaces of Table 2. Files: a particle's histories (cap parameter in column 3), then its stresses (columns 9 to 14).
 surfaces='BEGIN {FS = ","; T = -2068.4; R = 4.43}
@@ -42,32 +44,78 @@ row_at() { awk -F, -v t="$3" -v c="$4" 'NR > 1 && $2 >= t - 1e-9 {print $c; exit
 damages() { printf "%.3f, %.3f" "$(row_at "$1" beside "$2" 3)" "$(row_at "$1" above "$2" 3)"; }
 growth() { awk -v x="$(row_at "$1" "$2" "$3" 4)" 'BEGIN {printf "%+.2f", 1000 * x}'; }
 # Uniaxial compressive stress of the law at a strain of 0.004 and at 0.02, the critical stretch (MPa).
-strength() {
-  sed 's/^test:.*/test: {kind: uniaxial, strain: -'"$1"'}/' ../materials/cap.yaml > uniaxial.yaml
-  $breccia material uniaxial.yaml | awk -F, 'NR > 1 && $7 < least {least = $7} END {printf "%.1f", -least / 1000}'
-  rm uniaxial.yaml
+alone() { sed "s/^test:.*/test: {$1}/" ../materials/cap.yaml > alone.yaml; $breccia material alone.yaml; rm alone.yaml; }
+strength() { alone "kind: uniaxial, strain: -$1" | awk -F, 'NR > 1 && $7 < least {least = $7} END {printf "%.1f", -least / 1000}'; }
+isotropic() { alone "kind: isotropic, strain: -0.01" | awk -F, 'END {printf "%.3f", $7 / 1000}'; }
+# I1 = 3 K (volume strain less what the cap has given) with the cap at I1.
+isotropic_closed() {
+  awk 'BEGIN {K = 14478996; X = 110320; D = 4.6412e-7; W = 0.42; low = X; high = 3 * K * 0.03
+    for (n = 0; n < 200; ++n) {I = (low + high) / 2; if (3 * K * (0.03 - W * (exp(-D * X) - exp(-D * I))) > I) low = I; else high = I}
+    printf "%.3f", -I / 3000}'
 }
-row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") |"; }
+on_envelope() {
+  alone "kind: undrained shear, strain: 0.02" | awk -F, 'function F(i) {return 26614 - 7997.9 * exp(-6.3816e-5 * i) + 0.11 * i}
+    END {I = -($7 + $8 + $9); m = -I / 3; printf "%.6f", sqrt(($7 - m) ^ 2 + ($8 - m) ^ 2 + ($9 - m) ^ 2 + 2 * ($10 ^ 2 + $11 ^ 2 + $12 ^ 2)) / F(I)}'
+}
+number() { sed -n "s/.*\"$2\": \([^,}]*\).*/\1/p" "$1/summary.json" | head -1 | awk -v s="$3" -v f="$4" '{printf f, $1 * s}'; }
+# A figure of both runs at home and of that in OpenSees, which tells no caps.
+elsewhere() { [ -e block-opensees/summary.json ] && "$@" || echo "not run"; }
+row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | $(elsewhere $3 block-opensees "${@:4}") |"; }
+row_with_caps() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | |"; }
+# Largest difference between the curves of two runs up to a time, over the largest value of each column.
+apart() {
+  for file in p q corner width height; do
+    paste -d, "$1/$file.csv" "$2/$file.csv" | awk -F, -v until="$3" '
+      NR > 1 {n = NF / 2; for (k = 1; k <= n; ++k) {a = $k < 0 ? -$k : $k; d = $k - $(k + n); if (d < 0) d = -d
+        if (a > top[k]) top[k] = a; if (d > most[k] && $2 <= until + 1e-9) most[k] = d}}
+      END {for (k = 1; k <= n; ++k) if (top[k] > 1e-6) print most[k] / top[k]}'
+  done | sort -g | tail -1 | awk '{printf "%.0e", $1}'
+}
+# The law alone, at home and in OpenSees, along the same path: how far it comes, and how far apart the stresses are.
+along() {
+  { sed -n '1,/^material:/p' ../materials/cap.yaml | sed '$d'; sed -n '/^material:/,/^test/p' ../materials/cap.yaml | sed '$d'; echo "test: {$1}"; } > home.yaml
+  { echo "units: {length: m, force: kN, time: s}"; sed -n '/^  concrete:/,/^$/p' block-opensees.yaml | sed 's/^  //; s/concrete/material/'; echo "test: {$1}"; } > away.yaml
+  $breccia material home.yaml --output home.csv
+  words=$($breccia material away.yaml --output away.csv 2>&1 || true)
+  paste -d, home.csv away.csv | awk -F, -v words="$words" '
+    NR > 1 && NF == 24 && $19 != "" {for (k = 7; k <= 12; ++k) {a = $k < 0 ? -$k : $k; d = $k - $(k + 12); if (d < 0) d = -d; if (a > top) top = a; if (d > most) most = d}}
+    END {if (words != "") {sub(/: OpenSees server: it returned/, ":", words); sub(/ for its point 0/, "", words); print words} else printf "to %.0e", most / top}'
+  rm home.yaml away.yaml home.csv away.csv
+}
 {
   sed '/^<!-- computed -->$/q' README.md
   echo
-  echo "| figure | published | ramp to 40 MPa | ramp that stops at 30 MPa |"
-  echo "|---|---|---|---|"
-  row "above the hole (p): first meets (ms)" "cut-off, then envelope, then cap" order p
-  row "beside the hole (q)" "the same" order q
-  row "corner of the hole" "" order corner
+  echo "| figure | published | ramp to 40 MPa | ramp that stops at 30 MPa | ramp to 40 MPa, law in OpenSees |"
+  echo "|---|---|---|---|---|"
+  row_with_caps "above the hole (p): first meets (ms)" "cut-off, then envelope, then cap" order p
+  row_with_caps "beside the hole (q)" "the same" order q
+  row_with_caps "corner of the hole" "" order corner
   row "first bond breaks" "beside the hole" first_break
   row "mean damage beside and above the hole at 6.2 ms" "vertical cracks beside the hole" damages 0.0062
   row "the same at 6.4 ms" "they grow wider" damages 0.0064
   row "the same at 8 ms" "" damages 0.008
   row "growth of the width along x at 5.6 ms (mm)" "the block widens" growth width 0.0056
   row "growth of the height along z at 5.6 ms (mm)" "the block shortens" growth height 0.0056
-  row "largest distance outside the surfaces" "" outside
+  row_with_caps "largest distance outside the surfaces" "" outside
   echo
   echo "Pressed along one axis the law yields on its cap and carries $(strength 0.004) MPa at a strain of 0.4 %, $(strength 0.02) MPa at 2 %. The"
   echo "net section, two thirds of the block, reaches these under $(strength 0.004 | awk '{printf "%.1f", $1 * 2 / 3}') and" \
     "$(strength 0.02 | awk '{printf "%.1f", $1 * 2 / 3}') MPa."
   echo
+  if [ -e block-opensees/summary.json ]; then
+    echo "Computing took $(number block wall_seconds 1 %.0f) s, in OpenSees $(number block-opensees wall_seconds 1 %.0f) s. The curves of p, q, the corner, width and height at home and in OpenSees"
+    echo "differ by $(apart block block-opensees 0.002) of the largest value up to 2 ms, $(apart block block-opensees 0.004) up to 4 ms, $(apart block block-opensees 0.006) up to 6 ms and $(apart block block-opensees 0.008) up to 8 ms."
+    echo
+    echo "| the law alone, CapPlasticity of OpenSees against ours | stresses agree | which is right |"
+    echo "|---|---|---|"
+    echo "| triaxial at 5 MPa, to 2 % and back to 0, three times | $(along "kind: triaxial, strain: -0.02, return strain: 0, cycles: 3, confining pressure: 5000") | both |"
+    echo "| one-dimensional to 5 %, back to tension, twice | $(along "kind: oedometer, strain: -0.05, return strain: 0.001, cycles: 2") | both |"
+    echo "| biaxial at 1 MPa to 2 %, back to tension, three times | $(along "kind: biaxial, strain: -0.02, return strain: 0.001, cycles: 3, confining pressure: 1000") | both |"
+    echo "| shear of constant volume to 2 %, after 5 MPa | $(along "kind: undrained shear, strain: 0.02, confining pressure: 5000") | both |"
+    echo "| the same from no stress | $(along "kind: undrained shear, strain: 0.02") | ours: at the end \|s\| / F_e(I₁) is $(on_envelope); OpenSees divides by I₁ − κ, which is 0 |"
+    echo "| isotropic to 1 % along each axis | $(along "kind: isotropic, strain: -0.01") | ours: a mean stress of $(isotropic) MPa, in closed form $(isotropic_closed) MPa; OpenSees divides by \|s\|, which is 0 |"
+    echo
+  fi
   sed -n '/^<!-- end of computed -->$/,$p' README.md
 } > README.new
 mv README.new README.md

@@ -1,7 +1,8 @@
 #!/bin/bash
 # Runs all decks of this example and its variants of control, and writes the table and the pictures of README.md.
-#   report.sh          run everything (about six minutes on two cores), then write
-#   report.sh --only-write   write from the results that are there
+#   report.sh                  run everything at home (about six minutes on two cores), then write
+#   report.sh --with-opensees  run the plate of clay in OpenSees too (a quarter of an hour more)
+#   report.sh --only-write     write from the results that are there
 set -eu
 cd "$(dirname "$0")"
 breccia=../../build/release/breccia
@@ -19,6 +20,7 @@ if [ "${1:-}" != --only-write ]; then
   done
   $breccia run rest.yaml --quiet
 fi
+[ "${1:-}" != --with-opensees ] || $breccia run clay-opensees.yaml --quiet
 
 # Value of a column at the first row whose other column is at least something.
 #   first FILE WANTED COLUMN LEAST        columns by number
@@ -37,22 +39,39 @@ backbone() {
 }
 straight() { awk -F, 'NR > 1 && $4 > worst {worst = $4} END {print (worst == 0 ? "yes: no bond broken that does not reach within 2 spacings of its line" : "no, damage " worst " beside it")}' "$1/beside.csv"; }
 first_break() { sed -n 's/.*"first_broken_bond": {"step": [0-9]*, "time": \([^,]*\),.*/\1/p' "$1/summary.json"; }
+# Largest difference between the curves of two runs, over the largest value of each column.
+apart() {
+  for file in "$1"/*.csv; do
+    paste -d, "$file" "$2/${file##*/}" | awk -F, '
+      NR > 1 {n = NF / 2; for (k = 1; k <= n; ++k) {a = $k < 0 ? -$k : $k; d = $k - $(k + n); if (d < 0) d = -d
+        if (a > top[k]) top[k] = a; if (d > most[k]) most[k] = d}}
+      END {for (k = 1; k <= n; ++k) if (top[k] > 0) print most[k] / top[k]}'
+  done | sort -g | tail -1
+}
+# Share of the time that was waited for servers, and what one did for another, in the summary of a run.
+waited() { grep -o '"waiting_share": [0-9.e-]*' "$1/summary.json" | awk '{sum += $2} END {printf "%.0f", 100 * sum}'; }
+gigabytes() { grep -o '"bytes_[a-z]*": [0-9]*' "$1/summary.json" | awk '{sum += $2} END {printf "%.1f", sum / 1e9}'; }
+# The same figure of the run in OpenSees, if there is one.
+elsewhere() { [ -e clay-opensees/summary.json ] && "$@" || echo "not run"; }
 
 {
   sed '/^<!-- computed -->$/q' README.md
   echo
-  echo "| figure | published | computed |"
-  echo "|---|---|---|"
-  echo "| clay: load at which the crack begins to open (kN/m³) | 126 | $(onset clay mouth 750) at the mouth, $(onset clay middle 750) in the middle of the crack (0.05 mm) |"
-  echo "| elastic: the same | 1400 | $(onset elastic mouth 5000) at the mouth, $(onset elastic middle 5000) in the middle |"
-  echo "| clay: crack width at 750 kN/m³ (m; 0.06 at the start) | 0.0628 | $(opening clay mouth 0.02) at the mouth, $(opening clay middle 0.02) in the middle (0.02 s) |"
-  echo "| elastic: crack width at 750 kN/m³ (m) | 0.0600 | $(opening elastic mouth 0.003) at the mouth, $(opening elastic middle 0.003) in the middle (0.003 s) |"
-  echo "| elastic: plate severed | by 0.0912 s | $(severed elastic) |"
-  echo "| elastic: crack runs straight on | yes | $(straight elastic) |"
-  echo "| clay: crack does not run through by 0.0792 s | does not | severed: $(severed clay); first bond breaks at $(first_break clay) s |"
-  echo "| clay: backbone followed, point m (distance from the hyperbola, kPa; one chord is 1.5) | yes | $(backbone clay/point-m.csv) |"
-  echo "| clay: the same, point n | yes | $(backbone clay/point-n.csv) |"
-  echo "| elastic at rest at 500 kN/m³: opening of the mouth (mm) | 3.34 (finite elements) | $(number "$(last rest/mouth.csv 4)" "%.3f" 1000) |"
+  echo "| figure | published | computed | law in OpenSees |"
+  echo "|---|---|---|---|"
+  echo "| clay: load at which the crack begins to open (kN/m³) | 126 | $(onset clay mouth 750) at the mouth, $(onset clay middle 750) in the middle of the crack (0.05 mm) | $(elsewhere onset clay-opensees mouth 750), $(elsewhere onset clay-opensees middle 750) |"
+  echo "| elastic: the same | 1400 | $(onset elastic mouth 5000) at the mouth, $(onset elastic middle 5000) in the middle |  |"
+  echo "| clay: crack width at 750 kN/m³ (m; 0.06 at the start) | 0.0628 | $(opening clay mouth 0.02) at the mouth, $(opening clay middle 0.02) in the middle (0.02 s) | $(elsewhere opening clay-opensees mouth 0.02), $(elsewhere opening clay-opensees middle 0.02) |"
+  echo "| elastic: crack width at 750 kN/m³ (m) | 0.0600 | $(opening elastic mouth 0.003) at the mouth, $(opening elastic middle 0.003) in the middle (0.003 s) |  |"
+  echo "| elastic: plate severed | by 0.0912 s | $(severed elastic) |  |"
+  echo "| elastic: crack runs straight on | yes | $(straight elastic) |  |"
+  echo "| clay: crack does not run through by 0.0792 s | does not | severed: $(severed clay); first bond breaks at $(first_break clay) s | severed: $(elsewhere severed clay-opensees); first at $(elsewhere first_break clay-opensees) s |"
+  echo "| clay: backbone followed, point m (distance from the hyperbola, kPa; one chord is 1.5) | yes | $(backbone clay/point-m.csv) | $(elsewhere backbone clay-opensees/point-m.csv) |"
+  echo "| clay: the same, point n | yes | $(backbone clay/point-n.csv) | $(elsewhere backbone clay-opensees/point-n.csv) |"
+  echo "| elastic at rest at 500 kN/m³: opening of the mouth (mm) | 3.34 (finite elements) | $(number "$(last rest/mouth.csv 4)" "%.3f" 1000) |  |"
+  echo "| clay: bonds broken by 0.092 s (both directions) | | $(summary clay broken_bonds) | $(elsewhere summary clay-opensees broken_bonds) |"
+  echo "| clay: time to compute (min, two cores) | | $(number "$(summary clay wall_seconds)" "%.1f" 0.0166667) | $(elsewhere number "$(summary clay-opensees wall_seconds)" "%.1f" 0.0166667), $(elsewhere waited clay-opensees) % of it waiting for OpenSees, $(elsewhere gigabytes clay-opensees) GB to and fro |"
+  echo "| clay: largest difference of any curve, of its largest value | | | $(elsewhere number "$(elsewhere apart clay clay-opensees)" "%.1g") |"
   echo
   echo "Variants of zero-energy control (Silling's, strength G_s):"
   echo

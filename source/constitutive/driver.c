@@ -6,6 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/** The one point lives in the first server; others have none. */
+static int begin_elsewhere(Driver *d, Error *error)
+{
+  Remote *r = d->material->remote;
+  int64_t *starts = memory_zeroed((size_t)remote_servers(r) + 1, sizeof *starts, "servers", error);
+  if (!starts) return BRECCIA_FAILURE;
+  for (int k = 1; k <= remote_servers(r); ++k) starts[k] = 1;
+  const int status = remote_begin(r, starts, error);
+  free(starts);
+  d->committed[0] = d->trial[0] = 0;
+  return status;
+}
+
 int driver_create(Driver *d, const Material *material, Error *error)
 {
   const size_t values = (size_t)material->history_values + 1;
@@ -17,7 +30,7 @@ int driver_create(Driver *d, const Material *material, Error *error)
     material->law->begin(material->constants, d->committed);
     material->law->begin(material->constants, d->trial);
   }
-  return BRECCIA_OK;
+  return material->remote ? begin_elsewhere(d, error) : BRECCIA_OK;
 }
 
 void driver_destroy(Driver *d)
@@ -44,6 +57,7 @@ void driver_commit(Driver *d)
   double *other = d->committed;
   d->committed = d->trial;
   d->trial = other;
+  if (d->material->remote) remote_commit(d->material->remote);
 }
 
 /** Stress residual of the unknown strains; NaN if the law gives up. */

@@ -240,15 +240,32 @@ static void keep(ElementCurve *c, const ElementTest *test, const Driver *d)
   }
 }
 
+/** Why a law in a server did not answer; "" of a law at home. */
+static const char *server_problem(const Material *material)
+{
+  return material->remote ? remote_problem(material->remote) : "";
+}
+
 int element_test_run(const ElementTest *test, const Material *material, ElementCurve *curve, Error *error)
 {
   Driver d;
+  *curve = (ElementCurve){0};
+  for (int n = 0; material->remote && !remote_iterates(material->remote) && n < test->count; ++n)
+    for (int k = 0; k < 6; ++k)
+      if (test->stages[n].by_stress[k])
+        return error_add(error, BRECCIA_USER_ERROR,
+                         "%s: its server cannot repeat a trial, so that no stress can be prescribed; give strains, or "
+                         "take a server that iterates",
+                         material->law->name);
   int status = driver_create(&d, material, error);
   if (status) return status;
   status = create_curve(curve, test, d.components, error);
   const double none[6] = {0};
   if (!status && !driver_try(&d, none))
-    status = error_add(error, BRECCIA_FAILURE, "%s: the unstrained point could not be integrated", material->name);
+    status = *server_problem(material)
+                 ? error_add(error, BRECCIA_FAILURE, "%s", server_problem(material))
+                 : error_add(error, BRECCIA_FAILURE, "%s: the unstrained point could not be integrated",
+                             material->law->name);
   if (!status) keep(curve, test, &d);
   for (int n = 0; n < test->count && !status; ++n) {
     const Stage *stage = &test->stages[n];
@@ -268,6 +285,9 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
         target[k] = step == stage->steps ? to[k] : from[k] + (to[k] - from[k]) * step / stage->steps;
       if (driver_step(&d, stage->by_stress, target, tolerance))
         keep(curve, test, &d);
+      else if (*server_problem(material))
+        status = error_add(error, BRECCIA_FAILURE, "stage %d, step %d of %d: %s", n + 1, step, stage->steps,
+                           server_problem(material));
       else
         status =
             error_add(error, BRECCIA_FAILURE,

@@ -122,7 +122,7 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
   if (spec->remote && !spec->servers.count)
     return node_error(reader->document, section_place(spec, "remote"), reader->error,
                       "remote: give the addresses of its servers under 'server'");
-  RemoteSpec remote = {.material = spec->head.name ? spec->head.name : "of the test",
+  RemoteSpec remote = {.material = spec->head.name ? spec->head.name : "",
                        .command = spec->opensees ? spec->opensees : spec->remote,
                        .stage = (int)spec->stage,
                        .servers = spec->servers.items,

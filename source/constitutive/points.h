@@ -107,8 +107,9 @@ void points_unpack(Points *points, int64_t first, int64_t last);
 void points_gather_bonds(Points *points);
 /** Sends what was gathered and waits for all answers. @return -1, or a place of a bond whose law failed */
 int64_t points_ask_bonds(Points *points);
-/** Whether all that points remember can still be saved: not, when a server is lost that remembers for them. */
-bool points_can_save(const Points *points);
+/** Whether all that points remember can still be saved: not, when a server is lost that remembers for them. Reaches servers
+ *  anew if one did not answer as it should. */
+bool points_can_save(Points *points);
 /** A line per server: points per second, waiting, bytes; as objects of a JSON list if `json`. */
 void points_report(const Points *points, double run_seconds, bool json, Text *text);
 /** What went wrong in a server, one line; "" if nothing did. */

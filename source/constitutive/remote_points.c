@@ -285,11 +285,12 @@ int remote_points_bonds(const Points *points, const Material *m, const breccia_b
   return -1;
 }
 
-bool points_can_save(const Points *points)
+bool points_can_save(Points *points)
 {
-  for (int k = 0; points->server && k < points->material_count; ++k) {
-    const Remote *r = points->starts[k] ? points->materials[k].remote : NULL;
-    if (r && *remote_problem(r) && remote_state_values(r)) return false;
+  const bool trouble = *points_problem(points);
+  for (int k = 0; trouble && k < points->material_count; ++k) {
+    Remote *r = points->starts[k] ? points->materials[k].remote : NULL;
+    if (r && remote_state_values(r) && !remote_rescue(r)) return false;
   }
   return true;
 }

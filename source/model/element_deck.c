@@ -66,6 +66,7 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   deck->reader = (DeckReader){deck->document, deck->units, &deck->laws, error};
   deck->spec = section_read(&deck->reader, deck->document->root, &element_deck_section);
   if (!deck->spec || error_count(error) > before) return BRECCIA_USER_ERROR;
+  if (deck->spec->material->processes < 0) deck->spec->material->processes = 1; /* there is one point */
   status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN);
   deck->law = deck->material.law;
   if (!status)

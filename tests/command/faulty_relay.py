@@ -20,7 +20,7 @@ def read(connection, size):
     while len(data) < size:
         piece = connection.recv(size - len(data))
         if not piece:
-            sys.exit(0)
+            raise ConnectionResetError
         data += piece
     return data
 
@@ -58,31 +58,42 @@ def spoil(fault, header, body):
     return frame
 
 
+def relay(client, server, fault, wanted):
+    """Until one of them leaves. @return how many trials are still to come before the wanted one"""
+    target = socket.socket(socket.AF_UNIX)
+    target.connect(server)
+    try:
+        while True:
+            head = read(client, HEADER.size)
+            asked = HEADER.unpack(head)
+            target.sendall(head + read(client, asked[6]))
+            head = read(target, HEADER.size)
+            header = HEADER.unpack(head)
+            frame = head + read(target, header[6])
+            wanted -= asked[2] == TRIAL
+            if asked[2] == TRIAL and wanted == 0:
+                frame = spoil(fault, header, frame[HEADER.size :])
+            client.sendall(frame)
+    except OSError:
+        pass
+    client.close()
+    target.close()
+    return wanted
+
+
 def main():
     own, server, fault, wanted = sys.argv[1], sys.argv[2], sys.argv[3], int(sys.argv[4])
     signal.alarm(60)
     listener = socket.socket(socket.AF_UNIX)
+    if os.path.exists(own):
+        os.unlink(own)
     listener.bind(own)
     listener.listen(1)
-    client, _ = listener.accept()
-    os.unlink(own)
-    target = socket.socket(socket.AF_UNIX)
-    target.connect(server)
-    trials = 0
     while True:
-        head = read(client, HEADER.size)
-        asked = HEADER.unpack(head)
-        target.sendall(head + read(client, asked[6]))
-        head = read(target, HEADER.size)
-        header = HEADER.unpack(head)
-        frame = head + read(target, header[6])
-        trials += asked[2] == TRIAL
-        if asked[2] == TRIAL and trials == wanted:
-            frame = spoil(fault, header, frame[HEADER.size :])
-        client.sendall(frame)
+        client, _ = listener.accept()
+        if fault in ("close", "hang"):  # whoever comes later finds nobody
+            os.unlink(own)
+        wanted = relay(client, server, fault, wanted)
 
 
-try:
-    main()
-except OSError:  # the client has gone
-    sys.exit(0)
+main()

@@ -17,7 +17,10 @@ SERVER = os.path.join(os.path.dirname(BRECCIA), "breccia-opensees")
 HEADER = struct.Struct("<4sHHIIIIII")
 failures = 0
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "servers"))
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+EXAMPLES = os.path.join(ROOT, "examples")
+COMPARE = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
+sys.path.insert(0, os.path.join(ROOT, "servers"))
 from opensees_server import TRIED  # noqa: E402  ten laws in space that soil, rock and concrete are computed with, and three along bonds
 
 LAWS = {command.split()[1]: command for command, _, _ in TRIED}
@@ -110,8 +113,7 @@ def laws_do_not_hang_on_their_company(client, laws):
         together = []
         for step in range(steps):
             strains = [value for path in paths for value in path[step]]
-            together.append(client.trial(strains, components))
-            client.ask(6)
+            together.append(client.trial(strains, components, flags=1 if step else 0))  # commits with the next trial
         for point in random.Random(1).sample(range(points), 12):
             client.create(name, 1)
             for step in range(steps):
@@ -202,7 +204,6 @@ results: {{number: 2, precision: double}}
             "time step: 5e-6, steps: 100",
         ),
     }
-    compare = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
     for name, (home, away, formulation, force, stepping) in pairs.items():
         places = {"home": home, "away": away}
         if "uniaxialMaterial" in away:
@@ -215,8 +216,22 @@ results: {{number: 2, precision: double}}
             check(f"{name} {place} runs", run.returncode == 0, run.stderr)
         for place in list(places)[1:]:
             files = [f"{WORK}/{name}-{where}/results.vtkhdf" for where in ("home", place)]
-            result = subprocess.run([compare, *files, "1e-8", "displacement", "stress"], capture_output=True, text=True)
+            result = subprocess.run([COMPARE, *files, "1e-8", "displacement", "stress"], capture_output=True, text=True)
             check(f"{name}: at home and {place}", result.returncode == 0, result.stdout)
+
+
+def the_plate_agrees():
+    """The plate of clay of the examples, all 8910 particles, 500 steps of it."""
+    for name in ("clay", "clay-opensees"):
+        with open(os.path.join(EXAMPLES, "plate-with-crack", f"{name}.yaml"), encoding="utf-8") as file:
+            text = file.read().replace("steps: 23000", "steps: 500").replace("results: {", "results: {precision: double, ")
+        with open(f"{WORK}/plate-{name}.yaml", "w", encoding="utf-8") as file:
+            file.write(text)
+        run = subprocess.run([BRECCIA, "run", f"{WORK}/plate-{name}.yaml"], capture_output=True, text=True, timeout=300)
+        check(f"plate of {name} runs", run.returncode == 0 and "step 500 of 500" in run.stdout, run.stdout + run.stderr)
+    files = [f"{WORK}/plate-{name}/results.vtkhdf" for name in ("clay", "clay-opensees")]
+    result = subprocess.run([COMPARE, *files, "1e-8", "displacement"], capture_output=True, text=True)
+    check("the plate at home and in OpenSees", result.returncode == 0, result.stdout)
 
 
 def refusals_are_told(client):
@@ -280,6 +295,42 @@ def offers_are_told():
     check("nothing else is", not {"PlaneStress", "PM4Sand", "Nonsense", "Domain", "Concrete"} & set(kinds.split()))
 
 
+def material(name, text):
+    """`breccia material` of a file: status, rows, words."""
+    with open(f"{WORK}/{name}.yaml", "w", encoding="utf-8") as file:
+        file.write("units: {length: m, force: kN, time: s}\n" + text)
+    run = subprocess.run([BRECCIA, "material", f"{WORK}/{name}.yaml"], capture_output=True, text=True, timeout=60)
+    rows = [[float(word) for word in line.split(",")] for line in run.stdout.splitlines()[1:]]
+    return run.returncode, rows, run.stderr
+
+
+def the_laboratory_agrees():
+    """One point through laboratory tests, its stresses prescribed in part: Newton's method with tangents of OpenSees."""
+    cap = """material: {{{model}, density: 2.4 t/m3}}\n{test}\n"""
+    home = (
+        "model: cap, shear modulus: 11721092, bulk modulus: 14478996, cap position: 110320, compaction rate: 4.6412e-7, largest compaction: 0.42,"
+        "cap ratio: 4.43, envelope drop: 7997.9, envelope slope: 0.11, envelope rate: 6.3816e-5, envelope strength: 26614, tension cut-off: 2068.4"
+    )
+    away = "opensees: nDMaterial CapPlasticity $tag 3 2400. 1.1721092e10 1.4478996e10, stress unit: Pa"
+    test = "test: {kind: triaxial, strain: -0.02, return strain: 0.0, cycles: 1, confining pressure: 5000}"
+    curves = [material(name, cap.format(model=model, test=test)) for name, model in (("cap-home", home), ("cap-away", away))]
+    rows = [rows for _, rows, _ in curves]
+    top = max(abs(row[6]) for row in rows[0])
+    check("laboratory runs", [status for status, _, _ in curves] == [0, 0], str([words for _, _, words in curves]))
+    most = max(abs(a - b) for one, two in zip(*rows) for a, b in zip(one[6:], two[6:]))
+    check("laboratory: the same stresses", len(rows[0]) == len(rows[1]) == 421 and top > 3e4 and most < 1e-7 * top, f"{most} of {top}")
+    status, rows, words = material("isotropic", cap.format(model=away, test="test: {kind: isotropic, strain: -0.01}"))
+    check("no number is told", status == 1 and "returned a stress that is not a number" in words and len(rows) > 5, words)
+    bond = "material: {opensees: uniaxialMaterial Concrete02 $tag -30e3 -0.002 -6e3 -0.006 0.1 3e3 3e6, density: 2.4}\n"
+    home = "material: {model: concrete02, compressive strength: 30e3, peak strain: 0.002, residual strength: 6e3, crushing strain: 0.006, unloading ratio: 0.1, tensile strength: 3e3, tension softening: 3e6, density: 2.4}\n"
+    test = "test: {kind: uniaxial, strain: -0.004, return strain: 0.001, cycles: 2}\n"
+    curves = [material("bond-home", home + test), material("bond-away", bond + test)]
+    check("laboratory along a bond", [status for status, _, _ in curves] == [0, 0], str([words for _, _, words in curves]))
+    check("the same stresses", all(abs(a[1] - b[1]) < 1e-8 * 3e4 for a, b in zip(curves[0][1], curves[1][1])) and len(curves[1][1]) == 801)
+    status, _, words = material("bond-stress", bond + "stages: [{stress xx: -100}]\n")
+    check("what cannot iterate is refused", status == 2 and "its server cannot repeat a trial" in words, words)
+
+
 def chance_does_no_harm(path):
     """Frames and bytes of chance: the server answers in frames or closes the line, and serves the next client."""
     chance = random.Random(3)
@@ -328,8 +379,7 @@ def a_server_keeps_its_points():
     check("first part runs", run.returncode == 0, run.stderr)
     run = subprocess.run([BRECCIA, "run", deck, "--restart"], capture_output=True, text=True, timeout=300)
     check("the run is taken up", run.returncode == 0, run.stderr)
-    compare = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
-    same = subprocess.run([compare, f"{WORK}/clay-away/results.vtkhdf", f"{WORK}/kept/results.vtkhdf"], capture_output=True, text=True, timeout=300)
+    same = subprocess.run([COMPARE, f"{WORK}/clay-away/results.vtkhdf", f"{WORK}/kept/results.vtkhdf"], capture_output=True, text=True, timeout=300)
     check("to the same bits", same.returncode == 0, same.stdout)
     subprocess.run([BRECCIA, "run", deck, "--steps", "100"], capture_output=True, text=True, timeout=300)
     client.process.terminate()
@@ -360,8 +410,10 @@ def main():
     a_client_at_a_time(client)
     decks_agree(client)
     client.end()
+    the_plate_agrees()
     runs_tell_what_opensees_said()
     offers_are_told()
+    the_laboratory_agrees()
     for path in (f"{WORK}/chance", None):
         chance_does_no_harm(path)
         secrets_guard(path)

@@ -70,15 +70,9 @@ static int greet(Remote *r, RemoteServer *s)
     return 1;
   }
   text_free(&words);
-  const char *secret = getenv("BRECCIA_SECRET");
-  Text hello = {0};
   Frame frame;
   uint8_t *reply;
-  text_add(&hello, "client: breccia\nversion: %s\n", BRECCIA_VERSION);
-  if (secret && *secret) text_add(&hello, "secret: %s\n", secret);
-  const int bad = remote_ask(r, s, OPERATION_HELLO, 0, &hello, &frame, &reply);
-  text_free(&hello);
-  return bad;
+  return remote_say_hello(r, s, &frame, &reply);
 }
 
 static int probe(Remote *r, RemoteServer *s)
@@ -283,7 +277,7 @@ void remote_report(Remote *r, double run_seconds, bool json, Text *text)
     double bytes[2], inside = NAN;
     Frame frame;
     uint8_t *reply;
-    channel_bytes(s->channel, bytes);
+    remote_count_bytes(s, bytes);
     if (!r->problem.length && !remote_ask(r, s, OPERATION_STATISTICS, 0, NULL, &frame, &reply))
       inside = frame_number((const char *)reply, frame.length, "seconds", NAN);
     const double rate = run_seconds > 0 ? s->evaluations / run_seconds : 0,

@@ -55,6 +55,9 @@ int remote_begin(Remote *remote, const int64_t *starts, Error *error);
 int remote_resume(Remote *remote, const int64_t *starts, double *state, const double *identity, Error *error);
 /** Numbers by which servers are found again: session and count of commits of each, [servers][2]. Commits what is due. */
 int remote_identify(Remote *remote, double *identity, Error *error);
+/** After something went wrong: reaches the servers anew, as what is said on their lines may be out of step.
+ *  @return whether all of them hold the state that was committed last, so that it can be saved */
+bool remote_rescue(Remote *remote);
 /** Fetches what servers save of all points, [points][remote_state_values]. */
 int remote_save(Remote *remote, double *state, Error *error);
 

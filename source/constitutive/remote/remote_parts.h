@@ -21,6 +21,7 @@ typedef struct RemoteServer {
   bool waiting;    /* for the answer to a trial */
   bool greeted;    /* it notices that the line is closed */
   double waited, evaluations;
+  double bytes[2];        /* sent and received by lines that were given up */
   const double *stresses; /* as of the last answer */
 } RemoteServer;
 
@@ -49,6 +50,10 @@ int remote_tell(const Remote *r, Error *error);
 /** Asks with a text or bytes and waits. @param[out] reply  borrowed until the next question */
 int remote_ask(Remote *r, RemoteServer *s, Operation operation, uint32_t count, const Text *text, Frame *frame,
                uint8_t **reply);
+/** Bytes sent and received, on this line and those before. */
+void remote_count_bytes(const RemoteServer *s, double bytes[2]);
+/** HELLO, with the secret. The answer tells what the server holds. */
+int remote_say_hello(Remote *r, RemoteServer *s, Frame *frame, uint8_t **reply);
 /** PROBE or CREATE. */
 int remote_ask_points(Remote *r, RemoteServer *s, Operation operation, int64_t count, Frame *frame, uint8_t **reply);
 /** Bytes of a trial of so many points. */

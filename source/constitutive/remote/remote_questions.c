@@ -110,6 +110,24 @@ int remote_ask(Remote *r, RemoteServer *s, Operation operation, uint32_t count, 
   return remote_send(r, s, &asked) || remote_receive(r, s, &asked, frame, reply, NULL);
 }
 
+void remote_count_bytes(const RemoteServer *s, double bytes[2])
+{
+  double now[2] = {0};
+  if (s->channel) channel_bytes(s->channel, now);
+  for (int k = 0; k < 2; ++k) bytes[k] = s->bytes[k] + now[k];
+}
+
+int remote_say_hello(Remote *r, RemoteServer *s, Frame *frame, uint8_t **reply)
+{
+  const char *secret = getenv("BRECCIA_SECRET");
+  Text hello = {0};
+  text_add(&hello, "client: breccia\nversion: %s\n", BRECCIA_VERSION);
+  if (secret && *secret) text_add(&hello, "secret: %s\n", secret);
+  const int bad = remote_ask(r, s, OPERATION_HELLO, 0, &hello, frame, reply);
+  text_free(&hello);
+  return bad;
+}
+
 int remote_tell(const Remote *r, Error *error)
 {
   return error_add(error, BRECCIA_FAILURE, "%s", remote_problem(r));

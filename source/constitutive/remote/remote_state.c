@@ -1,8 +1,11 @@
 /* What servers remember: commits, saved states, and how a restart finds them again. */
 #include "constitutive/remote/remote_parts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double RESCUE_SECONDS = 2;
 
 /** Commits what is due with a frame of its own. */
 static int remote_flush(Remote *r, RemoteServer *s)
@@ -67,10 +70,51 @@ int remote_save(Remote *r, double *state, Error *error)
 {
   for (int k = 0; k < r->count && r->state; ++k) {
     RemoteServer *s = &r->servers[k];
-    if (r->problem.length || remote_flush(r, s) || move_states(r, s, OPERATION_SAVE, state + r->state * s->first))
+    if (remote_flush(r, s) || move_states(r, s, OPERATION_SAVE, state + r->state * s->first))
       return remote_tell(r, error);
   }
   return BRECCIA_OK;
+}
+
+/** What a server holds, as it says in answer to HELLO. */
+typedef struct Held {
+  double session, points, commits;
+} Held;
+
+static int ask_what_is_held(Remote *r, RemoteServer *s, Held *held)
+{
+  Frame frame;
+  uint8_t *reply;
+  if (remote_say_hello(r, s, &frame, &reply)) return 1;
+  const char *text = (const char *)reply;
+  *held = (Held){.session = frame_number(text, frame.length, "session", 0),
+                 .points = frame_number(text, frame.length, "points", 0),
+                 .commits = frame_number(text, frame.length, "commits", 0)};
+  return 0;
+}
+
+bool remote_rescue(Remote *r)
+{
+  r->timeout = fmin(r->timeout, RESCUE_SECONDS);
+  for (int k = 0; k < r->count; ++k) {
+    RemoteServer *s = &r->servers[k];
+    Text words = {0};
+    Held held;
+    Frame frame;
+    uint8_t *reply;
+    remote_count_bytes(s, s->bytes);
+    channel_close(&s->channel);
+    s->channel = channel_connect(s->address, r->timeout, NULL, NULL, &words);
+    text_free(&words);
+    s->waiting = s->tried = false;
+    if (!s->channel || ask_what_is_held(r, s, &held) || held.session != s->session) return false;
+    const double committed = (double)(s->commits + s->commit_due);
+    if (held.commits == committed - 1 && remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return false;
+    if (held.commits != committed && held.commits != committed - 1) return false;
+    s->commits += s->commit_due;
+    s->commit_due = false;
+  }
+  return true;
 }
 
 /** A server that saves nothing: it must hold the session still, as it was. */
@@ -78,27 +122,24 @@ static int take_up(Remote *r, RemoteServer *s, const double identity[IDENTITY], 
 {
   Frame frame;
   uint8_t *reply;
-  if (remote_ask(r, s, OPERATION_HELLO, 0, NULL, &frame, &reply)) return remote_tell(r, error);
-  const char *text = (const char *)reply;
-  const double session = frame_number(text, frame.length, "session", 0),
-               points = frame_number(text, frame.length, "points", 0),
-               commits = frame_number(text, frame.length, "commits", 0);
-  if (session != identity[0] || points != (double)s->count)
+  Held held;
+  if (ask_what_is_held(r, s, &held)) return remote_tell(r, error);
+  if (held.session != identity[0] || held.points != (double)s->count)
     return error_add(error, BRECCIA_USER_ERROR,
                      "material '%s': the server at %s does not hold the points of the checkpoint any more, and it "
                      "cannot restore them; run without --restart",
                      r->material, s->address);
   /* The checkpoint may count a commit that was to go with the trial which was never answered. */
-  if (commits == identity[1] - 1) {
-    s->session = (uint32_t)session;
+  if (held.commits == identity[1] - 1) {
+    s->session = (uint32_t)held.session;
     if (remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return remote_tell(r, error);
-  } else if (commits != identity[1])
+  } else if (held.commits != identity[1])
     return error_add(
         error, BRECCIA_USER_ERROR,
         "material '%s': the server at %s has gone on to commit %.0f, the checkpoint is of commit %.0f, and "
         "it cannot go back; run without --restart",
-        r->material, s->address, commits, identity[1]);
-  s->session = (uint32_t)session;
+        r->material, s->address, held.commits, identity[1]);
+  s->session = (uint32_t)held.session;
   s->commits = (int64_t)identity[1];
   return remote_ask(r, s, OPERATION_ATTACH, 0, NULL, &frame, &reply) ? remote_tell(r, error) : BRECCIA_OK;
 }
