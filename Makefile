@@ -79,11 +79,11 @@ clang:
 	@cmake --preset clang > /dev/null
 	@cmake --build --preset clang --parallel $(cores)
 
-# The deck reader against decks of chance, then the protocol of material servers against frames of chance, for FUZZ_SECONDS each.
+# The deck reader against decks of chance, then both sides of the protocol of material servers against frames of chance, for FUZZ_SECONDS each.
 fuzz:
 	@sh scripts/setup.sh test
 	@cmake --preset fuzz > /dev/null
-	@cmake --build --preset fuzz --target fuzz_deck fuzz_server --parallel $(cores)
+	@cmake --build --preset fuzz --target fuzz_deck fuzz_server fuzz_client --parallel $(cores)
 	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
 
 install: all

@@ -135,17 +135,19 @@ class Command:
     def __init__(self, lines):
         words = lines.get("command", "").split()
         known = len(words) >= 3 and words[0] in ("nDMaterial", "uniaxialMaterial") and words[2] == "$tag"
-        if not known or not words[1].isidentifier():  # no path: OpenSees may look for kinds in shared libraries
+        if not known or not re.fullmatch("[A-Za-z0-9_]+", words[1]):  # no path: OpenSees may look for kinds in shared libraries
             raise Refusal("a command is 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...'")
         self.uniaxial = words[0] == "uniaxialMaterial"
         self.kind = words[1]
         if self.kind in PLANE_ONLY:
             raise Refusal(f"{self.kind} knows plane strain only; OpenSees offers no way to drive it from outside")
-        length = lines.get("length")
-        if "$length" in words and length is None:
+        length = number_of(lines.get("length", ""))
+        if "$length" in words and not isinstance(length, (int, float)):
             raise Refusal("the command asks for $length, and the client told none")
         self.arguments = [float(length) if word == "$length" else number_of(word) for word in words[3:]]
-        self.stage = int(lines["stage"]) if "stage" in lines else None
+        self.stage = number_of(lines["stage"]) if "stage" in lines else None
+        if self.stage not in (None, 0, 1):
+            raise Refusal("a stage is 0 (elastic) or 1 (plastic)")
         if self.stage is not None and self.kind not in STAGES:
             raise Refusal(f"{self.kind} has no stages: leave 'stage' out")
 
@@ -204,10 +206,10 @@ class Points:
             raise Refusal(f"OpenSees refuses '{command.kind}': {'it said: ' + said if said else problem}") from None
         if not (bulk > 0 and shear > 0):
             raise Refusal(f"OpenSees tells no stiffness of '{command.kind}' (bulk {bulk:g}, shear {shear:g})")
-        self.forget_probe(command)
+        self.forget_probe()
         return bulk, shear
 
-    def forget_probe(self, command):
+    def forget_probe(self):
         """Tags cannot be removed one by one: while nothing is held all go; otherwise the spare tags move on."""
         global PROBE_TAG
         if not self.tags:

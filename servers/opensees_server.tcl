@@ -38,7 +38,7 @@ proc server::parseCommand {lines} {
   if {$command eq "nDMaterial"} {
     refuse "a Tcl OpenSees offers no way to drive an nDMaterial from outside: use breccia-opensees"
   }
-  if {$command ne "uniaxialMaterial" || $tag ne "\$tag" || ![regexp {^[A-Za-z]\w*$} $kind]} {
+  if {$command ne "uniaxialMaterial" || $tag ne "\$tag" || ![regexp {^[A-Za-z0-9_]+$} $kind]} {
     refuse "a command is 'uniaxialMaterial KIND \$tag ...'"
   }
   if {[dict exists $lines stage]} {

@@ -232,8 +232,13 @@ void points_unpack(Points *points, int64_t first, int64_t last)
     for (int lane = 0; lane < SLICE; ++lane) {
       const int64_t row = points->history_start[s] + lane * m->history_values, id = (int64_t)points->committed[row];
       points->trial[row] = points->committed[row];
-      for (int n = 0; n < 6; ++n)
-        points->stress[n][s * SLICE + lane] = id < 0 ? 0 : from ? from[6 * (id - points->starts[k][server]) + n] : NAN;
+      double strain[6], stress[6];
+      for (int n = 0; n < 6; ++n) {
+        strain[n] = points->strain[n][s * SLICE + lane];
+        stress[n] = id < 0 ? 0 : from ? from[6 * (id - points->starts[k][server]) + n] : NAN;
+        points->stress[n][s * SLICE + lane] = stress[n];
+      }
+      remote_note(m->remote, points->trial + row, strain, stress);
     }
 }
 
@@ -279,8 +284,8 @@ int remote_points_bonds(const Points *points, const Material *m, const breccia_b
     }
     const double *from = remote_stresses(m->remote, server);
     if (!from) return i;
-    batch->trial[row + 1] = batch->strain[0][i];
-    batch->trial[row + 2] = batch->stress[0][i] = from[id - starts[server]];
+    batch->stress[0][i] = from[id - starts[server]];
+    remote_note(m->remote, batch->trial + row, &batch->strain[0][i], &batch->stress[0][i]);
   }
   return -1;
 }

@@ -242,6 +242,9 @@ def refusals_are_told(client):
         "nDMaterial PM4Sand $tag 0.5 500. 0.5 1.7": "knows plane strain only",
         "nDMaterial ElasticIsotropic3D 7 1. 0.": "a command is",
         "__import__('os') x $tag": "a command is",
+        "nDMaterial ElasticIsotropic3D $tag 1. 0.\nstage: plastic": "a stage is 0 (elastic) or 1 (plastic)",
+        "nDMaterial ElasticIsotropic3D $tag 1. 0.\nstage: 1": "ElasticIsotropic3D has no stages",
+        "uniaxialMaterial Steel01 $tag $length 2e5 0.01\nlength: long": "asks for $length",
     }.items():
         refusal_is_told(client, command, words)
 

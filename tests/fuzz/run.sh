@@ -1,5 +1,5 @@
 #!/bin/sh
-# fuzz_deck from the decks of the examples, then fuzz_server from conversations, for so many seconds each.
+# fuzz_deck from the decks of the examples, then fuzz_server and fuzz_client from conversations, for so many seconds each.
 set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/fuzz/corpus
@@ -17,3 +17,11 @@ mkdir -p build/fuzz/frames
 printf '\4BRMS\1\0\205\0\1\0\0\0\0\0\0\0\1\0\0\0' > build/fuzz/frames/client
 LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_server -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=1024 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
   -verbosity=0 -print_final_stats=1 build/fuzz/frames
+
+mkdir -p build/fuzz/answers
+# Good answers to HELLO, PROBE, CREATE and what follows; and a law of one strain told by hand.
+{ for n in $(seq 12); do printf '\1\0\0\0'; done; } > build/fuzz/answers/good
+{ printf '\1\0\0\0\0\0\0\60components: 1\nbulk: 2e5\nshear: 1e5\nfailure: 0.1\n\1\0\0\0\0\0\0\30%24s' ''; } > build/fuzz/answers/uniaxial
+printf '\1\0\0\0\1\0\0\0\1\0\0\0\0\100\0\0' > build/fuzz/answers/refusal-without-words
+LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_client -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=512 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
+  -verbosity=0 -print_final_stats=1 build/fuzz/answers

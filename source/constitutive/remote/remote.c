@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+enum { MOST_TOLD = 10000 }; /* numbers that a server saves of each point */
 static const double START_SECONDS = 60, REACH_SECONDS = 3, LEAVE_SECONDS = 2, LIST_SECONDS = 300;
 
 const breccia_law *remote_law(const Remote *remote)
@@ -29,7 +30,7 @@ bool remote_iterates(const Remote *remote)
 }
 int remote_state_at(const Remote *remote)
 {
-  return remote->components == 1 ? 3 : 1;
+  return 1 + 2 * remote->components;
 }
 int remote_state_values(const Remote *remote)
 {
@@ -75,23 +76,31 @@ static int greet(Remote *r, RemoteServer *s)
   return remote_say_hello(r, s, &frame, &reply);
 }
 
+/** A count that a server tells; -1 if it is none. */
+static int count_told(const char *text, size_t length, const char *key, double otherwise)
+{
+  const double told = frame_number(text, length, key, otherwise);
+  return told >= 0 && told <= MOST_TOLD && told == floor(told) ? (int)told : -1;
+}
+
 static int probe(Remote *r, RemoteServer *s)
 {
   Frame frame;
   uint8_t *reply;
   if (remote_ask_points(r, s, OPERATION_PROBE, 0, &frame, &reply)) return 1;
   const char *text = (const char *)reply;
-  r->components = (int)frame_number(text, frame.length, "components", 0);
+  r->components = count_told(text, frame.length, "components", 0);
   r->bulk = r->stress_unit * frame_number(text, frame.length, "bulk", NAN);
   r->shear = r->stress_unit * frame_number(text, frame.length, "shear", NAN);
   r->failure = frame_number(text, frame.length, "failure", INFINITY);
   r->iterates = frame_number(text, frame.length, "iterates", 0) != 0;
   r->saves = frame_number(text, frame.length, "saves", 0) != 0;
-  r->state = r->saves ? (int)frame_number(text, frame.length, "state", 0) : 0;
+  r->state = r->saves ? count_told(text, frame.length, "state", 0) : 0;
   if ((r->components == 1 || r->components == 6) && r->bulk > 0 && r->shear > 0 && isfinite(r->bulk + r->shear) &&
       r->state >= 0)
     return 0;
-  remote_complain(r, s, "it did not tell components (1 or 6), bulk and shear modulus of the command");
+  remote_complain(r, s,
+                  "it did not tell components (1 or 6), bulk and shear modulus and numbers to be saved of the command");
   return 1;
 }
 

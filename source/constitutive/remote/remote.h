@@ -1,9 +1,9 @@
 /* A constitutive law that lives in other processes: material servers, each of which holds some of the points. Neither formulations nor
  * solvers know of it: it is a law like others, except that whole parts of a body go out at once (post, collect).
  *
- * Points are numbered 0 .. n-1; a row of history begins with the number (or -1: no point), then, of laws of one strain, strain and
- * stress as of the last answer, then what the server can save. Until remote_begin, and in the elastic stage, points answer
- * elastically and no server is asked. */
+ * Points are numbered 0 .. n-1; a row of history begins with the number (or -1: no point), then strain and stress as of the last
+ * answer, then what the server can save. Until remote_begin, and in the elastic stage, no server is asked: points answer elastically,
+ * from the last answer on. */
 #ifndef BRECCIA_REMOTE_REMOTE_H
 #define BRECCIA_REMOTE_REMOTE_H
 
@@ -44,6 +44,8 @@ bool remote_begun(const Remote *remote);
 int remote_processes(const Remote *remote);
 /** Whether a trial can be repeated from the committed state. */
 bool remote_iterates(const Remote *remote);
+/** Notes strain and stress of the last answer in a row. */
+void remote_note(const Remote *remote, double *row, const double *strain, const double *stress);
 /** Where the server's own numbers begin in a row of history, and how many there are. */
 int remote_state_at(const Remote *remote);
 int remote_state_values(const Remote *remote);

@@ -29,21 +29,31 @@ static void law_begin(const void *constants, double *history)
   history[0] = -1;
 }
 
+void remote_note(const Remote *r, double *row, const double *strain, const double *stress)
+{
+  for (int k = 0; k < r->components; ++k) {
+    row[1 + k] = strain[k];
+    row[1 + r->components + k] = stress[k];
+  }
+}
+
 static void answer_elastically(const Remote *r, const breccia_batch *batch)
 {
+  const int n = r->components, size = remote_state_at(r) + r->state;
   const double lambda = r->bulk - 2 * r->shear / 3, young = 9 * r->bulk * r->shear / (3 * r->bulk + r->shear);
   for (int i = 0; i < batch->count; ++i) {
-    if (r->components == 1) {
-      batch->stress[0][i] = young * batch->strain[0][i];
-      if (batch->tangent) batch->tangent[i] = young;
-      continue;
-    }
-    const double volume = batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i];
-    for (int k = 0; k < 6; ++k)
-      batch->stress[k][i] = r->shear * batch->strain[k][i] * (k < 3 ? 2 : 1) + (k < 3 ? lambda * volume : 0);
-    for (int k = 0; batch->tangent && k < 6; ++k)
-      for (int n = 0; n < 6; ++n)
-        batch->tangent[36 * i + 6 * k + n] = (k < 3 && n < 3 ? lambda : 0) + (k == n ? r->shear * (k < 3 ? 2 : 1) : 0);
+    const double *last = batch->committed + (ptrdiff_t)size * i + 1;
+    double change[6], volume = 0;
+    for (int k = 0; k < n; ++k) change[k] = batch->strain[k][i] - last[k];
+    for (int k = 0; n > 1 && k < 3; ++k) volume += change[k];
+    for (int k = 0; k < n; ++k)
+      batch->stress[k][i] = last[n + k] + (n == 1  ? young * change[k]
+                                           : k < 3 ? 2 * r->shear * change[k] + lambda * volume
+                                                   : r->shear * change[k]);
+    for (int k = 0; batch->tangent && k < n; ++k)
+      for (int j = 0; j < n; ++j)
+        batch->tangent[n * n * i + n * k + j] =
+            n == 1 ? young : (k < 3 && j < 3 ? lambda : 0) + (k == j ? r->shear * (k < 3 ? 2 : 1) : 0);
   }
 }
 
@@ -109,9 +119,13 @@ static int law_update(const void *constants, const breccia_batch *batch)
     i = end;
   }
   pthread_mutex_unlock(&r->lock);
-  for (int i = 0; r->components == 1 && bad < 0 && i < batch->count; ++i) {
-    batch->trial[(ptrdiff_t)row * i + 1] = batch->strain[0][i];
-    batch->trial[(ptrdiff_t)row * i + 2] = batch->stress[0][i];
+  for (int i = 0; bad < 0 && i < batch->count; ++i) {
+    double strain[6], stress[6];
+    for (int k = 0; k < r->components; ++k) {
+      strain[k] = batch->strain[k][i];
+      stress[k] = batch->stress[k][i];
+    }
+    remote_note(r, batch->trial + (ptrdiff_t)row * i, strain, stress);
   }
   return bad;
 }

@@ -84,6 +84,10 @@ static int remote_receive(Remote *r, RemoteServer *s, const Frame *asked, Frame 
   if (frame->operation == OPERATION_ERROR) {
     if (frame->flags && bad) *bad = frame->count;
     text_add(&words, "%.*s", (int)frame->length, (const char *)*payload);
+    if (!words.length) {
+      text_free(&words);
+      text_add(&words, "it refused without a word");
+    }
   } else if (frame->version != FRAME_VERSION)
     text_add(&words, "it speaks version %d of the protocol, this program version %d", frame->version, FRAME_VERSION);
   else if (frame->sequence != s->sequence || frame->operation != (asked->operation | OPERATION_ANSWER))
