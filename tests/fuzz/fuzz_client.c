@@ -97,7 +97,8 @@ static void use(Remote *r, Error *error)
   const breccia_law *law = remote_law(r);
   double strain[6][POINTS] = {{0}}, stress[6][POINTS], tangent[36 * POINTS];
   const int row = law->history_values(&r);
-  double *committed = calloc((size_t)row * POINTS, sizeof(double)), *trial = calloc((size_t)row * POINTS, sizeof(double));
+  double *committed = calloc((size_t)row * POINTS, sizeof(double)),
+         *trial = calloc((size_t)row * POINTS, sizeof(double));
   if (!committed || !trial || remote_state_values(r) > MOST_STATE) abort();
   breccia_batch batch = {.count = POINTS, .committed = committed, .trial = trial, .tangent = tangent};
   for (int k = 0; k < 6; ++k) {
