@@ -15,11 +15,12 @@ cat > build/release/breccia-opensees << END
 #!/bin/sh
 exec "$PWD/$environment/bin/python" "$PWD/servers/opensees_server.py" "\$@"
 END
-# Python would note an interrupt and wait for Tcl to come back, which it does not: let the signal end the process.
+# Python would note an interrupt and wait for Tcl to come back, which it does not: let the signal end the process. The script comes as an
+# open file, because this OpenSees takes no path with a blank in it.
 cat > build/release/breccia-opensees-tcl << END
 #!/bin/sh
 exec "$PWD/$environment/bin/python" -c "import runpy, signal, sys
 signal.signal(signal.SIGINT, signal.SIG_DFL)
-runpy.run_module('opensees', run_name='__main__', alter_sys=True)" "$PWD/servers/opensees_server.tcl" "\$@" < /dev/null
+runpy.run_module('opensees', run_name='__main__', alter_sys=True)" /dev/fd/3 "\$@" 3< "$PWD/servers/opensees_server.tcl" < /dev/null
 END
 chmod +x build/release/breccia-opensees build/release/breccia-opensees-tcl

@@ -375,22 +375,28 @@ proc server::leave {words} {
   exit 1
 }
 
-# The options, by their names.
+# The options, by their names. Words up to the next option belong together: OpenSees takes a path with a blank apart.
 proc server::parseArguments {words} {
   set options {--listen {} --secret-file {} --once 0}
-  for {set k 0} {$k < [llength $words]} {incr k} {
-    set word [lindex $words $k]
-    if {![dict exists $options $word]} {
+  set option {}
+  foreach word $words {
+    if {[string match --* $word] && ![dict exists $options $word] || $option eq "" && ![string match --* $word]} {
       leave "'$word' is unknown; there are --listen tcp://HOST:PORT, --secret-file FILE and --once"
     }
-    dict set options $word [expr {$word eq "--once" ? 1 : [lindex $words [incr k]]}]
+    if {[dict exists $options $word]} {
+      set option $word
+      dict set options $option [expr {$word eq "--once" ? 1 : {}}]
+      set value {}
+    } else {
+      dict set options $option [join [lappend value $word] " "]
+    }
   }
   return $options
 }
 
 proc server::readSecret {path} {
   if {[catch {open $path} file]} {
-    leave $file
+    leave "--secret-file: $file"
   }
   set secret [string trim [gets $file]]
   close $file
@@ -412,7 +418,7 @@ proc server::main {words} {
     leave "where to listen is told by --listen tcp://HOST:PORT"
   }
   set host [string trim $host {[]}]
-  if {[dict get $options --secret-file] ne ""} {
+  if {"--secret-file" in $words} {
     set secret [readSecret [dict get $options --secret-file]]
   } elseif {$host ni {localhost ::1} && ![string match 127.* $host]} {
     leave "a server listens on this machine only, unless a secret guards it (--secret-file)"

@@ -153,9 +153,9 @@ def a_client_at_a_time(client):
 
 
 def secrets_guard(path):
-    with open(f"{WORK}/secret", "w", encoding="utf-8") as file:
+    with open(f"{WORK}/a secret", "w", encoding="utf-8") as file:
         file.write("plagioclase\n")
-    client = Client(path, ("--secret-file", f"{WORK}/secret"))
+    client = Client(path, ("--secret-file", f"{WORK}/a secret"))
     for words, good in ((b"", False), (b"secret: plagioclas\n", False), (b"secret: plagioclase\n", True)):
         try:
             client.ask(1, words)
