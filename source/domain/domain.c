@@ -124,6 +124,20 @@ void domain_forces(Domain *d)
   }
 }
 
+void domain_show_states(Domain *d)
+{
+#pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < d->block_count; ++b)
+      if (d->type->show_displacements)
+        d->type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
+#pragma omp for schedule(static)
+    for (int64_t b = 0; b < d->block_count; ++b)
+      if (d->type->deform) answer(d, b, true);
+  }
+}
+
 void domain_resume(Domain *d)
 {
   for (int64_t n = 0; n < d->broken_count; ++n)
@@ -133,9 +147,7 @@ void domain_resume(Domain *d)
       if (d->contact.spec) d->contact.touched[d->particles->place_of[end ? d->broken[n].b : d->broken[n].a]] = 1;
       if (d->type->renew) d->type->renew(d->formulation, slice);
     }
-  for (int64_t b = 0; d->type->show_displacements && b < d->block_count; ++b)
-    d->type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
-  for (int64_t b = 0; d->type->deform && b < d->block_count; ++b) answer(d, b, true);
+  domain_show_states(d);
   if (d->contact.spec) contact_search(&d->contact);
 }
 

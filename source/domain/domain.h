@@ -69,6 +69,8 @@ void domain_destroy(Domain *domain);
 /** Internal forces at the displacements held, by all threads. Trial state only. */
 void domain_forces(Domain *domain);
 
+/** Makes anew what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
+void domain_show_states(Domain *domain);
 /** Takes up a state read from elsewhere: displacements, stresses and intact bits are in place; shapes, deformations and force
  *  states follow from them, to the same bits as in the run that left them. */
 void domain_resume(Domain *domain);

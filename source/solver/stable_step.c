@@ -154,6 +154,7 @@ int stable_step(Domain *d, double *step, Error *error)
     next = spare;
   }
   d->points.elastic_stage = elastic;
+  domain_show_states(d); /* bonds that break next are judged by what particles show */
   if (!isfinite(largest) || largest <= 0)
     failed = error_add(error, BRECCIA_FAILURE,
                        "the stable time step could not be found: the internal forces are not those "
