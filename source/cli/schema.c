@@ -1,5 +1,6 @@
 #include "cli/verbs.h"
 #include "model/deck_layout.h"
+#include "results/fields.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
 #include "constitutive/law.h"
 #include "deck/describe.h"
 #include "results/picture.h"
-#include "results/result_file.h"
+#include "results/results_spec.h"
 #include "results/watch.h"
 
 typedef struct UnitsSpec {

@@ -1,6 +1,7 @@
 #include "model/model.h"
 
 #include "base/clock.h"
+#include "results/fields.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 #include "model/model.h"
 #include "results/checkpoint.h"
 #include "results/curve.h"
+#include "results/result_file.h"
 
 #include <errno.h>
 #include <math.h>

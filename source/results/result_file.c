@@ -1,11 +1,10 @@
 #include "results/result_file.h"
 
+#include "results/dataset.h"
 #include "results/result_view.h"
 #include "results/xdmf.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <hdf5.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,39 +12,6 @@
 #include <unistd.h>
 
 enum { COPY_LIMIT = 256 << 20, CHUNK_BYTES = 1 << 18 };
-
-static const char *precision_word(int k)
-{
-  static const char *const words[] = {"single", "double", NULL};
-  return words[k];
-}
-
-static const Field results_fields[] = {
-    {"fields", FIELD_TEXTS, offsetof(ResultsSpec, fields), NULL, "", NULL,
-     "what is written of each particle (see the list of fields); when absent: displacement, velocity, stress, "
-     "octahedral "
-     "shear stress, mean stress, damage",
-     NULL, NULL, 0},
-    {"precision", FIELD_CHOICE, offsetof(ResultsSpec, precision), NULL, "single", NULL, "of numbers in the result file",
-     NULL, precision_word, 0},
-    {"number", FIELD_COUNT, offsetof(ResultsSpec, number), NULL, "20", "[0, 1e6]",
-     "how many states are written, evenly over the run, besides the first and those that pictures ask for", NULL, NULL,
-     0},
-    {"every", FIELD_COUNT, offsetof(ResultsSpec, every), NULL, "", "[1, inf)", "instead: one in so many steps", NULL,
-     NULL, 0},
-    {"times", FIELD_NUMBERS, offsetof(ResultsSpec, times), "time", "", "[0, inf)", "further times to write", NULL, NULL,
-     0},
-    {"checkpoint steps", FIELD_COUNT, offsetof(ResultsSpec, checkpoint_steps), NULL, "", "[1, inf)",
-     "a checkpoint every so many steps", NULL, NULL, 0},
-    {"checkpoint seconds", FIELD_NUMBER, offsetof(ResultsSpec, checkpoint_seconds), "1", "300", "(0, inf)",
-     "a checkpoint every so many seconds of computing", NULL, NULL, 0},
-};
-const Section results_section = {
-    "results", "What is kept of a run, and how often.", sizeof(ResultsSpec), FIELDS(results_fields), NULL, NULL, NULL,
-    0};
-
-const char *const standard_fields[] = {"displacement", "velocity", "stress", "octahedral shear stress",
-                                       "mean stress",  "damage",   NULL};
 
 typedef struct Column {
   char name[64], unit[64];
@@ -65,66 +31,6 @@ struct ResultFile {
   const char *title;
 };
 
-/* ---- small HDF5 helpers: every one returns negative on failure ---- */
-
-static hid_t dataset_create(hid_t where, const char *name, hid_t type, int columns, hsize_t rows_per_chunk)
-{
-  hsize_t size[2] = {0, (hsize_t)columns}, most[2] = {H5S_UNLIMITED, (hsize_t)columns};
-  hsize_t chunk[2] = {rows_per_chunk ? rows_per_chunk : 1, (hsize_t)columns};
-  int rank = columns > 1 ? 2 : 1;
-  hid_t space = H5Screate_simple(rank, size, most), properties = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_chunk(properties, rank, chunk);
-  hid_t set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
-  H5Pclose(properties);
-  H5Sclose(space);
-  return set;
-}
-
-/** Writes rows at `first`, growing or cutting the dataset to end there. */
-static int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns, hsize_t first, hsize_t rows,
-                         const void *values)
-{
-  hid_t set = H5Dopen2(where, name, H5P_DEFAULT);
-  hsize_t end[2] = {first + rows, (hsize_t)columns}, start[2] = {first, 0}, count[2] = {rows, (hsize_t)columns};
-  int rank = columns > 1 ? 2 : 1;
-  herr_t bad = set < 0 ? -1 : H5Dset_extent(set, end);
-  if (bad >= 0 && rows) {
-    hid_t space = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
-    bad = H5Dwrite(set, memory_type, memory, space, H5P_DEFAULT, values);
-    H5Sclose(space);
-    H5Sclose(memory);
-  }
-  if (set >= 0) H5Dclose(set);
-  return bad < 0;
-}
-
-static int attribute_numbers(hid_t where, const char *name, hid_t type, hsize_t count, const void *values)
-{
-  hid_t space = count > 1 ? H5Screate_simple(1, &count, NULL) : H5Screate(H5S_SCALAR);
-  hid_t attribute = H5Aexists(where, name) > 0 ? H5Aopen(where, name, H5P_DEFAULT)
-                                               : H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-  herr_t bad = attribute < 0 ? -1 : H5Awrite(attribute, type, values);
-  if (attribute >= 0) H5Aclose(attribute);
-  H5Sclose(space);
-  return bad < 0;
-}
-
-static int attribute_text(hid_t where, const char *name, const char *words)
-{
-  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-  H5Tset_size(type, strlen(words) ? strlen(words) : 1);
-  H5Tset_strpad(type, H5T_STR_NULLPAD);
-  hid_t attribute = H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-  herr_t bad = attribute < 0 ? -1 : H5Awrite(attribute, type, words);
-  if (attribute >= 0) H5Aclose(attribute);
-  H5Sclose(space);
-  H5Tclose(type);
-  return bad < 0;
-}
-
-/* ---- building the file ---- */
-
 static const char *const cell_kinds[] = {"Vertices", "Lines", "Polygons", "Strips"};
 
 static int write_cells(hid_t root, int64_t particles)
@@ -138,9 +44,7 @@ static int write_cells(hid_t root, int64_t particles)
     if (!numbers || group < 0) return 1;
     for (int n = 0; n < 4; ++n) {
       for (int64_t i = 0; i <= cells; ++i) numbers[i] = n < 2 ? cells : i;
-      hid_t set = dataset_create(group, names[n], H5T_STD_I64LE, 1, rows[n] > 4096 ? 4096 : rows[n]);
-      bad |= set < 0;
-      if (set >= 0) H5Dclose(set);
+      bad |= dataset_create(group, names[n], H5T_STD_I64LE, 1, rows[n] > 4096 ? 4096 : rows[n]);
       bad |= dataset_write(group, names[n], H5T_NATIVE_INT64, 1, 0, rows[n], numbers);
     }
     free(numbers);
@@ -180,25 +84,15 @@ static int create_sets(hid_t root, const ResultFile *file)
   hid_t offsets = H5Gcreate2(steps, "PointDataOffsets", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   const char *const lists[] = {"Values",      "PartOffsets",           "NumberOfParts", "PointOffsets",
                                "CellOffsets", "ConnectivityIdOffsets", "StepNumbers"};
-  for (int k = 0; k < 7; ++k) {
-    hid_t set = dataset_create(steps, lists[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k == 4 || k == 5 ? 4 : 1, 64);
-    bad |= set < 0;
-    if (set >= 0) H5Dclose(set);
-  }
+  for (int k = 0; k < 7; ++k)
+    bad |= dataset_create(steps, lists[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k == 4 || k == 5 ? 4 : 1, 64);
   for (int c = 0; c < file->column_count; ++c) {
     const Column *column = &file->columns[c];
     hsize_t width = (hsize_t)column->components * (file->single ? 4 : 8), rows = CHUNK_BYTES / width;
     if (rows > (hsize_t)file->particles) rows = (hsize_t)file->particles;
-    hid_t set =
-        dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
-    bad |= set < 0;
-    if (set >= 0) {
-      bad |= attribute_text(set, "unit", column->unit);
-      H5Dclose(set);
-    }
-    set = dataset_create(offsets, column->name, H5T_STD_I64LE, 1, 64);
-    bad |= set < 0;
-    if (set >= 0) H5Dclose(set);
+    bad |= dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
+    bad |= attribute_text(data, column->name, "unit", column->unit);
+    bad |= dataset_create(offsets, column->name, H5T_STD_I64LE, 1, 64);
   }
   int64_t none = 0;
   bad |= attribute_numbers(steps, "NSteps", H5T_NATIVE_INT64, 1, &none);
@@ -218,23 +112,17 @@ static int write_geometry(hid_t root, const Domain *d)
     for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
     spacings[n] = d->body.lattices[p->block[p->place_of[n] / SLICE]].spacing;
   }
-  const char *const names[] = {"Points", "NumberOfPoints"};
-  for (int k = 0; k < 2 && !bad; ++k) {
-    hid_t set = dataset_create(root, names[k], k ? H5T_STD_I64LE : H5T_IEEE_F64LE, k ? 1 : 3, k ? 1 : 4096);
-    bad = set < 0;
-    if (set >= 0) H5Dclose(set);
-  }
   if (!bad) {
+    bad |= dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
+    bad |= dataset_create(root, "NumberOfPoints", H5T_STD_I64LE, 1, 1);
     bad |= dataset_write(root, "Points", H5T_NATIVE_DOUBLE, 3, 0, (hsize_t)p->count, positions);
     bad |= dataset_write(root, "NumberOfPoints", H5T_NATIVE_INT64, 1, 0, 1, &p->count);
     hid_t file = H5Iget_file_id(root), own = H5Gcreate2(file, "Breccia", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     int plane = d->body.dimensions < 3;
-    bad |= attribute_text(own, "version", BRECCIA_VERSION);
+    bad |= attribute_text(own, ".", "version", BRECCIA_VERSION);
     bad |= attribute_numbers(own, "plane", H5T_NATIVE_INT, 1, &plane);
-    hid_t set = dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
-    H5Dclose(set);
-    set = dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
-    H5Dclose(set);
+    bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
+    bad |= dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
     bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)p->count, spacings);
     H5Gclose(own);
     H5Fclose(file);
@@ -312,7 +200,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     hid_t root = H5Gcreate2(h5, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     int64_t version[2] = {2, 0};
     bad |= attribute_numbers(root, "Version", H5T_NATIVE_INT64, 2, version);
-    bad |= attribute_text(root, "Type", "PolyData");
+    bad |= attribute_text(root, ".", "Type", "PolyData");
     bad |= write_geometry(root, d);
     bad |= write_cells(root, file->particles);
     bad |= create_sets(root, file);
@@ -320,9 +208,9 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
     char unit[64];
     units_name(units, dimension_find("length"), unit, sizeof unit);
-    bad |= attribute_text(own, "title", title) | attribute_text(own, "length unit", unit);
+    bad |= attribute_text(own, ".", "title", title) | attribute_text(own, ".", "length unit", unit);
     units_name(units, dimension_find("time"), unit, sizeof unit);
-    bad |= attribute_text(own, "time unit", unit);
+    bad |= attribute_text(own, ".", "time unit", unit);
     H5Gclose(own);
     bad |= H5Fclose(h5) < 0;
   }

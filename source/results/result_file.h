@@ -5,23 +5,7 @@
 #ifndef BRECCIA_RESULTS_RESULT_FILE_H
 #define BRECCIA_RESULTS_RESULT_FILE_H
 
-#include "deck/section.h"
 #include "results/fields.h"
-
-typedef struct ResultsSpec {
-  SectionHead head;
-  TextList fields;
-  const char *precision; /* "single" or "double" */
-  int64_t number, every;
-  NumberList times;
-  int64_t checkpoint_steps;
-  double checkpoint_seconds;
-} ResultsSpec;
-
-extern const Section results_section;
-
-/** Fields written when the deck names none. */
-extern const char *const standard_fields[];
 
 typedef struct ResultFile ResultFile;
 

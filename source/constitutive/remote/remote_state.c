@@ -93,6 +93,24 @@ static int ask_what_is_held(Remote *r, RemoteServer *s, Held *held)
   return 0;
 }
 
+/** Whether a server is at the commit wanted, or one before: a commit goes with the trial that follows, which may have been lost. */
+static bool is_within_reach(const Held *held, double wanted)
+{
+  return held->commits == wanted || held->commits == wanted - 1;
+}
+
+/** Brings a server within reach to the commit wanted. */
+static int catch_up(Remote *r, RemoteServer *s, const Held *held, double wanted)
+{
+  Frame frame;
+  uint8_t *reply;
+  s->session = (uint32_t)held->session;
+  if (held->commits != wanted && remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return 1;
+  s->commits = (int64_t)wanted;
+  s->commit_due = false;
+  return 0;
+}
+
 bool remote_rescue(Remote *r)
 {
   r->timeout = fmin(r->timeout, RESCUE_SECONDS);
@@ -100,8 +118,6 @@ bool remote_rescue(Remote *r)
     RemoteServer *s = &r->servers[k];
     Text words = {0};
     Held held;
-    Frame frame;
-    uint8_t *reply;
     remote_count_bytes(s, s->bytes);
     channel_close(&s->channel);
     s->channel = channel_connect(s->address, r->timeout, NULL, NULL, &words);
@@ -109,10 +125,7 @@ bool remote_rescue(Remote *r)
     s->waiting = s->tried = false;
     if (!s->channel || ask_what_is_held(r, s, &held) || held.session != s->session) return false;
     const double committed = (double)(s->commits + s->commit_due);
-    if (held.commits == committed - 1 && remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return false;
-    if (held.commits != committed && held.commits != committed - 1) return false;
-    s->commits += s->commit_due;
-    s->commit_due = false;
+    if (!is_within_reach(&held, committed) || catch_up(r, s, &held, committed)) return false;
   }
   return true;
 }
@@ -129,18 +142,13 @@ static int take_up(Remote *r, RemoteServer *s, const double identity[IDENTITY], 
                      "material '%s': the server at %s does not hold the points of the checkpoint any more, and it "
                      "cannot restore them; run without --restart",
                      r->material, s->address);
-  /* The checkpoint may count a commit that was to go with the trial which was never answered. */
-  if (held.commits == identity[1] - 1) {
-    s->session = (uint32_t)held.session;
-    if (remote_ask(r, s, OPERATION_COMMIT, 0, NULL, &frame, &reply)) return remote_tell(r, error);
-  } else if (held.commits != identity[1])
+  if (!is_within_reach(&held, identity[1]))
     return error_add(
         error, BRECCIA_USER_ERROR,
         "material '%s': the server at %s has gone on to commit %.0f, the checkpoint is of commit %.0f, and "
         "it cannot go back; run without --restart",
         r->material, s->address, held.commits, identity[1]);
-  s->session = (uint32_t)held.session;
-  s->commits = (int64_t)identity[1];
+  if (catch_up(r, s, &held, identity[1])) return remote_tell(r, error);
   return remote_ask(r, s, OPERATION_ATTACH, 0, NULL, &frame, &reply) ? remote_tell(r, error) : BRECCIA_OK;
 }
 
