@@ -13,7 +13,7 @@ test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing clang-format:la
 python3:external_tests python3-venv:external_tests"
 
 peers="lammps:its_PERI_package"
-opensees="python3:OpenSees python3-venv:OpenSees python3-tk:OpenSees libblas3:OpenSees"
+opensees="python3:OpenSees python3-venv:OpenSees python3-tk:OpenSees libblas3:OpenSees libmimalloc-dev:speed_of_OpenSees"
 
 wanted=$build
 [ "${1:-build}" = peers ] && wanted="$build $peers"

@@ -358,6 +358,7 @@ const char *breccia_model_overview(breccia_model *model)
   text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step,
            time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
   add_duration(text, model->evaluation_seconds * 1.15 * (double)(s->steps - s->step));
+  if (d->points.server) text_add(text, " and what its material servers take");
   return text->characters;
 }
 

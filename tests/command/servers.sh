@@ -40,6 +40,7 @@ tcp=$(sed 's/listening at //' serve.out)
 deck "$served, server: ['unix:$PWD/one', '$tcp']" > two.yaml
 "$breccia" run two.yaml > out 2>&1 || fail "two servers: $(cat out)"
 same home two results.vtkhdf
+contains "overview tells what its time leaves out" "$(cat out)" " s and what its material servers take"
 contains "outcome tells of servers" "$(cat out)" "server 2 of 2 at $tcp: "
 "$breccia" run two.yaml --steps 30 > /dev/null 2>&1
 "$breccia" run two.yaml --restart > out 2>&1 || fail "restart with servers: $(cat out)"
