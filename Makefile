@@ -15,7 +15,7 @@ setup:
 demo: setup all
 	@sh scripts/demo.sh
 
-# The same plate of clay with its law in OpenSees: 2.05e8 stresses through a socket, some ten minutes on two cores.
+# The same plate of clay with its law in OpenSees: 2.05e8 stresses through a socket, a quarter of an hour on two cores.
 demo-opensees: setup all
 	@sh scripts/opensees.sh
 	@build/release/breccia run examples/plate-with-crack/clay-opensees.yaml
