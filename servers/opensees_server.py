@@ -24,6 +24,7 @@ from itertools import chain, islice, repeat, starmap
 
 MAGIC, VERSION, HEADER = b"BRMS", 1, struct.Struct("<4sHHIIIIII")
 MOST_PAYLOAD = 1 << 28
+SEND_ROOM = 4 << 20  # bytes
 MOST_POINTS = 1_000_000  # OpenSees takes a time that grows with the square to make them
 HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE, LAWS = range(1, 13)
 ERROR, ANSWER = 0x7F, 0x80
@@ -526,7 +527,9 @@ def serve_stream(server, listener, once):
         ready, _, _ = select.select([listener] + ([client] if client else []), [], [])
         if client not in ready:  # if it has just left, whoever knocks is the next one
             connection, _ = listener.accept()
-            if connection.family != socket.AF_UNIX:
+            if connection.family == socket.AF_UNIX:  # else both ends take turns over one batch
+                connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_ROOM)
+            else:
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             if client:
                 turn_away(server, connection)

@@ -11,6 +11,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+enum { SEND_ROOM = 4 << 20 }; /* bytes */
+
 static int parse(const char *address, Transport *transport, char *host, size_t host_size, char *port, size_t port_size,
                  Text *reason)
 {
@@ -47,6 +49,13 @@ static int parse(const char *address, Transport *transport, char *host, size_t h
   return 0;
 }
 
+void address_tune(int s, Transport transport)
+{
+  const int on = 1, room = SEND_ROOM;
+  if (transport == TRANSPORT_TCP) setsockopt(s, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  if (transport == TRANSPORT_UNIX) setsockopt(s, SOL_SOCKET, SO_SNDBUF, &room, sizeof room);
+}
+
 int address_open(const char *address, bool listen_there, bool open, Transport *transport, Text *reason)
 {
   char host[256], port[32] = "";
@@ -63,7 +72,10 @@ int address_open(const char *address, bool listen_there, bool open, Transport *t
                                            : connect(s, (struct sockaddr *)&un, sizeof un));
     const int code = errno;
     if (listen_there) umask(mask);
-    if (!bad) return s;
+    if (!bad) {
+      address_tune(s, *transport);
+      return s;
+    }
     text_add(reason, "%s", strerror(code));
     if (s >= 0) close(s);
     errno = code;
@@ -91,10 +103,8 @@ int address_open(const char *address, bool listen_there, bool open, Transport *t
     }
     const int s = socket(a->ai_family, a->ai_socktype, a->ai_protocol), on = 1;
     if (s < 0) continue;
-    if (*transport == TRANSPORT_TCP) {
-      setsockopt(s, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      if (listen_there) setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    }
+    address_tune(s, *transport);
+    if (*transport == TRANSPORT_TCP && listen_there) setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (!(listen_there ? bind(s, a->ai_addr, a->ai_addrlen) : connect(s, a->ai_addr, a->ai_addrlen))) {
       found = s;
       break;

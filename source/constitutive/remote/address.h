@@ -10,5 +10,8 @@ typedef enum Transport { TRANSPORT_TCP, TRANSPORT_UNIX, TRANSPORT_UDP } Transpor
  *  @param[in] open  any interface may be listened to, not only this machine's own
  *  @return -1 with the reason, and errno */
 int address_open(const char *address, bool listen_there, bool open, Transport *transport, Text *reason);
+/** Sets a connected socket up for batches: TCP sends at once; Unix sockets take in as much as the system allows, so that both ends need not
+ *  take turns over one batch. */
+void address_tune(int socket, Transport transport);
 
 #endif

@@ -6,7 +6,6 @@
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -100,9 +99,9 @@ void listener_close(Listener **listener)
 /** Takes a client that knocks, or tells it that another one is being served. */
 static void answer_knock(Listener *l)
 {
-  const int s = accept(l->socket, NULL, NULL), on = 1;
+  const int s = accept(l->socket, NULL, NULL);
   if (s < 0) return;
-  if (l->transport == TRANSPORT_TCP) setsockopt(s, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  address_tune(s, l->transport);
   Channel *c = channel_over(s, false, false);
   if (!c) return;
   if (!l->client) {
