@@ -1,0 +1,183 @@
+#include "sample_laws.h"
+
+#include "base/tensor.h"
+
+void stress_invariants(const double s[6], double *i, double *length)
+{
+  const double mean = (s[0] + s[1] + s[2]) / 3;
+  double sum = 0;
+  for (int k = 0; k < 6; ++k) sum += (k < 3 ? 1 : 2) * pow(s[k] - (k < 3 ? mean : 0), 2);
+  *i = 3 * mean;
+  *length = sqrt(sum);
+}
+
+static Material elastic(void)
+{
+  return material_of("elastic", "Young modulus=30e6", "Poisson ratio=0.2", NULL);
+}
+
+static Material j2(void)
+{
+  return material_of("j2", "Young modulus=2e8", "Poisson ratio=0.3", "yield stress=2e5", "saturation stress=3e5",
+                     "saturation rate=20", "hardening modulus=1e6", "kinematic modulus=2e6", NULL);
+}
+static Material j2_fixed(void)
+{
+  return material_of("j2", "Young modulus=2e8", "Poisson ratio=0.3", "yield stress=2e5", "saturation stress=3e5",
+                     "saturation rate=20", "hardening modulus=1e6", NULL);
+}
+static double over_j2(const Point *p, const double s[6])
+{
+  double i, length, x = p->trial[6];
+  stress_invariants(s, &i, &length);
+  return (length - sqrt(2.0 / 3) * (3e5 - 1e5 * exp(-20 * x) + 1e6 * x)) / 2e5;
+}
+
+static Material clay(void)
+{
+  return material_of("multi-yield-j2", "shear modulus=60000", "bulk modulus=100000", "octahedral strength=30", NULL);
+}
+static double over_clay(const Point *p, const double s[6])
+{
+  double i, length;
+  (void)p;
+  stress_invariants(s, &i, &length);
+  return (length / sqrt(3) - 30) / 30;
+}
+
+#define SEED_CAP                                                                                                       \
+  "bulk modulus=14478996", "shear modulus=11721092", "cap position=110320", "compaction rate=4.6412e-7",               \
+      "largest compaction=0.42", "cap ratio=4.43", "envelope drop=7997.9", "envelope slope=0.11",                      \
+      "envelope rate=6.3816e-5", "envelope strength=2.6614e4", "tension cut-off=2068.4"
+Material sample_cap(void)
+{
+  return material_of("cap", SEED_CAP, NULL);
+}
+static Material strict_cap(void)
+{
+  return material_of("cap", SEED_CAP, "strict cap=1", NULL);
+}
+double sample_cap_envelope(double i)
+{
+  return 2.6614e4 - 7997.9 * exp(-6.3816e-5 * i) + 0.11 * i;
+}
+static double over_envelope(const Point *p, const double s[6])
+{
+  double i, length;
+  (void)p;
+  stress_invariants(s, &i, &length);
+  return fmax(length - sample_cap_envelope(-i), i - 2068.4) / 2.6e4;
+}
+static double over_cap(const Point *p, const double s[6])
+{
+  double i, length;
+  const double k = p->trial[6];
+  stress_invariants(s, &i, &length);
+  const double outside = -i > k ? sqrt(length * length + pow((-i - k) / 4.43, 2)) - sample_cap_envelope(k) : 0;
+  return fmax(over_envelope(p, s), outside / 2.6e4);
+}
+
+static Material soil(void)
+{
+  return material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     "dilation angle=10", "tension cut-off=30", "hardening modulus=500", "saturation gain=10",
+                     "saturation rate=50", NULL);
+}
+static Material rock(void)
+{
+  return material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     NULL);
+}
+/* sin(30) = 1/2: a = 2 / (5 sqrt 3), k = 6 c cos(30) / (2.5 sqrt 3) = 1.2 c. */
+static double over_soil(const Point *p, const double s[6])
+{
+  double i, length, x = p->trial[6];
+  stress_invariants(s, &i, &length);
+  const double yield = sqrt(3) * 24 + 500 * x + 10 * (1 - exp(-50 * x));
+  return fmax(length / sqrt(2) + 2 / (5 * sqrt(3)) * i - yield / sqrt(3), i - 30) / 24;
+}
+
+Material sample_coulomb(void)
+{
+  return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     "dilation angle=10", "tensile strength=15", NULL);
+}
+static Material coulomb_tip(void)
+{
+  return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                     NULL);
+}
+static Material tresca(void)
+{
+  return material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=0",
+                     NULL);
+}
+static void principal(const double s[6], double *most, double *least)
+{
+  double value[3], vector[9];
+  tensor_eigen(s, value, vector);
+  *most = fmax(value[0], fmax(value[1], value[2]));
+  *least = fmin(value[0], fmin(value[1], value[2]));
+}
+static double over_coulomb(const Point *p, const double s[6])
+{
+  double most, least;
+  (void)p;
+  principal(s, &most, &least);
+  return fmax(most - least + 0.5 * (most + least) - 40 * sqrt(0.75), most - 15) / 20;
+}
+static double over_tresca(const Point *p, const double s[6])
+{
+  double most, least;
+  (void)p;
+  principal(s, &most, &least);
+  return (most - least - 40) / 20;
+}
+
+static Material bounding(void)
+{
+  return material_of("bounding-surface-clay", "shear modulus=60000", "bulk modulus=100000", "undrained strength=30",
+                     "hardening modulus=60000", NULL);
+}
+static double over_bounding(const Point *p, const double s[6])
+{
+  double i, length;
+  (void)p;
+  stress_invariants(s, &i, &length);
+  return length / (sqrt(8.0 / 3) * 30) - 1;
+}
+
+#define CONCRETE                                                                                                       \
+  "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1", "length=0.03"
+static Material damage_plasticity(void)
+{
+  return material_of("damage-plasticity", CONCRETE, "compressive strength=34000", NULL);
+}
+static Material mazars(void)
+{
+  return material_of("mazars", CONCRETE, NULL);
+}
+static double over_tension(const Point *p, const double s[6])
+{
+  double most, least;
+  (void)p;
+  principal(s, &most, &least);
+  return least > 0 ? (most - 3000 * 1.0) / 3000 - 0.2 : 0; /* all in tension: Mazars' strain lets more than f_t pass */
+}
+
+const Sample samples[SAMPLES] = {
+    {.name = "elastic", .make = elastic, .strain = 1e-3, .associated = true, .passes_on = true},
+    {.name = "j2", .make = j2, .strain = 5e-3, .associated = true},
+    {.name = "j2 fixed", .make = j2_fixed, .strain = 5e-3, .associated = true, .over = over_j2},
+    {.name = "multi-yield-j2", .make = clay, .strain = 5e-3, .over = over_clay, .jumps = true, .passes_on = true},
+    {.name = "cap", .make = sample_cap, .strain = 5e-3, .over = over_envelope},
+    {.name = "strict cap", .make = strict_cap, .strain = 5e-3, .associated = true, .over = over_cap},
+    {.name = "drucker-prager", .make = soil, .strain = 5e-3, .over = over_soil},
+    {.name = "drucker-prager associated", .make = rock, .strain = 5e-3, .associated = true},
+    {.name = "mohr-coulomb", .make = sample_coulomb, .strain = 5e-3, .over = over_coulomb},
+    {.name = "mohr-coulomb associated", .make = coulomb_tip, .strain = 5e-3, .associated = true},
+    {.name = "tresca", .make = tresca, .strain = 5e-3, .associated = true, .over = over_tresca},
+    {.name = "bounding-surface-clay", .make = bounding, .strain = 5e-3, .over = over_bounding, .jumps = true},
+    {.name = "damage-plasticity", .make = damage_plasticity, .strain = 2e-3},
+    {.name = "mazars", .make = mazars, .strain = 1e-3, .associated = true, .over = over_tension},
+};

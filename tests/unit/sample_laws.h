@@ -1,0 +1,30 @@
+/* One of every law of a point in space, with numbers as they are used, and how far a stress is outside of what each may carry. */
+#ifndef BRECCIA_TESTS_SAMPLE_LAWS_H
+#define BRECCIA_TESTS_SAMPLE_LAWS_H
+
+#include "point.h"
+
+enum { SAMPLES = 14 };
+
+typedef struct Sample {
+  const char *name;
+  Material (*make)(void);
+  double strain;   /* at which the law is well beyond its elastic range */
+  bool associated; /* closed cycles of strain take work */
+  /** How far the stress is outside, over a strength; NULL: no such test. */
+  double (*over)(const Point *p, const double stress[6]);
+  bool jumps;     /* where its number of parts changes, or a step becomes a reversal */
+  bool passes_on; /* answers a strain that is no number with such a stress, which the forces tell */
+} Sample;
+
+extern const Sample samples[SAMPLES];
+
+/** The samples "cap" and "mohr-coulomb", and the failure envelope of the first at a pressure -I1. */
+Material sample_cap(void);
+Material sample_coulomb(void);
+double sample_cap_envelope(double pressure);
+
+/** First invariant, and length of the deviator. */
+void stress_invariants(const double stress[6], double *first, double *length);
+
+#endif
