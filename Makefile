@@ -36,7 +36,7 @@ bench: setup all
 	@build/release/breccia_bench build/release/bench.csv
 	@build/release/breccia_bench_laws
 
-# The same law at home, in a server of our own and in OpenSees; the table of docs/material-server.md.
+# The same law inside the program, in a server of our own and in OpenSees; the table of docs/material-server.md.
 bench-servers: setup all
 	@sh scripts/opensees.sh
 	@python3 bench/servers.py build/release/breccia docs/material-server.md
@@ -79,7 +79,7 @@ clang:
 	@cmake --preset clang > /dev/null
 	@cmake --build --preset clang --parallel $(cores)
 
-# The deck reader against decks of chance, then both sides of the protocol of material servers against frames of chance, for FUZZ_SECONDS each.
+# The deck reader against random decks, then both sides of the protocol of material servers against random frames, for FUZZ_SECONDS each.
 fuzz:
 	@sh scripts/setup.sh test
 	@cmake --preset fuzz > /dev/null

@@ -1,4 +1,4 @@
-"""What laws in other processes cost: the plate of the first example with its law at home, in `breccia serve` and in OpenSees.
+"""What laws in other processes cost: the plate of the first example with its law inside the program, in `breccia serve` and in OpenSees.
 
 servers.py BRECCIA PAGE   writes a table between the marks of a Markdown page (needs breccia-opensees beside BRECCIA)
 """
@@ -18,9 +18,9 @@ BRECCIA = os.path.abspath(sys.argv[1])
 OPENSEES = os.path.join(os.path.dirname(BRECCIA), "breccia-opensees")
 EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "plate-with-crack", "clay.yaml")
 STEPS, REPEATS, POINTS = 100, 3, 8910
-HOME = "model: multi-yield-j2, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30 kPa"
+INSIDE = "model: multi-yield-j2, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30 kPa"
 SERVED = "remote: multi-yield-j2; shear modulus=60000; bulk modulus=100000; octahedral strength=30"
-ELSEWHERE = "opensees: nDMaterial PressureIndependMultiYield $tag 3 1.5 6.0e4 1.0e5 31.8198051534 0.1 0. 100. 0. 20, stage: 1"
+IN_OPENSEES = "opensees: nDMaterial PressureIndependMultiYield $tag 3 1.5 6.0e4 1.0e5 31.8198051534 0.1 0. 100. 0. 20, stage: 1"
 HEADER = struct.Struct("<4sHHIIIIII")
 
 
@@ -94,12 +94,12 @@ def main():
     with tempfile.TemporaryDirectory(prefix="breccia-bench-") as folder:
         seconds = {}
         ways = {
-            "at home": HOME,
+            "inside the program": INSIDE,
             "breccia serve, zeros, unix": None,
             "breccia serve, unix": None,
             "breccia serve, tcp": None,
-            "OpenSees, 1 process": f"{ELSEWHERE}, processes: 1",
-            "OpenSees, 2 processes": f"{ELSEWHERE}, processes: 2",
+            "OpenSees, 1 process": f"{IN_OPENSEES}, processes: 1",
+            "OpenSees, 2 processes": f"{IN_OPENSEES}, processes: 2",
         }
         kept = []
         for name, options in (("zeros, unix", ["--zeros"]), ("unix", []), ("tcp", [])):
@@ -113,11 +113,11 @@ def main():
                 taken, servers = run(folder, material)
                 seconds.setdefault(name, []).append(taken)
                 waited.setdefault(name, []).append(sum(s["waiting_share"] for s in servers))
-        lines.append("| where the law lives | ms per step | µs per point and step beyond home | part of the time waited for servers | 23000 steps |")
+        lines.append("| where the law runs | ms per step | µs per point and step more than inside the program | part of the time waited for servers | 23000 steps |")
         lines.append("|---|---|---|---|---|")
         median = {name: sorted(values)[REPEATS // 2] for name, values in seconds.items()}
         for name, value in median.items():
-            beyond = 1e6 * (value - median["at home"]) / POINTS
+            beyond = 1e6 * (value - median["inside the program"]) / POINTS
             share = sorted(waited[name])[REPEATS // 2]
             lines.append(f"| {name} | {1e3 * value:.2f} | {beyond:.2f} | {100 * share:.0f} % | {23000 * value / 60:.1f} min |")
         alone, address = start(OPENSEES, f"unix:{folder}/alone")

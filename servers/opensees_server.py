@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lends the constitutive models of an unmodified OpenSees to Breccia over a socket.
+"""Offers the constitutive models of an unmodified OpenSees to Breccia over a socket.
 
 The protocol stands in docs/material-server.md. Points are OpenSees objects, one tag each; NDTest (in space) and
 testUniaxialMaterial (one strain) drive them, a whole batch per message. Needs the package openseespy and nothing else.

@@ -1,10 +1,10 @@
-# Lends the uniaxial materials of an unmodified Tcl OpenSees to Breccia over TCP, with trial and commit apart, so that solvers may
+# Offers the uniaxial materials of an unmodified Tcl OpenSees to Breccia over TCP, with trial and commit apart, so that solvers may
 # iterate. The protocol stands in docs/material-server.md. Needs an OpenSees whose command `invoke` reaches a material (the package
 # `opensees` of the Python index; scripts/opensees.sh):
 #
 #   OpenSees opensees_server.tcl --listen tcp://127.0.0.1:4712 [--secret-file FILE] [--once]
 
-# OpenSees deletes and makes its many commands anew with each model, even those of its names that stand in a namespace: none here is called as one of its own.
+# OpenSees deletes its many commands and makes them again with each model, even those of its names that stand in a namespace: none here is called as one of its own.
 namespace eval server {
   variable MAGIC BRMS
   variable VERSION 1

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs the block with the ramp to 40 MPa and with one that stops at 30 MPa, and writes the table and pictures of README.md.
-#   report.sh                  run everything at home (a quarter of a minute on two cores), then write
+#   report.sh                  run everything inside the program (a quarter of a minute on two cores), then write
 #   report.sh --with-opensees  run the block with its law in OpenSees too (some ten minutes more)
 #   report.sh --only-write     write from the results that are there
 set -eu
@@ -58,9 +58,9 @@ on_envelope() {
     END {I = -($7 + $8 + $9); m = -I / 3; printf "%.6f", sqrt(($7 - m) ^ 2 + ($8 - m) ^ 2 + ($9 - m) ^ 2 + 2 * ($10 ^ 2 + $11 ^ 2 + $12 ^ 2)) / F(I)}'
 }
 number() { sed -n "s/.*\"$2\": \([^,}]*\).*/\1/p" "$1/summary.json" | head -1 | awk -v s="$3" -v f="$4" '{printf f, $1 * s}'; }
-# A figure of both runs at home and of that in OpenSees, which tells no caps.
-elsewhere() { [ -e block-opensees/summary.json ] && "$@" || echo "not run"; }
-row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | $(elsewhere $3 block-opensees "${@:4}") |"; }
+# A figure of both runs inside the program and of that in OpenSees, which tells no caps.
+in_opensees() { [ -e block-opensees/summary.json ] && "$@" || echo "not run"; }
+row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | $(in_opensees $3 block-opensees "${@:4}") |"; }
 row_with_caps() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | |"; }
 # Largest difference between the curves of two runs up to a time, over the largest value of each column.
 apart() {
@@ -71,7 +71,7 @@ apart() {
       END {for (k = 1; k <= n; ++k) if (top[k] > 1e-6) print most[k] / top[k]}'
   done | sort -g | tail -1 | awk '{printf "%.0e", $1}'
 }
-# The law alone, at home and in OpenSees, along the same path: how far it comes, and how far apart the stresses are.
+# The law alone, inside the program and in OpenSees, along the same path: how far it comes, and how far apart the stresses are.
 along() {
   { sed -n '1,/^material:/p' ../materials/cap.yaml | sed '$d'; sed -n '/^material:/,/^test/p' ../materials/cap.yaml | sed '$d'; echo "test: {$1}"; } > home.yaml
   { echo "units: {length: m, force: kN, time: s}"; sed -n '/^  concrete:/,/^$/p' block-opensees.yaml | sed 's/^  //; s/concrete/material/'; echo "test: {$1}"; } > away.yaml
@@ -103,7 +103,7 @@ along() {
     "$(strength 0.02 | awk '{printf "%.1f", $1 * 2 / 3}') MPa."
   echo
   if [ -e block-opensees/summary.json ]; then
-    echo "Computing took $(number block wall_seconds 1 %.0f) s, in OpenSees $(number block-opensees wall_seconds 1 %.0f) s. The curves of p, q, the corner, width and height at home and in OpenSees"
+    echo "Computing took $(number block wall_seconds 1 %.0f) s, in OpenSees $(number block-opensees wall_seconds 1 %.0f) s. The curves of p, q, the corner, width and height inside the program and in OpenSees"
     echo "differ by $(apart block block-opensees 0.002) of the largest value up to 2 ms, $(apart block block-opensees 0.004) up to 4 ms, $(apart block block-opensees 0.006) up to 6 ms and $(apart block block-opensees 0.008) up to 8 ms."
     echo
     echo "| the law alone, CapPlasticity of OpenSees against ours | stresses agree | which is right |"

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs all decks of this example and its variants of control, and writes the table and the pictures of README.md.
-#   report.sh                  run everything at home (about six minutes on two cores), then write
+#   report.sh                  run everything inside the program (about six minutes on two cores), then write
 #   report.sh --with-opensees  run the plate of clay in OpenSees too (a quarter of an hour more)
 #   report.sh --only-write     write from the results that are there
 set -eu
@@ -52,26 +52,26 @@ apart() {
 waited() { grep -o '"waiting_share": [0-9.e-]*' "$1/summary.json" | awk '{sum += $2} END {printf "%.0f", 100 * sum}'; }
 gigabytes() { grep -o '"bytes_[a-z]*": [0-9]*' "$1/summary.json" | awk '{sum += $2} END {printf "%.1f", sum / 1e9}'; }
 # The same figure of the run in OpenSees, if there is one.
-elsewhere() { [ -e clay-opensees/summary.json ] && "$@" || echo "not run"; }
+in_opensees() { [ -e clay-opensees/summary.json ] && "$@" || echo "not run"; }
 
 {
   sed '/^<!-- computed -->$/q' README.md
   echo
   echo "| figure | published | computed | law in OpenSees |"
   echo "|---|---|---|---|"
-  echo "| clay: load at which the crack begins to open (kN/m³) | 126 | $(onset clay mouth 750) at the mouth, $(onset clay middle 750) in the middle of the crack (0.05 mm) | $(elsewhere onset clay-opensees mouth 750), $(elsewhere onset clay-opensees middle 750) |"
+  echo "| clay: load at which the crack begins to open (kN/m³) | 126 | $(onset clay mouth 750) at the mouth, $(onset clay middle 750) in the middle of the crack (0.05 mm) | $(in_opensees onset clay-opensees mouth 750), $(in_opensees onset clay-opensees middle 750) |"
   echo "| elastic: the same | 1400 | $(onset elastic mouth 5000) at the mouth, $(onset elastic middle 5000) in the middle |  |"
-  echo "| clay: crack width at 750 kN/m³ (m; 0.06 at the start) | 0.0628 | $(opening clay mouth 0.02) at the mouth, $(opening clay middle 0.02) in the middle (0.02 s) | $(elsewhere opening clay-opensees mouth 0.02), $(elsewhere opening clay-opensees middle 0.02) |"
+  echo "| clay: crack width at 750 kN/m³ (m; 0.06 at the start) | 0.0628 | $(opening clay mouth 0.02) at the mouth, $(opening clay middle 0.02) in the middle (0.02 s) | $(in_opensees opening clay-opensees mouth 0.02), $(in_opensees opening clay-opensees middle 0.02) |"
   echo "| elastic: crack width at 750 kN/m³ (m) | 0.0600 | $(opening elastic mouth 0.003) at the mouth, $(opening elastic middle 0.003) in the middle (0.003 s) |  |"
   echo "| elastic: plate severed | by 0.0912 s | $(severed elastic) |  |"
   echo "| elastic: crack runs straight on | yes | $(straight elastic) |  |"
-  echo "| clay: crack does not run through by 0.0792 s | does not | severed: $(severed clay); first bond breaks at $(first_break clay) s | severed: $(elsewhere severed clay-opensees); first at $(elsewhere first_break clay-opensees) s |"
-  echo "| clay: backbone followed, point m (distance from the hyperbola, kPa; one chord is 1.5) | yes | $(backbone clay/point-m.csv) | $(elsewhere backbone clay-opensees/point-m.csv) |"
-  echo "| clay: the same, point n | yes | $(backbone clay/point-n.csv) | $(elsewhere backbone clay-opensees/point-n.csv) |"
+  echo "| clay: crack does not run through by 0.0792 s | does not | severed: $(severed clay); first bond breaks at $(first_break clay) s | severed: $(in_opensees severed clay-opensees); first at $(in_opensees first_break clay-opensees) s |"
+  echo "| clay: backbone followed, point m (distance from the hyperbola, kPa; one chord is 1.5) | yes | $(backbone clay/point-m.csv) | $(in_opensees backbone clay-opensees/point-m.csv) |"
+  echo "| clay: the same, point n | yes | $(backbone clay/point-n.csv) | $(in_opensees backbone clay-opensees/point-n.csv) |"
   echo "| elastic at rest at 500 kN/m³: opening of the mouth (mm) | 3.34 (finite elements) | $(number "$(last rest/mouth.csv 4)" "%.3f" 1000) |  |"
-  echo "| clay: bonds broken by 0.092 s (both directions) | | $(summary clay broken_bonds) | $(elsewhere summary clay-opensees broken_bonds) |"
-  echo "| clay: time to compute (min, two cores) | | $(number "$(summary clay wall_seconds)" "%.1f" 0.0166667) | $(elsewhere number "$(summary clay-opensees wall_seconds)" "%.1f" 0.0166667), $(elsewhere waited clay-opensees) % of it waiting for OpenSees, $(elsewhere gigabytes clay-opensees) GB to and fro |"
-  echo "| clay: largest difference of any curve, of its largest value | | | $(elsewhere number "$(elsewhere apart clay clay-opensees)" "%.1g") |"
+  echo "| clay: bonds broken by 0.092 s (both directions) | | $(summary clay broken_bonds) | $(in_opensees summary clay-opensees broken_bonds) |"
+  echo "| clay: time to compute (min, two cores) | | $(number "$(summary clay wall_seconds)" "%.1f" 0.0166667) | $(in_opensees number "$(summary clay-opensees wall_seconds)" "%.1f" 0.0166667), $(in_opensees waited clay-opensees) % of it waiting for OpenSees, $(in_opensees gigabytes clay-opensees) GB sent and received |"
+  echo "| clay: largest difference of any curve, of its largest value | | | $(in_opensees number "$(in_opensees apart clay clay-opensees)" "%.1g") |"
   echo
   echo "Variants of zero-energy control (Silling's, strength G_s):"
   echo

@@ -1,7 +1,7 @@
 /* Breccia: peridynamics for concrete, soil and rock. The public interface, and all of it.
  *
  * A model is loaded from a deck (YAML), stepped, looked at and written. Nothing here keeps state outside the objects
- * that it hands out: two models live in one process, each used by one thread at a time.
+ * that it hands out: two models may exist in one process, each used by one thread at a time.
  * Functions return a status and put the words into the error that they are given (one line per problem). */
 #ifndef BRECCIA_H
 #define BRECCIA_H
@@ -143,7 +143,7 @@ BRECCIA_API double breccia_model_stable_time_step(const breccia_model *model);
 BRECCIA_API int64_t breccia_model_places(const breccia_model *model);
 /** Global number of the particle in each place, or -1, [places]. Numbers run along x first, then y, then z, block by block. */
 BRECCIA_API const int32_t *breccia_model_numbers(const breccia_model *model);
-/** The living array itself, [places]; read it, write to it between steps. Names: "position x", "displacement x",
+/** The model's own array, [places]; read it, write to it between steps. Names: "position x", "displacement x",
  *  "velocity x" (and y, z), "volume", "density"; read-only in meaning: "force x" (internal, per volume), "strain xx", "stress xx" ...
  *  (with bonds: as of this call)
  *  @return NULL if there is no such array */

@@ -1,4 +1,4 @@
-/* One labelled door for large memory, and an arena for the many small pieces that live and die together. */
+/* All large memory is asked for here, by name; and an arena for the many small pieces that are freed together. */
 #ifndef BRECCIA_BASE_MEMORY_H
 #define BRECCIA_BASE_MEMORY_H
 
@@ -13,9 +13,9 @@ void *memory_zeroed(size_t count, size_t size, const char *label, Error *error);
 typedef struct Arena Arena;
 
 Arena *arena_create(void);
-/** Zeroed memory that lives as long as the arena; NULL when memory is out. */
+/** Zeroed memory, freed with the arena; NULL when memory is out. */
 void *arena_zeroed(Arena *arena, size_t size);
-/** A copy of the first `length` bytes of `words`, zero-terminated, that lives as long as the arena. */
+/** A copy of the first `length` bytes of `words`, zero-terminated, freed with the arena. */
 char *arena_copy(Arena *arena, const char *words, size_t length);
 void arena_destroy(Arena **arena);
 

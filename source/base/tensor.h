@@ -65,7 +65,7 @@ static inline void tensor_eigen(const double s[6], double value[3], double vecto
   for (int k = 0; k < 3; ++k) value[k] = a[4 * k];
 }
 
-/** Octahedral shear stress sqrt(2 J2 / 3) (seed paper 000, eq. 23). */
+/** Octahedral shear stress sqrt(2 J2 / 3) (docs/theory.md, S0, eq. 23). */
 static inline double tensor_octahedral_shear(const double s[6])
 {
   double a = s[XX] - s[YY], b = s[XX] - s[ZZ], c = s[YY] - s[ZZ];

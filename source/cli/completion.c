@@ -1,4 +1,5 @@
 /* Completion for bash, and for zsh through its bash emulation; and the manual page: both made from the table of verbs. */
+#include "cli/examples.h"
 #include "cli/verbs.h"
 
 static const Option options[] = {{"man", NULL, "print the manual page instead"}, {0}};
@@ -16,8 +17,11 @@ static void print_completion(void)
     for (const Option *o = verbs[k]->options; o->name; ++o) printf(" --%s", o->name);
     printf("\" -- \"$word\")) ;;\n");
   }
-  printf("    esac ;;\n  *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n  esac\n}\ncomplete -o filenames -F _breccia "
-         "breccia\n");
+  printf("    esac ;;\n  *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n  esac\n"
+         "  if [ \"${COMP_WORDS[1]} ${COMP_WORDS[COMP_CWORD-1]}\" = 'new --example' ]; then\n"
+         "    COMPREPLY=($(compgen -W \"");
+  for (const Example *e = examples; e->name; ++e) printf("%s ", e->name);
+  printf("\" -- \"$word\"))\n  fi\n}\ncomplete -o filenames -F _breccia breccia\n");
 }
 
 /** Text with the dashes and backslashes that troff would change. */

@@ -130,7 +130,7 @@ static int follow_path(const Material *m, const char *path, long long elastic, b
 /** What a test is to be held against and where its curve goes. */
 typedef struct Outputs {
   const char *title, *against, *picture;
-  bool tangent, quiet; /* quiet: rows go to standard output, words elsewhere */
+  bool tangent, quiet; /* quiet: rows go to standard output, words to standard error */
   FILE *out;
 } Outputs;
 

@@ -1,9 +1,12 @@
+#include "cli/examples.h"
 #include "cli/verbs.h"
+#include "deck/document.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
-static const Option options[] = {{0}};
+static const Option options[] = {{"example", NULL, "the deck of an example instead; without a name: list them"}, {0}};
 
 static const char starter[] =
     "# A deck of Breccia. 'breccia check' tells what it would run, 'breccia run' runs it; docs/deck.md lists every "
@@ -48,26 +51,151 @@ static const char starter[] =
     "  - {field: stress, component: yy, deformed: 100}\n"
     "  - {curve: 'opening.opening : grip.y'}\n";
 
+/** Writes a new file; says why if that fails. @return status of the command */
+static int write_new(const char *path, const void *bytes, size_t length)
+{
+  FILE *file = fopen(path, "wx");
+  if (!file) {
+    fprintf(stderr, "%s: %s\n", path, errno == EEXIST ? "exists already; choose another name" : strerror(errno));
+    return 2;
+  }
+  bool bad = fwrite(bytes, 1, length, file) != length;
+  bad |= fclose(file) != 0;
+  if (bad) fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(errno));
+  return bad;
+}
+
+/** Whether a file holds these bytes and no others. */
+static bool holds(const char *path, const ExampleFile *file)
+{
+  size_t length;
+  char *content = text_read_file(path, &length);
+  const bool same = content && length == file->length && !memcmp(content, file->bytes, length);
+  free(content);
+  return same;
+}
+
+static const char *short_name(const Example *example)
+{
+  return strrchr(example->name, '/') + 1;
+}
+
+/** What a deck says of itself; `is_test`: it is a laboratory test, for 'breccia material'. To be freed. */
+static char *title_of(const Example *example, bool *is_test)
+{
+  Error *error = breccia_error_create();
+  const ExampleFile *deck = example->files;
+  Document *document = document_parse((const char *)deck->bytes, deck->length, deck->name, error);
+  const Node *title = document ? node_get(document->root, "title") : NULL;
+  *is_test = document && !node_get(document->root, "body");
+  char *words = text_format("%s", title && title->kind == NODE_SCALAR ? title->text : "");
+  document_destroy(&document);
+  breccia_error_destroy(&error);
+  return words;
+}
+
+static void list_examples(bool tests)
+{
+  for (const Example *e = examples; e->name; ++e) {
+    bool is_test;
+    char *title = title_of(e, &is_test);
+    if (is_test == tests) printf("  %-41s %s\n", e->name, title ? title : "");
+    free(title);
+  }
+}
+
+/** The example of this name, or of this deck if no other folder has one of that name; else says which there are. */
+static const Example *find_example(const char *name)
+{
+  const Example *found = NULL;
+  int count = 0;
+  for (const Example *e = examples; e->name; ++e) {
+    if (!strcmp(e->name, name)) return e;
+    if (!strcmp(short_name(e), name)) {
+      found = e;
+      ++count;
+    }
+  }
+  if (count == 1) return found;
+  Text near = {0};
+  for (const Example *e = examples; e->name; ++e) {
+    const char *place = strchr(name, '/') ? e->name : short_name(e);
+    if (count ? !strcmp(place, name) : strstr(e->name, name) || text_resembles(name, place, text_distance(name, place)))
+      text_add(&near, "%s'%s'", near.length ? ", " : "", e->name);
+  }
+  if (count > 1)
+    fprintf(stderr, "breccia new: several examples are called '%s': give one of %s\n", name, near.characters);
+  else if (near.length)
+    fprintf(stderr, "breccia new: there is no example '%s'; the nearest names are %s\n", name, near.characters);
+  else
+    fprintf(stderr, "breccia new: there is no example '%s'; 'breccia new --example' lists them\n", name);
+  text_free(&near);
+  return NULL;
+}
+
+static int write_example(const Example *example, const char *path)
+{
+  char *written[MOST_EXAMPLE_FILES] = {0};
+  int count = 0, status = 0;
+  for (const ExampleFile *f = example->files + 1; f->name && !status; ++f) {
+    char *beside = text_beside(path, f->name);
+    if (beside && holds(beside, f)) {
+      free(beside);
+      continue;
+    }
+    status = beside ? write_new(beside, f->bytes, f->length) : 1;
+    if (status)
+      free(beside);
+    else
+      written[count++] = beside;
+  }
+  if (!status) status = write_new(path, example->files[0].bytes, example->files[0].length);
+  if (!status) {
+    bool is_test;
+    free(title_of(example, &is_test));
+    printf("%s is written", path);
+    for (int k = 0; k < count; ++k) printf("%s %s", k ? "," : ", and", written[k]);
+    printf("; 'breccia %s %s' runs it\n", is_test ? "material" : "run", path);
+  }
+  for (int k = 0; k < count; ++k) {
+    if (status) remove(written[k]);
+    free(written[k]);
+  }
+  return status;
+}
+
 static int run(int argc, char **argv, const Verb *verb)
 {
-  int first = read_options(argc, argv, verb, NULL, NULL, NULL);
+  const char *values[1];
+  int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
-  if (argc - first != 1) {
+  const int given = argc - first;
+  if (values[0] && given == 0) {
+    printf("Decks, for 'breccia run':\n");
+    list_examples(false);
+    printf("\nTests in the laboratory on one material point, for 'breccia material':\n");
+    list_examples(true);
+    printf("\n'breccia new --example NAME DECK' writes one of them.\n");
+    return 0;
+  }
+  if (values[0] && given <= 2) {
+    const Example *example = find_example(argv[first]);
+    return example ? write_example(example, given == 2 ? argv[first + 1] : example->files[0].name) : 2;
+  }
+  if (given != 1) {
     fprintf(stderr, "breccia new: give the name of the deck to write, like plate.yaml\n");
     return 2;
   }
-  FILE *file = fopen(argv[first], "wx");
-  if (!file) {
-    fprintf(stderr, "%s: %s\n", argv[first], errno == EEXIST ? "exists already; choose another name" : strerror(errno));
-    return 2;
-  }
-  int bad = fputs(starter, file) < 0;
-  if (fclose(file) || bad) {
-    fprintf(stderr, "%s: cannot be written: %s\n", argv[first], strerror(errno));
-    return 1;
-  }
-  printf("%s is written; 'breccia run %s' runs it\n", argv[first], argv[first]);
-  return 0;
+  int status = write_new(argv[first], starter, sizeof starter - 1);
+  if (!status) printf("%s is written; 'breccia run %s' runs it\n", argv[first], argv[first]);
+  return status;
 }
 
-const Verb verb_new = {"new", "DECK", "write a commented deck to start from", options, NULL, run};
+const Verb verb_new = {
+    "new",
+    "DECK, or breccia new --example [NAME [DECK]]",
+    "write a commented deck to start from, or the deck of an example",
+    options,
+    "Without a NAME the examples are listed. Files that a deck needs are written beside it; nothing that\n"
+    "exists is written over.",
+    run};

@@ -64,7 +64,7 @@ static int serve_verb(int argc, char **argv, const Verb *verb)
 const Verb verb_serve = {
     "serve",
     "--listen ADDRESS [options]",
-    "lend the program's own laws to other programs over a socket",
+    "offer the program's own laws to other programs over a socket",
     options,
     "A client names a law as 'LAW; KEY=VALUE; ...'. The protocol stands in docs/material-server.md. Without a "
     "secret only this machine is listened to; the line is not encrypted.",

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** The one point lives in the first server; others have none. */
-static int begin_elsewhere(Driver *d, Error *error)
+/** The one point is in the first server; others have none. */
+static int begin_in_server(Driver *d, Error *error)
 {
   Remote *r = d->material->remote;
   int64_t *starts = memory_zeroed((size_t)remote_servers(r) + 1, sizeof *starts, "servers", error);
@@ -30,7 +30,7 @@ int driver_create(Driver *d, const Material *material, Error *error)
     material->law->begin(material->constants, d->committed);
     material->law->begin(material->constants, d->trial);
   }
-  return material->remote ? begin_elsewhere(d, error) : BRECCIA_OK;
+  return material->remote ? begin_in_server(d, error) : BRECCIA_OK;
 }
 
 void driver_destroy(Driver *d)

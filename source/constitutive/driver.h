@@ -20,7 +20,7 @@ bool driver_try(Driver *driver, const double *strain);
 /** Makes the last trial state the committed one. */
 void driver_commit(Driver *driver);
 
-/** One step to targets, which are stresses where `by_stress` says so and strains elsewhere, and commits it. The strains
+/** One step to targets, which are stresses where `by_stress` says so and strains otherwise, and commits it. The strains
  *  that belong to stresses are found by Newton's method; a step that fails is cut into up to 1024 parts.
  *  @param[in] tolerance  of stresses
  *  @return false, with the state of the last part that went well, if the targets cannot be reached */

@@ -240,7 +240,7 @@ static void keep(ElementCurve *c, const ElementTest *test, const Driver *d)
   }
 }
 
-/** Why a law in a server did not answer; "" of a law at home. */
+/** Why a law in a server did not answer; "" of a law inside the program. */
 static const char *server_problem(const Material *material)
 {
   return material->remote ? remote_problem(material->remote) : "";

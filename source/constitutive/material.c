@@ -40,7 +40,7 @@ static const Field material_fields[] = {
     {"opensees", FIELD_TEXT, offsetof(MaterialSpec, opensees), NULL, "", NULL,
      "instead of a model: a command of OpenSees that makes one point, like `nDMaterial ElasticIsotropic3D $tag 1e5 "
      "0.3` "
-     "or `uniaxialMaterial Concrete01 $tag ...`; its law then lives in OpenSees (docs/material-server.md)",
+     "or `uniaxialMaterial Concrete01 $tag ...`; its law then runs in OpenSees (docs/material-server.md)",
      NULL, NULL, 'm'},
     {"remote", FIELD_TEXT, offsetof(MaterialSpec, remote), NULL, "", NULL,
      "instead of a model: a command for the material servers named under `server`; of `breccia serve` it is `LAW; "

@@ -311,7 +311,7 @@ double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int
   const Material *m = partner ? points_partner(points, slot, lane) : &points->materials[points->material[slice]];
   const double *row = points->committed + points_bond_row(points, slice, slot, lane, partner);
   double stress = NAN, scratch[MOST_VALUES];
-  if (m->remote) return remote_last_stress(row); /* a law elsewhere need not be able to try */
+  if (m->remote) return remote_last_stress(row); /* a law in a server need not be able to try */
   if (m->history_values > MOST_VALUES) return NAN;
   memcpy(scratch, row, sizeof(double) * (size_t)m->history_values);
   breccia_batch batch = {.count = 1,

@@ -1,7 +1,7 @@
 /* Material points: strain, stress and history, committed and trial.
  *
  * Points stand on particles, one per place, or on bonds, one per lane of a slot, on both sides of a bond. On particles strain and
- * stress are arrays by component; on bonds they live only while they are worked on. Histories are rows per point, because a law with a
+ * stress are arrays by component; on bonds they exist only while they are worked on. Histories are rows per point, because a law with a
  * long history touches little of it. All points of a slice are of one material; a stored slot of bonds has a second row of
  * points for the material at their other ends, if the body has several. Commit is a swap. */
 #ifndef BRECCIA_CONSTITUTIVE_POINTS_H
@@ -84,7 +84,7 @@ double points_bond_history(const Points *points, int64_t place, int k);
 /** Makes the trial state the committed one. */
 void points_commit(Points *points);
 
-/* ---- laws that live in other processes (constitutive/remote); nothing happens where none does ---- */
+/* ---- laws that run in other processes (constitutive/remote); nothing happens where none does ---- */
 
 /** Whether the servers have their points. */
 bool points_begun(const Points *points);
@@ -108,7 +108,7 @@ void points_gather_bonds(Points *points);
 /** Sends what was gathered and waits for all answers. @return -1, or a place of a bond whose law failed */
 int64_t points_ask_bonds(Points *points);
 /** Whether all that points remember can still be saved: not, when a server is lost that remembers for them. Reaches servers
- *  anew if one did not answer as it should. */
+ *  again if one did not answer as it should. */
 bool points_can_save(Points *points);
 /** A line per server: points per second, waiting, bytes; as objects of a JSON list if `json`. */
 void points_report(const Points *points, double run_seconds, bool json, Text *text);

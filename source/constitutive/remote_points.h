@@ -1,4 +1,4 @@
-/* Points of laws that live in other processes: which server holds which, and what goes to and fro. */
+/* Points of laws that run in other processes: which server holds which, and what is sent and received. */
 #ifndef BRECCIA_CONSTITUTIVE_REMOTE_POINTS_H
 #define BRECCIA_CONSTITUTIVE_REMOTE_POINTS_H
 

@@ -2,7 +2,7 @@
  *
  * Two particles nearer than d_c repel each other with a force per volume squared of c_s (d_c - |Y|) / delta along Y (Parks et al. 2008), where
  * c_s is a multiple of the micromodulus and d_c the smaller of a share of their reference distance and some spacings; so that
- * nothing happens at rest, nor when a bond breaks. Pairs that may come so near are kept in rows, by number, and found anew when particles have
+ * nothing happens at rest, nor when a bond breaks. Pairs that may come so near are kept in rows, by number, and found again when particles have
  * moved by half of what the rows reach beyond d_c; what they do not hold repels nobody, so that it does not show when they were made. */
 #ifndef BRECCIA_CONTACT_CONTACT_H
 #define BRECCIA_CONTACT_CONTACT_H
@@ -49,10 +49,10 @@ void contact_destroy(Contact *contact);
 /** Tells that the bond between two places is gone. */
 void contact_bond_broke(Contact *contact, int32_t a, int32_t b);
 
-/** Finds the pairs anew. */
+/** Finds the pairs again. */
 void contact_search(Contact *contact);
 
-/** Tells that no particle has moved by more than `motion`; finds the pairs anew if need be. */
+/** Tells that no particle has moved by more than `motion`; finds the pairs again if need be. */
 void contact_follow(Contact *contact, double motion);
 
 /** Adds the forces per volume on the particles, by all threads. */

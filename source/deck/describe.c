@@ -71,9 +71,25 @@ void describe_parameters(const breccia_parameter *parameters, int count, Text *t
   }
 }
 
+/** Says of each group which keys it has: of these exactly one is given. */
+static void add_group_lines(const Section *section, Text *text)
+{
+  for (int f = 0; f < section->field_count; ++f) {
+    const char group = section->fields[f].group;
+    bool first = group != 0;
+    for (int k = 0; k < f; ++k) first &= section->fields[k].group != group;
+    if (!first) continue;
+    text_add(text, "Exactly one of these (%c): ", group);
+    for (int k = f; k < section->field_count; ++k)
+      if (section->fields[k].group == group) text_add(text, "%s`%s`", k > f ? ", " : "", section->fields[k].key);
+    text_add(text, ".\n\n");
+  }
+}
+
 void describe_section(const Section *section, Text *text)
 {
   text_add(text, "\n## %s\n\n%s\n\n", section->name, section->about);
+  add_group_lines(section, text);
   text_add(text, "| key | value | default | range | meaning |\n|---|---|---|---|---|\n");
   for (int f = 0; f < section->field_count; ++f) {
     const Field *field = &section->fields[f];
@@ -88,7 +104,7 @@ void describe_section(const Section *section, Text *text)
       text_add(text, " (%s)", field->dimension);
     text_add(text, " | ");
     if (field->group)
-      text_add(text, "one of group %c", field->group);
+      text_add(text, "exactly one of %c", field->group);
     else
       add_default(text, field->standard);
     text_add(text, " | %s | %s |\n", field->range ? field->range : "", field->meaning);
@@ -99,11 +115,40 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
 {
   Walk walk = {0};
   collect(&walk, root);
-  text_add(text,
-           "# The deck\n\n"
-           "Made from the program's own tables by `breccia schema --markdown`; do not edit.\n\n"
-           "A deck is a YAML file. Plain numbers are in the deck's units; a number with a unit (`1.89 m`, `30 kPa`,\n"
-           "`4000 psi`, `145 pcf`) may stand anywhere. Axes are x, y, z; stress is tension-positive.\n");
+  text_add(
+      text,
+      "# The deck\n\n"
+      "Made from the program's own tables by `breccia schema --markdown`; do not edit.\n\n"
+      "A deck is a YAML file. Plain numbers are in the deck's units; a number with a unit (`1.89 m`, `30 kPa`,\n"
+      "`4000 psi`, `145 pcf`) may stand anywhere. Axes are x, y, z; stress is tension-positive.\n\n"
+      "A deck has as little as this in it; whatever is missing has the default of the tables below:\n\n"
+      "```yaml\n"
+      "materials: {rock: {model: elastic, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}}\n"
+      "body: {block: {material: rock, spacing: 0.02 m, shape: {box: {from: [0, 0, 0], to: [0.4 m, 0.2 m, 0.2 m]}}}}\n"
+      "loads: [{on: {face: x+}, velocity: [0.1 m/s, free, free]}, {on: {face: x-}, displacement: [0, free, free]}]\n"
+      "solve: {explicit: {end time: 1 ms}}\n"
+      "```\n\n"
+      "## How to read the tables\n\n"
+      "Each section of the deck has a table of its keys. The column *default* says what happens without the key:\n\n"
+      "| in the column *default* | the key |\n|---|---|\n"
+      "| a value, like `0.8` | may be left out; it then has this value |\n"
+      "| nothing | may be left out; *meaning* says what happens then |\n"
+      "| **required** | must be given |\n"
+      "| exactly one of A | belongs to the group A of its section: one key of the group must be given, and only one "
+      "|\n\n"
+      "A group holds several ways to say one thing. A shape is a `box` or a `sphere` and not both; a load is a `force` "
+      "or\n"
+      "a `displacement`; a material has its law from `model`, from `opensees` or from `remote` (group m). The letter "
+      "only\n"
+      "tells groups apart; it is never written in a deck. `load: none of 'body force', 'force', ...; give exactly one` "
+      "is the\n"
+      "message when a group has no key, `more than one of ...` when it has two.\n\n"
+      "Parameters of materials come in sets instead, where more than one key belongs together; *meaning* says which\n"
+      "key goes with which. Elastic constants are `Young modulus` with `Poisson ratio`, or `bulk modulus` with `shear "
+      "modulus`:\n"
+      "one whole set, never a mixture.\n\n"
+      "Where the column *value* shows a dimension, like stress, the number may carry a unit of it (the table of\n"
+      "[quantities](#quantities)); `[x, y, z]` is a list of numbers, of which plane decks leave out the last.\n");
   for (int s = 0; s < walk.count; ++s) {
     const Section *section = walk.sections[s];
     describe_section(section, text);

@@ -1,4 +1,4 @@
-/* Numbers with units at the door: "30 kPa" becomes a number in the deck's own units, and nothing past the deck knows. */
+/* Numbers with units, where a deck is read: "30 kPa" becomes a number in the deck's own units, and nothing past the deck knows. */
 #ifndef BRECCIA_DECK_QUANTITY_H
 #define BRECCIA_DECK_QUANTITY_H
 

@@ -37,7 +37,8 @@ typedef struct SectionList {
   int count;
 } SectionList;
 
-typedef struct Reference { /* the name of something defined elsewhere in the deck, or its definition on the spot */
+typedef struct
+    Reference { /* the name of something defined at another place of the deck, or its definition on the spot */
   const char *name;
   void *section;
   const Node *node;

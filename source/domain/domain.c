@@ -64,8 +64,8 @@ static void answer_in_parts(Domain *d)
   }
 }
 
-/** Laws act on bonds, and some live in servers. */
-static bool points_on_bonds_elsewhere(const Domain *d)
+/** Laws act on bonds, and some run in servers. */
+static bool points_on_bonds_in_servers(const Domain *d)
 {
   return d->points.server && d->points.where == POINTS_ON_BONDS;
 }
@@ -92,7 +92,7 @@ void domain_forces(Domain *d)
     for (int64_t b = 0; b < d->block_count; ++b)
       type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
   }
-  if (points_on_bonds_elsewhere(d)) {
+  if (points_on_bonds_in_servers(d)) {
 #pragma omp single
     points_gather_bonds(&d->points);
     if (d->points.pass == PASS_GATHER) {

@@ -39,7 +39,7 @@ typedef struct Domain {
   int64_t block_count;
   Part *parts; /* of laws in other processes */
   int part_count;
-  int32_t *part_of;      /* [blocks] or -1; NULL: no law is elsewhere */
+  int32_t *part_of;      /* [blocks] or -1; NULL: no law is in a server */
   double *carry;         /* [blocks][CARRY][BLOCK], where there are parts */
   bool rows_cut;         /* a row is longer than a block */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
@@ -69,9 +69,9 @@ void domain_destroy(Domain *domain);
 /** Internal forces at the displacements held, by all threads. Trial state only. */
 void domain_forces(Domain *domain);
 
-/** Makes anew what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
+/** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
 void domain_show_states(Domain *domain);
-/** Takes up a state read from elsewhere: displacements, stresses and intact bits are in place; shapes, deformations and force
+/** Takes up a state that was read from a file: displacements, stresses and intact bits are in place; shapes, deformations and force
  *  states follow from them, to the same bits as in the run that left them. */
 void domain_resume(Domain *domain);
 

@@ -143,7 +143,7 @@ static int share_out(Domain *d, Error *error)
   return BRECCIA_OK;
 }
 
-/** Blocks whose laws live in one server, to be sent together. In plane stress each block finds its strain across the plane by itself. */
+/** Blocks whose laws run in one server, to be sent together. In plane stress each block finds its strain across the plane by itself. */
 static int make_parts(Domain *d, Error *error)
 {
   const Points *p = &d->points;

@@ -88,7 +88,7 @@ int lattice_rows_choose(Family *family, int b, Error *error);
 int lattice_rows_create(Family *family, const Body *body, Error *error);
 void lattice_rows_destroy(LatticeRows *rows);
 
-/** Finds out anew which rows of a slice are whole; to be called when its intact bits have changed. */
+/** Finds out again which rows of a slice are whole; to be called when its intact bits have changed. */
 void lattice_rows_mark(Family *family, int64_t slice);
 
 size_t lattice_rows_bytes(const Family *family);

@@ -23,7 +23,7 @@ typedef struct ShapeTable {
 int shape_table_create(ShapeTable *table, const Family *family, bool plane, Error *error);
 void shape_table_destroy(ShapeTable *table);
 
-/** Finds the shapes of a slice anew after bonds have broken. */
+/** Finds the shapes of a slice again after bonds have broken. */
 void shape_table_renew(ShapeTable *table, const Family *family, int64_t slice);
 
 static inline const SliceShape *shape_of_slice(const ShapeTable *table, int64_t slice)

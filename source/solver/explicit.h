@@ -50,7 +50,7 @@ void explicit_begin(Explicit *solver);
 /** One step. After a failure the state is that of the step before, with the reason in `error`. */
 int explicit_advance(Explicit *solver, Error *error);
 
-/** Finds the stable step anew when bonds have broken since, and warns when the time step has come above it. */
+/** Finds the stable step again when bonds have broken since, and warns when the time step has come above it. */
 int explicit_renew_stable_step(Explicit *solver, Text *warning, Error *error);
 
 Energy explicit_energy(const Explicit *solver);

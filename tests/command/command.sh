@@ -22,6 +22,27 @@ contains "run --steps many" "$(cat out)" "--steps: 'many' is not a whole number"
 "$breccia" new plate.yaml > out; equal "new: status" $? 0
 "$breccia" new plate.yaml 2> out; equal "new over a file: status" $? 2
 contains "new over a file" "$(cat out)" "exists already"
+
+# examples: listed with their titles, found by name, nothing written over
+"$breccia" new --example > out; equal "new --example: status" $? 0
+contains "new --example" "$(grep 'plate-with-crack/clay ' out)" "Plate of clay with an edge crack"
+contains "new --example, laboratory" "$(sed -n '/laboratory/,$p' out)" "  materials/cap "
+equal "new --example: examples" "$(grep -c '^  [a-z-]*/' out)" "$(ls "$source"/examples/*/*.yaml | grep -cvE -- '-(none|one)\.yaml')"
+"$breccia" new --example clay mine.yaml > out; equal "new --example clay: status" $? 0
+cmp -s mine.yaml "$source/examples/plate-with-crack/clay.yaml" || fail "new --example clay writes another deck"
+"$breccia" new --example cap cap.yaml > out; contains "new --example of a test" "$(cat out)" "'breccia material cap.yaml' runs it"
+"$breccia" new --example clay mine.yaml 2> out; equal "new --example over a file: status" $? 2
+contains "new --example over a file" "$(cat out)" "mine.yaml: exists already"
+"$breccia" new --example elastic a.yaml 2> out; equal "new --example of two: status" $? 2
+contains "new --example of two" "$(cat out)" "give one of 'materials/elastic', 'plate-with-crack/elastic'"
+"$breccia" new --example clya a.yaml 2> out; equal "new --example misspelt: status" $? 2
+contains "new --example misspelt" "$(cat out)" "the nearest names are 'plate-with-crack/clay'"
+"$breccia" new --example submarine a.yaml 2> out; equal "new --example unknown: status" $? 2
+contains "new --example unknown" "$(cat out)" "'breccia new --example' lists them"
+[ -e a.yaml ] && fail "new --example writes in spite of a wrong name"
+contains "completion of examples" "$(bash -c 'source <("$1" completion); COMP_WORDS=(breccia new --example plate-with-crack/c); COMP_CWORD=3
+  _breccia; echo "${COMPREPLY[@]}"' _ "$breccia")" "plate-with-crack/clay-opensees plate-with-crack/clay"
+contains "manual page of new" "$("$breccia" completion --man | sed -n '/SS new/,/SS plot/p')" 'example'
 "$breccia" check plate.yaml > out 2> errors; equal "check: status" $? 0
 contains "check" "$(cat out)" "2500 particles"
 equal "check: lines" "$(wc -l < out)" 3

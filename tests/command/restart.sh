@@ -1,4 +1,4 @@
-# A run that was killed, at moments of chance, and taken up again ends in the same bits as one never stopped.
+# A run that was killed at random moments and taken up again ends in the same bits as one never stopped.
 . "$(dirname "$0")/common.sh"
 cd "$work"
 cat > plate.yaml <<'Y'
@@ -72,7 +72,7 @@ for file in results.vtkhdf checkpoint.h5; do
   checks=$((checks + 1))
 done
 
-# interrupted and killed at moments of chance
+# interrupted and killed at random moments
 RANDOM=7
 for signal in INT TERM KILL KILL KILL; do
   rm -rf killed

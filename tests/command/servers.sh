@@ -1,5 +1,5 @@
 #!/bin/bash
-# Laws in other processes: the same bits as at home, over every transport, through restarts; and what is said when servers fail.
+# Laws in other processes: the same bits as inside the program, over every transport, through restarts; and what is said when servers fail.
 . "$(dirname "$0")/common.sh"
 cd "$work" || exit 1
 
@@ -33,7 +33,7 @@ same() { "$build/tests/compare_results" "$1/$3" "$2/$3" > differences || fail "$
 deck "model: multi-yield-j2, $clay" > home.yaml
 "$breccia" run home.yaml > out 2>&1 || fail "home: $(cat out)"
 
-# ---- the same bits wherever the law lives ----
+# ---- the same bits wherever the law runs ----
 serve "unix:$PWD/one" ; first=$server
 serve "tcp://127.0.0.1:0"; second=$server
 tcp=$(sed 's/listening at //' serve.out)
@@ -55,21 +55,21 @@ serve "$tcp"; second=$server
 same home two results.vtkhdf
 server=$second; stop
 
-# The stable step that is measured anew when bonds have broken: elastic answers begin at the last ones, as those of laws at home do.
+# The stable step that is measured again when bonds have broken: elastic answers begin at the last ones, as those of laws inside the program do.
 torn() { deck "$1" | sed 's/^loads:/failure: {critical stretch: 0.02}\nloads:/; s/900/3000/g; s/ramp to: 1e-4/ramp to: 1e-3/; s/steps: 60/steps: 2001/; s/checkpoint steps: 20/checkpoint steps: 1000/'; }
 torn "model: multi-yield-j2, $clay" > torn-home.yaml
 torn "$served, server: ['unix:$PWD/one']" > torn-away.yaml
 for where in home away; do "$breccia" run torn-$where.yaml > out 2>&1 || fail "torn, $where: $(cat out)"; done
 same torn-home torn-away results.vtkhdf
 steps=$(sed -n 's/.*"stable_time_step": \([^,]*\),/\1/p' torn-home/summary.json torn-away/summary.json | tr '\n' ' ')
-echo "$steps" | awk '{exit !($1 > 0 && $1 - $2 < 1e-9 * $1 && $2 - $1 < 1e-9 * $1)}' || fail "stable steps at home and elsewhere: $steps"
+echo "$steps" | awk '{exit !($1 > 0 && $1 - $2 < 1e-9 * $1 && $2 - $1 < 1e-9 * $1)}' || fail "stable steps inside the program and in a server: $steps"
 
 # One point in the laboratory.
 laboratory() { printf 'units: {length: m, force: kN, time: s}\nmaterial: {%s, density: 1.5}\ntest: {kind: triaxial, strain: 0.01, cycles: 1, confining pressure: 50}\n' "$1"; }
 laboratory "model: multi-yield-j2, $clay" > test-home.yaml
 laboratory "$served, server: ['unix:$PWD/one']" > test-away.yaml
-"$breccia" material test-home.yaml > test-home.csv || fail "laboratory at home"
-"$breccia" material test-away.yaml > test-away.csv 2> err || fail "laboratory elsewhere: $(cat err)"
+"$breccia" material test-home.yaml > test-home.csv || fail "laboratory inside the program"
+"$breccia" material test-away.yaml > test-away.csv 2> err || fail "laboratory in a server: $(cat err)"
 equal "laboratory: rows" "$(wc -l < test-home.csv)" 422
 cmp -s test-home.csv test-away.csv || fail "laboratory: $(diff test-home.csv test-away.csv | head -3)"
 "$breccia" material test-away.yaml > again.csv; cmp -s again.csv test-home.csv || fail "laboratory: a point begins where another ended"

@@ -167,7 +167,7 @@ def secrets_guard(path):
 
 
 def decks_agree(tcl):
-    """A small plate with its law at home and in OpenSees; laws along bonds also in that of Tcl."""
+    """A small plate with its law inside the program and in OpenSees; laws along bonds also in that of Tcl."""
     deck = """units: {{length: m, force: kN, time: s}}
 materials: {{clay: {{{material}, density: 1.5}}}}
 body:
@@ -217,7 +217,7 @@ results: {{number: 2, precision: double}}
         for place in list(places)[1:]:
             files = [f"{WORK}/{name}-{where}/results.vtkhdf" for where in ("home", place)]
             result = subprocess.run([COMPARE, *files, "1e-8", "displacement", "stress"], capture_output=True, text=True)
-            check(f"{name}: at home and {place}", result.returncode == 0, result.stdout)
+            check(f"{name}: inside the program and {place}", result.returncode == 0, result.stdout)
 
 
 def the_plate_agrees():
@@ -231,7 +231,7 @@ def the_plate_agrees():
         check(f"plate of {name} runs", run.returncode == 0 and "step 500 of 500" in run.stdout, run.stdout + run.stderr)
     files = [f"{WORK}/plate-{name}/results.vtkhdf" for name in ("clay", "clay-opensees")]
     result = subprocess.run([COMPARE, *files, "1e-8", "displacement"], capture_output=True, text=True)
-    check("the plate at home and in OpenSees", result.returncode == 0, result.stdout)
+    check("the plate inside the program and in OpenSees", result.returncode == 0, result.stdout)
 
 
 def refusals_are_told(client):
@@ -335,7 +335,7 @@ def the_laboratory_agrees():
 
 
 def chance_does_no_harm(path):
-    """Frames and bytes of chance: the server answers in frames or closes the line, and serves the next client."""
+    """Random frames and bytes: the server answers in frames or closes the line, and serves the next client."""
     chance = random.Random(3)
     client = Client(path)
     client.line.close()
@@ -359,7 +359,7 @@ def chance_does_no_harm(path):
         else:
             line.sendall(body)
         line.close()
-        check("the server lives", client.process.poll() is None)
+        check("the server still runs", client.process.poll() is None)
     client.line = client.connect()
     client.ask(1, b"")
     client.create("Steel01", 1)

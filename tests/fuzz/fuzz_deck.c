@@ -1,4 +1,4 @@
-/* Decks of chance through YAML, reader and checks, for libFuzzer. */
+/* Random decks through YAML, reader and checks, for libFuzzer. */
 #include "breccia/breccia.h"
 #include "model/deck_layout.h"
 

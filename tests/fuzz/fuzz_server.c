@@ -1,4 +1,4 @@
-/* Frames of chance to a material server, and bytes of chance to a client, for libFuzzer. The server must answer a HELLO after anything. */
+/* Random frames to a material server, and random bytes to a client, for libFuzzer. The server must answer a HELLO after anything. */
 #include "constitutive/remote/channel.h"
 #include "constitutive/remote/server.h"
 

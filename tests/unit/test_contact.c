@@ -143,7 +143,7 @@ static void a_pair_repels_as_it_should_once_its_bond_is_gone(void **state)
   const double c = 12 * 3e6 / (acos(-1) * pow(0.03, 4));
   assert_near(p->internal[0][a] - without, -15 * c / 0.03 * (0.009 - 0.006) * 1e-6,
               1e-9 * 15 * c / 0.03 * 0.003 * 1e-6);
-  contact_search(&d->contact); /* found anew, it is the same */
+  contact_search(&d->contact); /* found again, it is the same */
   const double before = p->internal[0][a];
   compute_forces(model);
   assert_true(p->internal[0][a] == before);

@@ -25,7 +25,7 @@ static void wander(uint64_t *seed, double size, double step, double strain[6])
   }
 }
 
-/** The walk of the tangents, which begins anew now and then: dilation would press a point that wanders for long. */
+/** The walk of the tangents, which begins again now and then: dilation would press a point that wanders for long. */
 static void wander_anew(uint64_t *seed, const Material *m, Point *p, double size, int step, double *length,
                         double strain[6])
 {

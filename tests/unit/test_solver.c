@@ -127,7 +127,7 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
       }
 }
 
-/** A sum over all bonds of force components times numbers of chance. */
+/** A sum over all bonds of force components times random numbers. */
 static double bond_forces(const Domain *d)
 {
   double sum = 0, force[3];

@@ -1,4 +1,4 @@
-/* A constitutive law that lives in other processes: material servers, each of which holds some of the points. Neither formulations nor
+/* A constitutive law that runs in other processes: material servers, each of which holds some of the points. Neither formulations nor
  * solvers know of it: it is a law like others, except that whole parts of a body go out at once (post, collect).
  *
  * Points are numbered 0 .. n-1; a row of history begins with the number (or -1: no point), then strain and stress as of the last
@@ -57,7 +57,7 @@ int remote_begin(Remote *remote, const int64_t *starts, Error *error);
 int remote_resume(Remote *remote, const int64_t *starts, double *state, const double *identity, Error *error);
 /** Numbers by which servers are found again: session and count of commits of each, [servers][2]. Commits what is due. */
 int remote_identify(Remote *remote, double *identity, Error *error);
-/** After something went wrong: reaches the servers anew, as what is said on their lines may be out of step.
+/** After something went wrong: reaches the servers again, as what is said on their lines may be out of step.
  *  @return whether all of them hold the state that was committed last, so that it can be saved */
 bool remote_rescue(Remote *remote);
 /** Fetches what servers save of all points, [points][remote_state_values]. */

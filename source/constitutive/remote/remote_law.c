@@ -133,7 +133,7 @@ static int law_update(const void *constants, const breccia_batch *batch)
 void remote_make_law(Remote *r)
 {
   r->law = (breccia_law){.name = r->name,
-                         .about = "lives in a material server",
+                         .about = "runs in a material server",
                          .source = r->command,
                          .maturity = "experimental",
                          .constants_size = sizeof(Remote *),

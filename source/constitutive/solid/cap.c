@@ -178,7 +178,7 @@ static double return_to_cap(const Cap *c, double trial, double length, double k,
     if (iteration > 2000) return NAN;
     d = next;
   }
-  /* Near the top of the ellipse after great compaction g hangs on the last digits of d: what is left goes radially. */
+  /* Near the top of the ellipse after great compaction g depends on the last digits of d: what is left goes radially. */
   const double radial = fabs(S - f) > 1e-12 * f ? f / S : 1;
   *invariant = radial == 1 ? trial - bulk3 * H : k + d + R * b * radial;
   *returned = a * radial;
@@ -201,7 +201,7 @@ static double draw_cap_back(const Cap *c, double k, double grown, double invaria
   return back < 0 || (c->strict && back < fmax(invariant, 0)) ? k : back;
 }
 
-CapReturn cap_return_elsewhere(const Cap *c, double trial, double length, double k, double at)
+CapReturn cap_return_off_cap(const Cap *c, double trial, double length, double k, double at)
 {
   const double ratio = 2 * c->elastic.shear / (9 * c->elastic.bulk);
   CapReturn r = {.plastic = true, .invariant = trial, .length = length, .cap = k};
@@ -240,7 +240,7 @@ static bool update_point(const void *constants, SolidPoint *p)
   double s[6], length, slope;
   const double trial = -elastic_trial(&c->elastic, p->strain, p->committed + CAP_PLASTIC, s, &length),
                k = p->committed[CAP_PARAMETER];
-  CapReturn r = cap_return_elsewhere(c, trial, length, k, envelope(c, fmin(trial, k), &slope));
+  CapReturn r = cap_return_off_cap(c, trial, length, k, envelope(c, fmin(trial, k), &slope));
   if (p->elastic) r = (CapReturn){.invariant = trial, .length = length, .cap = k};
   if (r.on_cap) r.cap = return_to_cap(c, trial, length, k, &r.invariant, &r.length, &r.slopes);
   if (!isfinite(r.cap)) return false;

@@ -23,7 +23,7 @@ typedef struct CapReturn {
 } CapReturn;
 
 /** All regions but the cap. @param[in] at  the envelope at the lesser of trial and k */
-CapReturn cap_return_elsewhere(const Cap *c, double trial, double length, double k, double at);
+CapReturn cap_return_off_cap(const Cap *c, double trial, double length, double k, double at);
 
 /** `update` of many points without tangents: the same returns, side by side, the same bits whatever their company. */
 int cap_update_many(const Cap *c, const breccia_batch *batch);

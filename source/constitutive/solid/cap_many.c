@@ -170,7 +170,7 @@ static int return_chunk(const Cap *c, const breccia_batch *batch, int first, int
       chunk->flows[p] = false;
       continue;
     }
-    CapReturn r = cap_return_elsewhere(c, trial, length, k, chunk->at[p]);
+    CapReturn r = cap_return_off_cap(c, trial, length, k, chunk->at[p]);
     chunk->flows[p] = r.plastic;
     if (!r.plastic) continue;
     if (r.on_cap) {

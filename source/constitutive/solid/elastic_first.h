@@ -25,7 +25,7 @@ LANES_INLINE Lanes trial_radius(const TrialLanes *t)
   return t->length * lanes_set(1 / sqrt(6));
 }
 
-/** @return the points that are inside their yield surface for sure; a point's answer must not hang on its company */
+/** @return the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it */
 typedef LaneMask (*SolidInside)(const void *constants, const TrialLanes *trial);
 
 /** `update` of a law: solid_update with the sieve before it. To be called from a function with BRECCIA_CLONES.

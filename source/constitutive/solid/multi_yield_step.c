@@ -3,7 +3,7 @@
  * results can be compared to the last digits; it depends (weakly) on the size of the strain increments. The tangent is the
  * derivative of the whole scheme, carried along with it.
  *
- * Four points go side by side, each under its own mask: a point's numbers do not hang on its company. One by one a flowing point
+ * Four points go side by side, each under its own mask: a point's numbers do not depend on the points beside it. One by one a flowing point
  * took 120 to 160 ns, most of it waiting for roots and quotients.
  *
  * A point loads for many steps on one surface, so only centres that an update moved are copied from the committed row to its
