@@ -2,8 +2,12 @@
 #include "cli/verbs.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const Verb *const verbs[] = {&verb_run,       &verb_check, &verb_new,    &verb_plot,       &verb_models, &verb_material,
                              &verb_calibrate, &verb_serve, &verb_schema, &verb_completion, NULL};
@@ -95,7 +99,7 @@ static void print_help(FILE *out)
   fprintf(out, "\n'breccia VERB --help' tells more. To begin: breccia new plate.yaml, then breccia run plate.yaml\n");
 }
 
-int main(int argc, char **argv)
+static int obey(int argc, char **argv)
 {
   const char *word = argc > 1 ? argv[1] : "--help";
   if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
@@ -126,4 +130,32 @@ int main(int argc, char **argv)
   else
     fprintf(stderr, "breccia: there is no verb '%s'; 'breccia --help' lists them\n", word);
   return 2;
+}
+
+/** A file that is opened later must not get the number of an output that the caller has closed, and what is printed with it. */
+static void keep_three_files(void)
+{
+  int number;
+  while ((number = open("/dev/null", O_RDWR)) >= 0 && number <= STDERR_FILENO) continue;
+  if (number >= 0) close(number);
+}
+
+/** What could not be printed because the disk is full is a failure; a reader that has gone, like `head`, has read what it wanted. */
+static int close_output(int status)
+{
+  errno = 0;
+  if (!fflush(stdout) && !ferror(stdout)) return status;
+  const int number = errno;
+  struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
+  if (poll(&output, 1, 0) > 0 && output.revents & (POLLERR | POLLHUP)) return status;
+  fprintf(stderr, "breccia: standard output: not everything could be printed%s%s\n", number ? ": " : "",
+          number ? strerror(number) : "");
+  return status ? status : BRECCIA_FAILURE;
+}
+
+int main(int argc, char **argv)
+{
+  keep_three_files();
+  signal(SIGPIPE, SIG_IGN); /* whoever stops reading what is printed does not end a run */
+  return close_output(obey(argc, argv));
 }

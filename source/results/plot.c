@@ -1,38 +1,48 @@
 #include "results/plot.h"
 
-#include "base/text.h"
+#include "base/program.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
+/** In single quotes, between which gnuplot reads no escapes and runs no commands. */
 static void quote(Text *script, const char *words)
 {
-  text_add(script, "\"");
-  for (; *words; ++words) text_add(script, *words == '"' || *words == '\\' ? "\\%c" : "%c", *words);
-  text_add(script, "\"");
+  text_add(script, "'");
+  for (; *words; ++words) text_add(script, *words == '\'' ? "''" : "%c", *words == '\n' ? ' ' : *words);
+  text_add(script, "'");
 }
 
-static int run_gnuplot(const Text *script, const char *path, Error *error)
+/** Runs a script that draws into `part`, which becomes the picture once it is whole. */
+static int run_gnuplot(const Text *script, const char *part, const char *path, Error *error)
 {
-  fflush(NULL);
-  FILE *pipe = popen("gnuplot 2>/dev/null", "w");
-  if (!pipe) return error_add(error, BRECCIA_FAILURE, "gnuplot cannot be started: %s", strerror(errno));
-  fwrite(script->characters, 1, script->length, pipe);
-  int status = pclose(pipe);
-  if (status == 0) return BRECCIA_OK;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return error_add(error, BRECCIA_FAILURE, "%s: curves are drawn by gnuplot, which is not installed (gnuplot-nox)",
-                     path);
-  return error_add(error, BRECCIA_FAILURE, "%s: gnuplot could not draw it", path);
+  static const char *const words[] = {"gnuplot", NULL};
+  Text reason = {0};
+  int status = BRECCIA_OK;
+  const ProgramEnd end = program_run(words, script->characters, script->length, &reason);
+  if (end == PROGRAM_MISSING)
+    status = error_add(error, BRECCIA_FAILURE,
+                       "curves are drawn by gnuplot, which is not installed: install it (Debian: apt install "
+                       "gnuplot-nox) and draw again; all other files are written");
+  else if (end == PROGRAM_FAILED)
+    status = error_add(error, BRECCIA_FAILURE, "%s: not drawn: %s", path, reason.characters);
+  else if (rename(part, path))
+    status = error_add(error, BRECCIA_FAILURE, "%s: not drawn: %s", path,
+                       errno == ENOENT ? "gnuplot ended without a picture" : strerror(errno));
+  if (status) remove(part);
+  text_free(&reason);
+  return status;
 }
 
 int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char *path, Error *error)
 {
   static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e"};
   const char *dot = strrchr(path, '.');
+  char *part = text_format("%s.part", path);
   Text script = {0};
+  if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
   for (int k = 0; k < count; ++k) {
     text_add(&script, "$data%d << END\n", k);
     for (int i = 0; i < lines[k].count; ++i)
@@ -44,7 +54,7 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
                          : !strcmp(dot, ".svg")       ? "svg size 760,520 font \"sans,12\""
                                                       : "pdfcairo size 16cm,11cm font \"sans,11\"";
   text_add(&script, "set terminal %s\nset output ", terminal);
-  quote(&script, path);
+  quote(&script, part);
   text_add(&script, "\nset title ");
   quote(&script, o->title);
   text_add(&script, " noenhanced\nset xlabel ");
@@ -66,7 +76,8 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
     text_add(&script, " noenhanced");
   }
   text_add(&script, "\n");
-  int status = run_gnuplot(&script, path, error);
+  int status = run_gnuplot(&script, part, path, error);
   text_free(&script);
+  free(part);
   return status;
 }

@@ -60,7 +60,11 @@ int process_start(Process *process, const char *folder, int number, Text *reason
   /* In a group of its own: what the terminal sends to stop the run must not end the servers before the last state is saved. */
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  sigset_t usual;
+  sigemptyset(&usual);
+  sigaddset(&usual, SIGPIPE); /* which the command ignores, and a server need not */
+  posix_spawnattr_setsigdefault(&attributes, &usual);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   posix_spawnattr_setpgroup(&attributes, 0);
   char *words[] = {(char *)program, "--listen", process->address, "--once", NULL};
   const int code = posix_spawnp(&process->number, program, &actions, &attributes, words, environ);
