@@ -49,13 +49,13 @@ static int start(const char *const *words, FILE *in, FILE *out, pid_t *number)
   return code;
 }
 
-ProgramEnd program_run(const char *const *words, const char *script, size_t length, Text *reason)
+ProgramEnd program_feed(const char *const *words, FILE *in, Text *reason)
 {
   ProgramEnd end = PROGRAM_FAILED;
-  FILE *in = tmpfile(), *out = tmpfile();
+  FILE *out = tmpfile();
   pid_t number = 0;
   int status = 0, code = 0;
-  if (!in || !out || fwrite(script, 1, length, in) != length || fflush(in) || fseek(in, 0, SEEK_SET)) {
+  if (!out || fflush(in) || fseek(in, 0, SEEK_SET)) {
     text_add(reason, "a temporary file could not be written: %s", strerror(errno));
   } else if ((code = start(words, in, out, &number))) {
     end = code == ENOENT ? PROGRAM_MISSING : PROGRAM_FAILED;
@@ -74,7 +74,18 @@ ProgramEnd program_run(const char *const *words, const char *script, size_t leng
       end = PROGRAM_DONE;
     if (end == PROGRAM_FAILED) add_last_line(out, reason);
   }
-  if (in) fclose(in);
   if (out) fclose(out);
+  return end;
+}
+
+ProgramEnd program_run(const char *const *words, const char *script, size_t length, Text *reason)
+{
+  ProgramEnd end = PROGRAM_FAILED;
+  FILE *in = tmpfile();
+  if (in && fwrite(script, 1, length, in) == length)
+    end = program_feed(words, in, reason);
+  else
+    text_add(reason, "a temporary file could not be written: %s", strerror(errno));
+  if (in) fclose(in);
   return end;
 }

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include <stdio.h>
 
 typedef enum ProgramEnd {
   PROGRAM_DONE,    /* exit status 0 */
@@ -16,5 +17,8 @@ typedef enum ProgramEnd {
  *  @param[in]  words   its name and arguments, then NULL
  *  @param[out] reason  of PROGRAM_FAILED: how it ended, and its last line of errors */
 ProgramEnd program_run(const char *const *words, const char *script, size_t length, Text *reason);
+
+/** The same with a file as standard input, read from its beginning. */
+ProgramEnd program_feed(const char *const *words, FILE *in, Text *reason);
 
 #endif

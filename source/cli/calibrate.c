@@ -40,12 +40,14 @@ static int draw(const ElementDeck *deck, const double *x, const double *y, int c
   ElementCurve c;
   int status = element_test_run(&deck->test, &deck->material, &c, error);
   if (!status) {
-    char unit[64], label[160];
+    char unit[64];
     units_name(deck->units, dimension_find("stress"), unit, sizeof unit);
-    snprintf(label, sizeof label, "%s (%s)", deck->test.y_label, unit);
     const PlotLine lines[2] = {{"fitted", c.x, c.y, c.count, false}, {"measured", x, y, count, true}};
-    const PlotOptions plot = {deck->spec->title ? deck->spec->title : deck->law->name, deck->test.x_label, label, NAN,
-                              NAN};
+    const PlotOptions plot = {.title = deck->spec->title ? deck->spec->title : deck->law->name,
+                              .x = {.words = deck->test.x_label, .unit = ""},
+                              .y = {.words = deck->test.y_label, .unit = unit},
+                              .low = NAN,
+                              .high = NAN};
     status = plot_draw(lines, 2, &plot, path, error);
     if (!status) printf("%s\n", path);
   }

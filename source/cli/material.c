@@ -147,11 +147,14 @@ static int show_curve(const ElementTest *test, const ElementCurve *c, const Unit
             100 * most);
   }
   if (!status && o->picture) {
-    char unit[64], label[160];
+    char unit[64];
     units_name(units, dimension_find("stress"), unit, sizeof unit);
-    snprintf(label, sizeof label, "%s (%s)", test->y_label, unit);
     const PlotLine lines[2] = {{"computed", c->x, c->y, c->count, false}, {"measured", x, y, count, true}};
-    const PlotOptions plot = {o->title, test->x_label, label, NAN, NAN};
+    const PlotOptions plot = {.title = o->title,
+                              .x = {.words = test->x_label, .unit = ""},
+                              .y = {.words = test->y_label, .unit = unit},
+                              .low = NAN,
+                              .high = NAN};
     status = plot_draw(lines, count ? 2 : 1, &plot, o->picture, error);
     if (!status) fprintf(o->quiet ? stderr : stdout, "%s\n", o->picture);
   }

@@ -188,37 +188,85 @@ static int nearest_write(const ResultView *view, double time)
   return best;
 }
 
-static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, int step, Error *error)
+/** A path in the folder of pictures that no other picture of this run has. To be freed. */
+static char *picture_path(const Run *run, const char *given, const char *name)
 {
-  char name[160], words[256];
-  const PictureOptions o = {.field = spec->field,
-                            .component = spec->component,
-                            .deformed = spec->deformed,
-                            .azimuth = spec->view[0],
-                            .elevation = spec->view[1],
-                            .low = spec->range[0],
-                            .high = spec->range[1],
-                            .broken_bonds = spec->broken_bonds};
-  snprintf(words, sizeof words, "%s%s%s step %lld", spec->field, spec->component ? " " : "",
-           spec->component ? spec->component : "", (long long)view->step_numbers[step]);
-  text_file_name(words, name, sizeof name);
-  char *path = text_format("%s/pictures/%s.png", run->wish->folder, name);
-  int status = path ? picture_draw(view, step, &o, path, error) : BRECCIA_FAILURE;
-  if (!status) note_file(run, path);
-  free(path);
+  char *path = NULL;
+  for (int number = 1; number < 1000; ++number) {
+    char words[256], safe[256], ending[16] = "";
+    if (number > 1) snprintf(ending, sizeof ending, "-%d", number);
+    snprintf(words, sizeof words, "%.200s%s", given ? given : name, ending);
+    text_file_name(words, safe, sizeof safe);
+    path = text_format("%s/pictures/%s.png", run->wish->folder, safe);
+    char *line = path ? text_format("  %s\n", path) : NULL;
+    const bool taken = line && run->files.characters && strstr(run->files.characters, line);
+    free(line);
+    if (!taken) break;
+    free(path);
+    path = NULL;
+  }
+  return path;
+}
+
+static PictureOptions picture_options(const PictureSpec *spec)
+{
+  return (PictureOptions){.field = spec->field,
+                          .component = spec->component,
+                          .title = spec->title,
+                          .x_label = spec->x_label,
+                          .y_label = spec->y_label,
+                          .deformed = spec->deformed,
+                          .azimuth = spec->view[0],
+                          .elevation = spec->view[1],
+                          .low = spec->range[0],
+                          .high = spec->range[1],
+                          .broken_bonds = spec->broken_bonds};
+}
+
+/** One field at the times of its entry, or at the last one written. */
+static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, Error *error)
+{
+  const PictureOptions o = picture_options(spec);
+  PictureSurvey survey;
+  int status = spec->same_range ? picture_survey(view, 0, view->steps - 1, false, &o, &survey, error) : BRECCIA_OK;
+  for (int t = 0; !status && t < (spec->times.count ? spec->times.count : 1); ++t) {
+    const double time = spec->times.count ? spec->times.values[t] : run->model->solver.time;
+    if (time > run->model->solver.time * (1 + 1e-9)) continue; /* the run did not come so far */
+    const int step = nearest_write(view, time);
+    char name[160];
+    picture_name(view, step, spec->field, spec->component, spec->times.count > 0, name, sizeof name);
+    char *path = picture_path(run, spec->times.count > 1 ? NULL : spec->name, name);
+    if (spec->name && spec->times.count > 1) { /* the times tell its pictures apart */
+      char whole[256];
+      picture_name(view, step, spec->name, NULL, true, whole, sizeof whole);
+      free(path);
+      path = picture_path(run, whole, NULL);
+    }
+    status = path ? picture_draw(view, step, &o, spec->same_range ? &survey : NULL, path, error) : BRECCIA_FAILURE;
+    if (!status) note_file(run, path);
+    free(path);
+  }
   return status;
 }
 
 static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
 {
   char name[160];
-  text_file_name(spec->curve, name, sizeof name);
-  char *path = text_format("%s/pictures/%s.png", run->wish->folder, name);
   const char *folder = run->wish->folder;
-  const CurveOptions o = {run->model->spec->title, NULL, spec->range[0], spec->range[1]};
-  int status = path ? curve_draw(&folder, 1, spec->curve, &o, path, error) : BRECCIA_FAILURE;
+  char *curve = spec->energy ? curve_of_energies(folder, error) : text_format("%s", spec->curve);
+  if (!curve) return BRECCIA_FAILURE;
+  curve_name(curve, name, sizeof name);
+  char *path = picture_path(run, spec->name, name);
+  const CurveOptions o = {.title = spec->title ? spec->title : run->model->spec->title,
+                          .x_label = spec->x_label,
+                          .y_label = spec->y_label,
+                          .log_axes = spec->log_axes,
+                          .low = spec->range[0],
+                          .high = spec->range[1]};
+  int status = path ? curve_draw(&folder, 1, curve, &o, path, error) : BRECCIA_FAILURE;
   if (!status) note_file(run, path);
   free(path);
+  free(curve);
   return status;
 }
 
@@ -236,20 +284,16 @@ static void draw_pictures(Run *run)
     for (int k = 0; !model->spec->pictures.count && k < 3; ++k) {
       bool written = false;
       for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
-      const PictureSpec spec = {.field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}};
-      if (written) draw_field(run, &view, &spec, view.steps - 1, error);
+      const PictureSpec spec = {
+          .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
+      if (written) draw_field(run, &view, &spec, error);
     }
     for (int k = 0; k < model->spec->pictures.count; ++k) {
       const PictureSpec *spec = model->spec->pictures.items[k];
-      if (spec->curve) {
+      if (spec->field)
+        draw_field(run, &view, spec, error);
+      else
         draw_curve(run, spec, error);
-        continue;
-      }
-      for (int t = 0; t < (spec->times.count ? spec->times.count : 1); ++t) {
-        double time = spec->times.count ? spec->times.values[t] : model->solver.time;
-        if (time > model->solver.time * (1 + 1e-9)) continue; /* the run did not come so far */
-        draw_field(run, &view, spec, nearest_write(&view, time), error);
-      }
     }
     result_view_close(&view);
   }

@@ -11,6 +11,7 @@ typedef struct OutputField {
   int components;
   const char *const *component_names; /* [components]; NULL for one */
   void (*value)(const Domain *domain, int32_t place, double *value);
+  bool has_sign; /* a single number that may well be negative */
 } OutputField;
 
 /** @return the k-th field, or NULL after the last */

@@ -1,19 +1,30 @@
 #include "results/picture.h"
 
+#include "results/colours.h"
+#include "results/fields.h"
+#include "results/scene.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
-#include <cairo.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+static const char *log_axes(int k)
+{
+  static const char *const words[] = {"none", "x", "y", "xy"};
+  return k < 4 ? words[k] : NULL;
+}
+
 static const Field picture_fields[] = {
     {"field", FIELD_TEXT, offsetof(PictureSpec, field), NULL, "", NULL, "field of the particles to colour by", NULL,
      NULL, 'A'},
     {"curve", FIELD_TEXT, offsetof(PictureSpec, curve), NULL, "", NULL,
-     "two columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis", NULL, NULL,
-     'A'},
+     "columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis; several for the "
+     "vertical one have commas between them",
+     NULL, NULL, 'A'},
+    {"energy", FIELD_FLAG, offsetof(PictureSpec, energy), NULL, "", NULL,
+     "all energies over time; needs a watch with 'energy: yes'", NULL, NULL, 'A'},
     {"component", FIELD_TEXT, offsetof(PictureSpec, component), NULL, "", NULL,
      "of a vector or tensor, like x or xy; when absent the length of a vector", NULL, NULL, 0},
     {"at", FIELD_NUMBERS, offsetof(PictureSpec, times), "time", "", "[0, inf)", "times to draw; the end when absent",
@@ -26,14 +37,36 @@ static const Field picture_fields[] = {
     {"range", FIELD_POINT, offsetof(PictureSpec, range), "1", "", NULL,
      "[lowest, highest] value of the colour scale, or of the horizontal axis of a curve, in the deck's units", NULL,
      NULL, 0},
+    {"same range", FIELD_FLAG, offsetof(PictureSpec, same_range), NULL, "yes", NULL,
+     "where 'range' is absent: colours mean the same at all times of the run; no: each picture has a range of its own",
+     NULL, NULL, 0},
     {"broken bonds", FIELD_FLAG, offsetof(PictureSpec, broken_bonds), NULL, "no", NULL, "draw bonds that have broken",
      NULL, NULL, 0},
+    {"title", FIELD_TEXT, offsetof(PictureSpec, title), NULL, "", NULL, "over the picture; the deck's when absent",
+     NULL, NULL, 0},
+    {"x label", FIELD_TEXT, offsetof(PictureSpec, x_label), NULL, "", NULL,
+     "words at the horizontal axis; when absent what it shows and its unit", NULL, NULL, 0},
+    {"y label", FIELD_TEXT, offsetof(PictureSpec, y_label), NULL, "", NULL, "words at the vertical axis", NULL, NULL,
+     0},
+    {"log axes", FIELD_CHOICE, offsetof(PictureSpec, log_axes), NULL, "none", NULL,
+     "which axes of a curve are logarithmic", NULL, log_axes, 0},
+    {"name", FIELD_TEXT, offsetof(PictureSpec, name), NULL, "", NULL,
+     "of the file, without its ending; made from the field or the curve when absent", NULL, NULL, 0},
 };
+
+static void check_picture(const DeckReader *reader, void *section)
+{
+  const PictureSpec *p = section;
+  if (p->range[0] >= p->range[1])
+    node_error(reader->document, section_place(p, "range"), reader->error,
+               "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
+}
+
 const Section picture_section = {"picture",
                                  "A picture made at the end of a run, in the folder 'pictures'.",
                                  sizeof(PictureSpec),
                                  FIELDS(picture_fields),
-                                 NULL,
+                                 check_picture,
                                  NULL,
                                  NULL,
                                  0};
@@ -44,30 +77,49 @@ bool picture_format(const char *path)
   return dot && (!strcmp(dot, ".png") || !strcmp(dot, ".svg") || !strcmp(dot, ".pdf"));
 }
 
-/* A sequential scale from dark blue over green to yellow: rises evenly in lightness, so that it survives a grey printer. */
-static void colour(double t, double rgb[3])
+/** As many decimals for all times of a file as tell two neighbours apart, of the largest time four digits at least. */
+static int time_decimals(const ResultView *view, double factor)
 {
-  static const double stops[][3] = {{.190, .072, .330}, {.230, .250, .530}, {.170, .410, .560}, {.130, .560, .550},
-                                    {.210, .700, .470}, {.550, .820, .270}, {.960, .900, .150}};
-  enum { LAST = sizeof stops / sizeof *stops - 1 };
-  t = t < 0 || isnan(t) ? 0 : t > 1 ? 1 : t;
-  int k = (int)(t * LAST);
-  if (k == LAST) --k;
-  double share = t * LAST - k;
-  for (int c = 0; c < 3; ++c) rgb[c] = stops[k][c] + share * (stops[k + 1][c] - stops[k][c]);
+  double gap = view->steps ? view->times[view->steps - 1] / 1000 : 1;
+  for (int k = 1; k < view->steps; ++k)
+    if (view->times[k] > view->times[k - 1]) gap = fmin(gap, view->times[k] - view->times[k - 1]);
+  return gap > 0 ? (int)fmin(6, fmax(0, -floor(log10(gap * factor) + 1e-6))) : 0;
 }
 
-#define BALL 0.62 /* radius of a sphere in spacings: they overlap a little, without gaps along rows */
+static void trim_zeros(char *number)
+{
+  size_t n = strlen(number);
+  if (!strchr(number, '.')) return;
+  while (number[n - 1] == '0') number[--n] = 0;
+  if (number[n - 1] == '.') number[n - 1] = 0;
+}
 
-typedef struct Scene {
-  int64_t count;
-  double *x, *y, *depth; /* on the picture plane, and towards the eye */
-  double *value;
-  double low, high; /* of the colours */
-  double right[3], up[3], eye[3];
-  bool flat;             /* seen along z: the axes of the picture are x and y */
-  double x0, x1, y0, y1; /* extent with half a spacing around */
-} Scene;
+void picture_time(const ResultView *view, int step, bool all_digits, char *words, size_t size)
+{
+  const DisplayUnit unit = display_unit(view->time_unit, view->steps ? view->times[view->steps - 1] : 0);
+  char number[64];
+  snprintf(number, sizeof number, "%.*f", time_decimals(view, unit.factor), view->times[step] * unit.factor);
+  if (!all_digits) trim_zeros(number);
+  snprintf(words, size, "%s %s", number, unit.name);
+}
+
+void picture_name(const ResultView *view, int step, const char *field, const char *component, bool with_time,
+                  char *name, size_t size)
+{
+  char time[96] = "", words[256];
+  if (with_time) {
+    picture_time(view, step, false, time, sizeof time);
+    char *space = strchr(time, ' ');
+    if (space) memmove(space, space + 1, strlen(space));
+    char *micro = strstr(time, "µ");
+    if (micro) memmove(micro, "u", 1), memmove(micro + 1, micro + 2, strlen(micro + 1));
+  }
+  snprintf(words, sizeof words, "%s%s%s%s%s", field, component ? " " : "", component ? component : "",
+           with_time ? " " : "", time);
+  text_file_name(words, name, size);
+}
+
+/* ---- values ---- */
 
 static int component_index(const char *component, int components)
 {
@@ -79,11 +131,11 @@ static int component_index(const char *component, int components)
   return -1;
 }
 
-static int take_values(Scene *scene, const ResultView *view, int step, const PictureOptions *o, char *label,
-                       size_t size, Error *error)
+/** The number of each particle that colours stand for. */
+static int take_values(const ResultView *view, int step, const PictureOptions *o, double *values, char *unit,
+                       Error *error)
 {
   int components, chosen = 0;
-  char unit[64] = "";
   double *all = result_view_read(view, o->field, step, &components, unit, error);
   if (!all) return BRECCIA_USER_ERROR;
   if (o->component && (chosen = component_index(o->component, components)) < 0) {
@@ -96,25 +148,27 @@ static int take_values(Scene *scene, const ResultView *view, int step, const Pic
     return error_add(error, BRECCIA_USER_ERROR, "field '%s' has %d components; choose one, like xx", o->field,
                      components);
   }
-  scene->low = INFINITY;
-  scene->high = -INFINITY;
-  for (int64_t n = 0; n < scene->count; ++n) {
+  for (int64_t n = 0; n < view->particles; ++n) {
     double square = 0;
     for (int k = 0; k < components; ++k) square += all[n * components + k] * all[n * components + k];
-    double v = components == 1 || o->component ? all[n * components + chosen] : sqrt(square);
-    scene->value[n] = v;
-    if (!isfinite(v)) continue;
-    scene->low = fmin(scene->low, v);
-    scene->high = fmax(scene->high, v);
+    values[n] = components == 1 || o->component ? all[n * components + chosen] : sqrt(square);
   }
   free(all);
-  if (!isnan(o->low)) scene->low = o->low;
-  if (!isnan(o->high)) scene->high = o->high;
-  if (!(scene->high > scene->low)) scene->high = scene->low + fmax(1e-12, fabs(scene->low) * 1e-6);
-  snprintf(label, size, "%s%s%s%s%s%s", o->field, o->component ? " " : "", o->component ? o->component : "",
-           *unit ? " (" : "", unit, *unit ? ")" : "");
   return BRECCIA_OK;
 }
+
+void scene_colour(const Scene *scene, double value, double rgb[3])
+{
+  const ColourRange *r = &scene->range;
+  if (!isfinite(value))
+    rgb[0] = rgb[1] = rgb[2] = 0.62;
+  else if (r->diverging)
+    colour_diverging(value / fmax(fabs(r->low), fabs(r->high)), rgb);
+  else
+    colour_sequential((value - r->low) / (r->high - r->low), rgb);
+}
+
+/* ---- where particles are seen ---- */
 
 static void look(Scene *scene, const ResultView *view, const PictureOptions *o)
 {
@@ -144,7 +198,31 @@ static void look(Scene *scene, const ResultView *view, const PictureOptions *o)
   }
 }
 
-static int project(Scene *scene, const ResultView *view, int step, const PictureOptions *o, Error *error)
+/** Particles on the plane of the picture, displaced by `deformed` times `u` (NULL: nowhere). */
+static void project(Scene *scene, const ResultView *view, const double *u, double deformed)
+{
+  scene->x0 = scene->y0 = INFINITY;
+  scene->x1 = scene->y1 = -INFINITY;
+  for (int64_t n = 0; n < scene->count; ++n) {
+    const double half = view->spacings[n] * (scene->flat ? 0.5 : BALL);
+    scene->x[n] = scene->y[n] = scene->depth[n] = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double p = view->positions[3 * n + k] + (u ? deformed * u[3 * n + k] : 0);
+      scene->x[n] += p * scene->right[k];
+      scene->y[n] += p * scene->up[k];
+      scene->depth[n] += p * scene->eye[k];
+    }
+    if (!isfinite(scene->x[n]) || !isfinite(scene->y[n])) continue;
+    scene->x0 = fmin(scene->x0, scene->x[n] - half);
+    scene->x1 = fmax(scene->x1, scene->x[n] + half);
+    scene->y0 = fmin(scene->y0, scene->y[n] - half);
+    scene->y1 = fmax(scene->y1, scene->y[n] + half);
+  }
+}
+
+/** Places of the particles at a step. A picture shows no more than the body's size around where it was: of a body that flew apart the
+ *  rest would be a dot. */
+static int place_particles(Scene *scene, const ResultView *view, int step, const PictureOptions *o, Error *error)
 {
   double *u = NULL;
   int components = 3;
@@ -156,339 +234,167 @@ static int project(Scene *scene, const ResultView *view, int step, const Picture
       return error_add(error, BRECCIA_USER_ERROR,
                        "a deformed picture needs the field 'displacement' in the result file");
   }
-  scene->x0 = scene->y0 = INFINITY;
-  scene->x1 = scene->y1 = -INFINITY;
-  for (int64_t n = 0; n < scene->count; ++n) {
-    double p[3], half = view->spacings[n] * (scene->flat ? 0.5 : BALL);
-    scene->x[n] = scene->y[n] = scene->depth[n] = 0;
-    for (int k = 0; k < 3; ++k) {
-      p[k] = view->positions[3 * n + k] + (u ? o->deformed * u[3 * n + k] : 0);
-      scene->x[n] += p[k] * scene->right[k];
-      scene->y[n] += p[k] * scene->up[k];
-      scene->depth[n] += p[k] * scene->eye[k];
-    }
-    if (!isfinite(scene->x[n]) || !isfinite(scene->y[n])) continue;
-    scene->x0 = fmin(scene->x0, scene->x[n] - half);
-    scene->x1 = fmax(scene->x1, scene->x[n] + half);
-    scene->y0 = fmin(scene->y0, scene->y[n] - half);
-    scene->y1 = fmax(scene->y1, scene->y[n] + half);
-  }
+  project(scene, view, NULL, 0);
+  const double room = fmax(scene->x1 - scene->x0, scene->y1 - scene->y0);
+  const double x0 = scene->x0 - room, x1 = scene->x1 + room, y0 = scene->y0 - room, y1 = scene->y1 + room;
+  if (u) project(scene, view, u, o->deformed);
   free(u);
+  scene->x0 = fmax(scene->x0, x0);
+  scene->x1 = fmin(scene->x1, x1);
+  scene->y0 = fmax(scene->y0, y0);
+  scene->y1 = fmin(scene->y1, y1);
+  if (scene->x1 > scene->x0 && scene->y1 > scene->y0) return BRECCIA_OK;
+  return error_add(error, BRECCIA_FAILURE, "step %lld: no particle has a place in the picture",
+                   (long long)view->step_numbers[step]);
+}
+
+/* ---- a picture ---- */
+
+static int scene_create(Scene *scene, const ResultView *view, const PictureOptions *o, Error *error)
+{
+  *scene = (Scene){.count = view->particles};
+  double **arrays[] = {&scene->x, &scene->y, &scene->depth, &scene->value};
+  for (int k = 0; k < 4; ++k) {
+    *arrays[k] = malloc(sizeof(double) * (size_t)(scene->count + 1));
+    if (!*arrays[k]) return error_add(error, BRECCIA_FAILURE, "out of memory: picture");
+  }
+  look(scene, view, o);
   return BRECCIA_OK;
 }
 
-/* ---- the page ---- */
-
-typedef struct Page {
-  double width, height;         /* of the page in points */
-  double left, top, wide, high; /* of the drawing */
-  double scale;                 /* points per length */
-} Page;
-
-static Page lay_out(const Scene *scene, double size)
+static void scene_destroy(Scene *scene)
 {
-  const double most_wide = size > 0 ? size : 640, most_high = most_wide * 7 / 8;
-  Page page = {.left = 72, .top = 64};
-  double w = scene->x1 - scene->x0, h = scene->y1 - scene->y0;
-  page.scale = fmin(most_wide / w, most_high / h);
-  page.wide = w * page.scale;
-  page.high = h * page.scale;
-  page.width = fmax(page.left + page.wide + 150, 480);
-  page.height = fmax(page.top + page.high, 220) + 56;
-  return page;
+  free(scene->x);
+  free(scene->y);
+  free(scene->depth);
+  free(scene->value);
 }
 
-static void put_text(cairo_t *cr, double x, double y, double align, double size, const char *words)
+int picture_survey(const ResultView *view, int first, int last, bool framing, const PictureOptions *o, PictureSurvey *s,
+                   Error *error)
 {
-  cairo_text_extents_t extent;
-  cairo_set_font_size(cr, size);
-  cairo_text_extents(cr, words, &extent);
-  cairo_move_to(cr, x - align * extent.x_advance, y);
-  cairo_show_text(cr, words);
-}
-
-/** Distance of ticks: 1, 2 or 5 times a power of ten, some five of them. */
-static double tick_distance(double range)
-{
-  double power = pow(10, floor(log10(range / 5))), part = range / 5 / power;
-  return power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
-}
-
-static void tick_words(double value, double distance, char *words, size_t size)
-{
-  if (fabs(value) < 1e-9 * distance) value = 0;
-  snprintf(words, size, "%.6g", value);
-}
-
-static void draw_axes(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view)
-{
-  cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
-  cairo_set_line_width(cr, 0.8);
-  for (int axis = 0; axis < 2; ++axis) {
-    double low = axis ? scene->y0 : scene->x0, high = axis ? scene->y1 : scene->x1;
-    double apart = axis ? 18 : 50; /* pixels that the words of a tick need */
-    double step = tick_distance(fmax(high - low, 5 * apart / page->scale));
-    for (double v = ceil(low / step) * step; v <= high; v += step) {
-      char words[32];
-      tick_words(v, step, words, sizeof words);
-      if (axis) {
-        double y = page->top + page->high - (v - low) * page->scale;
-        cairo_move_to(cr, page->left - 10, y);
-        cairo_line_to(cr, page->left - 6, y);
-        cairo_stroke(cr);
-        put_text(cr, page->left - 14, y + 4, 1, 12, words);
-      } else {
-        double x = page->left + (v - low) * page->scale;
-        cairo_move_to(cr, x, page->top + page->high + 6);
-        cairo_line_to(cr, x, page->top + page->high + 10);
-        cairo_stroke(cr);
-        put_text(cr, x, page->top + page->high + 24, 0.5, 12, words);
+  *s = (PictureSurvey){INFINITY, -INFINITY, NAN, NAN, NAN, NAN};
+  Scene scene;
+  char unit[64];
+  int status = scene_create(&scene, view, o, error);
+  for (int k = first; k <= last && !status; ++k) {
+    status = take_values(view, k, o, scene.value, unit, error);
+    for (int64_t n = 0; n < scene.count && !status; ++n)
+      if (isfinite(scene.value[n])) {
+        s->least = fmin(s->least, scene.value[n]);
+        s->most = fmax(s->most, scene.value[n]);
       }
-    }
+    if (status || !framing) continue;
+    status = place_particles(&scene, view, k, o, error);
+    s->x0 = fmin(s->x0, scene.x0); /* the first time the other is no number, which fmin passes over */
+    s->x1 = fmax(s->x1, scene.x1);
+    s->y0 = fmin(s->y0, scene.y0);
+    s->y1 = fmax(s->y1, scene.y1);
   }
-  cairo_rectangle(cr, page->left - 6, page->top - 6, page->wide + 12, page->high + 12);
-  cairo_stroke(cr);
-  char words[96];
-  snprintf(words, sizeof words, "x (%s)", view->length_unit);
-  put_text(cr, page->left + page->wide / 2, page->top + page->high + 42, 0.5, 13, words);
-  snprintf(words, sizeof words, "y (%s)", view->length_unit);
-  cairo_save(cr);
-  cairo_translate(cr, 18, page->top + page->high / 2);
-  cairo_rotate(cr, -acos(-1) / 2);
-  put_text(cr, 0, 0, 0.5, 13, words);
-  cairo_restore(cr);
+  scene_destroy(&scene);
+  return status;
 }
 
-/** Directions of x, y and z, and the size of the body, where axes with numbers would mean nothing. */
-static void draw_triad(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view)
+static int scene_fill(Scene *scene, const ResultView *view, int step, const PictureOptions *o, const PictureSurvey *s,
+                      Error *error)
 {
-  double x = 34, y = page->height - 34;
-  cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
-  cairo_set_line_width(cr, 1.2);
-  for (int k = 0; k < 3; ++k) {
-    double dx = 24 * scene->right[k], dy = -24 * scene->up[k];
-    cairo_move_to(cr, x, y);
-    cairo_line_to(cr, x + dx, y + dy);
-    cairo_stroke(cr);
-    char name[2] = {"xyz"[k], 0};
-    put_text(cr, x + 1.4 * dx, y + 1.4 * dy + 4, 0.5, 12, name);
+  char unit[64] = "", words[128];
+  int status = take_values(view, step, o, scene->value, unit, error);
+  if (!status) status = place_particles(scene, view, step, o, error);
+  if (status) return status;
+  if (!isnan(s->x0)) {
+    scene->x0 = s->x0;
+    scene->x1 = s->x1;
+    scene->y0 = s->y0;
+    scene->y1 = s->y1;
   }
-  double bar = tick_distance((scene->x1 - scene->x0) * 2);
-  char words[96];
-  snprintf(words, sizeof words, "%g %s", bar, view->length_unit);
-  double at = page->left + 60;
-  cairo_move_to(cr, at, page->height - 24);
-  cairo_line_to(cr, at + bar * page->scale, page->height - 24);
-  cairo_stroke(cr);
-  put_text(cr, at + bar * page->scale + 8, page->height - 20, 0, 12, words);
-}
-
-static void draw_bar(cairo_t *cr, const Page *page, const Scene *scene, const char *label)
-{
-  double x = page->left + page->wide + 26, wide = 16, high = fmax(page->high, 160), y = page->top;
-  enum { STEPS = 128 };
-  for (int k = 0; k < STEPS; ++k) {
-    double rgb[3];
-    colour((k + 0.5) / STEPS, rgb);
-    cairo_set_source_rgb(cr, rgb[0], rgb[1], rgb[2]);
-    cairo_rectangle(cr, x, y + high * (STEPS - 1 - k) / STEPS, wide, high / STEPS + 0.6);
-    cairo_fill(cr);
-  }
-  cairo_set_source_rgb(cr, 0.2, 0.2, 0.2);
-  cairo_set_line_width(cr, 0.8);
-  cairo_rectangle(cr, x, y, wide, high);
-  cairo_stroke(cr);
-  double step = tick_distance(scene->high - scene->low);
-  for (double v = ceil(scene->low / step - 1e-9) * step; v <= scene->high + 1e-9 * step; v += step) {
-    char words[32];
-    double at = y + high * (1 - (v - scene->low) / (scene->high - scene->low));
-    cairo_move_to(cr, x + wide, at);
-    cairo_line_to(cr, x + wide + 4, at);
-    cairo_stroke(cr);
-    tick_words(v, step, words, sizeof words);
-    put_text(cr, x + wide + 8, at + 4, 0, 12, words);
-  }
-  cairo_save(cr);
-  cairo_translate(cr, page->width - 14, y + high / 2);
-  cairo_rotate(cr, -acos(-1) / 2);
-  put_text(cr, 0, 0, 0.5, 13, label);
-  cairo_restore(cr);
-}
-
-/* ---- particles ---- */
-
-typedef struct Depth {
-  double depth;
-  int64_t particle;
-} Depth;
-
-static int by_depth(const void *a, const void *b)
-{
-  const Depth *x = a, *y = b;
-  return x->depth != y->depth ? (x->depth < y->depth ? -1 : 1) : (x->particle < y->particle ? -1 : 1);
-}
-
-/** Flat squares, the nearest last: plane bodies, and plates seen from the front. */
-static int draw_squares(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view, bool deformed)
-{
-  /* Turned and parted squares would leave gaps: where the body is deformed they are drawn a little larger. */
-  const double larger = deformed ? 1.3 : 1;
-  Depth *order = malloc(sizeof(Depth) * (size_t)(scene->count + 1));
-  if (!order) return 1;
-  for (int64_t n = 0; n < scene->count; ++n) order[n] = (Depth){scene->depth[n], n};
-  qsort(order, (size_t)scene->count, sizeof(Depth), by_depth);
-  for (int64_t k = 0; k < scene->count; ++k) {
-    int64_t n = order[k].particle;
-    double rgb[3], half = larger * view->spacings[n] / 2, side = 2 * half * page->scale;
-    colour((scene->value[n] - scene->low) / (scene->high - scene->low), rgb);
-    cairo_set_source_rgb(cr, rgb[0], rgb[1], rgb[2]);
-    double x0 = page->left + (scene->x[n] - half - scene->x0) * page->scale;
-    double y0 = page->top + page->high - (scene->y[n] + half - scene->y0) * page->scale;
-    double x1 = floor(x0 + side + 0.5), y1 = floor(y0 + side + 0.5); /* edges on pixels, or seams show */
-    x0 = floor(x0 + 0.5);
-    y0 = floor(y0 + 0.5);
-    cairo_rectangle(cr, x0, y0, x1 - x0, y1 - y0);
-    cairo_fill(cr);
-  }
-  free(order);
-  return 0;
-}
-
-/** Spheres into an image of twice the resolution, the nearest one in each pixel. */
-static int draw_spheres(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view)
-{
-  const int fine = 2;
-  int wide = (int)ceil(page->wide) * fine + 1, high = (int)ceil(page->high) * fine + 1;
-  cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, wide, high);
-  double *depth = malloc(sizeof(double) * (size_t)wide * (size_t)high);
-  if (!depth || cairo_surface_status(image)) {
-    free(depth);
-    cairo_surface_destroy(image);
-    return 1;
-  }
-  for (int k = 0; k < wide * high; ++k) depth[k] = -INFINITY;
-  unsigned char *pixels = cairo_image_surface_get_data(image);
-  int stride = cairo_image_surface_get_stride(image);
-  double scale = page->scale * fine;
   for (int64_t n = 0; n < scene->count; ++n) {
-    double radius = BALL * view->spacings[n] * scale, rgb[3];
-    double cx = (scene->x[n] - scene->x0) * scale, cy = (scene->y1 - scene->y[n]) * scale;
-    if (!isfinite(cx) || !isfinite(cy)) continue;
-    colour((scene->value[n] - scene->low) / (scene->high - scene->low), rgb);
-    int x0 = (int)fmax(0, floor(cx - radius)), x1 = (int)fmin(wide - 1, ceil(cx + radius));
-    int y0 = (int)fmax(0, floor(cy - radius)), y1 = (int)fmin(high - 1, ceil(cy + radius));
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) {
-        double dx = (x + 0.5 - cx) / radius, dy = (y + 0.5 - cy) / radius, square = dx * dx + dy * dy;
-        if (square > 1) continue;
-        double dz = sqrt(1 - square), at = scene->depth[n] * scale + radius * dz;
-        if (at <= depth[y * wide + x]) continue;
-        depth[y * wide + x] = at;
-        double light = 0.62 + 0.38 * fmax(0, -0.35 * dx - 0.45 * dy + 0.82 * dz);
-        uint32_t pixel = 0xff000000u;
-        for (int c = 0; c < 3; ++c) pixel |= (uint32_t)(255 * fmin(1, rgb[c] * light) + 0.5) << (16 - 8 * c);
-        memcpy(pixels + (size_t)y * (size_t)stride + 4 * (size_t)x, &pixel, sizeof pixel);
-      }
+    scene->missing += !isfinite(scene->value[n]);
+    scene->outside +=
+        !(scene->x[n] >= scene->x0 && scene->x[n] <= scene->x1 && scene->y[n] >= scene->y0 && scene->y[n] <= scene->y1);
   }
-  cairo_surface_mark_dirty(image);
-  cairo_save(cr);
-  cairo_translate(cr, page->left, page->top);
-  cairo_scale(cr, 1.0 / fine, 1.0 / fine);
-  cairo_set_source_surface(cr, image, 0, 0);
-  cairo_paint(cr);
-  cairo_restore(cr);
-  cairo_surface_destroy(image);
-  free(depth);
-  return 0;
+  const OutputField *field = output_field_find(o->field);
+  scene->range = scale_colours(s->least, s->most, o->component || (field && field->has_sign), o->low, o->high);
+  scene->unit = display_unit(unit, fmax(fabs(scene->range.low), fabs(scene->range.high)));
+  scene->length = display_unit(view->length_unit, fmax(scene->x1 - scene->x0, scene->y1 - scene->y0));
+  snprintf(words, sizeof words, "%s%s%s", o->field, o->component ? " " : "", o->component ? o->component : "");
+  display_heading(words, scene->unit.name, scene->heading, sizeof scene->heading);
+  return BRECCIA_OK;
 }
 
-static void draw_broken(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view, int step)
+static int paint(cairo_surface_t *surface, const Page *page, const Scene *scene, const ResultView *view, int step,
+                 const PictureOptions *o)
 {
-  int64_t count = 0, *pairs = result_view_broken(view, step, &count);
-  cairo_set_source_rgba(cr, 0.85, 0.1, 0.1, 0.55);
-  cairo_set_line_width(cr, 0.6);
-  for (int64_t k = 0; pairs && k < count; ++k) {
-    for (int e = 0; e < 2; ++e) {
-      int64_t n = pairs[2 * k + e];
-      if (n < 0 || n >= scene->count) continue;
-      double x = page->left + (scene->x[n] - scene->x0) * page->scale;
-      double y = page->top + page->high - (scene->y[n] - scene->y0) * page->scale;
-      if (e)
-        cairo_line_to(cr, x, y);
-      else
-        cairo_move_to(cr, x, y);
-    }
-    cairo_stroke(cr);
-  }
-  free(pairs);
-}
-
-static cairo_surface_t *open_surface(const char *path, const Page *page)
-{
-  const char *dot = strrchr(path, '.');
-  if (!strcmp(dot, ".svg")) return cairo_svg_surface_create(path, page->width, page->height);
-  if (!strcmp(dot, ".pdf")) return cairo_pdf_surface_create(path, page->width, page->height);
-  return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(page->width), (int)ceil(page->height));
-}
-
-static int render(const Scene *scene, const ResultView *view, int step, const PictureOptions *o, const char *label,
-                  const char *path, Error *error)
-{
-  Page page = lay_out(scene, o->size);
-  cairo_surface_t *surface = open_surface(path, &page);
   cairo_t *cr = cairo_create(surface);
   cairo_set_source_rgb(cr, 1, 1, 1);
   cairo_paint(cr);
   cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  int bad = scene->flat ? draw_squares(cr, &page, scene, view, o->deformed != 0) : draw_spheres(cr, &page, scene, view);
-  if (o->broken_bonds) draw_broken(cr, &page, scene, view, step);
-  if (scene->flat)
-    draw_axes(cr, &page, scene, view);
-  else
-    draw_triad(cr, &page, scene, view);
-  draw_bar(cr, &page, scene, label);
-  cairo_set_source_rgb(cr, 0, 0, 0);
-  put_text(cr, page.left - 6, 24, 0, 16, view->title);
-  char words[160];
-  snprintf(words, sizeof words, "time %.6g %s (step %lld)", view->times[step], view->time_unit,
-           (long long)view->step_numbers[step]);
-  size_t n = strlen(words);
-  if (o->deformed == 0)
-    snprintf(words + n, sizeof words - n, ", reference shape");
-  else if (o->deformed != 1)
-    snprintf(words + n, sizeof words - n, ", displacements %g times enlarged", o->deformed);
-  put_text(cr, page.left - 6, 44, 0, 13, words);
+  int bad = body_draw(cr, page, scene, view, step, o);
+  page_draw(cr, page, scene, o);
   cairo_destroy(cr);
+  return bad;
+}
+
+static cairo_surface_t *open_surface(const char *path, const Page *page)
+{
+  const char *dot = path ? strrchr(path, '.') : "";
+  if (!strcmp(dot, ".svg")) return cairo_svg_surface_create(path, page->width, page->height);
+  if (!strcmp(dot, ".pdf")) return cairo_pdf_surface_create(path, page->width, page->height);
+  return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)page->width, (int)page->height);
+}
+
+/** One step on a surface that belongs to the file `path`, or on an image in memory (NULL). */
+static int render(cairo_surface_t **surface, const ResultView *view, int step, const PictureOptions *o,
+                  const PictureSurvey *given, const char *path, Error *error)
+{
+  Scene scene;
+  PictureSurvey own;
+  int status = scene_create(&scene, view, o, error);
+  if (!status && !given) status = picture_survey(view, step, step, false, o, &own, error);
+  if (!status) status = scene_fill(&scene, view, step, o, given ? given : &own, error);
+  if (!status) {
+    const Page page = page_lay_out(&scene, view, step, o);
+    *surface = open_surface(path, &page);
+    if (paint(*surface, &page, &scene, view, step, o)) {
+      status = error_add(error, BRECCIA_FAILURE, "out of memory: picture");
+      cairo_surface_destroy(*surface);
+    }
+  }
+  scene_destroy(&scene);
+  return status;
+}
+
+int picture_draw(const ResultView *view, int step, const PictureOptions *o, const PictureSurvey *survey,
+                 const char *path, Error *error)
+{
+  if (!picture_format(path))
+    return error_add(error, BRECCIA_USER_ERROR, "%s: pictures end in .png, .svg or .pdf", path);
+  cairo_surface_t *surface;
+  int bad = render(&surface, view, step, o, survey, path, error);
+  if (bad) return bad;
   cairo_status_t status = cairo_surface_status(surface);
   if (!status && !strcmp(strrchr(path, '.'), ".png")) status = cairo_surface_write_to_png(surface, path);
   cairo_surface_finish(surface);
   if (!status) status = cairo_surface_status(surface);
   cairo_surface_destroy(surface);
-  if (!status && !bad) return BRECCIA_OK;
-  return error_add(error, BRECCIA_FAILURE, "%s: cannot be drawn: %s", path,
-                   bad ? "out of memory" : cairo_status_to_string(status));
+  if (!status) return BRECCIA_OK;
+  return error_add(error, BRECCIA_FAILURE, "%s: cannot be drawn: %s", path, cairo_status_to_string(status));
 }
 
-int picture_draw(const ResultView *view, int step, const PictureOptions *o, const char *path, Error *error)
+unsigned char *picture_pixels(const ResultView *view, int step, const PictureOptions *o, const PictureSurvey *survey,
+                              int *wide, int *high, Error *error)
 {
-  if (!picture_format(path))
-    return error_add(error, BRECCIA_USER_ERROR, "%s: pictures end in .png, .svg or .pdf", path);
-  Scene scene = {.count = view->particles};
-  double **arrays[] = {&scene.x, &scene.y, &scene.depth, &scene.value};
-  int status = BRECCIA_OK;
-  for (int k = 0; k < 4; ++k) {
-    *arrays[k] = malloc(sizeof(double) * (size_t)(scene.count + 1));
-    if (!*arrays[k]) status = error_add(error, BRECCIA_FAILURE, "out of memory: picture");
-  }
-  char label[160];
-  if (!status) status = take_values(&scene, view, step, o, label, sizeof label, error);
-  if (!status) {
-    look(&scene, view, o);
-    status = project(&scene, view, step, o, error);
-  }
-  if (!status && !(scene.x1 > scene.x0 && scene.y1 > scene.y0))
-    status = error_add(error, BRECCIA_FAILURE, "%s: no particle has a finite position", path);
-  if (!status) status = render(&scene, view, step, o, label, path, error);
-  for (int k = 0; k < 4; ++k) free(*arrays[k]);
-  return status;
+  cairo_surface_t *surface;
+  if (render(&surface, view, step, o, survey, NULL, error)) return NULL;
+  cairo_surface_flush(surface);
+  *wide = cairo_image_surface_get_width(surface);
+  *high = cairo_image_surface_get_height(surface);
+  const int stride = cairo_image_surface_get_stride(surface);
+  unsigned char *rows = cairo_surface_status(surface) ? NULL : malloc((size_t)*wide * (size_t)*high * 4);
+  for (int y = 0; rows && y < *high; ++y)
+    memcpy(rows + (size_t)y * (size_t)*wide * 4, cairo_image_surface_get_data(surface) + (size_t)y * (size_t)stride,
+           (size_t)*wide * 4);
+  cairo_surface_destroy(surface);
+  if (!rows) error_add(error, BRECCIA_FAILURE, "out of memory: picture");
+  return rows;
 }

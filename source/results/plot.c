@@ -1,6 +1,7 @@
 #include "results/plot.h"
 
 #include "base/program.h"
+#include "results/display_unit.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -36,42 +37,119 @@ static int run_gnuplot(const Text *script, const char *part, const char *path, E
   return status;
 }
 
+typedef struct Extent {
+  double least, most;
+} Extent;
+
+static double larger_end(Extent e)
+{
+  return e.least <= e.most ? fmax(fabs(e.least), fabs(e.most)) : 0;
+}
+
+/** Smallest and largest number of an axis, of points whose x lies between `low` and `high` (not finite: all). */
+static Extent extent_of(const PlotLine *lines, int count, bool vertical, double low, double high)
+{
+  Extent e = {INFINITY, -INFINITY};
+  const bool all = !isfinite(low) || !isfinite(high);
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < lines[k].count; ++i) {
+      const double x = lines[k].x[i], y = lines[k].y[i];
+      if (!isfinite(x) || !isfinite(y) || (!all && !(x >= low && x <= high))) continue;
+      e.least = fmin(e.least, vertical ? y : x);
+      e.most = fmax(e.most, vertical ? y : x);
+    }
+  return e;
+}
+
+/** Ends of an axis: with a little room beyond the numbers, but none beyond zero. */
+static void add_range(Text *script, const char *axis, Extent e, double factor, double room)
+{
+  if (!(e.least <= e.most)) return;
+  double wide = e.most - e.least;
+  if (!(wide > 1e-9 * larger_end(e))) wide = larger_end(e) > 0 ? larger_end(e) : 1;
+  const double low = e.least - room * wide, high = e.most + room * wide;
+  text_add(script, "set %srange [%.9g:%.9g]\n", axis, factor * (e.least >= 0 && low < 0 ? 0 : low),
+           factor * (e.most <= 0 && high > 0 && e.least < e.most ? 0 : high));
+}
+
+static bool has_positive(const PlotLine *lines, int count, bool vertical)
+{
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < lines[k].count; ++i)
+      if ((vertical ? lines[k].y[i] : lines[k].x[i]) > 0) return true;
+  return false;
+}
+
+/** Words of an axis; those that were asked for stand as they are. */
+static void add_label(Text *script, const char *axis, const PlotAxis *a, const DisplayUnit *unit)
+{
+  char heading[200];
+  display_heading(a->words, unit->name, heading, sizeof heading);
+  text_add(script, "set %slabel ", axis);
+  quote(script, a->label ? a->label : heading);
+  text_add(script, " noenhanced\n");
+  if (a->logarithmic) text_add(script, "set logscale %s\n", axis);
+}
+
+/** The legend stands beside the lines, or under them where its words are long. */
+static void add_key(Text *script, const PlotLine *lines, int count)
+{
+  size_t longest = 0;
+  for (int k = 0; k < count; ++k) longest = strlen(lines[k].title) > longest ? strlen(lines[k].title) : longest;
+  text_add(script, "%s\n",
+           count < 2       ? "unset key"
+           : longest <= 22 ? "set key outside right top Left reverse samplen 2.5"
+                           : "set key outside below center Left reverse maxcols 2 samplen 2.5\nset rmargin 4");
+}
+
 int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char *path, Error *error)
 {
-  static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e"};
+  static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e", "#4f9bd9", "#555555"};
+  enum { COLOURS = sizeof colours / sizeof *colours };
+  for (int v = 0; v < 2; ++v)
+    if ((v ? o->y : o->x).logarithmic && !has_positive(lines, count, v))
+      return error_add(error, BRECCIA_USER_ERROR, "%s: its %s axis cannot be logarithmic: no value is above 0", path,
+                       v ? "vertical" : "horizontal");
   const char *dot = strrchr(path, '.');
   char *part = text_format("%s.part", path);
   Text script = {0};
   if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
+  const bool given = isfinite(o->low) && isfinite(o->high);
+  const Extent ex = given ? (Extent){o->low, o->high} : extent_of(lines, count, false, NAN, NAN);
+  const Extent ey = extent_of(lines, count, true, o->low, o->high);
+  const DisplayUnit ux = display_unit(o->x.unit, larger_end(ex)), uy = display_unit(o->y.unit, larger_end(ey));
   for (int k = 0; k < count; ++k) {
     text_add(&script, "$data%d << END\n", k);
     for (int i = 0; i < lines[k].count; ++i)
       if (isfinite(lines[k].x[i]) && isfinite(lines[k].y[i]))
-        text_add(&script, "%.9g %.9g\n", lines[k].x[i], lines[k].y[i]);
+        text_add(&script, "%.9g %.9g\n", ux.factor * lines[k].x[i], uy.factor * lines[k].y[i]);
     text_add(&script, "END\n");
   }
-  const char *terminal = !dot || !strcmp(dot, ".png") ? "pngcairo size 760,520 font \"sans,12\""
-                         : !strcmp(dot, ".svg")       ? "svg size 760,520 font \"sans,12\""
-                                                      : "pdfcairo size 16cm,11cm font \"sans,11\"";
+  const char *terminal = !dot || !strcmp(dot, ".png") ? "pngcairo size 800,520 font \"sans,12\""
+                         : !strcmp(dot, ".svg")       ? "svg size 800,520 font \"sans,12\""
+                                                      : "pdfcairo size 16.5cm,10.7cm font \"sans,11\"";
   text_add(&script, "set terminal %s\nset output ", terminal);
   quote(&script, part);
   text_add(&script, "\nset title ");
   quote(&script, o->title);
-  text_add(&script, " noenhanced\nset xlabel ");
-  quote(&script, o->x_label);
-  text_add(&script, " noenhanced\nset ylabel ");
-  quote(&script, o->y_label);
-  text_add(&script, " noenhanced\nset grid lc rgb \"#dddddd\"\nset border lc rgb \"#333333\"\n");
-  text_add(&script, count > 1 ? "set key bottom right opaque\n" : "unset key\n");
-  text_add(&script, "set datafile separator whitespace\nset offsets 0, 0, graph 0.04, graph 0.04\n");
-  if (isfinite(o->low) && isfinite(o->high)) text_add(&script, "set xrange [%.9g:%.9g]\n", o->low, o->high);
+  text_add(&script, " noenhanced\n");
+  add_label(&script, "x", &o->x, &ux);
+  add_label(&script, "y", &o->y, &uy);
+  text_add(&script, "set format \"%%.10g\"\nset grid lc rgb \"#dddddd\" lw 1 lt 1\nset border lc rgb \"#333333\"\n"
+                    "set zeroaxis lc rgb \"#777777\" lw 1.2 lt 1\n");
+  add_key(&script, lines, count);
+  text_add(&script, "set datafile separator whitespace\n");
+  if (!o->x.logarithmic || given) add_range(&script, "x", ex, ux.factor, given ? 0 : 0.02);
+  if (!o->y.logarithmic) add_range(&script, "y", ey, uy.factor, 0.05);
   text_add(&script, "plot ");
-  for (int k = 0; k < count; ++k) {
+  for (int k = 0, coloured = 0; k < count; ++k) {
     text_add(&script, "%s$data%d using 1:2 with ", k ? ", " : "", k);
     if (lines[k].points)
-      text_add(&script, "points pt 6 ps 1.3 lc rgb \"#000000\" title ");
-    else
-      text_add(&script, "lines lw 2 lc rgb \"%s\" title ", colours[k % 5]);
+      text_add(&script, "points pt 6 ps 1.3 lw 1.5 lc rgb \"#000000\" title ");
+    else {
+      text_add(&script, "lines lw 2 dt %d lc rgb \"%s\" title ", 1 + coloured / COLOURS, colours[coloured % COLOURS]);
+      ++coloured;
+    }
     quote(&script, lines[k].title);
     text_add(&script, " noenhanced");
   }

@@ -12,8 +12,15 @@ typedef struct PlotLine {
   bool points; /* instead of a line: measured */
 } PlotLine;
 
+typedef struct PlotAxis {
+  const char *words, *unit; /* unit: of the numbers, "" without; they are drawn in one that reads well */
+  const char *label;        /* instead of words and unit; NULL: these */
+  bool logarithmic;
+} PlotAxis;
+
 typedef struct PlotOptions {
-  const char *title, *x_label, *y_label;
+  const char *title;
+  PlotAxis x, y;
   double low, high; /* ends of the horizontal axis; NaN: from the data */
 } PlotOptions;
 

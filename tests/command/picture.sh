@@ -7,10 +7,19 @@ materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0
 body: {b: {material: m, spacing: 1, shape: {box: {particles: [12, 6, 6]}}}}
 loads: [{name: pull, on: {face: x+}, body force: [1, 0, 0]}]
 solve: {explicit: {steps: 40}}
-watch: {end: {displacement of: {face: x+}}, pull: {load: pull}}
+watch: {end: {displacement of: {face: x+}}, pull: {load: pull}, ledger: {energy: yes}}
 results: {number: 2, fields: [displacement, stress, damage]}
+pictures:
+  - {field: damage}
+  - {field: damage, deformed: 5}
+  - {field: stress, component: xx, at: [0, 1e9], title: "Stress", x label: "along"}
+  - {field: displacement, name: moved}
+  - {curve: "end.x : pull.value", y label: "Pull of the grip"}
+  - {energy: yes, title: "Where the work went"}
 Y
 "$breccia" run bar.yaml > out 2>&1 || fail "run: $(cat out)"
+# names are short, and no picture takes the place of another
+equal "names" "$(ls bar/pictures | tr '\n' ' ')" "damage-2.png damage.png ledger.png moved.png pull-over-end.png stress-xx-0s.png "
 for file in plain.png plain.svg plain.pdf; do
   "$breccia" plot bar --field stress --component xx --output $file > out 2>&1 || fail "$file: $(cat out)"
   [ "$(wc -c < $file)" -gt 2000 ] || fail "$file is too small to be a picture"
@@ -25,9 +34,54 @@ equal "all steps" "$(wc -l < out)" 3
 contains "curve" "$(cat curve.svg)" "<svg"
 printf 'a,b\n0,0\n1,1\n' > measured.csv
 "$breccia" plot bar bar --curve "end.x:end.y" --overlay measured.csv --output curve.png > out 2>&1 || fail "overlay: $(cat out)"
+# units that read well, labels and titles that are asked for, legends by folder
+sed 's/units:.*//; 1i units: {length: m, force: kN, time: s}' bar.yaml > other.yaml
+"$breccia" run other.yaml > out 2>&1 || fail "other: $(cat out)"
+"$breccia" plot other --energy --output energy.svg > out 2>&1 || fail "energy: $(cat out)"
+contains "energies: time" "$(cat energy.svg)" "Time ["
+for word in kinetic internal external "[kJ]"; do contains "energies" "$(cat energy.svg)" "$word"; done
+case $(cat energy.svg) in *imbalance* | *"broken bonds"* | *damping*) fail "energies: what is none, or zero, is drawn" ;; esac
+cp -r other again
+"$breccia" plot other again/ --curve "end.time : end.x, end.y" --title "Ends, moved" --y-label "How far" --output curve.svg > out 2>&1 ||
+  fail "several: $(cat out)"
+for word in "Ends, moved" "How far" "other: x" "again: y" "Time ["; do contains "several runs" "$(cat curve.svg)" "$word"; done
+"$breccia" plot other --curve "end.time : end.x" --log y --output log.svg > out 2>&1 || fail "log: $(cat out)"
+"$breccia" plot other --field displacement --time 0 --range each > out 2>&1 || fail "each: $(cat out)"
+equal "name of a plot" "$(cat out)" "other/pictures/displacement-0s.png"
+"$breccia" plot other --energy > out 2>&1 || fail "energy: $(cat out)"
+equal "name of the energies" "$(cat out)" "other/pictures/ledger.png"
+# movies: what ffmpeg is given, what it makes where it is installed, and what is said where it is not
+mkdir programs
+cat > programs/ffmpeg <<'Y'
+#!/bin/sh
+wc -c > bytes
+for word; do echo "$word"; last=$word; done > words
+echo made > "$last"
+Y
+chmod +x programs/ffmpeg
+PATH="$work/programs:$PATH" "$breccia" plot bar --field displacement --movie bar.mp4 > out 2>&1 || fail "movie: $(cat out)"
+equal "movie" "$(cat out) $(cat bar.mp4)" "bar.mp4 made"
+size=$(grep -x '[0-9]*x[0-9]*' words)
+equal "frames" "$(cat bytes)" $((3 * ${size%x*} * ${size#*x} * 4))
+equal "even pixels" "$((${size%x*} % 2)) $((${size#*x} % 2))" "0 0"
+for word in yuv420p libx264; do contains "movie" "$(cat words)" $word; done
+rm bar.mp4
+printf '#!/bin/sh\necho Unknown encoder >&2\nexit 1\n' > programs/ffmpeg
+PATH="$work/programs:$PATH" "$breccia" plot bar --field damage --movie bar.mp4 > out 2> errors
+equal "failing ffmpeg: status" $? 1
+contains "failing ffmpeg" "$(cat errors)" "Unknown encoder"
+PATH=/nowhere "$breccia" plot bar --field damage --movie bar.mp4 > out 2> errors
+equal "no ffmpeg: status" $? 1
+contains "no ffmpeg" "$(cat errors)" "ffmpeg, which is not installed"
+equal "no ffmpeg: lines" "$(grep -c '' < errors)" 1
+equal "nothing is left of movies" "$(ls | grep mp4)" ""
+if command -v ffmpeg > /dev/null; then
+  "$breccia" plot bar --field displacement --movie bar.mp4 > out 2>&1 || fail "ffmpeg: $(cat out)"
+  equal "movie in H.264" "$(ffprobe -v error -show_entries stream=codec_name,pix_fmt -of csv=p=0 bar.mp4)" "h264,yuv420p"
+fi
 # histories of laws are fields too
 sed 's/model: elastic.*Poisson ratio: 0.2/model: multi-yield-j2, density: 1, shear modulus: 60, bulk modulus: 100, octahedral strength: 1e-3/
-     s/damage]/damage, active surface]/' bar.yaml > clay.yaml
+     s/damage]/damage, active surface]/; s/, ledger: {energy: yes}//; /energy: yes/d' bar.yaml > clay.yaml
 "$breccia" run clay.yaml > out 2>&1 || fail "clay: $(cat out)"
 "$breccia" plot clay --field "active surface" --output surface.png > out 2>&1 || fail "active surface: $(cat out)"
 wrong() { # wrong WORDS ARGUMENTS ...
@@ -47,4 +101,10 @@ wrong "has no column 'q'" bar --curve end.q:end.x
 wrong "should be watch.column" bar --curve x:y
 wrong "two numbers" bar --range 3
 wrong "is not a result file" bar.yaml
+wrong "is not below the highest" bar --range 3:3
+wrong "should be x, y or xy" bar --curve end.x:end.y --log z
+wrong "leave out --step" bar --movie bar.mp4 --step 0
+wrong "movies end in .mp4" bar --field damage --movie bar.avi
+wrong "cannot share an axis" bar --curve "end.time : end.x, pull.value"
+wrong "no history of energies" clay --energy
 finish

@@ -1,0 +1,323 @@
+/* What pictures are made of: ticks, ends of colour bars, units that read well, colours. */
+#include "results/colours.h"
+#include "results/display_unit.h"
+#include "results/picture.h"
+#include "results/scale.h"
+#include "results/scene.h"
+#include "support.h"
+#include <unistd.h>
+
+/** Lightness L* of CIELAB from sRGB (IEC 61966-2-1, CIE 15). */
+static double lightness(const double rgb[3])
+{
+  const double weights[3] = {0.2126, 0.7152, 0.0722};
+  double y = 0;
+  for (int c = 0; c < 3; ++c)
+    y += weights[c] * (rgb[c] <= 0.04045 ? rgb[c] / 12.92 : pow((rgb[c] + 0.055) / 1.055, 2.4));
+  return y > 216.0 / 24389 ? 116 * cbrt(y) - 16 : y * 24389 / 27;
+}
+
+static void sequential_colours_rise_in_lightness(void **state)
+{
+  (void)state;
+  double last = -1, rgb[3];
+  for (int k = 0; k <= 200; ++k) {
+    colour_sequential(k / 200.0, rgb);
+    for (int c = 0; c < 3; ++c) assert_true(rgb[c] >= 0 && rgb[c] <= 1);
+    if (!(lightness(rgb) > last)) fail_msg("at %g the lightness falls from %g to %g", k / 200.0, last, lightness(rgb));
+    last = lightness(rgb);
+  }
+  assert_true(last > 85);
+  colour_sequential(0, rgb);
+  assert_true(lightness(rgb) < 20);
+}
+
+static void diverging_colours_are_equally_light_on_both_sides_of_zero(void **state)
+{
+  (void)state;
+  double last = 100;
+  for (int k = 0; k <= 100; ++k) {
+    double below[3], above[3];
+    colour_diverging(-k / 100.0, below);
+    colour_diverging(k / 100.0, above);
+    assert_near(lightness(below), lightness(above), 2);
+    if (!(lightness(below) < last)) fail_msg("at -%g the colour is no darker than nearer to zero", k / 100.0);
+    last = lightness(below);
+    if (k > 10) assert_true(below[2] > below[0] + 0.05 && above[0] > above[2] + 0.05); /* blue, red */
+  }
+  double zero[3];
+  colour_diverging(0, zero);
+  assert_true(fabs(zero[0] - zero[2]) < 0.02 && lightness(zero) < 93); /* grey that is seen on white paper */
+}
+
+static void ticks_are_one_two_or_five_times_a_power_of_ten(void **state)
+{
+  (void)state;
+  const double ranges[] = {1, 0.37, 6.4e-5, 28.7, 9.99e9, 123};
+  for (int r = 0; r < 6; ++r)
+    for (int number = 2; number < 9; ++number) {
+      const double tick = scale_ticks(ranges[r], number), digit = tick / pow(10, floor(log10(tick * (1 + 1e-12))));
+      if (fabs(digit - 1) > 1e-9 && fabs(digit - 2) > 1e-9 && fabs(digit - 5) > 1e-9)
+        fail_msg("%g in %d parts: ticks %g apart", ranges[r], number, tick);
+      assert_true(ranges[r] / tick < 1.76 * number && ranges[r] / tick > number / 1.45);
+    }
+  const struct {
+    double value, distance;
+    const char *words;
+  } cases[] = {{0.30000000000000004, 0.1, "0.3"},
+               {-1e-18, 0.1, "0.0"},
+               {20, 5, "20"},
+               {0.05, 0.05, "0.05"},
+               {-1500, 500, "-1500"}};
+  for (int k = 0; k < 5; ++k) {
+    char words[32];
+    scale_words(cases[k].value, cases[k].distance, words, sizeof words);
+    assert_string_equal(words, cases[k].words);
+  }
+}
+
+static void colour_bars_end_where_they_should(void **state)
+{
+  (void)state;
+  const struct {
+    double least, most;
+    bool has_sign;
+    double given_low, given_high, low, high;
+    bool diverging;
+  } cases[] = {
+      {0, 28.7, false, NAN, NAN, 0, 30, false},            /* a magnitude begins at zero */
+      {20, 28.7, false, NAN, NAN, 20, 30, false},          /* unless all of it is far from there */
+      {-12, 28.7, false, NAN, NAN, -30, 30, true},         /* both signs: zero in the middle */
+      {-28.7, -3, true, NAN, NAN, -30, 0, true},           /* one sign only: one side of the colours */
+      {-28.7, 0.01, true, NAN, NAN, -30, 0, true},         /* a trace of the other */
+      {0.2, 28.7, true, NAN, NAN, 0, 30, true},            /* tension only, of a stress */
+      {0.97, 1.02, true, NAN, NAN, 0.97, 1.02, false},     /* far from zero, like a deformation gradient */
+      {0, 0, false, NAN, NAN, 0, 1, false},                /* all zero */
+      {0, 0, true, NAN, NAN, -1, 1, true},                 /* all zero, of either sign */
+      {7, 7, false, NAN, NAN, 0, 7, false},                /* the same everywhere */
+      {-7, -7, true, NAN, NAN, -7, 0, true},               /* the same everywhere, negative */
+      {INFINITY, -INFINITY, false, NAN, NAN, 0, 1, false}, /* no number at all */
+      {0, 28.7, false, 0, 2000, 0, 2000, false},           /* as asked */
+      {-12, 28.7, true, -3, 11, -3, 11, true},             /* as asked, zero still grey */
+      {-12, 28.7, true, 3, 11, 3, 11, false},              /* as asked, without zero */
+      {0, 28.7, false, 50, NAN, 50, 100, false},           /* the end that was given lies beyond the data */
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    const ColourRange r =
+        scale_colours(cases[k].least, cases[k].most, cases[k].has_sign, cases[k].given_low, cases[k].given_high);
+    if (fabs(r.low - cases[k].low) > 1e-9 || fabs(r.high - cases[k].high) > 1e-9 || r.diverging != cases[k].diverging)
+      fail_msg("%g to %g: the bar goes from %g to %g%s", cases[k].least, cases[k].most, r.low, r.high,
+               r.diverging ? ", diverging" : "");
+  }
+}
+
+static void units_read_well(void **state)
+{
+  (void)state;
+  const struct {
+    const char *unit;
+    double largest;
+    const char *name;
+    double factor;
+  } cases[] = {{"m", 0.00006227, "µm", 1e6},
+               {"m", 0.0628, "mm", 1e3},
+               {"m", 1.9, "m", 1},
+               {"kPa", 150e3, "MPa", 1e-3},
+               {"kPa", 30, "kPa", 1},
+               {"kPa", 2e6, "GPa", 1e-6},
+               {"kN*m", 1e-3, "J", 1e3},
+               {"kN*m", 34, "kJ", 1},
+               {"N*mm", 3e3, "J", 1e-3},
+               {"N/mm2", 30, "MPa", 1},
+               {"N/mm2", 0.03, "kPa", 1e3},
+               {"kN/m3", 5000, "MN/m³", 1e-3},
+               {"m/s2", 9.81, "m/s²", 1},
+               {"s", 0.092, "ms", 1e3},
+               {"s", 3600, "s", 1},
+               {"cm", 40, "cm", 1},
+               {"cm", 0.01, "µm", 1e4},
+               {"psi", 1e6, "psi", 1},
+               {"lbf/in2", 4000, "lbf/in²", 1},
+               {"in", 1e-5, "in", 1},
+               {"min", 1e-5, "min", 1},
+               {"", 0.5, "", 1},
+               {"", 0.004, "%", 100},
+               {"", 3e-5, "10⁻⁶", 1e6},
+               {"m", 0, "m", 1},
+               {"MN", 0.05, "kN", 1e3},
+               {"m", INFINITY, "m", 1}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    const DisplayUnit u = display_unit(cases[k].unit, cases[k].largest);
+    if (strcmp(u.name, cases[k].name) || fabs(u.factor - cases[k].factor) > 1e-9 * cases[k].factor)
+      fail_msg("%g %s is shown as %g %s", cases[k].largest, cases[k].unit, cases[k].largest * u.factor, u.name);
+  }
+  char heading[64];
+  display_heading("stress xx", "MPa", heading, sizeof heading);
+  assert_string_equal(heading, "Stress xx [MPa]");
+  display_heading("damage", "", heading, sizeof heading);
+  assert_string_equal(heading, "Damage");
+}
+
+/* ---- whole pictures, of a bar that is pulled more and more ---- */
+
+static char folder[] = "pictures of XXXXXX";
+
+static int run_bar(void **state)
+{
+  (void)state;
+  if (!mkdtemp(folder)) return 1;
+  breccia_model *model = model_of(
+      "title: bar\nmaterials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [24, 12]}}}}\n"
+      "peridynamics: {space: plane stress}\n"
+      "loads: [{on: {face: x+}, body force: [0.4, 0], history: {ramp to: 10}},\n"
+      "  {on: {face: x-}, body force: [-0.4, 0], history: {ramp to: 10}}]\n"
+      "solve: {explicit: {steps: 90, time step: 0.1}}\nresults: {number: 3, fields: [displacement, stress]}\n"
+      "pictures: [{field: stress, component: xx, deformed: 3}]\n");
+  Error *error = breccia_error_create();
+  const breccia_run run = {.folder = folder};
+  const int bad = breccia_model_run(model, &run, error);
+  if (bad) print_error("%s\n", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+  return bad;
+}
+
+static int remove_bar(void **state)
+{
+  (void)state;
+  char words[80];
+  snprintf(words, sizeof words, "rm -r '%s'", folder);
+  return system(words);
+}
+
+static const PictureOptions of_stress = {
+    .field = "stress", .component = "xx", .deformed = 3, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+
+static void open_bar(ResultView *view)
+{
+  char path[80];
+  snprintf(path, sizeof path, "%s/results.vtkhdf", folder);
+  assert_int_equal(result_view_open(view, path, NULL), 0);
+  assert_int_equal(view->steps, 4);
+}
+
+static int differing_pixels(const unsigned char *a, const unsigned char *b, int wide, int high, int from_x)
+{
+  int count = 0;
+  for (int y = 0; y < high; ++y)
+    for (int x = from_x; x < wide; ++x) count += memcmp(a + 4 * (y * wide + x), b + 4 * (y * wide + x), 3) != 0;
+  return count;
+}
+
+static void all_times_of_a_field_have_one_colour_bar_and_one_framing(void **state)
+{
+  (void)state;
+  ResultView view;
+  open_bar(&view);
+  PictureOptions o = of_stress;
+  o.one_of_many = true;
+  PictureSurvey all, first, last;
+  assert_int_equal(picture_survey(&view, 0, 3, true, &o, &all, NULL), 0);
+  assert_int_equal(picture_survey(&view, 0, 0, true, &o, &first, NULL), 0);
+  assert_int_equal(picture_survey(&view, 3, 3, true, &o, &last, NULL), 0);
+  assert_true(first.most == 0 && last.most > 0 && all.most >= last.most);
+  assert_true(all.x1 >= last.x1 && last.x1 > first.x1 + 0.1); /* the body grows */
+  int wide, high, w, h;
+  unsigned char *one = picture_pixels(&view, 0, &o, &all, &wide, &high, NULL);
+  unsigned char *other = picture_pixels(&view, 3, &o, &all, &w, &h, NULL);
+  assert_true(one && other && w == wide && h == high && wide % 2 == 0 && high % 2 == 0);
+  const int bar = wide - 110; /* the bar and its words stand at the right */
+  assert_int_equal(differing_pixels(one, other, wide, high, bar), 0);
+  assert_true(differing_pixels(one, other, wide, high, 0) > 10000); /* the bodies do differ */
+  free(other);
+  PictureSurvey own = last;
+  own.x0 = all.x0, own.x1 = all.x1, own.y0 = all.y0, own.y1 = all.y1;
+  own.most *= 3;
+  other = picture_pixels(&view, 3, &o, &own, &w, &h, NULL);
+  assert_true(other && w == wide && h == high && differing_pixels(one, other, wide, high, bar) > 0);
+  free(one);
+  free(other);
+  result_view_close(&view);
+}
+
+/** Colour in the middle of the drawing: of the particle that stands there. */
+static void colour_within(const unsigned char *pixels, int wide, int high, double at[3])
+{
+  const unsigned char *p = pixels + 4 * ((high * 45 / 100) * wide + wide * 45 / 100);
+  for (int c = 0; c < 3; ++c) at[c] = p[2 - c];
+}
+
+static void signed_fields_are_grey_at_zero_and_red_in_tension(void **state)
+{
+  (void)state;
+  ResultView view;
+  open_bar(&view);
+  PictureSurvey all;
+  assert_int_equal(picture_survey(&view, 0, 3, false, &of_stress, &all, NULL), 0);
+  int w, h;
+  double rgb[3];
+  unsigned char *pixels = picture_pixels(&view, 0, &of_stress, &all, &w, &h, NULL);
+  colour_within(pixels, w, h, rgb);
+  assert_near(rgb[0], rgb[2], 6);
+  assert_true(rgb[1] > 200 && rgb[1] < 250);
+  free(pixels);
+  pixels = picture_pixels(&view, 3, &of_stress, &all, &w, &h, NULL);
+  colour_within(pixels, w, h, rgb);
+  assert_true(rgb[0] > rgb[2] + 30);
+  free(pixels);
+  result_view_close(&view);
+}
+
+static void what_is_no_number_is_grey(void **state)
+{
+  (void)state;
+  ResultView view;
+  open_bar(&view);
+  const PictureSurvey none = {INFINITY, -INFINITY, NAN, NAN, NAN, NAN};
+  int w, h;
+  unsigned char *pixels = picture_pixels(&view, 3, &of_stress, &none, &w, &h, NULL); /* a field without any number */
+  assert_non_null(pixels);
+  free(pixels);
+  result_view_close(&view);
+  double rgb[3];
+  const Scene scene = {.range = {-1, 1, true}};
+  scene_colour(&scene, NAN, rgb);
+  assert_true(rgb[0] == rgb[1] && rgb[1] == rgb[2] && rgb[0] < 0.7); /* darker than zero */
+}
+
+static void names_of_pictures_are_short(void **state)
+{
+  (void)state;
+  double times[] = {0, 0.036, 0.0792, 0.0912}, micro[] = {0, 2.5e-6};
+  ResultView view = {.times = times, .steps = 4, .time_unit = "s"};
+  char words[96];
+  picture_name(&view, 2, "damage", NULL, true, words, sizeof words);
+  assert_string_equal(words, "damage-79.2ms");
+  picture_name(&view, 1, "stress", "xx", true, words, sizeof words);
+  assert_string_equal(words, "stress-xx-36ms");
+  picture_name(&view, 3, "stress", "xx", false, words, sizeof words);
+  assert_string_equal(words, "stress-xx");
+  picture_time(&view, 2, false, words, sizeof words);
+  assert_string_equal(words, "79.2 ms");
+  view.times = micro;
+  view.steps = 2;
+  picture_name(&view, 1, "damage", NULL, true, words, sizeof words);
+  assert_string_equal(words, "damage-2.5us");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sequential_colours_rise_in_lightness),
+      cmocka_unit_test(diverging_colours_are_equally_light_on_both_sides_of_zero),
+      cmocka_unit_test(ticks_are_one_two_or_five_times_a_power_of_ten),
+      cmocka_unit_test(colour_bars_end_where_they_should),
+      cmocka_unit_test(units_read_well),
+      cmocka_unit_test(all_times_of_a_field_have_one_colour_bar_and_one_framing),
+      cmocka_unit_test(signed_fields_are_grey_at_zero_and_red_in_tension),
+      cmocka_unit_test(what_is_no_number_is_grey),
+      cmocka_unit_test(names_of_pictures_are_short),
+  };
+  return cmocka_run_group_tests(tests, run_bar, remove_bar);
+}
