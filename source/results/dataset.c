@@ -34,6 +34,26 @@ int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns,
   return bad < 0;
 }
 
+int dataset_view(hid_t where, const char *name, hid_t file, const char *source, hsize_t first, int rank,
+                 const hsize_t shape[2])
+{
+  hid_t whole = H5Dopen2(file, source, H5P_DEFAULT);
+  if (whole < 0) return 1;
+  hid_t type = H5Dget_type(whole), theirs = H5Dget_space(whole), own = H5Screate_simple(rank, shape, NULL);
+  hid_t layout = H5Pcreate(H5P_DATASET_CREATE), set = -1;
+  const hsize_t start[2] = {first, 0};
+  if (H5Sselect_hyperslab(theirs, H5S_SELECT_SET, start, NULL, shape, NULL) >= 0 &&
+      H5Pset_virtual(layout, own, ".", source, theirs) >= 0)
+    set = H5Dcreate2(where, name, type, own, H5P_DEFAULT, layout, H5P_DEFAULT);
+  H5Pclose(layout);
+  H5Sclose(own);
+  H5Sclose(theirs);
+  H5Tclose(type);
+  H5Dclose(whole);
+  if (set >= 0) H5Dclose(set);
+  return set < 0;
+}
+
 int attribute_numbers(hid_t where, const char *name, hid_t type, hsize_t count, const void *values)
 {
   hid_t space = count > 1 ? H5Screate_simple(1, &count, NULL) : H5Screate(H5S_SCALAR);

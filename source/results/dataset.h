@@ -9,6 +9,10 @@ int dataset_create(hid_t where, const char *name, hid_t type, int columns, hsize
 /** Writes rows from `first` on, growing or cutting the dataset to end with them. */
 int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns, hsize_t first, hsize_t rows,
                   const void *values);
+/** A dataset that holds nothing itself and shows rows from `first` on of another one of the same file, whose path is `source`:
+ *  for readers that cannot take a part of a dataset. */
+int dataset_view(hid_t where, const char *name, hid_t file, const char *source, hsize_t first, int rank,
+                 const hsize_t shape[2]);
 /** `count` numbers of a group; writes over those that are there. */
 int attribute_numbers(hid_t where, const char *name, hid_t type, hsize_t count, const void *values);
 /** Words of a dataset or group in `where`, which is itself ".". */

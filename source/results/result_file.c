@@ -92,6 +92,13 @@ static int create_sets(hid_t root, const ResultFile *file)
     if (rows > (hsize_t)file->particles) rows = (hsize_t)file->particles;
     bad |= dataset_create(data, column->name, file->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, column->components, rows);
     bad |= attribute_text(data, column->name, "unit", column->unit);
+    if (column->components > 1) {
+      char names[64] = "";
+      for (int k = 0; k < column->components; ++k)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", k ? " " : "",
+                 column->field->component_names[k]);
+      bad |= attribute_text(data, column->name, "components", names);
+    }
     bad |= dataset_create(offsets, column->name, H5T_STD_I64LE, 1, 64);
   }
   int64_t none = 0;
@@ -203,6 +210,8 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     bad |= attribute_text(root, ".", "Type", "PolyData");
     bad |= write_geometry(root, d);
     bad |= write_cells(root, file->particles);
+    const hsize_t column[2] = {(hsize_t)file->particles, 1};
+    bad |= dataset_view(h5, "/Breccia/Particles", h5, "/VTKHDF/Vertices/Connectivity", 0, 2, column);
     bad |= create_sets(root, file);
     H5Gclose(root);
     hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
@@ -211,6 +220,9 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     bad |= attribute_text(own, ".", "title", title) | attribute_text(own, ".", "length unit", unit);
     units_name(units, dimension_find("time"), unit, sizeof unit);
     bad |= attribute_text(own, ".", "time unit", unit);
+    hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    bad |= states < 0;
+    H5Gclose(states);
     H5Gclose(own);
     bad |= H5Fclose(h5) < 0;
   }
@@ -281,6 +293,25 @@ static int write_steps(hid_t root, const ResultFile *file)
   return bad;
 }
 
+/** Views of every field at the k-th write: Breccia/States/<step>/<field>. */
+static int create_state(hid_t h5, const ResultFile *file, int64_t k)
+{
+  char name[48];
+  snprintf(name, sizeof name, "/Breccia/States/%lld", (long long)file->steps[k]);
+  hid_t state = H5Gcreate2(h5, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  int bad = state < 0;
+  for (int c = 0; c < file->column_count && !bad; ++c) {
+    const Column *column = &file->columns[c];
+    const hsize_t shape[2] = {(hsize_t)file->particles, (hsize_t)column->components};
+    char source[128];
+    snprintf(source, sizeof source, "/VTKHDF/PointData/%s", column->name);
+    bad = dataset_view(state, column->name, h5, source, (hsize_t)(k * file->particles), column->components > 1 ? 2 : 1,
+                       shape);
+  }
+  if (state >= 0) H5Gclose(state);
+  return bad;
+}
+
 static int append(ResultFile *file, const char *path, const Domain *d)
 {
   hid_t h5 = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
@@ -305,6 +336,7 @@ static int append(ResultFile *file, const char *path, const Domain *d)
   hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
   bad = bad ||
         dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
+  bad = bad || create_state(h5, file, file->writes - 1);
   bad = bad || H5Fflush(h5, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file);
   if (own >= 0) H5Gclose(own);
   if (data >= 0) H5Gclose(data);
@@ -368,6 +400,10 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
                            (hsize_t)(file->writes * file->particles), 0, NULL);
     hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
     bad |= dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, 0, NULL);
+    if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;
+    hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    for (int64_t k = 0; k < file->writes && !bad; ++k) bad = create_state(h5, file, k);
+    H5Gclose(states);
     bad |= write_steps(root, file);
     H5Gclose(own);
     H5Gclose(data);

@@ -1,6 +1,7 @@
 /* The result file: VTKHDF 2.0 (HDF5), one cloud of points with time steps, and a small XDMF file beside it for older readers.
  *
- * Positions are the reference positions, written once; every write adds one step of each field. Small files are copied, extended
+ * Components of tensors stand in VTK's order, xx yy zz xy yz xz. Breccia/States/<step>/<field> shows one step of one field, for readers that
+ * cannot take a part of a dataset (meshio). Positions are the reference positions, written once; every write adds one step of each field. Small files are copied, extended
  * and renamed into place, so that a run killed at any moment leaves a whole one; above COPY_LIMIT bytes they are extended in place. */
 #ifndef BRECCIA_RESULTS_RESULT_FILE_H
 #define BRECCIA_RESULTS_RESULT_FILE_H

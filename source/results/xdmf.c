@@ -4,28 +4,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/** A field at one write: a slab of its dataset, in which the writes follow one another. */
-static void add_field(Text *text, const XdmfSeries *series, const XdmfField *field, long long write)
+/** A field at one write: a dataset of its own, which the result file keeps as a view of the series. */
+static void add_field(Text *text, const XdmfSeries *series, const XdmfField *field, long long step)
 {
-  long long n = series->particles, all = n * (long long)series->writes;
-  int k = field->components;
-  char shape[64], whole[64], slab[128];
-  if (k > 1) {
-    snprintf(shape, sizeof shape, "%lld %d", n, k);
-    snprintf(whole, sizeof whole, "%lld %d", all, k);
-    snprintf(slab, sizeof slab, "%lld 0 1 1 %lld %d", n * write, n, k);
-  } else {
-    snprintf(shape, sizeof shape, "%lld", n);
-    snprintf(whole, sizeof whole, "%lld", all);
-    snprintf(slab, sizeof slab, "%lld 1 %lld", n * write, n);
-  }
+  const int k = field->components;
   const char *kind = k == 1 ? "Scalar" : k == 3 ? "Vector" : "Matrix";
   text_add(text,
-           "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\" "
-           "Dimensions=\"%s\"><DataItem Dimensions=\"3 %d\" Format=\"XML\">%s</DataItem>"
-           "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%s\">"
-           "results.vtkhdf:/VTKHDF/PointData/%s</DataItem></DataItem></Attribute>\n",
-           field->name, kind, shape, k > 1 ? 2 : 1, slab, series->bytes, whole, field->name);
+           "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\"><DataItem Format=\"HDF\" "
+           "NumberType=\"Float\" Precision=\"%d\" Dimensions=\"%lld",
+           field->name, kind, series->bytes, (long long)series->particles);
+  if (k > 1) text_add(text, " %d", k);
+  text_add(text, "\">results.vtkhdf:/Breccia/States/%lld/%s</DataItem></Attribute>\n", step, field->name);
 }
 
 int xdmf_write(const char *path, const XdmfSeries *series)
@@ -36,12 +25,14 @@ int xdmf_write(const char *path, const XdmfSeries *series)
   long long n = series->particles;
   for (int64_t w = 0; w < series->writes; ++w) {
     text_add(&text,
-             "   <Grid Name=\"step %lld\">\n    <Time Value=\"%.17g\"/>\n"
-             "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%lld\"/>\n"
+             "   <Grid Name=\"step %lld\" GridType=\"Uniform\">\n    <Time Value=\"%.17g\"/>\n"
+             "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%lld\" NodesPerElement=\"1\"><DataItem "
+             "Format=\"HDF\" NumberType=\"Int\" Precision=\"8\" Dimensions=\"%lld 1\">"
+             "results.vtkhdf:/Breccia/Particles</DataItem></Topology>\n"
              "    <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
              "Dimensions=\"%lld 3\">results.vtkhdf:/VTKHDF/Points</DataItem></Geometry>\n",
-             (long long)series->steps[w], series->times[w], n, n);
-    for (int f = 0; f < series->count; ++f) add_field(&text, series, &series->fields[f], (long long)w);
+             (long long)series->steps[w], series->times[w], n, n, n);
+    for (int f = 0; f < series->count; ++f) add_field(&text, series, &series->fields[f], (long long)series->steps[w]);
     text_add(&text, "   </Grid>\n");
   }
   text_add(&text, "  </Grid>\n </Domain>\n</Xdmf>\n");

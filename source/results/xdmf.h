@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 typedef struct XdmfField {
-  const char *name; /* of its dataset in PointData */
+  const char *name; /* of its dataset in Breccia/States/<step> */
   int components;
 } XdmfField;
 

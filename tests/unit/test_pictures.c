@@ -5,6 +5,7 @@
 #include "results/scale.h"
 #include "results/scene.h"
 #include "support.h"
+#include <hdf5.h>
 #include <unistd.h>
 
 /** Lightness L* of CIELAB from sRGB (IEC 61966-2-1, CIE 15). */
@@ -286,6 +287,38 @@ static void what_is_no_number_is_grey(void **state)
   assert_true(rgb[0] == rgb[1] && rgb[1] == rgb[2] && rgb[0] < 0.7); /* darker than zero */
 }
 
+/** Every dataset that results.xdmf names is there and holds the step's numbers. */
+static void xdmf_names_a_whole_dataset_for_every_step(void **state)
+{
+  (void)state;
+  ResultView view;
+  open_bar(&view);
+  char path[80];
+  snprintf(path, sizeof path, "%s/results.xdmf", folder);
+  char *xdmf = text_read_file(path, NULL);
+  assert_non_null(xdmf);
+  assert_null(strstr(xdmf, "HyperSlab")); /* which meshio cannot read */
+  for (int k = 0; k < view.steps; ++k) {
+    char name[96];
+    int components;
+    snprintf(name, sizeof name, "results.vtkhdf:/Breccia/States/%lld/stress<", (long long)view.step_numbers[k]);
+    assert_non_null(strstr(xdmf, name));
+    double *expected = result_view_read(&view, "stress", k, &components, NULL, NULL);
+    double *found = calloc((size_t)view.particles * 6, sizeof *found);
+    name[strlen(name) - 1] = 0;
+    hid_t set = H5Dopen2(view.file, strchr(name, ':') + 1, H5P_DEFAULT), space = H5Dget_space(set);
+    assert_int_equal(H5Sget_simple_extent_npoints(space), view.particles * 6);
+    assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, found) >= 0);
+    assert_memory_equal(found, expected, sizeof *found * (size_t)view.particles * 6);
+    H5Sclose(space);
+    H5Dclose(set);
+    free(found);
+    free(expected);
+  }
+  free(xdmf);
+  result_view_close(&view);
+}
+
 static void names_of_pictures_are_short(void **state)
 {
   (void)state;
@@ -317,6 +350,7 @@ int main(void)
       cmocka_unit_test(all_times_of_a_field_have_one_colour_bar_and_one_framing),
       cmocka_unit_test(signed_fields_are_grey_at_zero_and_red_in_tension),
       cmocka_unit_test(what_is_no_number_is_grey),
+      cmocka_unit_test(xdmf_names_a_whole_dataset_for_every_step),
       cmocka_unit_test(names_of_pictures_are_short),
   };
   return cmocka_run_group_tests(tests, run_bar, remove_bar);
