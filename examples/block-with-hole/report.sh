@@ -131,12 +131,15 @@ for w in p q; do
   last=$(tail -1 path.txt | cut -d' ' -f3)
   gnuplot <<END
 F(i) = 26.614 - 7.9979 * exp(-0.063816 * i) + 0.11 * i
-set terminal pngcairo size 760,480 font "sans,12"
+set terminal pngcairo size 800,520 font "sans,12"
 set output "pictures/path-$w.png"
 set title "Stress path of particle $w up to 6.4 ms"
-set xlabel "I_1, compression positive (MPa)"
-set ylabel "|s| (MPa)"
-set key bottom right opaque
+set xlabel "I_1, compression positive [MPa]"
+set ylabel "|s| [MPa]"
+set key outside below Left reverse maxcols 2 samplen 2.5
+set grid lc rgb "#dddddd" lw 1 lt 1
+set border lc rgb "#333333"
+set xzeroaxis lc rgb "#777777" lw 1.2 lt 1
 set parametric
 set trange [0:1]
 set xrange [-8:*]

@@ -42,7 +42,7 @@ static int draw(const ElementDeck *deck, const double *x, const double *y, int c
   if (!status) {
     char unit[64];
     units_name(deck->units, dimension_find("stress"), unit, sizeof unit);
-    const PlotLine lines[2] = {{"fitted", c.x, c.y, c.count, false}, {"measured", x, y, count, true}};
+    const PlotLine lines[2] = {{"fitted", c.x, c.y, c.count, false, 0, 0}, {"measured", x, y, count, true, 0, 0}};
     const PlotOptions plot = {.title = deck->spec->title ? deck->spec->title : deck->law->name,
                               .x = {.words = deck->test.x_label, .unit = ""},
                               .y = {.words = deck->test.y_label, .unit = unit},

@@ -149,7 +149,7 @@ static int show_curve(const ElementTest *test, const ElementCurve *c, const Unit
   if (!status && o->picture) {
     char unit[64];
     units_name(units, dimension_find("stress"), unit, sizeof unit);
-    const PlotLine lines[2] = {{"computed", c->x, c->y, c->count, false}, {"measured", x, y, count, true}};
+    const PlotLine lines[2] = {{"computed", c->x, c->y, c->count, false, 0, 0}, {"measured", x, y, count, true, 0, 0}};
     const PlotOptions plot = {.title = o->title,
                               .x = {.words = test->x_label, .unit = ""},
                               .y = {.words = test->y_label, .unit = unit},

@@ -207,7 +207,13 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
       Columns *line = &columns[count];
       status = read_line(folders[k], &curve.x, &curve.y[c], line, error);
       titles[count] = title_of(&curve, c, folders, folder_count, k);
-      lines[count] = (PlotLine){titles[count] ? titles[count] : "", line->x, line->y, line->count, false};
+      lines[count] = (PlotLine){titles[count] ? titles[count] : "",
+                                line->x,
+                                line->y,
+                                line->count,
+                                false,
+                                curve.count > 1 ? c : k,
+                                curve.count > 1 ? k : 0}; /* dashes tell folders apart */
       if (!status && (strcmp(line->x_unit, columns->x_unit) || strcmp(line->y_unit, columns->y_unit)))
         status = error_add(
             error, BRECCIA_USER_ERROR, "%s: %s.%s is in %s and %s.%s in %s: they cannot share an axis", folders[k],
@@ -221,7 +227,7 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
     last_part(o->overlay, name);
     status = curve_points(o->overlay, &line->x, &line->y, &line->count, error);
     titles[count] = text_format("%s", name);
-    lines[count] = (PlotLine){titles[count] ? titles[count] : "", line->x, line->y, line->count, true};
+    lines[count] = (PlotLine){titles[count] ? titles[count] : "", line->x, line->y, line->count, true, 0, 0};
     ++count;
   }
   if (!status) {

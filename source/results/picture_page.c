@@ -106,9 +106,11 @@ static void write_heads(Page *page, const Scene *scene, const ResultView *view, 
   if (o->broken_bonds) free(result_view_broken(view, step, &broken));
   if (broken) text_add(&notes, "%sbroken bonds in red, except across open cracks", notes.length ? ", " : "");
   if (scene->missing)
-    text_add(&notes, "%sgrey: %lld particles without a number", notes.length ? ", " : "", (long long)scene->missing);
+    text_add(&notes, "%sgrey: %lld particle%s without a number", notes.length ? ", " : "", (long long)scene->missing,
+             scene->missing > 1 ? "s" : "");
   if (scene->outside)
-    text_add(&notes, "%s%lld particles lie outside", notes.length ? ", " : "", (long long)scene->outside);
+    text_add(&notes, "%s%lld particle%s outside the picture", notes.length ? ", " : "", (long long)scene->outside,
+             scene->outside > 1 ? "s" : "");
   snprintf(page->notes, sizeof page->notes, "%s", notes.characters ? notes.characters : "");
   text_free(&notes);
 }

@@ -142,14 +142,13 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
   if (!o->x.logarithmic || given) add_range(&script, "x", ex, ux.factor, given ? 0 : 0.02);
   if (!o->y.logarithmic) add_range(&script, "y", ey, uy.factor, 0.05);
   text_add(&script, "plot ");
-  for (int k = 0, coloured = 0; k < count; ++k) {
+  for (int k = 0; k < count; ++k) {
     text_add(&script, "%s$data%d using 1:2 with ", k ? ", " : "", k);
     if (lines[k].points)
       text_add(&script, "points pt 6 ps 1.3 lw 1.5 lc rgb \"#000000\" title ");
-    else {
-      text_add(&script, "lines lw 2 dt %d lc rgb \"%s\" title ", 1 + coloured / COLOURS, colours[coloured % COLOURS]);
-      ++coloured;
-    }
+    else
+      text_add(&script, "lines lw 2 dt %d lc rgb \"%s\" title ", 1 + lines[k].dash + lines[k].colour / COLOURS,
+               colours[lines[k].colour % COLOURS]);
     quote(&script, lines[k].title);
     text_add(&script, " noenhanced");
   }

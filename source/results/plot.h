@@ -9,7 +9,8 @@ typedef struct PlotLine {
   const char *title;
   const double *x, *y; /* [count]; what is not finite is left out */
   int count;
-  bool points; /* instead of a line: measured */
+  bool points;      /* instead of a line: measured */
+  int colour, dash; /* from 0 */
 } PlotLine;
 
 typedef struct PlotAxis {
