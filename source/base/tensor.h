@@ -5,6 +5,8 @@
 #include <math.h>
 
 enum { XX, YY, ZZ, XY, YZ, ZX };
+/** How decks, files and messages spell the components. */
+static const char *const component_names[6] = {"xx", "yy", "zz", "xy", "yz", "zx"};
 
 /** Row and column of a symmetric component in a full tensor: full[3 * r + c]. */
 static const int symmetric_row[6] = {0, 1, 2, 0, 1, 2}, symmetric_column[6] = {0, 1, 2, 1, 2, 0};

@@ -1,6 +1,6 @@
 /* One material point driven through a strain path or a laboratory test. */
 #include "base/csv.h"
-#include "base/memory.h"
+#include "base/tensor.h"
 #include "cli/verbs.h"
 #include "model/element_deck.h"
 #include "results/curve.h"
@@ -20,6 +20,7 @@ enum {
   TO,
   BACK,
   CONFINING,
+  ZERO,
   CYCLES,
   STEPS,
   AGAINST,
@@ -27,26 +28,30 @@ enum {
   OUTPUT,
   TANGENT,
   ELASTIC,
+  UNITS,
   COUNT
 };
 
 static const Option options[] = {
     {"model", "NAME", "constitutive model"},
     {"set", "KEY=VALUE", "a parameter, with or without unit (repeat for each)"},
-    {"strain", "PATH.csv", "total strains: columns e11,e22,e33,g12,g23,g31; e11 alone for laws of one strain"},
+    {"strain", "PATH.csv",
+     "total strains: columns strain xx, yy, zz, xy, yz, zx; strain xx alone for laws of one strain"},
     {"test", "KIND",
      "instead: uniaxial, triaxial, 'undrained triaxial', oedometer, biaxial, isotropic, 'simple shear', 'undrained "
      "shear'"},
     {"to", "STRAIN", "strain that the test goes to, tension positive"},
     {"return", "STRAIN", "other end of its cycles (minus the first)"},
-    {"confining", "PRESSURE", "isotropic pressure before anything else"},
+    {"confining", "PRESSURE", "isotropic pressure before anything else: the consolidation"},
+    {"strain-zero", "WHERE", "'after consolidation' (default), or 'before consolidation' for total strains"},
     {"cycles", "N", "cycles of the test (0: once to the strain)"},
     {"steps", "N", "steps from end to end (200)"},
     {"against", "DATA.csv", "measured points: x and y of the test's curve in the first two columns"},
     {"picture", "FILE", "draw the test's curve (.png, .svg, .pdf)"},
     {"output", "OUT.csv", "where strains and stresses go (standard output; nowhere with --picture or --against)"},
-    {"tangent", NULL, "add the tangent: columns C11 ... C66, row by row, or C11"},
+    {"tangent", NULL, "add the tangent: columns tangent xx xx, tangent xx yy, ..., row by row"},
     {"elastic-rows", "N", "respond elastically in the first N rows of a strain path (gravity stage)"},
+    {"units", "LENGTH,FORCE,TIME", "what plain numbers mean and in what stresses are written (m,N,s)"},
     {0},
 };
 
@@ -61,17 +66,15 @@ static void keep_settings(void *context, int option, const char *value)
   if (option == SET && settings->count < 128) settings->items[settings->count++] = value;
 }
 
-static const char *const strains[] = {"e11", "e22", "e33", "g12", "g23", "g31"};
-static const char *const stresses[] = {"s11", "s22", "s33", "s12", "s23", "s31"};
-
 /** Strain rows [count][6], to be freed; the components that a law takes come first, the others are left. */
 static double *read_path(const char *path, int components, int *count, breccia_error *error)
 {
   double *rows = NULL;
   for (int k = 0; k < components; ++k) {
-    char label[128];
+    char name[32], label[128];
     int n;
-    double *column = csv_column(path, strains[k], CSV_FINISHED, &n, label, error);
+    snprintf(name, sizeof name, "strain %s", component_names[k]);
+    double *column = csv_column(path, name, CSV_FINISHED, &n, label, error);
     if (!column) {
       free(rows);
       return NULL;
@@ -83,19 +86,25 @@ static double *read_path(const char *path, int components, int *count, breccia_e
     *count = n;
     free(column);
     if (bad == n) continue;
-    error_add(error, BRECCIA_USER_ERROR, "%s: row %d: %s is not a number", path, bad + 1, strains[k]);
+    error_add(error, BRECCIA_USER_ERROR, "%s: row %d: %s is not a number", path, bad + 1, name);
     free(rows);
     return NULL;
   }
-  return rows;
+  if (rows && *count) return rows;
+  error_add(error, BRECCIA_USER_ERROR, "%s: has no row of strains", path);
+  free(rows);
+  return NULL;
 }
 
-static void print_heading(FILE *out, int components, bool tangent)
+static void print_heading(FILE *out, const Units *units, int components, bool tangent)
 {
-  for (int k = 0; k < components; ++k) fprintf(out, "%s%s", k ? "," : "", strains[k]);
-  for (int k = 0; k < components; ++k) fprintf(out, ",%s", stresses[k]);
+  char unit[64];
+  units_name(units, dimension_find("stress"), unit, sizeof unit);
+  for (int k = 0; k < components; ++k) fprintf(out, "%sstrain %s", k ? "," : "", component_names[k]);
+  for (int k = 0; k < components; ++k) fprintf(out, ",stress %s (%s)", component_names[k], unit);
+  if (components == 6) fprintf(out, ",volumetric strain");
   for (int k = 0; tangent && k < components * components; ++k)
-    fprintf(out, ",C%d%d", k / components + 1, k % components + 1);
+    fprintf(out, ",tangent %s %s (%s)", component_names[k / components], component_names[k % components], unit);
   fprintf(out, "\n");
 }
 
@@ -103,18 +112,20 @@ static void print_row(FILE *out, int components, const double *strain, const dou
 {
   for (int k = 0; k < components; ++k) fprintf(out, "%s%.17g", k ? "," : "", strain[k]);
   for (int k = 0; k < components; ++k) fprintf(out, ",%.17g", stress[k]);
+  if (components == 6) fprintf(out, ",%.17g", strain[XX] + strain[YY] + strain[ZZ]);
   for (int k = 0; tangent && k < components * components; ++k) fprintf(out, ",%.17g", tangent[k]);
   fprintf(out, "\n");
 }
 
-static int follow_path(const Material *m, const char *path, long long elastic, bool tangent, FILE *out, Error *error)
+static int follow_path(const Material *m, const Units *units, const char *path, long long elastic, bool tangent,
+                       FILE *out, Error *error)
 {
   Driver d;
   int count = 0, status = driver_create(&d, m, error);
   if (status) return status;
   double *rows = read_path(path, d.components, &count, error);
   if (!rows) status = BRECCIA_USER_ERROR;
-  if (rows) print_heading(out, d.components, tangent);
+  if (rows) print_heading(out, units, d.components, tangent);
   for (int i = 0; rows && i < count && !status; ++i) {
     d.elastic = i < elastic;
     if (!driver_try(&d, rows + 6 * i))
@@ -168,7 +179,7 @@ static int run_test(const ElementTest *test, const Material *m, const Units *uni
   ElementCurve c;
   int status = element_test_run(test, m, &c, error);
   const int n = c.components;
-  if (o->out && c.count) print_heading(o->out, n, o->tangent);
+  if (o->out && c.count) print_heading(o->out, units, n, o->tangent);
   for (int i = 0; o->out && i < c.count; ++i)
     print_row(o->out, n, c.strain + 6 * i, c.stress + 6 * i, o->tangent ? c.tangent + n * n * i : NULL);
   const int shown = c.count > 1 ? show_curve(test, &c, units, o, error) : BRECCIA_OK;
@@ -184,7 +195,7 @@ static int read_test(const char **values, const Units *units, TestSpec *spec, Er
     const char *dimension;
     double *value;
   } numbers[] = {{TO, "1", &spec->strain}, {BACK, "1", &spec->back}, {CONFINING, "stress", &spec->confining}};
-  *spec = (TestSpec){.kind = values[TEST], .strain = NAN, .back = NAN, .steps = 200};
+  *spec = (TestSpec){.kind = values[TEST], .zero = values[ZERO], .strain = NAN, .back = NAN, .steps = 200};
   int status = BRECCIA_OK, kind = 0;
   while (test_kind_word(kind) && strcmp(test_kind_word(kind), values[TEST])) ++kind;
   if (!test_kind_word(kind)) {
@@ -194,6 +205,10 @@ static int read_test(const char **values, const Units *units, TestSpec *spec, Er
                        words.characters);
     text_free(&words);
   }
+  if (!spec->zero) spec->zero = test_zero_word(0);
+  if (strcmp(spec->zero, test_zero_word(0)) && strcmp(spec->zero, test_zero_word(1)))
+    status = error_add(error, BRECCIA_USER_ERROR, "--strain-zero '%s' is not known; choose '%s' or '%s'", spec->zero,
+                       test_zero_word(0), test_zero_word(1));
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
     const char *words = values[numbers[k].option];
@@ -217,7 +232,18 @@ static int read_test(const char **values, const Units *units, TestSpec *spec, Er
   return status;
 }
 
-/** A model and its test or path from the command line, in m, kN, s. */
+/** The units of --units, like 'm, kN, s', or the usual ones. */
+static Units *read_units(const char *words, Error *error)
+{
+  char name[3][32], tail;
+  if (!words) return units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
+  if (sscanf(words, " %31[^, ] , %31[^, ] , %31[^, ] %c", name[0], name[1], name[2], &tail) == 3)
+    return units_create(name[0], name[1], name[2], error);
+  error_add(error, BRECCIA_USER_ERROR, "--units '%s': give units of length, force and time, like 'm,kN,s'", words);
+  return NULL;
+}
+
+/** A model and its test or path from the command line. */
 static int run_words(const char **values, const Settings *settings, const Outputs *o, Error *error)
 {
   long long elastic = 0;
@@ -226,12 +252,12 @@ static int run_words(const char **values, const Settings *settings, const Output
   if (!law)
     return error_add(error, BRECCIA_USER_ERROR, "breccia material: there is no model '%s'; 'breccia models' lists them",
                      values[MODEL]);
-  Units *units = units_create("m", "kN", "s", error);
-  if (!units) return BRECCIA_FAILURE;
+  Units *units = read_units(values[UNITS], error);
+  if (!units) return values[UNITS] ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
   Material material = {0};
   int status = material_from_words(&material, law, settings->items, settings->count, units, "--set ", error);
   if (!status && values[STRAIN]) {
-    status = follow_path(&material, values[STRAIN], elastic, o->tangent, o->out, error);
+    status = follow_path(&material, units, values[STRAIN], elastic, o->tangent, o->out, error);
   } else if (!status) {
     TestSpec spec;
     ElementTest test = {0};
@@ -305,5 +331,5 @@ const Verb verb_material = {
     "drive one material point through a laboratory test or a strain path",
     options,
     "TEST.yaml holds units, a material as in a deck, and a test or stages (docs/models.md). On the command\n"
-    "line plain numbers are in m, kN, s (stress in kPa); shear strains are engineering, tension is positive.",
+    "line plain numbers are in " UNITS_WORDS ", as in decks; shear strains are engineering, tension is positive.",
     run};

@@ -77,7 +77,7 @@ static void print_law(const breccia_law *law)
     const Dimension *dimension = dimension_find(p->dimension);
     char range[128] = "";
     if (p->range) interval_describe(p->range, range, sizeof range);
-    printf("  %-24s %-10s %-10s %s%s%s%s\n", p->name, *dimension->example ? dimension->example : "-",
+    printf("  %-24s %-15s %-10s %s%s%s%s\n", p->name, strcmp(dimension->name, "1") ? dimension->name : "-",
            !p->standard   ? "required"
            : *p->standard ? p->standard
                           : "optional",
@@ -145,7 +145,7 @@ static int run(int argc, char **argv, const Verb *verb)
     print_law(law);
     return 0;
   }
-  printf("Constitutive models (parameter, unit, default, meaning):\n\n");
+  printf("Constitutive models (parameter, dimension, default, meaning):\n\n");
   for (int k = 0; law_at(NULL, k); ++k) {
     print_law(law_at(NULL, k));
     printf("\n");

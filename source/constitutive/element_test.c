@@ -6,17 +6,17 @@
 #include <string.h>
 
 enum { COMPONENTS = 6 };
-static const char *const component_words[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
 
 #define STRAIN_FIELD(name, k)                                                                                          \
   {                                                                                                                    \
     "strain " name, FIELD_NUMBER, offsetof(StageSpec, strain) + sizeof(double) * (k), "1", "", NULL,                   \
-        "at the stage's end; shear is engineering strain", NULL, NULL, 0                                               \
+        "at the stage's end, from the end of the consolidation if there is one; shear is engineering strain", NULL,    \
+        NULL, 0                                                                                                        \
   }
 #define STRESS_FIELD(name, k)                                                                                          \
   {                                                                                                                    \
     "stress " name, FIELD_NUMBER, offsetof(StageSpec, stress) + sizeof(double) * (k), "stress", "", NULL,              \
-        "at the stage's end", NULL, NULL, 0                                                                            \
+        "at the stage's end, total", NULL, NULL, 0                                                                     \
   }
 static const Field stage_fields[] = {
     STRAIN_FIELD("xx", XX),
@@ -31,6 +31,11 @@ static const Field stage_fields[] = {
     STRESS_FIELD("xy", XY),
     STRESS_FIELD("yz", YZ),
     STRESS_FIELD("zx", ZX),
+    {"consolidation", FIELD_FLAG, offsetof(StageSpec, consolidation), NULL, "no", NULL,
+     "this stage prepares the specimen: strain is zero at its end, later strains count from there, and the curve "
+     "begins "
+     "there",
+     NULL, NULL, 0},
     {"steps", FIELD_COUNT, offsetof(StageSpec, steps), NULL, "100", "[1, 1e7]", "equal parts", NULL, NULL, 0},
 };
 
@@ -40,7 +45,7 @@ static void check_stage(const DeckReader *reader, void *section)
   for (int k = 0; k < COMPONENTS; ++k)
     if (!isnan(stage->strain[k]) && !isnan(stage->stress[k]))
       node_error(reader->document, stage->head.node, reader->error, "stage: give 'strain %s' or 'stress %s', not both",
-                 component_words[k], component_words[k]);
+                 component_names[k], component_names[k]);
 }
 
 const Section stage_section = {"stage",
@@ -61,6 +66,14 @@ const char *test_kind_word(int k)
   return kinds[k];
 }
 
+enum { AFTER_CONSOLIDATION, BEFORE_CONSOLIDATION };
+static const char *const zeros[] = {"after consolidation", "before consolidation", NULL};
+
+const char *test_zero_word(int k)
+{
+  return zeros[k];
+}
+
 static const Field test_fields[] = {
     {"kind", FIELD_CHOICE, offsetof(TestSpec, kind), NULL, NULL, NULL,
      "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral strain 0; "
@@ -68,12 +81,18 @@ static const Field test_fields[] = {
      "0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
      NULL, test_kind_word, 0},
     {"strain", FIELD_NUMBER, offsetof(TestSpec, strain), "1", NULL, NULL,
-     "reached after the confinement: axial (xx), of each axis (isotropic) or shear (xy); tension is positive", NULL,
-     NULL, 0},
+     "reached from the end of the consolidation: axial (xx), of each axis (isotropic) or shear (xy); tension is "
+     "positive",
+     NULL, NULL, 0},
     {"return strain", FIELD_NUMBER, offsetof(TestSpec, back), "1", "", NULL,
      "other end of cycles; minus the strain when absent", NULL, NULL, 0},
     {"confining pressure", FIELD_NUMBER, offsetof(TestSpec, confining), "stress", "0", "[0, inf)",
-     "isotropic, before anything else", NULL, NULL, 0},
+     "isotropic, drained, before anything else: the consolidation", NULL, NULL, 0},
+    {"strain zero", FIELD_CHOICE, offsetof(TestSpec, zero), NULL, "after consolidation", NULL,
+     "where all strains count from, the volumetric one too, and where the curve begins; 'before consolidation' gives "
+     "total "
+     "strains",
+     NULL, test_zero_word, 0},
     {"cycles", FIELD_COUNT, offsetof(TestSpec, cycles), NULL, "0", "[0, 10000]",
      "to the strain and the return strain; 0: once to the strain", NULL, NULL, 0},
     {"steps", FIELD_COUNT, offsetof(TestSpec, steps), NULL, "200", "[1, 1e6]", "from end to end", NULL, NULL, 0},
@@ -89,7 +108,7 @@ static void label_curve(ElementTest *t, int kind)
              triaxial = kind == TRIAXIAL || kind == UNDRAINED_TRIAXIAL;
   memcpy(t->x_weight, sheared ? shear : kind == ISOTROPIC ? volume : axial, sizeof axial);
   memcpy(t->y_weight, sheared ? shear : kind == ISOTROPIC ? mean : triaxial ? difference : axial, sizeof axial);
-  t->x_label = sheared ? "shear strain" : kind == ISOTROPIC ? "volume strain" : "axial strain";
+  t->x_label = sheared ? "shear strain" : kind == ISOTROPIC ? "volumetric strain" : "axial strain";
   t->y_label = sheared             ? "shear stress"
                : kind == ISOTROPIC ? "mean stress"
                : triaxial          ? "axial less lateral stress"
@@ -139,7 +158,9 @@ static int from_kind(ElementTest *t, const DeckReader *reader, const TestSpec *s
       stage->by_stress[k] = true;
       stage->target[k] = -spec->confining;
     }
+    if (strcmp(spec->zero, zeros[BEFORE_CONSOLIDATION])) t->consolidation = t->count;
   }
+  t->turns = spec->cycles ? 2 * (int)spec->cycles - 1 : 0;
   const double back = isnan(spec->back) ? -spec->strain : spec->back;
   double at = 0;
   for (int64_t n = 0; n < (spec->cycles ? 2 * spec->cycles : 1); ++n) {
@@ -163,25 +184,33 @@ static int from_stages(ElementTest *t, const DeckReader *reader, const SectionLi
   t->stages = memory_zeroed((size_t)list->count + 1, sizeof *t->stages, "stages", reader->error);
   if (!t->stages) return BRECCIA_FAILURE;
   label_curve(t, UNIAXIAL);
+  t->turns = -1;
   double widest = 0;
   int drawn = XX;
   for (int n = 0; n < list->count; ++n) {
     const StageSpec *spec = list->items[n];
     Stage *stage = &t->stages[t->count++];
     stage->steps = (int)spec->steps;
+    if (spec->consolidation && t->consolidation < n)
+      return node_error(reader->document, section_place(spec, "consolidation"), reader->error,
+                        "stage: consolidation comes before all other stages");
+    if (spec->consolidation) t->consolidation = n + 1;
     for (int k = 0; k < COMPONENTS; ++k) {
       stage->by_strain[k] = !isnan(spec->strain[k]);
       stage->by_stress[k] = !isnan(spec->stress[k]);
       stage->target[k] = stage->by_stress[k] ? spec->stress[k] : spec->strain[k];
       if (k && uniaxial && (stage->by_strain[k] || stage->by_stress[k]))
         return node_error(reader->document, spec->head.node, reader->error,
-                          "stage: a law of one strain has no component '%s'", component_words[k]);
-      if (stage->by_strain[k] && fabs(spec->strain[k]) > widest) {
+                          "stage: a law of one strain has no component '%s', only 'xx'", component_names[k]);
+      if (stage->by_strain[k] && !spec->consolidation && fabs(spec->strain[k]) > widest) {
         widest = fabs(spec->strain[k]);
         drawn = k;
       }
     }
   }
+  if (t->consolidation == t->count)
+    return node_error(reader->document, ((const StageSpec *)list->items[0])->head.node, reader->error,
+                      "stages: all of them are consolidation; give the test itself after them");
   static const char *const x_labels[] = {"strain xx", "strain yy", "strain zz", "strain xy", "strain yz", "strain zx"};
   static const char *const y_labels[] = {"stress xx", "stress yy", "stress zz", "stress xy", "stress yz", "stress zx"};
   memset(t->x_weight, 0, sizeof t->x_weight);
@@ -228,14 +257,15 @@ void element_curve_destroy(ElementCurve *c)
   *c = (ElementCurve){0};
 }
 
-static void keep(ElementCurve *c, const ElementTest *test, const Driver *d)
+static void keep(ElementCurve *c, const ElementTest *test, const Driver *d, const double *zero)
 {
   const int row = c->count++, n = c->components;
-  memcpy(c->strain + 6 * row, d->strain, sizeof(double) * (size_t)n);
   memcpy(c->stress + 6 * row, d->stress, sizeof(double) * (size_t)n);
   memcpy(c->tangent + n * n * row, d->tangent, sizeof(double) * (size_t)(n * n));
+  c->x[row] = c->y[row] = 0;
   for (int k = 0; k < n; ++k) {
-    c->x[row] += test->x_weight[k] * d->strain[k];
+    c->strain[6 * row + k] = d->strain[k] - zero[k];
+    c->x[row] += test->x_weight[k] * c->strain[6 * row + k];
     c->y[row] += test->y_weight[k] * d->stress[k];
   }
 }
@@ -266,15 +296,21 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
                  ? error_add(error, BRECCIA_FAILURE, "%s", server_problem(material))
                  : error_add(error, BRECCIA_FAILURE, "%s: the unstrained point could not be integrated",
                              material->law->name);
-  if (!status) keep(curve, test, &d);
+  double zero[6] = {0};
+  if (!status) keep(curve, test, &d, zero);
   for (int n = 0; n < test->count && !status; ++n) {
     const Stage *stage = &test->stages[n];
+    if (n && n == test->consolidation) {
+      memcpy(zero, d.strain, sizeof zero);
+      curve->count = 0;
+      keep(curve, test, &d, zero);
+    }
     double from[6] = {0}, to[6] = {0}, largest = 1e-6;
     for (int k = 0; k < d.components; ++k) {
       from[k] = stage->by_stress[k] ? d.stress[k] : d.strain[k];
       to[k] = stage->by_stress[k]                      ? stage->target[k]
               : stage->by_strain[k] && stage->relative ? d.strain[k] + stage->target[k]
-              : stage->by_strain[k]                    ? stage->target[k]
+              : stage->by_strain[k]                    ? zero[k] + stage->target[k]
                                                        : d.strain[k];
       if (!stage->by_stress[k]) largest = fmax(largest, fabs(to[k]));
     }
@@ -284,7 +320,7 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
       for (int k = 0; k < d.components; ++k)
         target[k] = step == stage->steps ? to[k] : from[k] + (to[k] - from[k]) * step / stage->steps;
       if (driver_step(&d, stage->by_stress, target, tolerance))
-        keep(curve, test, &d);
+        keep(curve, test, &d, zero);
       else if (*server_problem(material))
         status = error_add(error, BRECCIA_FAILURE, "stage %d, step %d of %d: %s", n + 1, step, stage->steps,
                            server_problem(material));

@@ -6,13 +6,14 @@
 
 typedef struct StageSpec {
   SectionHead head;
-  double strain[6], stress[6]; /* NaN: not given; strains are total */
+  double strain[6], stress[6]; /* NaN: not given */
+  bool consolidation;
   int64_t steps;
 } StageSpec;
 
 typedef struct TestSpec {
   SectionHead head;
-  const char *kind;
+  const char *kind, *zero;
   double strain, back, confining;
   int64_t cycles, steps;
 } TestSpec;
@@ -21,6 +22,8 @@ extern const Section stage_section, test_section;
 
 /** k-th kind of test, for the deck; NULL after the last. */
 const char *test_kind_word(int k);
+/** k-th place where strain may be zero; the first is the default; NULL after the last. */
+const char *test_zero_word(int k);
 
 /** A straight part of a path. Components that are neither given keep their strain. */
 typedef struct Stage {
@@ -33,6 +36,8 @@ typedef struct Stage {
 typedef struct ElementTest {
   Stage *stages;
   int count;
+  int consolidation; /* so many stages come before the state whose strain counts as zero, with which curves begin */
+  int turns;         /* how often the driven strain turns back; -1: the test does not say */
   double x_weight[6], y_weight[6]; /* the curve: sums of strains against sums of stresses */
   const char *x_label, *y_label;
 } ElementTest;
@@ -43,14 +48,14 @@ int element_test_create(ElementTest *test, const DeckReader *reader, const TestS
                         bool uniaxial);
 void element_test_destroy(ElementTest *test);
 
-/** What a point went through, the unstrained state first. */
+/** What a point went through, the state of zero strain first: the consolidated one, or the unstrained one if nothing is consolidated. */
 typedef struct ElementCurve {
   int count, components;
-  double *strain, *stress, *tangent; /* [count][6], [count][6], [count][components^2] */
+  double *strain, *stress, *tangent; /* [count][6], [count][6] total, [count][components^2] */
   double *x, *y;                     /* [count] the curve */
 } ElementCurve;
 
-/** Runs a test. What came before a failure is kept in the curve. */
+/** Runs a test. What came before a failure is kept in the curve; of a failing consolidation, its states. */
 int element_test_run(const ElementTest *test, const Material *material, ElementCurve *curve, Error *error);
 void element_curve_destroy(ElementCurve *curve);
 

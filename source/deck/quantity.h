@@ -19,6 +19,12 @@ const Dimension *dimension_list(void);
 
 typedef struct Units Units;
 
+/* What plain numbers mean where no units are named: in decks, in files of tests, on the command line and to servers. */
+#define UNITS_LENGTH "m"
+#define UNITS_FORCE "N"
+#define UNITS_TIME "s"
+#define UNITS_WORDS UNITS_LENGTH ", " UNITS_FORCE ", " UNITS_TIME
+
 /** Units with which plain numbers of a deck are read.
  *  @param[in] length, force, time  unit names, like "m", "kN", "s" */
 Units *units_create(const char *length, const char *force, const char *time, Error *error);

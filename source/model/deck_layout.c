@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 static const Field units_fields[] = {
-    {"length", FIELD_TEXT, offsetof(UnitsSpec, length), NULL, "m", NULL, "unit of length", NULL, NULL, 0},
-    {"force", FIELD_TEXT, offsetof(UnitsSpec, force), NULL, "N", NULL, "unit of force; the unit of mass follows", NULL,
-     NULL, 0},
-    {"time", FIELD_TEXT, offsetof(UnitsSpec, time), NULL, "s", NULL, "unit of time", NULL, NULL, 0},
+    {"length", FIELD_TEXT, offsetof(UnitsSpec, length), NULL, UNITS_LENGTH, NULL, "unit of length", NULL, NULL, 0},
+    {"force", FIELD_TEXT, offsetof(UnitsSpec, force), NULL, UNITS_FORCE, NULL,
+     "unit of force; the unit of mass follows", NULL, NULL, 0},
+    {"time", FIELD_TEXT, offsetof(UnitsSpec, time), NULL, UNITS_TIME, NULL, "unit of time", NULL, NULL, 0},
 };
 const Section units_section = {"units",
                                "What plain numbers mean, and in what results are written. m, kN, s give kPa and t/m3.",
@@ -26,7 +26,8 @@ static const Section solve_section = {
 
 static const Field deck_fields[] = {
     {"title", FIELD_TEXT, offsetof(DeckSpec, title), NULL, "untitled", NULL, "stands over pictures", NULL, NULL, 0},
-    {"units", FIELD_SECTION, offsetof(DeckSpec, units), NULL, "", NULL, "m, N, s when absent", &units_section, NULL, 0},
+    {"units", FIELD_SECTION, offsetof(DeckSpec, units), NULL, "", NULL, UNITS_WORDS " when absent", &units_section,
+     NULL, 0},
     {"materials", FIELD_NAMED, offsetof(DeckSpec, materials), NULL, NULL, NULL, "the materials by name",
      &material_section, NULL, 0},
     {"body", FIELD_NAMED, offsetof(DeckSpec, body), NULL, NULL, NULL, "the blocks of the body by name", &block_section,
@@ -85,7 +86,7 @@ void *section_standard(const DeckReader *reader, const Section *section, const N
 int deck_units(const Document *document, const LawList *laws, Units **units, Error *error)
 {
   const Node *root = document->root, *node = node_get(root, "units");
-  Units *plain = units_create("m", "N", "s", error);
+  Units *plain = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
   if (!plain) return BRECCIA_FAILURE;
   const DeckReader reader = {document, plain, laws, error};
   const int before = error_count(error);

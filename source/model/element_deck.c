@@ -20,8 +20,8 @@ const Section fit_section = {"fit",
 
 static const Field element_fields[] = {
     {"title", FIELD_TEXT, offsetof(ElementDeckSpec, title), NULL, "", NULL, "stands over the picture", NULL, NULL, 0},
-    {"units", FIELD_SECTION, offsetof(ElementDeckSpec, units), NULL, "", NULL, "m, N, s when absent", &units_section,
-     NULL, 0},
+    {"units", FIELD_SECTION, offsetof(ElementDeckSpec, units), NULL, "", NULL, UNITS_WORDS " when absent",
+     &units_section, NULL, 0},
     {"material", FIELD_SECTION, offsetof(ElementDeckSpec, material), NULL, NULL, NULL, "as in a deck",
      &material_section, NULL, 0},
     {"test", FIELD_SECTION, offsetof(ElementDeckSpec, test), NULL, "", NULL, "a laboratory test, or give stages",

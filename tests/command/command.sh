@@ -86,17 +86,20 @@ equal "history watched: heading" "$(head -1 block/p-history.csv)" "step,time (s)
 equal "history watched: the first cap" "$(sed -n 2p block/p-history.csv | cut -d, -f3 | cut -c1-8)" 8634.069
 
 # material: one point against closed forms
-printf 'e11,e22,e33,g12,g23,g31\n0.001,0,0,0,0,0\n0,0,0,0.002,0,0\n' > path.csv
+printf 'strain xx,strain yy,strain zz,strain xy,strain yz,strain zx\n0.001,0,0,0,0,0\n0,0,0,0.002,0,0\n' > path.csv
 "$breccia" material --model elastic --set "Young modulus=150 MPa" --set "Poisson ratio=0.25" --strain path.csv --output out.csv --tangent
 equal "material: status" $? 0
-equal "material: heading" "$(head -1 out.csv | cut -d, -f1-13)" "e11,e22,e33,g12,g23,g31,s11,s22,s33,s12,s23,s31,C11"
-equal "material: s11" "$(sed -n 2p out.csv | cut -d, -f7)" 180
-equal "material: s12" "$(sed -n 3p out.csv | cut -d, -f10)" 120
-equal "material: C11" "$(sed -n 2p out.csv | cut -d, -f13)" 180000
+equal "material: heading" "$(head -1 out.csv | cut -d, -f1-15)" "strain xx,strain yy,strain zz,strain xy,strain yz,strain zx,stress xx (Pa),stress yy (Pa),stress zz (Pa),stress xy (Pa),stress yz (Pa),stress zx (Pa),volumetric strain,tangent xx xx (Pa),tangent xx yy (Pa)"
+equal "material: stress xx" "$(sed -n 2p out.csv | cut -d, -f7)" 180000
+equal "material: stress xy" "$(sed -n 3p out.csv | cut -d, -f10)" 120000
+equal "material: tangent xx xx" "$(sed -n 2p out.csv | cut -d, -f14)" 180000000
+"$breccia" material --model elastic --set "Young modulus=150" --set "Poisson ratio=0.25" --units "mm, N, s" --strain path.csv > out.csv
+equal "material in other units: heading" "$(head -1 out.csv | cut -d, -f7)" "stress xx (N/mm2)"
+awk -F, 'NR == 2 {exit !($7 > 0.18 * (1 - 1e-12) && $7 < 0.18 * (1 + 1e-12))}' out.csv || fail "material in other units: $(sed -n 2p out.csv)"
 "$breccia" material --model elastic-1d --set "Young modulus=2 MPa" --strain path.csv --tangent > bar.csv
-equal "material of one strain" "$(cat bar.csv)" "e11,s11,C11
-0.001,2,2000
-0,0,2000"
+equal "material of one strain" "$(cat bar.csv)" "strain xx,stress xx (Pa),tangent xx xx (Pa)
+0.001,2000,2000000
+0,0,2000000"
 "$breccia" material --model elastic --set "Young=1" --strain path.csv 2> out; equal "material, wrong key: status" $? 2
 contains "material, wrong key" "$(cat out)" "expected KEY=VALUE with one of the keys 'Young modulus'"
 "$breccia" material --model multi-yield-j2 --strain path.csv 2> out; equal "material, nothing set: status" $? 2
@@ -105,7 +108,7 @@ contains "material, nothing set: all at once" "$(cat out)" "missing --set 'bulk 
 printf 'units: \000\n' > zero.yaml
 "$breccia" material zero.yaml 2> out; equal "test with a zero byte: status" $? 2
 contains "test with a zero byte" "$(cat out)" "zero.yaml:1:1: is not text"
-clay='--model multi-yield-j2 --set shear~modulus=60~MPa --set bulk~modulus=100~MPa --set octahedral~strength=30'
+clay='--model multi-yield-j2 --set shear~modulus=60~MPa --set bulk~modulus=100~MPa --set octahedral~strength=30~kPa --units m,kN,s'
 words() { echo "$1" | sed 's/ /\n/g' | tr '~' ' '; }
 mapfile -t clay < <(words "$clay")
 "$breccia" material "${clay[@]}" --test uniaxial --to 0.3 --steps 3000 --output uniaxial.csv > out; equal "uniaxial test: status" $? 0

@@ -127,8 +127,8 @@ static int read_material(const Server *s, Session *h, const char *text, size_t l
     error_add(error, BRECCIA_USER_ERROR, "there is no law '%s'; a command is 'LAW; KEY=VALUE; ...' with one of %s",
               name ? name : "", names.characters);
     text_free(&names);
-  } else if ((h->units =
-                  units_create(units[0] ? units[0] : "m", units[1] ? units[1] : "N", units[2] ? units[2] : "s", error)))
+  } else if ((h->units = units_create(units[0] ? units[0] : UNITS_LENGTH, units[1] ? units[1] : UNITS_FORCE,
+                                      units[2] ? units[2] : UNITS_TIME, error)))
     status = material_from_words(&h->material, law, words, count, h->units, "", error);
   h->elastic = frame_number(text, length, "stage", 1) == 0;
   for (int k = 0; k < 3; ++k) free(units[k]);
