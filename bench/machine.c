@@ -1,28 +1,24 @@
 #include "measure.h"
 
+#include "base/cores.h"
 #include "base/lanes.h"
+#include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 int all_threads(void)
 {
-#ifdef _OPENMP
-  return omp_get_num_procs();
-#else
-  return 1;
-#endif
+  return cores_available();
 }
 
 void use_threads(int threads)
 {
-#ifdef _OPENMP
-  omp_set_num_threads(threads);
-#else
-  (void)threads;
-#endif
+  static Team *team;
+  if (team && team_threads(team) == threads) return;
+  team_use(NULL);
+  team_destroy(&team);
+  team = team_create(threads, NULL);
+  team_use(team);
 }
 
 static int by_value(const void *a, const void *b)
@@ -37,27 +33,39 @@ double median(double *values, int count)
   return values[count / 2];
 }
 
+typedef struct Triad {
+  double *a, *b, *c;
+  bool first; /* writes all three, so that each lies near the thread that works on it */
+} Triad;
+
+enum { TRIAD = 1 << 24 };
+
+static void triad(void *context)
+{
+  const Triad *t = context;
+  double *a = t->a, *b = t->b, *c = t->c;
+  if (t->first)
+    TEAM_FOR (i, TRIAD) a[i] = b[i] = c[i] = 1;
+  else
+    TEAM_FOR (i, TRIAD) a[i] = b[i] + 3 * c[i];
+}
+
 double stream_bandwidth(void)
 {
-  const int64_t n = 1 << 24;
-  double *a = malloc(sizeof(double) * (size_t)n), *b = malloc(sizeof(double) * (size_t)n),
-         *c = malloc(sizeof(double) * (size_t)n);
-  if (!a || !b || !c) return NAN;
+  const size_t bytes = sizeof(double) * TRIAD;
+  Triad t = {malloc(bytes), malloc(bytes), malloc(bytes), false};
+  if (!t.a || !t.b || !t.c) return NAN;
   double seconds[REPEATS];
   for (int r = -1; r < REPEATS; ++r) {
     double start = clock_seconds();
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < n; ++i)
-      if (r < 0)
-        a[i] = b[i] = c[i] = 1;
-      else
-        a[i] = b[i] + 3 * c[i];
+    t.first = r < 0;
+    team_run(triad, &t);
     if (r >= 0) seconds[r] = clock_seconds() - start;
   }
-  double rate = 3 * sizeof(double) * (double)n / median(seconds, REPEATS) / 1e9 + 0 * a[n / 2];
-  free(a);
-  free(b);
-  free(c);
+  double rate = 3 * (double)bytes / median(seconds, REPEATS) / 1e9 + 0 * t.a[TRIAD / 2];
+  free(t.a);
+  free(t.b);
+  free(t.c);
   return rate;
 }
 

@@ -21,6 +21,14 @@ typedef int64_t LaneMask __attribute__((vector_size(32)));
 #define BRECCIA_CLONES
 #endif
 
+/* Before a loop none of whose turns reads what another one writes, so that the compiler need not make sure before it takes several
+ * turns at once. */
+#ifdef __clang__
+#define LANES_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define LANES_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 LANES_INLINE Lanes lanes_load(const double *from)

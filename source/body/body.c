@@ -1,4 +1,5 @@
 #include "body/body.h"
+#include "base/team.h"
 #include "body/cloud.h"
 
 #include <math.h>
@@ -162,6 +163,25 @@ static int64_t lattice_row_count(const Lattice *lattice)
   return lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
 }
 
+typedef struct Occupation {
+  const Body *body;
+  int block;
+  uint8_t *present;
+} Occupation;
+
+static void occupy_row(void *context, int64_t row)
+{
+  const Occupation *o = context;
+  const Lattice *lattice = &o->body->lattices[o->block];
+  for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      int64_t cell[3];
+      lattice_cell(lattice, row, chunk, lane, cell);
+      if (cell_present(o->body, o->body->blocks[o->block], lattice, cell))
+        o->present[row * lattice->chunks + chunk] |= (uint8_t)(1u << lane);
+    }
+}
+
 /** Finds out which slices of a lattice hold particles. */
 static int occupy_lattice(Body *body, int b, Filling *filling, int64_t *slices, int64_t *count, Error *error)
 {
@@ -170,15 +190,8 @@ static int occupy_lattice(Body *body, int b, Filling *filling, int64_t *slices, 
   uint8_t *present = filling->present = memory_zeroed((size_t)(rows * lattice->chunks), 1, "lattice cells", error);
   lattice->slice = memory_zeroed((size_t)(rows * lattice->chunks), sizeof(int32_t), "lattice slices", error);
   if (!present || !lattice->slice) return BRECCIA_FAILURE;
-#pragma omp parallel for schedule(static)
-  for (int64_t row = 0; row < rows; ++row)
-    for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk)
-      for (int lane = 0; lane < SLICE; ++lane) {
-        int64_t cell[3];
-        lattice_cell(lattice, row, chunk, lane, cell);
-        if (cell_present(body, body->blocks[b], lattice, cell))
-          present[row * lattice->chunks + chunk] |= (uint8_t)(1u << lane);
-      }
+  Occupation occupation = {body, b, present};
+  team_each(rows, occupy_row, &occupation);
   for (int64_t k = 0; k < rows * lattice->chunks; ++k) {
     lattice->slice[k] = present[k] ? (int32_t)(*slices)++ : -1;
     *count += __builtin_popcount(present[k]);

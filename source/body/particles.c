@@ -1,5 +1,6 @@
 #include "body/particles.h"
 
+#include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,11 @@
  * of the first-level cache: thirteen arrays into eight ways. Each array is therefore shifted by some lines of a page, chosen from its
  * address, and begins with a line, so that a slice is one; what has to be freed is kept before the spare entries. */
 enum { LINE = 8, PAGE_LINES = 64, PAGE_NUMBERS = LINE * PAGE_LINES };
+
+static void touch_page(void *array, int64_t page)
+{
+  ((double *)array)[page * PAGE_NUMBERS] = 0;
+}
 
 double *places_array(int64_t places, const char *label, Error *error)
 {
@@ -20,8 +26,7 @@ double *places_array(int64_t places, const char *label, Error *error)
   array += (-(uintptr_t)array & 63) / sizeof(double);
   memcpy(array - SLICE - 1, &memory, sizeof memory);
   /* A page lies near the processor that first writes to it: each thread writes to the part that it will work on. */
-#pragma omp parallel for schedule(static)
-  for (int64_t i = 0; i < places; i += PAGE_NUMBERS) array[i] = 0;
+  team_each((places + PAGE_NUMBERS - 1) / PAGE_NUMBERS, touch_page, array);
   return array;
 }
 

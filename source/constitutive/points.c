@@ -1,5 +1,6 @@
 #include "constitutive/points.h"
 
+#include "base/team.h"
 #include "base/tensor.h"
 #include "constitutive/remote_points.h"
 #include <stdlib.h>
@@ -35,8 +36,9 @@ static void begin_row(const Material *m, double *row)
   if (m->law->begin) m->law->begin(m->constants, row);
 }
 
-static void begin_slice(Points *points, int64_t slice)
+static void begin_slice(void *context, int64_t slice)
 {
+  const Points *points = context;
   const Family *f = points->family;
   const Material *m = &points->materials[points->material[slice]];
   for (int lane = 0; points->where == POINTS_ON_PARTICLES && lane < SLICE; ++lane)
@@ -78,8 +80,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
   points->trial = memory_zeroed((size_t)total, sizeof(double), "histories", error);
   if (!points->committed || !points->trial) return BRECCIA_FAILURE;
   if (spec->where == POINTS_ON_PARTICLES && points_show(points, error)) return BRECCIA_FAILURE;
-#pragma omp parallel for schedule(static)
-  for (int64_t s = 0; s < slices; ++s) begin_slice(points, s);
+  team_each(slices, begin_slice, points);
   if (total) memcpy(points->trial, points->committed, sizeof(double) * (size_t)total);
   return remote_points_create(points, error);
 }

@@ -1,5 +1,6 @@
 #include "contact/contact.h"
 
+#include "base/team.h"
 #include "family/cells.h"
 #include <math.h>
 #include <stdlib.h>
@@ -155,8 +156,7 @@ void contact_resist(const Contact *c)
 {
   if (!c->spec) return;
   const Particles *p = &c->body->particles;
-#pragma omp for schedule(static)
-  for (int32_t r = 0; r < c->row_count; ++r) {
+  TEAM_FOR (r, c->row_count) {
     const ContactRow *row = &c->rows[r];
     const int32_t a = row->place;
     double force[3] = {0};

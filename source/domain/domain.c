@@ -1,7 +1,7 @@
 #include "domain/domain.h"
 
+#include "base/team.h"
 #include "base/tensor.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,29 +34,27 @@ static void answer_in_parts(Domain *d)
   const FormulationType *type = d->type;
   for (int k = 0; k < d->part_count; ++k) {
     const Part *part = &d->parts[k];
-#pragma omp for schedule(static)
-    for (int64_t b = part->first; b < part->last; ++b) {
+    TEAM_FOR (n, part->last - part->first) {
+      const int64_t b = part->first + n;
       if (d->part_of[b] != k) continue;
       type->deform(d->formulation, d->blocks[b].first, d->blocks[b].last, d->carry + b * CARRY * BLOCK);
       points_pack(&d->points, d->blocks[b].first, d->blocks[b].last);
     }
-#pragma omp single nowait
-    points_post(&d->points, part->material, part->server);
+    if (team_turn(k)) points_post(&d->points, part->material, part->server);
   }
-#pragma omp for schedule(static)
-  for (int64_t b = 0; b < d->block_count; ++b)
+  TEAM_FOR (b, d->block_count)
     if (d->part_of[b] < 0) answer(d, b, false);
   for (int k = 0; k < d->part_count; ++k) {
     const Part *part = &d->parts[k];
-#pragma omp single
+    TEAM_SINGLE
     {
       const int64_t failed = points_collect(&d->points, part->material, part->server);
       for (int64_t b = part->first; b < part->last; ++b)
         if (d->part_of[b] == k)
           d->block_failed[b] = failed >= d->blocks[b].first * SLICE && failed < d->blocks[b].last * SLICE ? failed : -1;
     }
-#pragma omp for schedule(static)
-    for (int64_t b = part->first; b < part->last; ++b) {
+    TEAM_FOR (n, part->last - part->first) {
+      const int64_t b = part->first + n;
       if (d->part_of[b] != k) continue;
       points_unpack(&d->points, d->blocks[b].first, d->blocks[b].last);
       type->respond(d->formulation, d->blocks[b].first, d->blocks[b].last, d->carry + b * CARRY * BLOCK);
@@ -74,46 +72,36 @@ void domain_forces(Domain *d)
 {
   const FormulationType *type = d->type;
   if (type->show_displacements) {
-#pragma omp for schedule(static)
-    for (int64_t b = 0; b < d->block_count; ++b)
-      type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    TEAM_FOR (b, d->block_count) type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
   }
   const bool parts = d->part_count && !d->points.elastic_stage && points_begun(&d->points);
   if (type->deform) {
     if (parts) answer_in_parts(d);
-#pragma omp for schedule(static)
-    for (int64_t b = 0; b < d->block_count; ++b) {
+    TEAM_FOR (b, d->block_count) {
       if (!parts) answer(d, b, false);
       if (type->row_sums && !d->rows_cut) type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
     }
   }
   if (type->row_sums && d->rows_cut) {
-#pragma omp for schedule(static)
-    for (int64_t b = 0; b < d->block_count; ++b)
-      type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
+    TEAM_FOR (b, d->block_count) type->sum_states(d->formulation, d->blocks[b].first, d->blocks[b].last);
   }
   if (points_on_bonds_in_servers(d)) {
-#pragma omp single
-    points_gather_bonds(&d->points);
+    TEAM_SINGLE points_gather_bonds(&d->points);
     if (d->points.pass == PASS_GATHER) {
-#pragma omp for schedule(static)
-      for (int64_t b = 0; b < d->block_count; ++b) type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
-#pragma omp single
-      points_ask_bonds(&d->points);
+      TEAM_FOR (b, d->block_count) type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
+      TEAM_SINGLE points_ask_bonds(&d->points);
     }
   }
-#pragma omp for schedule(static)
-  for (int64_t b = 0; b < d->block_count; ++b) {
+  TEAM_FOR (b, d->block_count) {
     int64_t failed = type->resist(d->formulation, d->blocks[b].first, d->blocks[b].last);
     if (!type->deform) d->block_failed[b] = failed;
     d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
   }
   if (type->finish) {
-#pragma omp single
-    type->finish(d->formulation);
+    TEAM_SINGLE type->finish(d->formulation);
   }
   contact_resist(&d->contact);
-#pragma omp single
+  TEAM_SINGLE
   {
     d->force_sum = 0;
     d->failed_place = -1;
@@ -124,18 +112,28 @@ void domain_forces(Domain *d)
   }
 }
 
+static void evaluate(void *context)
+{
+  domain_forces(context);
+}
+
+void domain_evaluate(Domain *d)
+{
+  team_run(evaluate, d);
+}
+
+static void show_states(void *context)
+{
+  Domain *d = context;
+  TEAM_FOR (b, d->block_count)
+    if (d->type->show_displacements) d->type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
+  TEAM_FOR (b, d->block_count)
+    if (d->type->deform) answer(d, b, true);
+}
+
 void domain_show_states(Domain *d)
 {
-#pragma omp parallel
-  {
-#pragma omp for schedule(static)
-    for (int64_t b = 0; b < d->block_count; ++b)
-      if (d->type->show_displacements)
-        d->type->show_displacements(d->formulation, d->blocks[b].first, d->blocks[b].last);
-#pragma omp for schedule(static)
-    for (int64_t b = 0; b < d->block_count; ++b)
-      if (d->type->deform) answer(d, b, true);
-  }
+  team_run(show_states, d);
 }
 
 void domain_resume(Domain *d)
@@ -179,20 +177,23 @@ void domain_look(const Domain *d, int64_t place, double strain[6], double stress
   }
 }
 
+static void observe(void *context, int64_t n)
+{
+  Domain *d = context;
+  int32_t place = d->particles->place_of[n];
+  double strain[6], stress[6];
+  domain_look(d, place, strain, stress);
+  for (int k = 0; k < 6; ++k) {
+    d->points.strain[k][place] = strain[k];
+    d->points.stress[k][place] = stress[k];
+  }
+}
+
 int domain_observe(Domain *d, Error *error)
 {
   if (d->points.where == POINTS_ON_PARTICLES) return BRECCIA_OK;
   if (points_show(&d->points, error)) return BRECCIA_FAILURE;
-#pragma omp parallel for schedule(static)
-  for (int64_t n = 0; n < d->particles->count; ++n) {
-    int32_t place = d->particles->place_of[n];
-    double strain[6], stress[6];
-    domain_look(d, place, strain, stress);
-    for (int k = 0; k < 6; ++k) {
-      d->points.strain[k][place] = strain[k];
-      d->points.stress[k][place] = stress[k];
-    }
-  }
+  team_each(d->particles->count, observe, d);
   return BRECCIA_OK;
 }
 
@@ -255,14 +256,11 @@ static bool judge(Domain *d, int64_t step, double time)
 void domain_break(Domain *d, int64_t step, double time, double motion)
 {
   if (d->contact.spec) {
-#pragma omp single
-    contact_follow(&d->contact, motion);
+    TEAM_SINGLE contact_follow(&d->contact, motion);
   }
   if (!d->failure.criterion && !d->points.gave_up) return;
-#pragma omp single
-  d->motion += motion;
-#pragma omp for schedule(static)
-  for (int64_t b = 0; b < d->block_count; ++b)
+  TEAM_SINGLE d->motion += motion;
+  TEAM_FOR (b, d->block_count)
     for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
       d->suspects[s] = 0;
       if (d->failure.criterion && d->motion >= d->look_again[s])
@@ -270,7 +268,7 @@ void domain_break(Domain *d, int64_t step, double time, double motion)
       for (int lane = 0; d->points.gave_up && lane < SLICE; ++lane)
         if (d->points.gave_up[s * SLICE + lane]) d->suspects[s] = 1;
     }
-#pragma omp single
+  TEAM_SINGLE
   {
     int any = 0;
     for (int64_t s = 0; s < d->particles->slices; ++s) any |= d->suspects[s];

@@ -1,6 +1,6 @@
 /* The part of the body that one process owns: particles, bonds, material points, the formulation that joins them, and the blocks
- * that its threads work on. Functions marked "by all threads" contain work-sharing loops: call them from every thread of a parallel
- * region, or from none. Whatever is summed over particles is summed block by block in a fixed order. */
+ * that its threads work on. Functions marked "by all threads" contain loops that are shared out (base/team.h): call them from
+ * every thread of a team_run, or from none. Whatever is summed over particles is summed block by block in a fixed order. */
 #ifndef BRECCIA_DOMAIN_DOMAIN_H
 #define BRECCIA_DOMAIN_DOMAIN_H
 
@@ -68,6 +68,8 @@ void domain_destroy(Domain *domain);
 
 /** Internal forces at the displacements held, by all threads. Trial state only. */
 void domain_forces(Domain *domain);
+/** The same, called by one thread and done by the team that it uses. */
+void domain_evaluate(Domain *domain);
 
 /** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
 void domain_show_states(Domain *domain);

@@ -1,8 +1,8 @@
 /* Everything that a step needs, built from the deck. */
 #include "domain/domain.h"
 
+#include "base/team.h"
 #include "base/tensor.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -206,6 +206,12 @@ static PointsWhere points_where(const Domain *d)
   return POINTS_NOWHERE;
 }
 
+static void weigh_family(void *context, int64_t place)
+{
+  const Domain *d = context;
+  d->family_volume[place] = family_volume(&d->family, (int32_t)place);
+}
+
 int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Error *error = reader->error;
@@ -234,9 +240,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   const FamilySpec family = {horizon, influence, (VolumeCorrection)correction, d->type->row_sums,
                              d->type->bond_lengths};
   if ((status = family_create(&d->family, &d->body, &family, error))) return status;
-#pragma omp parallel for schedule(static)
-  for (int32_t place = 0; place < (int32_t)d->particles->places; ++place)
-    d->family_volume[place] = family_volume(&d->family, place);
+  team_each(d->particles->places, weigh_family, d);
 
   const PointsSpec points = {.where = points_where(d),
                              .space = space,

@@ -1,7 +1,9 @@
 #include "family/family.h"
 
+#include "base/team.h"
 #include "family/search.h"
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,6 +126,8 @@ typedef struct Build {
   const Body *body;
   const Rows *rows;
   const StoredBonds *stored;
+  int64_t *stored_before; /* [slices + 1] slots that are stored, of the slices before each */
+  atomic_llong bonds;
 } Build;
 
 /** Slots of one slice; writes them when `write` is set. @return their number; `stored_slots` of which are stored */
@@ -191,6 +195,22 @@ static Rows *slice_rows(const Body *body, Error *error)
   return rows;
 }
 
+static void count_slots(void *context)
+{
+  Build *build = context;
+  int64_t bonds = 0;
+  TEAM_FOR (s, build->body->particles.slices)
+    build->family->first[s + 1] = slice_slots(build, s, false, &build->stored_before[s + 1], &bonds);
+  atomic_fetch_add(&build->bonds, bonds);
+}
+
+static void write_slots(void *context, int64_t slice)
+{
+  const Build *build = context;
+  int64_t row = build->stored_before[slice], ignored = 0;
+  slice_slots(build, slice, true, &row, &ignored);
+}
+
 static int fill_slots(Build *build, Error *error)
 {
   Family *family = build->family;
@@ -202,15 +222,13 @@ static int fill_slots(Build *build, Error *error)
     free(stored_before);
     return BRECCIA_FAILURE;
   }
-  int64_t bonds = 0;
-#pragma omp parallel for schedule(static) reduction(+ : bonds)
-  for (int64_t s = 0; s < slices; ++s)
-    family->first[s + 1] = slice_slots(build, s, false, &stored_before[s + 1], &bonds);
+  build->stored_before = stored_before;
+  team_run(count_slots, build);
   for (int64_t s = 0; s < slices; ++s) {
     family->first[s + 1] += family->first[s];
     stored_before[s + 1] += stored_before[s];
   }
-  family->bonds = bonds;
+  family->bonds = build->bonds;
   family->slots = family->first[slices];
   family->stored_slots = stored_before[slices];
   family->base = memory_zeroed((size_t)family->slots, sizeof *family->base, "bonds", error);
@@ -223,13 +241,7 @@ static int fill_slots(Build *build, Error *error)
   if (build->bond_lengths)
     failed |= !(family->inverse_length =
                     memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(float), "bond lengths", error));
-  if (!failed) {
-#pragma omp parallel for schedule(static)
-    for (int64_t s = 0; s < slices; ++s) {
-      int64_t row = stored_before[s], ignored = 0;
-      slice_slots(build, s, true, &row, &ignored);
-    }
-  }
+  if (!failed) team_each(slices, write_slots, build);
   free(stored_before);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
@@ -258,7 +270,7 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
     status = search_beyond_lattices(&stored, body, &weight, error);
   }
   if (!status) {
-    Build build = {family, spec->bond_lengths, body, rows, &stored};
+    Build build = {.family = family, .bond_lengths = spec->bond_lengths, .body = body, .rows = rows, .stored = &stored};
     status = fill_slots(&build, error);
   }
   if (!status && spec->row_sums) status = lattice_rows_create(family, body, error);

@@ -1,5 +1,6 @@
 #include "family/lattice_rows.h"
 
+#include "base/team.h"
 #include "family/family.h"
 #include <stdlib.h>
 #include <string.h>
@@ -103,6 +104,35 @@ static int64_t count_rows(const Family *family, int64_t slice, int64_t *first)
   return rows;
 }
 
+typedef struct LatticeOfFamily {
+  const Family *family;
+  const Lattice *lattice;
+} LatticeOfFamily;
+
+static void find_present(void *context, int64_t row)
+{
+  const LatticeOfFamily *of = context;
+  const Lattice *lattice = of->lattice;
+  const LatticeRows *rows = &of->family->rows;
+  const int width = 2 * rows->reach + 1;
+  for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
+    const int32_t *row_slices = lattice->slice + row * lattice->chunks;
+    int64_t slice = row_slices[chunk];
+    if (slice < 0) continue;
+    uint8_t *present = rows->present + slice * width;
+    rows->complete[slice] = 1;
+    for (int s = 0; s < width; ++s) {
+      present[s] = present_lanes(of->family->particles, row_slices, lattice->chunks, chunk, s - rows->reach);
+      rows->complete[slice] &= present[s] == UINT8_MAX;
+    }
+  }
+}
+
+static void mark(void *context, int64_t slice)
+{
+  lattice_rows_mark(context, slice);
+}
+
 int lattice_rows_create(Family *family, const Body *body, Error *error)
 {
   LatticeRows *rows = &family->rows;
@@ -120,19 +150,8 @@ int lattice_rows_create(Family *family, const Body *body, Error *error)
   for (int b = 0; b < body->block_count; ++b) {
     const Lattice *lattice = &body->lattices[b];
     int64_t count = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
-#pragma omp parallel for schedule(static)
-    for (int64_t row = 0; row < count; ++row)
-      for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
-        const int32_t *row_slices = lattice->slice + row * lattice->chunks;
-        int64_t slice = row_slices[chunk];
-        if (slice < 0) continue;
-        uint8_t *present = rows->present + slice * width;
-        rows->complete[slice] = 1;
-        for (int s = 0; s < width; ++s) {
-          present[s] = present_lanes(p, row_slices, lattice->chunks, chunk, s - rows->reach);
-          rows->complete[slice] &= present[s] == UINT8_MAX;
-        }
-      }
+    LatticeOfFamily of = {family, lattice};
+    team_each(count, find_present, &of);
   }
   for (int32_t slice = 0; slice < (int32_t)p->slices; ++slice) /* of particles that stand in no lattice */
     if (!body->lattices[p->block[slice]].chunks)
@@ -141,8 +160,7 @@ int lattice_rows_create(Family *family, const Body *body, Error *error)
     rows->begin[slice + 1] = rows->begin[slice] + count_rows(family, slice, &rows->first[slice]);
   rows->whole = memory_zeroed((size_t)rows->begin[p->slices], sizeof *rows->whole, "lattice rows", error);
   if (!rows->whole) return BRECCIA_FAILURE;
-#pragma omp parallel for schedule(static)
-  for (int64_t slice = 0; slice < p->slices; ++slice) lattice_rows_mark(family, slice);
+  team_each(p->slices, mark, family);
   return BRECCIA_OK;
 }
 

@@ -1,5 +1,6 @@
 #include "family/search.h"
 
+#include "base/team.h"
 #include "family/cells.h"
 #include <math.h>
 #include <stdlib.h>
@@ -57,23 +58,22 @@ static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, 
   return count;
 }
 
-/** Counts or fills, by all threads. @return the first place with a particle on top of it, or -1 */
-static int64_t sweep(const Search *search, StoredBonds *stored, bool fill)
+typedef struct Sweep {
+  const Search *search;
+  StoredBonds *stored;
+  bool fill;
+} Sweep;
+
+/** Counts or fills. Where a particle lies on top of this one the count is left at -1. */
+static void sweep_place(void *context, int64_t place)
 {
-  const Particles *p = &search->body->particles;
-  int64_t bad = INT64_MAX;
-#pragma omp parallel for schedule(dynamic, 512) reduction(min : bad)
-  for (int64_t place = 0; place < p->places; ++place) {
-    if (p->number[place] < 0) continue;
-    int64_t at = fill ? stored->first[place] : 0;
-    int64_t count = collect(search, (int32_t)place, fill ? stored->neighbour + at : NULL,
-                            fill && stored->scale ? stored->scale + at : NULL);
-    if (count < 0)
-      bad = place < bad ? place : bad;
-    else if (!fill)
-      stored->first[place + 1] = count;
-  }
-  return bad == INT64_MAX ? -1 : bad;
+  const Sweep *s = context;
+  StoredBonds *stored = s->stored;
+  if (s->search->body->particles.number[place] < 0) return;
+  int64_t at = s->fill ? stored->first[place] : 0;
+  int64_t count = collect(s->search, (int32_t)place, s->fill ? stored->neighbour + at : NULL,
+                          s->fill && stored->scale ? stored->scale + at : NULL);
+  if (!s->fill) stored->first[place + 1] = count;
 }
 
 int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWeight *weight, Error *error)
@@ -88,8 +88,13 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
   const bool weighted = weight->correction != VOLUME_WHOLE || weight->influence != influence_find("constant");
   const double nearest = 0.01 * body->largest_spacing;
   Search search = {&cells, body, weight, weighted, farthest * farthest, nearest * nearest};
-  int64_t bad = status ? -1 : sweep(&search, stored, false);
-  if (bad >= 0)
+  Sweep sweep = {.search = &search, .stored = stored};
+  int64_t bad = p->places;
+  if (!status) {
+    team_each(p->places, sweep_place, &sweep);
+    for (bad = 0; bad < p->places && stored->first[bad + 1] >= 0;) ++bad;
+  }
+  if (bad < p->places)
     status = error_add(error, BRECCIA_USER_ERROR,
                        "two particles lie on top of each other at [%g, %g, %g] (block '%s'); blocks must not overlap",
                        p->position[0][bad], p->position[1][bad], p->position[2][bad],
@@ -99,10 +104,11 @@ int search_beyond_lattices(StoredBonds *stored, const Body *body, const StoredWe
     size_t bonds = (size_t)stored->first[p->places];
     stored->neighbour = memory_zeroed(bonds, sizeof(int32_t), "stored bonds", error);
     if (weighted) stored->scale = memory_zeroed(bonds, sizeof(double), "stored bonds", error);
+    sweep.fill = true;
     if (!stored->neighbour || (weighted && !stored->scale))
       status = BRECCIA_FAILURE;
     else
-      sweep(&search, stored, true);
+      team_each(p->places, sweep_place, &sweep);
   }
   cells_destroy(&cells);
   return status;

@@ -7,6 +7,7 @@
  * those whose neighbours fill the horizon. It is found once, with the notches and cuts of the beginning. */
 #include "formulation/bond_based.h"
 
+#include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -55,34 +56,51 @@ static float bond_factor(const Bond *bond, double *const factor[3], int64_t plac
   return (float)(1 / sqrt(sum));
 }
 
+typedef struct Correction {
+  BondBased *bonds;
+  const double *inner; /* [3][blocks] */
+  double *factor[3];
+  int turn;
+} Correction;
+
+static void find_factors(void *context, int64_t place)
+{
+  const Correction *c = context;
+  const BondBased *b = c->bonds;
+  double own[3] = {0};
+  family_energies(b->family, c->turn ? b->surface : NULL, place, own);
+  for (int a = 0; a < 3; ++a)
+    c->factor[a][place] =
+        (c->turn ? c->factor[a][place] : 1) * c->inner[3 * b->particles->block[place / SLICE] + a] / own[a];
+}
+
+static void correct_slice(void *context, int64_t slice)
+{
+  const Correction *c = context;
+  const Family *f = c->bonds->family;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      if (!(f->intact[slot] >> lane & 1)) continue;
+      Bond bond = family_bond(f, slice, slot, lane);
+      c->bonds->surface[slot * SLICE + lane] = bond_factor(&bond, c->factor, slice * SLICE + lane);
+    }
+}
+
 int bond_correct_surface(BondBased *b, Error *error)
 {
   const Family *f = b->family;
   const Particles *p = b->particles;
-  double *factor[3] = {0};
   double *inner = memory_zeroed(3 * (size_t)b->body->block_count, sizeof(double), "surface correction", error);
   b->surface = memory_zeroed((size_t)f->slots * SLICE, sizeof *b->surface, "surface correction", error);
+  Correction c = {.bonds = b, .inner = inner};
   int failed = !inner || !b->surface;
-  for (int a = 0; a < 3; ++a) failed |= !(factor[a] = places_array(p->places, "surface correction", error));
+  for (int a = 0; a < 3; ++a) failed |= !(c.factor[a] = places_array(p->places, "surface correction", error));
   for (int block = 0; block < b->body->block_count && !failed; ++block) inner_energies(b, block, inner + 3 * block);
-  for (int turn = 0; turn < TURNS && !failed; ++turn) {
-#pragma omp parallel for schedule(static)
-    for (int64_t place = 0; place < p->places; ++place) {
-      double own[3] = {0};
-      family_energies(f, turn ? b->surface : NULL, place, own);
-      for (int a = 0; a < 3; ++a)
-        factor[a][place] = (turn ? factor[a][place] : 1) * inner[3 * p->block[place / SLICE] + a] / own[a];
-    }
-#pragma omp parallel for schedule(static)
-    for (int64_t slice = 0; slice < p->slices; ++slice)
-      for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-        for (int lane = 0; lane < SLICE; ++lane) {
-          if (!(f->intact[slot] >> lane & 1)) continue;
-          Bond bond = family_bond(f, slice, slot, lane);
-          b->surface[slot * SLICE + lane] = bond_factor(&bond, factor, slice * SLICE + lane);
-        }
+  for (; c.turn < TURNS && !failed; ++c.turn) {
+    team_each(p->places, find_factors, &c);
+    team_each(p->slices, correct_slice, &c);
   }
-  for (int a = 0; a < 3; ++a) places_free(&factor[a]);
+  for (int a = 0; a < 3; ++a) places_free(&c.factor[a]);
   free(inner);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }

@@ -1,5 +1,6 @@
 #include "formulation/correspondence.h"
 
+#include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,8 +26,9 @@ void correspondence_destroy(void *formulation)
   free(c);
 }
 
-static void set_hold(Correspondence *c, int64_t slice)
+static void set_hold(void *context, int64_t slice)
 {
+  const Correspondence *c = context;
   const SliceShape *shape = shape_of_slice(&c->shapes, slice);
   const Material *m = &c->points->materials[c->points->material[slice]];
   double scale = c->strength * micromodulus(c->body, material_young(m), c->family->horizon) / c->family->horizon;
@@ -127,8 +129,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     correspondence_destroy(c);
     return NULL;
   }
-#pragma omp parallel for schedule(static)
-  for (int64_t slice = 0; slice < c->particles->slices; ++slice) set_hold(c, slice);
+  team_each(c->particles->slices, set_hold, c);
   if (is_uniform(c)) {
     c->control = CONTROL_UNIFORM;
     c->uniform = c->hold[0][c->particles->place_of[0]];

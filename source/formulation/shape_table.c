@@ -1,5 +1,6 @@
 #include "formulation/shape_table.h"
 
+#include "base/team.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,6 +51,19 @@ static int32_t find_entry(ShapeTable *table, const SliceShape *shape, int32_t *s
   }
 }
 
+typedef struct Batch { /* of slices whose shapes are found together */
+  ShapeTable *table;
+  const Family *family;
+  int64_t begin;
+  SliceShape *shapes;
+} Batch;
+
+static void find_shape(void *context, int64_t n)
+{
+  const Batch *batch = context;
+  batch->shapes[n] = slice_shape(batch->table, batch->family, batch->begin + n, true);
+}
+
 int shape_table_create(ShapeTable *table, const Family *family, bool plane, Error *error)
 {
   int64_t slices = family->particles->slices;
@@ -60,20 +74,20 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
   table->shared = memory_zeroed(capacity, 1, "shape tensors", error);
   table->roundness = memory_zeroed((size_t)family->particles->places, sizeof *table->roundness, "shape tensors", error);
   table->mode = memory_zeroed((size_t)family->particles->places, 1, "shape tensors", error);
-  SliceShape *batch = memory_zeroed(BATCH, sizeof *batch, "shape tensors", error);
+  SliceShape *shapes = memory_zeroed(BATCH, sizeof *shapes, "shape tensors", error);
   int32_t *slots = memory_zeroed(slots_count, sizeof *slots, "shape tensors", error);
   /* Not zeroed: pages that no entry ever needs are never touched, and so take no memory. */
   table->entries = aligned_alloc(64, (capacity * sizeof(SliceShape) + 63) / 64 * 64);
-  int failed = !table->entry_of || !table->shared || !table->roundness || !table->mode || !batch || !slots;
+  int failed = !table->entry_of || !table->shared || !table->roundness || !table->mode || !shapes || !slots;
   if (!table->entries) failed = error_add(error, BRECCIA_FAILURE, "out of memory: shape tensors");
   for (int64_t begin = 0; begin < slices && !failed; begin += BATCH) {
     int64_t end = begin + BATCH < slices ? begin + BATCH : slices;
-#pragma omp parallel for schedule(static)
-    for (int64_t slice = begin; slice < end; ++slice) batch[slice - begin] = slice_shape(table, family, slice, true);
+    Batch batch = {table, family, begin, shapes};
+    team_each(end - begin, find_shape, &batch);
     for (int64_t slice = begin; slice < end; ++slice)
-      table->entry_of[slice] = find_entry(table, &batch[slice - begin], slots, slots_count - 1);
+      table->entry_of[slice] = find_entry(table, &shapes[slice - begin], slots, slots_count - 1);
   }
-  free(batch);
+  free(shapes);
   free(slots);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }

@@ -1,5 +1,6 @@
 #include "loading/load.h"
 
+#include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,8 +180,7 @@ void loading_apply(const Loading *loading, Particles *p, double time)
   for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
     const Selection *selection = &loading->loads[l].selection;
     if (!is_force(loading->loads[l].spec)) continue;
-#pragma omp for schedule(static)
-    for (int64_t n = 0; n < selection->count; ++n)
+    TEAM_FOR (n, selection->count)
       for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
   }
   for (int l = 0; l < loading->count; ++l) {
@@ -193,8 +193,7 @@ void loading_apply(const Loading *loading, Particles *p, double time)
       if (!isnan(spec->force[k])) uniform[k] = factor * spec->force[k] / load->volume;
       if (!isnan(spec->gravity[k])) per_density[k] = factor * spec->gravity[k];
     }
-#pragma omp for schedule(static)
-    for (int64_t n = 0; n < load->selection.count; ++n) {
+    TEAM_FOR (n, load->selection.count) {
       int32_t place = load->selection.places[n];
       for (int k = 0; k < 3; ++k) p->external[k][place] += uniform[k] + per_density[k] * p->density[place];
     }

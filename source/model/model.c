@@ -1,23 +1,23 @@
 #include "model/model.h"
 
 #include "base/clock.h"
+#include "base/cores.h"
+#include "base/team.h"
 #include "results/fields.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
-static void set_threads(breccia_model *model)
+int model_enter(breccia_model *model, Team **before, Error *error)
 {
-#ifdef _OPENMP
-  if (model->threads <= 0) model->threads = omp_get_max_threads();
-  omp_set_num_threads(model->threads);
-#else
-  model->threads = 1;
-#endif
+  if (model->threads <= 0) model->threads = threads_by_default();
+  if (team_threads(model->team) != model->threads) {
+    team_destroy(&model->team);
+    if (!(model->team = team_create(model->threads, error))) return BRECCIA_FAILURE;
+  }
+  *before = team_use(model->team);
+  return BRECCIA_OK;
 }
 
 /** Threads that wait at barriers take the cores from server processes of the run's own: a step on two cores took half as long again. */
@@ -28,7 +28,6 @@ static void spare_servers(breccia_model *model, int wanted)
     if (model->domain.materials[k].remote) processes += remote_processes(model->domain.materials[k].remote);
   if (wanted > 0 || !processes) return;
   model->threads = model->threads > processes ? model->threads - processes : 1;
-  set_threads(model);
 }
 
 int64_t model_step_at(const breccia_model *model, double time)
@@ -149,12 +148,9 @@ static int build(breccia_model *model, bool force, Error *error)
   bad = check_results(model);
   if (bad) status = bad;
   if (status) return status;
-  double start = clock_seconds();
-#pragma omp parallel
-  domain_forces(&model->domain);
-  start = clock_seconds();
-#pragma omp parallel
-  domain_forces(&model->domain);
+  domain_evaluate(&model->domain);
+  const double start = clock_seconds();
+  domain_evaluate(&model->domain);
   model->evaluation_seconds = clock_seconds() - start;
   status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics,
                            &model->reader, force, &model->warnings);
@@ -168,19 +164,20 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
   Error *error = given ? given : breccia_error_create();
   breccia_model *model = calloc(1, sizeof *model);
   int status = BRECCIA_FAILURE;
+  Team *before;
+  static const breccia_options standard = {0};
+  if (!options) options = &standard;
+  if (model) model->threads = options->threads;
   if (!model || !error || !(model->deck_text = text_format("%s", deck))) {
     error_add(error, BRECCIA_FAILURE, "out of memory: model");
-  } else {
-    static const breccia_options standard = {0};
-    if (!options) options = &standard;
+  } else if (!model_enter(model, &before, error)) {
     model->laws = (LawList){options->laws, options->law_count};
-    model->threads = options->threads;
-    set_threads(model);
     model->document = document_parse(deck, strlen(deck), name, error);
     status = model->document ? model_units(model, error) : BRECCIA_USER_ERROR;
     if (!status) status = build(model, options->force, error);
     if (!status) spare_servers(model, options->threads);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
+    team_use(before);
   }
   if (status)
     breccia_model_destroy(&model);
@@ -211,6 +208,7 @@ void breccia_model_destroy(breccia_model **out)
   explicit_destroy(&model->solver);
   loading_destroy(&model->loading);
   domain_destroy(&model->domain);
+  team_destroy(&model->team);
   units_destroy(&model->units);
   document_destroy(&model->document);
   text_free(&model->warnings);
@@ -226,7 +224,6 @@ void breccia_model_destroy(breccia_model **out)
 
 int model_begin(breccia_model *model, Error *error)
 {
-  set_threads(model);
   if (model->begun) return BRECCIA_OK;
   const int status = points_begin(&model->domain.points, error);
   if (status) return status;
@@ -237,13 +234,13 @@ int model_begin(breccia_model *model, Error *error)
 
 int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error)
 {
-  const int bad = model_begin(model, error);
-  if (bad) return bad;
-  for (int64_t k = 0; k < steps && model->solver.step < model->solver.steps; ++k) {
-    int status = explicit_advance(&model->solver, error);
-    if (status) return status;
-  }
-  return BRECCIA_OK;
+  Team *before;
+  if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
+  int status = model_begin(model, error);
+  for (int64_t k = 0; !status && k < steps && model->solver.step < model->solver.steps; ++k)
+    status = explicit_advance(&model->solver, error);
+  team_use(before);
+  return status;
 }
 
 /* ---- looking ---- */
@@ -301,7 +298,12 @@ double *breccia_model_array(breccia_model *model, const char *name)
       if (!strcmp(wanted, name)) return vectors[v].arrays[k];
     }
   const bool strain = !strncmp(name, "strain ", 7), stress = !strncmp(name, "stress ", 7);
-  if ((strain || stress) && domain_observe(&model->domain, NULL)) return NULL;
+  if (strain || stress) {
+    Team *before = team_use(model->team);
+    const int bad = domain_observe(&model->domain, NULL);
+    team_use(before);
+    if (bad) return NULL;
+  }
   for (int k = 0; k < 6; ++k) {
     snprintf(wanted, sizeof wanted, "stress %s", voigt[k]);
     if (!strcmp(wanted, name)) return model->domain.points.stress[k];

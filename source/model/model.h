@@ -2,6 +2,7 @@
 #ifndef BRECCIA_MODEL_MODEL_H
 #define BRECCIA_MODEL_MODEL_H
 
+#include "base/team.h"
 #include "model/deck_layout.h"
 #include "solver/explicit.h"
 
@@ -23,13 +24,17 @@ struct breccia_model {
   Text warnings, overview, outcome;
   double evaluation_seconds; /* of one force evaluation, measured */
   bool begun;
-  int threads;
+  int threads; /* wanted; 0: as many as the machine has to spare */
+  Team *team;
   int64_t *schedule; /* steps at which results are written */
   int64_t schedule_count;
   Peaks peaks;
   double run_seconds;
   int64_t run_steps;
 };
+
+/** Lets team_run of this thread use the model's threads. Afterwards: team_use(before). */
+int model_enter(breccia_model *model, Team **before, Error *error);
 
 /** Prepares forces and accelerations of the first state, once. */
 int model_begin(breccia_model *model, Error *error);

@@ -492,6 +492,11 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   Run run = {.model = model, .wish = wish};
   run.steps = wish->steps > 0 && wish->steps < model->solver.steps ? wish->steps : model->solver.steps;
   model->run_steps = 0;
+  Team *before;
+  if (model_enter(model, &before, error)) {
+    if (!given) breccia_error_destroy(&error);
+    return BRECCIA_FAILURE;
+  }
   int status = make_folder(wish->folder, error);
   if (!status) status = list_names(&run, error);
   if (!status && wish->restart) {
@@ -511,6 +516,7 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   result_file_destroy(&run.results);
   free(run.names_memory);
   text_free(&run.files);
+  team_use(before);
   if (!given) breccia_error_destroy(&error);
   return status;
 }

@@ -1,5 +1,6 @@
 #include "results/result_file.h"
 
+#include "base/team.h"
 #include "results/dataset.h"
 #include "results/result_view.h"
 #include "results/xdmf.h"
@@ -65,15 +66,26 @@ static void history_values(const Domain *d, const char *name, double *values)
   }
 }
 
+typedef struct Values {
+  const Domain *domain;
+  const Column *column;
+  double *values;
+} Values;
+
+static void field_value(void *context, int64_t n)
+{
+  const Values *v = context;
+  v->column->field->value(v->domain, v->domain->particles->place_of[n], v->values + n * v->column->components);
+}
+
 static void field_values(const Domain *d, const Column *column, double *values)
 {
   if (!column->field) {
     history_values(d, column->name, values);
     return;
   }
-#pragma omp parallel for schedule(static)
-  for (int64_t n = 0; n < d->particles->count; ++n)
-    column->field->value(d, d->particles->place_of[n], values + n * column->components);
+  Values all = {d, column, values};
+  team_each(d->particles->count, field_value, &all);
 }
 
 static int create_sets(hid_t root, const ResultFile *file)

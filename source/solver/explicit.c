@@ -3,6 +3,7 @@
  * Works are summed by the trapezium rule over the step, so that their sum misses the kinetic energy by O(dt^2) only. */
 #include "solver/explicit.h"
 
+#include "base/team.h"
 #include "solver/stable_step.h"
 #include <math.h>
 #include <stdio.h>
@@ -200,7 +201,7 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
 /** After the drift: displacements at the end of the step, velocities in its middle. Called by all threads. */
 static void prescribe_displacements(Explicit *s)
 {
-#pragma omp single
+  TEAM_SINGLE
   {
     s->motion = 0;
     for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
@@ -208,10 +209,8 @@ static void prescribe_displacements(Explicit *s)
   for (int n = 0; n < s->loading->constraint_count; ++n) { /* one after the other: they may share particles */
     const Constraint *constraint = &s->loading->constraints[n];
     double target = constraint_displacement(constraint, s->time + s->time_step);
-#pragma omp for schedule(static)
-    for (int64_t part = 0; part < parts_of(constraint); ++part) move_part(s, constraint, target, part);
-#pragma omp single
-    add_parts(s, constraint);
+    TEAM_FOR (part, parts_of(constraint)) move_part(s, constraint, target, part);
+    TEAM_SINGLE add_parts(s, constraint);
   }
 }
 
@@ -249,10 +248,8 @@ static void prescribe_velocities(Explicit *s)
     double before = constraint_displacement(constraint, s->time - dt);
     double moved = constraint_displacement(constraint, s->time) - before;
     double rate = (constraint_displacement(constraint, s->time + dt) - before) / (2 * dt);
-#pragma omp for schedule(static)
-    for (int64_t part = 0; part < parts_of(constraint); ++part) speed_part(s, constraint, moved, rate, part);
-#pragma omp single
-    add_parts(s, constraint);
+    TEAM_FOR (part, parts_of(constraint)) speed_part(s, constraint, moved, rate, part);
+    TEAM_SINGLE add_parts(s, constraint);
   }
 }
 
@@ -271,8 +268,7 @@ void explicit_begin(Explicit *s)
 {
   Domain *d = s->domain;
   loading_apply(s->loading, d->particles, s->time);
-#pragma omp parallel
-  domain_forces(d);
+  domain_evaluate(d);
   const Particles *p = d->particles;
   s->kinetic = 0;
   for (int k = 0; k < 3; ++k)
@@ -339,39 +335,42 @@ static int retreat(Explicit *s, Error *error)
       "%g, stable step %g, kinetic energy %g)",
       (long long)s->step + 1, s->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
       p->position[2][bad], cause, dt, s->stable, energy);
-#pragma omp parallel
-  domain_forces(s->domain); /* strains and stresses of the state that is left */
+  domain_evaluate(s->domain); /* strains and stresses of the state that is left */
   return BRECCIA_FAILURE;
+}
+
+/** Whether a step that has come to its forces may go on. */
+static bool is_sound(const Explicit *s)
+{
+  const Domain *d = s->domain;
+  return isfinite(d->force_sum) && d->failed_place < 0 && !d->contact.failed;
+}
+
+static void advance(void *context)
+{
+  Explicit *s = context;
+  Domain *d = s->domain;
+  TEAM_FOR (b, d->block_count) kick_and_drift(s, b);
+  prescribe_displacements(s);
+  domain_break(d, s->step + 1, s->time + s->time_step, sqrt(3) * s->motion);
+  domain_forces(d);
+  if (!is_sound(s)) return;
+  loading_apply(s->loading, d->particles, s->time + s->time_step);
+  TEAM_FOR (b, d->block_count) kick(s, b);
+  TEAM_SINGLE
+  {
+    add_sums(s);
+    ++s->step;
+    s->time = (double)s->step * s->time_step;
+  }
+  prescribe_velocities(s);
 }
 
 int explicit_advance(Explicit *s, Error *error)
 {
-  Domain *d = s->domain;
-  int sound = 1;
-#pragma omp parallel
-  {
-#pragma omp for schedule(static)
-    for (int64_t b = 0; b < d->block_count; ++b) kick_and_drift(s, b);
-    prescribe_displacements(s);
-    domain_break(d, s->step + 1, s->time + s->time_step, sqrt(3) * s->motion);
-    domain_forces(d);
-#pragma omp single
-    sound = isfinite(d->force_sum) && d->failed_place < 0 && !d->contact.failed;
-    if (sound) {
-      loading_apply(s->loading, d->particles, s->time + s->time_step);
-#pragma omp for schedule(static)
-      for (int64_t b = 0; b < d->block_count; ++b) kick(s, b);
-#pragma omp single
-      {
-        add_sums(s);
-        ++s->step;
-        s->time = (double)s->step * s->time_step;
-      }
-      prescribe_velocities(s);
-    }
-  }
-  if (!sound) return retreat(s, error);
-  points_commit(&d->points);
+  team_run(advance, s);
+  if (!is_sound(s)) return retreat(s, error);
+  points_commit(&s->domain->points);
   return BRECCIA_OK;
 }
 

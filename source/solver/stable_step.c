@@ -1,6 +1,7 @@
 #include "solver/stable_step.h"
 
 #include "base/random.h"
+#include "base/team.h"
 #include <math.h>
 #include <string.h>
 
@@ -76,22 +77,42 @@ static double largest_eigenvalue(const double *alpha, const double *beta, int n)
   return high;
 }
 
-/** v -> -(f(u + h v) - f(u)) / (h rho); `base` holds u and f(u). */
-static void apply(Domain *d, Trial *trial, double *const base_u[3], double *const base_f[3], double h,
-                  double *const v[3], double *const out[3])
+typedef struct Iteration { /* of Lanczos' method */
+  Domain *domain;
+  Trial *trial;
+  double *const *base_u, *const *base_f; /* displacements u and forces f(u) */
+  double **previous, **current, **next;
+  double h, alpha, beta;
+} Iteration;
+
+/** next = -(f(u + h current) - f(u)) / (h rho) */
+static void apply(void *context)
 {
-  int64_t places = d->particles->places;
+  const Iteration *n = context;
+  Domain *d = n->domain;
   for (int k = 0; k < 3; ++k)
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < places; ++i) trial->displacement[k][i] = base_u[k][i] + h * v[k][i];
-  exchange(d, trial);
-#pragma omp parallel
+    TEAM_FOR (i, d->particles->places) n->trial->displacement[k][i] = n->base_u[k][i] + n->h * n->current[k][i];
+  TEAM_SINGLE exchange(d, n->trial);
   domain_forces(d);
-  exchange(d, trial);
+  TEAM_SINGLE exchange(d, n->trial);
   for (int k = 0; k < 3; ++k)
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < places; ++i)
-      out[k][i] = (base_f[k][i] - trial->internal[k][i]) / (h * d->particles->density[i]);
+    TEAM_FOR (i, d->particles->places)
+      n->next[k][i] = (n->base_f[k][i] - n->trial->internal[k][i]) / (n->h * d->particles->density[i]);
+}
+
+static void orthogonalize(void *context)
+{
+  const Iteration *n = context;
+  for (int k = 0; k < 3; ++k)
+    TEAM_FOR (i, n->domain->particles->places)
+      n->next[k][i] -= n->alpha * n->current[k][i] + n->beta * n->previous[k][i];
+}
+
+static void normalize(void *context)
+{
+  const Iteration *n = context;
+  for (int k = 0; k < 3; ++k)
+    TEAM_FOR (i, n->domain->particles->places) n->next[k][i] /= n->beta;
 }
 
 int stable_step(Domain *d, double *step, Error *error)
@@ -115,11 +136,11 @@ int stable_step(Domain *d, double *step, Error *error)
   double *const *u = d->particles->displacement;
   int elastic = d->points.elastic_stage;
   d->points.elastic_stage = 1;
-  double **previous = v[0], **current = v[1], **next = v[2];
+  Iteration it = {
+      .domain = d, .trial = &trial, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1], .next = v[2]};
   for (int k = 0; k < 3; ++k) memcpy(trial.displacement[k], u[k], sizeof(double) * (size_t)places);
   exchange(d, &trial);
-#pragma omp parallel
-  domain_forces(d);
+  domain_evaluate(d);
   exchange(d, &trial);
   for (int k = 0; k < 3; ++k) memcpy(base_f[k], trial.internal[k], sizeof(double) * (size_t)places);
 
@@ -127,31 +148,28 @@ int stable_step(Domain *d, double *step, Error *error)
   for (int k = 0; k < 3; ++k)
     for (int64_t n = 0; n < d->particles->count; ++n) {
       double r = random_uniform(&seed) - 0.5;
-      current[k][d->particles->place_of[n]] = k < d->body.dimensions ? r : 0;
+      it.current[k][d->particles->place_of[n]] = k < d->body.dimensions ? r : 0;
     }
-  double norm = sqrt(mass_product(d, current, current));
+  double norm = sqrt(mass_product(d, it.current, it.current));
   double alpha[MOST_ITERATIONS], beta[MOST_ITERATIONS + 1] = {0}, largest = 0, before = 0;
   for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < places; ++i) current[k][i] /= norm;
+    for (int64_t i = 0; i < places; ++i) it.current[k][i] /= norm;
   /* Displacements of 1e-7 spacings: far above roundings, far below where anything is non-linear. */
-  double h = 1e-7 * d->body.largest_spacing * norm;
+  it.h = 1e-7 * d->body.largest_spacing * norm;
   for (int n = 0; n < MOST_ITERATIONS; ++n) {
-    apply(d, &trial, u, base_f, h, current, next);
-    alpha[n] = mass_product(d, next, current);
-    for (int k = 0; k < 3; ++k)
-#pragma omp parallel for schedule(static)
-      for (int64_t i = 0; i < places; ++i) next[k][i] -= alpha[n] * current[k][i] + beta[n] * previous[k][i];
-    beta[n + 1] = sqrt(mass_product(d, next, next));
+    team_run(apply, &it);
+    it.alpha = alpha[n] = mass_product(d, it.next, it.current);
+    it.beta = beta[n];
+    team_run(orthogonalize, &it);
+    it.beta = beta[n + 1] = sqrt(mass_product(d, it.next, it.next));
     largest = largest_eigenvalue(alpha, beta, n + 1);
     if (!(beta[n + 1] > 1e-9 * fabs(largest)) || (n > 12 && largest - before < 1e-4 * largest)) break;
     before = largest;
-    for (int k = 0; k < 3; ++k)
-#pragma omp parallel for schedule(static)
-      for (int64_t i = 0; i < places; ++i) next[k][i] /= beta[n + 1];
-    double **spare = previous;
-    previous = current;
-    current = next;
-    next = spare;
+    team_run(normalize, &it);
+    double **spare = it.previous;
+    it.previous = it.current;
+    it.current = it.next;
+    it.next = spare;
   }
   d->points.elastic_stage = elastic;
   domain_show_states(d); /* bonds that break next are judged by what particles show */

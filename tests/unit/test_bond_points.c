@@ -2,9 +2,6 @@
 #include "support.h"
 
 #include "base/random.h"
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #define SOFTENING                                                                                                      \
   "model: bilinear-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m"

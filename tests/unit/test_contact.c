@@ -1,10 +1,6 @@
 /* Particles that no bond joins keep each other off. */
 #include "support.h"
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 /** Two blocks that fly at each other with 15 m/s each, a little beside each other. */
 static breccia_model *blocks(const char *formulation, const char *law, const char *contact)
 {
@@ -153,7 +149,6 @@ static void a_pair_repels_as_it_should_once_its_bond_is_gone(void **state)
 static void threads_do_not_change_a_bit(void **state)
 {
   (void)state;
-#ifdef _OPENMP
   double *reference = NULL;
   for (int threads = 1; threads <= 3; ++threads) {
     breccia_model *model =
@@ -167,7 +162,6 @@ static void threads_do_not_change_a_bit(void **state)
     breccia_model_destroy(&model);
   }
   free(reference);
-#endif
 }
 
 int main(void)

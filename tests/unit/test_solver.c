@@ -1,9 +1,6 @@
 #include "base/random.h"
 #include "solver/stable_step.h"
 #include "support.h"
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #define STEEL "materials: {m: {model: elastic, density: 7.85, Young modulus: 2.1e8, Poisson ratio: %s}}\n"
 
@@ -158,7 +155,6 @@ static void measuring_the_stable_step_leaves_no_trace(void **state)
 static void threads_do_not_change_a_bit(void **state)
 {
   (void)state;
-#ifdef _OPENMP
   double *reference[3] = {0};
   const int threads[] = {1, 2, 3, 8};
   for (int k = 0; k < 4; ++k) {
@@ -179,7 +175,6 @@ static void threads_do_not_change_a_bit(void **state)
     breccia_model_destroy(&m);
   }
   for (int a = 0; a < 3; ++a) free(reference[a]);
-#endif
 }
 
 static void broken_bonds_stay_broken_and_damage_grows(void **state)

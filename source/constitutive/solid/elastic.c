@@ -16,7 +16,7 @@ static void stresses(const Elasticity *c, const breccia_batch *batch)
   double lambda = c->bulk - 2 * c->shear / 3, shear = c->shear;
   const double *const *strain = batch->strain;
   double *const *stress = batch->stress;
-#pragma omp simd
+  LANES_INDEPENDENT
   for (int i = 0; i < batch->count; ++i) {
     double volumetric = lambda * (strain[0][i] + strain[1][i] + strain[2][i]);
     for (int k = 0; k < 3; ++k) stress[k][i] = volumetric + 2 * shear * strain[k][i];
