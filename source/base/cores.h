@@ -2,9 +2,18 @@
 #ifndef BRECCIA_BASE_CORES_H
 #define BRECCIA_BASE_CORES_H
 
-/** Cores that this process may use. */
+#include "base/text.h"
+
+/** Cores that this process may use: those that the system lets it run on, and no more than its control groups give it time for. */
 int cores_available(void);
-/** What OMP_NUM_THREADS says, else one per core. */
-int threads_by_default(void);
+
+/** Cores' worth of time that the control groups of Linux, and with them containers, give a process; INFINITY where nothing limits it.
+ *  @param[in] mount       where groups are found, "/sys/fs/cgroup"
+ *  @param[in] membership  file that tells the groups of the process, "/proc/self/cgroup" */
+double cores_of_groups(const char *mount, const char *membership);
+
+/** What OMP_NUM_THREADS says, else one per core.
+ *  @param[out] warning  gets a line where OMP_NUM_THREADS is no number of threads */
+int threads_by_default(Text *warning);
 
 #endif

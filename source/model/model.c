@@ -4,6 +4,7 @@
 #include "base/cores.h"
 #include "base/team.h"
 #include "results/fields.h"
+#include "results/result_file.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,6 @@
 
 int model_enter(breccia_model *model, Team **before, Error *error)
 {
-  if (model->threads <= 0) model->threads = threads_by_default();
   if (team_threads(model->team) != model->threads) {
     team_destroy(&model->team);
     if (!(model->team = team_create(model->threads, error))) return BRECCIA_FAILURE;
@@ -148,10 +148,6 @@ static int build(breccia_model *model, bool force, Error *error)
   bad = check_results(model);
   if (bad) status = bad;
   if (status) return status;
-  domain_evaluate(&model->domain);
-  const double start = clock_seconds();
-  domain_evaluate(&model->domain);
-  model->evaluation_seconds = clock_seconds() - start;
   status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics,
                            &model->reader, force, &model->warnings);
   return status ? status : make_schedule(model, error);
@@ -167,7 +163,8 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
   Team *before;
   static const breccia_options standard = {0};
   if (!options) options = &standard;
-  if (model) model->threads = options->threads;
+  Text ignored = {0};
+  if (model) model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
   if (!model || !error || !(model->deck_text = text_format("%s", deck))) {
     error_add(error, BRECCIA_FAILURE, "out of memory: model");
   } else if (!model_enter(model, &before, error)) {
@@ -177,8 +174,10 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
     if (!status) status = build(model, options->force, error);
     if (!status) spare_servers(model, options->threads);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
+    if (ignored.length) text_add(&model->warnings, "%s%s", model->warnings.length ? "\n" : "", ignored.characters);
     team_use(before);
   }
+  text_free(&ignored);
   if (status)
     breccia_model_destroy(&model);
   else
@@ -315,6 +314,79 @@ double *breccia_model_array(breccia_model *model, const char *name)
   return NULL;
 }
 
+int model_field_names(const breccia_model *model, TextList *names, Error *error)
+{
+  const DeckSpec *spec = model->spec;
+  const TextList *asked = &spec->results->fields;
+  names->items = calloc((size_t)(asked->count + spec->pictures.count + 16), sizeof(char *));
+  names->count = 0;
+  if (!names->items) return error_add(error, BRECCIA_FAILURE, "out of memory: fields");
+  for (int pass = 0; pass < 3; ++pass) {
+    int count = pass == 0 ? asked->count : pass == 1 ? spec->pictures.count : 6;
+    for (int k = 0; k < count; ++k) {
+      const char *name = pass == 0      ? asked->items[k]
+                         : pass == 1    ? ((const PictureSpec *)spec->pictures.items[k])->field
+                         : asked->count ? "displacement"
+                                        : standard_fields[k];
+      int known = !name;
+      for (int n = 0; n < names->count; ++n) known |= name && !strcmp(names->items[n], name);
+      if (!known) names->items[names->count++] = name;
+    }
+  }
+  return BRECCIA_OK;
+}
+
+/* ---- how long a run takes ---- */
+
+Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t states_written)
+{
+  const ResultsSpec *r = model->spec->results;
+  Task task = {.steps = last - first, .states_written = states_written, .checkpoint_seconds = r->checkpoint_seconds};
+  while (task.states < model->schedule_count && model->schedule[task.states] <= last) ++task.states;
+  if (r->checkpoint_steps > 0) task.checkpoints = last / r->checkpoint_steps - first / r->checkpoint_steps;
+  for (int k = 0; k < model->spec->pictures.count; ++k) {
+    const PictureSpec *picture = model->spec->pictures.items[k];
+    task.pictures += picture->times.count ? picture->times.count : 1;
+  }
+  if (!model->spec->pictures.count) task.pictures = 3;
+  return task;
+}
+
+/** Mean seconds of one evaluation of the forces: over a quarter of a second, in which whoever else uses the machine has had his turns, or
+ *  over a fiftieth of what the whole run takes. */
+static double measure_evaluation(breccia_model *model)
+{
+  enum { FEWEST = 3 };
+  domain_evaluate(&model->domain); /* the first touches memory for the first time */
+  const double begin = clock_seconds();
+  for (int count = 1;; ++count) {
+    domain_evaluate(&model->domain);
+    const double seconds = clock_seconds() - begin, one = seconds / count;
+    if (count >= FEWEST && (seconds > 0.25 || seconds > 0.02 * one * (double)model->solver.steps)) return one;
+  }
+}
+
+int model_expect(breccia_model *model, Error *error)
+{
+  const Domain *d = &model->domain;
+  Team *before;
+  if (model->begun || model->outlook.state_bytes > 0) return BRECCIA_OK;
+  ResultNames names = {.single = !strcmp(model->spec->results->precision, "single")};
+  TextList list;
+  if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
+  const int status = model_field_names(model, &list, error);
+  if (!status) {
+    names.fields = list.items;
+    names.count = list.count;
+    /* What a step does beside the forces takes 2 to 40 % of them (docs/performance.md). */
+    outlook_expect(&model->outlook, 1.2 * measure_evaluation(model), result_file_state_bytes(d, &names),
+                   (double)(domain_particle_bytes(d)), d->particles->count);
+    free(list.items);
+  }
+  team_use(before);
+  return status;
+}
+
 static void add_duration(Text *text, double seconds)
 {
   if (seconds < 100)
@@ -359,7 +431,9 @@ const char *breccia_model_overview(breccia_model *model)
   if (d->type->describe) d->type->describe(d->formulation, text);
   text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step,
            time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
-  add_duration(text, model->evaluation_seconds * 1.15 * (double)(s->steps - s->step));
+  model_expect(model, NULL);
+  const Task task = model_task(model, s->step, s->steps, 0);
+  add_duration(text, outlook_left(&model->outlook, &task));
   if (d->points.server) text_add(text, " and what its material servers take");
   return text->characters;
 }

@@ -4,6 +4,7 @@
 
 #include "base/team.h"
 #include "model/deck_layout.h"
+#include "model/outlook.h"
 #include "solver/explicit.h"
 
 typedef struct Peaks { /* over all states written */
@@ -22,7 +23,7 @@ struct breccia_model {
   Explicit solver;
   Watches *watches;
   Text warnings, overview, outcome;
-  double evaluation_seconds; /* of one force evaluation, measured */
+  Outlook outlook;
   bool begun;
   int threads; /* wanted; 0: as many as the machine has to spare */
   Team *team;
@@ -38,6 +39,15 @@ int model_enter(breccia_model *model, Team **before, Error *error);
 
 /** Prepares forces and accelerations of the first state, once. */
 int model_begin(breccia_model *model, Error *error);
+
+/** Names of the fields that results are written of, without doubles: those of the deck, those of its pictures, and displacement.
+ *  @param[out] names  its items are to be freed */
+int model_field_names(const breccia_model *model, TextList *names, Error *error);
+
+/** What there is to do from a step to another, when so many states have been written. */
+Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t states_written);
+/** Measures how long steps will take, unless that is known already. A model that has begun is left alone. */
+int model_expect(breccia_model *model, Error *error);
 
 /** Step nearest to a time. */
 int64_t model_step_at(const breccia_model *model, double time);

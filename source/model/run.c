@@ -22,8 +22,9 @@ typedef struct Run {
   int64_t next_write; /* index in the schedule */
   int64_t steps;      /* where to stop */
   double started, last_checkpoint, last_progress;
+  double paused;   /* seconds since the last progress that went into writing */
+  int64_t told_at; /* step of the last progress */
   TextList names;
-  const char **names_memory;
   Text files;
 } Run;
 
@@ -54,30 +55,6 @@ static int make_folder(const char *path, Error *error)
   return BRECCIA_OK;
 }
 
-/** Fields of the deck, those of its pictures, and displacement, without doubles. */
-static int list_names(Run *run, Error *error)
-{
-  const DeckSpec *spec = run->model->spec;
-  const TextList *asked = &spec->results->fields;
-  int most = asked->count + spec->pictures.count + 16;
-  run->names_memory = calloc((size_t)most, sizeof(char *));
-  if (!run->names_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: fields");
-  run->names.items = run->names_memory;
-  for (int pass = 0; pass < 3; ++pass) {
-    int count = pass == 0 ? asked->count : pass == 1 ? spec->pictures.count : 6;
-    for (int k = 0; k < count; ++k) {
-      const char *name = pass == 0      ? asked->items[k]
-                         : pass == 1    ? ((const PictureSpec *)spec->pictures.items[k])->field
-                         : asked->count ? "displacement"
-                                        : standard_fields[k];
-      int known = !name;
-      for (int n = 0; n < run->names.count; ++n) known |= name && !strcmp(run->names.items[n], name);
-      if (!known) run->names_memory[run->names.count++] = name;
-    }
-  }
-  return BRECCIA_OK;
-}
-
 static void update_peaks(breccia_model *model)
 {
   const Domain *d = &model->domain;
@@ -102,9 +79,15 @@ static void update_peaks(breccia_model *model)
 static int write_results(Run *run, Error *error)
 {
   breccia_model *model = run->model;
+  const double start = clock_seconds();
   if (domain_observe(&model->domain, error)) return BRECCIA_FAILURE;
   update_peaks(model);
-  return result_file_write(run->results, &model->domain, model->solver.step, model->solver.time, error);
+  const int status = result_file_write(run->results, &model->domain, model->solver.step, model->solver.time, error);
+  const double seconds = clock_seconds() - start;
+  Outlook *o = &model->outlook;
+  pace_note(&o->bytes, outlook_bytes(o, run->next_write) - outlook_bytes(o, run->next_write - 1), seconds);
+  run->paused += seconds;
+  return status;
 }
 
 static int write_checkpoint(Run *run, Error *error)
@@ -113,7 +96,11 @@ static int write_checkpoint(Run *run, Error *error)
   const double extras[CHECKPOINT_EXTRAS] = {p->displacement, p->velocity,  p->octahedral,
                                             p->mean_low,     p->mean_high, p->damage};
   run->last_checkpoint = clock_seconds();
-  return checkpoint_write(run->wish->folder, &run->model->solver, run->model->deck_text, extras, error);
+  const int status = checkpoint_write(run->wish->folder, &run->model->solver, run->model->deck_text, extras, error);
+  const double seconds = clock_seconds() - run->last_checkpoint;
+  pace_note(&run->model->outlook.checkpoints, 1, seconds);
+  run->paused += seconds;
+  return status;
 }
 
 static int open_files(Run *run, Error *error)
@@ -140,10 +127,12 @@ static void show_progress(Run *run, bool always)
   const Explicit *s = &run->model->solver;
   double now = clock_seconds();
   if (!run->wish->progress || (!always && now - run->last_progress < 0.2)) return;
+  pace_note(&run->model->outlook.steps, (double)(s->step - run->told_at), now - run->last_progress - run->paused);
   run->last_progress = now;
-  int64_t done = run->model->run_steps;
-  double rate = done > 0 ? (now - run->started) / (double)done : 0;
-  run->wish->progress(run->wish->context, s->step, run->steps, rate * (double)(run->steps - s->step));
+  run->told_at = s->step;
+  run->paused = 0;
+  const Task left = model_task(run->model, s->step, run->steps, run->next_write);
+  run->wish->progress(run->wish->context, s->step, run->steps, outlook_left(&run->model->outlook, &left));
 }
 
 static int due(Run *run, Error *error)
@@ -498,7 +487,8 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
     return BRECCIA_FAILURE;
   }
   int status = make_folder(wish->folder, error);
-  if (!status) status = list_names(&run, error);
+  if (!status) status = model_field_names(model, &run.names, error);
+  if (!status && wish->progress) status = model_expect(model, error);
   if (!status && wish->restart) {
     double extras[CHECKPOINT_EXTRAS];
     status = checkpoint_read(wish->folder, &model->solver, model->deck_text, extras, error);
@@ -510,11 +500,12 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   if (!status) status = model_begin(model, error);
   if (!status) status = open_files(&run, error);
   if (!status) {
-    run.started = run.last_checkpoint = clock_seconds();
+    run.started = run.last_checkpoint = run.last_progress = clock_seconds();
+    run.told_at = model->solver.step;
     status = finish(&run, loop(&run, error), error);
   }
   result_file_destroy(&run.results);
-  free(run.names_memory);
+  free(run.names.items);
   text_free(&run.files);
   team_use(before);
   if (!given) breccia_error_destroy(&error);

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { COPY_LIMIT = 256 << 20, CHUNK_BYTES = 1 << 18 };
+enum { CHUNK_BYTES = 1 << 18 };
 
 typedef struct Column {
   char name[64], unit[64];
@@ -358,6 +358,16 @@ static int append(ResultFile *file, const char *path, const Domain *d)
   free(values);
   if (!bad) file->broken_written = d->broken_count;
   return bad;
+}
+
+double result_file_state_bytes(const Domain *d, const ResultNames *names)
+{
+  int numbers = 0;
+  for (int k = 0; k < names->count; ++k) {
+    const OutputField *field = output_field_find(names->fields[k]);
+    numbers += field ? field->components : 1;
+  }
+  return (double)d->particles->count * numbers * (names->single ? 4 : 8);
 }
 
 int result_file_write(ResultFile *file, const Domain *d, int64_t step, double time, Error *error)

@@ -8,6 +8,8 @@
 
 #include "results/fields.h"
 
+enum { COPY_LIMIT = 256 << 20 };
+
 typedef struct ResultFile ResultFile;
 
 typedef struct ResultNames {
@@ -23,6 +25,8 @@ int result_file_create(ResultFile **file, const char *folder, const Domain *doma
 int result_file_resume(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
                        const char *title, const ResultNames *names, const int64_t *schedule, int64_t count,
                        Error *error);
+/** Bytes that one state takes in a file with these fields. */
+double result_file_state_bytes(const Domain *domain, const ResultNames *names);
 /** Adds the present state. */
 int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
 void result_file_destroy(ResultFile **file);

@@ -22,6 +22,16 @@ equal() {
   [ "$2" = "$3" ] || fail "$1: expected «$3», found «$2»"
 }
 
+# wait_for PROCESS CONDITION: until the condition holds, or the process has ended; however slow the machine is
+wait_for() {
+  local process=$1
+  shift
+  until "$@"; do
+    kill -0 "$process" 2> /dev/null || { "$@"; return; }
+    sleep 0.05
+  done
+}
+
 # Words of a JSON file's "key": value
 json() {
   sed -n "s/.*\"$2\": \([^,}]*\).*/\1/p" "$1" | head -1

@@ -33,7 +33,7 @@ for deck in "$source"/examples/*/*.yaml; do
   if grep -q ' opensees: ' "$deck"; then
     rm -f "$work/socket"
     "$breccia" serve --listen "unix:$work/socket" --once > /dev/null &
-    for _ in $(seq 600); do [ -S "$work/socket" ] && break; sleep 0.05; done
+    wait_for $! [ -S "$work/socket" ] || fail "the server of $name does not begin"
     sed -i "s|    opensees: .*|    remote: elastic; Young modulus=1e5; Poisson ratio=0.25\n    server: ['unix:$work/socket']|" "$deck"
   fi
   "$breccia" check "$deck" > "$work/out" 2>&1 || fail "$name is refused: $(cat "$work/out")"

@@ -58,10 +58,11 @@ def spoil(fault, header, body):
     return frame
 
 
-def relay(client, server, fault, wanted):
+def relay(client, own, server, fault, wanted):
     """Until one of them leaves. @return how many trials are still to come before the wanted one"""
     target = socket.socket(socket.AF_UNIX)
     target.connect(server)
+    open(own + ".connected", "w").close()
     try:
         while True:
             head = read(client, HEADER.size)
@@ -83,17 +84,16 @@ def relay(client, server, fault, wanted):
 
 def main():
     own, server, fault, wanted = sys.argv[1], sys.argv[2], sys.argv[3], int(sys.argv[4])
-    signal.alarm(60)
+    signal.alarm(1500)
     listener = socket.socket(socket.AF_UNIX)
-    if os.path.exists(own):
-        os.unlink(own)
-    listener.bind(own)
+    listener.bind(own + ".new")
     listener.listen(1)
+    os.rename(own + ".new", own)  # whoever sees it can connect
     while True:
         client, _ = listener.accept()
         if fault in ("close", "hang"):  # whoever comes later finds nobody
             os.unlink(own)
-        wanted = relay(client, server, fault, wanted)
+        wanted = relay(client, own, server, fault, wanted)
 
 
 main()

@@ -22,10 +22,10 @@ clay='shear modulus: 60000, bulk modulus: 100000, octahedral strength: 30'
 served="remote: multi-yield-j2; shear modulus=60000; bulk modulus=100000; octahedral strength=30"
 
 serve() { # ADDRESS [options]; sets $server
+  : > serve.out
   "$breccia" serve --listen "$@" > serve.out 2> serve.err &
   server=$!
-  for _ in $(seq 100); do grep -q listening serve.out && return; kill -0 $server 2> /dev/null || break; sleep 0.05; done
-  fail "serve $1: $(cat serve.err)"
+  wait_for $server grep -q listening serve.out || fail "serve $1: $(cat serve.err)"
 }
 stop() { kill "$server" 2> /dev/null; wait "$server" 2> /dev/null; }
 same() { "$build/tests/compare_results" "$1/$3" "$2/$3" > differences || fail "$2: $3: $(cat differences)"; }
@@ -111,19 +111,19 @@ bonds "remote: 'bilinear-softening; $softening', server: ['unix:$PWD/one']" > bo
 
 # ---- faults: one line, in time, and what was committed stays ----
 relay() { # FAULT
+  rm -f relay relay.connected
   python3 "$source/tests/command/faulty_relay.py" "$PWD/relay" "$PWD/one" "$1" 30 &
   relay=$!
-  for _ in $(seq 100); do [ -S relay ] && break; sleep 0.05; done
+  wait_for $relay [ -S relay ] || fail "the relay does not begin"
 }
-deck "$served, server: ['unix:$PWD/relay'], timeout: 2" > faulty.yaml
+relayed() { deck "$served, server: ['unix:$PWD/relay'], timeout: $1"; }
 fault() { # FAULT WORDS STEPS: those that are left for the restart; 32 after the last committed step, 40 after the last checkpoint
   relay "$1"
-  local start=$SECONDS
+  relayed ${4:-300} > faulty.yaml
   "$breccia" run faulty.yaml > out 2> err
   equal "$1: status" $? 1
   equal "$1: lines" "$(wc -l < err)" 1
   contains "$1: message" "$(cat err)" "step 29 (time 0.000232): material 'clay': server at unix:$PWD/relay: $2"
-  [ $((SECONDS - start)) -le 10 ] || fail "$1: took $((SECONDS - start)) s"
   [ -f faulty/checkpoint.h5 ] || fail "$1: no checkpoint"
   kill $relay 2> /dev/null; wait $relay 2> /dev/null
   # From the last checkpoint, with a server that is well, to the same end.
@@ -140,7 +140,7 @@ fault() { # FAULT WORDS STEPS: those that are left for the restart; 32 after the
   kill $relay 2> /dev/null; wait $relay 2> /dev/null
 }
 fault close 'it has closed the connection' 40
-fault hang 'it does not answer within 2 s' 40
+fault hang 'it does not answer within 5 s' 40 5
 fault length 'a frame of 1073741824 bytes was announced; the most is 268435456' 32
 fault short 'it answered with 198 points in 9496 bytes where 198 points in 9504 bytes were due' 32
 fault sequence 'it answered 133 to frame ' 32
@@ -149,6 +149,7 @@ fault damage 'a frame came damaged (its checksum does not hold)' 32
 fault garbage 'what came is no frame of a material server (it begins with 48 54 54 50)' 32
 fault version 'it speaks version 9 of the protocol, this program version 1' 32
 relay late
+relayed 300 > faulty.yaml
 "$breccia" run faulty.yaml > out 2>&1 || fail "late: $(cat out)"
 same home faulty results.vtkhdf
 kill $relay 2> /dev/null; wait $relay 2> /dev/null
@@ -183,8 +184,7 @@ contains "no offers" "$(cat err)" "OpenSees server: '$PWD/nowhere' cannot be sta
 # Two clients at once: the second is turned away, and the first goes on.
 relay hang
 "$breccia" run faulty.yaml > /dev/null 2>&1 & client=$!
-for _ in $(seq 100); do [ -S relay ] || break; sleep 0.05; done
-sleep 0.3
+wait_for $client [ -e relay.connected ] || fail "the first client does not begin"
 refuse "$served, server: ['unix:$PWD/one']" "server at unix:$PWD/one: the server is busy with another client"
 kill $relay $client 2> /dev/null; wait $relay $client 2> /dev/null
 
@@ -209,9 +209,9 @@ stop
 # Killed in the middle of a run.
 serve "unix:$PWD/one"
 relay hang
-deck "$served, server: ['unix:$PWD/relay'], timeout: 30" > killed.yaml
+deck "$served, server: ['unix:$PWD/relay'], timeout: 300" > killed.yaml
 "$breccia" run killed.yaml > out 2> err & client=$!
-for _ in $(seq 100); do [ -f killed/checkpoint.h5 ] && break; sleep 0.05; done
+wait_for $client [ -f killed/checkpoint.h5 ] || fail "killed: no checkpoint"
 kill -9 "$server"; kill -9 $relay; wait "$server" 2> /dev/null
 wait $client; equal "killed: status" $? 1
 contains "killed" "$(cat err)" "material 'clay': server at unix:$PWD/relay: it has closed the connection"

@@ -5,10 +5,12 @@
 
 #include "base/cores.h"
 #include <dirent.h>
+#include <errno.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <sys/stat.h>
 #include <time.h>
 
 static double processor_seconds(clockid_t clock)
@@ -191,6 +193,75 @@ static void a_model_takes_its_threads_along(void **state)
   assert_int_equal(threads_of_process(), before);
 }
 
+static void write_words(const char *path, const char *words)
+{
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  fputs(words, file);
+  fclose(file);
+}
+
+static void make_folders(const char *const *paths)
+{
+  for (; *paths; ++paths)
+    if (mkdir(*paths, 0777)) assert_int_equal(errno, EEXIST);
+}
+
+static void a_share_of_the_processor_limits_the_cores(void **state)
+{
+  (void)state;
+  make_folders(
+      (const char *[]){"groups", "groups/a", "groups/a/b", "groups/cpu,cpuacct", "groups/cpu,cpuacct/c", NULL});
+  for (const char *const *old =
+           (const char *[]){"groups/a/b/cpu.max", "groups/a/cpu.max", "groups/cpu,cpuacct/c/cpu.cfs_period_us",
+                            "groups/cpu,cpuacct/c/cpu.cfs_quota_us", NULL};
+       *old; ++old)
+    remove(*old);
+  write_words("groups/none", "");
+  write_words("groups/member", "0::/a/b\n");
+  write_words("groups/old", "7:memory:/a\n4:cpu,cpuacct:/c\n0::/\n");
+  write_words("groups/contained", "0::/of/the/host\n");
+  assert_true(isinf(cores_of_groups("groups", "groups/none")));
+  assert_true(isinf(cores_of_groups("groups", "groups/nowhere")));
+  assert_true(isinf(cores_of_groups("groups", "groups/member")));
+  write_words("groups/a/b/cpu.max", "max 100000\n");
+  assert_true(isinf(cores_of_groups("groups", "groups/member")));
+  write_words("groups/a/cpu.max", "250000 100000\n");
+  assert_near(cores_of_groups("groups", "groups/member"), 2.5, 0);
+  write_words("groups/a/b/cpu.max", "50000 100000\n");
+  assert_near(cores_of_groups("groups", "groups/member"), 0.5, 0);
+  assert_true(isinf(cores_of_groups("groups", "groups/contained")));
+  write_words("groups/cpu.max", "30000 20000\n");
+  assert_near(cores_of_groups("groups", "groups/contained"), 1.5, 0);
+  assert_near(cores_of_groups("groups", "groups/member"), 0.5, 0);
+  remove("groups/cpu.max");
+  write_words("groups/cpu,cpuacct/c/cpu.cfs_period_us", "100000\n");
+  write_words("groups/cpu,cpuacct/c/cpu.cfs_quota_us", "-1\n");
+  assert_true(isinf(cores_of_groups("groups", "groups/old")));
+  write_words("groups/cpu,cpuacct/c/cpu.cfs_quota_us", "400000\n");
+  assert_near(cores_of_groups("groups", "groups/old"), 4, 0);
+}
+
+static void the_environment_says_how_many_threads(void **state)
+{
+  (void)state;
+  Text warning = {0};
+  const struct {
+    const char *words;
+    int threads; /* 0: one per core, and a warning */
+  } cases[] = {{"3", 3}, {"5,2", 5}, {"0", 0}, {"many", 0}, {"2 threads", 0}, {"-1", 0}, {"99999", 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    setenv("OMP_NUM_THREADS", cases[k].words, 1);
+    const int threads = threads_by_default(&warning);
+    assert_int_equal(threads, cases[k].threads ? cases[k].threads : cores_available());
+    assert_int_equal(warning.length > 0, cases[k].threads == 0);
+    text_free(&warning);
+  }
+  unsetenv("OMP_NUM_THREADS");
+  assert_int_equal(threads_by_default(&warning), cores_available());
+  assert_int_equal(warning.length, 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -199,6 +270,8 @@ int main(void)
       cmocka_unit_test(those_who_wait_sleep),
       cmocka_unit_test(steps_cost_little_more_where_cores_are_too_few),
       cmocka_unit_test(a_model_takes_its_threads_along),
+      cmocka_unit_test(a_share_of_the_processor_limits_the_cores),
+      cmocka_unit_test(the_environment_says_how_many_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

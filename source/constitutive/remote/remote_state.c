@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double RESCUE_SECONDS = 2;
+static const double RESCUE_SECONDS = 5;
 
 /** Commits what is due with a frame of its own. */
 static int remote_flush(Remote *r, RemoteServer *s)

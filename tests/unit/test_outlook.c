@@ -1,0 +1,171 @@
+/* Expected times of runs that are made up: what a run would have said at each moment, against what it then took. */
+#include "support.h"
+
+#include "results/result_file.h"
+
+enum { STEPS = 20000, TELLS = 100 };
+
+typedef struct Story {
+  const char *name;
+  double (*step)(int64_t k, double now); /* seconds of step k that begins `now` */
+  double expected;                       /* of a step, beforehand */
+  int64_t state_every, checkpoint_every; /* steps; 0: none */
+  double checkpoint_seconds;             /* between checkpoints; 0: none */
+  double byte, checkpoint, state_bytes;  /* seconds of each; bytes of a state */
+  double trusted;                        /* share of the whole time from which on the words must hold */
+} Story;
+
+static double steady(int64_t k, double now)
+{
+  (void)k, (void)now;
+  return 0.01;
+}
+static double slow_start(int64_t k, double now)
+{
+  (void)now;
+  return k < 300 ? 0.1 : 0.01;
+}
+static double neighbour_by_turns(int64_t k, double now)
+{
+  (void)k;
+  return fmod(now, 40) < 20 ? 0.025 : 0.01;
+}
+static double neighbour_stays(int64_t k, double now)
+{
+  (void)k;
+  return now > 60 ? 0.025 : 0.01;
+}
+static double neighbour_leaves(int64_t k, double now)
+{
+  (void)k;
+  return now < 200 ? 0.03 : 0.01;
+}
+
+static const Story stories[] = {
+    {"steady", steady, 0.01, .trusted = 0},
+    {"nothing known beforehand", steady, 0, .trusted = 0.001},
+    {"wrong beforehand", steady, 0.3, .trusted = 0.1},
+    {"slow start", slow_start, 0.01, .trusted = 0.25},
+    {"neighbour by turns", neighbour_by_turns, 0.01, .trusted = 0},
+    {"neighbour who stays", neighbour_stays, 0.01, .trusted = 0.2},
+    {"neighbour who leaves", neighbour_leaves, 0.03, .trusted = 0.7},
+    {"checkpoints", steady, 0.01, .checkpoint_every = 400, .checkpoint = 3, .trusted = 0.05},
+    {"checkpoints by time", steady, 0.01, .checkpoint_seconds = 20, .checkpoint = 8, .trusted = 0.2},
+    {"states", steady, 0.01, .state_every = 100, .byte = 1e-8, .state_bytes = 1e6, .trusted = 0},
+    {"many states on a slow disc", steady, 0.01, .state_every = 50, .byte = 3e-8, .state_bytes = 2e6, .trusted = 0.05},
+};
+
+/** Goes through a story. @return seconds; `moments` and `told` say when what was expected still to come */
+static double live(const Story *s, double *moments, double *told)
+{
+  Outlook o;
+  const double state_bytes = s->state_bytes > 0 ? s->state_bytes : 1;
+  outlook_expect(&o, s->expected, state_bytes, 0, 0);
+  o.picture_seconds = 0;
+  double now = 0, last_checkpoint = 0, stepping = 0;
+  Task task = {.steps = STEPS,
+               .states = s->state_every ? STEPS / s->state_every : 0,
+               .checkpoints = s->checkpoint_every ? STEPS / s->checkpoint_every : 0,
+               .checkpoint_seconds = s->checkpoint_seconds > 0 ? s->checkpoint_seconds : INFINITY};
+  for (int64_t k = 0; k < STEPS; ++k) {
+    const double seconds = s->step(k, now);
+    now += seconds;
+    stepping += seconds;
+    --task.steps;
+    if (s->state_every && (k + 1) % s->state_every == 0) {
+      const double bytes = outlook_bytes(&o, task.states_written + 1) - outlook_bytes(&o, task.states_written);
+      pace_note(&o.bytes, bytes, bytes * s->byte);
+      now += bytes * s->byte;
+      ++task.states_written;
+    }
+    const bool by_step = s->checkpoint_every && (k + 1) % s->checkpoint_every == 0;
+    if (by_step || (s->checkpoint_seconds > 0 && now - last_checkpoint > s->checkpoint_seconds)) {
+      last_checkpoint = now;
+      pace_note(&o.checkpoints, 1, s->checkpoint);
+      now += s->checkpoint;
+      task.checkpoints -= by_step;
+    }
+    if ((k + 1) % 20 == 0) {
+      pace_note(&o.steps, 20, stepping);
+      stepping = 0;
+    }
+    if ((k + 1) % (STEPS / TELLS) == 0) {
+      moments[(k + 1) / (STEPS / TELLS) - 1] = now;
+      told[(k + 1) / (STEPS / TELLS) - 1] = outlook_left(&o, &task);
+    }
+  }
+  return now;
+}
+
+static void expected_times_hold_within_a_factor_of_two(void **state)
+{
+  (void)state;
+  for (size_t n = 0; n < sizeof stories / sizeof *stories; ++n) {
+    const Story *s = &stories[n];
+    double moments[TELLS], told[TELLS];
+    const double end = live(s, moments, told);
+    for (int k = 0; k < TELLS - 1; ++k) {
+      if (moments[k] < s->trusted * end) continue;
+      const double left = end - moments[k], slack = s->checkpoint + 1;
+      if (told[k] > 2 * left + slack || told[k] < left / 2 - slack)
+        fail_msg("%s: after %.1f of %.1f s it said %.1f s, and it took %.1f s", s->name, moments[k], end, told[k],
+                 left);
+    }
+  }
+}
+
+static void a_steady_run_is_told_exactly(void **state)
+{
+  (void)state;
+  double moments[TELLS], told[TELLS];
+  const double end = live(&stories[0], moments, told);
+  assert_near(end, 200, 1e-6);
+  for (int k = 0; k < TELLS; ++k) assert_near(told[k], end - moments[k], 1e-6);
+}
+
+static void small_result_files_are_copied_and_large_ones_extended(void **state)
+{
+  (void)state;
+  Outlook o;
+  outlook_expect(&o, 1, COPY_LIMIT / 4., 0, 0);
+  const double state_bytes = COPY_LIMIT / 4.;
+  assert_near(outlook_bytes(&o, 0), 0, 0);
+  assert_near(outlook_bytes(&o, 1), state_bytes, 1e-6);
+  assert_near(outlook_bytes(&o, 3), 6 * state_bytes, 1e-6);
+  assert_near(outlook_bytes(&o, 4), 10 * state_bytes, 1e-6);
+  assert_near(outlook_bytes(&o, 9), 15 * state_bytes, 1e-6);
+}
+
+/** A model tells beforehand what its steps then take, and telling changes nothing. */
+static void asking_beforehand_changes_nothing(void **state)
+{
+  (void)state;
+  breccia_model *models[2];
+  for (int asked = 0; asked < 2; ++asked) {
+    models[asked] = model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {model: multi-yield-j2, density: "
+                             "1.5, shear modulus: 60000, bulk modulus: 100000, octahedral strength: 30}}\nbody: {b: "
+                             "{material: m, spacing: 0.1, shape: {box: {particles: [12, 9, 5]}}}}\nloads: [{on: {face: "
+                             "x+, layers: 2}, velocity: [1, 0, 0]}, {on: {face: x-, layers: 2}, velocity: [0, 0, "
+                             "0]}]\nsolve: {explicit: {steps: 40}}\n");
+    if (asked) assert_non_null(strstr(breccia_model_overview(models[asked]), ", about "));
+    breccia_model_step(models[asked], 20, NULL);
+    if (asked) assert_non_null(strstr(breccia_model_overview(models[asked]), ", about "));
+    breccia_model_step(models[asked], 20, NULL);
+  }
+  const size_t bytes = sizeof(double) * (size_t)breccia_model_places(models[0]);
+  static const char *const arrays[] = {"displacement x", "velocity y", "force x", "stress xx", "strain xy"};
+  for (int k = 0; k < 5; ++k)
+    assert_memory_equal(breccia_model_array(models[0], arrays[k]), breccia_model_array(models[1], arrays[k]), bytes);
+  for (int k = 0; k < 2; ++k) breccia_model_destroy(&models[k]);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(expected_times_hold_within_a_factor_of_two),
+      cmocka_unit_test(a_steady_run_is_told_exactly),
+      cmocka_unit_test(small_result_files_are_copied_and_large_ones_extended),
+      cmocka_unit_test(asking_beforehand_changes_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
