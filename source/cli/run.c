@@ -10,7 +10,7 @@ enum { OUTPUT, STEPS, THREADS, RESTART, FORCE, QUIET, COUNT };
 static const Option options[] = {
     {"output", "DIR", "folder for the files (a folder beside the deck, named after it)"},
     {"steps", "N", "stop after N steps in all"},
-    {"threads", "N", "number of threads (all cores)"},
+    {"threads", "N", "number of threads (OMP_NUM_THREADS, or one for each core)"},
     {"restart", NULL, "go on from the checkpoint in the folder"},
     {"force", NULL, "accept a time step above the stable one"},
     {"quiet", NULL, "print nothing but errors"},

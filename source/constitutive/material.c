@@ -1,12 +1,12 @@
 #include "constitutive/material.h"
 
+#include "base/cores.h"
 #include "base/memory.h"
 #include "constitutive/min_max.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const breccia_parameter *law_parameters(const DeckReader *reader, const Node *chooser, int *count)
 {
@@ -127,7 +127,7 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
                        .stage = (int)spec->stage,
                        .servers = spec->servers.items,
                        .server_count = spec->servers.count,
-                       .processes = spec->processes > 0 ? (int)spec->processes : (int)sysconf(_SC_NPROCESSORS_ONLN),
+                       .processes = spec->processes > 0 ? (int)spec->processes : cores_available(),
                        .timeout = spec->timeout,
                        .stress_unit = 1,
                        .length = length};

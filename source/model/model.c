@@ -20,16 +20,6 @@ int model_enter(breccia_model *model, Team **before, Error *error)
   return BRECCIA_OK;
 }
 
-/** Threads that wait at barriers take the cores from server processes of the run's own: a step on two cores took half as long again. */
-static void spare_servers(breccia_model *model, int wanted)
-{
-  int processes = 0;
-  for (int k = 0; k < model->domain.material_count; ++k)
-    if (model->domain.materials[k].remote) processes += remote_processes(model->domain.materials[k].remote);
-  if (wanted > 0 || !processes) return;
-  model->threads = model->threads > processes ? model->threads - processes : 1;
-}
-
 int64_t model_step_at(const breccia_model *model, double time)
 {
   double step = round(time / model->solver.time_step);
@@ -172,7 +162,6 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
     model->document = document_parse(deck, strlen(deck), name, error);
     status = model->document ? model_units(model, error) : BRECCIA_USER_ERROR;
     if (!status) status = build(model, options->force, error);
-    if (!status) spare_servers(model, options->threads);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
     if (ignored.length) text_add(&model->warnings, "%s%s", model->warnings.length ? "\n" : "", ignored.characters);
     team_use(before);

@@ -9,7 +9,6 @@ import socket
 import struct
 import subprocess
 import sys
-import time
 import zlib
 
 BRECCIA, WORK = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])

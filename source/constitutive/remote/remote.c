@@ -20,10 +20,6 @@ bool remote_begun(const Remote *remote)
 {
   return remote->begun;
 }
-int remote_processes(const Remote *remote)
-{
-  return remote->folder ? remote->count : 0;
-}
 bool remote_iterates(const Remote *remote)
 {
   return remote->iterates;

@@ -40,8 +40,6 @@ const breccia_law *remote_law(const Remote *remote);
 int remote_servers(const Remote *remote);
 /** Whether the servers have their points. */
 bool remote_begun(const Remote *remote);
-/** How many of them the run has started itself. */
-int remote_processes(const Remote *remote);
 /** Whether a trial can be repeated from the committed state. */
 bool remote_iterates(const Remote *remote);
 /** Notes strain and stress of the last answer in a row. */
