@@ -2,6 +2,7 @@
 
 #include "base/csv.h"
 #include "base/text.h"
+#include "results/curve_names.h"
 #include "results/plot.h"
 #include <dirent.h>
 #include <errno.h>
@@ -10,79 +11,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_COLUMNS = 16, WORDS = 160, AXIS_WORDS = 2 * WORDS + 4 };
+enum { AXIS_WORDS = 2 * CURVE_NAME + 4 };
 
-typedef struct Name { /* of a column in a history */
-  char watch[WORDS], column[WORDS];
-} Name;
-
-typedef struct Curve { /* what the words "watch.column : watch.column, watch.column" ask for */
-  Name x, y[MOST_COLUMNS];
-  int count;
-} Curve;
-
-/** Copies words without the blanks around them. */
-static void copy_trimmed(const char *words, size_t length, char *copy)
+static int read_curve(const char *words, CurveNames *names, Error *error)
 {
-  while (length && *words == ' ') ++words, --length;
-  while (length && words[length - 1] == ' ') --length;
-  snprintf(copy, WORDS, "%.*s", (int)length, words);
-}
-
-/** Splits "watch.column" at its last dot. */
-static int read_name(const char *words, size_t length, Name *name, Error *error)
-{
-  char whole[WORDS];
-  copy_trimmed(words, length, whole);
-  const char *dot = strrchr(whole, '.');
-  if (!dot || dot == whole)
-    return error_add(error, BRECCIA_USER_ERROR, "curve: '%s' should be watch.column, like opening.distance", whole);
-  copy_trimmed(whole, (size_t)(dot - whole), name->watch);
-  copy_trimmed(dot + 1, strlen(dot + 1), name->column);
-  return BRECCIA_OK;
-}
-
-static int read_curve(const char *words, Curve *curve, Error *error)
-{
-  const char *colon = strchr(words, ':');
-  *curve = (Curve){.count = 0};
-  if (!colon) return error_add(error, BRECCIA_USER_ERROR, "curve: '%s' should be 'watch.column : watch.column'", words);
-  int status = read_name(words, (size_t)(colon - words), &curve->x, error);
-  for (const char *rest = colon + 1; rest && !status;) {
-    if (curve->count == MOST_COLUMNS)
-      return error_add(error, BRECCIA_USER_ERROR, "curve: more than %d columns", MOST_COLUMNS);
-    const char *comma = strchr(rest, ',');
-    status = read_name(rest, comma ? (size_t)(comma - rest) : strlen(rest), &curve->y[curve->count++], error);
-    rest = comma ? comma + 1 : NULL;
-  }
-  return status;
+  if (!curve_names(words, names)) return BRECCIA_OK;
+  return error_add(error, BRECCIA_USER_ERROR,
+                   "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value'", words);
 }
 
 void curve_name(const char *words, char *name, size_t size)
 {
-  Curve curve;
-  Error *ignored = breccia_error_create();
-  char whole[2 * WORDS + 8];
-  if (read_curve(words, &curve, ignored))
+  CurveNames names;
+  char whole[AXIS_WORDS + 4];
+  if (curve_names(words, &names))
     snprintf(whole, sizeof whole, "curve");
-  else if (!strcmp(curve.x.watch, curve.y[0].watch))
-    snprintf(whole, sizeof whole, "%s", curve.x.watch);
+  else if (!strcmp(names.watch[0], names.watch[1]))
+    snprintf(whole, sizeof whole, "%s", names.watch[0]);
   else
-    snprintf(whole, sizeof whole, "%s-over-%s", curve.y[0].watch, curve.x.watch);
-  breccia_error_destroy(&ignored);
+    snprintf(whole, sizeof whole, "%s-over-%s", names.watch[1], names.watch[0]);
   text_file_name(whole, name, size);
 }
 
 /** A column of a history, with the steps of its rows and its unit. */
-static double *history_column(const char *folder, const Name *name, double **steps, int *count, char *unit,
-                              Error *error)
+static double *history_column(const char *folder, const CurveNames *names, int k, double **steps, int *count,
+                              char *unit, Error *error)
 {
-  char watch[WORDS], label[128] = "", ignored[128];
-  text_file_name(name->watch, watch, sizeof watch);
-  char *path = text_format("%s/%s.csv", folder, watch);
+  char file[CURVE_NAME], label[128] = "", ignored[128];
+  text_file_name(names->watch[k], file, sizeof file);
+  char *path = text_format("%s/%s.csv", folder, file);
   double *values = NULL;
   *steps = csv_column(path, "step", CSV_LIVING, count, ignored, error);
-  if (*steps) values = csv_column(path, name->column, CSV_LIVING, count, label, error);
+  if (*steps) values = csv_column(path, names->column[k], CSV_LIVING, count, label, error);
   free(path);
   const char *open = strrchr(label, '(');
   if (open && open > label && label[strlen(label) - 1] == ')')
@@ -98,12 +58,13 @@ typedef struct Columns { /* of one line: on rows of the same step */
   char x_unit[64], y_unit[64];
 } Columns;
 
-static int read_line(const char *folder, const Name *x, const Name *y, Columns *line, Error *error)
+/** The k-th column of a curve over its first. */
+static int read_line(const char *folder, const CurveNames *names, int k, Columns *line, Error *error)
 {
   int nx = 0, ny = 0;
   double *sx = NULL, *sy = NULL;
-  line->x = history_column(folder, x, &sx, &nx, line->x_unit, error);
-  line->y = line->x ? history_column(folder, y, &sy, &ny, line->y_unit, error) : NULL;
+  line->x = history_column(folder, names, 0, &sx, &nx, line->x_unit, error);
+  line->y = line->x ? history_column(folder, names, k, &sy, &ny, line->y_unit, error) : NULL;
   for (int i = 0, j = 0; line->y && i < nx && j < ny;) {
     if (sx[i] < sy[j])
       ++i;
@@ -126,7 +87,7 @@ static void last_part(const char *path, char *name)
   while (n > 1 && path[n - 1] == '/') --n;
   size_t from = n;
   while (from && path[from - 1] != '/') --from;
-  const size_t length = n - from < WORDS ? n - from : WORDS - 1;
+  const size_t length = n - from < CURVE_NAME ? n - from : CURVE_NAME - 1;
   memcpy(name, path + from, length);
   name[length] = 0;
 }
@@ -149,80 +110,77 @@ int curve_points(const char *path, double **x, double **y, int *count, Error *er
   return error_add(error, BRECCIA_USER_ERROR, "%s: no row begins with two numbers, x and y with a comma between", path);
 }
 
-static void name_column(const Name *name, char *words)
+static void name_column(const CurveNames *names, int k, char *words)
 {
-  if (!strcmp(name->column, "time") || !strcmp(name->column, "step") || !strcmp(name->column, name->watch))
-    snprintf(words, AXIS_WORDS, "%s", name->column);
-  else if (!strcmp(name->column, "value")) /* of a load */
-    snprintf(words, AXIS_WORDS, "%s", name->watch);
+  const char *watch = names->watch[k], *column = names->column[k];
+  if (!strcmp(column, "time") || !strcmp(column, "step") || !strcmp(column, watch))
+    snprintf(words, AXIS_WORDS, "%s", column);
+  else if (!strcmp(column, "value")) /* of a load */
+    snprintf(words, AXIS_WORDS, "%s", watch);
   else
-    snprintf(words, AXIS_WORDS, "%s, %s", name->watch, name->column);
+    snprintf(words, AXIS_WORDS, "%s, %s", watch, column);
 }
 
-/** What the vertical axis shows: its column, or the watch that all its columns are of. */
-static void name_vertical(const Curve *curve, char *words)
+static bool of_one_watch(const CurveNames *names)
 {
-  if (curve->count == 1)
-    name_column(&curve->y[0], words);
-  else {
-    snprintf(words, AXIS_WORDS, "%s", curve->y[0].watch);
-    for (int c = 1; c < curve->count; ++c)
-      if (strcmp(curve->y[c].watch, curve->y[0].watch)) *words = 0;
-  }
+  for (int k = 2; k < names->count; ++k)
+    if (strcmp(names->watch[k], names->watch[1])) return false;
+  return true;
 }
 
 /** Titles of the lines: the folder, the column, or both, whatever tells them apart. */
-static char *title_of(const Curve *curve, int column, const char *const *folders, int folder_count, int folder)
+static char *title_of(const CurveNames *names, int column, const char *const *folders, int folder_count, int folder)
 {
-  char here[WORDS], column_words[AXIS_WORDS];
+  char here[CURVE_NAME], words[AXIS_WORDS];
   last_part(folders[folder], here);
   for (int k = 0; k < folder_count; ++k) { /* two folders of one name: their paths */
-    char there[WORDS];
+    char there[CURVE_NAME];
     last_part(folders[k], there);
     if (k != folder && !strcmp(here, there)) snprintf(here, sizeof here, "%s", folders[folder]);
   }
-  const bool one_watch = !strcmp(curve->y[0].watch, curve->y[curve->count - 1].watch);
-  if (one_watch)
-    snprintf(column_words, sizeof column_words, "%s", curve->y[column].column);
+  if (of_one_watch(names))
+    snprintf(words, sizeof words, "%s", names->column[column]);
   else
-    name_column(&curve->y[column], column_words);
-  if (curve->count == 1) return text_format("%s", here);
-  if (folder_count == 1) return text_format("%s", column_words);
-  return text_format("%s: %s", here, column_words);
+    name_column(names, column, words);
+  if (names->count == 2) return text_format("%s", here);
+  if (folder_count == 1) return text_format("%s", words);
+  return text_format("%s: %s", here, words);
 }
 
 int curve_draw(const char *const *folders, int folder_count, const char *words, const CurveOptions *o, const char *path,
                Error *error)
 {
-  Curve curve;
-  int status = read_curve(words, &curve, error), count = 0;
+  CurveNames names;
+  int status = read_curve(words, &names, error), count = 0;
   if (status) return status;
-  const int most = folder_count * curve.count + 1;
+  const int columns_each = names.count - 1, most = folder_count * columns_each + 1;
   PlotLine *lines = calloc((size_t)most, sizeof *lines);
   Columns *columns = calloc((size_t)most, sizeof *columns);
   char **titles = calloc((size_t)most, sizeof *titles);
   if (!lines || !columns || !titles) status = error_add(error, BRECCIA_FAILURE, "out of memory: curves");
   for (int k = 0; k < folder_count && !status; ++k)
-    for (int c = 0; c < curve.count && !status; ++c, ++count) {
+    for (int c = 1; c < names.count && !status; ++c, ++count) {
       Columns *line = &columns[count];
-      status = read_line(folders[k], &curve.x, &curve.y[c], line, error);
-      titles[count] = title_of(&curve, c, folders, folder_count, k);
+      status = read_line(folders[k], &names, c, line, error);
+      titles[count] = title_of(&names, c, folders, folder_count, k);
       lines[count] = (PlotLine){titles[count] ? titles[count] : "",
                                 line->x,
                                 line->y,
                                 line->count,
                                 false,
-                                curve.count > 1 ? c : k,
-                                curve.count > 1 ? k : 0}; /* dashes tell folders apart */
-      if (!status && (strcmp(line->x_unit, columns->x_unit) || strcmp(line->y_unit, columns->y_unit)))
-        status = error_add(
-            error, BRECCIA_USER_ERROR, "%s: %s.%s is in %s and %s.%s in %s: they cannot share an axis", folders[k],
-            curve.x.watch, strcmp(line->x_unit, columns->x_unit) ? curve.x.column : curve.y[c].column,
-            strcmp(line->x_unit, columns->x_unit) ? line->x_unit : line->y_unit, curve.y[0].watch, curve.y[0].column,
-            strcmp(line->x_unit, columns->x_unit) ? columns->x_unit : columns->y_unit);
+                                columns_each > 1 ? c - 1 : k,
+                                columns_each > 1 ? k : 0}; /* dashes tell folders apart */
+      const bool other_x = strcmp(line->x_unit, columns->x_unit) != 0;
+      if (!status && (other_x || strcmp(line->y_unit, columns->y_unit)))
+        status = error_add(error, BRECCIA_USER_ERROR,
+                           "%s: %s.%s has the unit '%s' and %s.%s the unit '%s': they cannot "
+                           "share an axis",
+                           folders[k], names.watch[other_x ? 0 : c], names.column[other_x ? 0 : c],
+                           other_x ? line->x_unit : line->y_unit, names.watch[other_x ? 0 : 1],
+                           names.column[other_x ? 0 : 1], other_x ? columns->x_unit : columns->y_unit);
     }
   if (o->overlay && !status) {
-    char name[WORDS];
+    char name[CURVE_NAME];
     Columns *line = &columns[count];
     last_part(o->overlay, name);
     status = curve_points(o->overlay, &line->x, &line->y, &line->count, error);
@@ -232,8 +190,11 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
   }
   if (!status) {
     char x_words[AXIS_WORDS], y_words[AXIS_WORDS];
-    name_column(&curve.x, x_words);
-    name_vertical(&curve, y_words);
+    name_column(&names, 0, x_words);
+    if (columns_each == 1)
+      name_column(&names, 1, y_words);
+    else
+      snprintf(y_words, sizeof y_words, "%s", of_one_watch(&names) ? names.watch[1] : "");
     const char *logarithmic = o->log_axes && strcmp(o->log_axes, "none") ? o->log_axes : "";
     const PlotOptions plot = {.title = o->title,
                               .x = {x_words, columns->x_unit, o->x_label, strchr(logarithmic, 'x') != NULL},

@@ -98,7 +98,7 @@ wrong "was not written; these were: 0, 20, 40" bar --field damage --step 7
 wrong "should end in .png, .svg or .pdf" bar --output picture.gif
 wrong "there is no such file" nowhere
 wrong "has no column 'q'" bar --curve end.q:end.x
-wrong "should be watch.column" bar --curve x:y
+wrong "should be 'watch.column : watch.column'" bar --curve x:y
 wrong "two numbers" bar --range 3
 wrong "is not a result file" bar.yaml
 wrong "is not below the highest" bar --range 3:3
