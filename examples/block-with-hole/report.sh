@@ -123,7 +123,7 @@ mv README.new README.md
 mkdir -p pictures
 draw() { $breccia plot "$1" --field "$2" --time "$3" --view -90:0 --size 330 --output "pictures/$4.png" "${@:5}" > /dev/null; }
 for time in 2.8 5.6 6.4; do draw block "deviator norm" "$(awk -v t=$time 'BEGIN {print t / 1000}')" deviator-$time; done
-draw block damage 0.0062 damage-6.2
+draw block damage 0.0062 damage-6.2 --range each
 draw block-30 damage 0.008 damage-30 --range 0:1
 # Stress paths in the plane of I1 and |s| (MPa), with envelope, cut-off, and the first and last cap.
 for w in p q; do

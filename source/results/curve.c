@@ -183,6 +183,8 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
     char name[CURVE_NAME];
     Columns *line = &columns[count];
     last_part(o->overlay, name);
+    char *ending = strrchr(name, '.');
+    if (ending && ending > name) *ending = 0;
     status = curve_points(o->overlay, &line->x, &line->y, &line->count, error);
     titles[count] = text_format("%s", name);
     lines[count] = (PlotLine){titles[count] ? titles[count] : "", line->x, line->y, line->count, true, 0, 0};

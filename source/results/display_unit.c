@@ -68,7 +68,7 @@ static void write_well(const char *unit, char *name, size_t size)
 
 static DisplayUnit plain_number(double largest)
 {
-  if (!(largest > 0) || largest >= 0.02) return (DisplayUnit){"", 1};
+  if (!(largest > 0) || largest >= 0.1) return (DisplayUnit){"", 1};
   if (largest >= 2e-4) return (DisplayUnit){"%", 100};
   return (DisplayUnit){"10⁻⁶", 1e6};
 }

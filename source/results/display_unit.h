@@ -10,7 +10,7 @@ typedef struct DisplayUnit {
 } DisplayUnit;
 
 /** The deck's unit while the largest number shown is neither small nor large in it, else the same with another SI prefix; plain
- *  numbers below 0.02 in per cent. Units outside the SI stay.
+ *  numbers below 0.1 in per cent. Units outside the SI stay.
  *  @param[in] unit     as result files and histories name it, like "kN/m3"; "" for a plain number
  *  @param[in] largest  magnitude of the largest number, in that unit */
 DisplayUnit display_unit(const char *unit, double largest);

@@ -126,6 +126,13 @@ static int draw_flat(cairo_t *cr, const Page *page, const Scene *scene, const Re
   const bool cells = deformed && page->thick == 0;
   if (!bad && cells) bad = neighbour_vectors(scene, view, 0, a) || neighbour_vectors(scene, view, 1, b);
   for (int64_t n = 0; n < scene->count && !bad; ++n) order[n] = (Depth){scene->depth[n], n};
+  for (int64_t n = 0; n < scene->count && !bad && cells; ++n) { /* a loose particle has no shape */
+    const double along = hypot(a[n][0], a[n][1]), across = hypot(b[n][0], b[n][1]);
+    const double area = fabs(a[n][0] * b[n][1] - a[n][1] * b[n][0]);
+    if (along < 3 * across && across < 3 * along && area > 0.3 * along * across) continue;
+    a[n][0] = b[n][1] = view->spacings[n];
+    a[n][1] = b[n][0] = 0;
+  }
   if (!bad) qsort(order, (size_t)scene->count, sizeof(Depth), by_depth);
   cairo_save(cr);
   cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
