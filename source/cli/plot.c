@@ -39,16 +39,13 @@ static const Option options[] = {
     {"time", "T", "the written step nearest to this time, in the deck's unit"},
     {"deformed", "SCALE", "scale of the displacements drawn (1; 0 draws the reference shape)"},
     {"range", "LOW:HIGH|each",
-     "ends of the colour scale in the deck's unit (those of all times together; each: of every "
-     "picture by itself); with --curve of the horizontal axis"},
+     "ends of the colours, in the deck's unit (alike at all times); of the x axis with --curve"},
     {"view", "AZIMUTH:ELEVATION", "where the eye is, in degrees, for bodies in space"},
     {"broken-bonds", NULL, "draw the bonds that have broken"},
     {"size", "PIXELS", "largest width of the body in the picture (640; 460 in space)"},
     {"movie", "FILE.mp4", "all written steps as a movie; needs ffmpeg"},
     {"rate", "N", "with --movie: written steps a second (so that it lasts about ten seconds)"},
-    {"curve", "X:Y",
-     "instead: columns of histories against each other, like 'opening.distance:pull.value'; several Y "
-     "have commas between them, several RESULTs give a line each"},
+    {"curve", "X:Y", "instead: columns of histories, like 'opening.distance:pull.value'; more Y behind commas"},
     {"energy", NULL, "instead: all energies over time"},
     {"overlay", "FILE.csv", "with --curve: two columns drawn as points"},
     {"log", "x|y|xy", "with --curve: logarithmic axes"},
@@ -267,5 +264,6 @@ const Verb verb_plot = {"plot",
                         "RESULT ... [options]",
                         "draw fields and curves from results",
                         options,
-                        "RESULT is a result folder or its results.vtkhdf.",
+                        "RESULT is a result folder or its results.vtkhdf; several give a line each with --curve.\n"
+                        "--range each: every picture has a range of its own.",
                         run};
