@@ -1,7 +1,7 @@
 # What people type. CMake does the work (CMakePresets.json); this says it in short.
 cores := $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report docs format check-format asan coverage clang fuzz install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan coverage clang fuzz install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -40,6 +40,10 @@ bench: setup all
 bench-servers: setup all
 	@sh scripts/opensees.sh
 	@python3 bench/servers.py build/release/breccia docs/material-server.md
+
+# Parameters found again from points of known ones; the table of docs/laboratory.md.
+recovery: all
+	@python3 bench/recovery.py build/release/breccia docs/laboratory.md
 
 # LAMMPS from the distribution, on the same cubes in the same run.
 bench-peers: all

@@ -22,6 +22,16 @@ int fail(breccia_error *error, int status)
   return status;
 }
 
+void warn(breccia_error *doubts)
+{
+  for (const char *line = breccia_error_text(doubts); *line;) {
+    const int length = (int)strcspn(line, "\n");
+    fprintf(stderr, "warning: %.*s\n", length, line);
+    line += length + (line[length] != 0);
+  }
+  breccia_error_destroy(&doubts);
+}
+
 char *result_folder(const char *deck)
 {
   const char *slash = strrchr(deck, '/'), *dot = strrchr(deck, '.');

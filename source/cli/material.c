@@ -3,7 +3,7 @@
 #include "base/tensor.h"
 #include "cli/verbs.h"
 #include "model/element_deck.h"
-#include "results/curve.h"
+#include "model/measured_points.h"
 #include "results/picture.h"
 #include "results/plot.h"
 
@@ -140,7 +140,7 @@ static int follow_path(const Material *m, const Units *units, const char *path, 
 
 /** What a test is to be held against and where its curve goes. */
 typedef struct Outputs {
-  const char *title, *against, *picture;
+  const char *where, *title, *against, *picture;
   bool tangent, quiet; /* quiet: rows go to standard output, words to standard error */
   FILE *out;
 } Outputs;
@@ -148,35 +148,42 @@ typedef struct Outputs {
 static int show_curve(const ElementTest *test, const ElementCurve *c, const Units *units, const Outputs *o,
                       Error *error)
 {
-  double *x = NULL, *y = NULL;
-  int count = 0, status = o->against ? curve_points(o->against, &x, &y, &count, error) : BRECCIA_OK;
-  if (!status && count) {
-    double mean, most;
-    element_curve_compare(c, x, y, count, &mean, &most);
-    fprintf(o->quiet ? stderr : stdout,
-            "%d measured points lie %.2f %% of their range from the curve (rms), %.2f %% at most\n", count, 100 * mean,
-            100 * most);
+  MeasuredPoints points = {0};
+  int status = o->against ? measured_points_read(&points, o->against, units, 1, error) : BRECCIA_OK;
+  FILE *const words = o->quiet ? stderr : stdout;
+  char unit[64];
+  units_name(units, dimension_find("stress"), unit, sizeof unit);
+  if (!status && points.count) {
+    double most;
+    const double mean = element_curve_compare(c, points.x, points.y, points.count, NULL, &most);
+    Error *doubts = breccia_error_create();
+    if (!measured_points_opposed(&points, c, doubts)) measured_points_doubt(&points, test, c, units, doubts);
+    warn(doubts);
+    fprintf(words,
+            "%d measured points (%s, %s in %s) lie %.2f %% of their range from the curve (rms), %.2f %% at most\n",
+            points.count, test->x_label, test->y_label, unit, 100 * mean, 100 * most);
   }
   if (!status && o->picture) {
-    char unit[64];
-    units_name(units, dimension_find("stress"), unit, sizeof unit);
-    const PlotLine lines[2] = {{"computed", c->x, c->y, c->count, false, 0, 0}, {"measured", x, y, count, true, 0, 0}};
+    const PlotLine lines[2] = {{"computed", c->x, c->y, c->count, false, 0, 0},
+                               {"measured", points.x, points.y, points.count, true, 0, 0}};
     const PlotOptions plot = {.title = o->title,
                               .x = {.words = test->x_label, .unit = ""},
                               .y = {.words = test->y_label, .unit = unit},
                               .low = NAN,
                               .high = NAN};
-    status = plot_draw(lines, count ? 2 : 1, &plot, o->picture, error);
-    if (!status) fprintf(o->quiet ? stderr : stdout, "%s\n", o->picture);
+    status = plot_draw(lines, points.count ? 2 : 1, &plot, o->picture, error);
+    if (!status) fprintf(words, "%s\n", o->picture);
   }
-  free(x);
-  free(y);
+  measured_points_destroy(&points);
   return status;
 }
 
 static int run_test(const ElementTest *test, const Material *m, const Units *units, const Outputs *o, Error *error)
 {
   ElementCurve c;
+  Error *doubts = breccia_error_create();
+  element_doubt_material(m, units, o->where, doubts);
+  warn(doubts);
   int status = element_test_run(test, m, &c, error);
   const int n = c.components;
   if (o->out && c.count) print_heading(o->out, units, n, o->tangent);
@@ -279,6 +286,7 @@ static int run_file(const char *path, const Outputs *given, Error *error)
   ElementDeck deck;
   int status = element_deck_load(&deck, path, error);
   Outputs o = *given;
+  o.where = path;
   if (!status) {
     if (deck.spec->title)
       o.title = deck.spec->title;
@@ -309,7 +317,8 @@ static int run(int argc, char **argv, const Verb *verb)
     return 2;
   }
   breccia_error *error = breccia_error_create();
-  Outputs o = {.title = values[MODEL],
+  Outputs o = {.where = "breccia material",
+               .title = values[MODEL],
                .against = values[AGAINST],
                .picture = values[PICTURE],
                .tangent = values[TANGENT] != NULL,

@@ -53,17 +53,19 @@ static void print_tests(void)
   const Section *const sections[] = {&element_deck_section, &test_section,  &stage_section,
                                      &fit_section,          &units_section, &material_section};
   Text text = {0};
-  text_add(&text, "\n## Files of laboratory tests\n\nA file for `breccia material` holds units, a material as in a "
-                  "deck, and a test or stages; with measured "
-                  "points under `against` their distance from the curve is told, and `breccia calibrate` chooses the "
-                  "parameters under `fit` such that it is least "
-                  "(NLopt's Subplex from five starts; ranges of more than a decade are searched by ratios).\n\n"
-                  "    units: {length: m, force: kN, time: s}\n"
-                  "    material: {model: drucker-prager, density: 2 t/m3, Young modulus: 50 MPa, Poisson ratio: 0.3,\n"
-                  "               cohesion: 5 kPa, friction angle: 33 deg}\n"
-                  "    test: {kind: triaxial, strain: -0.03, confining pressure: 100 kPa}\n"
-                  "    against: measured.csv              # axial strain, axial less lateral stress\n"
-                  "    fit: {cohesion: {from: 1, to: 20}, friction angle: {from: 25, to: 40}}\n");
+  text_add(
+      &text,
+      "\n## Files of laboratory tests\n\nA file for `breccia material` holds units, a material as in a "
+      "deck, and a test or stages; with measured "
+      "points under `against` their distance from the curve is told, and `breccia calibrate` chooses the "
+      "parameters under `fit` such that it is least; [laboratory.md](laboratory.md) says which strain is zero where, "
+      "how points are read and what the fit tells.\n\n"
+      "    units: {length: m, force: kN, time: s}\n"
+      "    material: {model: drucker-prager, density: 2 t/m3, Young modulus: 50 MPa, Poisson ratio: 0.3,\n"
+      "               cohesion: 5 kPa, friction angle: 33 deg, dilation angle: 5 deg}\n"
+      "    test: {kind: triaxial, strain: -0.03, confining pressure: 100 kPa}\n"
+      "    against: measured.csv              # axial strain, axial less lateral stress\n"
+      "    fit: {Young modulus: {from: 1e4, to: 2e5}, cohesion: {from: 1, to: 20}}\n");
   for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) describe_section(sections[k], &text);
   fputs(text.characters, stdout);
   text_free(&text);

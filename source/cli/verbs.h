@@ -38,6 +38,9 @@ void print_verb_help(const Verb *verb, FILE *out);
 /** Prints an error's lines and returns the status. */
 int fail(breccia_error *error, int status);
 
+/** Prints what somebody should look at, each line as a warning, and destroys it. */
+void warn(breccia_error *doubts);
+
 /** Folder for a deck's results: beside it, named after it. To be freed. */
 char *result_folder(const char *deck);
 

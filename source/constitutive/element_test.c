@@ -336,8 +336,8 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
   return status;
 }
 
-void element_curve_compare(const ElementCurve *curve, const double *x, const double *y, int count, double *mean,
-                           double *most)
+double element_curve_compare(const ElementCurve *curve, const double *x, const double *y, int count, double *offset,
+                             double *most)
 {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, sum = 0;
   for (int i = 0; i < count; ++i) {
@@ -346,18 +346,24 @@ void element_curve_compare(const ElementCurve *curve, const double *x, const dou
     low[1] = fmin(low[1], y[i]);
     high[1] = fmax(high[1], y[i]);
   }
-  const double wide = high[0] > low[0] ? high[0] - low[0] : 1, tall = high[1] > low[1] ? high[1] - low[1] : 1;
+  const double wide = high[0] > low[0] ? 1 / (high[0] - low[0]) : 1,
+               tall = high[1] > low[1] ? 1 / (high[1] - low[1]) : 1;
   *most = 0;
   for (int i = 0; i < count; ++i) {
-    double nearest = INFINITY;
+    double nearest = INFINITY, aside[2] = {0};
     for (int k = 0; k + 1 < curve->count; ++k) {
-      const double px = (x[i] - curve->x[k]) / wide, py = (y[i] - curve->y[k]) / tall,
-                   dx = (curve->x[k + 1] - curve->x[k]) / wide, dy = (curve->y[k + 1] - curve->y[k]) / tall,
-                   length = dx * dx + dy * dy, t = length > 0 ? fmax(0, fmin(1, (px * dx + py * dy) / length)) : 0;
-      nearest = fmin(nearest, (px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy));
+      const double px = (x[i] - curve->x[k]) * wide, py = (y[i] - curve->y[k]) * tall,
+                   dx = (curve->x[k + 1] - curve->x[k]) * wide, dy = (curve->y[k + 1] - curve->y[k]) * tall,
+                   length = dx * dx + dy * dy, t = length > 0 ? fmax(0, fmin(1, (px * dx + py * dy) / length)) : 0,
+                   ex = px - t * dx, ey = py - t * dy;
+      if (!(ex * ex + ey * ey < nearest)) continue;
+      nearest = ex * ex + ey * ey;
+      aside[0] = ex;
+      aside[1] = ey;
     }
+    if (offset) memcpy(offset + 2 * i, aside, sizeof aside);
     sum += nearest;
     *most = fmax(*most, sqrt(nearest));
   }
-  *mean = sqrt(sum / (count ? count : 1));
+  return sqrt(sum / (count ? count : 1));
 }

@@ -59,10 +59,11 @@ typedef struct ElementCurve {
 int element_test_run(const ElementTest *test, const Material *material, ElementCurve *curve, Error *error);
 void element_curve_destroy(ElementCurve *curve);
 
-/** How far measured points lie from a curve: the distance to its nearest piece, both axes in parts of the range of the points.
- *  @param[out] mean  root mean square
- *  @param[out] most  largest */
-void element_curve_compare(const ElementCurve *curve, const double *x, const double *y, int count, double *mean,
-                           double *most);
+/** How far measured points lie from a curve: from its nearest piece, both axes in parts of the range of the points.
+ *  @param[out] offset  [count][2] along both axes; may be NULL
+ *  @param[out] most    the largest distance
+ *  @return the root mean square of the distances */
+double element_curve_compare(const ElementCurve *curve, const double *x, const double *y, int count, double *offset,
+                             double *most);
 
 #endif

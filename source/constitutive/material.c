@@ -161,6 +161,13 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
   return BRECCIA_OK;
 }
 
+static int refuse(const DeckReader *reader, const MaterialSpec *spec, const char *reason)
+{
+  const char *name = spec->head.name, *quote = name ? "'" : ""; /* that of a laboratory test has none */
+  return node_error(reader->document, spec->head.node, reader->error, "material %s%s%s%s(%s): %s", quote,
+                    name ? name : "", quote, name ? " " : "", spec->model, reason);
+}
+
 int material_create(Material *material, const DeckReader *reader, const MaterialSpec *spec, double length)
 {
   material->name = spec->head.name;
@@ -171,12 +178,9 @@ int material_create(Material *material, const DeckReader *reader, const Material
   int at = length_parameter(law);
   if (at >= 0 && isnan(spec->values[at])) spec->values[at] = length;
   int status = material_prepare(material, law, spec->values, reason, sizeof reason);
-  if (status)
-    return node_error(reader->document, spec->head.node, reader->error, "material '%s' (%s): %s", spec->head.name,
-                      spec->model, reason);
+  if (status) return refuse(reader, spec, reason);
   if (material_limit(material, spec->smallest_strain, spec->largest_strain, reason, sizeof reason))
-    return node_error(reader->document, spec->head.node, reader->error, "material '%s' (%s): %s", spec->head.name,
-                      spec->model, reason);
+    return refuse(reader, spec, reason);
   material->name = spec->head.name;
   material->density = spec->density;
   return BRECCIA_OK;

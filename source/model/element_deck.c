@@ -29,8 +29,9 @@ static const Field element_fields[] = {
     {"stages", FIELD_SECTIONS, offsetof(ElementDeckSpec, stages), NULL, "", NULL, "a path of one's own", &stage_section,
      NULL, 0},
     {"against", FIELD_TEXT, offsetof(ElementDeckSpec, against), NULL, "", NULL,
-     "CSV file of measured points, beside this file: abscissa and ordinate of the curve in the first two columns", NULL,
-     NULL, 0},
+     "CSV file of measured points, beside this file: strain and stress of the curve in the first two columns; units in "
+     "parentheses in its heading are obeyed",
+     NULL, NULL, 0},
     {"fit", FIELD_NAMED, offsetof(ElementDeckSpec, fit), NULL, "", NULL,
      "parameters that `breccia calibrate` chooses, by name", &fit_section, NULL, 0},
 };
@@ -84,4 +85,30 @@ void element_deck_destroy(ElementDeck *deck)
   document_destroy(&deck->document);
   free(deck->against);
   *deck = (ElementDeck){0};
+}
+
+void element_doubt_material(const Material *material, const Units *units, const char *where, Error *doubts)
+{
+  const struct {
+    const char *what, *dimension, *unit, *advice;
+    double value, least, most; /* of the unit: from mud to diamond, from foam to osmium */
+  } rows[] = {
+      {"Young modulus at small strain", "stress", "MPa", "200 GPa", material_young(material), 0.5, 2e6},
+      {"density", "density", "kg/m3", "2400 kg/m3", material->density, 5, 25000},
+  };
+  for (int k = 0; k < 2; ++k) {
+    Text reason = {0};
+    char *one = text_format("1 %s", rows[k].unit), plain[64];
+    double scale = 1;
+    const bool known = one && !units_read(units, dimension_find(rows[k].dimension), one, &scale, &reason);
+    const double value = rows[k].value / scale;
+    units_name(units, dimension_find(rows[k].dimension), plain, sizeof plain);
+    if (known && value > 0 && (value < rows[k].least || value > rows[k].most))
+      error_add(doubts, BRECCIA_USER_ERROR,
+                "%s: the %s is %.4g %s, which no ground, rock, concrete or metal has: plain numbers are in %s here; "
+                "give the unit with the number, like '%s', or change what plain numbers mean ('units', --units)",
+                where, rows[k].what, value, rows[k].unit, plain, rows[k].advice);
+    free(one);
+    text_free(&reason);
+  }
 }

@@ -37,4 +37,7 @@ typedef struct ElementDeck {
 int element_deck_load(ElementDeck *deck, const char *path, Error *error);
 void element_deck_destroy(ElementDeck *deck);
 
+/** Says of a modulus or a density that no material has that its unit is likely another one than meant: one line each. */
+void element_doubt_material(const Material *material, const Units *units, const char *where, Error *doubts);
+
 #endif

@@ -116,7 +116,7 @@ equal "uniaxial test: strength 3 tau / sqrt 2" "$(tail -1 uniaxial.csv | cut -d,
 "$breccia" material "${clay[@]}" --test "simple shear" --to 0.002 --cycles 2 --steps 50 > shear.csv; equal "shear test: rows" "$(wc -l < shear.csv)" 202
 awk -F, 'NR > 1 {print $4 "," $10}' shear.csv > measured.csv
 "$breccia" material "${clay[@]}" --test "undrained shear" --to 0.002 --cycles 2 --steps 50 --against measured.csv --picture shear.png --output again.csv > out
-contains "measured points" "$(cat out)" "201 measured points lie 0.00 % of their range from the curve (rms)"
+contains "measured points" "$(cat out)" "201 measured points (shear strain, shear stress in kPa) lie 0.00 % of their range from the curve (rms)"
 [ -s shear.png ] || fail "material: no picture"
 "$breccia" material "${clay[@]}" --test uniaxial --to 0.001 --picture shear.png > out; equal "material with a picture says only its name" "$(cat out)" shear.png
 "$breccia" material "${clay[@]}" --test shear 2> out; equal "unknown test: status" $? 2

@@ -96,4 +96,114 @@ awk -F, '{print $1 - 0.001 "," $2}' points.csv > moved.csv
 sed 's/steps: 20/steps: 20, strain zero: before consolidation/' triaxial.yaml > moved.yaml
 "$breccia" calibrate moved.yaml --against moved.csv > out 2> errors; equal "calibrate with total strains: status" $? 0
 near "calibrate with total strains: 40 MPa" "$(fitted "Young modulus")" 40000 1e-3
+# ---- exact points give their parameters back ----
+# recover NAME TOLERANCE LAW TEST COLUMNS GIVEN TRUE FIT: material with TRUE makes the points, FIT is what calibrate may choose from
+recover() {
+  local units="units: {length: mm, force: N, time: s}"
+  printf '%s\nmaterial: {model: %s, density: 2e-9, %s, %s}\ntest: %s\n' "$units" "$3" "$6" "$7" "$4" > true.yaml
+  "$breccia" material true.yaml > true.csv || fail "$1: the test does not run"
+  awk -F, -v x="${5%:*}" -v y="${5#*:}" 'NR > 1 {split(y, c, "-"); print $x "," (c[2] ? $c[1] - $c[2] : $y)}' true.csv > true-points.csv
+  printf '%s\nmaterial: {model: %s, density: 2e-9, %s, %s}\ntest: %s\nfit: {%s}\n' "$units" "$3" "$6" \
+    "$(echo "$8" | sed 's/{from: [^,]*, to: \([^}]*\)}/\1/g')" "$4" "$8" > fit.yaml
+  "$breccia" calibrate fit.yaml --against true-points.csv > out 2> errors || fail "$1: $(cat errors)"
+  echo "$7" | tr ',' '\n' | while IFS=: read -r key value; do echo "${key# }:$value"; done > wanted
+  while IFS=: read -r key value; do near "$1: $key" "$(fitted "$key")" "$value" "$2"; done < wanted
+}
+recover "J2 under cycles" 1e-3 j2 "{kind: uniaxial, strain: 0.01, cycles: 2, steps: 50}" 1:7 "Poisson ratio: 0.3" \
+  "Young modulus: 200000, yield stress: 250, saturation stress: 300, saturation rate: 30, kinematic modulus: 4000" \
+  "Young modulus: {from: 50e3, to: 500e3}, yield stress: {from: 100, to: 600}, saturation stress: {from: 250, to: 900}, saturation rate: {from: 2, to: 200}, kinematic modulus: {from: 100, to: 20000}"
+cp out first
+"$breccia" calibrate fit.yaml --against true-points.csv > again; cmp -s again first || fail "the same points do not give the same fit"
+recover "drucker-prager in a triaxial cell" 1e-3 drucker-prager "{kind: triaxial, strain: -0.03, confining pressure: 0.1, steps: 60}" 1:7-8 \
+  "Poisson ratio: 0.3, friction angle: 30, dilation angle: 5" "Young modulus: 40, cohesion: 0.01, hardening modulus: 0.5" \
+  "Young modulus: {from: 5, to: 500}, cohesion: {from: 0.001, to: 0.1}, hardening modulus: {from: 0.01, to: 10}"
+recover "clay in simple shear" 1e-3 multi-yield-j2 "{kind: simple shear, strain: 0.02, steps: 60}" 4:10 "bulk modulus: 100" \
+  "shear modulus: 60, octahedral strength: 0.03" "shear modulus: {from: 5, to: 500}, octahedral strength: {from: 0.005, to: 0.5}"
+recover "clay under cycles" 1e-3 bounding-surface-clay "{kind: undrained shear, strain: 0.004, cycles: 1, steps: 60}" 4:10 "bulk modulus: 100" \
+  "shear modulus: 60, undrained strength: 0.03, hardening modulus: 60" \
+  "shear modulus: {from: 5, to: 500}, undrained strength: {from: 0.005, to: 0.5}, hardening modulus: {from: 5, to: 500}"
+recover "concrete that crushes" 1e-3 mazars "{kind: uniaxial, strain: -0.005, steps: 60}" 1:7 "Poisson ratio: 0.2, length: 50, fracture energy: 0.1, tensile strength: 3" \
+  "Young modulus: 30000, compression share: 1.2, compression rate: 1500" \
+  "Young modulus: {from: 10e3, to: 60e3}, compression share: {from: 1, to: 1.5}, compression rate: {from: 800, to: 3000}"
+recover "a bar of steel" 1e-3 menegotto-pinto "{kind: uniaxial, strain: 0.01, cycles: 2, steps: 50}" 1:2 "initial stress: 0" \
+  "Young modulus: 200000, yield stress: 400, hardening ratio: 0.02, roundness: 15" \
+  "Young modulus: {from: 50e3, to: 500e3}, yield stress: {from: 100, to: 1000}, hardening ratio: {from: 0.001, to: 0.1}, roundness: {from: 5, to: 30}"
+recover "a bar of bilinear steel" 1e-3 steel-bilinear "{kind: uniaxial, strain: 0.006, steps: 60}" 1:2 "compression shift: 0" \
+  "Young modulus: 200000, yield stress: 400, hardening ratio: 0.02" \
+  "Young modulus: {from: 20e3, to: 2000e3}, yield stress: {from: 40, to: 1000}, hardening ratio: {from: 0.001, to: 0.1}"
+
+# In a uniaxial compression cohesion and friction angle act only together: 2 c cos f / (1 - sin f) is all that shows.
+"$breccia" material --model mohr-coulomb --set "Young modulus=50" --set "Poisson ratio=0.3" --set cohesion=0.02 --set "friction angle=30" \
+  --set "dilation angle=5" --units mm,N,s --test uniaxial --to -0.004 --steps 40 | awk -F, 'NR > 1 {print $1 "," $7}' > true-points.csv
+cat > fit.yaml <<'Y'
+units: {length: mm, force: N, time: s}
+material: {model: mohr-coulomb, density: 2e-9, Young modulus: 20, Poisson ratio: 0.3, cohesion: 0.01, friction angle: 20, dilation angle: 5}
+test: {kind: uniaxial, strain: -0.004, steps: 40}
+against: true-points.csv
+fit: {Young modulus: {from: 5, to: 500}, cohesion: {from: 0.002, to: 0.2}, friction angle: {from: 5, to: 45}}
+Y
+"$breccia" calibrate fit.yaml > out 2> errors; equal "cohesion and friction: status" $? 0
+near "cohesion and friction: E" "$(fitted "Young modulus")" 50 1e-3
+near "cohesion and friction: strength" "$(awk -v c="$(fitted cohesion)" -v f="$(fitted "friction angle")" 'BEGIN {f *= atan2(0, -1) / 180; print 2 * c * cos(f) / (1 - sin(f))}')" 0.0692820323 1e-3
+contains "cohesion and friction" "$(grep cohesion: out)" "these points tell it only together with 'friction angle'"
+contains "cohesion and friction" "$(grep "friction angle:" out)" "these points tell it only together with 'cohesion'"
+case $(grep "Young" out) in *"only together"*) fail "E is told by itself: $(cat out)" ;; esac
+
+# A standard deviation means what it says: E of a bar from 40 points with alternating errors of s is known to s / sqrt(sum of squared strains).
+awk 'BEGIN {for (k = 1; k <= 40; ++k) {e = k * 1e-4; print e "," 1000 * e + (k % 2 ? 0.1 : -0.1)}}' > true-points.csv
+cat > fit.yaml <<'Y'
+units: {length: mm, force: N, time: s}
+material: {model: elastic-1d, density: 2e-9, Young modulus: 500}
+test: {kind: uniaxial, strain: 0.005, steps: 50}
+against: true-points.csv
+fit: {Young modulus: {from: 500, to: 2000}}
+Y
+"$breccia" calibrate fit.yaml > out 2> errors; equal "a bar with scatter: status" $? 0
+# 0.1 sqrt(40 / 39) / (1e-4 sqrt(40 41 81 / 6)) = 6.807, 0.68 % of 1000
+contains "a bar with scatter" "$(cat out)" "standard deviation 0.68 %"
+
+# ---- mistakes of measured files and of units ----
+# told WORDS: the fit of triaxial.yaml with bad.csv warns in one line of these words, and ends well
+told() {
+  "$breccia" material triaxial.yaml --against bad.csv > out 2> errors; equal "$1: status" $? 0
+  contains "$1" "$(cat errors)" "warning: bad.csv$1"
+  equal "$1: lines" "$(wc -l < errors)" 1
+}
+# refused WORDS
+refused() {
+  "$breccia" calibrate triaxial.yaml --against bad.csv > out 2> errors; equal "$1: status" $? 2
+  contains "$1" "$(cat errors)" "bad.csv$1"
+  equal "$1: lines" "$(wc -l < errors)" 1
+  [ -s out ] && fail "$1: something was fitted: $(cat out)"
+}
+"$breccia" material triaxial.yaml --against points.csv > out 2> errors
+[ -s errors ] && fail "good points are doubted: $(cat errors)"
+contains "good points" "$(cat out)" "11 measured points (axial strain, axial less lateral stress in kPa) lie"
+: > bad.csv; refused ": the file is empty; expected at least 2 rows of strain and stress with a comma between"
+printf 'strain,stress\n' > bad.csv; refused ": there are no numbers; expected at least 2 rows"
+printf '\n-0.001,-40\n' > bad.csv; refused ": there is only one point; expected at least 2 rows"
+printf 'a,b\n-0.001,-40\n-0.002,\n-0.003,-120\n' > bad.csv; refused ":3: expected strain and stress with a comma between, like '0.001,25.3'; found '-0.002,'"
+printf -- '-0,001;-40,0\n-0,002;-80,0\n' > bad.csv; refused ":1: expected strain and stress with a comma between, like '0.001,25.3' (and points in the numbers, no commas); found '-0,001;-40,0'"
+printf 'strain,force (kN)\n-0.001,-40\n-0.002,-80\n' > bad.csv; refused ":1: column 2, 'force (kN)': its unit is not one of stress, like kPa"
+cp triaxial.csv bad.csv; refused ":1: the first two columns must be strain and stress of the curve; the second is 'strain yy'"
+awk -F, '{print (-$1) "," (-$2)}' points.csv > bad.csv; refused ": its strains reach 0.005 and the test goes to -0.005: tension is positive here"
+awk -F, '{print 100 * $1 "," $2}' points.csv > bad.csv; told ": its strains reach 0.5 and the test goes to 0.005: if they are in per cent"
+awk -F, '{print $1 "," 1000 * $2}' points.csv > bad.csv; told ": its stresses reach 200000 kPa, those of the test 100 kPa: if they are in another unit"
+(cat points.csv; echo -0.004,-150; echo -0.003,-120) > bad.csv; told ":12: the strain turns back from -0.005 to -0.004, but the test goes once to its strain"
+(cat points.csv; echo -0.006,-240) > bad.csv; told ": 1 of 12 points lie at strains that the test does not reach (it goes from -0.005 to 0): let it go as far; its strains count from the end of the consolidation"
+# Units in the heading are obeyed, and blank lines, comments and a spreadsheet's mark are no rows.
+(printf '\xef\xbb\xbfaxial strain (%%),deviator (MPa)\r\n# of specimen 3\r\n\r\n'; awk -F, '{printf "%.6g,%.6g\r\n", 100 * $1, $2 / 1000}' points.csv) > good.csv
+"$breccia" calibrate triaxial.yaml --against good.csv > out 2> errors; equal "units in the heading: status" $? 0
+[ -s errors ] && fail "units in the heading: $(cat errors)"
+near "units in the heading: 40 MPa" "$(fitted "Young modulus")" 40000 1e-4
+# Megapascals in a file that counts in pascals
+printf 'material: {model: elastic, density: 2400, Young modulus: 30000, Poisson ratio: 0.2}\ntest: {kind: uniaxial, strain: 0.001}\n' > plain.yaml
+"$breccia" material plain.yaml > out 2> errors; equal "no units: status" $? 0
+contains "no units" "$(cat errors)" "warning: plain.yaml: the Young modulus at small strain is 0.03 MPa, which no ground, rock, concrete or metal has: plain numbers are in Pa here; give the unit with the number, like '200 GPa'"
+sed -i '1i units: {length: mm, force: N, time: s}' plain.yaml
+"$breccia" material plain.yaml > out 2> errors; contains "density in mm, N, s" "$(cat errors)" "the density is 2.4e+15 kg/m3"
+equal "density in mm, N, s: lines" "$(wc -l < errors)" 1
+printf 'material: {model: drucker-prager, density: 2e3, Young modulus: 40e6, Poisson ratio: 0.3, cohesion: 1e4}\ntest: {kind: uniaxial, strain: -0.01}\n' > null.yaml
+"$breccia" material null.yaml > out 2> errors; equal "a missing angle: status" $? 2
+contains "a missing angle" "$(cat errors)" "null.yaml:1:1: material (drucker-prager): give 'cohesion' and 'friction angle'"
 finish

@@ -80,6 +80,11 @@ equal "run into a closed pipe: status" "$status" 0
 [ -e headed/summary.json ] || fail "run into a closed pipe: no results"
 "$breccia" run once.yaml --steps 50 --output shut 2> errors >&-; equal "run with its output closed: status" $? 0
 "$breccia" plot shut --curve "energy.time : energy.kinetic" --output shut.png > out 2>&1 || fail "run with its output closed: its files are damaged: $(cat out)"
+# What is said to a closed output lands in no file that took its number.
+"$breccia" material --model elastic-1d --set "Young modulus=1" --test uniaxial --to 1 --steps 2 --output soft.csv 2> errors; equal "a soft bar: status" $? 0
+contains "a soft bar" "$(cat errors)" "warning: "
+"$breccia" material --model elastic-1d --set "Young modulus=1" --test uniaxial --to 1 --steps 2 --output shut.csv 2>&-; equal "with errors closed: status" $? 0
+cmp -s shut.csv soft.csv || fail "with errors closed: the file is $(cat shut.csv)"
 if [ -w /dev/full ]; then
   "$breccia" "${test[@]}" > /dev/full 2> errors; status=$?
   one_line "a full disk" 1 "not everything could be printed: No space left on device" errors

@@ -1,0 +1,81 @@
+/* The least sum of squares in a box: valleys, ends of the box, places without residuals, and the curvature at the end. */
+#include "base/least_squares.h"
+#include "support.h"
+
+/** Rosenbrock's valley from (0, 0) to (1, 1), laid into the box: its residuals vanish at (0.75, 0.75). */
+static bool valley(void *context, const double *at, double *residual)
+{
+  const double x = 4 * at[0] - 2, y = 4 * at[1] - 2;
+  ++*(int *)context;
+  residual[0] = 10 * (y - x * x);
+  residual[1] = 1 - x;
+  return true;
+}
+
+static void the_end_of_a_curved_valley_is_found(void **state)
+{
+  (void)state;
+  int calls = 0;
+  LeastSquares p = {.parameters = 2, .count = 2, .residuals = valley, .context = &calls};
+  assert_int_equal(least_squares_create(&p, NULL), BRECCIA_OK);
+  double at[2] = {0.2, 0.75};
+  assert_true(least_squares_descend(&p, at) < 1e-12);
+  assert_near(at[0], 0.75, 1e-6);
+  assert_near(at[1], 0.75, 1e-6);
+  assert_true(calls < 200);
+  least_squares_destroy(&p);
+}
+
+/** A line through points at 1, 2, 3 with slope 2 and ordinate -0.5, which lies outside the box. */
+static bool line(void *context, const double *at, double *residual)
+{
+  (void)context;
+  for (int k = 0; k < 3; ++k) residual[k] = 4 * at[0] * (k + 1) + at[1] - (2 * (k + 1) - 0.5);
+  return true;
+}
+
+static void what_lies_outside_the_box_is_met_at_its_face(void **state)
+{
+  (void)state;
+  LeastSquares p = {.parameters = 2, .count = 3, .residuals = line};
+  assert_int_equal(least_squares_create(&p, NULL), BRECCIA_OK);
+  double at[2] = {0.9, 0.9}, curvature[4];
+  const double sum = least_squares_descend(&p, at);
+  assert_true(at[1] == 0);
+  /* without an ordinate the slope is sum(x y) / sum(x x) = (1.5 + 7 + 16.5) / 14 */
+  assert_near(4 * at[0], 25. / 14, 1e-6);
+  assert_near(sum, 1.5 * 1.5 + 3.5 * 3.5 + 5.5 * 5.5 - 25. * 25 / 14, 1e-6);
+  least_squares_curvature(&p, at, curvature);
+  assert_near(curvature[0], 16 * 14, 1e-5);
+  assert_near(curvature[1], 4 * 6, 1e-5);
+  assert_near(curvature[3], 3, 1e-5);
+  least_squares_destroy(&p);
+}
+
+/** As the line, but nothing can be computed where the slope is more than 2.4. */
+static bool cliff(void *context, const double *at, double *residual)
+{
+  return at[0] <= 0.6 && line(context, at, residual);
+}
+
+static void places_without_residuals_are_left_alone(void **state)
+{
+  (void)state;
+  LeastSquares p = {.parameters = 2, .count = 3, .residuals = cliff};
+  assert_int_equal(least_squares_create(&p, NULL), BRECCIA_OK);
+  double at[2] = {0.6, 0.9}, none[2] = {0.7, 0.5};
+  assert_true(isinf(least_squares_descend(&p, none)));
+  least_squares_descend(&p, at);
+  assert_near(4 * at[0], 25. / 14, 1e-6);
+  least_squares_destroy(&p);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_end_of_a_curved_valley_is_found),
+      cmocka_unit_test(what_lies_outside_the_box_is_met_at_its_face),
+      cmocka_unit_test(places_without_residuals_are_left_alone),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
