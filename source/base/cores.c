@@ -4,7 +4,6 @@
 #include <limits.h>
 #include <math.h>
 #include <sched.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,6 +91,20 @@ int cores_available(void)
 {
   const double count = cores_of_system(), limit = ceil(cores_of_groups("/sys/fs/cgroup", "/proc/self/cgroup") - 1e-9);
   return (int)fmax(1, fmin(count, limit));
+}
+
+int threads_running(const char *path)
+{
+  FILE *file = fopen(path, "r");
+  int count = 0; /* after three load averages */
+  if (file && fscanf(file, "%*f %*f %*f %d/", &count) != 1) count = 0;
+  if (file) fclose(file);
+  return count;
+}
+
+bool cores_are_short(void)
+{
+  return threads_running("/proc/loadavg") > sysconf(_SC_NPROCESSORS_ONLN);
 }
 
 int threads_by_default(Text *warning)

@@ -341,17 +341,24 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
   return task;
 }
 
-/** Mean seconds of one evaluation of the forces: over a quarter of a second, in which whoever else uses the machine has had his turns, or
- *  over a fiftieth of what the whole run takes. */
+/** Mean seconds of one evaluation of the forces. On a quiet machine a tenth of a second is enough; where others use it too, two seconds,
+ *  in which they have had their turns. Never more than a tenth of what the whole run takes. */
 static double measure_evaluation(breccia_model *model)
 {
   enum { FEWEST = 3 };
+  double fastest = INFINITY, before = 0;
+  bool quiet = true;
   domain_evaluate(&model->domain); /* the first touches memory for the first time */
   const double begin = clock_seconds();
   for (int count = 1;; ++count) {
     domain_evaluate(&model->domain);
     const double seconds = clock_seconds() - begin, one = seconds / count;
-    if (count >= FEWEST && (seconds > 0.25 || seconds > 0.02 * one * (double)model->solver.steps)) return one;
+    fastest = fmin(fastest, seconds - before);
+    before = seconds;
+    quiet &= !cores_are_short();
+    const double whole = one * (double)model->solver.steps;
+    const double enough = quiet && one < 1.1 * fastest ? fmin(0.1, whole / 30) : fmin(2, whole / 10);
+    if (count >= FEWEST && seconds > enough) return one;
   }
 }
 

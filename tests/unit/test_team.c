@@ -242,6 +242,17 @@ static void a_share_of_the_processor_limits_the_cores(void **state)
   assert_near(cores_of_groups("groups", "groups/old"), 4, 0);
 }
 
+static void a_machine_tells_how_many_threads_want_to_run(void **state)
+{
+  (void)state;
+  write_words("loadavg", "0.85 1.04 0.97 11/423 30512\n");
+  assert_int_equal(threads_running("loadavg"), 11);
+  write_words("loadavg", "nothing of use\n");
+  assert_int_equal(threads_running("loadavg"), 0);
+  assert_int_equal(threads_running("no such file"), 0);
+  remove("loadavg");
+}
+
 static void the_environment_says_how_many_threads(void **state)
 {
   (void)state;
@@ -271,6 +282,7 @@ int main(void)
       cmocka_unit_test(steps_cost_little_more_where_cores_are_too_few),
       cmocka_unit_test(a_model_takes_its_threads_along),
       cmocka_unit_test(a_share_of_the_processor_limits_the_cores),
+      cmocka_unit_test(a_machine_tells_how_many_threads_want_to_run),
       cmocka_unit_test(the_environment_says_how_many_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
