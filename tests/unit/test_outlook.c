@@ -50,7 +50,7 @@ static const Story stories[] = {
     {"neighbour who stays", neighbour_stays, 0.01, .trusted = 0.2},
     {"neighbour who leaves", neighbour_leaves, 0.03, .trusted = 0.7},
     {"checkpoints", steady, 0.01, .checkpoint_every = 400, .checkpoint = 3, .trusted = 0.05},
-    {"checkpoints by time", steady, 0.01, .checkpoint_seconds = 20, .checkpoint = 8, .trusted = 0.2},
+    {"checkpoints by time", steady, 0.01, .checkpoint_seconds = 20, .checkpoint = 12, .trusted = 0.2},
     {"states", steady, 0.01, .state_every = 100, .byte = 1e-8, .state_bytes = 1e6, .trusted = 0},
     {"many states on a slow disc", steady, 0.01, .state_every = 50, .byte = 3e-8, .state_bytes = 2e6, .trusted = 0.05},
 };
