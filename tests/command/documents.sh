@@ -4,6 +4,10 @@
 cmp -s "$work/deck.md" "$source/docs/deck.md" || fail "docs/deck.md is not current: run 'make docs'"
 "$breccia" models --markdown > "$work/models.md"
 cmp -s "$work/models.md" "$source/docs/models.md" || fail "docs/models.md is not current: run 'make docs'"
+if command -v python3 > /dev/null; then
+  python3 "$source/scripts/drawings.py" "$work/pictures"
+  diff -r "$work/pictures" "$source/docs/pictures" > /dev/null || fail "docs/pictures is not current: run 'make docs'"
+fi
 for name in $("$breccia" models | sed -n '/^Formulations/q; s/^\([a-z0-9-]*\): .*/\1/p'); do
   [ -s "$source/docs/models/$name.png" ] || fail "docs/models/$name.png is missing: run 'make docs'"
   "$breccia" material "$source/examples/materials/$name.yaml" > "$work/curve.csv" || fail "examples/materials/$name.yaml does not run"
@@ -69,9 +73,26 @@ for deck in "$work"/shown-*.yaml; do
   checks=$((checks + 1))
 done
 
+sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
+  fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"
+
+# The guide's pieces, the first of each section, are one deck.
+awk '/^    [a-z]+:/{key = $1; on = !(key in seen) && key ~ /^(units|materials|body|cracks|peridynamics|failure|loads|solve|watch|results|pictures):$/; seen[key] = 1}
+  /^ ? ? ?[^ ]/{on = 0} on{print substr($0, 5)}' "$source/docs/guide.md" > "$work/guide.yaml"
+"$breccia" check "$work/guide.yaml" > "$work/out" 2>&1 || fail "the deck of docs/guide.md is refused: $(cat "$work/out")"
+equal "sections of the guide's deck" "$(grep -c '^[a-z]*:' "$work/guide.yaml")" 11
+
+# What a page links to is there.
+cd "$source" || exit 1
+for page in README.md docs/*.md examples/*/README.md; do
+  for target in $(grep -oE '\]\([^)#]+' "$page" | sed 's/^](//' | grep '[.]' | grep -v '^https:'); do
+    [ -e "$(dirname "$page")/$target" ] || fail "$page links to $target, which is not there"
+    checks=$((checks + 1))
+  done
+done
+
 # Plain words: a reader with a dictionary of technical English must not stumble over pictures of speech.
 figures='\balive\b|\blen(d|ds|t)\b|\bat home\b|\bof chance\b|\b(law|laws|points) elsewhere\b|\blives? (in|on)\b|\bhangs? on\b|\banew\b|\bto and fro\b'
-cd "$source" || exit 1
 pages="README.md CHANGELOG.md Makefile CMakeLists.txt docs examples source include bench servers scripts tests/command tests/unit tests/external tests/fuzz"
 [ -e .ci ] && pages="$pages .ci"
 grep -rnIiE "$figures" $pages --include=* --exclude=documents.sh && fail "these lines say in a figure of speech what plain words say better"
