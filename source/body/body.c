@@ -320,6 +320,7 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
   }
   body->dimensions = body->lattices[0].dimensions;
   if (!status) status = fill(body, reader, fillings);
+  if (!status) particles_bounds(&body->particles, body->low, body->high);
   for (int b = 0; b < blocks->count; ++b) {
     free(fillings[b].present);
     cloud_destroy(&fillings[b].cloud);

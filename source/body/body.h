@@ -51,15 +51,19 @@ typedef struct Body {
   int crack_count;
   const CrackSpec **cracks;
   double largest_spacing;
-  int dimensions; /* of all lattices */
+  double low[3], high[3]; /* outermost particles */
+  int dimensions;         /* of all lattices */
 } Body;
 
 /** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */
 int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks);
 void body_destroy(Body *body);
 
-/** True if the segment between two points crosses one of the body's cuts. */
+/** True if the segment between two points crosses one of the body's cuts; alike from both ends. */
 bool body_cuts(const Body *body, const double a[3], const double b[3]);
+/** True if a cut without thickness parts the two points, and no notch, whose faces stand apart.
+ *  @param[out] normal  unit normal of the cut, towards b */
+bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3]);
 
 /** Lattice cell of a place: slice s, lane l. */
 void lattice_cell(const Lattice *lattice, int64_t row, int64_t chunk, int lane, int64_t cell[3]);

@@ -138,13 +138,14 @@ void domain_show_states(Domain *d)
 
 void domain_resume(Domain *d)
 {
-  for (int64_t n = 0; n < d->broken_count; ++n)
+  for (int64_t n = 0; n < d->broken_count; ++n) {
+    contact_bond_broke(&d->contact, d->particles->place_of[d->broken[n].a], d->particles->place_of[d->broken[n].b]);
     for (int end = 0; end < 2; ++end) {
       int64_t slice = d->particles->place_of[end ? d->broken[n].b : d->broken[n].a] / SLICE;
       lattice_rows_mark(&d->family, slice);
-      if (d->contact.spec) d->contact.touched[d->particles->place_of[end ? d->broken[n].b : d->broken[n].a]] = 1;
       if (d->type->renew) d->type->renew(d->formulation, slice);
     }
+  }
   domain_show_states(d);
   if (d->contact.spec) contact_search(&d->contact);
 }

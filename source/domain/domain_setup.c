@@ -185,15 +185,16 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   return BRECCIA_OK;
 }
 
-static int create_contact(Domain *d, const ContactSpec *spec, Error *error)
+static int create_contact(Domain *d, const DomainSpec *spec, Space space, Error *error)
 {
-  double *constant = memory_zeroed((size_t)d->body.block_count, sizeof(double), "contact", error);
-  if (!constant) return BRECCIA_FAILURE;
+  double *young = memory_zeroed((size_t)d->body.block_count, sizeof(double), "contact", error);
+  if (!young) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < d->particles->slices; ++s)
-    constant[d->particles->block[s]] =
-        micromodulus(&d->body, material_young(&d->materials[d->material[s]]), d->family.horizon) / d->family.horizon;
-  int status = contact_create(&d->contact, spec, &d->body, &d->family, constant, error);
-  free(constant);
+    young[d->particles->block[s]] = material_young(&d->materials[d->material[s]]);
+  const bool whole = d->type->uniaxial && !strcmp(spec->peridynamics->surface_correction, "none");
+  int status = contact_create(&d->contact, spec->contact, &d->body, &d->family, space, whole,
+                              d->type->uniaxial ? 1 : 0.8, young, error);
+  free(young);
   return status;
 }
 
@@ -255,7 +256,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   d->formulation = d->type->create(&parts, error);
   if (!d->formulation) return BRECCIA_USER_ERROR;
   status = create_failure(d, reader, spec->failure, length);
-  return status ? status : create_contact(d, spec->contact, error);
+  return status ? status : create_contact(d, spec, space, error);
 }
 
 void domain_destroy(Domain *d)

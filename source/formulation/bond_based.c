@@ -104,7 +104,8 @@ static void gradient(const void *formulation, int64_t place, double f[9])
   shape_gradient(b->family, (int32_t)place, shape.inverse, f);
 }
 
-/** Half of the sum of force (x) y over the bonds. */
+/** Half of the sum of force (x) y over the bonds. In plane strain each bond of the plane stands for a fan of bonds that slant through the
+ *  thickness, which press across the plane with a quarter of what they carry along it (docs/theory.md 2). */
 static void stress(const void *formulation, int64_t place, double s[6])
 {
   const BondBased *b = formulation;
@@ -118,6 +119,7 @@ static void stress(const void *formulation, int64_t place, double s[6])
     double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y) * 0.5 * bond.weight;
     for (int k = 0; k < 6; ++k) s[k] += pull * y[symmetric_row[k]] * y[symmetric_column[k]];
   }
+  if (b->space == SPACE_PLANE_STRAIN) s[ZZ] = (s[XX] + s[YY]) / 4;
 }
 
 static void show_displacements(void *formulation, int64_t first, int64_t last)

@@ -355,9 +355,9 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   const struct {
     const char *key;
     double value;
-  } energies[] = {{"kinetic", e.kinetic}, {"internal", e.internal}, {"external", e.external},
-                  {"damping", e.damping}, {"fracture", e.fracture}, {"imbalance", e.imbalance}};
-  for (int k = 0; k < 6; ++k) {
+  } energies[] = {{"kinetic", e.kinetic},   {"internal", e.internal}, {"external", e.external},  {"damping", e.damping},
+                  {"fracture", e.fracture}, {"friction", e.friction}, {"imbalance", e.imbalance}};
+  for (int k = 0; k < 7; ++k) {
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, energies[k].value);
   }
@@ -435,10 +435,10 @@ static void tell_outcome(Run *run, int status)
              (d->particles->position[2][a] + d->particles->position[2][c]) / 2, (long long)d->broken_count);
   } else if (d->failure.criterion)
     text_add(t, "no bond broke\n");
-  text_add(
-      t,
-      "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + damping %.4g, imbalance %.2g %%\n",
-      energy, e.external, e.kinetic, e.internal, e.fracture, e.damping, 100 * e.imbalance);
+  text_add(t,
+           "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + friction %.4g + damping %.4g, "
+           "imbalance %.2g %%\n",
+           energy, e.external, e.kinetic, e.internal, e.fracture, e.friction, e.damping, 100 * e.imbalance);
   points_report(&d->points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", run->files.characters ? run->files.characters : "");
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;

@@ -143,6 +143,10 @@ int checkpoint_write(const char *folder, const Explicit *s, const char *deck, co
     bad |= save(file, "sizes", H5T_NATIVE_INT64, 2, sizes);
     bad |= save(file, "version", H5T_NATIVE_CHAR, strlen(BRECCIA_VERSION), BRECCIA_VERSION);
     bad |= save(file, "deck", H5T_NATIVE_CHAR, strlen(deck), deck);
+    double *touching;
+    const int64_t contacts = contact_save(&d->contact, &touching);
+    bad |= contacts < 0 || save(file, "contact", H5T_NATIVE_DOUBLE, contacts < 0 ? 0 : (size_t)contacts, touching);
+    free(touching);
     size_t broken = (size_t)d->broken_count;
     double *rows = malloc(sizeof(double) * (4 * broken + 1));
     bad |= !rows;
@@ -197,6 +201,20 @@ static int read_broken(hid_t file, Domain *d)
   return bad;
 }
 
+/** What contact remembers; bonds and displacements are in place. */
+static int resume_contact(const char *path, Domain *d, Error *error)
+{
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  const int64_t count = load_count(file, "contact");
+  double *numbers = malloc(sizeof(double) * (size_t)(count < 0 ? 1 : count + 1));
+  int bad = count < 0 || !numbers || load(file, "contact", H5T_NATIVE_DOUBLE, (size_t)count, numbers) ||
+            contact_resume(&d->contact, numbers, count);
+  free(numbers);
+  if (file >= 0) H5Fclose(file);
+  if (bad) return error_add(error, BRECCIA_USER_ERROR, "%s: is damaged; run without --restart", path);
+  return BRECCIA_OK;
+}
+
 int checkpoint_read(const char *folder, Explicit *s, const char *deck, double *extras, Error *error)
 {
   char *path = text_format("%s/checkpoint.h5", folder);
@@ -240,19 +258,28 @@ int checkpoint_read(const char *folder, Explicit *s, const char *deck, double *e
     }
   }
   if (file >= 0) H5Fclose(file);
-  free(path);
-  if (status) return status;
+  if (status) {
+    free(path);
+    return status;
+  }
   /* Strains and stresses were saved because laws may not give the same bits twice; deform must not disturb them. */
   if (d->points.where != POINTS_ON_PARTICLES) {
     domain_resume(d);
-    return BRECCIA_OK;
+    status = resume_contact(path, d, error);
+    free(path);
+    return status;
   }
   size_t places = (size_t)d->particles->places;
   double *strains = malloc(sizeof(double) * 6 * places);
-  if (!strains) return error_add(error, BRECCIA_FAILURE, "out of memory: restart");
+  if (!strains) {
+    free(path);
+    return error_add(error, BRECCIA_FAILURE, "out of memory: restart");
+  }
   for (size_t k = 0; k < 6; ++k) memcpy(strains + k * places, d->points.strain[k], sizeof(double) * places);
   domain_resume(d);
   for (size_t k = 0; k < 6; ++k) memcpy(d->points.strain[k], strains + k * places, sizeof(double) * places);
   free(strains);
-  return BRECCIA_OK;
+  status = resume_contact(path, d, error);
+  free(path);
+  return status;
 }

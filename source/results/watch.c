@@ -173,7 +173,8 @@ static void energy_row(const Watch *w, const Explicit *s, double *values)
   (void)w;
   Energy e = explicit_energy(s);
   const double row[] = {
-      e.kinetic, e.internal, e.external, e.damping, e.fracture, e.imbalance, (double)s->domain->broken_count};
+      e.kinetic, e.internal, e.external, e.damping, e.fracture, e.imbalance, (double)s->domain->broken_count,
+      e.friction};
   memcpy(values, row, sizeof row);
 }
 
@@ -188,7 +189,7 @@ static const Kind displacement_kind = {"x:length,y:length,z:length", displacemen
                   opening_kind = {"distance:length,opening:length", opening_row},
                   bond_kind = {"stretch:1,intact:1", bond_row},
                   energy_kind = {"kinetic:energy,internal:energy,external:energy,damping:energy,fracture:energy,"
-                                 "imbalance:1,broken bonds:1",
+                                 "imbalance:1,broken bonds:1,friction:energy",
                                  energy_row};
 /* The value of a load, in the unit of what it prescribes. */
 static const Kind load_kinds[] = {

@@ -371,6 +371,7 @@ int explicit_advance(Explicit *s, Error *error)
   team_run(advance, s);
   if (!is_sound(s)) return retreat(s, error);
   points_commit(&s->domain->points);
+  contact_commit(&s->domain->contact);
   return BRECCIA_OK;
 }
 
@@ -389,11 +390,12 @@ int explicit_renew_stable_step(Explicit *s, Text *warning, Error *error)
 Energy explicit_energy(const Explicit *s)
 {
   Energy e = {.kinetic = s->kinetic,
-              .internal = s->bond_work - s->domain->fracture_energy,
+              .internal = s->bond_work - s->domain->fracture_energy - s->domain->contact.friction_work,
               .external = s->external_work,
               .damping = s->spec->damping > 0 || s->spec->local_damping > 0 ? s->damping_work : 0, /* else roundings */
-              .fracture = s->domain->fracture_energy};
-  double error = e.external + s->kinetic_at_start - e.kinetic - e.internal - e.damping - e.fracture;
+              .fracture = s->domain->fracture_energy,
+              .friction = s->domain->contact.friction_work};
+  double error = e.external + s->kinetic_at_start - e.kinetic - e.internal - e.damping - e.fracture - e.friction;
   double largest = fmax(fmax(fabs(e.kinetic), fabs(s->bond_work)), fmax(fabs(e.external), fabs(e.damping)));
   e.imbalance = largest > 0 ? fabs(error) / largest : 0;
   return e;

@@ -13,13 +13,14 @@ typedef struct ExplicitSpec {
 
 extern const Section explicit_section;
 
-/** Where the work went. external + kinetic at the start = kinetic + internal + fracture + damping + error. */
+/** Where the work went. external + kinetic at the start = kinetic + internal + fracture + friction + damping + error. */
 typedef struct Energy {
   double kinetic;
   double internal; /* work on bonds, less what broken bonds released: stored, or dissipated by the law */
   double external; /* work of loads and prescribed motions */
   double damping;
   double fracture;  /* half force times elongation of bonds as they broke */
+  double friction;  /* of contact */
   double imbalance; /* the error, over the largest of them */
 } Energy;
 

@@ -55,7 +55,7 @@ body:
   more: {material: s, spacing: 1, shape: {box: {from: [9.6, -0.5, -0.5], to: [14.6, 3.5, 3.5]}}}
   hammer: {material: s, spacing: 1, shape: {box: {from: [6, 8, 0], to: [8, 10, 2]}}}
 peridynamics: {formulation: bond-based, calibration: continuum}
-contact: {}
+contact: {friction: 0.3}
 loads:
   - {on: {face: x-, layers: 2}, velocity: [0, 0, 0]}
   - {on: {block: more}, velocity: [10, 0, 0], history: {ramp to: 0.002}}

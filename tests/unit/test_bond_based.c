@@ -1,5 +1,6 @@
 #include "base/random.h"
 #include "base/tensor.h"
+#include "results/fields.h"
 #include "support.h"
 
 static const double young = 150, pi = 3.14159265358979323846;
@@ -63,6 +64,69 @@ static void uniform_expansion_has_the_energy_that_theory_tabulates(void **state)
         breccia_model_destroy(&model);
       }
     }
+}
+
+static void plane_strain_presses_across_the_plane_as_hooke_says(void **state)
+{
+  (void)state;
+  /* nu = 1/4: lambda = 0.4 E, so that the stress across the plane is 0.4 E (e_xx + e_yy) and the mean of an expansion 4/3 E s. */
+  const double s = 1e-8, flat[9] = {1 + s, 0, 0, 0, 1 + s, 0, 0, 0, 1},
+               sheared[9] = {1 + 3 * s, s, 0, s, 1 - 2 * s, 0, 0, 0, 1};
+  double stress[6], solid[6];
+  breccia_model *model = plate("plane strain", "horizon: 3.015", 9);
+  stress_in_the_middle(model, flat, stress);
+  assert_near(stress[ZZ], 0.8 * young * s, 1e-7 * young * s);
+  assert_int_equal(domain_observe(&model->domain, NULL), 0);
+  double mean, octahedral;
+  const Particles *p = model->domain.particles;
+  const int32_t middle = particles_nearest(p, (double[]){4.5, 4.5, 0});
+  output_field_find("mean stress")->value(&model->domain, middle, &mean);
+  output_field_find("octahedral shear stress")->value(&model->domain, middle, &octahedral);
+  assert_near(mean, 4.0 / 3 * young * s, 1e-7 * young * s);
+  assert_near(octahedral, sqrt(2) / 3 * 0.8 * young * s, 1e-7 * young * s);
+  stress_in_the_middle(model, sheared, stress);
+  assert_near(stress[ZZ], 0.4 * young * s, 1e-2 * young * s); /* a lattice is not quite isotropic */
+  breccia_model_destroy(&model);
+  /* Bonds of space, held flat: what the bonds of the plane stand for. */
+  model = cube("horizon: 3.015", 9);
+  stress_in_the_middle(model, flat, solid);
+  assert_near(solid[ZZ], 0.8 * young * s, 0.1 * young * s);
+  breccia_model_destroy(&model);
+  model = plate("plane stress", "horizon: 3.015", 9);
+  stress_in_the_middle(model, flat, stress);
+  assert_true(stress[ZZ] == 0);
+  breccia_model_destroy(&model);
+}
+
+static void what_bonds_of_the_plane_lose_is_lost_across_it_too(void **state)
+{
+  (void)state;
+  /* Bonds that are broken or have softened: a quarter of what is left along the plane. */
+  breccia_model *model = model_of(
+      "materials: {m: {model: bilinear-softening, density: 1, Young modulus: 150, tensile strength: 0.15, fracture "
+      "energy: "
+      "1e-3}}\nperidynamics: {formulation: bond-based, space: plane strain, horizon: 3.015}\n"
+      "body: {b: {material: m, spacing: 1, lattice: square, thickness: 0.5, shape: {box: {particles: [9, 9]}}}}\n"
+      "solve: {explicit: {steps: 1, time step: 1e-9}}\n");
+  const double pulled[9] = {1 + 1.5e-3, 0, 0, 0, 1, 0, 0, 0, 1};
+  const Particles *p = model->domain.particles;
+  const int32_t middle = particles_nearest(p, (double[]){4.5, 4.5, 0});
+  double whole[6], softened[6], broken[6], strain[6];
+  const double small[9] = {1 + 1e-4, 0, 0, 0, 1, 0, 0, 0, 1};
+  deform_uniformly(model, small);
+  compute_forces(model);
+  domain_look(&model->domain, middle, strain, whole);
+  deform_uniformly(model, pulled);
+  compute_forces(model);
+  domain_look(&model->domain, middle, strain, softened);
+  const int32_t neighbour = particles_nearest(p, (double[]){5.5, 4.5, 0});
+  assert_true(family_break(&model->domain.family, middle, neighbour));
+  domain_look(&model->domain, middle, strain, broken);
+  assert_true(softened[XX] < 0.95 * 15 * whole[XX] && broken[XX] < softened[XX]);
+  assert_near(whole[ZZ], (whole[XX] + whole[YY]) / 4, 1e-15 * whole[XX]);
+  assert_near(softened[ZZ], (softened[XX] + softened[YY]) / 4, 1e-15 * softened[XX]);
+  assert_near(broken[ZZ], (broken[XX] + broken[YY]) / 4, 1e-15 * softened[XX]);
+  breccia_model_destroy(&model);
 }
 
 static void check_tells_the_modulus_that_a_patch_shows(void **state)
@@ -395,6 +459,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_single_bond_has_its_force_to_the_last_digits),
       cmocka_unit_test(uniform_expansion_has_the_energy_that_theory_tabulates),
+      cmocka_unit_test(plane_strain_presses_across_the_plane_as_hooke_says),
+      cmocka_unit_test(what_bonds_of_the_plane_lose_is_lost_across_it_too),
       cmocka_unit_test(check_tells_the_modulus_that_a_patch_shows),
       cmocka_unit_test(a_quadratic_field_has_the_force_of_the_continuum),
       cmocka_unit_test(forces_are_sums_over_single_bonds_and_balance),

@@ -44,6 +44,14 @@ static Motion motion_of(const breccia_model *model)
   return m;
 }
 
+static void step_surely(breccia_model *model, int64_t steps)
+{
+  breccia_error *error = breccia_error_create();
+  breccia_model_step(model, steps, error);
+  assert_string_equal(breccia_error_text(error), "");
+  breccia_error_destroy(&error);
+}
+
 #define FIBRE "model: elastic-1d, Young modulus: 3 GPa"
 #define SOLID "model: elastic, Young modulus: 3 GPa, Poisson ratio: 0.2"
 
@@ -56,10 +64,7 @@ static void two_bodies_that_meet_bounce_and_keep_their_momentum(void **state)
     Motion before = motion_of(model);
     double nearest = INFINITY, impulse = before.size;
     while (breccia_model_time(model) < 3.6e-3) {
-      breccia_error *error = breccia_error_create();
-      breccia_model_step(model, 10, error);
-      assert_string_equal(breccia_error_text(error), "");
-      breccia_error_destroy(&error);
+      step_surely(model, 10);
       nearest = fmin(nearest, motion_of(model).gap);
       const Particles *p = model->domain.particles;
       for (int64_t i = 0; i < p->places; ++i)
@@ -74,7 +79,7 @@ static void two_bodies_that_meet_bounce_and_keep_their_momentum(void **state)
     }
     Energy e = explicit_energy(&model->solver);
     assert_true(e.imbalance < 0.01);
-    assert_true(e.kinetic < 0.999 * model->solver.kinetic_at_start); /* some of it rings on */
+    assert_true(e.kinetic < 0.9999 * model->solver.kinetic_at_start); /* some of it rings on */
     breccia_model_destroy(&model);
   }
 }
@@ -100,7 +105,7 @@ static void particles_at_rest_and_bonds_feel_no_contact(void **state)
                            "body: {b: {material: m, spacing: 0.01, shape: {box: {particles: [12, 9, 8]}}}}\n%s%s"
                            "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
                            FIBRE, cut ? "cracks: [{cut: {line: [[0.06, -1], [0.06, 0.05]]}}]\n" : "",
-                           on ? "contact: {stiffness: 20}\n" : "");
+                           on ? "contact: {stiffness: 20, friction: 0.5}\n" : "");
     const double squeeze[9] = {cut ? 1 : 0.6, 0, 0, 0, 0.7, 0, 0, 0, 0.8};
     for (int on = 0; on < 2; ++on) {
       compute_forces(model[on]);
@@ -116,34 +121,247 @@ static void particles_at_rest_and_bonds_feel_no_contact(void **state)
   }
 }
 
-/** A pair squeezed to half its distance: 15 c / delta (d_c - |Y|) V. */
-static void a_pair_repels_as_it_should_once_its_bond_is_gone(void **state)
+/** A pair of a body of 3 x 3 x 3 whose bond is gone, squeezed by 40 %: it carries what the bond would. */
+static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void **state)
 {
   (void)state;
-  breccia_model *model = model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1, %s}}\n"
-                                  "peridynamics: {formulation: bond-based, horizon: 0.03}\ncontact: {}\n"
-                                  "body: {b: {material: m, spacing: 0.01, shape: {box: {particles: [3, 3, 3]}}}}\n"
-                                  "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
-                                  FIBRE);
-  Domain *d = &model->domain;
-  const Particles *p = d->particles;
-  const int32_t a = p->place_of[13], b = p->place_of[14];
-  assert_true(family_break(&d->family, a, b));
-  d->type->renew(d->formulation, a / SLICE);
-  d->type->renew(d->formulation, b / SLICE);
-  p->displacement[0][b] = -0.004;
-  compute_forces(model);
-  const double without = p->internal[0][a];
-  contact_bond_broke(&d->contact, a, b);
-  compute_forces(model);
-  const double c = 12 * 3e6 / (acos(-1) * pow(0.03, 4));
-  assert_near(p->internal[0][a] - without, -15 * c / 0.03 * (0.009 - 0.006) * 1e-6,
-              1e-9 * 15 * c / 0.03 * 0.003 * 1e-6);
-  contact_search(&d->contact); /* found again, it is the same */
-  const double before = p->internal[0][a];
-  compute_forces(model);
-  assert_true(p->internal[0][a] == before);
-  breccia_model_destroy(&model);
+  for (int pressed = 0; pressed < 2; ++pressed) {
+    breccia_model *model = model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1, %s}}\n"
+                                    "peridynamics: {formulation: bond-based, horizon: 0.0175}\ncontact: {}\n"
+                                    "body: {b: {material: m, spacing: 0.01, shape: {box: {particles: [3, 3, 3]}}}}\n"
+                                    "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                                    FIBRE);
+    Domain *d = &model->domain;
+    const Particles *p = d->particles;
+    const int32_t a = p->place_of[13], b = p->place_of[14];
+    assert_true(family_break(&d->family, a, b));
+    d->type->renew(d->formulation, a / SLICE);
+    d->type->renew(d->formulation, b / SLICE);
+    p->displacement[0][b] = -0.004;
+    compute_forces(model);
+    const double without = p->internal[0][a];
+    if (!pressed) p->displacement[0][b] = 0;
+    contact_bond_broke(&d->contact, a, b);
+    p->displacement[0][b] = pressed ? -0.0041 : -0.004;
+    compute_forces(model);
+    /* Bonds calibrated in uniform expansion: sum c L V / 2 = 6 E, here over 26 neighbours, of which a column with free sides shows 5/6. */
+    const double moment = (6 + 12 * sqrt(2) + 8 * sqrt(3)) * 0.01 * 1e-6, c = 5.0 / 6 * 6 * 3e6 / (moment / 2);
+    if (!pressed) assert_near(p->internal[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
+    const double before = p->internal[0][a];
+    contact_search(&d->contact); /* found again, it is the same */
+    compute_forces(model);
+    assert_true(p->internal[0][a] == before);
+    if (pressed) {
+      p->displacement[0][b] = -0.004;
+      compute_forces(model);
+      assert_near(p->internal[0][a], without, 1e-9 * c * 1e-6); /* nothing happens where it broke */
+      contact_bond_mended(&d->contact, a, b);
+      p->displacement[0][b] = -0.006;
+      compute_forces(model);
+      const double mended = p->internal[0][a];
+      contact_bond_broke(&d->contact, a, b);
+      p->displacement[0][b] = -0.007;
+      compute_forces(model);
+      assert_true(p->internal[0][a] < mended - c * 0.05 * 1e-6);
+    }
+    breccia_model_destroy(&model);
+  }
+}
+
+#define LEVEL_CUT "cracks: [{cut: {polygon: [[-1, -1, 0.09], [1, -1, 0.09], [1, 1, 0.09], [-1, 1, 0.09]]}}]\n"
+
+static breccia_model *column(const char *formulation, const char *law, const char *more)
+{
+  return model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}}\nperidynamics: "
+      "{formulation: %s}\nbody: {b: {material: m, spacing: 0.01, shape: {box: {particles: [6, 6, 18]}}}}\n%s"
+      "loads:\n  - {on: {face: z+, layers: 3}, body force: [0, 0, -100000]}\n"
+      "  - {on: {face: z-, layers: 3}, body force: [0, 0, 100000]}\n"
+      "solve: {explicit: {steps: 1000000, safety: 0.5, local damping: 0.5}}\n",
+      law, formulation, more);
+}
+
+/** Mean displacement along an axis of particles above (1) or below (-1) a height. */
+static double mean_motion(const breccia_model *model, int axis, double height, int side)
+{
+  const Particles *p = model->domain.particles;
+  double sum = 0;
+  int count = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    if ((p->position[2][i] - height) * side < 0) continue;
+    sum += p->displacement[axis][i];
+    ++count;
+  }
+  return sum / count;
+}
+
+static void a_closed_cut_is_as_stiff_as_the_body_and_opens_freely(void **state)
+{
+  (void)state;
+  const char *const kinds[][2] = {{"bond-based", FIBRE}, {"correspondence", SOLID}};
+  for (int k = 0; k < 2; ++k) {
+    double shorter[2];
+    for (int cut = 0; cut < 2; ++cut) {
+      breccia_model *model = column(kinds[k][0], kinds[k][1], cut ? LEVEL_CUT "contact: {}\n" : "");
+      step_surely(model, 700);
+      shorter[cut] = mean_motion(model, 2, 0.03, -1) - mean_motion(model, 2, 0.15, 1);
+      assert_true(explicit_energy(&model->solver).kinetic < 1e-6 * explicit_energy(&model->solver).external);
+      if (cut) { /* apart, the halves know nothing of each other */
+        const Particles *p = model->domain.particles;
+        for (int c = 0; c < 3; ++c) memset(p->displacement[c], 0, sizeof(double) * (size_t)p->places);
+        for (int64_t i = 0; i < p->places; ++i) p->displacement[2][i] = p->position[2][i] > 0.09 ? 1e-6 : 0;
+        compute_forces(model);
+        for (int64_t i = 0; i < p->places; ++i) assert_near(p->internal[2][i], 0, k ? 1e-3 : 0);
+      }
+      breccia_model_destroy(&model);
+    }
+    assert_near(shorter[1], shorter[0], 0.025 * shorter[0]);
+  }
+}
+
+/** Force on what lies above the middle of a column. */
+static void force_above(const breccia_model *model, double height, double force[3])
+{
+  const Particles *p = model->domain.particles;
+  for (int k = 0; k < 3; ++k) force[k] = 0;
+  for (int64_t i = 0; i < p->places; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (p->position[2][i] > height) force[k] += p->internal[k][i] * p->volume[i];
+}
+
+static void faces_of_a_cut_slide_freely_or_with_coulombs_friction(void **state)
+{
+  (void)state;
+  /* The upper half is pressed down by 1e-5 and pushed along x over two and a half spacings. */
+  double smooth[251];
+  for (int rough = 0; rough < 2; ++rough) {
+    breccia_model *model =
+        column("bond-based", FIBRE, rough ? LEVEL_CUT "contact: {friction: 0.3}\n" : LEVEL_CUT "contact: {}\n");
+    const Particles *p = model->domain.particles;
+    double least = INFINITY, first = 0;
+    for (int step = 0; step <= 250; ++step) {
+      double force[3], all[3];
+      for (int64_t i = 0; i < p->places; ++i) {
+        const bool upper = p->position[2][i] > 0.09;
+        p->displacement[0][i] = upper ? 1e-4 * step : 0;
+        p->displacement[2][i] = upper ? -1e-5 : 0;
+      }
+      compute_forces(model);
+      contact_commit(&model->domain.contact);
+      contact_follow(&model->domain.contact, 1e-4);
+      force_above(model, 0.09, force);
+      force_above(model, -1, all);
+      for (int k = 0; k < 3; ++k) assert_near(all[k], 0, 1e-12 * force[2]);
+      assert_true(force[2] > 0);
+      if (step == 0) first = force[2];
+      least = fmin(least, force[2]);
+      /* What is left of roughness is of the edges of so slender a column. */
+      if (!rough) smooth[step] = force[0];
+      if (!rough) assert_near(force[0], 0, 0.08 * force[2]);
+      if (rough && step > 2) assert_near(force[0], smooth[step] - 0.3 * force[2], 0.02 * force[2]);
+    }
+    assert_true(least > 0.2 * first);
+    breccia_model_destroy(&model);
+  }
+}
+
+/** A block on a base that is held: gravity of 50 m/s2 along z, and along x as told. It is set down by a displacement, so that no
+ *  bond joins it to the base. */
+static breccia_model *sliding_block(double spacing, double friction, double along, double speed)
+{
+  breccia_model *model =
+      model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, model: elastic-1d, Young "
+               "modulus: 30 MPa}}\n"
+               "peridynamics: {formulation: bond-based, horizon: 0.0202}\n"
+               "body:\n  base: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.16, 0.06, 0.02]}}}\n"
+               "  block: {material: m, spacing: %g, shape: {box: {from: [0.02, 0.01, 0.12], to: [0.07, 0.05, 0.14]}}}\n"
+               "loads:\n  - {on: {block: base}, displacement: [0, 0, 0]}\n"
+               "  - {on: {block: block}, gravity: [%g, 0, -50]}\n"
+               "contact: {friction: %g}\nsolve: {explicit: {steps: 1000000, safety: 0.7}}\n",
+               spacing, along, friction);
+  const Particles *p = model->domain.particles;
+  for (int64_t i = 0; i < p->places; ++i) {
+    if (p->block[i / SLICE] == 0 || p->number[i] < 0) continue;
+    p->displacement[2][i] = -0.1 - 1.2e-6; /* nearly as deep as its weight presses it */
+    p->velocity[0][i] = speed;
+  }
+  contact_search(&model->domain.contact);
+  return model;
+}
+
+static void a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle(void **state)
+{
+  (void)state;
+  for (int fine = 0; fine < 2; ++fine) {
+    const double spacing = fine ? 0.005 : 0.01, mu = 0.4, gravity = 50, speed = 1;
+    /* pushed on the level: v^2 / (2 mu g) */
+    breccia_model *model = sliding_block(spacing, mu, 0, speed);
+    const double way = speed * speed / (2 * mu * gravity), duration = speed / (mu * gravity);
+    while (breccia_model_time(model) < 1.3 * duration) step_surely(model, 10);
+    const double slid = mean_motion(model, 0, 0.05, 1);
+    Energy e = explicit_energy(&model->solver);
+    /* the rest goes into vibrations, more where particles of one face pass over those of another lattice */
+    assert_near(slid, way, (fine ? 0.25 : 0.06) * way);
+    assert_near(e.friction, model->solver.kinetic_at_start, 0.15 * model->solver.kinetic_at_start);
+    assert_true(e.imbalance < 0.01);
+    const double rest = mean_motion(model, 0, 0.05, 1);
+    step_surely(model, 200);
+    assert_near(mean_motion(model, 0, 0.05, 1), rest, 1e-3 * way);
+    breccia_model_destroy(&model);
+    /* on slopes of 0.3 and 0.7: rest, and half of (0.7 - 0.4) g t^2 */
+    for (int steep = 0; steep < 2 && !fine; ++steep) {
+      model = sliding_block(spacing, mu, (steep ? 0.7 : 0.3) * gravity, 0);
+      double half = 0;
+      while (breccia_model_time(model) < 0.08) {
+        step_surely(model, 10);
+        if (breccia_model_time(model) < 0.04) half = mean_motion(model, 0, 0.05, 1);
+      }
+      const double time = breccia_model_time(model), free = 0.5 * 0.3 * gravity * time * time;
+      const double moved = mean_motion(model, 0, 0.05, 1);
+      if (steep) {
+        assert_near(moved, free, 0.06 * free);
+      } else { /* it gives a little as it is let go, and rests */
+        assert_near(moved, 0, 0.06 * free);
+        assert_near(moved, half, 0.01 * free);
+      }
+      breccia_model_destroy(&model);
+    }
+  }
+}
+
+static void bodies_of_unlike_spacing_that_meet_keep_their_momentum(void **state)
+{
+  (void)state;
+  for (int rough = 0; rough < 2; ++rough) {
+    breccia_model *model =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}, n: {density: 7.8, model: "
+                 "elastic-1d, "
+                 "Young modulus: 9 GPa}}\nperidynamics: {formulation: bond-based, horizon: 0.0302}\nbody:\n"
+                 "  left: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.08, 0.06, 0.05]}}}\n"
+                 "  right: {material: n, spacing: 0.006, shape: {box: {from: [0.115, 0.013, 0.004], to: [0.151, 0.055, "
+                 "0.046]}}}\n"
+                 "contact: {friction: %g}\nsolve: {explicit: {steps: 1000000}}\n",
+                 FIBRE, rough * 0.3);
+    const Particles *p = model->domain.particles;
+    for (int32_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      p->velocity[0][i] = p->block[i / SLICE] ? -15 : 15;
+      p->velocity[1][i] = p->block[i / SLICE] ? 5 : 0;
+    }
+    const Motion before = motion_of(model);
+    while (breccia_model_time(model) < 2.6e-3) step_surely(model, 10);
+    const Motion after = motion_of(model);
+    assert_true(after.gap > 0.012);
+    for (int c = 0; c < 3; ++c) {
+      assert_near(after.momentum[c], before.momentum[c], 1e-11 * before.size);
+      if (!rough) assert_near(after.spin[c], before.spin[c], 1e-11 * before.size);
+    }
+    Energy e = explicit_energy(&model->solver);
+    assert_true(rough ? e.friction > 0 : e.friction == 0);
+    assert_true(e.imbalance < 0.01);
+    breccia_model_destroy(&model);
+  }
 }
 
 static void threads_do_not_change_a_bit(void **state)
@@ -151,8 +369,8 @@ static void threads_do_not_change_a_bit(void **state)
   (void)state;
   double *reference = NULL;
   for (int threads = 1; threads <= 3; ++threads) {
-    breccia_model *model =
-        blocks("bond-based", "model: elastic-brittle, Young modulus: 3 GPa, tensile strength: 3 MPa", "contact: {}\n");
+    breccia_model *model = blocks("bond-based", "model: elastic-brittle, Young modulus: 3 GPa, tensile strength: 3 MPa",
+                                  "contact: {friction: 0.3}\n");
     model->threads = threads;
     while (breccia_model_time(model) < 1.6e-3) breccia_model_step(model, 10, NULL);
     assert_true(breccia_model_broken_bonds(model) > 0);
@@ -170,7 +388,12 @@ int main(void)
       cmocka_unit_test(two_bodies_that_meet_bounce_and_keep_their_momentum),
       cmocka_unit_test(without_contact_they_pass_through_each_other),
       cmocka_unit_test(particles_at_rest_and_bonds_feel_no_contact),
-      cmocka_unit_test(a_pair_repels_as_it_should_once_its_bond_is_gone),
+      cmocka_unit_test(a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed),
+      cmocka_unit_test(a_closed_cut_is_as_stiff_as_the_body_and_opens_freely),
+      cmocka_unit_test(faces_of_a_cut_slide_freely_or_with_coulombs_friction),
+
+      cmocka_unit_test(a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle),
+      cmocka_unit_test(bodies_of_unlike_spacing_that_meet_keep_their_momentum),
       cmocka_unit_test(threads_do_not_change_a_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
