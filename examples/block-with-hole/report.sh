@@ -3,14 +3,48 @@
 #   report.sh                  run everything inside the program (a quarter of a minute on two cores), then write
 #   report.sh --with-opensees  run the block with its law in OpenSees too (some ten minutes more)
 #   report.sh --only-write     write from the results that are there
+#   report.sh --control        run the strengths of zero-energy control only, and write their table
 set -eu
 cd "$(dirname "$0")"
 breccia=../../build/release/breccia
+# First break by strength of control, with the constant 12E and with 18K: the same strength times 18K / 12E, which is
+# 3K / 2E = (3K + G) / 6G.
+ratio=$(awk '/shear modulus:/ {G = $3} /bulk modulus:/ {K = $3} END {printf "%.10g", (3 * K + G) / (6 * G)}' block.yaml)
+strengths="none 0.05 0.1 0.2"
+control() { # control STRENGTH FACTOR: runs the block, and tells when and where its first bond breaks
+  if [ "$1" = none ]; then words="none: yes"; else words="silling: $(awk -v s="$1" -v f="$2" 'BEGIN {printf "%.10g", s * f}')"; fi
+  sed "s/zero-energy control: {silling: 0.1}/zero-energy control: {$words}/; /^pictures:/,\$d" block.yaml > block-control.yaml
+  $breccia run block-control.yaml --quiet > /dev/null
+  sed -n 's/.*"first_broken_bond": {.*"time": \([^,]*\),.*"at": \[\([^]]*\)\].*/\1 \2/p' block-control/summary.json |
+    awk '{gsub(",", ""); printf "%.2f ms at (%g, %g, %g)", 1000 * $1, $2, $3, $4}'
+  rm -r block-control block-control.yaml
+}
+write_control() {
+  {
+    sed '/^<!-- control -->$/q' README.md
+    echo
+    echo "| strength G_s | first bond breaks with 12E/(πδ⁴), as here | with 18K/(πδ⁴), as elsewhere ($(awk -v r="$ratio" 'BEGIN {printf "%.3f", r}') times 12E) |"
+    echo "|---|---|---|"
+    for strength in $strengths; do
+      here=$(control $strength 1) there="the same"
+      [ $strength = none ] || there=$(control $strength "$ratio")
+      echo "| $strength | $here | $there |"
+    done
+    echo
+    sed -n '/^<!-- end of control -->$/,$p' README.md
+  } > README.new
+  mv README.new README.md
+}
+if [ "${1:-}" = --control ]; then
+  write_control
+  exit
+fi
 if [ "${1:-}" != --only-write ]; then
   $breccia run block.yaml --quiet
   sed 's/history: {ramp to: 8 ms}/history: {table: [[0, 0], [6 ms, 0.75], [8 ms, 0.75]]}/; s/6.4 ms\]/6.4 ms, 8 ms]/' block.yaml > block-30.yaml
   $breccia run block-30.yaml --quiet
   rm block-30.yaml
+  write_control
 fi
 [ "${1:-}" != --with-opensees ] || $breccia run block-opensees.yaml --quiet
 
