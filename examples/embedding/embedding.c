@@ -66,7 +66,7 @@ static const char deck[] = "title: A hanging bar\n"
                            "loads:\n"
                            "  - {on: {face: z+}, displacement: [0, 0, 0]}\n"
                            "  - {gravity: [0, 0, -9.81 m/s2]}\n"
-                           "solve: {explicit: {steps: 4000, damping: 40 Hz}}\n";
+                           "solve: {explicit: {steps: 4000, damping: 40 1/s}}\n";
 
 int main(void)
 {

@@ -125,15 +125,17 @@ typedef struct breccia_run {
  *  @return BRECCIA_INTERRUPTED after a clean stop on request; BRECCIA_FAILURE after writing the last good state */
 BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, breccia_error *error);
 
-/** What a run would do, in three lines; warnings about the deck, one per line; what a run did and which files it wrote.
+/** What a run would do, in some lines; warnings about the deck, one per line; what a run did and which files it wrote.
  *  Valid until the model is next used. */
 BRECCIA_API const char *breccia_model_overview(breccia_model *model);
+/** What the deck's numbers mean in SI units: materials, body, waves, loads; some lines. */
+BRECCIA_API const char *breccia_model_plausibility(breccia_model *model);
 BRECCIA_API const char *breccia_model_warnings(breccia_model *model);
 BRECCIA_API const char *breccia_model_outcome(breccia_model *model);
 
 BRECCIA_API int64_t breccia_model_particles(const breccia_model *model);
-BRECCIA_API int64_t breccia_model_bonds(const breccia_model *model); /* directed, as built */
-BRECCIA_API int64_t breccia_model_broken_bonds(const breccia_model *model);
+BRECCIA_API int64_t breccia_model_bonds(const breccia_model *model);        /* directed, as built: twice the pairs */
+BRECCIA_API int64_t breccia_model_broken_bonds(const breccia_model *model); /* pairs */
 BRECCIA_API int64_t breccia_model_steps_done(const breccia_model *model);
 BRECCIA_API double breccia_model_time(const breccia_model *model);
 BRECCIA_API double breccia_model_time_step(const breccia_model *model);

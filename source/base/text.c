@@ -46,6 +46,11 @@ void text_add_json(Text *text, const char *words)
   text_add(text, "\"");
 }
 
+const char *text_words(const Text *text)
+{
+  return text->characters ? text->characters : "";
+}
+
 void text_free(Text *text)
 {
   free(text->characters);
@@ -62,30 +67,38 @@ char *text_format(const char *format, ...)
   return text.characters;
 }
 
+/** Letters without their case, and all signs that part words as a blank. */
+static int folded(char c)
+{
+  return c == '_' || c == '-' ? ' ' : tolower((unsigned char)c);
+}
+
 int text_distance(const char *a, const char *b)
 {
   enum { LONGEST = 64 };
   size_t na = strlen(a), nb = strlen(b);
   if (na >= LONGEST || nb >= LONGEST) return LONGEST;
-  int row[LONGEST + 1];
-  for (size_t j = 0; j <= nb; ++j) row[j] = (int)j;
+  int rows[3][LONGEST + 1]; /* of the last two letters of `a` and this one */
+  for (size_t j = 0; j <= nb; ++j) rows[0][j] = (int)j;
   for (size_t i = 1; i <= na; ++i) {
-    int diagonal = row[0];
+    int *row = rows[i % 3], *above = rows[(i + 2) % 3], *two_above = rows[(i + 1) % 3];
     row[0] = (int)i;
     for (size_t j = 1; j <= nb; ++j) {
-      int substitute = diagonal + (tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]));
-      diagonal = row[j];
-      int other = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-      row[j] = substitute < other ? substitute : other;
+      const int other = (above[j] < row[j - 1] ? above[j] : row[j - 1]) + 1;
+      row[j] = above[j - 1] + (folded(a[i - 1]) != folded(b[j - 1]));
+      if (other < row[j]) row[j] = other;
+      const bool swapped =
+          i > 1 && j > 1 && folded(a[i - 1]) == folded(b[j - 2]) && folded(a[i - 2]) == folded(b[j - 1]);
+      if (swapped && two_above[j - 2] + 1 < row[j]) row[j] = two_above[j - 2] + 1;
     }
   }
-  return row[nb];
+  return rows[na % 3][nb];
 }
 
 bool text_resembles(const char *word, const char *candidate, int distance)
 {
   size_t longer = strlen(word) > strlen(candidate) ? strlen(word) : strlen(candidate);
-  return distance <= 1 + (int)longer / 3;
+  return distance <= (longer < 6 ? 1 : (int)longer / 3);
 }
 
 void text_file_name(const char *words, char *name, size_t size)

@@ -18,12 +18,16 @@ void text_add_list(Text *text, const char *format, va_list arguments);
 /** Appends `words` as a JSON string, quotes included. */
 void text_add_json(Text *text, const char *words);
 
+/** @return what was added so far, "" if nothing was */
+const char *text_words(const Text *text);
+
 void text_free(Text *text);
 
 /** @return a copy of formatted text that the caller frees, or NULL when memory is out */
 char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** @return the edit distance (insertions, deletions, substitutions, case ignored) between two words, at most 64 */
+/** @return the edit distance (insertions, deletions, substitutions, neighbours swapped) between two words, at most 64. Case does not
+ *  count, nor does it matter whether words are parted by blanks, - or _. */
 int text_distance(const char *a, const char *b);
 
 /** @return true if `candidate` is close enough to `word` to be suggested for it */

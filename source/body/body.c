@@ -95,10 +95,15 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
     }
     if (box) {
       double size = (far[k] - anchor[k]) / spacing;
-      if (fabs(size - round(size)) > 1e-6 * fmax(1, size) || round(size) < 1)
+      if (size < 1 - 1e-6)
         return node_error(reader->document, box->head.node, reader->error,
-                          "box: its size along %c, %g, is not a whole number of spacings of %g (it is %.4g of them)",
-                          "xyz"[k], far[k] - anchor[k], spacing, size);
+                          "box: its size along %c, %g, is less than one spacing of %g; take a finer spacing", "xyz"[k],
+                          far[k] - anchor[k], spacing);
+      if (fabs(size - round(size)) > 1e-6 * fmax(1, size))
+        return node_error(reader->document, box->head.node, reader->error,
+                          "box: its size along %c, %g, is not a whole number of spacings of %g (it is %.4g of them); a "
+                          "spacing of %.6g fits",
+                          "xyz"[k], far[k] - anchor[k], spacing, size, (far[k] - anchor[k]) / round(size));
       low[k] = anchor[k] + spacing * floor((low[k] - anchor[k]) / spacing + 1e-6);
     }
     double cells = ceil((high[k] - low[k]) / spacing - 1e-6);

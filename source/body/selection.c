@@ -46,6 +46,29 @@ static int block_index(const Body *body, const char *name)
   return -1;
 }
 
+/** Says that nothing is selected, where the body is, and which particle is nearest to the middle of the shape asked for. */
+static void say_empty(const Particles *particles, int dimensions, double spacing, const SelectionSpec *spec,
+                      const Reference *reference, const DeckReader *reader)
+{
+  Text words = {0};
+  double low[3], high[3], from[3], to[3];
+  particles_bounds(particles, low, high);
+  for (int k = 0; k < dimensions; ++k) text_add(&words, "%s%c from %g to %g", k ? ", " : "", "xyz"[k], low[k], high[k]);
+  if (spec->inside) {
+    shape_bounds(spec->inside, spacing, from, to);
+    double middle[3] = {0};
+    for (int k = 0; k < dimensions; ++k) middle[k] = (from[k] + to[k]) / 2;
+    const int32_t near = particles_nearest(particles, middle);
+    text_add(&words, "; the one nearest to the middle of the shape is at [");
+    for (int k = 0; k < dimensions; ++k) text_add(&words, "%s%g", k ? ", " : "", particles->position[k][near]);
+    text_add(&words, "]");
+  }
+  node_error(reader->document, reference->name ? spec->head.node : reference->node, reader->error,
+             "the selection%s%s%s holds no particle; particles stand at %s", reference->name ? " '" : "",
+             reference->name ? reference->name : "", reference->name ? "'" : "", text_words(&words));
+  text_free(&words);
+}
+
 int selection_create(Selection *selection, const Body *body, const DeckReader *reader, const SectionList *named,
                      const Reference *reference)
 {
@@ -85,7 +108,8 @@ int selection_create(Selection *selection, const Body *body, const DeckReader *r
   }
   if (!selection->count) {
     selection_destroy(selection);
-    return node_error(reader->document, reference->node, reader->error, "the selection holds no particle");
+    say_empty(particles, body->dimensions, body->largest_spacing, spec, reference, reader);
+    return BRECCIA_USER_ERROR;
   }
   return BRECCIA_OK;
 }

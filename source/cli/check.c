@@ -17,7 +17,7 @@ static int run(int argc, char **argv, const Verb *verb)
   int status = breccia_model_load_file(argv[first], &wishes, &model, error);
   if (!status) {
     if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
-    printf("%s\n", breccia_model_overview(model));
+    printf("%s\n%s\n", breccia_model_overview(model), breccia_model_plausibility(model));
     breccia_model_destroy(&model);
   }
   return fail(error, status);

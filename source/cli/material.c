@@ -209,7 +209,7 @@ static int read_test(const char **values, const Units *units, TestSpec *spec, Er
     Text words = {0};
     for (int k = 0; test_kind_word(k); ++k) text_add(&words, "%s'%s'", k ? ", " : "", test_kind_word(k));
     status = error_add(error, BRECCIA_USER_ERROR, "--test '%s' is not known; the tests are %s", values[TEST],
-                       words.characters);
+                       text_words(&words));
     text_free(&words);
   }
   if (!spec->zero) spec->zero = test_zero_word(0);
@@ -221,7 +221,7 @@ static int read_test(const char **values, const Units *units, TestSpec *spec, Er
     const char *words = values[numbers[k].option];
     if (words && units_read(units, dimension_find(numbers[k].dimension), words, numbers[k].value, &reason))
       status = error_add(error, BRECCIA_USER_ERROR, "--%s %s: %s", options[numbers[k].option].name, words,
-                         reason.characters);
+                         text_words(&reason));
     text_free(&reason);
   }
   if (!values[TO]) status = error_add(error, BRECCIA_USER_ERROR, "--test needs --to STRAIN, what it goes to");
@@ -256,9 +256,14 @@ static int run_words(const char **values, const Settings *settings, const Output
   long long elastic = 0;
   if (values[ELASTIC] && read_whole(values[ELASTIC], "elastic-rows", 0, &elastic)) return BRECCIA_USER_ERROR;
   const breccia_law *law = law_find(NULL, values[MODEL]);
-  if (!law)
-    return error_add(error, BRECCIA_USER_ERROR, "breccia material: there is no model '%s'; 'breccia models' lists them",
-                     values[MODEL]);
+  if (!law) {
+    Text advice = {0};
+    law_advice(NULL, values[MODEL], &advice);
+    error_add(error, BRECCIA_USER_ERROR, "breccia material: there is no model '%s'; %s", values[MODEL],
+              text_words(&advice));
+    text_free(&advice);
+    return BRECCIA_USER_ERROR;
+  }
   Units *units = read_units(values[UNITS], error);
   if (!units) return values[UNITS] ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
   Material material = {0};

@@ -141,7 +141,10 @@ static int run(int argc, char **argv, const Verb *verb)
   if (first < argc) {
     const breccia_law *law = law_find(NULL, argv[first]);
     if (!law) {
-      fprintf(stderr, "breccia models: there is no model '%s'; 'breccia models' lists them\n", argv[first]);
+      Text advice = {0};
+      law_advice(NULL, argv[first], &advice);
+      fprintf(stderr, "breccia models: there is no model '%s'; %s\n", argv[first], text_words(&advice));
+      text_free(&advice);
       return 2;
     }
     print_law(law);

@@ -33,7 +33,7 @@ static const char starter[] =
     "  - {cut: {line: [[0, 0.25], [0.15, 0.25]]}}\n"
     "\n"
     "peridynamics: {space: plane stress, horizon: 3.015 spacings}\n"
-    "failure: {critical stretch: 0.0005}\n"
+    "failure: {critical stretch: 0.0005, near grips: hold}\n"
     "\n"
     "loads:\n"
     "  - {name: pull, on: {face: y+, layers: 3}, velocity: [free, 0.1 m/s]}\n"

@@ -30,7 +30,7 @@ static int run(int argc, char **argv, const Verb *verb)
     }
   } else
     describe_json_schema(&deck_section, tables, count, &text);
-  fputs(text.characters ? text.characters : "", stdout);
+  fputs(text_words(&text), stdout);
   text_free(&text);
   free(tables);
   return 0;

@@ -1,5 +1,7 @@
 #include "constitutive/law.h"
 
+#include "deck/spelling.h"
+
 #include <string.h>
 
 #define LAW(name) extern const breccia_law law_##name;
@@ -24,4 +26,14 @@ const breccia_law *law_find(const LawList *list, const char *name)
   for (int k = 0; law_at(list, k); ++k)
     if (!strcmp(law_at(list, k)->name, name)) return law_at(list, k);
   return NULL;
+}
+
+void law_advice(const LawList *list, const char *given, Text *text)
+{
+  enum { MOST = 128 };
+  const char *names[MOST];
+  int count = 0;
+  for (const breccia_law *law; count < MOST && (law = law_at(list, count)); ++count) names[count] = law->name;
+  spelling_advice(text, given, names, count, "the models are");
+  if (spelling_nearest(given, names, count)) text_add(text, "; 'breccia models' lists all");
 }

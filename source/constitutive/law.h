@@ -2,6 +2,7 @@
 #ifndef BRECCIA_CONSTITUTIVE_LAW_H
 #define BRECCIA_CONSTITUTIVE_LAW_H
 
+#include "base/text.h"
 #include "breccia/breccia.h"
 
 /** Built-in laws and those that a program brought along. */
@@ -13,6 +14,9 @@ typedef struct LawList {
 /** @return the k-th law, own ones last, or NULL after the last; `list` may be NULL */
 const breccia_law *law_at(const LawList *list, int k);
 const breccia_law *law_find(const LawList *list, const char *name);
+
+/** Adds which law was probably meant by a name that is none, or the names of all. */
+void law_advice(const LawList *list, const char *given, Text *text);
 
 /** What `moduli` says for a uniaxial law: those of a solid with its Young's modulus and a Poisson ratio of 1/4. */
 static inline void uniaxial_moduli(double young, double *bulk, double *shear)

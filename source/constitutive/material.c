@@ -3,6 +3,7 @@
 #include "base/cores.h"
 #include "base/memory.h"
 #include "constitutive/min_max.h"
+#include "deck/spelling.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,21 +17,15 @@ static const breccia_parameter *law_parameters(const DeckReader *reader, const N
     *count = law->parameter_count;
     return law->parameters;
   }
-  Text words = {0};
-  const char *given = chooser->kind == NODE_SCALAR ? chooser->text : "", *nearest = NULL;
-  int best = 1000;
-  for (int k = 0; (law = law_at(laws, k)); ++k) {
-    text_add(&words, "%s%s", k ? ", " : "", law->name);
-    int distance = text_distance(given, law->name);
-    if (distance < best) {
-      best = distance;
-      nearest = law->name;
-    }
+  const char *given = chooser->kind == NODE_SCALAR ? chooser->text : "";
+  if (!*given) {
+    node_error(reader->document, chooser, reader->error, "model: expected words");
+    return NULL;
   }
-  bool close = nearest && text_resembles(given, nearest, best);
-  node_error(reader->document, chooser, reader->error, "model: there is no model '%s'%s%s%s; the models are %s", given,
-             close ? "; did you mean '" : "", close ? nearest : "", close ? "'?" : "", words.characters);
-  text_free(&words);
+  Text advice = {0};
+  law_advice(laws, given, &advice);
+  node_error(reader->document, chooser, reader->error, "model: there is no model '%s'; %s", given, text_words(&advice));
+  text_free(&advice);
   return NULL;
 }
 
@@ -202,15 +197,23 @@ static int read_words(const breccia_law *law, const char *const *words, int coun
       if (equals && strlen(law->parameters[k].name) == n && !strncmp(law->parameters[k].name, words[w], n)) which = k;
     if (which < 0) {
       Text names = {0};
-      for (int k = 0; k < law->parameter_count; ++k) text_add(&names, "%s'%s'", k ? ", " : "", law->parameters[k].name);
-      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: expected KEY=VALUE with one of the keys %s", before,
-                         words[w], names.characters);
+      const char *keys[MOST_WORDS], *nearest = NULL;
+      char key[64];
+      snprintf(key, sizeof key, "%.*s", (int)n, words[w]);
+      for (int k = 0; k < law->parameter_count && k < MOST_WORDS; ++k) {
+        keys[k] = law->parameters[k].name;
+        text_add(&names, "%s'%s'", k ? ", " : "", keys[k]);
+        if (k == law->parameter_count - 1) nearest = spelling_nearest(key, keys, k + 1);
+      }
+      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: %s%s%sexpected KEY=VALUE with one of the keys %s", before,
+                         words[w], nearest ? "did you mean '" : "", nearest ? nearest : "", nearest ? "'? " : "",
+                         text_words(&names));
       text_free(&names);
       continue;
     }
     Text reason = {0};
     if (units_read(units, dimension_find(law->parameters[which].dimension), equals + 1, &values[which], &reason))
-      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: %s", before, words[w], reason.characters);
+      status = error_add(error, BRECCIA_USER_ERROR, "%s%s: %s", before, words[w], text_words(&reason));
     else if (!interval_contains(law->parameters[which].range, values[which])) {
       char range[128];
       interval_describe(law->parameters[which].range, range, sizeof range);

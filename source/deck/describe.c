@@ -39,6 +39,7 @@ static const char *value_words(const Field *field)
   case FIELD_SECTIONS: return "list of";
   case FIELD_NAMED: return "map of names to";
   case FIELD_REFERENCE: return "a name, or";
+  case FIELD_NUMBER_OR_SECTION: return "a number, or";
   }
   return "";
 }
@@ -206,6 +207,9 @@ static void add_value_schema(Text *text, const Field *field)
     break;
   case FIELD_NAMED:
     text_add(text, "\"type\": \"object\", \"additionalProperties\": {\"$ref\": \"#/$defs/%s\"}", field->section->name);
+    break;
+  case FIELD_NUMBER_OR_SECTION:
+    text_add(text, "\"anyOf\": [%s, {\"$ref\": \"#/$defs/%s\"}]", number, field->section->name);
     break;
   case FIELD_REFERENCE:
     text_add(text, "\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/$defs/%s\"}]", field->section->name);

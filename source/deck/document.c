@@ -102,6 +102,27 @@ static int directive_line(const char *text, size_t length)
   return 0;
 }
 
+/** What to do about a message of the library, for people who know no YAML; "" if nothing is known. */
+static const char *yaml_advice(const char *message)
+{
+  static const char *const advice[][2] = {
+      {"tab", "indent with blanks, not with tabs"},
+      {"invalid indentation", "keys that belong together must begin in the same column"},
+      {"multiline plain key", "this line and the one before are read as one: look whether both begin in the right "
+                              "column, and whether a ':' or "
+                              "a quotation mark is missing"},
+      {"expected ':'", "a key ends with a colon and a blank, like 'spacing: 10'"},
+      {"nested block mapping", "words that hold ': ' must stand in quotation marks"},
+      {"missing comma",
+       "inside { } and [ ] a comma parts items, each bracket is closed, and words that hold ': ' stand in quotation "
+       "marks"},
+      {"unterminated", "a quotation mark or bracket is not closed"},
+  };
+  for (size_t k = 0; k < sizeof advice / sizeof *advice; ++k)
+    if (strstr(message, advice[k][0])) return advice[k][1];
+  return "";
+}
+
 Document *document_parse(const char *text, size_t length, const char *name, Error *error)
 {
   int directive = directive_line(text, length);
@@ -132,10 +153,11 @@ Document *document_parse(const char *text, size_t length, const char *name, Erro
   if (!yaml) {
     void *iterator = NULL;
     struct fy_diag_error *problem = diagnostics ? fy_diag_errors_iterate(diagnostics, &iterator) : NULL;
-    if (problem)
-      error_add(error, BRECCIA_USER_ERROR, "%s:%d:%d: not valid YAML: %s", name, problem->line, problem->column,
-                problem->msg);
-    else
+    if (problem) {
+      const char *message = problem->msg ? problem->msg : "it cannot be read", *advice = yaml_advice(message);
+      error_add(error, BRECCIA_USER_ERROR, "%s:%d:%d: not valid YAML: %s%s%s%s", name, problem->line, problem->column,
+                advice, *advice ? " (" : "", message, *advice ? ")" : "");
+    } else
       error_add(error, BRECCIA_USER_ERROR, "%s:1:1: the deck is empty; 'breccia new' writes one to start from", name);
   } else {
     Builder builder = {document, error, 0};
@@ -173,8 +195,7 @@ int node_error(const Document *document, const Node *node, Error *error, const c
   va_start(arguments, format);
   text_add_list(&words, format, arguments);
   va_end(arguments);
-  error_add(error, BRECCIA_USER_ERROR, "%s:%d:%d: %s", document->name, node->line, node->column,
-            words.characters ? words.characters : "");
+  error_add(error, BRECCIA_USER_ERROR, "%s:%d:%d: %s", document->name, node->line, node->column, text_words(&words));
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }

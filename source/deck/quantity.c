@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <udunits2.h>
 
 static const Dimension dimensions[] = {
@@ -16,6 +17,7 @@ static const Dimension dimensions[] = {
     {"area", 2, 0, 0, "m2"},
     {"time", 0, 0, 1, "s"},
     {"frequency", 0, 0, -1, "Hz"},
+    {"damping rate", 0, 0, -1, "1/s"},
     {"velocity", 1, 0, -1, "m/s"},
     {"acceleration", 1, 0, -2, "m/s2"},
     {"force", 0, 1, 0, "kN"},
@@ -43,6 +45,7 @@ const Dimension *dimension_find(const char *name)
 struct Units {
   ut_system *system;
   ut_unit *base[3], *degree;
+  double size[3]; /* of the base units, in m, N, s */
   char name[3][32];
 };
 
@@ -76,6 +79,10 @@ static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
       text_add(reason, "unit '%s': 'ton' may be short, long or metric; write t (1000 kg) or lb", words);
       return NULL;
     }
+    if (!strncmp(c, "gr", 2) && !isalpha((unsigned char)c[2]) && (c == words || !isalpha((unsigned char)c[-1]))) {
+      text_add(reason, "unit '%s': 'gr' is a grain of 65 mg to some; write g", words);
+      return NULL;
+    }
     if (*c == '@' || !strncmp(c, "since", 5)) {
       text_add(reason, "unit '%s': units with an origin are not understood here", words);
       return NULL;
@@ -84,6 +91,24 @@ static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
   ut_unit *unit = ut_parse(units->system, words, UT_UTF8);
   if (!unit) text_add(reason, "unit '%s' is not known", words);
   return unit;
+}
+
+/** True if a unit counts cycles, like Hz: a rate of 1/s is something else, though their dimensions are the same. */
+static bool counts_cycles(const char *unit)
+{
+  static const char *const names[] = {"Hz", "hertz", "Hertz", "rpm"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+    if (strstr(unit, names[k])) return true;
+  return false;
+}
+
+/** True if one unit is a multiple of the other. The library also converts a unit to its reciprocal: a period to a frequency. */
+static bool alike(const ut_unit *a, const ut_unit *b)
+{
+  ut_unit *ratio = ut_are_convertible(a, b) ? ut_divide(a, b) : NULL;
+  const bool yes = ratio && ut_is_dimensionless(ratio);
+  ut_free(ratio);
+  return yes;
 }
 
 static ut_unit *unit_of(const Units *units, const Dimension *dimension)
@@ -132,8 +157,13 @@ Units *units_create(const char *length, const char *force, const char *time, Err
     ut_unit *standard = ut_parse(units->system, wanted[k], UT_ASCII);
     if (units->base[k] && !ut_are_convertible(units->base[k], standard))
       text_add(&reason, "unit '%s' is not a unit of %s", names[k], what[k]);
+    else if (units->base[k]) {
+      cv_converter *converter = ut_get_converter(units->base[k], standard);
+      units->size[k] = converter ? cv_convert_double(converter, 1) : NAN;
+      cv_free(converter);
+    }
     ut_free(standard);
-    if (reason.length) error_add(error, BRECCIA_USER_ERROR, "%s", reason.characters);
+    if (reason.length) error_add(error, BRECCIA_USER_ERROR, "%s", text_words(&reason));
     int failed = reason.length > 0;
     text_free(&reason);
     if (failed) {
@@ -191,11 +221,113 @@ void units_name(const Units *units, const Dimension *dimension, char *name, size
     if (abs(power[k]) > 1) text_add(side, "%d", abs(power[k]));
   }
   if (bottom.length)
-    snprintf(name, size, "%s/%s", top.length ? top.characters : "1", bottom.characters);
+    snprintf(name, size, "%s/%s", top.length ? top.characters : "1", text_words(&bottom));
   else
     snprintf(name, size, "%s", top.length ? top.characters : "");
   text_free(&top);
   text_free(&bottom);
+}
+
+double units_in_si(const Units *units, const Dimension *dimension, double value)
+{
+  return value * pow(units->size[0], dimension->length) * pow(units->size[1], dimension->force) *
+         pow(units->size[2], dimension->time);
+}
+
+void quantity_describe(double value, const char *unit, Text *text)
+{
+  static const struct {
+    double size;
+    const char *prefix;
+  } prefixes[] = {{1e12, "T"}, {1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "\u00b5"}, {1e-9, "n"}};
+  const double size = fabs(value);
+  if (!strcmp(unit, "kg") || !strcmp(unit, "kg/m3")) { /* nobody says Mg */
+    const bool tonnes = size >= 999.5 && !unit[2], grams = size > 0 && size < 0.9995 && !unit[2];
+    text_add(text, "%.5g %s", tonnes ? value / 1000 : grams ? value * 1000 : value, tonnes ? "t" : grams ? "g" : unit);
+    return;
+  }
+  int k = 4; /* no prefix: for 0 and what is no number */
+  if (size > 0 && isfinite(size))
+    for (k = 0; k < 7 && size < 0.9995 * prefixes[k].size;) ++k;
+  if (!strcmp(unit, "m") && k < 4) k = 4;
+  text_add(text, "%.3g %s%s", value / prefixes[k].size, prefixes[k].prefix, unit);
+}
+
+/* ---- what was meant by a number or unit that cannot be read ---- */
+
+/** A number written as in other countries or other notations: "10,5", "30 000", "3x10^4". @return true after saying so */
+static bool explain_number(const char *words, const char *rest, Text *reason)
+{
+  const char *next = rest + (*rest == ',' || *rest == '\'' || *rest == '_' || *rest == ' ');
+  const char *power = rest + strspn(rest, " x*");
+  if (*rest == ',' && isdigit((unsigned char)*next))
+    text_add(reason, "'%s': write decimals with a point, like 10.5, and thousands without a comma", words);
+  else if (next > rest && isdigit((unsigned char)next[0]) && isdigit((unsigned char)next[1]) &&
+           isdigit((unsigned char)next[2]))
+    text_add(reason, "'%s': write thousands with nothing between, like 30000 or 3e4", words);
+  else if (power > rest && !strncmp(power, "10", 2) && (power[2] == '^' || power[2] == '*'))
+    text_add(reason, "'%s': write powers of ten like 3e4", words);
+  else
+    return false;
+  return true;
+}
+
+static bool convertible(const Units *units, const char *words, const Dimension *dimension)
+{
+  ut_unit *unit = ut_parse(units->system, words, UT_UTF8), *target = unit ? unit_of(units, dimension) : NULL;
+  const bool yes = target && alike(unit, target);
+  ut_free(unit);
+  ut_free(target);
+  return yes;
+}
+
+/** A unit that was probably meant: its letters in another case ("Mpa"), or a mass that stands for its weight ("lb/in2").
+ *  @return true with the unit written out in `meant` */
+static bool guess_unit(const Units *units, const Dimension *dimension, const char *given, Text *meant)
+{
+  static const char *const usual[] = {"Pa", "kPa", "MPa", "GPa", "N",  "kN", "MN", "m",  "mm",  "cm",  "km",
+                                      "s",  "ms",  "kg",  "t",   "in", "ft", "J",  "kJ", "psi", "ksi", "lbf"};
+  static const char *const weights[][2] = {{"lb", "lbf"}, {"kg", "kgf"}, {"t", "tf"}};
+  if (!strcmp(given, "\u00ba") && !strcmp(dimension->name, "angle")) { /* the ordinal sign of Spanish keyboards */
+    text_add(meant, "deg");
+    return true;
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    text_free(meant);
+    for (const char *c = given; *c;) {
+      size_t n = 0;
+      while (isalpha((unsigned char)c[n])) ++n;
+      const char *word = NULL;
+      for (size_t k = 0; k < sizeof usual / sizeof *usual && n && !pass; ++k)
+        if (strlen(usual[k]) == n && !strncasecmp(c, usual[k], n)) word = usual[k];
+      for (size_t k = 0; k < 3 && n && pass; ++k)
+        if (strlen(weights[k][0]) == n && !strncmp(c, weights[k][0], n)) word = weights[k][1];
+      if (word)
+        text_add(meant, "%s", word);
+      else
+        text_add(meant, "%.*s", (int)(n ? n : 1), c);
+      c += n ? n : 1;
+    }
+    if (strcmp(text_words(meant), given) && convertible(units, text_words(meant), dimension)) return true;
+  }
+  return false;
+}
+
+/** A weight per volume where a density is asked. */
+static bool explain_weight(const Units *units, const Dimension *dimension, const char *given, double number,
+                           const char *words, Text *reason)
+{
+  if (strcmp(dimension->name, "density") || !convertible(units, given, dimension_find("force per volume")))
+    return false;
+  ut_unit *unit = ut_parse(units->system, given, UT_UTF8), *target = ut_parse(units->system, "N/m3", UT_ASCII);
+  cv_converter *converter = unit && target ? ut_get_converter(unit, target) : NULL;
+  if (converter)
+    text_add(reason, "'%s' is a weight per volume; the density is its mass, %.5g kg/m3", words,
+             cv_convert_double(converter, number) / 9.80665);
+  cv_free(converter);
+  ut_free(unit);
+  ut_free(target);
+  return converter != NULL;
 }
 
 int units_read(const Units *units, const Dimension *dimension, const char *words, double *value, Text *reason)
@@ -204,7 +336,12 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
   double number = strtod(words, &end);
   /* strtod takes hexadecimal numbers and the words inf and nan; a deck has no use for them. */
   const char *first = words + strspn(words, " \t+-");
-  if (end == words || !(isdigit((unsigned char)*first) || *first == '.') || first[1] == 'x' || first[1] == 'X') {
+  if (!*words) {
+    text_add(reason, "no value is given");
+    goto expected;
+  }
+  if (end == words || !(isdigit((unsigned char)*first) || *first == '.') ||
+      (*first == '0' && (first[1] == 'x' || first[1] == 'X'))) {
     text_add(reason, "'%s' is not a number", words);
     goto expected;
   }
@@ -212,32 +349,48 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
     text_add(reason, "'%s' is too large for a number", words);
     return 1;
   }
+  if (explain_number(words, end, reason)) return 1;
   while (isspace((unsigned char)*end)) ++end;
   if (!*end) {
     *value = number;
     return 0;
   }
-  ut_unit *given = parse_unit(units, end, reason);
-  if (!given) goto expected;
-  ut_unit *target = unit_of(units, dimension);
-  int convertible = target && ut_are_convertible(given, target);
-  if (convertible) {
+  if (!strcmp(dimension->name, "damping rate") && counts_cycles(end)) {
+    text_add(reason,
+             "'%s' is a frequency, but a rate is asked, like '30 1/s'; a ratio of critical damping at a frequency is "
+             "written {ratio: 0.05, at: %s}",
+             words, words);
+    return 1;
+  }
+  Text why = {0}, meant = {0};
+  ut_unit *given = parse_unit(units, end, &why), *target = given ? unit_of(units, dimension) : NULL;
+  const bool fits = target && alike(given, target);
+  if (fits) {
     cv_converter *converter = ut_get_converter(given, target);
     *value = cv_convert_double(converter, number);
     cv_free(converter);
   }
   ut_free(given);
   ut_free(target);
-  if (convertible) return 0;
-  text_add(reason, "'%s' has the wrong dimension", words);
+  bool explained = fits || explain_weight(units, dimension, end, number, words, reason);
+  if (!explained && (explained = guess_unit(units, dimension, end, &meant)))
+    text_add(reason, "'%s' is not a unit of %s; did you mean '%s'?", end, dimension->name, text_words(&meant));
+  if (!explained && given)
+    text_add(reason, "'%s' has the wrong dimension", words);
+  else if (!explained)
+    text_add(reason, "%s", text_words(&why));
+  text_free(&why);
+  text_free(&meant);
+  if (fits) return 0;
+  if (explained) return 1;
 expected:
   if (!strcmp(dimension->name, "1"))
     text_add(reason, "; expected a plain number");
   else {
     char unit[64];
     units_name(units, dimension, unit, sizeof unit);
-    text_add(reason, "; expected a %s, like '1.5 %s' or 1.5 (plain numbers are in %s)", dimension->name,
-             dimension->example, unit);
+    text_add(reason, "; expected %s %s, like '1.5 %s' or 1.5 (plain numbers are in %s)",
+             strchr("aeiou", dimension->name[0]) ? "an" : "a", dimension->name, dimension->example, unit);
   }
   return 1;
 }

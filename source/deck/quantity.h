@@ -33,6 +33,12 @@ void units_destroy(Units **units);
 /** The deck's unit for a dimension in words, like "kN/m2"; "" for a plain number. */
 void units_name(const Units *units, const Dimension *dimension, char *name, size_t size);
 
+/** A value of the deck's units in m, N, s and what follows from them. */
+double units_in_si(const Units *units, const Dimension *dimension, double value);
+
+/** Adds a number of an SI unit as people say it, with a prefix: 2e-5 s is "20 µs", 0.031 m "31 mm", 2400 kg "2.4 t". */
+void quantity_describe(double value, const char *unit, Text *text);
+
 /** Reads "30 kPa" or "30".
  *  @param[out] reason  what is wrong, in words that can follow "file:line:column: key: "
  *  @return 0 and the value in the deck's units, or 1 */

@@ -1,26 +1,29 @@
 #include "deck/section.h"
 
+#include "deck/spelling.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* ---- scalars ---- */
 
 static const char *kind_words(FieldKind kind)
 {
   switch (kind) {
-  case FIELD_POINT:
-  case FIELD_FREE_POINT: return "a list of 2 or 3 numbers, like [0, 0.5, 0]";
+  case FIELD_POINT: return "a list of 2 or 3 numbers, like [0, 0.5, 0]";
+  case FIELD_FREE_POINT: return "a list of 2 or 3 numbers, like [0, free]: 0 holds a direction, 'free' leaves it";
   case FIELD_COUNTS: return "a list of 2 or 3 whole numbers, like [64, 70, 2]";
-  case FIELD_NUMBERS: return "a list of numbers";
-  case FIELD_PAIRS: return "a list of pairs [time, value]";
+  case FIELD_NUMBERS: return "a list of numbers, like [0.1, 0.2]";
+  case FIELD_PAIRS: return "a list of pairs [time, value], like [[0, 0], [0.1 s, 1]]";
   case FIELD_POINTS: return "a list of points, like [[0, 0], [1, 0]]";
-  case FIELD_TEXTS: return "a list of words";
-  case FIELD_SECTION: return "a map of keys and values";
+  case FIELD_TEXTS: return "a list of words in square brackets";
+  case FIELD_SECTION: return "keys and values";
   case FIELD_SECTIONS: return "a list, each item starting with '- '";
-  case FIELD_NAMED: return "a map of names";
+  case FIELD_NAMED: return "names, each with its keys and values";
   default: return "a single value";
   }
 }
@@ -31,14 +34,14 @@ static int read_number(const DeckReader *reader, const Node *node, const char *l
 {
   const Dimension *dimension = dimension_find(dimension_name ? dimension_name : "1");
   if (node->kind != NODE_SCALAR) {
-    node_error(reader->document, node, reader->error, "%s: expected a number, found a %s", label,
-               node->kind == NODE_MAP ? "map" : "list");
+    node_error(reader->document, node, reader->error, "%s: expected a number, found %s", label,
+               node->kind == NODE_MAP ? "keys and values" : "a list");
     return 1;
   }
   Text reason = {0};
   int failed = units_read(reader->units, dimension, node->text, value, &reason);
   if (failed)
-    node_error(reader->document, node, reader->error, "%s: %s", label, reason.characters);
+    node_error(reader->document, node, reader->error, "%s: %s", label, text_words(&reason));
   else if (!interval_contains(range, *value)) {
     char words[128];
     interval_describe(range, words, sizeof words);
@@ -48,6 +51,11 @@ static int read_number(const DeckReader *reader, const Node *node, const char *l
   }
   text_free(&reason);
   return failed;
+}
+
+static const char *found_words(const Node *node)
+{
+  return node->kind == NODE_MAP ? "keys and values" : node->kind == NODE_LIST ? "a list" : node->text;
 }
 
 static int read_count(const DeckReader *reader, const Node *node, const char *label, const char *range, int64_t *value)
@@ -67,19 +75,27 @@ static int read_flag(const DeckReader *reader, const Node *node, const char *lab
   static const char *const words[][2] = {{"yes", "no"}, {"true", "false"}, {"on", "off"}};
   for (int k = 0; node->kind == NODE_SCALAR && k < 3; ++k)
     for (int no = 0; no < 2; ++no)
-      if (!strcmp(node->text, words[k][no])) {
+      if (!strcasecmp(node->text, words[k][no])) {
         *value = !no;
         return 0;
       }
-  node_error(reader->document, node, reader->error, "%s: expected yes or no", label);
+  node_error(reader->document, node, reader->error, "%s: expected yes or no, found %s", label, found_words(node));
   return 1;
 }
 
 static int read_length(const DeckReader *reader, const Node *node, const char *label, const char *range, Length *length)
 {
   const char *unit = node->kind == NODE_SCALAR ? strstr(node->text, "spacing") : NULL;
-  if (!unit || (strcmp(unit, "spacings") && strcmp(unit, "spacing")))
+  if (!unit || (strcmp(unit, "spacings") && strcmp(unit, "spacing"))) {
+    const char *dx = node->kind == NODE_SCALAR ? strstr(node->text, "dx") : NULL;
+    if (dx && !dx[2]) {
+      const size_t n = strcspn(node->text, " *");
+      node_error(reader->document, node, reader->error, "%s: '%s' is not known; did you mean '%.*s spacings'?", label,
+                 node->text, (int)(n < (size_t)(dx - node->text) ? n : (size_t)(dx - node->text)), node->text);
+      return 1;
+    }
     return read_number(reader, node, label, "length", range, &length->value);
+  }
   Node number = *node;
   char words[64];
   snprintf(words, sizeof words, "%.*s", (int)(unit - node->text), node->text);
@@ -102,7 +118,8 @@ static int read_point(const DeckReader *reader, const Node *node, const char *la
                       double point[3])
 {
   if (node->kind != NODE_LIST || node->count < 2 || node->count > 3) {
-    node_error(reader->document, node, reader->error, "%s: expected %s", label, kind_words(FIELD_POINT));
+    node_error(reader->document, node, reader->error, "%s: expected %s; found %s", label, kind_words(field->kind),
+               found_words(node));
     return 1;
   }
   int failed = 0;
@@ -111,7 +128,13 @@ static int read_point(const DeckReader *reader, const Node *node, const char *la
     const Node *item = &node->items[k];
     if (field->kind == FIELD_FREE_POINT && item->kind == NODE_SCALAR && !strcmp(item->text, "free"))
       point[k] = NAN;
-    else
+    else if (field->kind == FIELD_FREE_POINT && item->kind == NODE_SCALAR && !strpbrk(item->text, "0123456789")) {
+      node_error(reader->document, item, reader->error,
+                 "%s: expected a number or 'free', found '%s'; 0 holds a "
+                 "direction, 'free' leaves it",
+                 label, item->text);
+      failed = 1;
+    } else
       failed |= read_number(reader, item, label, field->dimension, field->range, &point[k]);
   }
   if (field->kind == FIELD_FREE_POINT && node->count == 2) point[2] = NAN;
@@ -122,8 +145,12 @@ static int read_rows(const DeckReader *reader, const Node *node, const char *lab
                      NumberList *list)
 {
   int width = field->kind == FIELD_NUMBERS ? 1 : field->kind == FIELD_PAIRS ? 2 : 3, failed = 0;
-  if (node->kind != NODE_LIST || !node->count) {
-    node_error(reader->document, node, reader->error, "%s: expected %s", label, kind_words(field->kind));
+  const NodeKind row_kind = width == 1 ? NODE_SCALAR : NODE_LIST;
+  if (node->kind != NODE_LIST || !node->count || node->items[0].kind != row_kind) {
+    const bool file = node->kind == NODE_SCALAR && strchr(node->text, '.') && !isdigit((unsigned char)*node->text);
+    node_error(reader->document, node, reader->error, "%s: expected %s; found %s%s", label, kind_words(field->kind),
+               node->kind == NODE_LIST ? node->count ? "a plain list" : "an empty one" : found_words(node),
+               file ? ": files are not read here, write the rows out" : "");
     return 1;
   }
   list->values = zeroed(reader, sizeof(double) * (size_t)(node->count * width));
@@ -184,25 +211,19 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
 
 static void say_choices(const DeckReader *reader, const Node *node, const char *label, const Field *field)
 {
-  Text words = {0};
-  const char *nearest = NULL;
-  int best = 1000;
-  for (int k = 0; field->choice(k); ++k) {
-    text_add(&words, "%s%s", k ? ", " : "", field->choice(k));
-    int distance = node->kind == NODE_SCALAR ? text_distance(node->text, field->choice(k)) : 1000;
-    if (distance < best) {
-      best = distance;
-      nearest = field->choice(k);
-    }
+  const char *names[64];
+  int count = 0;
+  while (count < 64 && (names[count] = field->choice(count))) ++count;
+  Text advice = {0};
+  const char *given = found_words(node);
+  spelling_advice(&advice, given, names, count, "choose from");
+  if (spelling_nearest(given, names, count)) {
+    text_add(&advice, " (choose from ");
+    for (int k = 0; k < count; ++k) text_add(&advice, "%s%s", k ? ", " : "", names[k]);
+    text_add(&advice, ")");
   }
-  const char *given = node->kind == NODE_SCALAR ? node->text : "?";
-  if (nearest && text_resembles(given, nearest, best))
-    node_error(reader->document, node, reader->error, "%s: '%s' is not known; did you mean '%s'? (choose from %s)",
-               label, given, nearest, words.characters);
-  else
-    node_error(reader->document, node, reader->error, "%s: '%s' is not known; choose from %s", label, given,
-               words.characters);
-  text_free(&words);
+  node_error(reader->document, node, reader->error, "%s: '%s' is not known; %s", label, given, text_words(&advice));
+  text_free(&advice);
 }
 
 static void read_field(const DeckReader *reader, const Node *node, const char *label, const Field *field, void *target)
@@ -260,11 +281,23 @@ static void read_field(const DeckReader *reader, const Node *node, const char *l
   case FIELD_SECTION: *(void **)target = section_read(reader, node, field->section); break;
   case FIELD_SECTIONS:
   case FIELD_NAMED: read_sections(reader, node, label, field, target); break;
+  case FIELD_NUMBER_OR_SECTION: {
+    NumberOrSection *either = target;
+    either->value = NAN;
+    if (node->kind == NODE_MAP)
+      either->section = section_read(reader, node, field->section);
+    else
+      read_number(reader, node, label, field->dimension, field->range, &either->value);
+    break;
+  }
   case FIELD_REFERENCE: {
     Reference *reference = target;
     reference->node = node;
     if (node->kind == NODE_SCALAR && *node->text)
       reference->name = node->text;
+    else if (node->kind == NODE_LIST)
+      node_error(reader->document, node, reader->error, "%s: expected one name, or keys and values; found a list",
+                 label);
     else
       reference->section = section_read(reader, node, field->section);
     break;
@@ -279,6 +312,7 @@ static void set_absent(const Field *field, void *target)
   switch (field->kind) {
   case FIELD_NUMBER: *numbers = NAN; break;
   case FIELD_LENGTH: ((Length *)target)->value = NAN; break;
+  case FIELD_NUMBER_OR_SECTION: ((NumberOrSection *)target)->value = NAN; break;
   case FIELD_COUNT: *counts = -1; break;
   case FIELD_POINT:
   case FIELD_FREE_POINT: numbers[0] = numbers[1] = numbers[2] = NAN; break;
@@ -289,31 +323,46 @@ static void set_absent(const Field *field, void *target)
 
 /* ---- sections ---- */
 
+/** The section below this one in which a key stands, to say so; NULL if there is none. */
+static const Field *field_with(const Section *section, const char *given, const char **key)
+{
+  for (int f = 0; f < section->field_count; ++f) {
+    const Section *below = section->fields[f].section;
+    const bool one = section->fields[f].kind == FIELD_SECTION || section->fields[f].kind == FIELD_REFERENCE;
+    for (int k = 0; below && one && k < below->field_count; ++k)
+      if (spelling_same(given, below->fields[k].key)) {
+        *key = below->fields[k].key;
+        return &section->fields[f];
+      }
+  }
+  return NULL;
+}
+
 static void say_unknown_key(const DeckReader *reader, const Node *item, const Section *section,
                             const breccia_parameter *parameters, int parameter_count)
 {
-  Text words = {0};
-  const char *nearest = NULL;
-  int best = 1000;
-  for (int k = 0; k < section->field_count + parameter_count; ++k) {
-    const char *key = k < section->field_count ? section->fields[k].key : parameters[k - section->field_count].name;
-    text_add(&words, "%s%s", k ? ", " : "", key);
-    int distance = text_distance(item->key, key);
-    if (distance < best) {
-      best = distance;
-      nearest = key;
-    }
-  }
+  const int count = parameter_count + section->field_count;
+  const char **names = zeroed(reader, sizeof(char *) * (size_t)(count + 1)), *key = NULL;
+  if (!names) return;
+  for (int k = 0; k < parameter_count; ++k) names[k] = parameters[k].name;
+  for (int k = 0; k < section->field_count; ++k) names[parameter_count + k] = section->fields[k].key;
   Node place = *item;
   place.line = item->key_line;
   place.column = item->key_column;
-  if (nearest && text_resembles(item->key, nearest, best))
-    node_error(reader->document, &place, reader->error, "%s: unknown key '%s'; did you mean '%s'?", section->name,
-               item->key, nearest);
+  Text advice = {0};
+  const Field *above = field_with(section, item->key, &key);
+  const char *nearest = spelling_nearest(item->key, names, count);
+  if (isdigit((unsigned char)*item->key) && item->key[strspn(item->key, "0123456789")] != ')')
+    text_add(&advice, "inside { } a comma parts items: write decimals with a point, like 3.015");
+  else if (strpbrk(item->key, "()"))
+    text_add(&advice, "lists stand in square brackets, like [0, 0]");
+  else if (above && !nearest)
+    text_add(&advice, "'%s' stands under '%s', like %s: {%s: ...}", key, above->key, above->key, key);
   else
-    node_error(reader->document, &place, reader->error, "%s: unknown key '%s'; the keys here are %s", section->name,
-               item->key, words.characters ? words.characters : "none");
-  text_free(&words);
+    spelling_advice(&advice, item->key, names, count, "the keys here are");
+  node_error(reader->document, &place, reader->error, "%s: unknown key '%s'; %s", section->name, item->key,
+             text_words(&advice));
+  text_free(&advice);
 }
 
 /** True if the map holds an unknown key that was probably meant to be `key`: one message is enough. */
@@ -325,12 +374,15 @@ static bool misspelt(const Node *node, const Section *section, const breccia_par
     bool known = false;
     for (int f = 0; f < section->field_count; ++f) known |= !strcmp(section->fields[f].key, given);
     for (int p = 0; p < count; ++p) known |= !strcmp(parameters[p].name, given);
-    if (!known && (!key || text_resembles(given, key, text_distance(given, key)))) return true;
+    const char *below = NULL;
+    const Field *above = known ? NULL : field_with(section, given, &below);
+    if (!known && (spelling_nearest(given, &key, 1) || (above && !strcmp(above->key, key)))) return true;
   }
   return false;
 }
 
-static void check_groups(const DeckReader *reader, const Node *node, const Section *section)
+/** @param[in] told  an unknown key was named already, which may have been meant for one of a group */
+static void check_groups(const DeckReader *reader, const Node *node, const Section *section, bool told)
 {
   for (int k = 0; k < section->field_count; ++k) {
     char group = section->fields[k].group;
@@ -345,9 +397,9 @@ static void check_groups(const DeckReader *reader, const Node *node, const Secti
       const Node *item = node_get(node, section->fields[other].key);
       if (item && ++given > 1) last = item;
     }
-    if (first && given != 1 && !(given == 0 && misspelt(node, section, NULL, 0, NULL)))
-      node_error(reader->document, last, reader->error, "%s: %s of %s; give exactly one", section->name,
-                 given ? "more than one" : "none", words.characters);
+    if (first && given != 1 && !(given == 0 && told))
+      node_error(reader->document, last, reader->error, "%s: %s of %s is given; give exactly one", section->name,
+                 given ? "more than one" : "none", text_words(&words));
     text_free(&words);
   }
 }
@@ -383,7 +435,15 @@ static bool stands_for(const Node *node, const Section *section)
 void *section_read(const DeckReader *reader, const Node *node, const Section *section)
 {
   if (node->kind != NODE_MAP) {
-    node_error(reader->document, node, reader->error, "%s: expected %s", section->name, kind_words(FIELD_SECTION));
+    Text example = {0};
+    const bool all = section->fields[0].standard && *section->fields[0].standard;
+    for (int f = 0; f < section->field_count && f < (all ? 3 : 1); ++f)
+      if (!f || (section->fields[f].standard && *section->fields[f].standard))
+        text_add(&example, "%s%s: %s", example.length ? ", " : "", section->fields[f].key,
+                 section->fields[f].standard && *section->fields[f].standard ? section->fields[f].standard : "...");
+    node_error(reader->document, node, reader->error, "%s: expected keys and values, like {%s}; found %s",
+               section->name, text_words(&example), *found_words(node) ? found_words(node) : "nothing");
+    text_free(&example);
     return NULL;
   }
   char *target = zeroed(reader, section->size);
@@ -407,12 +467,17 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
     *(double **)(void *)(target + section->parameters_offset) = values;
   }
 
+  const int before = error_count(reader->error);
+  bool told = false;
   for (int k = 0; k < node->count; ++k) {
     const Node *item = &node->items[k];
     int known = 0;
     for (int f = 0; f < section->field_count; ++f) known |= !strcmp(section->fields[f].key, item->key);
     for (int p = 0; p < parameter_count; ++p) known |= !strcmp(parameters[p].name, item->key);
-    if (!known && chosen) say_unknown_key(reader, item, section, parameters, parameter_count);
+    bool meant = false; /* for the chooser, when there is none */
+    if (!known && !chosen) meant = spelling_nearest(item->key, &section->chooser, 1) != NULL;
+    if (!known && (chosen || meant)) say_unknown_key(reader, item, section, parameters, parameter_count);
+    told |= !known && (chosen || meant);
     for (int other = 0; other < k; ++other)
       if (!strcmp(node->items[other].key, item->key)) {
         Node place = *item;
@@ -423,7 +488,6 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
         break;
       }
   }
-  int before = error_count(reader->error);
   for (int f = 0; f < section->field_count; ++f) {
     const Field *field = &section->fields[f];
     const Node *item = node_get(node, field->key);
@@ -439,7 +503,7 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
       node_error(reader->document, node, reader->error, "%s: missing key '%s' (%s)", section->name, field->key,
                  field->meaning);
   }
-  check_groups(reader, node, section);
+  check_groups(reader, node, section, told);
   if (section->check && error_count(reader->error) == before) section->check(reader, target);
   return target;
 }
@@ -463,10 +527,16 @@ void *section_find(const SectionList *list, const char *name)
 void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
                      const SectionList *list)
 {
+  const char **names = zeroed(reader, sizeof(char *) * (size_t)(list->count + 1));
+  if (!names) return;
   Text words = {0};
-  for (int k = 0; k < list->count; ++k)
-    text_add(&words, "%s'%s'", k ? ", " : "", ((const SectionHead *)list->items[k])->name);
-  node_error(reader->document, node, reader->error, "there is no %s '%s'; the deck defines %s", what, name,
-             words.length ? words.characters : "none");
+  for (int k = 0; k < list->count; ++k) {
+    names[k] = ((const SectionHead *)list->items[k])->name;
+    text_add(&words, "%s'%s'", k ? ", " : "", names[k]);
+  }
+  const char *nearest = spelling_nearest(name, names, list->count);
+  node_error(reader->document, node, reader->error, "there is no %s '%s'; %s%s%sthe deck defines %s%s", what, name,
+             nearest ? "did you mean '" : "", nearest ? nearest : "", nearest ? "'? (" : "",
+             words.length ? words.characters : "none", nearest ? ")" : "");
   text_free(&words);
 }

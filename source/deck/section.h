@@ -22,6 +22,11 @@ typedef struct Length { /* a length, or a number of lattice spacings */
   bool in_spacings;
 } Length;
 
+typedef struct NumberOrSection { /* a number, or a section from which it follows */
+  double value;                  /* NaN where the section is given, or neither */
+  void *section;
+} NumberOrSection;
+
 typedef struct NumberList {
   double *values;
   int count; /* of rows: numbers, pairs or points */
@@ -45,23 +50,24 @@ typedef struct
 } Reference;
 
 typedef enum FieldKind {
-  FIELD_NUMBER,     /* double; NaN when optional and absent */
-  FIELD_LENGTH,     /* Length */
-  FIELD_COUNT,      /* int64_t; -1 when optional and absent */
-  FIELD_FLAG,       /* bool */
-  FIELD_TEXT,       /* const char * */
-  FIELD_CHOICE,     /* const char *, one of Field.choice */
-  FIELD_POINT,      /* double[3]; a third component left out is 0; NaN when optional and absent */
-  FIELD_FREE_POINT, /* the same, where the word 'free' makes a component NaN */
-  FIELD_COUNTS,     /* int64_t[3]; a third left out is 1; -1 when optional and absent */
-  FIELD_NUMBERS,    /* NumberList */
-  FIELD_PAIRS,      /* NumberList of [time, number] */
-  FIELD_POINTS,     /* NumberList of points */
-  FIELD_TEXTS,      /* TextList */
-  FIELD_SECTION,    /* pointer to the section's struct; NULL when absent */
-  FIELD_SECTIONS,   /* SectionList from a YAML list */
-  FIELD_NAMED,      /* SectionList from a YAML map: name -> section */
-  FIELD_REFERENCE,  /* Reference: words, or a section */
+  FIELD_NUMBER,            /* double; NaN when optional and absent */
+  FIELD_LENGTH,            /* Length */
+  FIELD_COUNT,             /* int64_t; -1 when optional and absent */
+  FIELD_FLAG,              /* bool */
+  FIELD_TEXT,              /* const char * */
+  FIELD_CHOICE,            /* const char *, one of Field.choice */
+  FIELD_POINT,             /* double[3]; a third component left out is 0; NaN when optional and absent */
+  FIELD_FREE_POINT,        /* the same, where the word 'free' makes a component NaN */
+  FIELD_COUNTS,            /* int64_t[3]; a third left out is 1; -1 when optional and absent */
+  FIELD_NUMBERS,           /* NumberList */
+  FIELD_PAIRS,             /* NumberList of [time, number] */
+  FIELD_POINTS,            /* NumberList of points */
+  FIELD_TEXTS,             /* TextList */
+  FIELD_SECTION,           /* pointer to the section's struct; NULL when absent */
+  FIELD_SECTIONS,          /* SectionList from a YAML list */
+  FIELD_NAMED,             /* SectionList from a YAML map: name -> section */
+  FIELD_REFERENCE,         /* Reference: words, or a section */
+  FIELD_NUMBER_OR_SECTION, /* NumberOrSection */
 } FieldKind;
 
 typedef struct Field {

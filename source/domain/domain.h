@@ -81,6 +81,9 @@ void domain_resume(Domain *domain);
  *  @param[in] motion  largest displacement increment of any particle in this step */
 void domain_break(Domain *domain, int64_t step, double time, double motion);
 
+/** Lets no bond break between particles that are marked or have an intact bond to one that is.
+ *  @param[in] held  [places] 1 where a load moves the particle */
+int domain_hold_grips(Domain *domain, const uint8_t *held, Error *error);
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
 

@@ -23,7 +23,7 @@ static int check_law(const Domain *d, const DeckReader *reader, const MaterialSp
                                                   : "remote"),
              reader->error, "material '%s': '%s' is a law of %s; %s takes %s", spec->head.name,
              spec->model ? law->name : law->source, law->uniaxial ? "one strain" : "strain in space", d->type->name,
-             words.characters);
+             text_words(&words));
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
@@ -213,6 +213,16 @@ static void weigh_family(void *context, int64_t place)
   d->family_volume[place] = family_volume(&d->family, (int32_t)place);
 }
 
+/** True if a horizon without a unit is a usual number of spacings, but no usual length. */
+static bool forgets_spacings(const PeridynamicsSpec *spec, const Body *body)
+{
+  const Node *node = section_place(spec, "horizon");
+  const double number = spec->horizon.value, spacings = number / body->largest_spacing;
+  const bool plain = node->kind == NODE_SCALAR && node->text[strspn(node->text, "0123456789.")] == 0;
+  const bool odd = spacings < 1 || (spacings > 20 && body->dimensions > 1);
+  return !spec->horizon.in_spacings && plain && number >= 1.4 && number <= 8 && odd;
+}
+
 int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Error *error = reader->error;
@@ -232,9 +242,19 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   d->particles = &d->body.particles;
   if ((status = fill_particles(d, spec, error))) return status;
 
+  if (forgets_spacings(pd, &d->body))
+    return node_error(reader->document, section_place(pd, "horizon"), error,
+                      "horizon: did you mean '%g spacings'? A plain number is a length, and this one is %.3g spacings "
+                      "of %g",
+                      horizon, horizon / d->body.largest_spacing, d->body.largest_spacing);
   if (horizon < d->body.largest_spacing)
     return node_error(reader->document, section_place(pd, "horizon"), error,
                       "horizon: %g is less than the spacing of %g, so that no particle has a neighbour", horizon,
+                      d->body.largest_spacing);
+  const double reach = horizon / d->body.largest_spacing, across = pow(reach, d->body.dimensions);
+  if (across > 1e6) /* family_create would go through all that many neighbours before it refuses them */
+    return node_error(reader->document, section_place(pd, "horizon"), error,
+                      "horizon: %g reaches over %.3g spacings of %g; 3 to 4 are usual", horizon, reach,
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
@@ -259,6 +279,21 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   return status ? status : create_contact(d, spec, space, error);
 }
 
+int domain_hold_grips(Domain *d, const uint8_t *held, Error *error)
+{
+  const Particles *p = d->particles;
+  const Family *f = &d->family;
+  uint8_t *near = d->failure.near_grips = memory_zeroed((size_t)p->places, 1, "grips", error);
+  if (!near) return BRECCIA_FAILURE;
+  for (int64_t slice = 0; slice < p->slices; ++slice)
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane)
+        if (held[slice * SLICE + lane] && (f->intact[slot] >> lane & 1))
+          near[family_bond(f, slice, slot, lane).neighbour] = 1;
+  for (int64_t place = 0; place < p->places; ++place) near[place] |= held[place];
+  return BRECCIA_OK;
+}
+
 void domain_destroy(Domain *d)
 {
   if (d->formulation) d->type->destroy(d->formulation);
@@ -279,6 +314,7 @@ void domain_destroy(Domain *d)
   free(d->suspects);
   free(d->look_again);
   free(d->failure.limit);
+  free(d->failure.near_grips);
   free(d->broken);
   *d = (Domain){0};
 }

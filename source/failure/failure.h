@@ -10,6 +10,7 @@ typedef struct FailureSpec {
   SectionHead head;
   double critical_stretch, fracture_energy; /* NaN: not given */
   const char *failed_laws;                  /* "stop" or "break" */
+  const char *near_grips;                   /* "break" or "hold"; NULL: not said, they break */
 } FailureSpec;
 
 extern const Section failure_section;
@@ -31,11 +32,13 @@ struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */
   double *limit;              /* [materials] infinite: never; a bond between two has the smaller one */
   const int32_t *material;    /* [slices] */
+  uint8_t *near_grips;        /* [places] bonds between two such do not break; NULL: all may */
 };
 
 /** Limit of a bond between two places. */
 static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
 {
+  if (failure->near_grips && failure->near_grips[a] && failure->near_grips[b]) return __builtin_inf();
   double one = failure->limit[failure->material[a / SLICE]], other = failure->limit[failure->material[b / SLICE]];
   return one < other ? one : other;
 }

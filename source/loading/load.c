@@ -221,6 +221,32 @@ double constraint_displacement(const Constraint *constraint, double time)
   return constraint->value * sum;
 }
 
+void loading_mark_held(const Loading *loading, uint8_t *held)
+{
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Selection *selection = &loading->constraints[c].load->selection;
+    for (int64_t n = 0; n < selection->count; ++n) held[selection->places[n]] = 1;
+  }
+}
+
+const char *load_kind(const LoadSpec *l, const char **dimension)
+{
+  const struct {
+    const char *key, *dimension;
+    const double *value;
+  } kinds[] = {{"body force", "force per volume", l->body_force},
+               {"force", "force", l->force},
+               {"gravity", "acceleration", l->gravity},
+               {"displacement", "length", l->displacement},
+               {"velocity", "velocity", l->velocity}};
+  int kind = l->along ? isnan(l->along->displacement) ? 4 : 3 : 4;
+  for (int v = 0; v < 5 && !l->along; ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!isnan(kinds[v].value[k])) kind = v;
+  *dimension = kinds[kind].dimension;
+  return kinds[kind].key;
+}
+
 double load_magnitude(const LoadSpec *l)
 {
   const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};

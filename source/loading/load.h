@@ -50,6 +50,12 @@ void loading_destroy(Loading *loading);
 /** Sets the external force per volume of all particles to what the loads say at a time. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
 
+/** Marks the particles whose motion is prescribed. @param[out] held  [places], zeros before */
+void loading_mark_held(const Loading *loading, uint8_t *held);
+
+/** What a load prescribes, as its key in the deck. @param[out] dimension  of its value */
+const char *load_kind(const LoadSpec *load, const char **dimension);
+
 /** Length of the vector that a load prescribes at factor 1. */
 double load_magnitude(const LoadSpec *load);
 

@@ -63,6 +63,9 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   if (!deck->document) return BRECCIA_USER_ERROR;
   int status = deck_units(deck->document, &deck->laws, &deck->units, error);
   if (status) return status;
+  const Node *root = deck->document->root;
+  if (!node_get(root, "material") && (node_get(root, "body") || node_get(root, "solve")))
+    return error_add(error, BRECCIA_USER_ERROR, "%s: is a deck; 'breccia run %s' runs it", path, path);
   const int before = error_count(error);
   deck->reader = (DeckReader){deck->document, deck->units, &deck->laws, error};
   deck->spec = section_read(&deck->reader, deck->document->root, &element_deck_section);

@@ -2,7 +2,11 @@
 
 #include "base/clock.h"
 #include "base/cores.h"
+#include "base/memory.h"
 #include "base/team.h"
+#include "deck/spelling.h"
+#include "model/plausibility.h"
+#include "results/curve_names.h"
 #include "results/fields.h"
 #include "results/result_file.h"
 #include <math.h>
@@ -43,12 +47,86 @@ static int check_names(const breccia_model *model, const Domain *domain, const T
     for (int m = 0; m < domain->material_count; ++m)
       known |= history_field_index(&domain->materials[m], names->items[k]) >= 0;
     if (known) continue;
-    Text all = {0};
-    for (int f = 0; output_field_at(f); ++f) text_add(&all, "%s%s", f ? ", " : "", output_field_at(f)->name);
-    status = node_error(model->document, place, model->reader.error, "there is no field '%s'; the fields are %s%s",
-                        names->items[k], all.characters, " and named histories of the materials");
-    text_free(&all);
+    const char *fields[64];
+    int count = 0;
+    while (count < 64 && output_field_at(count)) {
+      fields[count] = output_field_at(count)->name;
+      ++count;
+    }
+    Text advice = {0};
+    spelling_advice(&advice, names->items[k], fields, count, "the fields are");
+    status =
+        node_error(model->document, place, model->reader.error, "there is no field '%s'; %s%s", names->items[k],
+                   text_words(&advice),
+                   spelling_nearest(names->items[k], fields, count) ? "" : " and named histories of the materials");
+    text_free(&advice);
   }
+  return status;
+}
+
+/** A picture shows one number of each particle: a component, or the length of a vector. */
+static int check_component(const breccia_model *model, const PictureSpec *picture)
+{
+  const OutputField *field = output_field_find(picture->field);
+  const int count = field && field->component_names ? field->components : 0;
+  for (int k = 0; picture->component && k < count; ++k)
+    if (!strcmp(field->component_names[k], picture->component)) return BRECCIA_OK;
+  if (!picture->component && count <= 3) return BRECCIA_OK;
+  Text advice = {0};
+  spelling_advice(&advice, picture->component ? picture->component : "", field ? field->component_names : NULL, count,
+                  "its components are");
+  const int status = node_error(
+      model->document, section_place(picture, picture->component ? "component" : "field"), model->reader.error,
+      picture->component ? "component: %s has no '%s'; %s" : "field: %s is drawn by 'component'%s; %s", picture->field,
+      picture->component ? picture->component : "",
+      count ? text_words(&advice) : "it is one number, leave 'component' out");
+  text_free(&advice);
+  return status;
+}
+
+/** A column that a curve draws is one that a history of the deck will write. */
+static int check_column(const breccia_model *model, const CurveNames *names, int which, const Node *place)
+{
+  Error *error = model->reader.error;
+  const char **words = memory_zeroed((size_t)watches_count(model->watches) + 64, sizeof(char *), "curves", error);
+  if (!words) return BRECCIA_FAILURE;
+  char columns[64][64], wanted[CURVE_NAME], file[CURVE_NAME];
+  int watch = -1, count = watches_count(model->watches);
+  text_file_name(names->watch[which], wanted, sizeof wanted);
+  for (int k = 0; k < count; ++k) {
+    words[k] = watches_name(model->watches, k);
+    text_file_name(words[k], file, sizeof file);
+    if (!strcmp(file, wanted)) watch = k;
+  }
+  bool known = false;
+  const char *given = watch < 0 ? names->watch[which] : names->column[which];
+  for (int c = 0; watch >= 0 && c < 64 && !watches_column(model->watches, watch, c, columns[c], 64); ++c) {
+    words[c] = columns[c];
+    known |= !strcmp(columns[c], given);
+    count = c + 1;
+  }
+  Text advice = {0};
+  spelling_advice(&advice, given, words, count, watch < 0 ? "the deck watches" : "its columns are");
+  if (!known)
+    node_error(model->document, place, error, "curve: %s%sthere is no %s '%s'; %s",
+               watch < 0 ? "" : names->watch[which], watch < 0 ? "" : ": ", watch < 0 ? "history" : "column", given,
+               text_words(&advice));
+  text_free(&advice);
+  free(words);
+  return known ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}
+
+static int check_curve(const breccia_model *model, const PictureSpec *picture)
+{
+  const Node *place = section_place(picture, "curve");
+  if (!model->watches) return BRECCIA_OK; /* the deck is refused for something else */
+  CurveNames names;
+  if (curve_names(picture->curve, &names))
+    return node_error(model->document, place, model->reader.error,
+                      "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value'",
+                      picture->curve);
+  int status = BRECCIA_OK;
+  for (int k = 0; k < names.count && !status; ++k) status = check_column(model, &names, k, place);
   return status;
 }
 
@@ -60,9 +138,11 @@ static int check_results(breccia_model *model)
   int status = check_names(model, &model->domain, &spec->results->fields, section_place(spec->results, "fields"));
   for (int k = 0; k < spec->pictures.count; ++k) {
     const PictureSpec *picture = spec->pictures.items[k];
+    if (picture->curve && check_curve(model, picture)) status = BRECCIA_USER_ERROR;
     if (!picture->field) continue;
     TextList one = {(const char *[]){picture->field}, 1};
     int bad = check_names(model, &model->domain, &one, section_place(picture, "field"));
+    if (!bad) bad = check_component(model, picture);
     if (bad) status = bad;
   }
   return status;
@@ -116,8 +196,29 @@ static int make_schedule(breccia_model *model, Error *error)
   return BRECCIA_OK;
 }
 
+/** True for a file of `breccia material`: one material, a test or stages, no body. */
+static bool looks_like_test(const Node *root)
+{
+  return node_get(root, "material") && (node_get(root, "test") || node_get(root, "stages")) && !node_get(root, "body");
+}
+
+static int hold_grips(breccia_model *model, Error *error)
+{
+  const FailureSpec *failure = model->spec->failure;
+  if (!failure || !failure->near_grips || strcmp(failure->near_grips, "hold")) return BRECCIA_OK;
+  uint8_t *held = memory_zeroed((size_t)model->domain.particles->places, 1, "grips", error);
+  if (!held) return BRECCIA_FAILURE;
+  loading_mark_held(&model->loading, held);
+  const int status = domain_hold_grips(&model->domain, held, error);
+  free(held);
+  return status;
+}
+
 static int build(breccia_model *model, bool force, Error *error)
 {
+  if (looks_like_test(model->document->root))
+    return error_add(error, BRECCIA_USER_ERROR, "%s: is a laboratory test; 'breccia material %s' runs it",
+                     model->document->name, model->document->name);
   DeckSpec *spec = section_read(&model->reader, model->document->root, &deck_section);
   if (!spec || error_count(error)) return BRECCIA_USER_ERROR;
   model->spec = spec;
@@ -137,10 +238,13 @@ static int build(breccia_model *model, bool force, Error *error)
   }
   bad = check_results(model);
   if (bad) status = bad;
+  if (!status) status = hold_grips(model, error);
   if (status) return status;
   status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics,
                            &model->reader, force, &model->warnings);
-  return status ? status : make_schedule(model, error);
+  if (!status) status = make_schedule(model, error);
+  if (!status) plausibility_warn(model);
+  return status;
 }
 
 int breccia_model_load_string(const char *deck, const char *name, const breccia_options *options, breccia_model **out,
@@ -201,6 +305,7 @@ void breccia_model_destroy(breccia_model **out)
   document_destroy(&model->document);
   text_free(&model->warnings);
   text_free(&model->overview);
+  text_free(&model->plausibility);
   text_free(&model->outcome);
   free(model->schedule);
   free(model->deck_text);
@@ -243,7 +348,7 @@ int64_t breccia_model_bonds(const breccia_model *model)
 }
 int64_t breccia_model_broken_bonds(const breccia_model *model)
 {
-  return 2 * model->domain.broken_count;
+  return model->domain.broken_count;
 }
 int64_t breccia_model_steps_done(const breccia_model *model)
 {
@@ -408,8 +513,8 @@ const char *breccia_model_overview(breccia_model *model)
   char length[64], time[64];
   units_name(model->units, dimension_find("length"), length, sizeof length);
   units_name(model->units, dimension_find("time"), time, sizeof time);
-  text_add(text, "%s: %lld particles, %lld directed bonds, %d to %d per particle (mean %.1f), horizon %g %s\n",
-           model->spec->title, (long long)d->particles->count, (long long)d->family.bonds, fewest, most,
+  text_add(text, "%s: %lld particles, %lld bonds, %d to %d per particle (mean %.1f), horizon %g %s\n",
+           model->spec->title, (long long)d->particles->count, (long long)d->family.bonds / 2, fewest, most,
            (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
   text_add(text, "%s;", d->type->name);
   for (int k = 0; k < d->material_count; ++k)
@@ -425,21 +530,29 @@ const char *breccia_model_overview(breccia_model *model)
       text_add(text, "%s none", k ? "," : "");
   text_add(text, "\n");
   if (d->type->describe) d->type->describe(d->formulation, text);
-  text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps, s->time_step,
-           time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
+  plausibility_in_short(model, text);
+  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps,
+           s->time_step, time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
   model_expect(model, NULL);
   const Task task = model_task(model, s->step, s->steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (d->points.server) text_add(text, " and what its material servers take");
-  return text->characters;
+  return text_words(text);
+}
+
+const char *breccia_model_plausibility(breccia_model *model)
+{
+  text_free(&model->plausibility);
+  plausibility_describe(model, &model->plausibility);
+  return text_words(&model->plausibility);
 }
 
 const char *breccia_model_warnings(breccia_model *model)
 {
-  return model->warnings.characters ? model->warnings.characters : "";
+  return text_words(&model->warnings);
 }
 
 const char *breccia_model_outcome(breccia_model *model)
 {
-  return model->outcome.characters ? model->outcome.characters : "";
+  return text_words(&model->outcome);
 }

@@ -22,7 +22,7 @@ struct breccia_model {
   Loading loading;
   Explicit solver;
   Watches *watches;
-  Text warnings, overview, outcome;
+  Text warnings, overview, plausibility, outcome;
   Outlook outlook;
   bool begun;
   int threads; /* wanted; 0: as many as the machine has to spare */

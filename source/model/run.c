@@ -334,11 +334,11 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
     text_add(&t, ",\n");
   }
   text_add(&t, "  \"particles\": %lld,\n  \"bonds\": %lld,\n  \"steps\": %lld,\n", (long long)d->particles->count,
-           (long long)d->family.bonds, (long long)s->step);
+           (long long)d->family.bonds / 2, (long long)s->step);
   text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->time, s->time_step,
            s->stable);
-  text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_bond_step\": %.4f,\n  \"threads\": %d,\n", model->run_seconds,
-           nanoseconds_per_bond(model), model->threads);
+  text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
+           model->run_seconds, nanoseconds_per_bond(model), model->threads);
   if (d->broken_count) {
     const BrokenBond *b = &d->broken[0];
     int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
@@ -351,7 +351,7 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
         (long long)b->step, b->time, b->a, b->b, x[0], x[1], x[2]);
   } else
     text_add(&t, "  \"first_broken_bond\": null,\n");
-  text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)(2 * d->broken_count));
+  text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)d->broken_count);
   const struct {
     const char *key;
     double value;
@@ -376,16 +376,33 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   text_add(&t, "},\n  \"loads\": [");
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;
+    const char *dimension, *kind = load_kind(l, &dimension);
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
     text_add(&t, "%s{\"name\": ", k ? ", " : "");
     text_add_json(&t, l->name ? l->name : "");
-    text_add(&t, ", ");
+    text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
     add_number(&t, "peak", load_peak(l, s->time));
+    text_add(&t, ", \"unit\": ");
+    text_add_json(&t, unit);
     text_add(&t, "}");
   }
-  text_add(&t, "]");
+  text_add(&t, "],\n  \"units\": {");
+  static const char *const units[][2] = {{"times", "time"},
+                                         {"positions and displacements", "length"},
+                                         {"velocities", "velocity"},
+                                         {"stresses", "stress"},
+                                         {"energies", "energy"}}; /* shares have none */
+  for (size_t k = 0; k < sizeof units / sizeof *units; ++k) {
+    char unit[64];
+    units_name(model->units, dimension_find(units[k][1]), unit, sizeof unit);
+    text_add(&t, "%s\"%s\": ", k ? ", " : "", units[k][0]);
+    text_add_json(&t, unit);
+  }
+  text_add(&t, "}");
   Text servers = {0};
   points_report(&d->points, model->run_seconds, true, &servers);
-  if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", servers.characters);
+  if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", text_words(&servers));
   text_free(&servers);
   text_add(&t, "\n}\n");
   char *path = text_format("%s/summary.json", run->wish->folder),
@@ -412,11 +429,11 @@ static void tell_outcome(Run *run, int status)
   const Explicit *s = &model->solver;
   Energy e = explicit_energy(s);
   Text *t = &model->outcome;
-  char time[64], energy[64];
+  char time[64], length[64];
   units_name(model->units, dimension_find("time"), time, sizeof time);
-  units_name(model->units, dimension_find("energy"), energy, sizeof energy);
+  units_name(model->units, dimension_find("length"), length, sizeof length);
   text_free(t);
-  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld steps, %.2f ns per bond and step\n",
+  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld steps, %.2f ns per directed bond and step\n",
            status == BRECCIA_INTERRUPTED ? "stopped on request"
            : status                      ? "stopped by a failure"
                                          : "finished",
@@ -424,23 +441,46 @@ static void tell_outcome(Run *run, int status)
            nanoseconds_per_bond(model));
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;
-    if (l->name) text_add(t, "load '%s': peak %.6g\n", l->name, load_peak(l, s->time));
+    const char *dimension, *kind = load_kind(l, &dimension);
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+    if (l->name) text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(l, s->time), unit);
   }
   if (d->broken_count) {
     const BrokenBond *b = &d->broken[0];
     int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
-    text_add(t, "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g]; %lld bonds broken in all\n",
-             (long long)b->step, b->time, time, (d->particles->position[0][a] + d->particles->position[0][c]) / 2,
-             (d->particles->position[1][a] + d->particles->position[1][c]) / 2,
-             (d->particles->position[2][a] + d->particles->position[2][c]) / 2, (long long)d->broken_count);
+    text_add(
+        t,
+        "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
+        (long long)b->step, b->time, time, (d->particles->position[0][a] + d->particles->position[0][c]) / 2,
+        (d->particles->position[1][a] + d->particles->position[1][c]) / 2,
+        (d->particles->position[2][a] + d->particles->position[2][c]) / 2, length, (long long)d->broken_count,
+        (long long)d->family.bonds / 2);
   } else if (d->failure.criterion)
     text_add(t, "no bond broke\n");
-  text_add(t,
-           "energy (%s): external %.4g = kinetic %.4g + internal %.4g + fracture %.4g + friction %.4g + damping %.4g, "
-           "imbalance %.2g %%\n",
-           energy, e.external, e.kinetic, e.internal, e.fracture, e.friction, e.damping, 100 * e.imbalance);
+  const struct {
+    const char *words;
+    double value;
+  } energies[] = {{"energy: external ", e.external}, {" = kinetic ", e.kinetic},   {" + internal ", e.internal},
+                  {" + fracture ", e.fracture},      {" + friction ", e.friction}, {" + damping ", e.damping}};
+  for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
+    text_add(t, "%s", energies[k].words);
+    quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
+  }
+  text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
+  const Peaks *peaks = &model->peaks;
+  const double stress = units_in_si(model->units, dimension_find("stress"), 1);
+  text_add(t, "largest in the states written: displacement ");
+  quantity_describe(units_in_si(model->units, dimension_find("length"), peaks->displacement), "m", t);
+  text_add(t, ", octahedral shear stress ");
+  quantity_describe(stress * peaks->octahedral, "Pa", t);
+  text_add(t, ", mean stress ");
+  quantity_describe(stress * peaks->mean_low, "Pa", t);
+  text_add(t, " to ");
+  quantity_describe(stress * peaks->mean_high, "Pa", t);
+  text_add(t, ", damage %.3g\n", peaks->damage);
   points_report(&d->points, model->run_seconds, false, t);
-  text_add(t, "written:\n%s", run->files.characters ? run->files.characters : "");
+  text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
 }
 

@@ -42,6 +42,11 @@ static void deviator_norm(const Domain *d, int32_t place, double *value)
   octahedral(d, place, value);
   *value *= sqrt(3);
 }
+static void von_mises(const Domain *d, int32_t place, double *value)
+{
+  octahedral(d, place, value);
+  *value *= 3 / sqrt(2);
+}
 static void octahedral_strain(const Domain *d, int32_t place, double *value)
 {
   double e[6];
@@ -79,6 +84,7 @@ static const OutputField fields[] = {
     {"octahedral shear stress", "stress", "sqrt(2 J2 / 3)", 1, NULL, octahedral, false},
     {"octahedral shear strain", "1", "twice the octahedral measure of the strain deviator: 2 / sqrt(3) |e|", 1, NULL,
      octahedral_strain, false},
+    {"von Mises stress", "stress", "sqrt(3 J2)", 1, NULL, von_mises, false},
     {"deviator norm", "stress", "|s| = sqrt(2 J2)", 1, NULL, deviator_norm, false},
     {"mean stress", "stress", "a third of the trace, tension positive", 1, NULL, mean_stress, true},
     {"damage", "1", "broken share of the family, 0 to 1", 1, NULL, damage, false},

@@ -65,7 +65,7 @@ enum { MOST_COLUMNS = 16 };
 struct Watch {
   const WatchSpec *spec;
   const Kind *kind;
-  Kind own; /* of histories, whose columns the material names */
+  Kind own; /* of histories, whose columns the material names, and of loads */
   char columns[512];
   int history[MOST_COLUMNS]; /* which numbers they are */
   Selection selection;
@@ -182,8 +182,9 @@ static const Kind displacement_kind = {"x:length,y:length,z:length", displacemen
                   velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
                   force_kind = {"x:force,y:force,z:force", force_row},
                   stress_kind =
-                      {"e11:1,e22:1,e33:1,g12:1,g23:1,g31:1,s11:stress,s22:stress,s33:stress,s12:stress,s23:stress,"
-                       "s31:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
+                      {"strain xx:1,strain yy:1,strain zz:1,strain xy:1,strain yz:1,strain zx:1,stress xx:stress,"
+                       "stress yy:stress,stress zz:stress,stress xy:stress,stress yz:stress,stress "
+                       "zx:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
                        stress_row},
                   damage_kind = {"mean:1,largest:1", damage_row},
                   opening_kind = {"distance:length,opening:length", opening_row},
@@ -191,23 +192,6 @@ static const Kind displacement_kind = {"x:length,y:length,z:length", displacemen
                   energy_kind = {"kinetic:energy,internal:energy,external:energy,damping:energy,fracture:energy,"
                                  "imbalance:1,broken bonds:1,friction:energy",
                                  energy_row};
-/* The value of a load, in the unit of what it prescribes. */
-static const Kind load_kinds[] = {
-    {"factor:1,value:force per volume", load_row}, {"factor:1,value:force", load_row},
-    {"factor:1,value:acceleration", load_row},     {"factor:1,value:length", load_row},
-    {"factor:1,value:velocity", load_row},
-};
-
-static const Kind *load_kind(const LoadSpec *l)
-{
-  const double *given[] = {l->body_force, l->force, l->gravity, l->displacement, l->velocity};
-  if (l->along) return &load_kinds[isnan(l->along->displacement) ? 4 : 3];
-  for (int v = 0; v < 4; ++v)
-    for (int k = 0; k < 3; ++k)
-      if (!isnan(given[v][k])) return &load_kinds[v];
-  return &load_kinds[4];
-}
-
 static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
 {
   const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;
@@ -282,8 +266,12 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
   for (int l = 0; l < loading->count; ++l)
     if (loading->loads[l].spec->name && !strcmp(loading->loads[l].spec->name, spec->load))
       w->load = loading->loads[l].spec;
-  if (w->load) {
-    w->kind = load_kind(w->load);
+  if (w->load) { /* the value of a load, in the unit of what it prescribes */
+    const char *dimension;
+    load_kind(w->load, &dimension);
+    snprintf(w->columns, sizeof w->columns, "factor:1,value:%s", dimension);
+    w->own = (Kind){w->columns, load_row};
+    w->kind = &w->own;
     return BRECCIA_OK;
   }
   return node_error(reader->document, section_place(spec, "load"), reader->error,
@@ -380,6 +368,28 @@ int watches_write(Watches *watches, const Explicit *solver, bool last, Error *er
     w->last_step = solver->step;
   }
   return BRECCIA_OK;
+}
+
+const char *watches_name(const Watches *watches, int k)
+{
+  return watches->items[k].spec->head.name;
+}
+
+int watches_column(const Watches *watches, int k, int c, char *name, size_t size)
+{
+  static const char *const first[] = {"step", "time"};
+  if (c < 2) {
+    snprintf(name, size, "%s", first[c]);
+    return 0;
+  }
+  const char *column = watches->items[k].kind->columns;
+  for (int n = 2; n < c && column; ++n) {
+    column = strchr(column, ',');
+    if (column) ++column;
+  }
+  if (!column) return 1;
+  snprintf(name, size, "%.*s", (int)strcspn(column, ":"), column);
+  return 0;
 }
 
 int watches_count(const Watches *watches)

@@ -11,6 +11,29 @@
 
 enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC, MOTION };
 
+static const Field damping_fields[] = {
+    {"ratio", FIELD_NUMBER, offsetof(DampingSpec, ratio), "1", NULL, "[0, inf)",
+     "share of critical damping; 1 comes to rest soonest", NULL, NULL, 0},
+    {"at", FIELD_NUMBER, offsetof(DampingSpec, at), "frequency", NULL, "(0, inf)",
+     "frequency of the vibration that has this ratio; slower ones are damped more, faster ones less", NULL, NULL, 0},
+};
+static const Section damping_section = {"damping",
+                                        "Mass-proportional damping by its ratio: c = 4 pi ratio frequency.",
+                                        sizeof(DampingSpec),
+                                        FIELDS(damping_fields),
+                                        NULL,
+                                        NULL,
+                                        NULL,
+                                        0};
+
+static void check_explicit(const DeckReader *reader, void *section)
+{
+  (void)reader;
+  ExplicitSpec *spec = section;
+  const DampingSpec *given = spec->damping_given.section;
+  spec->damping = given ? 4 * acos(-1) * given->ratio * given->at : spec->damping_given.value;
+}
+
 static const Field explicit_fields[] = {
     {"time step", FIELD_NUMBER, offsetof(ExplicitSpec, time_step), "time", "", "(0, inf)",
      "when absent: 'safety' times the stable step, which is found by the program", NULL, NULL, 0},
@@ -19,8 +42,9 @@ static const Field explicit_fields[] = {
     {"steps", FIELD_COUNT, offsetof(ExplicitSpec, steps), NULL, "", "[0, 1e15]", "number of steps", NULL, NULL, 'A'},
     {"end time", FIELD_NUMBER, offsetof(ExplicitSpec, end_time), "time", "", "(0, inf)", "steps until this time", NULL,
      NULL, 'A'},
-    {"damping", FIELD_NUMBER, offsetof(ExplicitSpec, damping), "frequency", "0", "[0, inf)",
-     "mass-proportional damping c: force density - c rho v", NULL, NULL, 0},
+    {"damping", FIELD_NUMBER_OR_SECTION, offsetof(ExplicitSpec, damping_given), "damping rate", "0", "[0, inf)",
+     "mass-proportional damping: a rate c (force density - c rho v), or a ratio of critical damping at a frequency",
+     &damping_section, NULL, 0},
     {"local damping", FIELD_NUMBER, offsetof(ExplicitSpec, local_damping), "1", "0", "[0, 1)",
      "Cundall's damping: a share of the force out of balance, against the velocity; 0.8 finds states of rest", NULL,
      NULL, 0},
@@ -29,7 +53,7 @@ const Section explicit_section = {"explicit",
                                   "Explicit dynamics by velocity Verlet.",
                                   sizeof(ExplicitSpec),
                                   FIELDS(explicit_fields),
-                                  NULL,
+                                  check_explicit,
                                   NULL,
                                   NULL,
                                   0};

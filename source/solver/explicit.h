@@ -5,9 +5,16 @@
 #include "domain/domain.h"
 #include "loading/load.h"
 
+typedef struct DampingSpec {
+  SectionHead head;
+  double ratio, at; /* of critical damping, at a frequency */
+} DampingSpec;
+
 typedef struct ExplicitSpec {
   SectionHead head;
-  double time_step, safety, end_time, damping, local_damping;
+  double time_step, safety, end_time, local_damping;
+  NumberOrSection damping_given;
+  double damping; /* the rate c */
   int64_t steps;
 } ExplicitSpec;
 

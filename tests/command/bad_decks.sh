@@ -38,6 +38,7 @@ refuse() {
   equal "$1: exit status" $? 2
   contains "$1" "$(cat "$work/errors")" "deck.yaml:${2:+$2: }"
   contains "$1" "$(cat "$work/errors")" "$3"
+  grep -q '(null)' "$work/errors" && fail "$1: $(cat "$work/errors")"
   equal "$1: lines" "$(wc -l < "$work/errors")" 1
   [ -e "$work/deck" ] && fail "$1: something was written"
   [ -s "$work/out" ] && fail "$1: something was printed: $(cat "$work/out")"
@@ -73,7 +74,7 @@ refuse 's/layers: 2/layers: 0/' 12:27 'it must be at least 1'
 refuse 's/layers: 2/layers: 1.5/' 12:27 'is not a whole number'
 refuse 's/{face: x+, layers: 2}/{layers: 2}/' 12:3 'say what is selected'
 refuse 's/face: x+/block: dam/' 12:16 "there is no block 'dam'"
-refuse 's/on: end/on: edn/' 18:22 "there is no selection 'edn'; the deck defines 'end'"
+refuse 's/on: end/on: edn/' 18:22 "there is no selection 'edn'; did you mean 'end'? (the deck defines 'end')"
 refuse 's/on: end/on: {nearest: [0, 0, 0], face: x+}/' 18:18 'the selection holds no particle'
 refuse 's/body force: \[1, 0, 0\]/body force: [1, 0, 0], force: [1, 0, 0]/' 18:50 "more than one of"
 refuse 's/body force: \[1, 0, 0\], //' 18:6 "none of 'body force', 'force'"
@@ -86,6 +87,9 @@ refuse 's/horizon: 3.015 spacings/influence: gausian/' 15:27 "did you mean 'gaus
 refuse 's/stretch: 0.05/stretch: 0/' 16:29 'it must be greater than 0'
 refuse 's/steps: 10/steps: 10, end time: 1 s/' 19:41 'more than one of'
 refuse 's/steps: 10/steps: 10, time step: 1 s/' 19:42 'times the stable step'
+refuse 's/steps: 10/steps: 10, damping: 120 Hz/' 19:40 "damping: '120 Hz' is a frequency, but a rate is asked, like '30 1/s'; a ratio of critical damping at a frequency is written {ratio: 0.05, at: 120 Hz}"
+refuse 's/steps: 10/steps: 10, damping: 2 kPa/' 19:40 "expected a damping rate, like '1.5 1/s'"
+refuse 's/steps: 10/steps: 10, damping: {ratio: 0.05}/' 19:31 "damping: missing key 'at'"
 refuse 's/displacement of: end/displacment of: end/' 21:9 "unknown key 'displacment of'; did you mean 'displacement of'?"
 refuse 's/displacement of: end/load: push/' 21:15 "no load has the name 'push'"
 refuse 's/displacement of: end/opening between: [[0, 0, 0], [0, 0, 0]]/' 21:9 'the same particle is nearest to both points'
@@ -105,6 +109,60 @@ refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness
 refuse 's/  tip: .*/  tip: {history of: end}/; s/material: clay/material: steel/' 21:21 'history of: elastic has no named history'
 refuse 's/  tip: .*/  tip: {history of: {face: z-}}/; s/^selections:/  foot: {material: steel, spacing: 0.1, shape: {box: {particles: [3, 5, 3], first particle: [1.05, 0.05, 0.05]}}}\nselections:/' \
   22:9 'history of: the particles are of several materials'
+
+# Words of other programs and of notes, and keys in the wrong section
+refuse 's/Young modulus/E/' 5:42 "unknown key 'E'; did you mean 'Young modulus'?"
+refuse 's/Poisson ratio/nu/' 5:66 "unknown key 'nu'; did you mean 'Poisson ratio'?"
+refuse 's/density: 7.85/rho: 7.85/' 5:27 "unknown key 'rho'; did you mean 'density'?"
+refuse 's/Young modulus/Young/' 5:42 "unknown key 'Young'; did you mean 'Young modulus'?"
+refuse 's/model: elastic/type: elastic/' 5:11 "unknown key 'type'; did you mean 'model'?"
+refuse 's/model: elastic, //' 5:3 "none of 'model', 'opensees', 'remote' is given; give exactly one"
+refuse 's/model: elastic/model: von mises/' 5:18 "did you mean 'j2'? (J2 plasticity is that of von Mises)"
+refuse 's/field: damage/field: von mises/' 24:13 "did you mean 'von Mises stress'?"
+refuse 's/field: damage/field: stress, component: 11/' 24:32 "component: stress has no '11'; did you mean 'xx'?"
+refuse 's/field: damage/field: stress/' 24:13 "field: stress is drawn by 'component'; its components are xx, yy, zz, xy, yz, zx"
+refuse 's/field: damage/field: damage, component: x/' 24:32 "component: damage has no 'x'; it is one number, leave 'component' out"
+refuse 's/, history: {ramp to: 0.1 s}/, ramp: 0.1 s/' 18:50 "unknown key 'ramp'; 'ramp to' stands under 'history', like history: {ramp to: ...}"
+refuse 's/{face: x+, layers: 2}/{box: {from: [0, 0, 0], to: [1, 1, 1]}}/' 12:9 "'box' stands under 'inside', like inside: {box: ...}"
+refuse 's/{explicit: {steps: 10}}/{steps: 10}/' 19:9 "unknown key 'steps'; 'steps' stands under 'explicit'"
+refuse 's/body force: \[1, 0, 0\]/fix: [x]/' 18:27 "did you mean 'displacement'? (0 holds a direction and 'free' leaves it"
+refuse 's/body force: \[1, 0, 0\]/displacement: [0, fixed]/' 18:45 "expected a number or 'free', found 'fixed'"
+refuse 's/^body:/geometry:/' 6:1 "unknown key 'geometry'; did you mean 'body'?"
+refuse 's/face: x+/face: right/' 12:15 "did you mean 'x+'?"
+refuse 's/ramp to: 0.1 s/table: motion.csv/' 18:67 'like [[0, 0], [0.1 s, 1]]; found motion.csv: files are not read here, write the rows out'
+
+# Numbers and units as they are written elsewhere
+refuse 's/spacing: 0.1$/spacing: 0,1/' 9:14 "'0,1': write decimals with a point"
+refuse 's/210 GPa/210 000 MPa/' 5:57 "'210 000 MPa': write thousands with nothing between"
+refuse 's/210 GPa/2.1x10^5 MPa/' 5:57 "write powers of ten like 3e4"
+refuse 's/210 GPa/210 Gpa/' 5:57 "'Gpa' is not a unit of stress; did you mean 'GPa'?"
+refuse 's/210 GPa/210000 KN\/M2/' 5:57 "did you mean 'kN/m2'?"
+refuse 's/210 GPa/30e6 lb\/in2/' 5:57 "'lb/in2' is not a unit of stress; did you mean 'lbf/in2'?"
+refuse 's/210 GPa//' 5:42 "no value is given; expected a stress"
+refuse 's/density: 7.85/density: 77 kN\/m3/' 5:36 "'77 kN/m3' is a weight per volume; the density is its mass, 7851.8 kg/m3"
+refuse 's/horizon: 3.015 spacings/horizon: 3.015/' 15:25 "horizon: did you mean '3.015 spacings'? A plain number is a length, and this one is 30.1 spacings of 0.1"
+refuse 's/horizon: 3.015 spacings/horizon: 3.015 dx/' 15:25 "did you mean '3.015 spacings'?"
+refuse 's/^units: .*/units: SI/' 2:8 'units: expected keys and values, like {length: m, force: N, time: s}; found SI'
+refuse 's/spacing: 0.1$/spacing: 2/' 10:13 'its size along x, 1, is less than one spacing of 2'
+refuse 's/face: x+, layers: 2/inside: {box: {from: [3, 0, 0], to: [4, 1, 1]}}/' 12:3 "the selection 'end' holds no particle; particles stand at x from 0.05 to 0.95, y from 0.05 to 0.45, z from 0.05 to 0.25; the one nearest to the middle of the shape is at [0.95, 0.45, 0.25]"
+
+refuse 's/ramp to: 0.1 s/sine: {frequency: 2 s}/' 18:78 "'2 s' has the wrong dimension; expected a frequency"
+refuse 's/density: 7.85/density: 7.85 gr\/cm3/' 5:36 "'gr' is a grain of 65 mg to some; write g"
+refuse 's/horizon: 3.015 spacings/horizon: 3,015 spacings/' 15:27 'inside { } a comma parts items: write decimals with a point'
+refuse 's/on: end/on: [end, end]/' 18:18 'on: expected one name, or keys and values; found a list'
+refuse 's/horizon: 3.015 spacings/horizon: 300/' 15:25 'horizon: 300 reaches over 3e+03 spacings of 0.1; 3 to 4 are usual'
+refuse 's/{box: {from/{cuboid: {from/' 10:13 "unknown key 'cuboid'; did you mean 'box'?"
+
+# Curves of columns that no history writes
+refuse 's/{field: damage}/{curve: "tap.x : tip.y"}/' 24:14 "there is no history 'tap'; did you mean 'tip'?"
+refuse 's/{field: damage}/{curve: "tip.x : tip.force"}/' 24:14 "curve: tip: there is no column 'force'; its columns are step, time, x, y, z"
+refuse 's/{field: damage}/{curve: "tip.x , tip.y"}/' 24:14 "should be 'watch.column : watch.column'"
+
+# YAML that is none
+refuse 's/^    spacing/\tspacing/' 9:2 'indent with blanks, not with tabs'
+refuse 's/^    spacing/   spacing/' 9:4 'keys that belong together must begin in the same column'
+refuse 's/    spacing: 0.1$/    spacing:0.1/' 9:5 "a key ends with a colon and a blank, like 'spacing: 10'"
+refuse 's/^title: .*/title: A beam: three points/' 1:14 "words that hold ': ' must stand in quotation marks"
 
 bars='s/^  clay: .*/  clay: {model: elastic-1d, density: 1, Young modulus: 1 GPa}/; s/^  steel: .*/  steel: {model: elastic-1d, density: 1, Young modulus: 2 GPa}/'
 refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic, density: 1, bulk modulus: 1 GPa, shear modulus: 1 GPa}/; s/^peri.*/peridynamics: {formulation: bond-based}/" \
@@ -131,6 +189,40 @@ refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based}/; s/{model: ela
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/shape: .*/shape: {cylinder: {from: [1, 1, -1], to: [1, 1, 1], radius: 0.5}}/; s/^peri.*/peridynamics: {space: plane strain}/' \
   '' "In the plane a cylinder is a strip; a disc is a 'sphere'"
 
+# warns EDIT PLACE WORDS: the good deck after an edit is read, with a warning at line:column
+warns() {
+  sed "$1" "$work/good.yaml" > "$work/deck.yaml"
+  cmp -s "$work/good.yaml" "$work/deck.yaml" && fail "the edit $1 changes nothing"
+  (cd "$work" && "$breccia" check deck.yaml > out 2> errors)
+  equal "$1: exit status" $? 0
+  contains "$1" "$(cat "$work/errors")" "warning: deck.yaml:$2: $3"
+  grep -q '(null)' "$work/errors" "$work/out" && fail "$1: $(cat "$work/errors" "$work/out")"
+}
+(cd "$work" && "$breccia" check good.yaml > out 2> errors)
+equal "the good deck: warnings" "$(cat "$work/errors")" ""
+warns 's/density: 7.85/density: 7850/' 5:36 "density: 7850 is 7.85e+06 kg/m3; materials like it have 100 kg/m3 to 25000 kg/m3; did you mean '7850 kg/m3'? In m, kN, s that is 7.85"
+warns 's/^units.*//; s/210 GPa/210/' 5:57 "Young modulus: 210 is 210 Pa; materials like it have 10 kPa to 1 TPa; did you mean '210 GPa'? In m, N, s that is 2.1e+11"
+sed 's/^units.*/units: {length: mm, force: N, time: s}/; s/density: 1.5,/density: 1.5e-9,/; s/density: 7.85/density: 2400/; s/0.1$/100/; s/\[1, 0.5, 0.3\]/[1000, 500, 300]/
+  s/0.45/450/g; s/octahedral strength: 30/octahedral strength: 30 kPa/' "$work/good.yaml" > "$work/mm.yaml"
+"$breccia" check "$work/mm.yaml" 2> "$work/errors" > /dev/null
+contains "density of concrete in mm, N, s" "$(cat "$work/errors")" "density: 2400 is 2.4e+15 kg/m3; materials like it have 100 kg/m3 to 25000 kg/m3; did you mean '2400 kg/m3'? In mm, N, s that is 2.4e-09"
+warns 's/  steel: .*/  concrete: {model: elastic, density: 2.4, Young modulus: 30 MPa, Poisson ratio: 0.2}/' 5:59 "Young modulus: 30 MPa; materials like it have 1 GPa to 200 GPa; did you mean '30 GPa'?"
+mazars='{model: mazars, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, tensile strength: 3 MPa, fracture energy: 120 N\/m}'
+warns "s/  steel: .*/  wall: $mazars/; s/^failure.*//" 5:17 "material 'wall': mazars softens, but no bond breaks"
+sed "s/  steel: .*/  wall: $mazars/" "$work/good.yaml" > "$work/deck.yaml"
+"$breccia" check "$work/deck.yaml" 2> "$work/errors" > "$work/out"
+equal "softening with breakage: warnings" "$(cat "$work/errors")" ""
+contains "softening: brittleness" "$(cat "$work/out")" "fracture energy 120 J/m2, E G_F / f_t^2 400 mm (1.3 horizons)"
+warns "s/  steel: .*/  wall: $(echo "$mazars" | sed 's/120/22/; s/3 MPa/1.4 MPa/')/" 5:126 "fracture energy: 22 N/m is little for concrete, which has 60 to 200 N/m"
+warns 's/  steel: .*/  wall: {model: mohr-coulomb, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, cohesion: 10 GPa, friction angle: 30, tensile strength: 3 GPa}/' 5:144 "tensile strength: it is 0.1 of Young's modulus"
+warns 's/body force: \[1, 0, 0\], history: {ramp to: 0.1 s}/displacement: [0.01, free, free]/' 18:27 "displacement: the particles jump by 0.01 m in the first step; let it grow"
+warns 's/body force: \[1, 0, 0\]/displacement: [0.01, free, free]/' 18:6 "load: bonds may break at the grips, within a horizon"
+for word in hold break; do
+  sed "s/body force: \[1, 0, 0\]/displacement: [0.01, free, free]/; s/stretch: 0.05/stretch: 0.05, near grips: $word/" "$work/good.yaml" > "$work/deck.yaml"
+  "$breccia" check "$work/deck.yaml" 2> "$work/errors" > /dev/null
+  equal "near grips: $word: warnings" "$(cat "$work/errors")" ""
+done
+
 # Files that are no decks at all
 for content in '' '- a' 'words' '42' '%' '%TAG'; do
   printf '%s' "$content" > "$work/deck.yaml"
@@ -138,6 +230,16 @@ for content in '' '- a' 'words' '42' '%' '%TAG'; do
   equal "deck «$content»: exit status" $? 2
   contains "deck «$content»" "$(cat "$work/errors")" "deck.yaml:1:"
 done
+cat > "$work/test.yaml" <<'Y'
+material: {model: elastic, density: 1, Young modulus: 1, Poisson ratio: 0}
+test: {kind: uniaxial, strain: 0.01}
+Y
+"$breccia" run "$work/test.yaml" > /dev/null 2> "$work/errors"
+equal "run of a test: status" $? 2
+contains "run of a test" "$(cat "$work/errors")" "test.yaml: is a laboratory test; 'breccia material "
+"$breccia" material "$work/good.yaml" > /dev/null 2> "$work/errors"
+equal "test of a deck: status" $? 2
+contains "test of a deck" "$(cat "$work/errors")" "good.yaml: is a deck; 'breccia run "
 "$breccia" check "$work/none.yaml" > /dev/null 2> "$work/errors"
 equal "missing deck: exit status" $? 2
 contains "missing deck" "$(cat "$work/errors")" "none.yaml: cannot be read: No such file"

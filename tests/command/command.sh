@@ -45,7 +45,12 @@ contains "completion of examples" "$(bash -c 'source <("$1" completion); COMP_WO
 contains "manual page of new" "$("$breccia" completion --man | sed -n '/SS new/,/SS plot/p')" 'example'
 "$breccia" check plate.yaml > out 2> errors; equal "check: status" $? 0
 contains "check" "$(cat out)" "2500 particles"
-equal "check: lines" "$(wc -l < out)" 3
+sed -n 's/.*: 2500 particles, \([0-9]*\) bonds, 10 to 28 per particle (mean \([0-9.]*\)).*/\1 \2/p' out |
+  awk '{d = 2 * $1 / 2500 - $2} END {exit !(NR == 1 && d * d < 0.0026)}' || fail "check: bonds are not counted in pairs: $(cat out)"
+contains "check: body" "$(cat out)" "body: 500 mm x 500 mm, 60 kg; a wave travels through in 134 µs" # 0.5 m / sqrt((K + 4 G / 3) / rho)
+contains "check: material" "$(cat out)" "rock: 2400 kg/m3, E 30 GPa, waves 3.73 km/s, bonds break at a stretch of 0.0005 (elastically 15 MPa)"
+contains "check: frequency" "$(cat out)" "about 3.54 kHz" # sqrt(E / rho) / (2 x 0.5 m)
+contains "check: load" "$(cat out)" "load 'pull': acts in full from the start; a wave behind 100 mm/s carries 894 kPa" # rho c v
 [ -s errors ] && fail "check complains: $(cat errors)"
 [ -e plate ] && fail "check writes"
 "$breccia" run plate.yaml --steps 100 > out 2> errors; equal "run: status" $? 0
@@ -55,11 +60,14 @@ for file in results.vtkhdf results.xdmf summary.json checkpoint.h5 opening.csv g
   [ -e "plate/$file" ] || fail "run did not write $file"
 done
 ls plate | grep -q part && fail "half-written files are left: $(ls plate)"
-for key in particles bonds steps time_step stable_time_step wall_seconds ns_per_bond_step first_broken_bond broken_bonds imbalance; do
+for key in particles bonds steps time_step stable_time_step wall_seconds ns_per_directed_bond_step first_broken_bond broken_bonds imbalance; do
   [ -n "$(json plate/summary.json $key)" ] || fail "summary.json lacks $key"
 done
 equal "summary: particles" "$(json plate/summary.json particles)" 2500
 equal "summary: steps" "$(json plate/summary.json steps)" 100
+contains "summary: units" "$(cat plate/summary.json)" '"units": {"times": "s", "positions and displacements": "m", "velocities": "m/s", "stresses": "kPa", "energies": "kN*m"}'
+contains "summary: loads" "$(cat plate/summary.json)" '{"name": "pull", "line": 27, "kind": "velocity", "peak": 0.1, "unit": "m/s"}'
+contains "run: loads" "$(cat out)" "load 'pull': velocity, peak 0.1 m/s"
 equal "history: rows" "$(wc -l < plate/opening.csv)" 12
 "$breccia" run plate.yaml --steps 3 --quiet --output "other folder/deep" > out 2>&1; equal "run --quiet: status" $? 0
 [ -s out ] && fail "run --quiet prints: $(cat out)"
@@ -101,7 +109,9 @@ equal "material of one strain" "$(cat bar.csv)" "strain xx,stress xx (Pa),tangen
 0.001,2000,2000000
 0,0,2000000"
 "$breccia" material --model elastic --set "Young=1" --strain path.csv 2> out; equal "material, wrong key: status" $? 2
-contains "material, wrong key" "$(cat out)" "expected KEY=VALUE with one of the keys 'Young modulus'"
+contains "material, wrong key" "$(cat out)" "--set Young=1: did you mean 'Young modulus'? expected KEY=VALUE with one of the keys 'Young modulus'"
+"$breccia" material --model Elastic --set E=1 --strain path.csv 2> out; equal "material, wrong model: status" $? 2
+contains "material, wrong model" "$(cat out)" "there is no model 'Elastic'; did you mean 'elastic'?"
 "$breccia" material --model multi-yield-j2 --strain path.csv 2> out; equal "material, nothing set: status" $? 2
 contains "material, nothing set" "$(cat out)" "missing --set 'shear modulus=...'"
 contains "material, nothing set: all at once" "$(cat out)" "missing --set 'bulk modulus=...'"

@@ -169,7 +169,7 @@ refuse "remote: j2; Young modulus=1, server: ['unix:$PWD/one']" "missing 'yield 
 refuse "remote: elastic-1d; Young modulus=1, server: ['unix:$PWD/one']" "'elastic-1d; Young modulus=1' is a law of one strain; correspondence takes elastic,"
 refuse "opensees: nDMaterial ElasticIsotropic3D 1 1e5 0.3" "opensees: expected 'nDMaterial KIND \$tag ...'"
 refuse "opensees: 'nDMaterial X \$tag [exec rm]'" "opensees: expected 'nDMaterial KIND \$tag ...'"
-refuse "$served, model: elastic, Young modulus: 1, Poisson ratio: 0, server: ['unix:$PWD/one']" "more than one of 'model', 'opensees', 'remote'; give exactly one"
+refuse "$served, model: elastic, Young modulus: 1, Poisson ratio: 0, server: ['unix:$PWD/one']" "more than one of 'model', 'opensees', 'remote' is given; give exactly one"
 refuse "$served, jelly: 3, server: ['unix:$PWD/one']" "unknown key 'jelly'"
 BRECCIA_OPENSEES=$PWD/nowhere refuse "opensees: nDMaterial ElasticIsotropic3D \$tag 1e5 0.3, processes: 2" "OpenSees server 1 of 2: '$PWD/nowhere' cannot be started: No such file or directory; \`make demo-opensees\` sets one up"
 printf '#!/bin/sh\necho out of cheese >&2\nexit 3\n' > ends; chmod +x ends

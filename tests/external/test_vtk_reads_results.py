@@ -53,7 +53,7 @@ def main():
         i, j = near([1.9, 0.3, 0.1]), near([0.5, 0.2, 0.2])
         for c, axis in enumerate("xyz"):
             assert fields["displacement"][i, c] == float(a[step][f"{axis} (m)"]), (step, axis)
-        for c, name in enumerate(["s11", "s22", "s33", "s12", "s23", "s31"]):
+        for c, name in enumerate(["stress xx", "stress yy", "stress zz", "stress xy", "stress yz", "stress zx"]):
             assert fields["stress"][j, c] == float(b[step][f"{name} (kPa)"]), (step, name)
         checked += 9
     assert fields["damage"].max() > 0

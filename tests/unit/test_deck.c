@@ -1,3 +1,4 @@
+#include "deck/spelling.h"
 #include "support.h"
 
 static double read_as(const char *dimension, const char *words)
@@ -36,10 +37,24 @@ static void quantities_of_engineers_convert_to_the_decks_units(void **state)
 static void ambiguous_or_wrong_units_are_refused(void **state)
 {
   (void)state;
-  const char *const wrong[][2] = {
-      {"stress", "30 kN"},       {"length", "6\""},    {"force", "2 ton"},      {"length", "3 s"},
-      {"stress", "5 MPa*m^0.5"}, {"stress", "thirty"}, {"length", "1 parsnip"}, {"1", "3 m"},
-      {"stress", "0x10"},        {"stress", "nan"},    {"length", "inf"},       {"time", "1e999"}};
+  const char *const wrong[][2] = {{"stress", "30 kN"},
+                                  {"length", "6\""},
+                                  {"force", "2 ton"},
+                                  {"length", "3 s"},
+                                  {"stress", "5 MPa*m^0.5"},
+                                  {"stress", "thirty"},
+                                  {"length", "1 parsnip"},
+                                  {"1", "3 m"},
+                                  /* reciprocals are something else, and gr is a grain */
+                                  {"frequency", "100 s"},
+                                  {"length", "2 1/m"},
+                                  {"damping rate", "0.1 s"},
+                                  {"density", "2.4 gr/cm3"},
+                                  {"damping rate", "3 Hz"},
+                                  {"stress", "0x10"},
+                                  {"stress", "nan"},
+                                  {"length", "inf"},
+                                  {"time", "1e999"}};
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k)
     if (!isnan(read_as(wrong[k][0], wrong[k][1]))) fail_msg("'%s' was read as a %s", wrong[k][1], wrong[k][0]);
 }
@@ -59,6 +74,58 @@ static void unit_names_read_like_an_engineers(void **state)
   }
   units_destroy(&units);
   breccia_error_destroy(&error);
+}
+
+static void numbers_in_si_units_read_as_people_say_them(void **state)
+{
+  (void)state;
+  Error *error = breccia_error_create();
+  Units *units = units_create("mm", "kN", "ms", error);
+  assert_near(units_in_si(units, dimension_find("length"), 5), 5e-3, 1e-18);
+  assert_near(units_in_si(units, dimension_find("stress"), 30), 30e9, 1e-3); /* kN/mm2 is GPa */
+  assert_near(units_in_si(units, dimension_find("velocity"), 2), 2, 1e-15);
+  assert_near(units_in_si(units, dimension_find("density"), 2.4e-6), 2400, 1e-9); /* kN ms2/mm4 is 1e9 kg/m3 */
+  units_destroy(&units);
+  breccia_error_destroy(&error);
+  const struct {
+    double value;
+    const char *unit, *words;
+  } cases[] = {{2e-5, "s", "20 \u00b5s"},  {0.031, "m", "31 mm"},  {2100, "m", "2.1e+03 m"},
+               {2400, "kg", "2.4 t"},      {0.05, "kg", "50 g"},   {25000, "kg/m3", "25000 kg/m3"},
+               {3e10, "Pa", "30 GPa"},     {-999.7, "J", "-1 kJ"}, {0, "J", "0 J"},
+               {1.5e-12, "J", "0.0015 nJ"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    Text text = {0};
+    quantity_describe(cases[k].value, cases[k].unit, &text);
+    assert_string_equal(text_words(&text), cases[k].words);
+    text_free(&text);
+  }
+}
+
+static void other_words_and_slips_lead_to_the_name_meant(void **state)
+{
+  (void)state;
+  const char *const names[] = {"Young modulus", "Poisson ratio", "shear modulus",
+                               "ramp to",       "displacement",  "surfaces"};
+  const char *const cases[][2] = {{"E", "Young modulus"},
+                                  {"G", "shear modulus"},
+                                  {"g", NULL},
+                                  {"nu", "Poisson ratio"},
+                                  {"Young_Modulus", "Young modulus"},
+                                  {"ramp", "ramp to"},
+                                  {"disp", "displacement"},
+                                  {"surfcaes", "surfaces"},
+                                  {"name", NULL},
+                                  {"colour", NULL},
+                                  {"", NULL}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    const char *found = spelling_nearest(cases[k][0], names, 6);
+    if (!cases[k][1] ? found != NULL : !found || strcmp(found, cases[k][1]))
+      fail_msg("'%s' leads to '%s'", cases[k][0], found ? found : "nothing");
+  }
+  assert_int_equal(text_distance("rnu", "run"), 1);
+  assert_int_equal(text_distance("plane-stress", "plane stress"), 0);
+  assert_int_equal(text_distance("abc", ""), 3);
 }
 
 static void intervals_hold_their_closed_ends_only(void **state)
@@ -129,6 +196,8 @@ int main(void)
       cmocka_unit_test(quantities_of_engineers_convert_to_the_decks_units),
       cmocka_unit_test(ambiguous_or_wrong_units_are_refused),
       cmocka_unit_test(unit_names_read_like_an_engineers),
+      cmocka_unit_test(numbers_in_si_units_read_as_people_say_them),
+      cmocka_unit_test(other_words_and_slips_lead_to_the_name_meant),
       cmocka_unit_test(intervals_hold_their_closed_ends_only),
       cmocka_unit_test(positions_of_nodes_are_those_of_the_text),
       cmocka_unit_test(all_errors_of_a_deck_come_in_one_go),

@@ -75,6 +75,34 @@ static void energy_of_loads_motions_damping_yielding_and_cracks_balances(void **
   }
 }
 
+static void bonds_near_grips_hold_where_the_deck_says_so(void **state)
+{
+  (void)state;
+  /* A bar torn so fast that it breaks at the end that is pulled; with held grips no bond breaks between particles nearer to
+   * them than the horizon of 0.3015. */
+  int64_t near[2] = {0}, all[2] = {0};
+  for (int hold = 0; hold < 2; ++hold) {
+    breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                                "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 5, 3]}}}}\n"
+                                "failure: {critical stretch: 0.01%s}\n"
+                                "loads: [{on: {face: x+, layers: 2}, velocity: [3, free, free]}]\n"
+                                "solve: {explicit: {steps: 150}}\n",
+                                hold ? ", near grips: hold" : "");
+    assert_int_equal(breccia_model_step(m, 150, NULL), 0);
+    const Domain *d = &m->domain;
+    all[hold] = d->broken_count;
+    for (int64_t k = 0; k < d->broken_count; ++k) {
+      double x = d->particles->position[0][d->particles->place_of[d->broken[k].a]];
+      double y = d->particles->position[0][d->particles->place_of[d->broken[k].b]];
+      near[hold] += fmin(x, y) > 1.95 - 0.1 - 0.3015;
+    }
+    breccia_model_destroy(&m);
+  }
+  assert_true(near[0] > 0);
+  assert_true(all[1] > 0);
+  assert_int_equal(near[1], 0);
+}
+
 static void an_elastic_body_keeps_its_energy(void **state)
 {
   (void)state;
@@ -94,6 +122,32 @@ static void an_elastic_body_keeps_its_energy(void **state)
   assert_true(e.imbalance < 0.002);
   assert_true(e.internal > 0.05 * start);
   breccia_model_destroy(&m);
+}
+
+static void damping_takes_the_speed_of_a_free_body_as_its_rate_says(void **state)
+{
+  (void)state;
+  /* v = v0 exp(-c t); a ratio z of critical damping at f is the rate c = 2 z omega = 4 pi z f. */
+  const struct {
+    const char *words;
+    double rate;
+  } cases[] = {{"90", 90},
+               {"90 1/s", 90},
+               {"0.09 ms-1", 90},
+               {"{ratio: 0.05, at: 120 Hz}", 4 * acos(-1) * 0.05 * 120},
+               {"{ratio: 1, at: 0.02 kHz}", 4 * acos(-1) * 20}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                                "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+                                "solve: {explicit: {steps: 200, time step: 5e-5, damping: %s}}\n",
+                                cases[k].words);
+    double *v = breccia_model_array(m, "velocity y");
+    for (int64_t n = 0; n < breccia_model_places(m); ++n) v[n] = 0.1;
+    breccia_model_step(m, 200, NULL);
+    const double left = v[m->domain.particles->place_of[21]] / 0.1;
+    assert_near(left, exp(-cases[k].rate * 0.01), 1e-5);
+    breccia_model_destroy(&m);
+  }
 }
 
 static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
@@ -414,7 +468,9 @@ int main(void)
       cmocka_unit_test(a_free_body_under_gravity_falls_as_galilei_says),
       cmocka_unit_test(a_wave_runs_along_a_slender_bar_at_root_e_over_rho),
       cmocka_unit_test(energy_of_loads_motions_damping_yielding_and_cracks_balances),
+      cmocka_unit_test(bonds_near_grips_hold_where_the_deck_says_so),
       cmocka_unit_test(an_elastic_body_keeps_its_energy),
+      cmocka_unit_test(damping_takes_the_speed_of_a_free_body_as_its_rate_says),
       cmocka_unit_test(the_stable_step_is_stable_and_a_tenth_more_is_not),
       cmocka_unit_test(measuring_the_stable_step_leaves_no_trace),
       cmocka_unit_test(threads_do_not_change_a_bit),

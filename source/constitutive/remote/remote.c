@@ -34,7 +34,7 @@ int remote_state_values(const Remote *remote)
 }
 const char *remote_problem(const Remote *remote)
 {
-  return remote->problem.characters ? remote->problem.characters : "";
+  return text_words(&remote->problem);
 }
 
 /* ---- opening and closing ---- */
@@ -52,16 +52,16 @@ static int greet(Remote *r, RemoteServer *s)
                                own ? child_is_gone : NULL, &s->process, &words);
   if (!s->channel) {
     Text more = {0};
-    text_add(&more, "it cannot be reached: %s", words.characters);
+    text_add(&more, "it cannot be reached: %s", text_words(&words));
     if (own) {
       Text end = {0};
       if (process_ended(&s->process, &end)) {
         text_free(&more);
-        text_add(&more, "%s", end.characters);
+        text_add(&more, "%s", text_words(&end));
       }
       text_free(&end);
     }
-    remote_complain(r, s, more.characters);
+    remote_complain(r, s, text_words(&more));
     text_free(&more);
     text_free(&words);
     return 1;

@@ -34,10 +34,10 @@ static void remote_lost(Remote *r, RemoteServer *s, ChannelStatus status, const 
     Text end = {0};
     for (int n = 0; n < 200 && !process_ended(&s->process, &end); ++n)
       nanosleep(&(struct timespec){.tv_nsec = 5000000L}, NULL);
-    if (end.length) text_add(&more, "; %s", end.characters);
+    if (end.length) text_add(&more, "; %s", text_words(&end));
     text_free(&end);
   }
-  remote_complain(r, s, more.characters);
+  remote_complain(r, s, text_words(&more));
   text_free(&more);
 }
 
@@ -94,7 +94,7 @@ static int remote_receive(Remote *r, RemoteServer *s, const Frame *asked, Frame 
     text_add(&words, "it answered %d to frame %lu where %d to frame %lu was due", frame->operation,
              (unsigned long)frame->sequence, asked->operation | OPERATION_ANSWER, (unsigned long)s->sequence);
   if (!words.length) return 0;
-  remote_complain(r, s, words.characters);
+  remote_complain(r, s, text_words(&words));
   text_free(&words);
   return 1;
 }
@@ -188,7 +188,7 @@ double *remote_receive_trial(Remote *r, RemoteServer *s, int64_t count, bool tan
     Text words = {0};
     text_add(&words, "it answered with %lu points in %lu bytes where %lld points in %zu bytes were due",
              (unsigned long)frame.count, (unsigned long)frame.length, (long long)count, per_point * (size_t)count);
-    remote_complain(r, s, words.characters);
+    remote_complain(r, s, text_words(&words));
     text_free(&words);
     return NULL;
   }
@@ -209,7 +209,7 @@ double *remote_receive_trial(Remote *r, RemoteServer *s, int64_t count, bool tan
   Text words = {0};
   text_add(&words, "it returned a %s that is not a number for its point %lld", k < stresses ? "stress" : "tangent",
            (long long)*bad);
-  remote_complain(r, s, words.characters);
+  remote_complain(r, s, text_words(&words));
   text_free(&words);
   return NULL;
 }

@@ -125,7 +125,7 @@ static int read_material(const Server *s, Session *h, const char *text, size_t l
     for (int k = 0; law_at(s->spec->laws, k); ++k)
       text_add(&names, "%s%s", k ? ", " : "", law_at(s->spec->laws, k)->name);
     error_add(error, BRECCIA_USER_ERROR, "there is no law '%s'; a command is 'LAW; KEY=VALUE; ...' with one of %s",
-              name ? name : "", names.characters);
+              name ? name : "", text_words(&names));
     text_free(&names);
   } else if ((h->units = units_create(units[0] ? units[0] : UNITS_LENGTH, units[1] ? units[1] : UNITS_FORCE,
                                       units[2] ? units[2] : UNITS_TIME, error)))
@@ -383,7 +383,7 @@ int serve_materials(const ServeSpec *spec, Error *error)
   Text words = {0};
   s.listener = listener_open(spec->address, spec->secret != NULL, &words);
   if (!s.listener) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: cannot be listened to: %s", spec->address, words.characters);
+    error_add(error, BRECCIA_USER_ERROR, "%s: cannot be listened to: %s", spec->address, text_words(&words));
     text_free(&words);
     return BRECCIA_USER_ERROR;
   }

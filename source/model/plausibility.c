@@ -1,0 +1,387 @@
+#include "model/plausibility.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static double in_si(const breccia_model *model, const char *dimension, double value)
+{
+  return units_in_si(model->units, dimension_find(dimension), value);
+}
+
+__attribute__((format(printf, 3, 4))) static void warn(breccia_model *model, const Node *place, const char *format, ...)
+{
+  Text words = {0};
+  va_list arguments;
+  va_start(arguments, format);
+  text_add_list(&words, format, arguments);
+  va_end(arguments);
+  text_add(&model->warnings, "%swarning: %s:%d:%d: %s", model->warnings.length ? "\n" : "", model->document->name,
+           place->line, place->column, text_words(&words));
+  text_free(&words);
+}
+
+/* ---- materials ---- */
+
+static const MaterialSpec *spec_of(const breccia_model *model, const Material *material)
+{
+  return section_find(&model->spec->materials, material->name);
+}
+
+/** A parameter of a material's law, in the deck's units; NaN if it has none of that name or was not given it. */
+static double parameter(const breccia_model *model, const Material *material, const char *name)
+{
+  const MaterialSpec *spec = spec_of(model, material);
+  const breccia_law *law = spec && spec->model ? law_find(&model->laws, spec->model) : NULL;
+  for (int k = 0; law && k < law->parameter_count; ++k)
+    if (!strcmp(law->parameters[k].name, name)) return spec->values[k];
+  return NAN;
+}
+
+/** Of pressure waves, in m/s: sqrt(M / rho) with M = K + 4 G / 3; along bars sqrt(E / rho). */
+static double wave_speed(const breccia_model *model, const Material *m)
+{
+  const bool bar = model->domain.body.dimensions == 1;
+  const double modulus = bar ? material_young(m) : m->bulk + 4 * m->shear / 3;
+  return sqrt(in_si(model, "stress", modulus) / in_si(model, "density", m->density));
+}
+
+typedef struct Candidate {
+  const char *unit;
+  double factor; /* to SI */
+} Candidate;
+
+/** The unit in which a number as it stands in the deck has a usual size, to be suggested. @return its words, or "" */
+static void suggest(const breccia_model *model, const Node *place, const char *dimension, const Candidate *candidates,
+                    int count, double low, double high, Text *text)
+{
+  const double number = place->kind == NODE_SCALAR ? strtod(place->text, NULL) : NAN;
+  for (int k = 0; k < count; ++k) {
+    if (!(number * candidates[k].factor >= low && number * candidates[k].factor <= high)) continue;
+    char length[32], force[32], time[32];
+    units_name(model->units, dimension_find("length"), length, sizeof length);
+    units_name(model->units, dimension_find("force"), force, sizeof force);
+    units_name(model->units, dimension_find("time"), time, sizeof time);
+    text_add(text, "; did you mean '%g %s'? In %s, %s, %s that is %.4g", number, candidates[k].unit, length, force,
+             time, number * candidates[k].factor / in_si(model, dimension, 1));
+    return;
+  }
+}
+
+static const Candidate densities[] = {{"kg/m3", 1}, {"t/m3", 1000}};
+static const Candidate stiffnesses[] = {{"GPa", 1e9}, {"MPa", 1e6}, {"kPa", 1e3}, {"Pa", 1}};
+static const Candidate fracture_energies[] = {{"N/m", 1}, {"N/mm", 1000}};
+
+/** Warns where a number lies outside of what real things have. @return whether it does */
+static bool beyond(breccia_model *model, const Node *place, const char *what, const char *dimension, double value,
+                   double low, double high, const char *unit, const Candidate *candidates, int count, double usual_low,
+                   double usual_high)
+{
+  const double real = in_si(model, dimension, value);
+  if (real >= low && real <= high) return false;
+  Text words = {0}, band[2] = {{0}, {0}};
+  quantity_describe(real, unit, &words);
+  quantity_describe(low, unit, &band[0]);
+  quantity_describe(high, unit, &band[1]);
+  Text hint = {0};
+  suggest(model, place, dimension, candidates, count, usual_low, usual_high, &hint);
+  const char *given = place->kind == NODE_SCALAR ? place->text : "it";
+  const bool told = !strcmp(given, text_words(&words)); /* in the deck already as it is said here */
+  warn(model, place, "%s: %s%s%s; materials like it have %s to %s%s", what, told ? "" : given, told ? "" : " is ",
+       text_words(&words), text_words(&band[0]), text_words(&band[1]), text_words(&hint));
+  text_free(&words);
+  text_free(&band[0]);
+  text_free(&band[1]);
+  text_free(&hint);
+  return true;
+}
+
+static bool called_concrete(const Material *m)
+{
+  static const char *const words[] = {"concrete", "beton", "hormig", "mortar", "cemento"};
+  for (size_t k = 0; k < sizeof words / sizeof *words; ++k)
+    for (const char *c = m->name; *c; ++c)
+      if (!strncasecmp(c, words[k], strlen(words[k]))) return true;
+  return false;
+}
+
+/** True if a material is called concrete, or is as stiff, heavy and strong as concrete is. */
+static bool like_concrete(const breccia_model *model, const Material *m)
+{
+  if (called_concrete(m)) return true;
+  const double young = in_si(model, "stress", material_young(m)), density = in_si(model, "density", m->density);
+  const double strength = in_si(model, "stress", parameter(model, m, "tensile strength"));
+  return young > 15e9 && young < 50e9 && density > 2000 && density < 2600 && strength > 1e6 && strength < 6e6;
+}
+
+/** Fracture energies of concrete are 73 f_cm^0.18 N/m (fib Model Code 2010, 5.1.5.2; f_cm in MPa): 120 to 160 N/m; measured ones of
+ *  mortar and of large aggregates reach from 40 to 400. */
+static void check_fracture_energy(breccia_model *model, const Material *m, double energy, const Node *place)
+{
+  const double real = in_si(model, "fracture energy", energy);
+  if (isnan(real) || beyond(model, place, "fracture energy", "fracture energy", energy, 0.1, 1e6, "J/m2",
+                            fracture_energies, 2, 1, 1e4))
+    return;
+  if (like_concrete(model, m) && (real < 40 || real > 400))
+    warn(model, place, "fracture energy: %.4g N/m is %s for concrete, which has 60 to 200 N/m", real,
+         real < 40 ? "little" : "much");
+}
+
+static void check_material(breccia_model *model, int k)
+{
+  const Material *m = &model->domain.materials[k];
+  const MaterialSpec *spec = spec_of(model, m);
+  if (!spec) return;
+  const Node *stiff = section_place(spec, "Young modulus");
+  if (stiff == spec->head.node) stiff = section_place(spec, "bulk modulus");
+  if (stiff == spec->head.node) stiff = section_place(spec, "shear modulus");
+  const bool young_given = !isnan(parameter(model, m, "Young modulus"));
+  bool odd = beyond(model, section_place(spec, "density"), "density", "density", m->density, 100, 25000, "kg/m3",
+                    densities, 2, 300, 20000);
+  const bool concrete = called_concrete(m); /* from lean mortar to the strongest */
+  odd |= beyond(model, stiff, young_given ? "Young modulus" : "Young's modulus that follows", "stress",
+                material_young(m), concrete ? 1e9 : 1e4, concrete ? 2e11 : 1e12, "Pa", stiffnesses, 4,
+                concrete ? 5e9 : 1e6, concrete ? 1e11 : 5e11);
+  const double speed = wave_speed(model, m), strength = parameter(model, m, "tensile strength");
+  if (!odd && !(speed >= 10 && speed <= 10000 * 1.5))
+    warn(model, spec->head.node,
+         "material '%s': waves would run at %.3g m/s; in known materials they run at 10 to 15000 m/s: look at "
+         "density and stiffness",
+         m->name, speed);
+  if (strength > material_young(m) / 20)
+    warn(model, section_place(spec, "tensile strength"),
+         "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
+         strength / material_young(m), 100 * strength / material_young(m));
+  const FailureSpec *failure = model->spec->failure;
+  check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_place(spec, "fracture energy"));
+  if (failure && !isnan(failure->fracture_energy))
+    check_fracture_energy(model, m, failure->fracture_energy, section_place(failure, "fracture energy"));
+  const bool softens = !m->law->uniaxial && !isnan(parameter(model, m, "fracture energy"));
+  if (softens && !isfinite(model->domain.failure.limit[k]))
+    warn(model, section_place(spec, "model"),
+         "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "
+         "holds cracks together; add 'failure: {critical stretch: ...}'",
+         m->name, m->law->name);
+}
+
+/** Of most of the body. */
+static const Material *main_material(const breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  int most = 0;
+  double largest = -1;
+  for (int k = 0; k < d->material_count; ++k) {
+    double volume = 0;
+    for (int64_t n = 0; n < d->particles->count; ++n) {
+      const int32_t place = d->particles->place_of[n];
+      if (d->material[place / SLICE] == k) volume += d->particles->volume[place];
+    }
+    if (volume > largest) {
+      largest = volume;
+      most = k;
+    }
+  }
+  return &d->materials[most];
+}
+
+static void describe_material(const breccia_model *model, int k, Text *text)
+{
+  const Domain *d = &model->domain;
+  const Material *m = &d->materials[k];
+  const double young = in_si(model, "stress", material_young(m)), limit = d->failure.limit[k];
+  const double strength = in_si(model, "stress", parameter(model, m, "tensile strength"));
+  const double energy = in_si(model, "fracture energy", parameter(model, m, "fracture energy"));
+  const double horizon = in_si(model, "length", d->family.horizon);
+  text_add(text, "  %s: ", m->name);
+  quantity_describe(in_si(model, "density", m->density), "kg/m3", text);
+  text_add(text, ", E ");
+  quantity_describe(young, "Pa", text);
+  text_add(text, ", waves ");
+  quantity_describe(wave_speed(model, m), "m/s", text);
+  if (energy > 0) {
+    text_add(text, ", fracture energy ");
+    quantity_describe(energy, "J/m2", text);
+  }
+  if (energy > 0 && strength > 0) {
+    const double length = young * energy / (strength * strength);
+    text_add(text, ", E G_F / f_t^2 ");
+    quantity_describe(length, "m", text);
+    text_add(text, " (%.2g horizons)", length / horizon);
+  } else if (isfinite(limit)) {
+    text_add(text, ", bonds break at a stretch of %.3g (elastically ", limit);
+    quantity_describe(young * limit, "Pa", text);
+    text_add(text, ")");
+  }
+  text_add(text, "\n");
+}
+
+/* ---- the body and its waves ---- */
+
+typedef struct Extent { /* SI */
+  double size[3], largest, smallest, mass, speed, crossing;
+} Extent;
+
+static Extent extent_of(const breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  Extent e = {.smallest = INFINITY};
+  double low[3], high[3];
+  particles_bounds(d->particles, low, high);
+  for (int k = 0; k < d->body.dimensions; ++k) {
+    e.size[k] = in_si(model, "length", high[k] - low[k] + d->body.largest_spacing);
+    e.largest = fmax(e.largest, e.size[k]);
+    e.smallest = fmin(e.smallest, e.size[k]);
+  }
+  double mass = 0;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    const int32_t place = d->particles->place_of[n];
+    mass += d->particles->density[place] * d->particles->volume[place];
+  }
+  e.mass = in_si(model, "density", mass) * pow(in_si(model, "length", 1), 3);
+  e.speed = wave_speed(model, main_material(model));
+  e.crossing = e.largest / e.speed;
+  return e;
+}
+
+static void describe_body(const breccia_model *model, const Extent *e, Text *text)
+{
+  const int dimensions = model->domain.body.dimensions;
+  for (int k = 0; k < dimensions; ++k) {
+    text_add(text, "%s", k ? " x " : "");
+    quantity_describe(e->size[k], "m", text);
+  }
+  text_add(text, ", ");
+  quantity_describe(e->mass, "kg", text);
+  text_add(text, "; a wave travels through in ");
+  quantity_describe(e->crossing, "s", text);
+}
+
+void plausibility_in_short(const breccia_model *model, Text *text)
+{
+  const Extent e = extent_of(model);
+  text_add(text, "body: ");
+  describe_body(model, &e, text);
+}
+
+/** The lowest frequencies of a free body, estimated as a bar's: along it wave speed / (2 largest size), and bending as a beam of
+ *  rectangular section, 1.03 speed thickness / length^2 (4.730^2 / (2 pi sqrt 12)), both with the speed of bars. Supports change
+ *  them: a beam on two supports bends at 0.44 of the second, a cantilever at 0.16. */
+static void describe_frequencies(const breccia_model *model, const Extent *e, Text *text)
+{
+  const Material *m = main_material(model);
+  const double bar = sqrt(in_si(model, "stress", material_young(m)) / in_si(model, "density", m->density));
+  const double along = bar / (2 * e->largest), bending = 1.028 * bar * e->smallest / (e->largest * e->largest);
+  text_add(text, "  lowest frequency of the free body: about ");
+  quantity_describe(along, "Hz", text);
+  if (model->domain.body.dimensions > 1 && bending < along) {
+    text_add(text, " along, ");
+    quantity_describe(bending, "Hz", text);
+    text_add(text, " in bending across its thinnest side");
+  }
+  text_add(text, "\n");
+}
+
+/* ---- loads ---- */
+
+static bool has_kind(const LoadSpec *l, const char *kind)
+{
+  const char *dimension;
+  return !strcmp(load_kind(l, &dimension), kind);
+}
+
+/** Time at which a load reaches its largest value, in the deck's units; 0: at once. */
+static double rise_time(const HistorySpec *history)
+{
+  if (!history || history->constant) return 0;
+  if (!isnan(history->ramp)) return history->ramp;
+  if (history->sine) return 0.25 / history->sine->frequency;
+  const double *row = history->table.values;
+  int largest = 0;
+  for (int k = 1; k < history->table.count; ++k)
+    if (fabs(row[2 * k + 1]) > fabs(row[2 * largest + 1]) * (1 + 1e-12)) largest = k;
+  return history->table.count ? fmax(0, row[2 * largest]) : 0;
+}
+
+static void describe_load(const breccia_model *model, const LoadSpec *l, const Extent *e, Text *text)
+{
+  const double magnitude = load_magnitude(l);
+  if (magnitude == 0) return; /* a support */
+  if (l->name)
+    text_add(text, "  load '%s': ", l->name);
+  else
+    text_add(text, "  load in line %d: ", l->head.node->line);
+  const double rise = in_si(model, "time", rise_time(l->history));
+  if (rise > 0) {
+    text_add(text, "grows over ");
+    quantity_describe(rise, "s", text);
+    text_add(text, ", %.3g travel times of a wave: %s", rise / e->crossing,
+             rise < e->crossing        ? "a blow"
+             : rise < 10 * e->crossing ? "waves will show"
+                                       : "slow");
+  } else
+    text_add(text, "acts in full from the start");
+  if (has_kind(l, "velocity")) {
+    const Material *m = main_material(model);
+    const double speed = in_si(model, "velocity", magnitude);
+    text_add(text, "; a wave behind ");
+    quantity_describe(speed, "m/s", text);
+    text_add(text, " carries ");
+    quantity_describe(speed * e->speed * in_si(model, "density", m->density), "Pa", text);
+  }
+  text_add(text, "\n");
+}
+
+/** A prescribed displacement that is there at once gives its particles a speed of one displacement per step. */
+static void check_jump(breccia_model *model, const LoadSpec *l)
+{
+  const double start = load_magnitude(l) * fabs(history_factor(l->history, 0));
+  if (!has_kind(l, "displacement") || start == 0) return;
+  char length[32];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  warn(model, section_place(l, l->along ? "along" : "displacement"),
+       "displacement: the particles jump by %.4g %s in the first step; let it grow, like 'history: {ramp to: ...}'",
+       start, length);
+}
+
+/** Bonds near particles that are moved carry most, and break there first. */
+static void check_grips(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const FailureSpec *failure = model->spec->failure; /* laws that soften are not held by it */
+  if (!failure || failure->near_grips || (isnan(failure->critical_stretch) && isnan(failure->fracture_energy))) return;
+  for (int k = 0; k < model->loading.count; ++k) {
+    const LoadSpec *l = model->loading.loads[k].spec;
+    if (!(has_kind(l, "displacement") || has_kind(l, "velocity")) || load_magnitude(l) == 0) continue;
+    const Selection *held = &model->loading.loads[k].selection;
+    bool breaks = false;
+    for (int64_t n = 0; n < held->count; ++n)
+      breaks |= isfinite(d->failure.limit[d->material[held->places[n] / SLICE]]);
+    if (!breaks) continue;
+    warn(model, l->head.node,
+         "load: bonds may break at the grips, within a horizon of the particles that it moves, and let the body go; "
+         "'failure: {..., near grips: hold}' keeps them, 'near grips: break' says that it is meant");
+    return;
+  }
+}
+
+void plausibility_warn(breccia_model *model)
+{
+  for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
+  for (int k = 0; k < model->loading.count; ++k) check_jump(model, model->loading.loads[k].spec);
+  check_grips(model);
+}
+
+void plausibility_describe(const breccia_model *model, Text *text)
+{
+  const Extent e = extent_of(model);
+  text_add(text, "in SI units:\n");
+  for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
+  describe_frequencies(model, &e, text);
+  for (int k = 0; k < model->loading.count; ++k) describe_load(model, model->loading.loads[k].spec, &e, text);
+  const double time = in_si(model, "time", (double)model->solver.steps * model->solver.time_step);
+  text_add(text, "  the run: ");
+  quantity_describe(time, "s", text);
+  text_add(text, ", %.3g travel times of a wave", time / e.crossing);
+}
