@@ -325,6 +325,51 @@ double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int
   return stress;
 }
 
+double points_softness(const Points *points, int64_t place)
+{
+  enum { MOST_VALUES = 256 };
+  const int64_t slice = place / SLICE;
+  const Material *m = &points->materials[points->material[slice]];
+  if (m->remote || m->law->linear || m->history_values > MOST_VALUES) return 1;
+  double strain[6], before[6], after[6], scratch[MOST_VALUES], square = 0, mean = 0, stiffest = 0;
+  for (int k = 0; k < 6; ++k) {
+    before[k] = points->stress[k][place];
+    square += before[k] * before[k] * (k < 3 ? 1 : 2);
+  }
+  for (int k = 0; k < 3; ++k) mean += before[k] / 3;
+  breccia_batch batch = {.count = 1,
+                         .committed =
+                             points->committed + points->history_start[slice] + place % SLICE * m->history_values,
+                         .trial = scratch,
+                         .elastic_stage = points->elastic_stage};
+  /* A small step back and one ahead, elastically: damage is felt both ways, yielding one way. */
+  for (int side = -1; side <= 1; side += 2) {
+    const double step = side * 1e-3;
+    double product = 0;
+    for (int k = 0; k < 6; ++k) {
+      const double deviator = k < 3 ? before[k] - mean : before[k];
+      strain[k] = points->strain[k][place] +
+                  step * (deviator / m->shear * (k < 3 ? 0.5 : 1) + (k < 3 ? mean / (3 * m->bulk) : 0));
+      batch.strain[k] = &strain[k];
+      batch.stress[k] = &after[k];
+    }
+    if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
+    if (m->law->update(m->constants, &batch) >= 0) continue;
+    for (int k = 0; k < 6; ++k) product += before[k] * (after[k] - before[k]) * (k < 3 ? 1 : 2);
+    if (square > 0) stiffest = fmax(stiffest, product / (step * square));
+  }
+  return stiffest > 0 ? 1 / fmin(1, stiffest) : 1;
+}
+
+double points_bond_elastic_share(const Points *points, int64_t slice, int64_t slot, int lane, double strain)
+{
+  if (points->where != POINTS_ON_BONDS || strain == 0) return 1;
+  const double back = 1e-3, stress = points_bond_stress(points, slice, slot, lane, false, strain);
+  const double drop = stress - points_bond_stress(points, slice, slot, lane, false, strain - back * strain);
+  const double share = back * stress / drop;
+  return share > 0 ? fmin(1, share) : stress == 0 ? 0 : 1;
+}
+
 double points_bond_history(const Points *points, int64_t place, int k)
 {
   const Family *f = points->family;

@@ -78,6 +78,13 @@ int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int l
 /** Stress of one bond at a strain by the law of its own end or of the other (of stored slots); histories stay as they are. */
 double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain);
 
+/** Share of the elastic energy of a stress that a point on a particle would give back, over that of an undamaged one: 1 where it
+ *  unloads with its first moduli, more where damage has made it softer. Laws in servers are taken to unload elastically. */
+double points_softness(const Points *points, int64_t place);
+
+/** Share of the stretch of a bond that is elastic, 0 to 1: stress over strain, seen over the slope at which the law unloads. */
+double points_bond_elastic_share(const Points *points, int64_t slice, int64_t slot, int lane, double strain);
+
 /** Mean over the intact bonds of a place of history number k of its own law, as committed. */
 double points_bond_history(const Points *points, int64_t place, int k);
 

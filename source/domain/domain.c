@@ -198,86 +198,31 @@ int domain_observe(Domain *d, Error *error)
   return BRECCIA_OK;
 }
 
-int domain_record(Domain *d, const BrokenBond *bond)
+bool domain_is_elastic(const Domain *d)
 {
-  if (d->broken_count == d->broken_capacity) {
-    int64_t capacity = d->broken_capacity ? 2 * d->broken_capacity : 256;
-    BrokenBond *grown = realloc(d->broken, sizeof(BrokenBond) * (size_t)capacity);
-    if (!grown) return BRECCIA_FAILURE;
-    d->broken = grown;
-    d->broken_capacity = capacity;
-  }
-  d->broken[d->broken_count++] = *bond;
-  return BRECCIA_OK;
+  for (int k = 0; k < d->material_count; ++k)
+    if (!d->materials[k].law->linear) return false;
+  return true;
 }
 
-/** Work that the bond could still have done: half of force times elongation, as of a linear spring. */
-static double released_energy(const Domain *d, int64_t slice, int64_t slot, int lane, const Bond *bond)
+static void store_block(void *context, int64_t b)
 {
-  const Particles *p = d->particles;
-  double force[3], y[3], length = 0, along = 0;
-  d->type->bond_force(d->formulation, slice, slot, lane, force);
-  for (int k = 0; k < 3; ++k) {
-    y[k] = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][slice * SLICE + lane];
-    length += y[k] * y[k];
-    along += force[k] * y[k];
+  const Domain *d = context;
+  d->block_sum[b] = 0;
+  for (int64_t place = d->blocks[b].first * SLICE; place < d->blocks[b].last * SLICE; ++place) {
+    StoredEnergy energy;
+    if (d->particles->number[place] < 0) continue;
+    d->type->stored_energy(d->formulation, place, 0, &energy);
+    d->block_sum[b] += energy.stored;
   }
-  length = sqrt(length);
-  return 0.5 * along / length * (length - bond->length) * p->volume[slice * SLICE + lane] * p->volume[bond->neighbour];
 }
 
-/** Judges the bonds of the suspect slices in order; @return true if any broke */
-static bool judge(Domain *d, int64_t step, double time)
+double domain_stored_energy(Domain *d)
 {
-  const Family *f = &d->family;
-  int64_t before = d->broken_count;
-  for (int64_t s = 0; s < d->particles->slices; ++s) {
-    if (!d->suspects[s]) continue;
-    for (int64_t slot = f->first[s]; slot < f->first[s + 1]; ++slot)
-      for (int lane = 0; lane < SLICE; ++lane) {
-        if (!(f->intact[slot] >> lane & 1)) continue;
-        Bond bond = family_bond(f, s, slot, lane);
-        int32_t place = (int32_t)(s * SLICE + lane), a = d->particles->number[place];
-        const uint8_t *gave_up = d->points.gave_up;
-        if (!(gave_up && gave_up[place]) &&
-            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)))
-          continue;
-        int32_t b = d->particles->number[bond.neighbour];
-        d->fracture_energy += released_energy(d, s, slot, lane, &bond);
-        family_break(&d->family, place, bond.neighbour);
-        contact_bond_broke(&d->contact, place, bond.neighbour);
-        d->suspects[bond.neighbour / SLICE] = 1; /* so that its family is renewed */
-        BrokenBond event = {step, time, a < b ? a : b, a < b ? b : a};
-        if (domain_record(d, &event)) return true;
-      }
-  }
-  return d->broken_count > before;
-}
-
-void domain_break(Domain *d, int64_t step, double time, double motion)
-{
-  if (d->contact.spec) {
-    TEAM_SINGLE contact_follow(&d->contact, motion);
-  }
-  if (!d->failure.criterion && !d->points.gave_up) return;
-  TEAM_SINGLE d->motion += motion;
-  TEAM_FOR (b, d->block_count)
-    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
-      d->suspects[s] = 0;
-      if (d->failure.criterion && d->motion >= d->look_again[s])
-        d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);
-      for (int lane = 0; d->points.gave_up && lane < SLICE; ++lane)
-        if (d->points.gave_up[s * SLICE + lane]) d->suspects[s] = 1;
-    }
-  TEAM_SINGLE
-  {
-    int any = 0;
-    for (int64_t s = 0; s < d->particles->slices; ++s) any |= d->suspects[s];
-    if (any && judge(d, step, time))
-      for (int64_t s = 0; s < d->particles->slices; ++s)
-        if (d->suspects[s] && d->type->renew) d->type->renew(d->formulation, s);
-    if (any && d->points.gave_up) memset(d->points.gave_up, 0, (size_t)d->points.places);
-  }
+  team_each(d->block_count, store_block, d);
+  double sum = 0;
+  for (int64_t b = 0; b < d->block_count; ++b) sum += d->block_sum[b]; /* in order */
+  return sum;
 }
 
 double domain_damage(const Domain *d, int32_t place)

@@ -23,6 +23,21 @@ typedef struct BrokenBond {
   int32_t a, b; /* numbers, a < b */
 } BrokenBond;
 
+/** A step under way. */
+typedef struct Moment {
+  int64_t step;     /* its number */
+  double time;      /* at its end */
+  double time_step; /* displacement increments are this times the velocities held */
+  double motion;    /* largest displacement increment of any particle */
+} Moment;
+
+/** A place whose family has lost bonds in the step under way. */
+typedef struct Torn {
+  int32_t place;
+  StoredEnergy before; /* they broke */
+  double released;     /* by the place */
+} Torn;
+
 typedef struct Domain {
   Body body;
   Particles *particles; /* the body's */
@@ -48,7 +63,15 @@ typedef struct Domain {
   double motion;         /* sum over steps of the largest displacement increment of any particle */
   BrokenBond *broken;    /* in the order in which they broke */
   int64_t broken_count, broken_capacity;
-  double fracture_energy;
+  double fracture_energy; /* that bonds had received, and neither gave back nor dissipated, when they broke */
+  Torn *torn;
+  int64_t torn_count, torn_capacity;
+  uint8_t *is_torn;       /* [places] */
+  int64_t broken_before;  /* bonds, at the beginning of the step under way */
+  double fracture_before; /* energy, then */
+  double motion_before;
+  bool any_suspect;      /* in the step under way */
+  bool out_of_memory;    /* while bonds broke */
   double force_sum;      /* of all internal force components' magnitudes, as of the last domain_forces */
   double *block_sum;     /* [blocks] */
   int64_t *block_failed; /* [blocks] */
@@ -77,15 +100,27 @@ void domain_show_states(Domain *domain);
  *  states follow from them, to the same bits as in the run that left them. */
 void domain_resume(Domain *domain);
 
-/** Breaks the bonds that the criterion says, by all threads, and renews the families concerned.
- *  @param[in] motion  largest displacement increment of any particle in this step */
-void domain_break(Domain *domain, int64_t step, double time, double motion);
+/** Breaks the bonds that the criterion says, by all threads, and renews the families concerned. Displacements are those at the end of
+ *  the step under way, strains and stresses those at its beginning. */
+void domain_break(Domain *domain, const Moment *moment);
+
+/** After the forces of the step, by all threads: books what its broken bonds had received. */
+void domain_book(Domain *domain, double time_step);
+
+/** Takes back what domain_break did in a step that failed; displacements are those of its beginning again. */
+void domain_mend(Domain *domain);
 
 /** Lets no bond break between particles that are marked or have an intact bond to one that is.
  *  @param[in] held  [places] 1 where a load moves the particle */
 int domain_hold_grips(Domain *domain, const uint8_t *held, Error *error);
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
+
+/** Energy that unloading would give back, of all particles [energy]. */
+double domain_stored_energy(Domain *domain);
+
+/** True if no law dissipates, so that bonds give back what they do not lose by breaking. */
+bool domain_is_elastic(const Domain *domain);
 
 /** Strain and stress at a place as the law takes and gives them; where laws act on bonds, Green-Lagrange strain of the family and
  *  virial stress of the bonds. */

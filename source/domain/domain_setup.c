@@ -174,9 +174,10 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   Particles *p = d->particles;
   d->material = memory_zeroed((size_t)p->slices, sizeof(int32_t), "materials of slices", error);
   d->family_volume = memory_zeroed((size_t)p->places, sizeof(double), "family volumes", error);
+  d->is_torn = memory_zeroed((size_t)p->places, 1, "torn families", error);
   d->suspects = memory_zeroed((size_t)p->slices, 1, "suspect slices", error);
   d->look_again = memory_zeroed((size_t)p->slices, sizeof(double), "suspect slices", error);
-  if (!d->material || !d->family_volume || !d->suspects || !d->look_again) return BRECCIA_FAILURE;
+  if (!d->material || !d->family_volume || !d->is_torn || !d->suspects || !d->look_again) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < p->slices; ++s) {
     const SectionHead *named = section_find(spec->materials, d->body.blocks[p->block[s]]->material);
     while (strcmp(d->materials[d->material[s]].name, named->name)) ++d->material[s];
@@ -316,5 +317,7 @@ void domain_destroy(Domain *d)
   free(d->failure.limit);
   free(d->failure.near_grips);
   free(d->broken);
+  free(d->torn);
+  free(d->is_torn);
   *d = (Domain){0};
 }

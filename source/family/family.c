@@ -295,30 +295,41 @@ void family_destroy(Family *family)
   *family = (Family){0};
 }
 
-/** Slot in which place a has place b as its neighbour, or -1. */
-static int64_t find_slot(const Family *family, int32_t a, int32_t b)
+/** Slot in which place a has place b as its neighbour, by an intact bond or by a broken one, or -1. */
+static int64_t find_slot(const Family *family, int32_t a, int32_t b, unsigned intact)
 {
   int64_t slice = a / SLICE;
   int lane = a % SLICE;
   for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot)
-    if (family->intact[slot] >> lane & 1 && family_bond(family, slice, slot, lane).neighbour == b) return slot;
+    if ((family->intact[slot] >> lane & 1u) == intact && family_bond(family, slice, slot, lane).neighbour == b)
+      return slot;
   return -1;
 }
 
 bool family_joins(const Family *family, int32_t a, int32_t b)
 {
-  return find_slot(family, a, b) >= 0;
+  return find_slot(family, a, b, 1) >= 0;
+}
+
+static bool change_bond(Family *family, int32_t a, int32_t b, unsigned intact)
+{
+  const int64_t there = find_slot(family, a, b, intact), back = find_slot(family, b, a, intact);
+  if (there < 0 || back < 0) return false;
+  family->intact[there] = (uint8_t)(family->intact[there] ^ 1u << (a % SLICE));
+  family->intact[back] = (uint8_t)(family->intact[back] ^ 1u << (b % SLICE));
+  lattice_rows_mark(family, a / SLICE);
+  lattice_rows_mark(family, b / SLICE);
+  return true;
 }
 
 bool family_break(Family *family, int32_t a, int32_t b)
 {
-  int64_t there = find_slot(family, a, b), back = find_slot(family, b, a);
-  if (there < 0 || back < 0) return false;
-  family->intact[there] = (uint8_t)(family->intact[there] & ~(1u << (a % SLICE)));
-  family->intact[back] = (uint8_t)(family->intact[back] & ~(1u << (b % SLICE)));
-  lattice_rows_mark(family, a / SLICE);
-  lattice_rows_mark(family, b / SLICE);
-  return true;
+  return change_bond(family, a, b, 1);
+}
+
+bool family_mend(Family *family, int32_t a, int32_t b)
+{
+  return change_bond(family, a, b, 0);
 }
 
 int family_count(const Family *family, int32_t place)

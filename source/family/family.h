@@ -97,6 +97,9 @@ static inline int family_row(const Family *family, int64_t slot)
 /** Breaks the bond between two places on both sides. @return false if there is no intact one */
 bool family_break(Family *family, int32_t a, int32_t b);
 
+/** Makes a broken bond between two places whole again, on both sides. @return false if there was none */
+bool family_mend(Family *family, int32_t a, int32_t b);
+
 /** @return whether an intact bond joins two places */
 bool family_joins(const Family *family, int32_t a, int32_t b);
 

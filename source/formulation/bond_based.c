@@ -97,6 +97,43 @@ static void bond_force(const void *formulation, int64_t slice, int64_t slot, int
   for (int k = 0; k < 3; ++k) force[k] = pull * bond.weight / b->particles->volume[bond.neighbour] * y[k];
 }
 
+static void bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
+                        StoredEnergy *energy)
+{
+  const BondBased *b = formulation;
+  const Particles *p = b->particles;
+  const int64_t place = slice * SLICE + lane;
+  const Bond bond = family_bond(b->family, slice, slot, lane);
+  double y[3], square = 0, along = 0;
+  const double pull = bond_pull(b, slice, slot, lane, &bond, y) * bond.weight * p->volume[place];
+  for (int k = 0; k < 3; ++k) {
+    square += y[k] * y[k];
+    along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+  }
+  const double length = sqrt(square), stretch = (length - bond.length) / bond.length;
+  const double share = points_bond_elastic_share(b->points, slice, slot, lane, stretch);
+  *energy =
+      (StoredEnergy){.stored = 0.5 * share * pull * length * (length - bond.length), .half_work = 0.5 * pull * along};
+  energy->beside = energy->stored;
+}
+
+/** Half of what the bonds of a place store; the other half is that of their other ends. */
+static void stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
+{
+  const BondBased *b = formulation;
+  const Family *f = b->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  *energy = (StoredEnergy){0};
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    StoredEnergy bond;
+    bond_energy(formulation, slice, slot, lane, time, &bond);
+    energy->stored += bond.stored / 2;
+    energy->half_work += bond.half_work / 2;
+  }
+}
+
 static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const BondBased *b = formulation;
@@ -170,6 +207,8 @@ const FormulationType formulation_bond_based = {
     .renew = renew,
     .show_displacements = show_displacements,
     .resist = resist,
+    .stored_energy = stored_energy,
+    .bond_energy = bond_energy,
     .bond_force = bond_force,
     .gradient = gradient,
     .stress = stress,

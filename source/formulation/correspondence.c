@@ -338,7 +338,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const do
   const SliceShape *shape = shape_of_slice(&c->shapes, place / SLICE);
   Lanes s[6], g[9], p[9], inverse[6], hold[6];
   for (int k = 0; k < 6; ++k) {
-    s[k] = lanes_load(c->points->stress[k] + place);
+    s[k] = lanes_load(c->points->stress[k] + place) * lanes_load(shape->share + place % SLICE);
     inverse[k] = lanes_load(shape->inverse[k] + place % SLICE);
   }
   hold[0] = lanes_set(c->uniform);
@@ -440,6 +440,7 @@ const FormulationType formulation_correspondence = {
     .source = "Silling et al. 2007; Silling 2017 and Wan et al. 2019 for the control",
     .maturity = "verified against patch tests and finite elements",
     .row_sums = true,
+    .may_stiffen = true,
     .create = correspondence_create,
     .destroy = correspondence_destroy,
     .renew = correspondence_renew,
@@ -449,6 +450,7 @@ const FormulationType formulation_correspondence = {
     .sum_states = sum_states,
     .resist = resist,
     .finish = correspondence_finish,
+    .stored_energy = correspondence_stored_energy,
     .bond_force = correspondence_bond_force,
     .gradient = correspondence_gradient,
     .characteristic_length = correspondence_characteristic_length,

@@ -82,6 +82,7 @@ size_t correspondence_bytes(const void *formulation);
 
 /* Single bonds, and particles with too few of them (correspondence_bonds.c). */
 void correspondence_finish(void *formulation);
+void correspondence_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 void correspondence_bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
 
 /** Width of the band of particles whose families a plane crack divides: all of them follow their law to its end as it opens. A bar pulled

@@ -2,20 +2,27 @@
 
 #include <math.h>
 
-/** What a particle without a strain exerts through one of its bonds: half of a bond-based spring, instead of the control that
- *  the sweeps have added for it. */
-static void axial_state(const Correspondence *c, int64_t slice, const Bond *bond, int lane, double t[3])
+/** A particle without a strain pulls at its bonds as half of a bond-based spring does.
+ *  @param[out] y  the bond as deformed
+ *  @return the pull per volume squared and length of y */
+static double axial_pull(const Correspondence *c, int64_t place, const Bond *bond, double y[3])
 {
-  int64_t place = slice * SLICE + lane;
-  const Material *m = &c->points->materials[c->points->material[slice]];
-  double y[3], length = 0;
+  const Material *m = &c->points->materials[c->points->material[place / SLICE]];
+  double length = 0;
   for (int k = 0; k < 3; ++k) {
     y[k] = bond->xi[k] + c->particles->displacement[k][bond->neighbour] - c->particles->displacement[k][place];
     length += y[k] * y[k];
   }
   length = sqrt(length);
-  double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
-  double pull = length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
+  const double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
+  return length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
+}
+
+/** The same as a force, less the control that the sweeps have added for this particle. */
+static void axial_state(const Correspondence *c, int64_t slice, const Bond *bond, int lane, double t[3])
+{
+  const int64_t place = slice * SLICE + lane;
+  double y[3], pull = axial_pull(c, place, bond, y);
   double omega = bond->weight / c->particles->volume[bond->neighbour];
   double hold = c->control == CONTROL_TENSOR ? 0 : hold_component(c, place, XX);
   for (int k = 0; k < 3; ++k) t[k] = pull * y[k] - omega * hold * (y[k] - bond->xi[k]);
@@ -68,4 +75,125 @@ void correspondence_bond_force(const void *formulation, int64_t slice, int64_t s
     axial_state(c, ends[e] / SLICE, &seen, (int)(ends[e] % SLICE), t);
     for (int k = 0; k < 3; ++k) force[k] += e ? -t[k] : t[k];
   }
+}
+
+/* ---- energy ---- */
+
+/** Sums over the bonds of a place, of elongations eta and of those before the last step. */
+typedef struct Sums {
+  double now[9], before[9];    /* sum w eta (x) xi */
+  double square[9], across[9]; /* sum w eta (x) eta, sum w eta (x) eta before */
+} Sums;
+
+static void sum_bonds(const Correspondence *c, int64_t place, double time, Sums *sums)
+{
+  const Particles *p = c->particles;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  *sums = (Sums){.now = {0}};
+  for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
+    if (!(c->family->intact[slot] >> lane & 1)) continue;
+    const Bond bond = family_bond(c->family, slice, slot, lane);
+    double eta[3], before[3];
+    for (int k = 0; k < 3; ++k) {
+      eta[k] = p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      before[k] = eta[k] - time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+    }
+    for (int k = 0; k < 9; ++k) {
+      sums->now[k] += bond.weight * eta[k / 3] * bond.xi[k % 3];
+      sums->before[k] += bond.weight * before[k / 3] * bond.xi[k % 3];
+      sums->square[k] += bond.weight * eta[k / 3] * eta[k % 3];
+      sums->across[k] += bond.weight * eta[k / 3] * before[k % 3];
+    }
+  }
+}
+
+/** G = (sum w eta (x) xi) K^-1, and the strain that follows from it. */
+static void strain_of(const Correspondence *c, int64_t place, const double moved[9], double g[9], double strain[6])
+{
+  const SliceShape *shape = shape_of_slice(&c->shapes, place / SLICE);
+  for (int k = 0; k < 9; ++k) {
+    g[k] = 0;
+    for (int j = 0; j < 3; ++j)
+      g[k] += moved[k / 3 * 3 + j] * shape->inverse[symmetric_place[3 * j + k % 3]][place % SLICE];
+  }
+  for (int k = 0; k < 6; ++k) {
+    const int r = symmetric_row[k], s = symmetric_column[k];
+    strain[k] = g[3 * r + s] + g[3 * s + r];
+    if (c->finite) strain[k] += g[r] * g[s] + g[3 + r] * g[3 + s] + g[6 + r] * g[6 + s];
+    if (k < 3) strain[k] /= 2;
+  }
+}
+
+/** Sum of C_rs (a_rs - sum_k g_rk moved_sk): of C z . z over the bonds, with z = eta - G xi. */
+static double held(const Correspondence *c, int64_t place, const double a[9], const double g[9], const double moved[9])
+{
+  double sum = 0;
+  for (int k = 0; k < 9; ++k) {
+    double z = a[k];
+    for (int j = 0; j < 3; ++j) z -= g[k / 3 * 3 + j] * moved[k % 3 * 3 + j];
+    sum += hold_component(c, place, symmetric_place[k]) * z;
+  }
+  return sum;
+}
+
+static void sum_axial_energy(const Correspondence *c, int64_t place, double time, StoredEnergy *energy)
+{
+  const Particles *p = c->particles;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
+    if (!(c->family->intact[slot] >> lane & 1)) continue;
+    const Bond bond = family_bond(c->family, slice, slot, lane);
+    double y[3], square = 0, along = 0;
+    const double pull = axial_pull(c, place, &bond, y) * p->volume[place] * p->volume[bond.neighbour];
+    for (int k = 0; k < 3; ++k) {
+      square += y[k] * y[k];
+      along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+    }
+    energy->beside += 0.5 * pull * sqrt(square) * (sqrt(square) - bond.length);
+    energy->half_work += 0.5 * pull * along;
+  }
+  energy->stored = energy->beside;
+}
+
+void correspondence_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
+{
+  const Correspondence *c = formulation;
+  const Points *points = c->points;
+  const int64_t slice = place / SLICE;
+  *energy = (StoredEnergy){0};
+  if (c->shapes.mode[place] == SHAPE_AXIAL) sum_axial_energy(c, place, time, energy);
+  if (c->shapes.mode[place] == SHAPE_AXIAL || c->shapes.mode[place] == SHAPE_FREE) return;
+  const Material *m = &points->materials[points->material[slice]];
+  const double volume = c->particles->volume[place];
+  const double share = shape_of_slice(&c->shapes, slice)->share[place % SLICE];
+  Sums sums;
+  double g[9], g_before[9], strain_before[6], change[6], trace = 0, mean = 0, work = 0;
+  double *strain = energy->strain, *stress = energy->stress;
+  sum_bonds(c, place, time, &sums);
+  strain_of(c, place, sums.now, g, strain);
+  strain_of(c, place, sums.before, g_before, strain_before);
+  if (points->space == SPACE_PLANE_STRESS) strain[ZZ] = strain_before[ZZ] = points->strain[ZZ][place];
+  for (int k = 0; k < 6; ++k) change[k] = strain[k] - points->strain[k][place];
+  if (points->space == SPACE_PLANE_STRESS) /* such that the stress zz stays */
+    change[ZZ] = -(m->bulk - 2 * m->shear / 3) / (m->bulk + 4 * m->shear / 3) * (change[XX] + change[YY]);
+  for (int k = 0; k < 3; ++k) trace += change[k];
+  for (int k = 0; k < 6; ++k) {
+    stress[k] = points->stress[k][place] + m->shear * change[k] * (k < 3 ? 2 : 1) +
+                (k < 3 ? (m->bulk - 2 * m->shear / 3) * trace : 0);
+    work += stress[k] * (strain[k] - strain_before[k]);
+  }
+  for (int k = 0; k < 3; ++k) mean += stress[k] / 3;
+  double density = mean * mean / (2 * m->bulk);
+  for (int k = 0; k < 6; ++k) {
+    const double deviator = k < 3 ? stress[k] - mean : stress[k];
+    density += deviator * deviator / (m->shear * (k < 3 ? 4 : 2));
+  }
+  const double now = held(c, place, sums.square, g, sums.now), across = held(c, place, sums.across, g, sums.before);
+  energy->weight = volume * share;
+  energy->density = density * points_softness(points, place);
+  energy->beside = volume * 0.5 * now;
+  energy->stored = energy->weight * energy->density + energy->beside;
+  energy->half_work = volume * 0.5 * (share * work + now - across);
 }

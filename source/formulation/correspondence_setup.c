@@ -26,6 +26,21 @@ void correspondence_destroy(void *formulation)
   free(c);
 }
 
+/** How far a family is from round: tr K tr K^-1 / d^2, 1 for a whole one, 1.7 at the edge of a plane body. */
+static double eccentricity(const Correspondence *c, int64_t place)
+{
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE), d = c->plane ? 2 : 3;
+  const SliceShape *shape = shape_of_slice(&c->shapes, slice);
+  double trace = 0;
+  for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
+    if (!(c->family->intact[slot] >> lane & 1)) continue;
+    const Bond bond = family_bond(c->family, slice, slot, lane);
+    trace += bond.weight * bond.length * bond.length;
+  }
+  return trace * (shape->inverse[XX][lane] + shape->inverse[YY][lane] + shape->inverse[ZZ][lane]) / (d * d);
+}
+
 static void set_hold(void *context, int64_t slice)
 {
   const Correspondence *c = context;
@@ -39,11 +54,13 @@ static void set_hold(void *context, int64_t slice)
     if (c->control == CONTROL_SCALAR)
       c->hold[0][place] = shape->mean_influence[lane] > 0 ? scale / shape->mean_influence[lane] : scale;
     if (c->control != CONTROL_TENSOR) continue;
+    /* C : K^-1 grows without limit as a family becomes flat, and with it what the stable step would have to be. */
+    const double most = 4, strength = c->strength * fmin(1, most / fmax(1, eccentricity(c, place)));
     bool strained = c->shapes.mode[place] == SHAPE_REGULAR || c->shapes.mode[place] == SHAPE_REDUCED;
     double trace = shape->inverse[XX][lane] + shape->inverse[YY][lane] + shape->inverse[ZZ][lane];
     for (int k = 0; k < 6; ++k)
       c->hold[k][place] =
-          strained ? c->strength * (2 * m->shear * shape->inverse[k][lane] + (k < 3 ? lambda * trace : 0)) : 0;
+          strained ? strength * (2 * m->shear * shape->inverse[k][lane] + (k < 3 ? lambda * trace : 0)) : 0;
   }
 }
 

@@ -45,11 +45,23 @@ typedef struct BondLength {
   double horizon;
 } BondLength;
 
+/** Energy of the deformation of a place or of a bond [energy]. */
+typedef struct StoredEnergy {
+  double stored; /* what unloading would give back: weight x density + beside */
+  double
+      half_work; /* half of what the forces of the moment did along the last step: the trapezium rule's share of the step's end */
+  double beside;               /* stored by anything but the law of a point */
+  double weight;               /* volume for which the law of a point stands; 0 where laws act on bonds */
+  double density;              /* energy per volume that the point would give back */
+  double strain[6], stress[6]; /* of the point */
+} StoredEnergy;
+
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
   int uniaxial;      /* laws act on bonds, not on points in space */
   bool row_sums;     /* show_displacements and sum_states make sums along lattice rows for neighbours to read */
   bool bond_lengths; /* lengths of stored bonds are read in sweeps */
+  bool may_stiffen;  /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   /** Makes a formulation for a body. Says where families are too poor for it. */
   void *(*create)(const FormulationParts *parts, Error *error);
   void (*destroy)(void *formulation);
@@ -74,6 +86,13 @@ typedef struct FormulationType {
   void (*bond_force)(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
   /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
+  /** Energy of the deformation of a place, as it stands and with its present bonds. Stresses follow elastically from those that laws gave
+   *  last.
+   *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
+  void (*stored_energy)(const void *formulation, int64_t place, double time, StoredEnergy *energy);
+  /** The same of one bond, if bonds have energies of their own and hand nothing on when one of them breaks; or NULL. */
+  void (*bond_energy)(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
+                      StoredEnergy *energy);
   /** Virial stress of the bonds at a place; NULL where points have a stress. */
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */

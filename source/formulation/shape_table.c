@@ -1,14 +1,29 @@
 #include "formulation/shape_table.h"
 
 #include "base/team.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { BATCH = 2048 }; /* slices whose shapes are found at once before alike ones are looked for */
 
-static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t slice, bool first_time)
+/* A family that has lost most of its bonds answers with the whole stress through the few that are left, so that the stable step would
+ * fall to a quarter and less (docs/theory.md 4). It carries only a share of its stress when its demand, or the part of its neighbours
+ * alone, passes these shares of what a whole family and all its neighbours demand together; families at a plane face or edge
+ * stay below both. */
+static const double most_demand = 0.45, most_alone = 0.10;
+
+static double poverty(const ShapeTensor *shape)
 {
-  SliceShape shapes = {0};
+  return fmax(shape->demand / most_demand, shape->alone / most_alone);
+}
+
+/** @param[in,out] whole  where shapes are found for the first time: least demand of a whole family and its neighbours seen so far
+ *                         in this block, or NULL */
+static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t slice, double *whole)
+{
+  const bool first_time = whole;
+  SliceShape shapes = {.share = {1, 1, 1, 1, 1, 1, 1, 1}};
   for (int lane = 0; lane < SLICE; ++lane) {
     int32_t place = (int32_t)(slice * SLICE + lane);
     if (family->particles->number[place] < 0) continue;
@@ -19,7 +34,12 @@ static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t s
     shapes.weight_sum[lane] = shape.weight_sum;
     shapes.mean_influence[lane] = shape.mean_influence;
     table->mode[place] = (uint8_t)shape.mode;
-    if (first_time) table->roundness[place] = (float)shape.roundness;
+    if (first_time) {
+      table->roundness[place] = (float)shape.roundness;
+      table->allowed[place] = (float)poverty(&shape);
+      *whole = fmin(*whole, shape.alone * (shape.bonds + 1));
+    } else if (poverty(&shape) > (double)table->allowed[place])
+      shapes.share[lane] = (double)table->allowed[place] / poverty(&shape);
   }
   return shapes;
 }
@@ -56,12 +76,33 @@ typedef struct Batch { /* of slices whose shapes are found together */
   const Family *family;
   int64_t begin;
   SliceShape *shapes;
+  double *whole; /* [slices] as of slice_shape */
 } Batch;
 
 static void find_shape(void *context, int64_t n)
 {
   const Batch *batch = context;
-  batch->shapes[n] = slice_shape(batch->table, batch->family, batch->begin + n, true);
+  const int64_t slice = batch->begin + n;
+  batch->whole[slice] = INFINITY;
+  batch->shapes[n] = slice_shape(batch->table, batch->family, slice, &batch->whole[slice]);
+}
+
+/** Families that are poor from the beginning, and all that are no poorer than at a face, carry their whole stress.
+ *  @param[in] whole  [slices] as of slice_shape */
+static int allow_faces(ShapeTable *table, const Family *family, const double *whole, Error *error)
+{
+  const Particles *p = family->particles;
+  int blocks = 0;
+  for (int64_t slice = 0; slice < p->slices; ++slice) blocks = p->block[slice] >= blocks ? p->block[slice] + 1 : blocks;
+  double *least = memory_zeroed((size_t)blocks, sizeof *least, "shape tensors", error);
+  if (!least) return BRECCIA_FAILURE;
+  for (int b = 0; b < blocks; ++b) least[b] = INFINITY;
+  for (int64_t slice = 0; slice < p->slices; ++slice)
+    least[p->block[slice]] = fmin(least[p->block[slice]], whole[slice]);
+  for (int64_t place = 0; place < p->places; ++place)
+    table->allowed[place] = fmaxf(table->allowed[place], (float)least[p->block[place / SLICE]]);
+  free(least);
+  return BRECCIA_OK;
 }
 
 int shape_table_create(ShapeTable *table, const Family *family, bool plane, Error *error)
@@ -73,22 +114,27 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
   table->entry_of = memory_zeroed((size_t)slices, sizeof *table->entry_of, "shape tensors", error);
   table->shared = memory_zeroed(capacity, 1, "shape tensors", error);
   table->roundness = memory_zeroed((size_t)family->particles->places, sizeof *table->roundness, "shape tensors", error);
+  table->allowed = memory_zeroed((size_t)family->particles->places, sizeof *table->allowed, "shape tensors", error);
   table->mode = memory_zeroed((size_t)family->particles->places, 1, "shape tensors", error);
+  double *whole = memory_zeroed((size_t)slices, sizeof *whole, "shape tensors", error);
   SliceShape *shapes = memory_zeroed(BATCH, sizeof *shapes, "shape tensors", error);
   int32_t *slots = memory_zeroed(slots_count, sizeof *slots, "shape tensors", error);
   /* Not zeroed: pages that no entry ever needs are never touched, and so take no memory. */
   table->entries = aligned_alloc(64, (capacity * sizeof(SliceShape) + 63) / 64 * 64);
-  int failed = !table->entry_of || !table->shared || !table->roundness || !table->mode || !shapes || !slots;
+  int failed = !table->entry_of || !table->shared || !table->roundness || !table->allowed || !table->mode || !whole ||
+               !shapes || !slots;
   if (!table->entries) failed = error_add(error, BRECCIA_FAILURE, "out of memory: shape tensors");
   for (int64_t begin = 0; begin < slices && !failed; begin += BATCH) {
     int64_t end = begin + BATCH < slices ? begin + BATCH : slices;
-    Batch batch = {table, family, begin, shapes};
+    Batch batch = {table, family, begin, shapes, whole};
     team_each(end - begin, find_shape, &batch);
     for (int64_t slice = begin; slice < end; ++slice)
       table->entry_of[slice] = find_entry(table, &shapes[slice - begin], slots, slots_count - 1);
   }
+  failed = failed || allow_faces(table, family, whole, error);
   free(shapes);
   free(slots);
+  free(whole);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
@@ -98,6 +144,7 @@ void shape_table_destroy(ShapeTable *table)
   free(table->entry_of);
   free(table->shared);
   free(table->roundness);
+  free(table->allowed);
   free(table->mode);
   *table = (ShapeTable){0};
 }
@@ -105,12 +152,12 @@ void shape_table_destroy(ShapeTable *table)
 void shape_table_renew(ShapeTable *table, const Family *family, int64_t slice)
 {
   if (table->shared[table->entry_of[slice]]) table->entry_of[slice] = (int32_t)table->count++;
-  table->entries[table->entry_of[slice]] = slice_shape(table, family, slice, false);
+  table->entries[table->entry_of[slice]] = slice_shape(table, family, slice, NULL);
 }
 
 size_t shape_table_bytes(const ShapeTable *table, const Family *family)
 {
   return (size_t)table->count * (sizeof *table->entries + 1) +
          (size_t)family->particles->slices * sizeof *table->entry_of +
-         (size_t)family->particles->places * (sizeof *table->roundness + 1);
+         (size_t)family->particles->places * (sizeof *table->roundness + sizeof *table->allowed + 1);
 }

@@ -5,8 +5,9 @@
 
 #include "formulation/shape_tensor.h"
 
-typedef struct SliceShape { /* what ShapeTensor says, for the eight places of a slice; 0 in unused places */
+typedef struct SliceShape { /* what ShapeTensor says, for the eight places of a slice; unused places: 0, share 1 */
   double inverse[6][SLICE], first_moment[3][SLICE], weight_sum[SLICE], mean_influence[SLICE];
+  double share[SLICE]; /* of its stress that a family carries: below 1 when it has become poor */
 } SliceShape;
 
 typedef struct ShapeTable {
@@ -16,6 +17,7 @@ typedef struct ShapeTable {
   int32_t *entry_of; /* [slices] */
   uint8_t *shared;   /* [entries] 1: several slices have it */
   float *roundness;  /* [places] of the families with all their bonds */
+  float *allowed;    /* [places] demand up to which a family carries its whole stress */
   uint8_t *mode;     /* [places] ShapeMode */
 } ShapeTable;
 

@@ -27,16 +27,41 @@ static void pseudo_inverse(const double k[6], double inverse[6])
   }
 }
 
+/** The strain of a family is sum g_l u_l over its neighbours and itself, with g_l = w_l K^-1 xi_l and g_i = -sum g_l. Its energy adds a
+ *  matrix to the body's stiffness over mass whose largest eigenvalue is at most V_i tr(sum g_l (x) g_l / m_l) times the modulus
+ *  (docs/theory.md 4).
+ *  @param[in] spread  sum of w^2 xi (x) xi / m over the neighbours */
+static void find_demand(const Particles *p, int32_t place, const double spread[6], ShapeTensor *shape)
+{
+  const double *inverse = shape->inverse;
+  double squares = 0, trace = 0;
+  for (int i = 0; i < 3; ++i) {
+    double moment = 0;
+    for (int j = 0; j < 3; ++j) moment += inverse[symmetric_place[3 * i + j]] * shape->first_moment[j];
+    squares += moment * moment;
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k)
+        trace += inverse[symmetric_place[3 * i + j]] * spread[symmetric_place[3 * j + k]] *
+                 inverse[symmetric_place[3 * k + i]];
+  shape->alone = p->volume[place] * trace;
+  shape->demand = shape->alone + squares / p->density[place];
+}
+
 ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, double initial_roundness)
 {
   ShapeTensor shape = {.mode = SHAPE_REGULAR};
   int64_t slice = place / SLICE;
   int lane = place % SLICE;
-  double k[6] = {0}, volumes = 0;
+  double k[6] = {0}, spread[6] = {0}, volumes = 0;
   for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot) {
     if (!(family->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(family, slice, slot, lane);
     for (int c = 0; c < 6; ++c) k[c] += bond.weight * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
+    double mass = family->particles->density[bond.neighbour] * family->particles->volume[bond.neighbour];
+    double square = bond.weight * bond.weight / mass;
+    for (int c = 0; c < 6; ++c) spread[c] += square * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
     for (int i = 0; i < 3; ++i) shape.first_moment[i] += bond.weight * bond.xi[i];
     shape.weight_sum += bond.weight;
     volumes += family->particles->volume[bond.neighbour];
@@ -62,6 +87,7 @@ ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, do
     pseudo_inverse(k, shape.inverse);
     shape.mode = SHAPE_REDUCED;
   }
+  find_demand(family->particles, place, spread, &shape);
   return shape;
 }
 

@@ -16,7 +16,9 @@ typedef struct ShapeTensor {
   double first_moment[3]; /* sum of w xi */
   double weight_sum;      /* sum of w */
   double mean_influence;  /* sum of w / sum of volumes */
-  double roundness;       /* det K / (tr K / d)^d: 1 for a full family, 0 for a flat one */
+  double demand;    /* largest eigenvalue of its strain's stiffness over mass at modulus 1, from above (find_demand) */
+  double alone;     /* the part of it that comes from its neighbours */
+  double roundness; /* det K / (tr K / d)^d: 1 for a full family, 0 for a flat one */
   int bonds;
   ShapeMode mode;
 } ShapeTensor;

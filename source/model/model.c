@@ -24,12 +24,6 @@ int model_enter(breccia_model *model, Team **before, Error *error)
   return BRECCIA_OK;
 }
 
-int64_t model_step_at(const breccia_model *model, double time)
-{
-  double step = round(time / model->solver.time_step);
-  return step < (double)model->solver.steps ? (int64_t)step : model->solver.steps;
-}
-
 /* ---- loading ---- */
 
 static int model_units(breccia_model *model, Error *error)
@@ -150,50 +144,64 @@ static int check_results(breccia_model *model)
 
 static int by_value(const void *a, const void *b)
 {
-  int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+  const double x = *(const double *)a, y = *(const double *)b;
   return x < y ? -1 : x > y;
 }
 
 static void warn_of_late_picture(breccia_model *model, const PictureSpec *picture, double time)
 {
-  const double end = (double)model->solver.steps * model->solver.time_step;
+  const double end = model->solver.end_time;
   if (time <= end * (1 + 1e-9)) return;
   const Node *place = section_place(picture, "at");
   text_add(&model->warnings, "%swarning: %s:%d:%d: the run ends at %g, before the picture at %g, which is not made",
            model->warnings.length ? "\n" : "", model->document->name, place->line, place->column, end, time);
 }
 
-/** Steps at which results are written: evenly, and where pictures and the deck ask for them. Does not depend on how far a
+/** Adds times that are asked for by name, as far as the run goes. */
+static void add_times(double *list, int64_t *count, const NumberList *times, double end)
+{
+  for (int k = 0; k < times->count; ++k)
+    if (times->values[k] <= end * (1 + 1e-9)) list[(*count)++] = fmin(times->values[k], end);
+}
+
+/** Times at which results are written: evenly, and where pictures and the deck ask for them. Does not depend on how far a
  *  run goes, so that a restarted run writes the same. */
 static int make_schedule(breccia_model *model, Error *error)
 {
   const ResultsSpec *r = model->spec->results;
-  int64_t steps = model->solver.steps, even = r->every > 0 ? steps / r->every : r->number,
-          count = 2 + even + r->times.count;
+  const double end = model->solver.end_time;
+  const int64_t even = r->every > 0 ? 0 : r->number;
+  int64_t most = 2 + even + r->times.count;
   for (int k = 0; k < model->spec->pictures.count; ++k)
-    count += ((const PictureSpec *)model->spec->pictures.items[k])->times.count;
-  if (count > 10000000)
+    most += ((const PictureSpec *)model->spec->pictures.items[k])->times.count;
+  if (most > 10000000 || (r->every > 0 && model->solver.steps / r->every > 10000000))
     return node_error(model->document, r->head.node, error, "results: %lld states are too many to write",
-                      (long long)count);
-  model->schedule = memory_zeroed((size_t)count, sizeof(int64_t), "schedule", error);
-  if (!model->schedule) return BRECCIA_FAILURE;
-  int64_t n = 0, *list = model->schedule;
-  list[n++] = 0;
-  list[n++] = steps;
-  for (int64_t k = 1; k <= even; ++k)
-    list[n++] = r->every > 0 ? k * r->every : (int64_t)((double)k * (double)steps / (double)even + 0.5);
-  for (int k = 0; k < r->times.count; ++k) list[n++] = model_step_at(model, r->times.values[k]);
+                      (long long)(r->every > 0 ? model->solver.steps / r->every : most));
+  model->schedule = memory_zeroed((size_t)most, sizeof(double), "schedule", error);
+  model->stops = memory_zeroed((size_t)most, sizeof(double), "schedule", error);
+  if (!model->schedule || !model->stops) return BRECCIA_FAILURE;
+  int64_t n = 0;
+  add_times(model->stops, &n, &r->times, end);
   for (int p = 0; p < model->spec->pictures.count; ++p) {
     const PictureSpec *picture = model->spec->pictures.items[p];
-    for (int k = 0; k < picture->times.count; ++k) {
-      list[n++] = model_step_at(model, picture->times.values[k]);
-      warn_of_late_picture(model, picture, picture->times.values[k]);
-    }
+    add_times(model->stops, &n, &picture->times, end);
+    for (int k = 0; k < picture->times.count; ++k) warn_of_late_picture(model, picture, picture->times.values[k]);
   }
-  qsort(list, (size_t)n, sizeof *list, by_value);
-  for (int64_t k = 0; k < n; ++k)
-    if (!k || list[k] != list[k - 1]) list[model->schedule_count++] = list[k];
+  qsort(model->stops, (size_t)n, sizeof(double), by_value);
+  explicit_stop_at(&model->solver, model->stops, n);
+  double *list = model->schedule;
+  memcpy(list, model->stops, sizeof(double) * (size_t)n);
+  list[n++] = 0;
+  list[n++] = end;
+  for (int64_t k = 1; k <= even; ++k) list[n++] = end * ((double)k / (double)even);
+  qsort(list, (size_t)n, sizeof(double), by_value);
+  model->schedule_count = n;
   return BRECCIA_OK;
+}
+
+bool model_has_passed(const breccia_model *model, int64_t k, double time)
+{
+  return k < model->schedule_count && model->schedule[k] <= time + (0.5 - 1e-6) * model->solver.time_step;
 }
 
 /** True for a file of `breccia material`: one material, a test or stages, no body. */
@@ -308,6 +316,7 @@ void breccia_model_destroy(breccia_model **out)
   text_free(&model->plausibility);
   text_free(&model->outcome);
   free(model->schedule);
+  free(model->stops);
   free(model->deck_text);
   free(model);
   *out = NULL;
@@ -331,7 +340,7 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
   int status = model_begin(model, error);
   for (int64_t k = 0; !status && k < steps && model->solver.step < model->solver.steps; ++k)
-    status = explicit_advance(&model->solver, error);
+    status = explicit_advance(&model->solver, &model->warnings, error);
   team_use(before);
   return status;
 }
@@ -436,7 +445,10 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
 {
   const ResultsSpec *r = model->spec->results;
   Task task = {.steps = last - first, .states_written = states_written, .checkpoint_seconds = r->checkpoint_seconds};
-  while (task.states < model->schedule_count && model->schedule[task.states] <= last) ++task.states;
+  const Explicit *s = &model->solver;
+  const double time = last >= s->steps ? s->end_time : s->end_time * (double)last / (double)s->steps;
+  while (task.states < model->schedule_count && model->schedule[task.states] <= time) ++task.states;
+  if (r->every > 0) task.states += last / r->every;
   if (r->checkpoint_steps > 0) task.checkpoints = last / r->checkpoint_steps - first / r->checkpoint_steps;
   for (int k = 0; k < model->spec->pictures.count; ++k) {
     const PictureSpec *picture = model->spec->pictures.items[k];

@@ -27,7 +27,8 @@ struct breccia_model {
   bool begun;
   int threads; /* wanted; 0: as many as the machine has to spare */
   Team *team;
-  int64_t *schedule; /* steps at which results are written */
+  double *schedule; /* ascending times at which results are written, besides every so many steps */
+  double *stops;    /* those of them that steps of the program's own choice meet exactly */
   int64_t schedule_count;
   Peaks peaks;
   double run_seconds;
@@ -49,7 +50,7 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
 /** Measures how long steps will take, unless that is known already. A model that has begun is left alone. */
 int model_expect(breccia_model *model, Error *error);
 
-/** Step nearest to a time. */
-int64_t model_step_at(const breccia_model *model, double time);
+/** True if the step that ends at a time is the first at or behind the k-th of the times at which results are written, to half a step. */
+bool model_has_passed(const breccia_model *model, int64_t k, double time);
 
 #endif

@@ -5,6 +5,7 @@
 #include "results/checkpoint.h"
 #include "results/curve.h"
 #include "results/result_file.h"
+#include "solver/rest.h"
 
 #include <errno.h>
 #include <math.h>
@@ -12,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-enum { STABLE_STEP_EVERY = 2000 };
 
 typedef struct Run {
   breccia_model *model;
@@ -110,10 +109,11 @@ static int open_files(Run *run, Error *error)
   int64_t resume = run->wish->restart ? model->solver.step : -1;
   int status;
   if (run->wish->restart) {
-    while (run->next_write < model->schedule_count && model->schedule[run->next_write] <= model->solver.step)
-      ++run->next_write;
+    const WrittenAt at = {model->schedule, model->schedule_count, model->spec->results->every,
+                          model->solver.time_step / 2, model->solver.step};
+    while (model_has_passed(model, run->next_write, model->solver.time)) ++run->next_write;
     status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
-                                &names, model->schedule, run->next_write, error);
+                                &names, &at, error);
   } else
     status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                 &names, error);
@@ -141,10 +141,9 @@ static int due(Run *run, Error *error)
   const Explicit *s = &model->solver;
   const ResultsSpec *r = model->spec->results;
   int status = watches_write(model->watches, s, false, error);
-  if (!status && run->next_write < model->schedule_count && model->schedule[run->next_write] == s->step) {
-    ++run->next_write;
-    status = write_results(run, error);
-  }
+  bool write = r->every > 0 && s->step % r->every == 0;
+  for (; model_has_passed(model, run->next_write, s->time); ++run->next_write) write = true;
+  if (!status && write) status = write_results(run, error);
   bool by_steps = r->checkpoint_steps > 0 && s->step && s->step % r->checkpoint_steps == 0;
   if (!status && (by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
     status = write_checkpoint(run, error);
@@ -158,10 +157,10 @@ static int loop(Run *run, Error *error)
   int status = run->wish->restart ? BRECCIA_OK : due(run, error);
   while (!status && s->step < run->steps) {
     if (run->wish->interrupted && *run->wish->interrupted) return BRECCIA_INTERRUPTED;
-    if ((status = explicit_advance(s, error))) break;
+    if ((status = explicit_advance(s, &model->warnings, error))) break;
     ++model->run_steps;
-    if ((status = due(run, error))) break;
-    if (s->step % STABLE_STEP_EVERY == 0) status = explicit_renew_stable_step(s, &model->warnings, error);
+    if (run->wish->steps <= 0 || s->steps < run->steps) run->steps = s->steps;
+    status = due(run, error);
     show_progress(run, false);
   }
   return status;
@@ -355,9 +354,11 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   const struct {
     const char *key;
     double value;
-  } energies[] = {{"kinetic", e.kinetic},   {"internal", e.internal}, {"external", e.external},  {"damping", e.damping},
-                  {"fracture", e.fracture}, {"friction", e.friction}, {"imbalance", e.imbalance}};
-  for (int k = 0; k < 7; ++k) {
+  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal}, {"stored", e.stored},
+                  {"dissipated", e.dissipated}, {"external", e.external}, {"damping", e.damping},
+                  {"fracture", e.fracture},     {"friction", e.friction}, {"between", e.between},
+                  {"imbalance", e.imbalance}};
+  for (int k = 0; k < (int)(sizeof energies / sizeof *energies); ++k) {
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, energies[k].value);
   }
@@ -422,6 +423,22 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   return bad ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
+/** Says whether a body that was meant to come to rest has done so. */
+static void tell_rest(const Explicit *s, Text *t)
+{
+  Rest rest;
+  if (rest_find(s, &rest, NULL) || !rest.meant) return;
+  if (rest.reached)
+    text_add(t, "at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",
+             rest.unbalanced, rest.kinetic);
+  else
+    text_add(
+        t,
+        "not at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (at rest both "
+        "are below %g): run longer, with local damping, or load more slowly\n",
+        rest.unbalanced, rest.kinetic, rest_limit);
+}
+
 static void tell_outcome(Run *run, int status)
 {
   breccia_model *model = run->model;
@@ -461,9 +478,18 @@ static void tell_outcome(Run *run, int status)
   const struct {
     const char *words;
     double value;
-  } energies[] = {{"energy: external ", e.external}, {" = kinetic ", e.kinetic},   {" + internal ", e.internal},
-                  {" + fracture ", e.fracture},      {" + friction ", e.friction}, {" + damping ", e.damping}};
+    bool told;
+  } energies[] = {{"energy: external ", e.external, true},
+                  {" = kinetic ", e.kinetic, true},
+                  {" + stored ", e.stored, true},
+                  {" + dissipated ", e.dissipated, true},
+                  {" + fracture ", e.fracture, true},
+                  {" + friction ", e.friction, e.friction != 0},
+                  {" + damping ", e.damping, e.damping != 0},
+                  {" - kinetic at the start ", s->kinetic_at_start, s->kinetic_at_start > 0},
+                  {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->paid}};
   for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
+    if (!energies[k].told) continue;
     text_add(t, "%s", energies[k].words);
     quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
   }
@@ -479,6 +505,7 @@ static void tell_outcome(Run *run, int status)
   text_add(t, " to ");
   quantity_describe(stress * peaks->mean_high, "Pa", t);
   text_add(t, ", damage %.3g\n", peaks->damage);
+  tell_rest(s, t);
   points_report(&d->points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;

@@ -16,7 +16,7 @@ typedef struct SavedArray {
   bool bytes; /* 8-bit numbers rather than doubles */
 } SavedArray;
 
-enum { MOST_ARRAYS = 32, SCALARS = 11 };
+enum { MOST_ARRAYS = 32, SCALARS = 19 };
 
 static int list_arrays(const Explicit *s, SavedArray *list)
 {
@@ -49,39 +49,41 @@ static int list_arrays(const Explicit *s, SavedArray *list)
   }
   list[n++] = (SavedArray){"history", d->points.committed, d->points.history_size, false};
   if (d->points.identity_size) list[n++] = (SavedArray){"servers", d->points.identity, d->points.identity_size, false};
+  if (d->points.gave_up) list[n++] = (SavedArray){"failed laws", d->points.gave_up, places, true};
   list[n++] = (SavedArray){"intact", d->family.intact, (size_t)d->family.slots, true};
   return n;
 }
 
-static void take_scalars(const Explicit *s, double *v)
+/** Goes through the numbers of a state, to take them or to give them back. */
+static void pass_scalars(Explicit *s, double *v, bool give)
 {
-  const double values[SCALARS] = {s->time,
-                                  s->bond_work,
-                                  s->external_work,
-                                  s->damping_work,
-                                  s->kinetic,
-                                  s->stable,
-                                  s->time_step,
-                                  s->domain->fracture_energy,
-                                  (double)s->step,
-                                  (double)s->broken_at_estimate,
-                                  s->kinetic_at_start};
-  memcpy(v, values, sizeof values);
-}
-
-static void give_scalars(Explicit *s, const double *v)
-{
-  s->time = v[0];
-  s->bond_work = v[1];
-  s->external_work = v[2];
-  s->damping_work = v[3];
-  s->kinetic = v[4];
-  s->stable = v[5];
-  s->time_step = v[6];
-  s->domain->fracture_energy = v[7];
-  s->step = (int64_t)v[8];
-  s->broken_at_estimate = (int64_t)v[9];
-  s->kinetic_at_start = v[10];
+  double *const numbers[] = {&s->time,
+                             &s->ledger.bond_work,
+                             &s->ledger.external_work,
+                             &s->ledger.damping_work,
+                             &s->ledger.kinetic,
+                             &s->ledger.between,
+                             &s->kinetic_at_start,
+                             &s->paid,
+                             &s->stable,
+                             &s->time_step,
+                             &s->plan.from,
+                             &s->plan.to,
+                             &s->domain->fracture_energy};
+  int64_t *const counts[] = {&s->step,       &s->steps,     &s->broken_at_estimate, &s->step_at_estimate,
+                             &s->plan.first, &s->plan.count};
+  enum { NUMBERS = sizeof numbers / sizeof *numbers, COUNTS = sizeof counts / sizeof *counts };
+  _Static_assert(NUMBERS + COUNTS == SCALARS, "numbers of a state");
+  for (int k = 0; k < NUMBERS; ++k)
+    if (give)
+      *numbers[k] = v[k];
+    else
+      v[k] = *numbers[k];
+  for (int k = 0; k < COUNTS; ++k)
+    if (give)
+      *counts[k] = (int64_t)v[NUMBERS + k];
+    else
+      v[NUMBERS + k] = (double)*counts[k];
 }
 
 static int save(hid_t file, const char *name, hid_t type, size_t count, const void *values)
@@ -119,7 +121,7 @@ static int64_t load_count(hid_t file, const char *name)
   return count;
 }
 
-int checkpoint_write(const char *folder, const Explicit *s, const char *deck, const double *extras, Error *error)
+int checkpoint_write(const char *folder, Explicit *s, const char *deck, const double *extras, Error *error)
 {
   if (!points_can_save(&s->domain->points)) return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
   if (points_save(&s->domain->points, error)) return BRECCIA_FAILURE;
@@ -136,7 +138,7 @@ int checkpoint_write(const char *folder, const Explicit *s, const char *deck, co
       bad |=
           save(file, list[k].name, list[k].bytes ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE, list[k].count, list[k].values);
     double scalars[SCALARS];
-    take_scalars(s, scalars);
+    pass_scalars(s, scalars, false);
     bad |= save(file, "scalars", H5T_NATIVE_DOUBLE, SCALARS, scalars);
     bad |= save(file, "extras", H5T_NATIVE_DOUBLE, CHECKPOINT_EXTRAS, extras);
     int64_t sizes[2] = {d->particles->count, d->family.bonds};
@@ -252,7 +254,7 @@ int checkpoint_read(const char *folder, Explicit *s, const char *deck, double *e
     if (bad)
       status = error_add(error, BRECCIA_USER_ERROR, "%s: is damaged; run without --restart", path);
     else {
-      give_scalars(s, scalars);
+      pass_scalars(s, scalars, true);
       if (d->points.history_size) memcpy(d->points.trial, d->points.committed, sizeof(double) * d->points.history_size);
       status = points_resume(&s->domain->points, error);
     }

@@ -8,7 +8,7 @@
 enum { CHECKPOINT_EXTRAS = 8 };
 
 /** Writes <folder>/checkpoint.h5 (temporary file, fsync, rename). `deck` is the text that the run was made from. */
-int checkpoint_write(const char *folder, const Explicit *solver, const char *deck, const double *extras, Error *error);
+int checkpoint_write(const char *folder, Explicit *solver, const char *deck, const double *extras, Error *error);
 
 /** Reads it back into a solver freshly set up from the same deck, to the same bits; another deck, version or body is refused. */
 int checkpoint_read(const char *folder, Explicit *solver, const char *deck, double *extras, Error *error);

@@ -6,6 +6,7 @@
 #include "results/xdmf.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -392,15 +393,24 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
   return file_error(file->path, error);
 }
 
+static bool was_due(const WrittenAt *due, int64_t step, double time)
+{
+  if (step > due->last) return false;
+  if (due->every > 0 && step % due->every == 0) return true;
+  for (int64_t k = 0; k < due->count; ++k)
+    if (fabs(due->times[k] - time) <= due->tolerance) return true;
+  return false;
+}
+
 int result_file_resume(ResultFile **out, const char *folder, const Domain *d, const Units *units, const char *title,
-                       const ResultNames *names, const int64_t *schedule, int64_t count, Error *error)
+                       const ResultNames *names, const WrittenAt *due, Error *error)
 {
   ResultFile *file = *out = prepare(folder, d, units, title, names, error);
   if (!file) return BRECCIA_FAILURE;
   ResultView view;
   int status = result_view_open(&view, file->path, error);
   if (status) return status;
-  for (int k = 0; k < view.steps && k < count && view.step_numbers[k] == schedule[k] && !grow_times(file); ++k) {
+  for (int k = 0; k < view.steps && was_due(due, view.step_numbers[k], view.times[k]) && !grow_times(file); ++k) {
     file->times[file->writes] = view.times[k];
     file->steps[file->writes++] = view.step_numbers[k];
   }

@@ -21,10 +21,18 @@ typedef struct ResultNames {
 /** Begins a result file in `folder` (results.vtkhdf and results.xdmf), replacing an older one. */
 int result_file_create(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
                        const char *title, const ResultNames *names, Error *error);
-/** Takes up the file of a run that stopped, keeping only what stands there of the first `count` steps of a schedule. */
+/** Which states stand in a file because they were due, and not because a run ended there. */
+typedef struct WrittenAt {
+  const double *times; /* ascending */
+  int64_t count;
+  int64_t every;    /* one in so many steps; or none */
+  double tolerance; /* of times */
+  int64_t last;     /* step up to which they are kept */
+} WrittenAt;
+
+/** Takes up the file of a run that stopped, keeping only the states that were due. */
 int result_file_resume(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
-                       const char *title, const ResultNames *names, const int64_t *schedule, int64_t count,
-                       Error *error);
+                       const char *title, const ResultNames *names, const WrittenAt *due, Error *error);
 /** Bytes that one state takes in a file with these fields. */
 double result_file_state_bytes(const Domain *domain, const ResultNames *names);
 /** Adds the present state. */

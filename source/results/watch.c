@@ -172,26 +172,27 @@ static void energy_row(const Watch *w, const Explicit *s, double *values)
 {
   (void)w;
   Energy e = explicit_energy(s);
-  const double row[] = {
-      e.kinetic, e.internal, e.external, e.damping, e.fracture, e.imbalance, (double)s->domain->broken_count,
-      e.friction};
+  const double row[] = {e.kinetic,    e.internal,  e.stored,
+                        e.dissipated, e.external,  e.damping,
+                        e.fracture,   e.imbalance, (double)s->domain->broken_count,
+                        e.friction};
   memcpy(values, row, sizeof row);
 }
 
-static const Kind displacement_kind = {"x:length,y:length,z:length", displacement_row},
-                  velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
-                  force_kind = {"x:force,y:force,z:force", force_row},
-                  stress_kind =
-                      {"strain xx:1,strain yy:1,strain zz:1,strain xy:1,strain yz:1,strain zx:1,stress xx:stress,"
-                       "stress yy:stress,stress zz:stress,stress xy:stress,stress yz:stress,stress "
-                       "zx:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
-                       stress_row},
-                  damage_kind = {"mean:1,largest:1", damage_row},
-                  opening_kind = {"distance:length,opening:length", opening_row},
-                  bond_kind = {"stretch:1,intact:1", bond_row},
-                  energy_kind = {"kinetic:energy,internal:energy,external:energy,damping:energy,fracture:energy,"
-                                 "imbalance:1,broken bonds:1,friction:energy",
-                                 energy_row};
+static const Kind
+    displacement_kind = {"x:length,y:length,z:length", displacement_row},
+    velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
+    force_kind = {"x:force,y:force,z:force", force_row},
+    stress_kind = {"strain xx:1,strain yy:1,strain zz:1,strain xy:1,strain yz:1,strain zx:1,stress xx:stress,"
+                   "stress yy:stress,stress zz:stress,stress xy:stress,stress yz:stress,stress "
+                   "zx:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
+                   stress_row},
+    damage_kind = {"mean:1,largest:1", damage_row}, opening_kind = {"distance:length,opening:length", opening_row},
+    bond_kind = {"stretch:1,intact:1", bond_row},
+    energy_kind = {"kinetic:energy,internal:energy,stored:energy,dissipated:energy,external:energy,damping:"
+                   "energy,fracture:energy,"
+                   "imbalance:1,broken bonds:1,friction:energy",
+                   energy_row};
 static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
 {
   const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;

@@ -1,6 +1,7 @@
-/* Velocity Verlet (docs/theory.md 7):
- *   v+ = v + dt/2 (a - c v),  u' = u + dt v+,  a' = (f(u') + b - local damping) / rho,  v' = (v+ + dt/2 a') / (1 + c dt/2).
- * Works are summed by the trapezium rule over the step, so that their sum misses the kinetic energy by O(dt^2) only. */
+/* Velocity Verlet (docs/theory.md 7), with g = a - c v, all forces over the mass:
+ *   v+ = v + dt/2 g,  u' = u + dt v+,  a' = (f(u') + b - local damping) / rho,  v' = (v+ + dt/2 a') / (1 + c dt/2).
+ * Works are summed by the trapezium rule over the step. The kinetic energy of v then grows by more than their sum, whatever the forces, by
+ * exactly dt^2 / 8 sum m (g'^2 - g^2): the speeds at full steps are not those at which the works are done. */
 #include "solver/explicit.h"
 
 #include "base/team.h"
@@ -8,8 +9,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC, MOTION };
+enum { BOND_WORK, EXTERNAL_WORK, DAMPING_WORK, KINETIC, BETWEEN, MOTION };
 
 static const Field damping_fields[] = {
     {"ratio", FIELD_NUMBER, offsetof(DampingSpec, ratio), "1", NULL, "[0, inf)",
@@ -65,10 +67,99 @@ static int64_t parts_of(const Constraint *constraint)
   return (constraint->load->selection.count + PART - 1) / PART;
 }
 
+/** The longest step that the program takes by itself. */
+static double longest_step(const Explicit *s)
+{
+  return s->spec->safety * s->stable;
+}
+
+/** Damping shortens the stable step: local damping by 1 / sqrt(1 + its share), as its force changes sign with the velocity;
+ *  mass-proportional damping leaves it, but is followed only by steps of up to its own time (docs/theory.md 7). */
+static int find_stable_step(Explicit *s, Error *error)
+{
+  const int status = stable_step(s->domain, &s->stable, error);
+  s->stable /= sqrt(1 + s->spec->local_damping);
+  if (s->spec->damping > 0) s->stable = fmin(s->stable, 1 / s->spec->damping);
+  s->broken_at_estimate = s->domain->broken_count;
+  s->step_at_estimate = s->step;
+  return status;
+}
+
+/** Steps of one length from the present time on: as long as allowed, and as many as end with the stop. */
+static void step_to(Explicit *s, double stop, double longest)
+{
+  const int64_t count = (int64_t)fmax(1, ceil((stop - s->time) / longest - 1e-9));
+  s->plan.from = s->time;
+  s->plan.to = stop;
+  s->plan.first = s->step;
+  s->plan.count = count;
+  s->time_step = (stop - s->time) / (double)count;
+}
+
+/** Plans steps up to the next time at which one has to end, and foresees how many there will be in all. */
+static void plan_steps(Explicit *s)
+{
+  const double longest = fmin(longest_step(s), isnan(s->fixed) ? INFINITY : s->fixed), tiny = 1e-6 * longest;
+  double stop = s->end_time, from;
+  if (!isnan(s->fixed)) stop = fmin(stop, s->fixed * (floor(s->time / s->fixed + 1e-6) + 1));
+  for (int64_t k = s->stop_count; isnan(s->fixed) && k-- > 0;)
+    if (s->stops[k] > s->time + tiny && s->stops[k] < s->end_time - tiny) stop = s->stops[k];
+  step_to(s, stop, longest);
+  double later = 0;
+  from = stop;
+  for (int64_t k = 0; isnan(s->fixed) && k < s->stop_count; ++k)
+    if (s->stops[k] > from + tiny && s->stops[k] < s->end_time - tiny) {
+      later += ceil((s->stops[k] - from) / longest - 1e-9);
+      from = s->stops[k];
+    }
+  if (s->end_time > from + tiny) later += ceil((s->end_time - from) / longest - 1e-9);
+  s->steps = s->plan.first + s->plan.count + (int64_t)later;
+}
+
+/** True if the present steps have become too long for the body. */
+static bool steps_are_too_long(const Explicit *s)
+{
+  return !s->force && s->time_step > (isnan(s->spec->time_step) ? 1.1 * longest_step(s) : s->stable);
+}
+
+/** Where bonds have broken the stable step may have fallen: finds it again, but only so often that it costs little. */
+static int follow_stable_step(Explicit *s, Text *warning, Error *error)
+{
+  enum { SOON = 100, LATE = 1000, SHARE = 100 }; /* steps; one bond in so many */
+  const int64_t broken = s->domain->broken_count - s->broken_at_estimate, since = s->step - s->step_at_estimate;
+  if (s->domain->type->may_stiffen && broken && since >= (2 * broken * SHARE > s->domain->family.bonds ? SOON : LATE)) {
+    const int status = find_stable_step(s, error);
+    if (status) return status;
+    if (steps_are_too_long(s)) {
+      if (!isnan(s->spec->time_step))
+        text_add(warning,
+                 "%swarning: step %lld: broken bonds have lowered the stable step to %.4g; the time step of %g is "
+                 "divided from here on",
+                 warning->length ? "\n" : "", (long long)s->step, s->stable, s->fixed);
+      plan_steps(s);
+    }
+  }
+  if (s->step == s->plan.first + s->plan.count) plan_steps(s);
+  return BRECCIA_OK;
+}
+
+static double time_after_step(const Explicit *s)
+{
+  const int64_t taken = s->step + 1 - s->plan.first;
+  return taken == s->plan.count ? s->plan.to : s->plan.from + (double)taken * s->time_step;
+}
+
+void explicit_stop_at(Explicit *s, const double *times, int64_t count)
+{
+  s->stops = times;
+  s->stop_count = count;
+  if (isnan(s->fixed)) plan_steps(s);
+}
+
 int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec,
                     const DeckReader *reader, bool force, Text *warning)
 {
-  *s = (Explicit){.domain = domain, .loading = loading, .spec = spec};
+  *s = (Explicit){.domain = domain, .loading = loading, .spec = spec, .force = force};
   int failed = 0;
   for (int k = 0; k < 3; ++k)
     failed |= !(s->acceleration[k] = places_array(domain->particles->places, "accelerations", reader->error));
@@ -77,25 +168,36 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
   for (int n = 0; n < loading->constraint_count; ++n)
     if (parts_of(&loading->constraints[n]) > parts) parts = parts_of(&loading->constraints[n]);
   s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", reader->error);
+  if (domain->points.server)
+    failed |= !(s->kept = memory_zeroed(15 * (size_t)domain->particles->places, sizeof *s->kept, "state of servers",
+                                        reader->error));
   if (failed || !s->sums || !s->parts) return BRECCIA_FAILURE;
-  int status = stable_step(domain, &s->stable, reader->error);
+  int status = find_stable_step(s, reader->error);
   if (status) return status;
-  s->time_step = isnan(spec->time_step) ? spec->safety * s->stable : spec->time_step;
-  double share = s->time_step / s->stable;
+  s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
+  const double share = spec->time_step / s->stable;
   const Node *place = section_place(spec, "time step");
   if (share > 1 && !force)
     return node_error(
         reader->document, place, reader->error,
         "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
         "--force",
-        s->time_step, share, s->stable);
-  if (share > 0.9 && !isnan(spec->time_step))
+        spec->time_step, share, s->stable);
+  if (share > 0.9)
     text_add(warning, "%s:%d:%d: warning: time step: %g is %.2f times the stable step of %.4g", reader->document->name,
-             place->line, place->column, s->time_step, share, s->stable);
-  double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / s->time_step - 1e-9);
+             place->line, place->column, spec->time_step, share, s->stable);
+  const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
+  const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-9);
   if (steps > 1e15)
     return node_error(reader->document, spec->head.node, reader->error, "explicit: %.3g steps are too many", steps);
-  s->steps = (int64_t)steps;
+  s->end_time = isnan(s->fixed) ? spec->end_time : steps * s->fixed;
+  if (isnan(s->fixed)) {
+    plan_steps(s);
+    return BRECCIA_OK;
+  }
+  s->time_step = s->fixed;
+  s->steps = s->plan.count = (int64_t)steps;
+  s->plan.to = s->end_time;
   return BRECCIA_OK;
 }
 
@@ -104,6 +206,7 @@ void explicit_destroy(Explicit *s)
   for (int k = 0; k < 3; ++k) places_free(&s->acceleration[k]);
   free(s->sums);
   free(s->parts);
+  free(s->kept);
   *s = (Explicit){0};
 }
 
@@ -113,7 +216,7 @@ static void kick_and_drift(Explicit *s, int64_t block)
 {
   const Particles *p = s->domain->particles;
   const Lanes dt = lanes_set(s->time_step), c = lanes_set(s->spec->damping), one_half = lanes_set(0.5);
-  Lanes bond = {0}, external = {0}, damping = {0}, still = {0};
+  Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
   int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = first; i < last; i += LANES) {
@@ -124,6 +227,7 @@ static void kick_and_drift(Explicit *s, int64_t block)
       bond -= fi * work;
       external += fe * work;
       damping += drag * work;
+      between -= lanes_load(p->density + i) * lanes_load(p->volume + i) * gain * gain;
       still = lanes_least(still, -lanes_absolute(du));
       lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
       lanes_store(p->velocity[k] + i, half);
@@ -132,6 +236,7 @@ static void kick_and_drift(Explicit *s, int64_t block)
   sums[BOND_WORK] = lanes_total(bond);
   sums[EXTERNAL_WORK] = lanes_total(external);
   sums[DAMPING_WORK] = lanes_total(damping);
+  sums[BETWEEN] = s->time_step * s->time_step / 8 * lanes_total(between);
   sums[MOTION] = fmax(fmax(-still[0], -still[1]), fmax(-still[2], -still[3]));
 }
 
@@ -143,7 +248,7 @@ static void kick(Explicit *s, int64_t block)
   double c = s->spec->damping;
   const Lanes dt = lanes_set(s->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
   const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->time_step)), viscous = lanes_set(c);
-  Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0};
+  Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0}, between = {0};
   int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = first; i < last; i += LANES) {
@@ -157,6 +262,8 @@ static void kick(Explicit *s, int64_t block)
       external += fe * work;
       damping += (drag + viscous * density * end) * work;
       kinetic += one_half * density * volume * end * end;
+      Lanes gain = acceleration - viscous * end;
+      between += density * volume * gain * gain;
       lanes_store(s->acceleration[k] + i, acceleration);
       lanes_store(p->velocity[k] + i, end);
     }
@@ -164,6 +271,7 @@ static void kick(Explicit *s, int64_t block)
   sums[BOND_WORK] += lanes_total(bond);
   sums[EXTERNAL_WORK] += lanes_total(external);
   sums[DAMPING_WORK] += lanes_total(damping);
+  sums[BETWEEN] += s->time_step * s->time_step / 8 * lanes_total(between);
   sums[KINETIC] = lanes_total(kinetic);
 }
 
@@ -182,14 +290,20 @@ static int64_t part_end(const Constraint *constraint, int64_t part)
   return end < constraint->load->selection.count ? end : constraint->load->selection.count;
 }
 
+static void add_to_ledger(Explicit *s, const double *sums)
+{
+  s->ledger.bond_work += sums[BOND_WORK];
+  s->ledger.external_work += sums[EXTERNAL_WORK];
+  s->ledger.damping_work += sums[DAMPING_WORK];
+  s->ledger.kinetic += sums[KINETIC];
+  s->ledger.between += sums[BETWEEN];
+}
+
 static void add_parts(Explicit *s, const Constraint *constraint)
 {
   for (int64_t part = 0; part < parts_of(constraint); ++part) {
     const double *sums = s->parts[part];
-    s->bond_work += sums[BOND_WORK];
-    s->external_work += sums[EXTERNAL_WORK];
-    s->damping_work += sums[DAMPING_WORK];
-    s->kinetic += sums[KINETIC];
+    add_to_ledger(s, sums);
     s->motion = fmax(s->motion, sums[MOTION]);
   }
 }
@@ -198,7 +312,7 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
 {
   const Particles *p = s->domain->particles;
   const double *d = constraint->direction;
-  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, largest = 0;
+  double dt = s->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, between = 0, largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
@@ -209,6 +323,7 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
     bond -= fi * (work - free_work);
     damping -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
     external += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
+    between += dt * dt / 8 * p->density[i] * p->volume[i] * (a - c * v) * (a - c * v);
     for (int j = 0; j < 3; ++j) {
       p->displacement[j][i] += off * d[j];
       p->velocity[j][i] += off / dt * d[j];
@@ -219,6 +334,7 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
   sums[EXTERNAL_WORK] = external;
   sums[DAMPING_WORK] = damping;
   sums[KINETIC] = 0;
+  sums[BETWEEN] = between;
   sums[MOTION] = largest;
 }
 
@@ -242,7 +358,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, double moved, 
 {
   const Particles *p = s->domain->particles;
   const double *d = constraint->direction;
-  double c = s->spec->damping, external = 0, damping = 0, kinetic = 0;
+  double dt = s->time_step, c = s->spec->damping, external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
@@ -250,6 +366,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, double moved, 
     kinetic += 0.5 * mass * (rate * rate - v * v);
     damping -= (fi + fe - p->density[i] * (a - c * v)) * work;
     external += 0.5 * mass * rate * rate - fe * work - fi * work;
+    between -= dt * dt / 8 * mass * (a - c * v) * (a - c * v);
     for (int j = 0; j < 3; ++j) {
       p->velocity[j][i] += (rate - v) * d[j];
       s->acceleration[j][i] -= a * d[j];
@@ -260,6 +377,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, double moved, 
   sums[EXTERNAL_WORK] = external;
   sums[DAMPING_WORK] = damping;
   sums[KINETIC] = kinetic;
+  sums[BETWEEN] = between;
 }
 
 /** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. Called by all
@@ -279,13 +397,8 @@ static void prescribe_velocities(Explicit *s)
 
 static void add_sums(Explicit *s)
 {
-  s->kinetic = 0;
-  for (int64_t b = 0; b < s->domain->block_count; ++b) {
-    s->bond_work += s->sums[b][BOND_WORK];
-    s->external_work += s->sums[b][EXTERNAL_WORK];
-    s->damping_work += s->sums[b][DAMPING_WORK];
-    s->kinetic += s->sums[b][KINETIC];
-  }
+  s->ledger.kinetic = 0;
+  for (int64_t b = 0; b < s->domain->block_count; ++b) add_to_ledger(s, s->sums[b]);
 }
 
 void explicit_begin(Explicit *s)
@@ -294,13 +407,14 @@ void explicit_begin(Explicit *s)
   loading_apply(s->loading, d->particles, s->time);
   domain_evaluate(d);
   const Particles *p = d->particles;
-  s->kinetic = 0;
+  s->ledger.kinetic = 0;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->density[i];
-      s->kinetic += 0.5 * p->density[i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
+      s->ledger.kinetic += 0.5 * p->density[i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
     }
-  s->kinetic_at_start = s->kinetic;
+  s->kinetic_at_start = s->ledger.kinetic;
+  s->paid = s->kinetic_at_start;
 }
 
 static int32_t first_bad_particle(const Particles *p)
@@ -328,99 +442,144 @@ static const char *describe_failed_law(const Domain *d, int64_t place, char *wor
   return words;
 }
 
-/** Takes displacements and velocities back to the start of the step, and says what happened. */
-static int retreat(Explicit *s, Error *error)
+/** Keeps what only servers could tell again, or gives it back. */
+static void keep(Explicit *s, bool back)
 {
-  const Particles *p = s->domain->particles;
-  double dt = s->time_step, c = s->spec->damping;
-  int32_t failed = (int32_t)s->domain->failed_place, bad = failed >= 0 ? failed : first_bad_particle(p);
-  double energy = s->kinetic;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      double half = p->velocity[k][i];
-      p->displacement[k][i] -= dt * half;
-      p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
-    }
-  if (s->domain->contact.failed) return error_add(error, BRECCIA_FAILURE, "out of memory: contact");
-  if (*points_problem(&s->domain->points))
-    return error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->step + 1, s->time + dt,
-                     points_problem(&s->domain->points));
+  const Domain *d = s->domain;
+  const size_t places = (size_t)d->particles->places;
+  for (int k = 0; k < 15 && s->kept; ++k) {
+    double *array = k < 3 ? d->particles->internal[k] : k < 9 ? d->points.strain[k - 3] : d->points.stress[k - 9];
+    double *copy = s->kept + (size_t)k * places;
+    if (array) memcpy(back ? array : copy, back ? copy : array, places * sizeof *array);
+  }
+}
+
+/** Takes the state back to the start of the step, and says what happened.
+ *  @param[in] before  the ledger then */
+static int retreat(Explicit *s, const Ledger *before, Error *error)
+{
+  Domain *d = s->domain;
+  const Particles *p = d->particles;
+  const double dt = s->time_step, c = s->spec->damping;
+  const int32_t failed = (int32_t)d->failed_place, bad = failed >= 0 ? failed : first_bad_particle(p);
+  const int left = family_count(&d->family, bad);
   char words[320];
   const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
   if (dt > s->stable)
     cause = "the time step is above the stable one";
   else if (failed >= 0)
-    cause = describe_failed_law(s->domain, failed, words, sizeof words);
-  else if (family_count(&s->domain->family, bad) < 4)
+    cause = describe_failed_law(d, failed, words, sizeof words);
+  else if (left < 4)
     cause = "it has lost nearly all its bonds";
-  error_add(
-      error, BRECCIA_FAILURE,
-      "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
-      "%g, stable step %g, kinetic energy %g)",
-      (long long)s->step + 1, s->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
-      p->position[2][bad], cause, dt, s->stable, energy);
-  domain_evaluate(s->domain); /* strains and stresses of the state that is left */
+  if (d->out_of_memory || d->contact.failed)
+    error_add(error, BRECCIA_FAILURE, "step %lld (time %g): out of memory: %s", (long long)s->step + 1, s->time + dt,
+              d->out_of_memory ? "broken bonds" : "contact");
+  else if (*points_problem(&d->points))
+    error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->step + 1, s->time + dt,
+              points_problem(&d->points));
+  else
+    error_add(
+        error, BRECCIA_FAILURE,
+        "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
+        "%g, stable step %g, kinetic energy %g)",
+        (long long)s->step + 1, s->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
+        p->position[2][bad], cause, dt, s->stable, before->kinetic);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      const double half = p->velocity[k][i];
+      p->displacement[k][i] -= dt * half;
+      p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
+    }
+  s->ledger = *before;
+  domain_mend(d);
+  if (s->kept)
+    keep(s, true);
+  else
+    domain_evaluate(d); /* strains and stresses of the state that is left */
   return BRECCIA_FAILURE;
+}
+
+/** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.
+ *  Contact takes and gives a little when its
+ *  faces are found again. The second bound is wide, because a step close to the stable one hardly follows the shortest waves. */
+static int watch_energy(Explicit *s, Error *error)
+{
+  enum { FIRST = 3 }; /* step: before, all energies are next to nothing */
+  const double most_given = s->domain->contact.spec ? 100 : 0.1, most_unexplained = 1000;
+  const Ledger *l = &s->ledger;
+  const double fracture = s->domain->fracture_energy,
+               internal = l->bond_work - fracture - s->domain->contact.friction_work;
+  s->paid = fmax(s->paid, s->kinetic_at_start + fabs(l->external_work));
+  if (s->step < FIRST || (internal >= -most_given * s->paid && l->between <= most_unexplained * s->paid))
+    return BRECCIA_OK;
+  return error_add(
+      error, BRECCIA_FAILURE,
+      "step %lld (time %g): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
+      "motions have put in %.4g at most; the time step of %.4g (stable step %.4g) is too long for what "
+      "happens: choose a smaller 'safety' or 'time step'",
+      (long long)s->step, s->time, l->kinetic, internal, fracture, s->paid, s->time_step, s->stable);
 }
 
 /** Whether a step that has come to its forces may go on. */
 static bool is_sound(const Explicit *s)
 {
   const Domain *d = s->domain;
-  return isfinite(d->force_sum) && d->failed_place < 0 && !d->contact.failed;
+  return isfinite(d->force_sum) && d->failed_place < 0 && !d->contact.failed && !d->out_of_memory;
 }
 
 static void advance(void *context)
 {
   Explicit *s = context;
   Domain *d = s->domain;
+  const double end = time_after_step(s);
   TEAM_FOR (b, d->block_count) kick_and_drift(s, b);
   prescribe_displacements(s);
-  domain_break(d, s->step + 1, s->time + s->time_step, sqrt(3) * s->motion);
+  domain_break(d, &(Moment){s->step + 1, end, s->time_step, sqrt(3) * s->motion});
   domain_forces(d);
   if (!is_sound(s)) return;
-  loading_apply(s->loading, d->particles, s->time + s->time_step);
+  domain_book(d, s->time_step);
+  loading_apply(s->loading, d->particles, end);
   TEAM_FOR (b, d->block_count) kick(s, b);
   TEAM_SINGLE
   {
     add_sums(s);
+    s->time = end;
     ++s->step;
-    s->time = (double)s->step * s->time_step;
   }
   prescribe_velocities(s);
 }
 
-int explicit_advance(Explicit *s, Error *error)
+int explicit_advance(Explicit *s, Text *warning, Error *error)
 {
+  const int status = follow_stable_step(s, warning, error);
+  if (status) return status;
+  const Ledger before = s->ledger;
+  keep(s, false);
   team_run(advance, s);
-  if (!is_sound(s)) return retreat(s, error);
+  if (!is_sound(s)) return retreat(s, &before, error);
   points_commit(&s->domain->points);
   contact_commit(&s->domain->contact);
-  return BRECCIA_OK;
-}
-
-int explicit_renew_stable_step(Explicit *s, Text *warning, Error *error)
-{
-  if (s->domain->broken_count == s->broken_at_estimate) return BRECCIA_OK;
-  s->broken_at_estimate = s->domain->broken_count;
-  int status = stable_step(s->domain, &s->stable, error);
-  if (!status && s->time_step > s->stable)
-    text_add(warning,
-             "warning: step %lld: broken bonds have lowered the stable step to %.4g, below the time step of %.4g",
-             (long long)s->step, s->stable, s->time_step);
-  return status;
+  return watch_energy(s, error);
 }
 
 Energy explicit_energy(const Explicit *s)
 {
-  Energy e = {.kinetic = s->kinetic,
-              .internal = s->bond_work - s->domain->fracture_energy - s->domain->contact.friction_work,
-              .external = s->external_work,
-              .damping = s->spec->damping > 0 || s->spec->local_damping > 0 ? s->damping_work : 0, /* else roundings */
-              .fracture = s->domain->fracture_energy,
-              .friction = s->domain->contact.friction_work};
-  double error = e.external + s->kinetic_at_start - e.kinetic - e.internal - e.damping - e.fracture - e.friction;
-  double largest = fmax(fmax(fabs(e.kinetic), fabs(s->bond_work)), fmax(fabs(e.external), fabs(e.damping)));
+  Domain *d = s->domain;
+  const Ledger *l = &s->ledger;
+  Energy e = {.kinetic = l->kinetic,
+              .internal = l->bond_work - d->fracture_energy - d->contact.friction_work,
+              .external = l->external_work,
+              .damping = s->spec->damping > 0 || s->spec->local_damping > 0 ? l->damping_work : 0, /* else roundings */
+              .fracture = d->fracture_energy,
+              .friction = d->contact.friction_work,
+              .between = l->between};
+  const bool elastic = domain_is_elastic(d);
+  e.stored = elastic && d->contact.spec ? e.internal
+                                        : domain_stored_energy(d); /* what contact stores is not known by itself */
+  if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
+  const double error = l->external_work + s->kinetic_at_start + l->between - l->kinetic - l->damping_work - e.stored -
+                       e.dissipated - e.fracture - e.friction;
+  const double largest = s->paid > 0 ? s->paid : fmax(fmax(l->kinetic, fabs(l->bond_work)), fabs(e.fracture));
   e.imbalance = largest > 0 ? fabs(error) / largest : 0;
   return e;
 }

@@ -34,6 +34,7 @@ static int update(const void *constants, const breccia_batch *batch)
 const breccia_law law_elastic = {
     .name = "elastic",
     .about = "linear isotropic elasticity",
+    .linear = 1,
     .source = "Hooke's law",
     .maturity = "verified against OpenSees ElasticIsotropic3D",
     .equations = "σ = λ tr(ε) 1 + 2 G ε, λ = K − 2G/3",

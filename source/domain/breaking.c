@@ -1,0 +1,192 @@
+/* Which bonds break in a step, what goes with them, and how a step that failed is taken back.
+ *
+ * Bonds that break are found at the displacements of the end of the step. What a bond had received until then: the energy stored with it,
+ * less what is stored without it, less half of what its force would have done along the step, because the trapezium rule that sums the
+ * works (solver/explicit.c) finds the bond gone at the end of the step. Where families share energies, as in correspondence, a place that
+ * loses bonds stores another energy with those that are left. */
+#include "base/team.h"
+#include "domain/domain.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CONSUMED = 2 }; /* of a mark that a law gave up: its bonds have been judged in the step under way */
+
+/** Doubles the room of an array that is full. */
+static bool make_room(void **array, size_t size, int64_t count, int64_t *capacity)
+{
+  if (count < *capacity) return true;
+  const int64_t wanted = *capacity ? 2 * *capacity : 256;
+  void *grown = realloc(*array, size * (size_t)wanted);
+  if (!grown) return false;
+  *array = grown;
+  *capacity = wanted;
+  return true;
+}
+
+int domain_record(Domain *d, const BrokenBond *bond)
+{
+  if (!make_room((void **)&d->broken, sizeof *d->broken, d->broken_count, &d->broken_capacity)) return BRECCIA_FAILURE;
+  d->broken[d->broken_count++] = *bond;
+  return BRECCIA_OK;
+}
+
+static void note_torn(Domain *d, int32_t place)
+{
+  if (d->is_torn[place]) return;
+  if (!make_room((void **)&d->torn, sizeof *d->torn, d->torn_count, &d->torn_capacity)) {
+    d->out_of_memory = true;
+    return;
+  }
+  d->is_torn[place] = 1;
+  d->torn[d->torn_count++] = (Torn){.place = place};
+}
+
+static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment)
+{
+  const int32_t place = (int32_t)(slice * SLICE + lane), *number = d->particles->number;
+  const int32_t a = number[place], b = number[neighbour];
+  if (d->type->bond_energy) {
+    StoredEnergy energy;
+    d->type->bond_energy(d->formulation, slice, slot, lane, moment->time_step, &energy);
+    d->fracture_energy += energy.stored - energy.half_work;
+  }
+  if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
+    d->out_of_memory = true;
+    return;
+  }
+  family_break(&d->family, place, neighbour);
+  contact_bond_broke(&d->contact, place, neighbour);
+  d->suspects[neighbour / SLICE] = 1; /* so that its family is renewed */
+}
+
+/** Goes through the bonds of the suspect slices in order, and notes the ends of those that break, or breaks them. */
+static void judge(Domain *d, const Moment *moment, bool only_note)
+{
+  const Family *f = &d->family;
+  const uint8_t *gave_up = d->points.gave_up;
+  for (int64_t s = 0; s < d->particles->slices; ++s) {
+    if (!d->suspects[s]) continue;
+    for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        if (!(f->intact[slot] >> lane & 1)) continue;
+        const Bond bond = family_bond(f, s, slot, lane);
+        const int32_t place = (int32_t)(s * SLICE + lane);
+        if (!(gave_up && gave_up[place]) &&
+            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)))
+          continue;
+        if (only_note) {
+          note_torn(d, place);
+          note_torn(d, bond.neighbour);
+        } else
+          break_bond(d, s, slot, lane, bond.neighbour, moment);
+      }
+  }
+}
+
+static void break_suspects(Domain *d, const Moment *moment)
+{
+  judge(d, moment, false);
+  uint8_t *gave_up = d->points.gave_up;
+  for (int64_t s = 0; s < d->particles->slices; ++s) {
+    if (!d->suspects[s]) continue;
+    if (d->broken_count > d->broken_before && d->type->renew) d->type->renew(d->formulation, s);
+    for (int lane = 0; gave_up && lane < SLICE; ++lane)
+      if (gave_up[s * SLICE + lane]) gave_up[s * SLICE + lane] = CONSUMED;
+  }
+}
+
+/** What goes with the bonds that a place has lost. The law of its point goes from one strain to another as they go, and no force does that
+ *  work; with less bonds than a strain needs, what it stored is lost. A law that yields on that way dissipates what it gains. */
+static double released(const StoredEnergy *before, const StoredEnergy *after, bool elastic)
+{
+  double sum = before->beside - after->beside - (before->half_work - after->half_work);
+  if (after->weight == 0) return sum + before->weight * before->density;
+  for (int k = 0; k < 6; ++k)
+    sum += before->weight * 0.5 * (before->stress[k] + after->stress[k]) * (before->strain[k] - after->strain[k]);
+  sum += (before->weight - after->weight) * after->density;
+  return elastic || sum > 0 ? sum : 0;
+}
+
+/** Energies of torn places, each place by one thread. */
+static void find_energies(Domain *d, double time_step, bool after)
+{
+  TEAM_FOR (n, d->torn_count) {
+    Torn *torn = &d->torn[n];
+    StoredEnergy energy;
+    d->type->stored_energy(d->formulation, torn->place, time_step, &energy);
+    if (after)
+      torn->released = released(&torn->before, &energy, d->materials[d->material[torn->place / SLICE]].law->linear);
+    else
+      torn->before = energy;
+  }
+}
+
+void domain_break(Domain *d, const Moment *moment)
+{
+  const bool judges = d->failure.criterion || d->points.gave_up;
+  TEAM_SINGLE
+  {
+    d->broken_before = d->broken_count;
+    d->fracture_before = d->fracture_energy;
+    d->motion_before = d->motion;
+    d->motion += moment->motion;
+    d->torn_count = 0;
+  }
+  if (d->contact.spec) {
+    TEAM_SINGLE contact_follow(&d->contact, moment->motion);
+  }
+  if (!judges) return;
+  TEAM_FOR (b, d->block_count)
+    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
+      d->suspects[s] = 0;
+      if (d->failure.criterion && d->motion >= d->look_again[s])
+        d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);
+      for (int lane = 0; d->points.gave_up && lane < SLICE; ++lane)
+        if (d->points.gave_up[s * SLICE + lane]) d->suspects[s] = 1;
+    }
+  TEAM_SINGLE
+  {
+    d->any_suspect = memchr(d->suspects, 1, (size_t)d->particles->slices) != NULL;
+    if (d->any_suspect && !d->type->bond_energy) judge(d, moment, true);
+  }
+  if (!d->any_suspect) return;
+  find_energies(d, moment->time_step, false);
+  TEAM_SINGLE break_suspects(d, moment);
+}
+
+void domain_book(Domain *d, double time_step)
+{
+  find_energies(d, time_step, true);
+  TEAM_SINGLE
+  {
+    for (int64_t n = 0; n < d->torn_count; ++n) {
+      d->fracture_energy += d->torn[n].released;
+      d->is_torn[d->torn[n].place] = 0;
+    }
+    d->torn_count = 0;
+    uint8_t *gave_up = d->points.gave_up;
+    for (int64_t i = 0; gave_up && d->any_suspect && i < d->particles->places; ++i)
+      if (gave_up[i] == CONSUMED) gave_up[i] = 0;
+  }
+}
+
+void domain_mend(Domain *d)
+{
+  uint8_t *gave_up = d->points.gave_up;
+  for (int64_t i = 0; gave_up && i < d->particles->places; ++i) gave_up[i] = gave_up[i] == CONSUMED;
+  for (int64_t n = 0; n < d->torn_count; ++n) d->is_torn[d->torn[n].place] = 0;
+  d->torn_count = 0;
+  for (int64_t n = d->broken_before; n < d->broken_count; ++n) {
+    const int32_t a = d->particles->place_of[d->broken[n].a], b = d->particles->place_of[d->broken[n].b];
+    family_mend(&d->family, a, b);
+    contact_bond_mended(&d->contact, a, b);
+    for (int end = 0; end < 2 && d->type->renew; ++end) d->type->renew(d->formulation, (end ? b : a) / SLICE);
+  }
+  d->broken_count = d->broken_before;
+  d->fracture_energy = d->fracture_before;
+  d->motion = d->motion_before;
+  d->out_of_memory = false;
+  memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
+  if (d->contact.spec && !d->contact.failed) contact_search(&d->contact);
+}

@@ -1,0 +1,67 @@
+#include "solver/rest.h"
+
+#include "base/memory.h"
+#include <math.h>
+#include <stdlib.h>
+
+const double rest_limit = 1e-3;
+
+/** True if a history says the same at the end as a hundredth of the time before. */
+static bool is_steady(const HistorySpec *history, double time)
+{
+  const double now = history_factor(history, time), before = history_factor(history, 0.99 * time);
+  return fabs(now - before) <= 1e-9 * fmax(fabs(now), 1);
+}
+
+static bool is_meant(const Explicit *s)
+{
+  if (!(s->spec->damping > 0 || s->spec->local_damping > 0)) return false;
+  for (int k = 0; k < s->loading->count; ++k)
+    if (!is_steady(s->loading->loads[k].spec->history, s->time)) return false;
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *c = &s->loading->constraints[n];
+    const HistorySpec *history = c->load->spec->history;
+    if (c->is_velocity && c->value != 0 && history_factor(history, s->time) != 0) return false;
+  }
+  return true;
+}
+
+int rest_find(const Explicit *s, Rest *rest, Error *error)
+{
+  *rest = (Rest){.meant = is_meant(s)};
+  if (!rest->meant) return BRECCIA_OK;
+  const Particles *p = s->domain->particles;
+  double *free_force[3] = {0}, unbalanced = 0, acting = 0;
+  int failed = 0;
+  for (int k = 0; k < 3; ++k) {
+    failed |= !(free_force[k] = places_array(p->places, "forces out of balance", error));
+    for (int64_t i = 0; !failed && i < p->places; ++i)
+      free_force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
+  }
+  for (int n = 0; !failed && n < s->loading->constraint_count; ++n) { /* what a support carries is balanced */
+    const Constraint *c = &s->loading->constraints[n];
+    for (int64_t at = 0; at < c->load->selection.count; ++at) {
+      const int32_t i = c->load->selection.places[at];
+      double along = 0;
+      for (int k = 0; k < 3; ++k) along += free_force[k][i] * c->direction[k];
+      for (int k = 0; k < 3; ++k) free_force[k][i] -= along * c->direction[k];
+      acting += fabs(along);
+    }
+  }
+  for (int64_t n = 0; !failed && n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double square = 0, external = 0;
+    for (int k = 0; k < 3; ++k) {
+      square += free_force[k][i] * free_force[k][i];
+      external += p->external[k][i] * p->external[k][i];
+    }
+    unbalanced += sqrt(square);
+    acting += p->volume[i] * sqrt(external);
+  }
+  for (int k = 0; k < 3; ++k) places_free(&free_force[k]);
+  if (failed) return BRECCIA_FAILURE;
+  rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
+  rest->kinetic = s->paid > 0 ? s->ledger.kinetic / s->paid : 0;
+  rest->reached = rest->unbalanced < rest_limit && rest->kinetic < rest_limit;
+  return BRECCIA_OK;
+}

@@ -1,0 +1,399 @@
+/* What happens to step, energy and state when bonds break. */
+#include "base/random.h"
+#include "solver/rest.h"
+#include "solver/stable_step.h"
+#include "support.h"
+
+#include <unistd.h>
+
+#define SOFT "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+
+/** Breaks a share of all bonds that are left, by a fixed sequence of numbers. */
+static void break_some(Domain *d, double share, uint64_t *seed)
+{
+  const Particles *p = d->particles;
+  const Family *f = &d->family;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t place = p->place_of[n];
+    const int64_t slice = place / SLICE;
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+      const Bond bond = family_bond(f, slice, slot, place % SLICE);
+      if (bond.neighbour > place && random_uniform(seed) < share) family_break(&d->family, place, bond.neighbour);
+    }
+  }
+  for (int64_t slice = 0; slice < p->slices; ++slice) d->type->renew(d->formulation, slice);
+}
+
+static void the_stable_step_hardly_falls_whatever_bonds_break(void **state)
+{
+  (void)state;
+  const char *const bodies[] = {"spacing: 0.1, lattice: square, thickness: 1, shape: {box: {particles: [24, 24]}}",
+                                "spacing: 0.1, shape: {box: {particles: [10, 10, 10]}}",
+                                "spacing: 0.1, shape: {box: {particles: [16, 16, 2]}}"};
+  const char *const more[] = {"", ", horizon: 2.015 spacings", ", influence: cubic-spline",
+                              ", zero-energy control: {wan: 0.1}"};
+  /* Of the step of the whole body; 0.8 of it is taken by default. Without care 0.03 to 0.3 is left. */
+  const double least[] = {0.82, 0.82, 0.6, 0.6};
+  for (int b = 0; b < 3; ++b)
+    for (int k = 0; k < 4; ++k) {
+      breccia_model *m = model_of(SOFT "peridynamics: {space: %s%s}\nfailure: {critical stretch: 1}\n"
+                                       "body: {b: {material: m, %s}}\nsolve: {explicit: {steps: 1}}\n",
+                                  b ? "3-D" : "plane strain", more[k], bodies[b]);
+      uint64_t seed = 3;
+      double gone = 0, step;
+      while (gone < 0.9) {
+        break_some(&m->domain, 0.15 / (1 - gone), &seed);
+        gone += 0.15;
+        assert_int_equal(stable_step(&m->domain, &step, NULL), 0);
+        if (step < least[k] * m->solver.stable)
+          fail_msg("body %d%s: %.2f of the stable step is left when %.2f of the bonds are gone", b, more[k],
+                   step / m->solver.stable, gone);
+      }
+      breccia_model_destroy(&m);
+    }
+}
+
+/** Kalthoff and Winkler's plate with two notches, struck between them at 16.5 m/s. */
+static breccia_model *struck_plate(const char *space, const char *safety)
+{
+  return model_of("units: {length: m, force: N, time: s}\n"
+                  "materials: {s: {model: elastic, density: 8000, Young modulus: 190 GPa, Poisson ratio: 0.3}}\n"
+                  "body: {p: {material: s, lattice: square, spacing: 0.002, thickness: 0.009, shape: {box: {from: [0, "
+                  "0], to: [0.1, 0.2]}}}}\n"
+                  "cracks: [{cut: {line: [[-1, 0.0749], [0.05, 0.0749]]}}, {cut: {line: [[-1, 0.1251], [0.05, "
+                  "0.1251]]}}]\n"
+                  "peridynamics: {space: %s}\nfailure: {critical stretch: 0.0066}\n"
+                  "loads: [{on: {inside: {box: {from: [-1, 0.0755], to: [0.002, 0.1245]}}}, velocity: [16.5, free]}]\n"
+                  "solve: {explicit: {end time: 90e-6%s}}\n",
+                  space, safety);
+}
+
+static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
+{
+  (void)state;
+  const char *const spaces[] = {"plane strain", "plane stress"};
+  for (int k = 0; k < 2; ++k) {
+    double fracture[2];
+    for (int fine = 0; fine < 2; ++fine) {
+      breccia_model *m = struck_plate(spaces[k], fine ? ", safety: 0.2" : "");
+      breccia_error *error = breccia_error_create();
+      if (breccia_model_step(m, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
+      const Energy e = explicit_energy(&m->solver);
+      const Particles *p = m->domain.particles;
+      double fastest = 0;
+      for (int64_t n = 0; n < p->count; ++n)
+        fastest = fmax(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
+      assert_true(fastest < 10 * 16.5);
+      assert_true(m->domain.broken_count > 500);
+      assert_true(e.imbalance < 5e-3);
+      assert_true(e.stored > 0 && e.kinetic + e.stored + e.fracture < 1.1 * e.external);
+      fracture[fine] = e.fracture;
+      breccia_error_destroy(&error);
+      breccia_model_destroy(&m);
+    }
+    print_message("%s: fracture %.1f J, at a quarter of the step %.1f J\n", spaces[k], fracture[0], fracture[1]);
+    assert_near(fracture[0], fracture[1], 0.35 * fracture[1]);
+  }
+}
+
+static void two_particles_spend_what_their_bond_received(void **state)
+{
+  (void)state;
+  /* c s^2 xi V^2 / 2 = E s^2 V / 2 of a bar of two particles, each of which stands for half of V. */
+  for (int fine = 0; fine < 2; ++fine) {
+    breccia_model *m =
+        model_of("units: {length: m, force: N, time: s}\n"
+                 "materials: {m: {model: elastic-1d, density: 2400, Young modulus: 30e9}}\n"
+                 "body: {b: {material: m, lattice: line, area: 0.01, spacing: 0.01, shape: {box: "
+                 "{particles: [2, 1]}}}}\n"
+                 "peridynamics: {formulation: bond-based, space: 1-D, horizon: 1.015 spacings, "
+                 "calibration: uniaxial}\nfailure: {critical stretch: 1e-3}\n"
+                 "loads: [{on: {face: x-}, displacement: [0, free]}, {on: {face: x+}, velocity: [%g, free]}]\n"
+                 "solve: {explicit: {end time: %g}}\n",
+                 fine ? 0.01 : 1.0, fine ? 2e-3 : 2e-5);
+    double before = 0;
+    while (!m->domain.broken_count && m->solver.step < m->solver.steps) {
+      before = m->solver.ledger.bond_work;
+      breccia_model_step(m, 1, NULL);
+    }
+    assert_true(m->domain.broken_count == 1);
+    assert_true(before > 0);
+    breccia_model_step(m, INT64_MAX, NULL);
+    const Energy e = explicit_energy(&m->solver);
+    const double received = m->solver.ledger.bond_work;
+    assert_near(e.fracture, received, 1e-12 * received);
+    assert_near(e.stored, 0, 1e-12 * received);
+    if (fine) { /* the bond breaks within a small step of its limit */
+      const double v = 0.01 * 0.01, c = m->domain.family.bonds ? received : 0;
+      assert_near(c, 0.5 * 30e9 * 1e-6 * v, 0.01 * received);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_cut_through_bonds_costs_half_c_s0_squared_of_each(void **state)
+{
+  (void)state;
+  /* validation A24: the halves are drawn apart as rigid bodies; every bond across breaks at its own limit. */
+  const double s0 = 1e-3, young = 1e4;
+  for (int space = 0; space < 2; ++space) {
+    breccia_model *m =
+        model_of("materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+                 "body: {b: {material: m, %s}}\n"
+                 "peridynamics: {formulation: bond-based, space: %s, calibration: continuum}\n"
+                 "failure: {critical stretch: 1e-3}\n"
+                 "loads: [{on: {inside: {box: {from: [-1, -1, -1], to: [0.8, 9, 9]}}}, velocity: %s},\n"
+                 "        {on: {inside: {box: {from: [0.8, -1, -1], to: [9, 9, 9]}}}, velocity: %s}]\n"
+                 "solve: {explicit: {end time: 0.32, safety: 0.5}}\n",
+                 space ? "spacing: 0.1, shape: {box: {particles: [15, 7, 7]}}"
+                       : "spacing: 0.1, lattice: square, thickness: 1, shape: {box: {particles: [15, 9]}}",
+                 space ? "3-D" : "plane stress", space ? "[0, 0, 0]" : "[0, 0]", space ? "[0.01, 0, 0]" : "[0.01, 0]");
+    const Domain *d = &m->domain;
+    const Particles *p = d->particles;
+    const double delta = d->family.horizon, pi = acos(-1);
+    const double c = space ? 12 * young / (pi * pow(delta, 4)) : 9 * young / (pi * pow(delta, 3));
+    double wanted = 0;
+    int64_t across = 0;
+    for (int64_t a = 0; a < p->count; ++a)
+      for (int64_t b = a + 1; b < p->count; ++b) {
+        const int32_t i = p->place_of[a], j = p->place_of[b];
+        const double length = particles_distance(p, i, j);
+        if (length > delta * (1 + 1e-9) || (p->position[0][i] < 0.8) == (p->position[0][j] < 0.8)) continue;
+        if (fabs(p->position[0][i] - p->position[0][j]) < 1e-9) continue;
+        wanted += 0.5 * c * s0 * s0 * length * p->volume[i] * p->volume[j];
+        ++across;
+      }
+    assert_true(across > 50);
+    assert_int_equal(breccia_model_step(m, INT64_MAX, NULL), 0);
+    const Energy e = explicit_energy(&m->solver);
+    print_message("%s: booked %.4f of the sum over the cut, %lld of %lld bonds\n", space ? "3-D" : "plane",
+                  e.fracture / wanted, (long long)d->broken_count, (long long)across);
+    assert_int_equal(d->broken_count, across);
+    assert_near(e.fracture, wanted, 0.02 * wanted);
+    assert_true(e.imbalance < 5e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void bonds_that_soften_dissipate(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of("units: {length: m, force: N, time: s}\n"
+               "materials: {c: {model: bilinear-softening, density: 2400, Young modulus: 30e9, tensile strength: 3e6, "
+               "fracture energy: 100}}\n"
+               "body: {b: {material: c, lattice: square, thickness: 0.1, spacing: 0.01, shape: {box: {particles: [16, "
+               "6]}}}}\n"
+               "peridynamics: {formulation: bond-based, space: plane stress}\n"
+               "loads: [{on: {face: x-, layers: 3}, velocity: [-0.05, free], history: {ramp to: 2e-4}},\n"
+               "        {on: {face: x+, layers: 3}, velocity: [0.05, free], history: {ramp to: 2e-4}}]\n"
+               "solve: {explicit: {end time: 1.2e-3}}\n");
+  assert_int_equal(breccia_model_step(m, INT64_MAX, NULL), 0);
+  const Energy e = explicit_energy(&m->solver);
+  assert_true(e.dissipated > 0.1 * e.internal);
+  assert_true(e.stored > 0 && e.dissipated > 0);
+  assert_near(e.stored + e.dissipated, e.internal, 1e-9 * e.internal);
+  assert_true(e.imbalance < 5e-3);
+  breccia_model_destroy(&m);
+}
+
+static void damped_bodies_come_to_rest_at_the_default_step(void **state)
+{
+  (void)state;
+  /* A bar under its own end load: u = sigma L / E; the stable step falls by 1 / sqrt(1 + 0.8). */
+  const char *const damping[] = {"local damping: 0.8", "local damping: 0.5", "damping: 60", "damping: 4e4"};
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *m =
+        model_of("materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+                 "body: {b: {material: m, lattice: line, area: 1, spacing: 0.1, shape: {box: {particles: "
+                 "[40, 1]}}}}\n"
+                 "peridynamics: {formulation: bond-based, space: 1-D, horizon: 2.015 spacings}\n"
+                 "loads: [{on: {face: x-, layers: 2}, displacement: [0, free]}, {on: {face: x+, layers: 2}, "
+                 "force: [1, 0]}]\n"
+                 "solve: {explicit: {end time: %g, %s}}\n",
+                 k == 3 ? 0.02 : 3.0, damping[k]);
+    breccia_error *error = breccia_error_create();
+    if (breccia_model_step(m, INT64_MAX, error)) fail_msg("%s: %s", damping[k], breccia_error_text(error));
+    const Particles *p = m->domain.particles;
+    Rest rest;
+    assert_int_equal(rest_find(&m->solver, &rest, error), 0);
+    assert_true(rest.meant);
+    if (k < 3) {
+      if (!rest.reached) fail_msg("%s: unbalanced %g, kinetic %g", damping[k], rest.unbalanced, rest.kinetic);
+      const double u = p->displacement[0][p->place_of[30]];
+      assert_near(u, 1e-4 * (p->position[0][p->place_of[30]] - 0.2), 0.03 * 2.9e-4);
+    } else { /* creeps: each step is no longer than the damping's own time */
+      assert_false(rest.reached);
+      assert_true(m->solver.time_step <= 1 / 4e4);
+    }
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void steps_end_with_the_times_that_are_asked_for(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(SOFT "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+                                   "pictures: [{field: displacement, at: [0.0137, 0.02]}]\n"
+                                   "results: {times: [0.0031]}\n"
+                                   "solve: {explicit: {end time: 0.0271}}\n");
+  const double wanted[] = {0.0031, 0.0137, 0.02, 0.0271};
+  int met = 0;
+  while (m->solver.step < m->solver.steps) {
+    breccia_model_step(m, 1, NULL);
+    assert_true(m->solver.time_step <= 0.8 * m->solver.stable * (1 + 1e-12));
+    assert_true(m->solver.time_step > 0.4 * m->solver.stable);
+    if (met < 4 && m->solver.time == wanted[met]) ++met;
+  }
+  assert_int_equal(met, 4);
+  assert_true(m->solver.time == 0.0271);
+  breccia_model_destroy(&m);
+}
+
+/* ---- steps that fail ---- */
+
+static int vase_prepare(const double *values, void *constants, char *reason, size_t size)
+{
+  (void)values, (void)constants, (void)reason, (void)size;
+  return 0;
+}
+static void vase_moduli(const void *constants, double *bulk, double *shear)
+{
+  (void)constants;
+  *bulk = 1e5;
+  *shear = 6e4;
+}
+static int vase_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    if (batch->strain[0][i] > 1e-3) return i;
+    const double volumetric = 6e4 * (batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i]);
+    for (int k = 0; k < 6; ++k)
+      batch->stress[k][i] = (k < 3 ? volumetric : 0) + (k < 3 ? 2 : 1) * 6e4 * batch->strain[k][i];
+  }
+  return -1;
+}
+/** Elastic up to a strain of 1e-3, where it gives up. */
+static const breccia_law vase = {.name = "vase",
+                                 .about = "gives up",
+                                 .source = "this test",
+                                 .maturity = "experimental",
+                                 .constants_size = 1,
+                                 .prepare = vase_prepare,
+                                 .moduli = vase_moduli,
+                                 .update = vase_update};
+
+static breccia_model *pulled_vase(const char *failure, const char *folder_key)
+{
+  (void)folder_key;
+  static const breccia_law *const laws[] = {&vase};
+  const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1};
+  breccia_model *m = NULL;
+  char deck[1024];
+  snprintf(deck, sizeof deck,
+           "units: {length: m, force: kN, time: s}\nmaterials: {v: {model: vase, density: 2}}\n"
+           "body: {b: {material: v, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\n"
+           "failure: {%s}\ncontact: {}\n"
+           "loads: [{on: {face: x-, layers: 3}, velocity: [0, 0, 0]}, {on: {face: x+, layers: 3}, velocity: [0.5, 0, "
+           "0]}]\nsolve: {explicit: {steps: 300}}\n",
+           failure);
+  breccia_error *error = breccia_error_create();
+  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  return m;
+}
+
+static void a_step_that_fails_leaves_nothing_behind(void **state)
+{
+  (void)state;
+  /* Limits at which bonds break in the steps before and in the step in which the law gives up. */
+  int with_breaking = 0;
+  for (int k = 0; k < 12; ++k) {
+    char failure[64];
+    snprintf(failure, sizeof failure, "critical stretch: %g", 1.4e-3 + 2e-5 * k);
+    breccia_model *m = pulled_vase(failure, "");
+    Domain *d = &m->domain;
+    const size_t slots = (size_t)d->family.slots, places = (size_t)d->particles->places;
+    uint8_t *intact = malloc(slots);
+    double *u = malloc(places * sizeof *u), *stress = malloc(places * sizeof *stress);
+    Ledger ledger = {0};
+    double fracture = 0;
+    int64_t broken = 0;
+    int status = 0;
+    while (!status && m->solver.step < m->solver.steps) {
+      memcpy(intact, d->family.intact, slots);
+      memcpy(u, d->particles->displacement[0], places * sizeof *u);
+      memcpy(stress, d->points.stress[0], places * sizeof *stress);
+      ledger = m->solver.ledger;
+      fracture = d->fracture_energy;
+      broken = d->broken_count;
+      status = breccia_model_step(m, 1, NULL);
+    }
+    assert_int_equal(status, BRECCIA_FAILURE);
+    assert_int_equal(d->broken_count, broken);
+    assert_memory_equal(intact, d->family.intact, slots);
+    assert_true(d->fracture_energy == fracture);
+    assert_memory_equal(&ledger, &m->solver.ledger, sizeof ledger);
+    for (size_t i = 0; i < places; ++i) {
+      assert_near(d->particles->displacement[0][i], u[i], 1e-15);
+      assert_near(d->points.stress[0][i], stress[i], 1e-8);
+    }
+    with_breaking += d->broken_capacity > 0 && broken > 0;
+    free(intact);
+    free(u);
+    free(stress);
+    breccia_model_destroy(&m);
+  }
+  (void)with_breaking;
+}
+
+static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
+{
+  (void)state;
+  breccia_model *whole = pulled_vase("failed laws: break", "");
+  bool marked = false;
+  while (!marked && whole->solver.step < whole->solver.steps) {
+    breccia_model_step(whole, 1, NULL);
+    for (int64_t i = 0; i < whole->domain.particles->places; ++i) marked |= whole->domain.points.gave_up[i];
+  }
+  assert_true(marked);
+  char folder[] = "/tmp/breccia-XXXXXX";
+  assert_non_null(mkdtemp(folder));
+  breccia_run run = {.folder = folder, .steps = whole->solver.step};
+  breccia_model *first = pulled_vase("failed laws: break", ""), *second = pulled_vase("failed laws: break", "");
+  assert_int_equal(breccia_model_run(first, &run, NULL), 0);
+  breccia_model_step(whole, 40, NULL);
+  run.restart = 1;
+  run.steps = whole->solver.step;
+  assert_int_equal(breccia_model_run(second, &run, NULL), 0);
+  assert_true(whole->domain.broken_count > 0);
+  assert_int_equal(second->domain.broken_count, whole->domain.broken_count);
+  for (int k = 0; k < 3; ++k)
+    assert_memory_equal(second->domain.particles->displacement[k], whole->domain.particles->displacement[k],
+                        sizeof(double) * (size_t)whole->domain.particles->places);
+  breccia_model_destroy(&whole);
+  breccia_model_destroy(&first);
+  breccia_model_destroy(&second);
+  char command[64];
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_stable_step_hardly_falls_whatever_bonds_break),
+      cmocka_unit_test(a_struck_plate_breaks_soundly_at_the_default_step),
+      cmocka_unit_test(two_particles_spend_what_their_bond_received),
+      cmocka_unit_test(a_cut_through_bonds_costs_half_c_s0_squared_of_each),
+      cmocka_unit_test(bonds_that_soften_dissipate),
+      cmocka_unit_test(damped_bodies_come_to_rest_at_the_default_step),
+      cmocka_unit_test(steps_end_with_the_times_that_are_asked_for),
+      cmocka_unit_test(a_step_that_fails_leaves_nothing_behind),
+      cmocka_unit_test(marks_of_laws_that_gave_up_outlive_a_restart),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
