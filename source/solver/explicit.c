@@ -505,7 +505,8 @@ static int retreat(Explicit *s, const Ledger *before, Error *error)
 static int watch_energy(Explicit *s, Error *error)
 {
   enum { FIRST = 3 }; /* step: before, all energies are next to nothing */
-  const double most_given = s->domain->contact.spec ? 100 : 0.1, most_unexplained = 1000;
+  const double most_given = s->domain->contact.spec ? 100 : domain_is_elastic(s->domain) ? 0.1 : 0.5;
+  const double most_unexplained = 1000;
   const Ledger *l = &s->ledger;
   const double fracture = s->domain->fracture_energy,
                internal = l->bond_work - fracture - s->domain->contact.friction_work;
