@@ -247,7 +247,9 @@ void contact_bond_mended(Contact *c, int32_t a, int32_t b)
 {
   if (!c->spec) return;
   for (int end = 0; end < 2; ++end) {
-    ContactRow *row = &c->rows[c->row_of[end ? b : a]];
+    const int32_t at = c->row_of[end ? b : a];
+    if (at < 0) continue; /* memory was out as it broke */
+    ContactRow *row = &c->rows[at];
     row->stale = row->turning = true;
     for (int32_t n = row->count - 1; n >= 0; --n)
       if (row->pairs[n].neighbour == (end ? a : b)) remove_pair(row, n);
