@@ -38,7 +38,7 @@ static int make_folder(const char *path, Error *error)
 {
   char *part = text_format("%s", path);
   if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: folder");
-  for (char *slash = strchr(part + 1, '/');; slash = strchr(slash + 1, '/')) {
+  for (char *slash = strchr(part + (*part != 0), '/');; slash = strchr(slash + 1, '/')) {
     if (slash) *slash = 0;
     int bad = mkdir(part, 0777);
     struct stat status;

@@ -73,6 +73,7 @@ equal "history: rows" "$(wc -l < plate/opening.csv)" 12
 [ -s out ] && fail "run --quiet prints: $(cat out)"
 [ -e "other folder/deep/summary.json" ] || fail "--output is not obeyed"
 touch file; "$breccia" run plate.yaml --steps 3 --output file/x 2> out > /dev/null; equal "output below a file: status" $? 2
+"$breccia" run plate.yaml --steps 3 --output "" > out 2>&1; equal "output without a name: status" $? 2
 
 # a burst writes the last good state and ends with status 1
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
