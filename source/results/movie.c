@@ -30,7 +30,7 @@ static int draw_frames(const ResultView *view, const PictureOptions *o, bool eac
     int w, h;
     unsigned char *pixels = picture_pixels(view, k, o, &here, &w, &h, error);
     if (!pixels) return BRECCIA_FAILURE;
-    if (k && (w != *wide || h != *high)) /* words of one frame were wider: all get the first one's size */
+    if (k && (w != *wide || h != *high)) /* the encoder is told one size for all */
       status = error_add(error, BRECCIA_FAILURE, "frames of different size: %d x %d and %d x %d", *wide, *high, w, h);
     *wide = w;
     *high = h;

@@ -86,7 +86,7 @@ void explicit_stop_at(Explicit *solver, const double *times, int64_t count);
 /** Forces, accelerations and kinetic energy of the state held: before the first step, or after a restart. */
 void explicit_begin(Explicit *solver);
 
-/** One step. After a failure the state is that of the step before, with the reason in `error`. Where bonds have broken the stable step
+/** One step. After a failure the reason is in `error`, and the state that of the step before; where energies give the reason the step has been taken. Where bonds have broken the stable step
  *  is found again now and then, and the steps follow.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int explicit_advance(Explicit *solver, Text *warning, Error *error);
