@@ -23,6 +23,7 @@ static const char *value_words(const Field *field)
 {
   switch (field->kind) {
   case FIELD_NUMBER: return !field->dimension || !strcmp(field->dimension, "1") ? "number" : field->dimension;
+  case FIELD_QUANTITY: return "number, with or without a unit";
   case FIELD_LENGTH: return "length, or number of spacings";
   case FIELD_COUNT: return "whole number";
   case FIELD_FLAG: return "yes or no";
@@ -175,6 +176,7 @@ static void add_value_schema(Text *text, const Field *field)
   const char *number = "{\"type\": [\"number\", \"string\"]}";
   switch (field->kind) {
   case FIELD_NUMBER:
+  case FIELD_QUANTITY:
   case FIELD_LENGTH: text_add(text, "\"type\": [\"number\", \"string\"]"); break;
   case FIELD_COUNT: text_add(text, "\"type\": [\"integer\", \"number\"]"); break;
   case FIELD_FLAG: text_add(text, "\"enum\": [true, false, \"yes\", \"no\", \"on\", \"off\"]"); break;

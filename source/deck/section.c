@@ -28,9 +28,8 @@ static const char *kind_words(FieldKind kind)
   }
 }
 
-/** A number with a unit from a node, checked against a range. @return 0 or 1 after saying what is wrong */
-static int read_number(const DeckReader *reader, const Node *node, const char *label, const char *dimension_name,
-                       const char *range, double *value)
+int deck_number(const DeckReader *reader, const Node *node, const char *label, const char *dimension_name,
+                const char *range, double *value)
 {
   const Dimension *dimension = dimension_find(dimension_name ? dimension_name : "1");
   if (node->kind != NODE_SCALAR) {
@@ -61,7 +60,7 @@ static const char *found_words(const Node *node)
 static int read_count(const DeckReader *reader, const Node *node, const char *label, const char *range, int64_t *value)
 {
   double number;
-  if (read_number(reader, node, label, "1", range, &number)) return 1;
+  if (deck_number(reader, node, label, "1", range, &number)) return 1;
   if (number != floor(number) || fabs(number) > 9e15) {
     node_error(reader->document, node, reader->error, "%s: %s is not a whole number", label, node->text);
     return 1;
@@ -94,7 +93,7 @@ static int read_length(const DeckReader *reader, const Node *node, const char *l
                  node->text, (int)(n < (size_t)(dx - node->text) ? n : (size_t)(dx - node->text)), node->text);
       return 1;
     }
-    return read_number(reader, node, label, "length", range, &length->value);
+    return deck_number(reader, node, label, "length", range, &length->value);
   }
   Node number = *node;
   char words[64];
@@ -102,7 +101,7 @@ static int read_length(const DeckReader *reader, const Node *node, const char *l
   for (size_t n = strlen(words); n && isspace((unsigned char)words[n - 1]); --n) words[n - 1] = 0;
   number.text = words;
   length->in_spacings = true;
-  return read_number(reader, &number, label, "1", range, &length->value);
+  return deck_number(reader, &number, label, "1", range, &length->value);
 }
 
 /* ---- lists ---- */
@@ -135,7 +134,7 @@ static int read_point(const DeckReader *reader, const Node *node, const char *la
                  label, item->text);
       failed = 1;
     } else
-      failed |= read_number(reader, item, label, field->dimension, field->range, &point[k]);
+      failed |= deck_number(reader, item, label, field->dimension, field->range, &point[k]);
   }
   if (field->kind == FIELD_FREE_POINT && node->count == 2) point[2] = NAN;
   return failed;
@@ -160,15 +159,15 @@ static int read_rows(const DeckReader *reader, const Node *node, const char *lab
     const Node *row = &node->items[k];
     double *values = list->values + width * k;
     if (width == 1)
-      failed |= read_number(reader, row, label, field->dimension, field->range, values);
+      failed |= deck_number(reader, row, label, field->dimension, field->range, values);
     else if (width == 3)
       failed |= read_point(reader, row, label, field, values);
     else if (row->kind != NODE_LIST || row->count != 2) {
       node_error(reader->document, row, reader->error, "%s: expected %s", label, kind_words(field->kind));
       failed = 1;
     } else {
-      failed |= read_number(reader, &row->items[0], label, "time", NULL, &values[0]);
-      failed |= read_number(reader, &row->items[1], label, field->dimension, field->range, &values[1]);
+      failed |= deck_number(reader, &row->items[0], label, "time", NULL, &values[0]);
+      failed |= deck_number(reader, &row->items[1], label, field->dimension, field->range, &values[1]);
       if (!failed && k && values[0] <= values[-2]) {
         node_error(reader->document, row, reader->error, "%s: times must grow from row to row", label);
         failed = 1;
@@ -229,7 +228,8 @@ static void say_choices(const DeckReader *reader, const Node *node, const char *
 static void read_field(const DeckReader *reader, const Node *node, const char *label, const Field *field, void *target)
 {
   switch (field->kind) {
-  case FIELD_NUMBER: read_number(reader, node, label, field->dimension, field->range, target); break;
+  case FIELD_NUMBER: deck_number(reader, node, label, field->dimension, field->range, target); break;
+  case FIELD_QUANTITY: *(const Node **)target = node; break;
   case FIELD_LENGTH: read_length(reader, node, label, field->range, target); break;
   case FIELD_COUNT: read_count(reader, node, label, field->range, target); break;
   case FIELD_FLAG: read_flag(reader, node, label, target); break;
@@ -287,7 +287,7 @@ static void read_field(const DeckReader *reader, const Node *node, const char *l
     if (node->kind == NODE_MAP)
       either->section = section_read(reader, node, field->section);
     else
-      read_number(reader, node, label, field->dimension, field->range, &either->value);
+      deck_number(reader, node, label, field->dimension, field->range, &either->value);
     break;
   }
   case FIELD_REFERENCE: {
@@ -417,7 +417,7 @@ static void read_parameters(const DeckReader *reader, const Node *node, const Se
       node_error(reader->document, node, reader->error, "%s: missing key '%s' (%s)", section->name, parameter->name,
                  parameter->meaning);
     else if (item || *parameter->standard)
-      read_number(reader, item ? item : &standard, parameter->name, parameter->dimension, parameter->range, &values[k]);
+      deck_number(reader, item ? item : &standard, parameter->name, parameter->dimension, parameter->range, &values[k]);
   }
 }
 

@@ -51,6 +51,7 @@ typedef struct
 
 typedef enum FieldKind {
   FIELD_NUMBER,            /* double; NaN when optional and absent */
+  FIELD_QUANTITY,          /* const Node *: a number whose dimension is known later, for deck_number */
   FIELD_LENGTH,            /* Length */
   FIELD_COUNT,             /* int64_t; -1 when optional and absent */
   FIELD_FLAG,              /* bool */
@@ -115,6 +116,10 @@ const Node *section_place(const void *section, const char *key);
 
 /** Finds a named section in a list. @return NULL if there is none of that name */
 void *section_find(const SectionList *list, const char *name);
+
+/** A number with or without a unit from a node, checked against a range. @return 0, or 1 after saying what is wrong */
+int deck_number(const DeckReader *reader, const Node *node, const char *label, const char *dimension_name,
+                const char *range, double *value);
 
 /** Says that `name` is none of the names in the list. */
 void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,

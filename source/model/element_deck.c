@@ -5,9 +5,10 @@
 #include <string.h>
 
 static const Field fit_fields[] = {
-    {"from", FIELD_NUMBER, offsetof(FitSpec, from), "1", NULL, NULL, "smallest value, in the file's units", NULL, NULL,
-     0},
-    {"to", FIELD_NUMBER, offsetof(FitSpec, to), "1", NULL, NULL, "largest value, in the file's units", NULL, NULL, 0},
+    {"from", FIELD_QUANTITY, offsetof(FitSpec, from), NULL, NULL, NULL, "smallest value; without a unit in the file's",
+     NULL, NULL, 0},
+    {"to", FIELD_QUANTITY, offsetof(FitSpec, to), NULL, NULL, NULL, "largest value; without a unit in the file's", NULL,
+     NULL, 0},
 };
 const Section fit_section = {"fit",
                              "The range in which `breccia calibrate` may choose a parameter.",

@@ -7,7 +7,7 @@
 
 typedef struct FitSpec {
   SectionHead head; /* the name is the parameter's */
-  double from, to;
+  const Node *from, *to;
 } FitSpec;
 
 typedef struct ElementDeckSpec {

@@ -91,17 +91,22 @@ static int find_parameters(const ElementDeck *deck, ParameterFit *c, const doubl
           node_error(deck->document, spec->head.node, deck->reader.error, "fit: %s has no parameter '%s'; it has %s",
                      deck->law->name, spec->head.name, names.characters ? names.characters : "none that can be fitted");
       text_free(&names);
-    } else if (!(spec->from < spec->to) || !interval_contains(deck->law->parameters[k].range, spec->from) ||
-               !interval_contains(deck->law->parameters[k].range, spec->to)) {
+      continue;
+    }
+    const char *dimension = deck->law->parameters[k].dimension, *allowed = deck->law->parameters[k].range;
+    double from, to;
+    if (deck_number(&deck->reader, spec->from, "from", dimension, NULL, &from) ||
+        deck_number(&deck->reader, spec->to, "to", dimension, NULL, &to))
+      status = BRECCIA_USER_ERROR;
+    else if (!(from < to) || !interval_contains(allowed, from) || !interval_contains(allowed, to)) {
       char range[128];
-      interval_describe(deck->law->parameters[k].range, range, sizeof range);
+      interval_describe(allowed, range, sizeof range);
       status =
           node_error(deck->document, spec->head.node, deck->reader.error,
                      "fit: '%s' needs 'from' below 'to', and both %s", spec->head.name, *range ? range : "numbers");
     } else {
       FittedParameter *p = &c->parameters[c->count++];
-      const char *dimension = deck->law->parameters[k].dimension;
-      *p = (FittedParameter){.index = k, .from = spec->from, .to = spec->to, .start = values[k], .partner = -1};
+      *p = (FittedParameter){.index = k, .from = from, .to = to, .start = values[k], .partner = -1};
       /* Moduli, strengths and energies by ratios; numbers and angles if their range is wide. */
       p->by_ratio =
           p->from > 0 && (p->to > 10 * p->from || (strcmp(dimension, "1") != 0 && strcmp(dimension, "angle") != 0));

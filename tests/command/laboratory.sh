@@ -145,6 +145,10 @@ Y
 "$breccia" calibrate fit.yaml > out 2> errors; equal "cohesion and friction: status" $? 0
 near "cohesion and friction: E" "$(fitted "Young modulus")" 50 1e-3
 near "cohesion and friction: strength" "$(awk -v c="$(fitted cohesion)" -v f="$(fitted "friction angle")" 'BEGIN {f *= atan2(0, -1) / 180; print 2 * c * cos(f) / (1 - sin(f))}')" 0.0692820323 1e-3
+sed 's/^fit:.*/fit: {Young modulus: {from: 5 MPa, to: 0.5 GPa}, cohesion: {from: 2 kPa, to: 200 kPa}, friction angle: {from: 5 deg, to: 45 deg}}/' fit.yaml > units.yaml
+"$breccia" calibrate units.yaml > with-units 2>&1; cmp -s with-units out || fail "ranges with units: $(cat with-units)"
+sed 's/^fit:.*/fit: {Young modulus: {from: 5 mm, to: 500}}/' fit.yaml > units.yaml
+"$breccia" calibrate units.yaml > with-units 2>&1; contains "a range of millimetres" "$(cat with-units)" "units.yaml:5:29: from: '5 mm' has the wrong dimension; expected a stress"
 contains "cohesion and friction" "$(grep cohesion: out)" "these points tell it only together with 'friction angle'"
 contains "cohesion and friction" "$(grep "friction angle:" out)" "these points tell it only together with 'cohesion'"
 case $(grep "Young" out) in *"only together"*) fail "E is told by itself: $(cat out)" ;; esac
