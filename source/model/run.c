@@ -150,6 +150,13 @@ static int due(Run *run, Error *error)
   return status;
 }
 
+/** Steps at which to stop: as many as wished for, or as the run has as far as it can be foreseen. */
+static int64_t steps_wanted(const Run *run)
+{
+  const int64_t wished = run->wish->steps, steps = run->model->solver.steps;
+  return wished > 0 && wished < steps ? wished : steps;
+}
+
 static int loop(Run *run, Error *error)
 {
   breccia_model *model = run->model;
@@ -159,7 +166,7 @@ static int loop(Run *run, Error *error)
     if (run->wish->interrupted && *run->wish->interrupted) return BRECCIA_INTERRUPTED;
     if ((status = explicit_advance(s, &model->warnings, error))) break;
     ++model->run_steps;
-    if (run->wish->steps <= 0 || s->steps < run->steps) run->steps = s->steps;
+    run->steps = steps_wanted(run);
     status = due(run, error);
     show_progress(run, false);
   }
@@ -546,7 +553,6 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
 {
   Error *error = given ? given : breccia_error_create();
   Run run = {.model = model, .wish = wish};
-  run.steps = wish->steps > 0 && wish->steps < model->solver.steps ? wish->steps : model->solver.steps;
   model->run_steps = 0;
   Team *before;
   if (model_enter(model, &before, error)) {
@@ -564,6 +570,7 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
       model->begun = true;
     }
   }
+  run.steps = steps_wanted(&run); /* only now: a checkpoint may know of more */
   if (!status) status = model_begin(model, error);
   if (!status) status = open_files(&run, error);
   if (!status) {

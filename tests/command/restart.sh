@@ -37,6 +37,25 @@ same() { # same FOLDER: all that a run leaves is as in the whole run
 "$breccia" run plate.yaml --output parts --restart > out 2>&1 || fail "restart: $(cat out)"
 same parts
 
+# a run whose steps have become more than were foreseen does not end with the number foreseen
+cat > longer.yaml <<'Z'
+materials: {steel: {model: elastic, Young modulus: 190 GPa, Poisson ratio: 0.3, density: 8000}}
+body: {plate: {material: steel, lattice: square, thickness: 0.01, spacing: 0.001, shape: {box: {from: [0, 0], to: [0.1, 0.2]}}}}
+cracks: [{cut: {line: [[-0.001, 0.075], [0.05, 0.075]]}}, {cut: {line: [[-0.001, 0.125], [0.05, 0.125]]}}]
+peridynamics: {space: plane strain}
+failure: {critical stretch: 0.006, near grips: break}
+loads: [{on: {inside: {box: {from: [-0.001, 0.076], to: [0.001, 0.124]}}}, velocity: [16.5, free]}]
+solve: {explicit: {end time: 60 us}}
+pictures: [{field: damage, at: [1.2345 us, 33 us, 59.9999 us]}]
+results: {times: [7.3 us, 33.33 us], number: 3}
+Z
+"$breccia" run longer.yaml --output longer > out 2>&1 || fail "longer: $(cat out)"
+most=$(json longer/summary.json steps)
+"$breccia" run longer.yaml --output shorter --steps $((most - 3)) > out 2>&1 || fail "shorter: $(cat out)"
+equal "steps beyond those foreseen" "$(json shorter/summary.json steps)" $((most - 3))
+"$breccia" run longer.yaml --output shorter --restart > out 2>&1 || fail "shorter: $(cat out)"
+equal "restart beyond the steps foreseen" "$(json shorter/summary.json steps)" "$most"
+
 # bonds that remember, particles that stand anywhere, and contact
 {
   echo x,y,z,volume
