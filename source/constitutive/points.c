@@ -229,7 +229,7 @@ static void update_one_by_one(const Points *points, const Material *m, const bre
   for (int i = 0; i < batch->count; ++i) {
     breccia_batch one = batch_from(batch, m, i, 1);
     if (update_batch(points, m, &one, points->strain[ZZ] + place + i) < 0) continue;
-    points->gave_up[place + i] = 1;
+    points->gave_up[place + i] |= 1;
     for (int k = 0; k < 6; ++k) one.stress[k][0] = 0;
     memcpy(one.trial, one.committed, sizeof(double) * (size_t)m->history_values);
     for (int k = 0; batch->tangent && k < 36; ++k) batch->tangent[36 * i + k] = 0;
@@ -281,7 +281,7 @@ int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int cou
   for (int i = 0; i < batch.count; ++i) {
     breccia_batch one = batch_from(&batch, m, i, 1);
     if (m->law->update(m->constants, &one) < 0) continue;
-    points->gave_up[slice * SLICE + i % SLICE] = 1;
+    points->gave_up[slice * SLICE + i % SLICE] |= 1;
     one.stress[0][0] = 0;
     memcpy(one.trial, one.committed, sizeof(double) * (size_t)m->history_values);
   }
@@ -300,7 +300,7 @@ int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int l
                          .elastic_stage = points->elastic_stage};
   if (update_bonds(points, m, &batch) < 0) return -1;
   if (!points->gave_up || m->remote) return slice * SLICE + lane;
-  points->gave_up[slice * SLICE + lane] = 1;
+  points->gave_up[slice * SLICE + lane] |= 1;
   *stress = 0;
   memcpy(batch.trial, batch.committed, sizeof(double) * (size_t)m->history_values);
   return -1;

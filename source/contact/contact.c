@@ -564,7 +564,8 @@ static Meeting meet(const Contact *c, const ContactRow *row, const ContactRow *o
   present_way(&c->body->particles, row->place, other->place, m.y);
   const double length = sqrt(dot(m.y, m.y));
   double known[3] = {pair->normal[0], pair->normal[1], pair->normal[2]};
-  if (pair->bond && dot(known, known) == 0) { /* broken: along itself, so that nothing is gained when families change around it */
+  if (pair->bond &&
+      dot(known, known) == 0) { /* broken: along itself, so that nothing is gained when families change around it */
     m.face = false;
   } else if (dot(known, known) > 0) { /* turned as both sides have turned */
     double own[3], their[3];

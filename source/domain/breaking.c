@@ -98,14 +98,15 @@ static void break_suspects(Domain *d, const Moment *moment)
 }
 
 /** What goes with the bonds that a place has lost. The law of its point goes from one strain to another as they go, and no force does that
- *  work; with less bonds than a strain needs, what it stored is lost. */
-static double released(const StoredEnergy *before, const StoredEnergy *after)
+ *  work; with less bonds than a strain needs, what it stored is lost. Where laws yield on that way, no more than was stored can go. */
+static double released(const StoredEnergy *before, const StoredEnergy *after, bool elastic)
 {
   double sum = before->beside - after->beside - (before->half_work - after->half_work);
   if (after->weight == 0) return sum + before->weight * before->density;
   for (int k = 0; k < 6; ++k)
     sum += before->weight * 0.5 * (before->stress[k] + after->stress[k]) * (before->strain[k] - after->strain[k]);
-  return sum + (before->weight - after->weight) * after->density;
+  sum += (before->weight - after->weight) * after->density;
+  return elastic ? sum : fmin(sum, before->stored);
 }
 
 /** Energies of torn places, each place by one thread. */
@@ -116,7 +117,7 @@ static void find_energies(Domain *d, double time_step, bool after)
     StoredEnergy energy;
     d->type->stored_energy(d->formulation, torn->place, time_step, &energy);
     if (after)
-      torn->released = released(&torn->before, &energy);
+      torn->released = released(&torn->before, &energy, domain_is_elastic(d));
     else
       torn->before = energy;
   }
@@ -169,15 +170,14 @@ void domain_book(Domain *d, double time_step)
     /* Laws that yield as their strains jump dissipate what they gain by it. */
     d->fracture_energy += domain_is_elastic(d) ? sum : fmax(0, sum);
     uint8_t *gave_up = d->points.gave_up;
-    for (int64_t i = 0; gave_up && d->any_suspect && i < d->particles->places; ++i)
-      if (gave_up[i] == CONSUMED) gave_up[i] = 0;
+    for (int64_t i = 0; gave_up && d->any_suspect && i < d->particles->places; ++i) gave_up[i] &= (uint8_t)~CONSUMED;
   }
 }
 
 void domain_mend(Domain *d)
 {
   uint8_t *gave_up = d->points.gave_up;
-  for (int64_t i = 0; gave_up && i < d->particles->places; ++i) gave_up[i] = gave_up[i] == CONSUMED;
+  for (int64_t i = 0; gave_up && i < d->particles->places; ++i) gave_up[i] = (gave_up[i] & CONSUMED) != 0;
   for (int64_t n = 0; n < d->torn_count; ++n) d->is_torn[d->torn[n].place] = 0;
   d->torn_count = 0;
   for (int64_t n = d->broken_before; n < d->broken_count; ++n) {

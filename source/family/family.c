@@ -301,7 +301,8 @@ static int64_t find_slot(const Family *family, int32_t a, int32_t b, unsigned in
   int64_t slice = a / SLICE;
   int lane = a % SLICE;
   for (int64_t slot = family->first[slice]; slot < family->first[slice + 1]; ++slot)
-    if (((unsigned)family->intact[slot] >> lane & 1u) == intact && family_bond(family, slice, slot, lane).neighbour == b)
+    if (((unsigned)family->intact[slot] >> lane & 1u) == intact &&
+        family_bond(family, slice, slot, lane).neighbour == b)
       return slot;
   return -1;
 }

@@ -175,7 +175,8 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   strain_of(c, place, sums.now, g, strain);
   strain_of(c, place, sums.before, g_before, strain_before);
   if (points->space == SPACE_PLANE_STRESS) strain[ZZ] = strain_before[ZZ] = points->strain[ZZ][place];
-  for (int k = 0; k < 6; ++k) change[k] = strain[k] - points->strain[k][place];
+  for (int k = 0; k < 6; ++k) /* a law that may yield is not asked: its stress is that of the beginning of the step */
+    change[k] = m->law->linear ? strain[k] - points->strain[k][place] : 0;
   if (points->space == SPACE_PLANE_STRESS) /* such that the stress zz stays */
     change[ZZ] = -(m->bulk - 2 * m->shear / 3) / (m->bulk + 4 * m->shear / 3) * (change[XX] + change[YY]);
   for (int k = 0; k < 3; ++k) trace += change[k];

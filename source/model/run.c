@@ -531,8 +531,8 @@ static int finish(Run *run, int status, Error *error)
   } else if (status == BRECCIA_INTERRUPTED) {
     int bad = write_checkpoint(run, error);
     if (bad) status = bad;
-  } else { /* the last good state */
-    write_checkpoint(run, error);
+  } else { /* the last good state; of energy from nothing the checkpoint before is the better one */
+    if (!model->solver.unsound_steps) write_checkpoint(run, error);
     write_results(run, error);
     watches_write(model->watches, &model->solver, true, error);
   }

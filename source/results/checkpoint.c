@@ -16,7 +16,7 @@ typedef struct SavedArray {
   bool bytes; /* 8-bit numbers rather than doubles */
 } SavedArray;
 
-enum { MOST_ARRAYS = 32, SCALARS = 19 };
+enum { MOST_ARRAYS = 32, SCALARS = 20 };
 
 static int list_arrays(const Explicit *s, SavedArray *list)
 {
@@ -70,8 +70,8 @@ static void pass_scalars(Explicit *s, double *v, bool give)
                              &s->plan.from,
                              &s->plan.to,
                              &s->domain->fracture_energy};
-  int64_t *const counts[] = {&s->step,       &s->steps,     &s->broken_at_estimate, &s->step_at_estimate,
-                             &s->plan.first, &s->plan.count};
+  int64_t *const counts[] = {&s->step,       &s->steps,      &s->broken_at_estimate, &s->step_at_estimate,
+                             &s->plan.first, &s->plan.count, &s->unsound_steps};
   enum { NUMBERS = sizeof numbers / sizeof *numbers, COUNTS = sizeof counts / sizeof *counts };
   _Static_assert(NUMBERS + COUNTS == SCALARS, "numbers of a state");
   for (int k = 0; k < NUMBERS; ++k)

@@ -393,9 +393,10 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
   return file_error(file->path, error);
 }
 
+/** A state in the middle of a run was due; at its end one may stand only because the run ended there. */
 static bool was_due(const WrittenAt *due, int64_t step, double time)
 {
-  if (step > due->last) return false;
+  if (step != due->last) return step < due->last;
   if (due->every > 0 && step % due->every == 0) return true;
   for (int64_t k = 0; k < due->count; ++k)
     if (fabs(due->times[k] - time) <= due->tolerance) return true;

@@ -65,7 +65,8 @@ typedef struct Explicit {
   int64_t broken_at_estimate, step_at_estimate; /* when `stable` was found */
   Ledger ledger;
   double kinetic_at_start;
-  double paid; /* the most that loads, motions and speeds at the start have put in so far */
+  int64_t unsound_steps; /* up to now, in each of which energy has come from nothing */
+  double paid;           /* the most that loads, motions and speeds at the start have put in so far */
   double *
       kept; /* [15][places] forces, strains and stresses before the step under way, if a server may fail to give them again */
   double motion;      /* largest component of any displacement increment in the step under way */

@@ -382,6 +382,28 @@ static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
   assert_int_equal(system(command), 0);
 }
 
+/** Without control a struck plate breaks by its zero-energy modes, whose bonds give back what nobody has put in. */
+static void bonds_that_give_more_than_they_received_stop_the_run(void **state)
+{
+  (void)state;
+  breccia_error *error = breccia_error_create();
+  breccia_model *m;
+  const char *deck =
+      "materials: {steel: {model: elastic, Young modulus: 190e9, Poisson ratio: 0.3, density: 8000}}\n"
+      "body: {plate: {material: steel, lattice: square, thickness: 0.01, spacing: 0.0025,\n"
+      "               shape: {box: {from: [0, 0], to: [0.1, 0.2]}}}}\n"
+      "cracks: [{cut: {line: [[-0.001, 0.075], [0.05, 0.075]]}}, {cut: {line: [[-0.001, 0.125], [0.05, 0.125]]}}]\n"
+      "peridynamics: {space: plane strain, zero-energy control: {none: yes}}\n"
+      "failure: {critical stretch: 0.01, near grips: break}\n"
+      "loads: [{on: {inside: {box: {from: [-0.001, 0.076], to: [0.0025, 0.124]}}}, velocity: [16.5, free]}]\n"
+      "solve: {explicit: {end time: 40e-6}}\n";
+  assert_int_equal(breccia_model_load_string(deck, "deck", NULL, &m, error), 0);
+  assert_int_equal(breccia_model_step(m, m->solver.steps, error), BRECCIA_FAILURE);
+  assert_non_null(strstr(breccia_error_text(error), "energy from nothing"));
+  breccia_model_destroy(&m);
+  breccia_error_destroy(&error);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -393,6 +415,7 @@ int main(void)
       cmocka_unit_test(damped_bodies_come_to_rest_at_the_default_step),
       cmocka_unit_test(steps_end_with_the_times_that_are_asked_for),
       cmocka_unit_test(a_step_that_fails_leaves_nothing_behind),
+      cmocka_unit_test(bonds_that_give_more_than_they_received_stop_the_run),
       cmocka_unit_test(marks_of_laws_that_gave_up_outlive_a_restart),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -305,6 +305,29 @@ static void prescribed_particles_go_where_they_are_told(void **state)
   breccia_model_destroy(&m);
 }
 
+static void a_load_that_sets_in_late_stops_nothing(void **state)
+{
+  (void)state;
+  breccia_error *error = breccia_error_create();
+  breccia_model *m;
+  const char *deck =
+      "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+      "loads:\n"
+      "  - {on: {all: yes}, body force: [1e-6, 0, 0]}\n"
+      "  - {on: {face: x+}, body force: [1, 0, 0], history: {table: [[0, 0], [0.0101, 0], [0.0102, 1]]}}\n"
+      "solve: {explicit: {time step: 1e-4, steps: 200}}\n";
+  for (int alone = 0; alone < 2; ++alone) {
+    char words[1024];
+    snprintf(words, sizeof words, "%s", deck);
+    if (alone) memcpy(strstr(words, "1e-6"), "0   ", 4);
+    assert_int_equal(breccia_model_load_string(words, "deck", NULL, &m, error), 0);
+    if (breccia_model_step(m, 200, error)) fail_msg("%s", breccia_error_text(error));
+    breccia_model_destroy(&m);
+  }
+  breccia_error_destroy(&error);
+}
+
 static void energy_from_nothing_stops_the_run(void **state)
 {
   (void)state;
@@ -494,6 +517,7 @@ int main(void)
       cmocka_unit_test(looking_only_where_bonds_may_break_misses_none),
       cmocka_unit_test(prescribed_particles_go_where_they_are_told),
       cmocka_unit_test(energy_from_nothing_stops_the_run),
+      cmocka_unit_test(a_load_that_sets_in_late_stops_nothing),
       cmocka_unit_test(a_force_that_is_no_number_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),
       cmocka_unit_test(plate_with_crack_opens_at_rest_as_finite_elements_say),
