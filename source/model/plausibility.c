@@ -297,11 +297,14 @@ static double rise_time(const HistorySpec *history)
   if (!history || history->constant) return 0;
   if (!isnan(history->ramp)) return history->ramp;
   if (history->sine) return 0.25 / history->sine->frequency;
+  /* Of a table: what the whole would take at its steepest pace. */
   const double *row = history->table.values;
-  int largest = 0;
-  for (int k = 1; k < history->table.count; ++k)
-    if (fabs(row[2 * k + 1]) > fabs(row[2 * largest + 1]) * (1 + 1e-12)) largest = k;
-  return history->table.count ? fmax(0, row[2 * largest]) : 0;
+  double largest = 0, steepest = 0;
+  for (int k = 0; k < history->table.count; ++k) {
+    largest = fmax(largest, fabs(row[2 * k + 1]));
+    if (k) steepest = fmax(steepest, fabs(row[2 * k + 1] - row[2 * k - 1]) / (row[2 * k] - row[2 * k - 2]));
+  }
+  return history->table.count && fabs(row[1]) < largest ? largest / steepest : 0;
 }
 
 static void describe_load(const breccia_model *model, const LoadSpec *l, const Extent *e, Text *text)

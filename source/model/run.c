@@ -442,7 +442,8 @@ static void tell_rest(const Explicit *s, Text *t)
     text_add(
         t,
         "not at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (at rest both "
-        "are below %g): run longer, with local damping, or load more slowly\n",
+        "are below %g): run longer, with local damping, or load more slowly; what slides or falls does not come to "
+        "rest\n",
         rest.unbalanced, rest.kinetic, rest_limit);
 }
 

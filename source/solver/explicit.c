@@ -572,7 +572,7 @@ Energy explicit_energy(const Explicit *s)
 {
   Domain *d = s->domain;
   const Ledger *l = &s->ledger;
-  Energy e = {.kinetic = l->kinetic,
+  Energy e = {.kinetic = fmax(0, l->kinetic), /* what prescribed motions take back may leave a rounding */
               .internal = l->bond_work - d->fracture_energy - d->contact.friction_work,
               .external = l->external_work,
               .damping = s->spec->damping > 0 || s->spec->local_damping > 0 ? l->damping_work : 0, /* else roundings */

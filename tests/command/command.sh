@@ -75,6 +75,15 @@ equal "history: rows" "$(wc -l < plate/opening.csv)" 12
 touch file; "$breccia" run plate.yaml --steps 3 --output file/x 2> out > /dev/null; equal "output below a file: status" $? 2
 "$breccia" run plate.yaml --steps 3 --output "" > out 2>&1; equal "output without a name: status" $? 2
 
+# a load that waits and then jumps is told by its jump
+cat > jump.yaml <<'J'
+materials: {m: {model: elastic, density: 2400, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}
+loads: [{on: {face: x+}, body force: [1000, 0, 0], history: {table: [[0, 0], [0.05, 0], [0.0501, 1]]}}]
+solve: {explicit: {end time: 0.1}}
+J
+contains "jump" "$("$breccia" check jump.yaml)" "grows over 100 µs"
+
 # a burst writes the last good state and ends with status 1
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
 "$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2

@@ -55,6 +55,8 @@ most=$(json longer/summary.json steps)
 equal "steps beyond those foreseen" "$(json shorter/summary.json steps)" $((most - 3))
 "$breccia" run longer.yaml --output shorter --restart > out 2>&1 || fail "shorter: $(cat out)"
 equal "restart beyond the steps foreseen" "$(json shorter/summary.json steps)" "$most"
+# states that were written while steps were longer stay
+"$build/tests/compare_results" longer/results.vtkhdf shorter/results.vtkhdf || fail "shorter: results differ"
 
 # bonds that remember, particles that stand anywhere, and contact
 {
