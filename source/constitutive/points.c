@@ -105,6 +105,7 @@ void points_destroy(Points *points)
   free(points->trial);
   free(points->history_start);
   free(points->gave_up);
+  free(points->tangent);
   remote_points_destroy(points);
   *points = (Points){0};
 }
@@ -236,8 +237,36 @@ static void update_one_by_one(const Points *points, const Material *m, const bre
   }
 }
 
+int points_keep_tangents(Points *points, bool keep, Error *error)
+{
+  if (points->where == POINTS_ON_PARTICLES && !points->tangent &&
+      !(points->tangent = memory_zeroed(36 * (size_t)points->places, sizeof(double), "tangents", error)))
+    return BRECCIA_FAILURE;
+  points->keeps_tangents = keep;
+  return BRECCIA_OK;
+}
+
+void points_tangent(const Points *points, int64_t place, double tangent[36])
+{
+  for (int k = 0; k < 36; ++k) tangent[k] = points->tangent ? points->tangent[36 * place + k] : 0;
+}
+
+void points_change(const Points *points, int64_t first, int64_t last, double *const strain[6], double *const stress[6])
+{
+  const int64_t count = (last - first) * SLICE;
+  for (int64_t i = 0; i < count; ++i) {
+    const double *d = points->tangent + 36 * (first * SLICE + i);
+    for (int r = 0; r < 6; ++r) {
+      double sum = 0;
+      for (int k = 0; k < 6; ++k) sum += d[6 * r + k] * strain[k][i];
+      stress[r][i] = sum;
+    }
+  }
+}
+
 int64_t points_update(Points *points, int64_t first, int64_t last, double *tangent)
 {
+  if (points->keeps_tangents) tangent = points->tangent + 36 * SLICE * first;
   const Material *m = &points->materials[points->material[first]];
   int64_t place = first * SLICE;
   breccia_batch batch = {
@@ -306,13 +335,16 @@ int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int l
   return -1;
 }
 
-double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain)
+double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain,
+                          double *tangent)
 {
   enum { MOST_VALUES = 256 };
   const Material *m = partner ? points_partner(points, slot, lane) : &points->materials[points->material[slice]];
   const double *row = points->committed + points_bond_row(points, slice, slot, lane, partner);
   double stress = NAN, scratch[MOST_VALUES];
-  if (m->remote) return remote_last_stress(row); /* a law in a server need not be able to try */
+  if (m->remote) stress = remote_last_stress(row); /* a law in a server need not be able to try */
+  if (m->remote && tangent) *tangent = strain != 0 ? stress / strain : material_young(m);
+  if (m->remote) return stress;
   if (m->history_values > MOST_VALUES) return NAN;
   memcpy(scratch, row, sizeof(double) * (size_t)m->history_values);
   breccia_batch batch = {.count = 1,
@@ -320,6 +352,7 @@ double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int
                          .stress = {&stress},
                          .committed = row,
                          .trial = scratch,
+                         .tangent = tangent,
                          .elastic_stage = points->elastic_stage};
   m->law->update(m->constants, &batch);
   return stress;
@@ -364,8 +397,8 @@ double points_softness(const Points *points, int64_t place)
 double points_bond_elastic_share(const Points *points, int64_t slice, int64_t slot, int lane, double strain)
 {
   if (points->where != POINTS_ON_BONDS || strain == 0) return 1;
-  const double back = 1e-3, stress = points_bond_stress(points, slice, slot, lane, false, strain);
-  const double drop = stress - points_bond_stress(points, slice, slot, lane, false, strain - back * strain);
+  const double back = 1e-3, stress = points_bond_stress(points, slice, slot, lane, false, strain, NULL);
+  const double drop = stress - points_bond_stress(points, slice, slot, lane, false, strain - back * strain, NULL);
   const double share = back * stress / drop;
   return share > 0 ? fmin(1, share) : stress == 0 ? 0 : 1;
 }

@@ -38,6 +38,8 @@ typedef struct Points {
   double *identity; /* by which the servers are found again after a restart */
   size_t identity_size;
   PointsPass pass;
+  double *tangent; /* [places][36] of points on particles, once they were kept; NULL before */
+  bool keeps_tangents;
   int elastic_stage; /* laws respond elastically while it is set */
   uint8_t *
       gave_up; /* [places] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
@@ -75,8 +77,17 @@ int64_t points_update_bonds(Points *points, int64_t slice, int64_t slot, int cou
 /** The same for one lane of a stored slot, by the law at the other end. */
 int64_t points_update_partner(Points *points, int64_t slice, int64_t slot, int lane, double strain, double *stress);
 
-/** Stress of one bond at a strain by the law of its own end or of the other (of stored slots); histories stay as they are. */
-double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain);
+/** Stress of one bond at a strain by the law of its own end or of the other (of stored slots); histories stay as they are.
+ *  @param[out] tangent  its slope; NULL: not wanted. Of laws in servers stress over strain */
+double points_bond_stress(const Points *points, int64_t slice, int64_t slot, int lane, bool partner, double strain,
+                          double *tangent);
+
+/** Makes points on particles keep the tangents of their next updates, or no longer. */
+int points_keep_tangents(Points *points, bool keep, Error *error);
+/** The tangent kept of a point on a particle, [6][6]; 0 if there is none. */
+void points_tangent(const Points *points, int64_t place, double tangent[36]);
+/** Changes of the stresses of slices first .. last - 1 with changes of their strains, by the tangents kept; both [6][places of the slices]. */
+void points_change(const Points *points, int64_t first, int64_t last, double *const strain[6], double *const stress[6]);
 
 /** Share of the elastic energy of a stress that a point on a particle would give back, over that of an undamaged one: 1 where it
  *  unloads with its first moduli, more where damage has made it softer. Laws in servers are taken to unload elastically. */

@@ -96,6 +96,16 @@ void domain_evaluate(Domain *domain);
 
 /** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
 void domain_show_states(Domain *domain);
+
+/** Evaluates forces at the displacements held and keeps what linearised steps need of that: tangents of laws among it. */
+int domain_linearise(Domain *domain, Error *error);
+/** K v: changes of internal forces per volume with changes v of the displacements, at those at which the domain was linearised, which are
+ *  held still, at the price of one evaluation of forces. Contact is not in it. What particles show their neighbours is of the step afterwards
+ *  (domain_show_states).
+ *  @param[in] v        arrays of places_array, 0 in unused places
+ *  @param[out] change  arrays of places_array */
+void domain_linear_step(Domain *domain, double *const v[3], double *const change[3]);
+
 /** Takes up a state that was read from a file: displacements, stresses and intact bits are in place; shapes, deformations and force
  *  states follow from them, to the same bits as in the run that left them. */
 void domain_resume(Domain *domain);

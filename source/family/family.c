@@ -307,6 +307,11 @@ static int64_t find_slot(const Family *family, int32_t a, int32_t b, unsigned in
   return -1;
 }
 
+int64_t family_slot(const Family *family, int32_t a, int32_t b)
+{
+  return find_slot(family, a, b, 1);
+}
+
 bool family_joins(const Family *family, int32_t a, int32_t b)
 {
   return find_slot(family, a, b, 1) >= 0;

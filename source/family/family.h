@@ -100,6 +100,9 @@ bool family_break(Family *family, int32_t a, int32_t b);
 /** Makes a broken bond between two places whole again, on both sides. @return false if there was none */
 bool family_mend(Family *family, int32_t a, int32_t b);
 
+/** @return the slot in which place a has place b as its neighbour by an intact bond, or -1 */
+int64_t family_slot(const Family *family, int32_t a, int32_t b);
+
 /** @return whether an intact bond joins two places */
 bool family_joins(const Family *family, int32_t a, int32_t b);
 

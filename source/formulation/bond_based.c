@@ -21,6 +21,8 @@ static void destroy(void *formulation)
   free(b->range);
   free(b->surface);
   free(b->gaps);
+  free(b->tension);
+  free(b->slope);
   free(b);
 }
 
@@ -89,12 +91,13 @@ static void *create(const FormulationParts *parts, Error *error)
 
 /* ---- single bonds and places ---- */
 
-static void bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3])
+/** Both ends give a bond half of its force. */
+static void half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
 {
   const BondBased *b = formulation;
   Bond bond = family_bond(b->family, slice, slot, lane);
   double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y);
-  for (int k = 0; k < 3; ++k) force[k] = pull * bond.weight / b->particles->volume[bond.neighbour] * y[k];
+  for (int k = 0; k < 3; ++k) state[k] = 0.5 * pull * bond.weight / b->particles->volume[bond.neighbour] * y[k];
 }
 
 static void bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
@@ -159,12 +162,12 @@ static void stress(const void *formulation, int64_t place, double s[6])
   if (b->space == SPACE_PLANE_STRAIN) s[ZZ] = (s[XX] + s[YY]) / 4;
 }
 
-static void show_displacements(void *formulation, int64_t first, int64_t last)
+static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
   const Particles *p = b->particles;
   const double *constant = b->points->where == POINTS_ON_BONDS ? b->per_stress : b->stiffness;
-  for (int64_t place = first * SLICE; b->shown && place < last * SLICE; ++place) {
+  for (int64_t place = sweep->first * SLICE; b->shown && !sweep->at && place < sweep->last * SLICE; ++place) {
     double *shown = b->shown + BOND_SHOWN * place;
     for (int k = 0; k < 3; ++k) {
       shown[k] = p->position[k][place];
@@ -173,6 +176,7 @@ static void show_displacements(void *formulation, int64_t first, int64_t last)
     shown[3] = p->volume[place];
     shown[7] = constant[p->block[place / SLICE]];
   }
+  return -1;
 }
 
 static void renew(void *formulation, int64_t slice)
@@ -180,11 +184,15 @@ static void renew(void *formulation, int64_t slice)
   bond_note_gaps(formulation, slice);
 }
 
-static int64_t resist(void *formulation, int64_t first, int64_t last)
+static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
-  if (b->points->where == POINTS_ON_BONDS) return bond_resist_points(b, first, last);
-  bond_resist_springs(b, first, last);
+  if (sweep->at)
+    bond_resist_changes(b, sweep);
+  else if (b->points->where == POINTS_ON_BONDS)
+    return bond_resist_points(b, sweep->first, sweep->last);
+  else
+    bond_resist_springs(b, sweep->first, sweep->last);
   return -1;
 }
 
@@ -205,11 +213,14 @@ const FormulationType formulation_bond_based = {
     .create = create,
     .destroy = destroy,
     .renew = renew,
-    .show_displacements = show_displacements,
-    .resist = resist,
+    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, false, show_displacements},
+               {OF_DISPLACEMENTS, OF_FORCES, OF_DISPLACEMENTS | OF_SHOWN, 0, false, resist}},
+    .linearise = bond_linearise,
+    .half_state = half_state,
+    .point_count = bond_point_count,
+    .point = bond_point,
     .stored_energy = stored_energy,
     .bond_energy = bond_energy,
-    .bond_force = bond_force,
     .gradient = gradient,
     .stress = stress,
     .characteristic_length = bond_characteristic_length,

@@ -19,14 +19,15 @@ typedef struct BondBased {
   Points *points;
   Space space;
   const Influence *influence;
-  double *stiffness;  /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
-  double *per_stress; /* [blocks] c / E */
-  SpringRow *rows;    /* [patterns] */
-  double *numbers;    /* of these rows */
-  double *shown;      /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
-  float *surface;     /* [slots][8] surface correction; NULL: none */
-  uint8_t *range;     /* [slices] how large stretches were at the last evaluation */
-  uint8_t *gaps;      /* [slices] 1: a bond of a lattice slot is missing */
+  double *stiffness;       /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
+  double *per_stress;      /* [blocks] c / E */
+  SpringRow *rows;         /* [patterns] */
+  double *numbers;         /* of these rows */
+  double *shown;           /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  float *surface;          /* [slots][8] surface correction; NULL: none */
+  double *tension, *slope; /* [slots][8] of bonds with points, as of the last linearisation; NULL before */
+  uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
+  uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
 } BondBased;
 
 /** Material of a block. */
@@ -89,6 +90,12 @@ void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
 
 /** The same from bonds with points (bond_points.c). @return a place whose law could not be integrated, or -1 */
 int64_t bond_resist_points(const BondBased *b, int64_t first, int64_t last);
+
+/** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */
+void bond_resist_changes(const BondBased *b, const Sweep *sweep);
+int bond_linearise(void *formulation, Error *error);
+int64_t bond_point_count(const void *formulation);
+int bond_point(const void *formulation, int64_t number, Operator *point, Error *error);
 
 /** Force of a bond per volume of the neighbour, weight and length of y: c s / |y|, or what its points make of it.
  *  @param[out] y  from the place to its neighbour, as deformed */

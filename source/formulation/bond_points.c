@@ -134,7 +134,7 @@ double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, cons
   if (b->surface) ratio /= b->surface[slot * SLICE + lane];
   if (p->where == POINTS_NOWHERE)
     return (b->stiffness[block[slice]] + b->stiffness[block[other]]) / 2 * stretch / (bond->length * ratio);
-  double own = points_bond_stress(p, slice, slot, lane, false, stretch), partner = own;
-  if (p->material[other] != p->material[slice]) partner = points_bond_stress(p, slice, slot, lane, true, stretch);
+  double own = points_bond_stress(p, slice, slot, lane, false, stretch, NULL), partner = own;
+  if (p->material[other] != p->material[slice]) partner = points_bond_stress(p, slice, slot, lane, true, stretch, NULL);
   return (b->per_stress[block[slice]] * own + b->per_stress[block[other]] * partner) / 2 / (bond->length * ratio);
 }

@@ -180,9 +180,10 @@ LANES_INLINE void resist_stored(const Correspondence *c, int64_t slice, bool sca
 /* ---- bonds by whole rows ---- */
 
 BRECCIA_CLONES
-static void show_displacements(void *formulation, int64_t first, int64_t last)
+static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const Correspondence *c = formulation;
+  const int64_t first = sweep->first, last = sweep->last;
   const LatticeRows *rows = &c->family->rows;
   if (c->shown) show_places(c, first, last);
   for (int64_t slice = first; slice < last; ++slice)
@@ -193,6 +194,7 @@ static void show_displacements(void *formulation, int64_t first, int64_t last)
         lattice_row_sums(rows, row, slice, c->particles->displacement[k], out + (2 * k + 1) * SLICE,
                          out + 2 * k * SLICE);
     }
+  return -1;
 }
 
 LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums[3][2][4])
@@ -228,11 +230,11 @@ LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums
 }
 
 BRECCIA_CLONES
-static void sum_states(void *formulation, int64_t first, int64_t last)
+static int64_t sum_states(void *formulation, const Sweep *sweep)
 {
   const Correspondence *c = formulation;
   const LatticeRows *rows = &c->family->rows;
-  for (int64_t slice = first; slice < last; ++slice) {
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     int block = c->particles->block[slice];
     const Lattice *lattice = &c->family->lattices[block];
     for (int kind = 0; kind < rows->kinds; ++kind) {
@@ -247,6 +249,7 @@ static void sum_states(void *formulation, int64_t first, int64_t last)
         lattice_row_sums(rows, row, slice, k < 12 ? c->held[k - 9] : c->hold[k - 12], out + k * SLICE, NULL);
     }
   }
+  return -1;
 }
 
 LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control control, Lanes force[2][3],
@@ -277,29 +280,35 @@ LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control co
 
 /* ---- the three sweeps ---- */
 
-LANES_INLINE void strain_half(const Correspondence *c, const SliceShape *shape, int64_t place, Lanes sums[3][4],
-                              double *gradients)
+/* In a linearised step displacements are changes v, G their gradient; at is then the gradient of the displacements held, G0, of these
+ * lanes, and delta E = sym (F^T G), F = I + G0. */
+LANES_INLINE void strain_half(const Correspondence *c, const SliceShape *shape, int lane, Lanes sums[3][4],
+                              double *gradients, const double *at, double *const strains[6], int64_t here)
 {
-  Lanes inverse[6], g[9];
-  for (int k = 0; k < 6; ++k) inverse[k] = lanes_load(shape->inverse[k] + place % SLICE);
+  Lanes inverse[6], g[9], g0[9];
+  for (int k = 0; k < 6; ++k) inverse[k] = lanes_load(shape->inverse[k] + lane);
   for (int r = 0; r < 3; ++r)
     for (int k = 0; k < 3; ++k)
       g[3 * r + k] = sums[r][0] * inverse[symmetric_place[k]] + sums[r][1] * inverse[symmetric_place[3 + k]] +
                      sums[r][2] * inverse[symmetric_place[6 + k]];
   for (int k = 0; k < 9; ++k) lanes_store(gradients + k * BLOCK, g[k]);
+  for (int k = 0; k < 9 && at; ++k) g0[k] = lanes_load(at + k * SLICE);
   for (int k = 0; k < 6; ++k) {
     if (k == ZZ && c->points->space == SPACE_PLANE_STRESS) continue; /* that strain is the law's affair */
     int r = symmetric_row[k], col = symmetric_column[k];
     Lanes strain = g[3 * r + col] + g[3 * col + r];
-    if (c->finite) strain += g[r] * g[col] + g[3 + r] * g[3 + col] + g[6 + r] * g[6 + col];
-    lanes_store(c->points->strain[k] + place, k < 3 ? strain * lanes_set(0.5) : strain);
+    if (c->finite && !at) strain += g[r] * g[col] + g[3 + r] * g[3 + col] + g[6 + r] * g[6 + col];
+    for (int j = 0; j < 3 && c->finite && at; ++j)
+      strain += g0[3 * j + r] * g[3 * j + col] + g[3 * j + r] * g0[3 * j + col];
+    lanes_store(strains[k] + here, k < 3 ? strain * lanes_set(0.5) : strain);
   }
 }
 
-LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, double *gradients)
+LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, const Sweep *sweep, bool linear)
 {
   const Family *f = c->family;
   const SliceShape *shape = shape_of_slice(&c->shapes, slice);
+  const int64_t here = (slice - sweep->first) * SLICE;
   Lanes sums[3][2][4] = {{{{0}}}};
   deform_rows(c, slice, sums);
   if (f->rows.condition[slice] & ROWS_GAPS)
@@ -313,42 +322,63 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, double *g
       deform_stored(c, slice, false, sums);
   }
   for (int half = 0; half < 2; ++half) {
-    int64_t place = slice * SLICE + LANES * half;
+    const int lane = LANES * half;
+    int64_t place = slice * SLICE + lane;
     Lanes moved[3][4];
     for (int k = 0; k < 3; ++k) {
       Lanes u = lanes_load(c->particles->displacement[k] + place);
-      for (int j = 0; j < 3; ++j)
-        moved[k][j] = sums[k][half][j] - u * lanes_load(shape->first_moment[j] + LANES * half);
-      lanes_store(c->stretch[k] + place, sums[k][half][3] - u * lanes_load(shape->weight_sum + LANES * half));
+      for (int j = 0; j < 3; ++j) moved[k][j] = sums[k][half][j] - u * lanes_load(shape->first_moment[j] + lane);
+      lanes_store(c->stretch[k] + place, sums[k][half][3] - u * lanes_load(shape->weight_sum + lane));
     }
-    strain_half(c, shape, place, moved, gradients + LANES * half);
+    strain_half(c, shape, lane, moved, sweep->carry + here + lane,
+                linear ? c->gradients + slice * (9 * SLICE) + lane : NULL, sweep->strain, here + lane);
   }
 }
 
 BRECCIA_CLONES
-static void deform(void *formulation, int64_t first, int64_t last, double *gradients)
+static int64_t deform(void *formulation, const Sweep *sweep)
 {
   const Correspondence local = *(const Correspondence *)formulation,
                        *c = &local; /* so that stores are seen not to change it */
-  for (int64_t slice = first; slice < last; ++slice) deform_slice(c, slice, gradients + (slice - first) * SLICE);
+  const Sweep own = *sweep;
+  for (int64_t slice = own.first; slice < own.last; ++slice)
+    if (own.at)
+      deform_slice(c, slice, &own, true);
+    else
+      deform_slice(c, slice, &own, false);
+  return -1;
 }
 
-LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const double *gradients)
+/** P = (I + G) S, or its change G S0 + (I + G0) S, with G and S the changes. */
+LANES_INLINE void first_stress(const Correspondence *c, const Lanes g[9], const Lanes s[6], const Lanes g0[9],
+                               const Lanes s0[6], bool linear, Lanes p[9])
+{
+  for (int r = 0; r < 3; ++r)
+    for (int k = 0; k < 3; ++k) {
+      p[3 * r + k] = s[symmetric_place[3 * r + k]];
+      for (int j = 0; c->finite && j < 3; ++j)
+        p[3 * r + k] += g[3 * r + j] * (linear ? s0 : s)[symmetric_place[3 * j + k]];
+      for (int j = 0; c->finite && linear && j < 3; ++j) p[3 * r + k] += g0[3 * r + j] * s[symmetric_place[3 * j + k]];
+    }
+}
+
+LANES_INLINE void respond_lanes(const Correspondence *c, const Sweep *sweep, int64_t place, bool linear)
 {
   const SliceShape *shape = shape_of_slice(&c->shapes, place / SLICE);
-  Lanes s[6], g[9], p[9], inverse[6], hold[6];
+  const int64_t here = place - sweep->first * SLICE;
+  Lanes s[6], s0[6], g[9], g0[9], p[9], inverse[6], hold[6];
   for (int k = 0; k < 6; ++k) {
-    s[k] = lanes_load(c->points->stress[k] + place) * lanes_load(shape->share + place % SLICE);
+    const Lanes share = lanes_load(shape->share + place % SLICE);
+    s[k] = lanes_load(sweep->stress[k] + here) * share;
+    if (linear) s0[k] = lanes_load(c->points->stress[k] + place) * share;
     inverse[k] = lanes_load(shape->inverse[k] + place % SLICE);
   }
   hold[0] = lanes_set(c->uniform);
   for (int k = 0; k < hold_components(c->control); ++k) hold[k] = lanes_load(c->hold[k] + place);
-  for (int k = 0; k < 9; ++k) g[k] = lanes_load(gradients + k * BLOCK);
-  for (int r = 0; r < 3; ++r)
-    for (int k = 0; k < 3; ++k) {
-      p[3 * r + k] = s[symmetric_place[3 * r + k]];
-      for (int j = 0; c->finite && j < 3; ++j) p[3 * r + k] += g[3 * r + j] * s[symmetric_place[3 * j + k]];
-    }
+  for (int k = 0; k < 9; ++k) g[k] = lanes_load(sweep->carry + here + k * BLOCK);
+  for (int k = 0; k < 9 && linear; ++k)
+    g0[k] = lanes_load(c->gradients + place / SLICE * (9 * SLICE) + k * SLICE + place % SLICE);
+  first_stress(c, g, s, g0, s0, linear, p);
   for (int r = 0; r < 3; ++r)
     for (int k = 0; k < 3; ++k) {
       Lanes q = p[3 * r] * inverse[symmetric_place[k]] + p[3 * r + 1] * inverse[symmetric_place[3 + k]] +
@@ -370,12 +400,16 @@ LANES_INLINE void respond_lanes(const Correspondence *c, int64_t place, const do
 }
 
 BRECCIA_CLONES
-static void respond(void *formulation, int64_t first, int64_t last, const double *gradients)
+static int64_t respond(void *formulation, const Sweep *sweep)
 {
-  for (int64_t place = first * SLICE; place < last * SLICE; place += LANES)
-    respond_lanes(formulation, place, gradients + place - first * SLICE);
   const Correspondence *c = formulation;
-  for (int64_t place = first * SLICE; c->row && place < last * SLICE; ++place) show_state(c, place);
+  for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES)
+    if (sweep->at)
+      respond_lanes(c, sweep, place, true);
+    else
+      respond_lanes(c, sweep, place, false);
+  for (int64_t place = sweep->first * SLICE; c->row && place < sweep->last * SLICE; ++place) show_state(c, place);
+  return -1;
 }
 
 LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control control)
@@ -418,11 +452,12 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
 }
 
 BRECCIA_CLONES
-static int64_t resist(void *formulation, int64_t first, int64_t last)
+static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const Correspondence local = *(const Correspondence *)formulation,
                        *c = &local; /* so that stores are seen not to change it */
-  for (int64_t slice = first; slice < last; ++slice)
+  const int64_t last = sweep->last;
+  for (int64_t slice = sweep->first; slice < last; ++slice)
     if (c->control == CONTROL_UNIFORM)
       resist_slice(c, slice, CONTROL_UNIFORM);
     else if (c->control == CONTROL_SCALAR)
@@ -444,14 +479,17 @@ const FormulationType formulation_correspondence = {
     .create = correspondence_create,
     .destroy = correspondence_destroy,
     .renew = correspondence_renew,
-    .show_displacements = show_displacements,
-    .deform = deform,
-    .respond = respond,
-    .sum_states = sum_states,
-    .resist = resist,
-    .finish = correspondence_finish,
+    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, false, show_displacements},
+               {OF_DISPLACEMENTS, OF_STRAINS, OF_SHOWN, 0, false, deform},
+               {OF_DISPLACEMENTS | OF_STRESSES, OF_STATES, 0, 0, false, respond},
+               {OF_STATES, OF_SUMS, 0, OF_STATES, false, sum_states},
+               {OF_DISPLACEMENTS | OF_STATES, OF_FORCES, OF_STATES | OF_SUMS, 0, false, resist},
+               {OF_DISPLACEMENTS, OF_FORCES, OF_FORCES, 0, true, correspondence_finish}},
+    .linearise = correspondence_linearise,
+    .half_state = correspondence_half_state,
+    .point_count = correspondence_point_count,
+    .point = correspondence_point,
     .stored_energy = correspondence_stored_energy,
-    .bond_force = correspondence_bond_force,
     .gradient = correspondence_gradient,
     .characteristic_length = correspondence_characteristic_length,
     .bytes = correspondence_bytes,

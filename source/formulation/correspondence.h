@@ -42,9 +42,10 @@ typedef struct Correspondence {
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
   /* What bonds of stored slots read of a neighbour, together (correspondence.c); NULL if there are none. */
-  double *shown;  /* [places][8] of its place and displacement */
-  double *row;    /* [places][state_length] of its response */
-  int32_t *axial; /* places whose bonds act as springs, ascending (some may have become free since) */
+  double *shown;     /* [places][8] of its place and displacement */
+  double *row;       /* [places][state_length] of its response */
+  double *gradients; /* [slices][9][8] G of the state at which it was linearised; NULL before */
+  int32_t *axial;    /* places whose bonds act as springs, ascending (some may have become free since) */
   int64_t axial_count;
 } Correspondence;
 
@@ -80,10 +81,19 @@ void correspondence_renew(void *formulation, int64_t slice);
 void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
 size_t correspondence_bytes(const void *formulation);
 
-/* Single bonds, and particles with too few of them (correspondence_bonds.c). */
-void correspondence_finish(void *formulation);
+/* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */
+int64_t correspondence_finish(void *formulation, const Sweep *sweep);
+void correspondence_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3]);
+int64_t correspondence_point_count(const void *formulation);
+int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
+int correspondence_linearise(void *formulation, Error *error);
+
 void correspondence_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
-void correspondence_bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
+
+/** A particle without a strain pulls at its bonds as half of a bond-based spring does: pull per volume squared, and its change with the
+ *  neighbour's displacement, at displacements u. */
+void correspondence_axial_spring(const Correspondence *c, double *const u[3], int64_t place, const Bond *bond,
+                                 double pull[3], double spring[6]);
 
 /** Width of the band of particles whose families a plane crack divides: all of them follow their law to its end as it opens. A bar pulled
  *  apart so spends 0.9 of the fracture energy where control is negligible (docs/theory.md 8.7). */

@@ -2,33 +2,43 @@
 
 #include <math.h>
 
-/** A particle without a strain pulls at its bonds as half of a bond-based spring does.
- *  @param[out] y  the bond as deformed
- *  @return the pull per volume squared and length of y */
-static double axial_pull(const Correspondence *c, int64_t place, const Bond *bond, double y[3])
+void correspondence_axial_spring(const Correspondence *c, double *const u[3], int64_t place, const Bond *bond,
+                                 double pull[3], double spring[6])
 {
   const Material *m = &c->points->materials[c->points->material[place / SLICE]];
-  double length = 0;
-  for (int k = 0; k < 3; ++k) {
-    y[k] = bond->xi[k] + c->particles->displacement[k][bond->neighbour] - c->particles->displacement[k][place];
-    length += y[k] * y[k];
-  }
-  length = sqrt(length);
   const double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
-  return length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
+  double y[3], square = 0;
+  for (int k = 0; k < 3; ++k) {
+    y[k] = bond->xi[k] + u[k][bond->neighbour] - u[k][place];
+    square += y[k] * y[k];
+  }
+  const double length = sqrt(square),
+               across = length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
+  for (int k = 0; k < 3; ++k) pull[k] = across * y[k];
+  for (int k = 0; k < 6; ++k) {
+    const int r = symmetric_row[k], s = symmetric_column[k];
+    spring[k] = (r == s ? across : 0) + (square > 0 ? (stiffness / bond->length - across) * y[r] * y[s] / square : 0);
+  }
 }
 
-/** The same as a force, less the control that the sweeps have added for this particle. */
-static void axial_state(const Correspondence *c, int64_t slice, const Bond *bond, int lane, double t[3])
+/** Its force, less the control that the sweeps have added for this particle.
+ *  @param[in] at  NULL, or the displacements at which changes of forces are wanted */
+static void axial_state(const Correspondence *c, double *const *at, int64_t place, const Bond *bond, double t[3])
 {
-  const int64_t place = slice * SLICE + lane;
-  double y[3], pull = axial_pull(c, place, bond, y);
-  double omega = bond->weight / c->particles->volume[bond->neighbour];
-  double hold = c->control == CONTROL_TENSOR ? 0 : hold_component(c, place, XX);
-  for (int k = 0; k < 3; ++k) t[k] = pull * y[k] - omega * hold * (y[k] - bond->xi[k]);
+  double *const *u = c->particles->displacement;
+  const double omega = bond->weight / c->particles->volume[bond->neighbour];
+  const double hold = c->control == CONTROL_TENSOR ? 0 : hold_component(c, place, XX);
+  double pull[3], spring[6], eta[3];
+  correspondence_axial_spring(c, at ? at : u, place, bond, pull, spring);
+  for (int k = 0; k < 3; ++k) eta[k] = u[k][bond->neighbour] - u[k][place];
+  for (int k = 0; k < 3; ++k) {
+    t[k] = at ? 0 : pull[k];
+    for (int j = 0; at && j < 3; ++j) t[k] += spring[symmetric_place[3 * k + j]] * eta[j];
+    t[k] -= omega * hold * eta[k];
+  }
 }
 
-void correspondence_finish(void *formulation)
+int64_t correspondence_finish(void *formulation, const Sweep *sweep)
 {
   const Correspondence *c = formulation;
   for (int64_t n = 0; n < c->axial_count; ++n) {
@@ -40,41 +50,34 @@ void correspondence_finish(void *formulation)
       if (!(c->family->intact[slot] >> lane & 1)) continue;
       Bond bond = family_bond(c->family, slice, slot, lane);
       double t[3];
-      axial_state(c, slice, &bond, lane, t);
+      axial_state(c, sweep->at, place, &bond, t);
       for (int k = 0; k < 3; ++k) {
         c->particles->internal[k][place] += t[k] * c->particles->volume[bond.neighbour];
         c->particles->internal[k][bond.neighbour] -= t[k] * c->particles->volume[place];
       }
     }
   }
+  return -1;
 }
 
-void correspondence_bond_force(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3])
+void correspondence_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
 {
   const Correspondence *c = formulation;
-  Bond bond = family_bond(c->family, slice, slot, lane);
-  int64_t place = slice * SLICE + lane, ends[2] = {place, bond.neighbour};
-  double omega = bond.weight / c->particles->volume[bond.neighbour];
-  for (int k = 0; k < 3; ++k) force[k] = 0;
-  for (int e = 0; e < 2; ++e)
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 3; ++j) {
-        double eta = c->particles->displacement[j][bond.neighbour] - c->particles->displacement[j][place];
-        double hold = hold_component(c, ends[e], symmetric_place[3 * k + j]);
-        force[k] += omega * (c->state[3 * k + j][ends[e]] * bond.xi[j] + hold * eta);
-      }
-  for (int e = 0; e < 2; ++e) { /* a spring pulls its two ends alike */
-    if (c->shapes.mode[ends[e]] != SHAPE_AXIAL) continue;
-    Bond seen = bond; /* from that end */
-    double t[3];
-    if (e) {
-      seen.neighbour = (int32_t)place;
-      for (int k = 0; k < 3; ++k) seen.xi[k] = -bond.xi[k];
-      seen.weight = bond.weight * c->particles->volume[place] / c->particles->volume[bond.neighbour];
+  const Bond bond = family_bond(c->family, slice, slot, lane);
+  const int64_t place = slice * SLICE + lane;
+  const double omega = bond.weight / c->particles->volume[bond.neighbour];
+  for (int k = 0; k < 3; ++k) {
+    state[k] = 0;
+    for (int j = 0; j < 3; ++j) {
+      const double eta = c->particles->displacement[j][bond.neighbour] - c->particles->displacement[j][place];
+      state[k] += omega * (c->state[3 * k + j][place] * bond.xi[j] +
+                           hold_component(c, place, symmetric_place[3 * k + j]) * eta);
     }
-    axial_state(c, ends[e] / SLICE, &seen, (int)(ends[e] % SLICE), t);
-    for (int k = 0; k < 3; ++k) force[k] += e ? -t[k] : t[k];
   }
+  if (c->shapes.mode[place] != SHAPE_AXIAL) return;
+  double t[3];
+  axial_state(c, NULL, place, &bond, t);
+  for (int k = 0; k < 3; ++k) state[k] += t[k];
 }
 
 /* ---- energy ---- */
@@ -145,14 +148,17 @@ static void sum_axial_energy(const Correspondence *c, int64_t place, double time
   for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
     if (!(c->family->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(c->family, slice, slot, lane);
-    double y[3], square = 0, along = 0;
-    const double pull = axial_pull(c, place, &bond, y) * p->volume[place] * p->volume[bond.neighbour];
+    const double volumes = p->volume[place] * p->volume[bond.neighbour];
+    double pull[3], spring[6], square = 0, force = 0, along = 0;
+    correspondence_axial_spring(c, p->displacement, place, &bond, pull, spring);
     for (int k = 0; k < 3; ++k) {
-      square += y[k] * y[k];
-      along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
+      const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      square += y * y;
+      force += pull[k] * y; /* times |y| */
+      along += pull[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
     }
-    energy->beside += 0.5 * pull * sqrt(square) * (sqrt(square) - bond.length);
-    energy->half_work += 0.5 * pull * along;
+    if (square > 0) energy->beside += 0.5 * volumes * force / sqrt(square) * (sqrt(square) - bond.length);
+    energy->half_work += 0.5 * volumes * along;
   }
   energy->stored = energy->beside;
 }

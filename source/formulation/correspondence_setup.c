@@ -21,6 +21,7 @@ void correspondence_destroy(void *formulation)
   }
   places_free(&c->row);
   places_free(&c->shown);
+  places_free(&c->gradients);
   shape_table_destroy(&c->shapes);
   free(c->axial);
   free(c);

@@ -109,6 +109,16 @@ Space peridynamics_space(const PeridynamicsSpec *spec)
   return (Space)k;
 }
 
+void formulation_bond_force(const FormulationType *type, const void *formulation, const Family *family, int64_t slice,
+                            int64_t slot, int lane, double force[3])
+{
+  const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(family, slice, slot, lane).neighbour;
+  double back[3];
+  type->half_state(formulation, slice, slot, lane, force);
+  type->half_state(formulation, other / SLICE, family_slot(family, other, place), other % SLICE, back);
+  for (int k = 0; k < 3; ++k) force[k] -= back[k];
+}
+
 double micromodulus(const Body *body, double young, double horizon)
 {
   const double pi = acos(-1);

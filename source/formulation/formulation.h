@@ -5,6 +5,7 @@
 
 #include "constitutive/points.h"
 #include "family/family.h"
+#include "formulation/operator.h"
 
 typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
   SectionHead head;
@@ -56,10 +57,45 @@ typedef struct StoredEnergy {
   double strain[6], stress[6]; /* of the point */
 } StoredEnergy;
 
+/** What a sweep reads and writes of places. */
+typedef enum Quantity {
+  OF_DISPLACEMENTS = 1, /* displacements, or what stands for them in a linearised step */
+  OF_SHOWN = 2,         /* what neighbours read of displacements beyond these themselves */
+  OF_STRAINS = 4,       /* of the points of the block; laws are asked before the first phase that reads OF_STRESSES */
+  OF_STRESSES = 8,
+  OF_STATES = 16, /* force states */
+  OF_SUMS = 32,   /* sums of force states along lattice rows */
+  OF_FORCES = 64
+} Quantity;
+
+/** Slices first .. last - 1, of one material and at most BLOCK places, that are worked on together. */
+typedef struct Sweep {
+  int64_t first, last;
+  double *carry; /* [CARRY][BLOCK] numbers that one phase leaves for a later one: they need never leave the cache */
+  /** [6][places of the block] of points on particles: strains that are found and stresses that are answered; in a linearised step
+   *  their changes. */
+  double *strain[6], *stress[6];
+  /** NULL: forces of the displacements held. Otherwise a linearised step: changes of forces with changes v of displacements, which
+   *  stand in their place, and these are the displacements at which it was linearised. */
+  double *const *at;
+} Sweep;
+
+typedef struct Phase {
+  unsigned reads, writes; /* Quantity bits, of the block's own places */
+  unsigned of_neighbours; /* and what it reads of neighbours: all blocks have written that before */
+  unsigned
+      along_rows; /* what it reads of neighbours in the same lattice row; only rows longer than a block need wait for that */
+  bool by_one; /* one thread calls it once, for few places anywhere */
+  /** @return -1, or a place whose law could not be integrated */
+  int64_t (*run)(void *formulation, const Sweep *sweep);
+} Phase;
+
+enum { MOST_PHASES = 8 };
+
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
   int uniaxial;      /* laws act on bonds, not on points in space */
-  bool row_sums;     /* show_displacements and sum_states make sums along lattice rows for neighbours to read */
+  bool row_sums;     /* neighbours read sums along lattice rows */
   bool bond_lengths; /* lengths of stored bonds are read in sweeps */
   bool may_stiffen;  /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   /** Makes a formulation for a body. Says where families are too poor for it. */
@@ -67,23 +103,18 @@ typedef struct FormulationType {
   void (*destroy)(void *formulation);
   /** Bonds of this slice have broken. NULL: nothing to do. */
   void (*renew)(void *formulation, int64_t slice);
-  /** What neighbours will read of displacements beyond these themselves; all slices are done before any deforms. NULL: nothing. */
-  void (*show_displacements)(void *formulation, int64_t first, int64_t last);
-  /** Displacements to strains at the points of slices first .. last - 1, at most BLOCK places.
-   *  @param[out] carry  [CARRY][BLOCK] numbers of these places that `respond` finds again: they need never leave the cache.
-   *  NULL, as is `respond`, where `resist` does everything. */
-  void (*deform)(void *formulation, int64_t first, int64_t last, double *carry);
-  /** Stresses at these points to whatever `resist` needs of a particle and its neighbours. */
-  void (*respond)(void *formulation, int64_t first, int64_t last, const double *carry);
-  /** Sums of responses that neighbours will read; all slices have responded before. */
-  void (*sum_states)(void *formulation, int64_t first, int64_t last);
-  /** Internal force per volume on the particles of these slices; all slices are summed before.
-   *  @return a place whose law could not be integrated, or -1 */
-  int64_t (*resist)(void *formulation, int64_t first, int64_t last);
-  /** Forces of the few particles that need another treatment; called once, by one thread, after all have resisted. May be NULL. */
-  void (*finish)(void *formulation);
-  /** Force per volume squared that the neighbour exerts on the particle through one bond (t_ij - t_ji). */
-  void (*bond_force)(const void *formulation, int64_t slice, int64_t slot, int lane, double force[3]);
+  /** From displacements to internal forces per volume, block by block, in this order; up to the first without `run`. */
+  Phase phases[MOST_PHASES];
+  /** Keeps what a linearised step needs of the state that was evaluated last, tangents of the points among it. */
+  int (*linearise)(void *formulation, Error *error);
+  /** Force per volume squared t that a particle's own formulation gives one of its bonds: the force on it per volume is the sum of
+   *  (t_ij - t_ji) V_j. Of the state that was evaluated last. */
+  void (*half_state)(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3]);
+  /** Material points, numbered for `point`: some of the numbers may have none. */
+  int64_t (*point_count)(const void *formulation);
+  /** How displacements make the strain of a point and its stress forces, and what springs beside it do. Slow and plain: what sweeps are
+   *  checked against, and what matrices are assembled from. Of the state that was evaluated last; its tangent, if that was linearised. */
+  int (*point)(const void *formulation, int64_t number, Operator *point, Error *error);
   /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
   /** Energy of the deformation of a place, as it stands and with its present bonds. Stresses follow elastically from those that laws gave
@@ -106,6 +137,10 @@ typedef struct FormulationType {
 /** @return the k-th formulation, or NULL after the last */
 const FormulationType *formulation_at(int k);
 const FormulationType *formulation_find(const char *name);
+
+/** Force per volume squared that the neighbour exerts on the particle through one bond, t_ij - t_ji. */
+void formulation_bond_force(const FormulationType *type, const void *formulation, const Family *family, int64_t slice,
+                            int64_t slot, int lane, double force[3]);
 
 /** Micromodulus c of a bond-based solid with this Young's modulus and constant influence: 12E/(pi delta^4), in the plane
  *  9E/(pi t delta^3), of a bar 2E/(A delta^2) (docs/theory.md 2). It sets the scale of zero-energy control and of lone axial bonds. */

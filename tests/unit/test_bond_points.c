@@ -93,10 +93,11 @@ static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
                family_bond(f, bond.neighbour / SLICE, back, bond.neighbour % SLICE).neighbour != slice * SLICE + lane)
           ++back;
         double there[3], here[3];
-        d->type->bond_force(d->formulation, slice, slot, lane, here);
-        d->type->bond_force(d->formulation, bond.neighbour / SLICE, back, bond.neighbour % SLICE, there);
+        formulation_bond_force(d->type, d->formulation, &d->family, slice, slot, lane, here);
+        formulation_bond_force(d->type, d->formulation, &d->family, bond.neighbour / SLICE, back,
+                               bond.neighbour % SLICE, there);
         for (int k = 0; k < 3; ++k) assert_near(here[k], -there[k], 1e-15 * fabs(here[k]));
-        damaged += points_bond_stress(&d->points, slice, slot, lane, false, 1e-6) < 0.999 * 30e6 * 1e-6;
+        damaged += points_bond_stress(&d->points, slice, slot, lane, false, 1e-6, NULL) < 0.999 * 30e6 * 1e-6;
         mixed += d->material[slice] != d->material[bond.neighbour / SLICE];
       }
   assert_true(damaged > 1000 && mixed > 1000);

@@ -1,0 +1,162 @@
+#include "formulation/operator.h"
+
+#include "base/tensor.h"
+#include <stdlib.h>
+#include <string.h>
+
+void operator_clear(Operator *point)
+{
+  *point = (Operator){.places = point->places, .capacity = point->capacity};
+}
+
+void operator_destroy(Operator *point)
+{
+  free(point->places);
+  *point = (Operator){0};
+}
+
+OperatorPlace *operator_add(Operator *point, int64_t place, Error *error)
+{
+  if (point->count == point->capacity) {
+    const int wanted = point->capacity ? 2 * point->capacity : 128;
+    OperatorPlace *grown = realloc(point->places, sizeof *grown * (size_t)wanted);
+    if (!grown) {
+      error_add(error, BRECCIA_FAILURE, "out of memory: operator of a point");
+      return NULL;
+    }
+    point->places = grown;
+    point->capacity = wanted;
+  }
+  OperatorPlace *new = &point->places[point->count++];
+  *new = (OperatorPlace){.place = (int32_t)place};
+  return new;
+}
+
+void operator_close(Operator *point)
+{
+  for (int k = 0; k < 3; ++k) {
+    point->places[0].g[k] = 0;
+    for (int l = 1; l < point->count; ++l) point->places[0].g[k] -= point->places[l].g[k];
+  }
+}
+
+void operator_gradient(const Operator *point, double *const u[3], double g[9])
+{
+  memset(g, 0, 9 * sizeof *g);
+  for (int l = 0; l < point->count; ++l)
+    for (int k = 0; k < 9; ++k) g[k] += u[k / 3][point->places[l].place] * point->places[l].g[k % 3];
+}
+
+/** F at displacements u; I where strains are small. */
+static void deformation(const Operator *point, double *const u[3], double f[9])
+{
+  memset(f, 0, 9 * sizeof *f);
+  if (point->finite) operator_gradient(point, u, f);
+  for (int k = 0; k < 3; ++k) f[4 * k] += 1;
+}
+
+/** The matrix from a displacement of place l to the strain. */
+static void strain_matrix(const Operator *point, const double f[9], int l, double b[6][3])
+{
+  const double *g = point->places[l].g;
+  for (int k = 0; k < 6; ++k)
+    for (int i = 0; i < 3; ++i) {
+      const int r = symmetric_row[k], s = symmetric_column[k];
+      b[k][i] = (f[3 * i + r] * g[s] + f[3 * i + s] * g[r]) * (k < 3 ? 0.5 : 1);
+    }
+}
+
+void operator_strain(const Operator *point, double *const u[3], double *const v[3], double strain[6])
+{
+  double f[9], b[6][3];
+  memset(strain, 0, 6 * sizeof *strain);
+  deformation(point, u, f);
+  for (int l = 0; l < point->count; ++l) {
+    const int32_t place = point->places[l].place;
+    if (point->components == 6) strain_matrix(point, f, l, b);
+    for (int i = 0; i < 3; ++i)
+      if (point->components == 1)
+        strain[0] += v[i][place] * point->places[l].g[i];
+      else
+        for (int k = 0; k < point->components; ++k) strain[k] += b[k][i] * v[i][place];
+  }
+}
+
+/** K g of place l. */
+static void shaped(const Operator *point, int l, double kg[3])
+{
+  for (int i = 0; i < 3; ++i) {
+    kg[i] = 0;
+    for (int j = 0; j < 3; ++j) kg[i] += point->shape[symmetric_place[3 * i + j]] * point->places[l].g[j];
+  }
+}
+
+void operator_add_forces(const Operator *point, double *const u[3], double *const force[3])
+{
+  double g[9], f[9], b[6][3], kg[3], held[9];
+  operator_gradient(point, u, g);
+  deformation(point, u, f);
+  for (int k = 0; k < 9; ++k) { /* C G */
+    held[k] = 0;
+    for (int j = 0; j < 3; ++j) held[k] += point->hold[symmetric_place[k / 3 * 3 + j]] * g[3 * j + k % 3];
+  }
+  for (int l = 0; l < point->count; ++l) {
+    const OperatorPlace *p = &point->places[l];
+    if (point->components == 6) strain_matrix(point, f, l, b);
+    shaped(point, l, kg);
+    for (int i = 0; i < 3; ++i) {
+      double sum = 0;
+      for (int k = 0; k < point->components; ++k)
+        sum -= point->stress[k] * (point->components == 1 ? p->g[i] : b[k][i]);
+      for (int j = 0; j < 3; ++j) sum += held[3 * i + j] * kg[j];
+      force[i][p->place] += point->volume * sum - p->pull[i];
+      force[i][point->places[0].place] += p->pull[i];
+    }
+  }
+}
+
+/** Stiffness of place l against the first one: the spring's, and what comes from the turning of g. */
+static void against_first(const Operator *point, int l, double k[9])
+{
+  const OperatorPlace *p = &point->places[l];
+  double square = 0;
+  for (int i = 0; i < 3; ++i) square += p->g[i] * p->g[i];
+  const double turn = point->components == 1 ? point->volume * point->stress[0] * p->turn : 0;
+  for (int c = 0; c < 9; ++c) {
+    k[c] = p->spring[symmetric_place[c]] + (c % 4 == 0 ? turn : 0);
+    if (turn != 0) k[c] -= turn * p->g[c / 3] * p->g[c % 3] / square;
+  }
+}
+
+void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9])
+{
+  const OperatorPlace *pa = &point->places[a], *pb = &point->places[b];
+  double f[9], ba[6][3], bb[6][3], kg[3], part[9], along = 0, across = 0;
+  memset(k, 0, 9 * sizeof *k);
+  deformation(point, u, f);
+  if (point->components == 6) {
+    strain_matrix(point, f, a, ba);
+    strain_matrix(point, f, b, bb);
+  }
+  for (int c = 0; c < 9; ++c) {
+    double sum = 0;
+    if (point->components == 1) sum = point->tangent[0] * pa->g[c / 3] * pb->g[c % 3];
+    for (int r = 0; r < 6 && point->components == 6; ++r)
+      for (int s = 0; s < 6; ++s) sum += ba[r][c / 3] * point->tangent[6 * r + s] * bb[s][c % 3];
+    k[c] -= point->volume * sum;
+  }
+  shaped(point, b, kg);
+  for (int i = 0; i < 3; ++i) {
+    across += pa->g[i] * kg[i];
+    for (int j = 0; j < 3 && point->components == 6 && point->finite; ++j)
+      along += pa->g[i] * point->stress[symmetric_place[3 * i + j]] * pb->g[j];
+  }
+  for (int c = 0; c < 9; ++c)
+    k[c] += point->volume * (point->hold[symmetric_place[c]] * across - (c % 4 == 0 ? along : 0));
+  for (int l = 1; l < point->count; ++l) {
+    const bool both = (a == l || !a) && (b == l || !b);
+    if (!both) continue;
+    against_first(point, l, part);
+    for (int c = 0; c < 9; ++c) k[c] += a == b ? -part[c] : part[c];
+  }
+}

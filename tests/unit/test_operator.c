@@ -1,0 +1,331 @@
+/* Every formulation against its own points, one by one: forces are transposed operators times stresses, sums of half states, and minus the
+ * gradient of the energy; a linearised step is the change of the forces, and the sum of the points' stiffnesses. Irregular bodies with
+ * broken bonds, all controls and spaces, laws of each kind. */
+#include "support.h"
+
+#include "base/random.h"
+#include "base/tensor.h"
+
+typedef struct Law {
+  const char *name, *words;
+  bool elastic;  /* forces follow from an energy */
+  double strain; /* at which the law is interesting */
+  double slack;  /* of its tangents beside the stiffness */
+} Law;
+
+static const Law solid[] = {
+    {"elastic", "Young modulus: 150, Poisson ratio: 0.2", true, 0.03, 1e-7},
+    {"j2", "Young modulus: 150, Poisson ratio: 0.3, yield stress: 1, hardening modulus: 10", false, 0.03, 1e-5},
+    {"drucker-prager", "Young modulus: 150, Poisson ratio: 0.3, cohesion: 1, friction angle: 30, dilation angle: 10",
+     false, 0.02, 1e-5},
+    {"mazars", "Young modulus: 150, Poisson ratio: 0.2, tensile strength: 0.1, fracture energy: 0.2", false, 0.004,
+     1e-5},
+};
+static const Law fibre[] = {
+    {"elastic-1d", "Young modulus: 150", true, 0.03, 1e-7},
+    {"elastic-brittle", "Young modulus: 150, tensile strength: 100", true, 0.03, 1e-7},
+    {"bilinear-softening", "Young modulus: 150, tensile strength: 1.5, fracture energy: 0.4", false, 0.02, 1e-6},
+    {"elastic-perfectly-plastic", "Young modulus: 150, yield stress: 1", false, 0.008, 1e-6},
+};
+enum { LAWS = 4 };
+
+typedef struct Setting {
+  const char *space, *words;
+} Setting;
+
+static const Setting correspondence[] = {
+    {"3-D", "zero-energy control: {none: yes}"},
+    {"3-D", "zero-energy control: {silling: 0.1}"},
+    {"3-D", "zero-energy control: {wan: 0.1}, strain: small"},
+    {"3-D", "influence: cubic-spline"},
+    {"plane strain", "zero-energy control: {silling: 0.2}, strain: small"},
+    {"plane strain", "zero-energy control: {wan: 0.1}"},
+    {"plane stress", "zero-energy control: {none: yes}"},
+    {"plane stress", "influence: conical, volume correction: partial"},
+};
+static const Setting bonds[] = {
+    {"3-D", "calibration: uniform-expansion"},
+    {"3-D", "calibration: continuum, influence: conical, volume correction: partial, surface correction: energy"},
+    {"plane strain", "surface correction: energy"},
+    {"plane stress", "calibration: uniaxial"},
+    {"1-D", "calibration: continuum"},
+};
+
+/** Two blocks that do not fit each other, with a cut. */
+static breccia_model *body(const char *formulation, const Law *law, const Setting *setting)
+{
+  const char *shapes = "a: {material: m, spacing: 1, shape: {box: {particles: [6, 5, 4]}}}, b: {material: m, spacing: "
+                       "0.8, shape: {box: {from: [0, 0, 4], to: [2.4, 4, 6.4]}}}",
+             *cut = "cracks: [{cut: {line: [[3.05, -9], [3.05, 2.1]]}}]\n";
+  if (!strcmp(setting->space, "1-D")) {
+    shapes = "a: {material: m, lattice: line, area: 0.5, spacing: 1, shape: {box: {particles: [13, 1]}}}";
+    cut = "";
+  } else if (*setting->space == 'p')
+    shapes =
+        "a: {material: m, spacing: 1, lattice: square, thickness: 0.7, shape: {box: {particles: [9, 6]}}}, b: "
+        "{material: m, spacing: 0.8, lattice: square, thickness: 0.7, shape: {box: {from: [0, 6], to: [2.4, 9.2]}}}";
+  return model_of(
+      "materials: {m: {model: %s, density: 1, %s}}\nperidynamics: {formulation: %s, space: %s, horizon: 2.5, "
+      "%s}\nbody: {%s}\n%ssolve: {explicit: {steps: 1, time step: 1e-6}}\n",
+      law->name, law->words, formulation, setting->space, setting->words, shapes, cut);
+}
+
+static void sever(breccia_model *model, int32_t a, int32_t b)
+{
+  Domain *d = &model->domain;
+  assert_true(family_break(&d->family, a, b));
+  for (int end = 0; end < 2; ++end)
+    if (d->type->renew) d->type->renew(d->formulation, (end ? b : a) / SLICE);
+}
+
+/** Breaks every fifth bond of one particle, and all bonds of another but two or three, which leaves it without a strain. */
+static void sever_some(breccia_model *model)
+{
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  for (int turn = 0; turn < 2; ++turn) {
+    const int32_t place = p->place_of[turn ? 0 : p->count / 2];
+    const int64_t slice = place / SLICE;
+    int left = family_count(&d->family, place), number = 0;
+    for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot) {
+      if (!(d->family.intact[slot] >> place % SLICE & 1)) continue;
+      if (turn ? left <= d->body.dimensions : number++ % 5) continue;
+      sever(model, place, family_bond(&d->family, slice, slot, place % SLICE).neighbour);
+      --left;
+    }
+  }
+}
+
+/** Vectors over places. */
+typedef struct Vectors {
+  double *of[3];
+} Vectors;
+
+static Vectors vectors(const Particles *p)
+{
+  Vectors v;
+  for (int k = 0; k < 3; ++k) v.of[k] = places_array(p->places, "test", NULL);
+  return v;
+}
+
+static void forget(Vectors *v)
+{
+  for (int k = 0; k < 3; ++k) places_free(&v->of[k]);
+}
+
+static void randomize(const Domain *d, double *const v[3], double size, uint64_t seed)
+{
+  for (int32_t n = 0; n < d->particles->count; ++n)
+    for (int k = 0; k < d->body.dimensions; ++k)
+      v[k][d->particles->place_of[n]] = size * 2 * (random_uniform(&seed) - 0.5);
+}
+
+/** A linear field and a random one. */
+static void displace(const Domain *d, double strain, uint64_t seed)
+{
+  const Particles *p = d->particles;
+  const double g[9] = {1, 0.3, -0.2, -0.1, -0.4, 0.3, 0.2, 0.1, 0.6};
+  randomize(d, p->displacement, 0.5 * strain, seed);
+  for (int32_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < d->body.dimensions; ++k)
+      for (int j = 0; j < d->body.dimensions; ++j)
+        p->displacement[k][p->place_of[n]] += strain * g[3 * k + j] * p->position[j][p->place_of[n]];
+}
+
+static void move(const Domain *d, const Vectors *v, double factor)
+{
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement[k][i] += factor * v->of[k][i];
+}
+
+static double largest(const Particles *p, double *const v[3])
+{
+  double most = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) most = fmax(most, fabs(v[k][i]));
+  return most;
+}
+
+static void assert_alike(const Particles *p, double *const a[3], double *const b[3], double part, const char *what)
+{
+  const double most = largest(p, a);
+  if (!(most > 0)) fail_msg("%s: nothing but 0", what);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      if (!(fabs(a[k][i] - b[k][i]) <= part * most))
+        fail_msg("%s: %g and %g at place %lld of [%g, %g, %g], of %g at most", what, a[k][i], b[k][i], (long long)i,
+                 p->position[0][i], p->position[1][i], p->position[2][i], most);
+}
+
+static double energy(Domain *d)
+{
+  double sum = 0;
+  for (int32_t n = 0; n < d->particles->count; ++n) {
+    StoredEnergy at;
+    d->type->stored_energy(d->formulation, d->particles->place_of[n], 0, &at);
+    sum += at.stored;
+  }
+  return sum;
+}
+
+/** Forces per particle as they stand. */
+static Vectors forces(const Domain *d)
+{
+  const Particles *p = d->particles;
+  Vectors f = vectors(p);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) f.of[k][i] = p->internal[k][i] * p->volume[i];
+  return f;
+}
+
+static void check_forces(Domain *d, const Vectors *f, const char *name)
+{
+  const Particles *p = d->particles;
+  Vectors sum = vectors(p), halves = vectors(p);
+  Operator point = {0};
+  for (int64_t n = 0; n < d->type->point_count(d->formulation); ++n) {
+    assert_int_equal(d->type->point(d->formulation, n, &point, NULL), 0);
+    operator_add_forces(&point, p->displacement, sum.of);
+  }
+  operator_destroy(&point);
+  assert_alike(p, f->of, sum.of, 1e-11, name);
+  for (int64_t slice = 0; slice < p->slices; ++slice)
+    for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        if (!(d->family.intact[slot] >> lane & 1)) continue;
+        double force[3];
+        const double volume = p->volume[family_bond(&d->family, slice, slot, lane).neighbour];
+        formulation_bond_force(d->type, d->formulation, &d->family, slice, slot, lane, force);
+        for (int k = 0; k < 3; ++k)
+          halves.of[k][slice * SLICE + lane] += force[k] * volume * p->volume[slice * SLICE + lane];
+      }
+  assert_alike(p, f->of, halves.of, 1e-11, name);
+  forget(&sum);
+  forget(&halves);
+}
+
+/** Change of the forces with changes v, by the points' stiffnesses. */
+static Vectors assembled(const Domain *d, const Vectors *v)
+{
+  const Particles *p = d->particles;
+  Vectors sum = vectors(p);
+  Operator point = {0};
+  double k[9];
+  for (int64_t n = 0; n < d->type->point_count(d->formulation); ++n) {
+    assert_int_equal(d->type->point(d->formulation, n, &point, NULL), 0);
+    for (int a = 0; a < point.count; ++a)
+      for (int b = 0; b < point.count; ++b) {
+        operator_stiffness(&point, p->displacement, a, b, k);
+        for (int c = 0; c < 9; ++c) sum.of[c / 3][point.places[a].place] += k[c] * v->of[c % 3][point.places[b].place];
+      }
+  }
+  operator_destroy(&point);
+  return sum;
+}
+
+/** Strains of points in space as they change with v. */
+static void check_strains(Domain *d, const Vectors *v, double h)
+{
+  const Particles *p = d->particles;
+  double *strain[2] = {calloc(6 * (size_t)p->places, sizeof(double)), calloc(6 * (size_t)p->places, sizeof(double))};
+  for (int side = 0; side < 2; ++side) {
+    move(d, v, side ? 2 * h : -h);
+    domain_evaluate(d);
+    for (int64_t i = 0; i < 6 * p->places; ++i) strain[side][i] = d->points.strain[i % 6][i / 6];
+  }
+  move(d, v, -h);
+  Operator point = {0};
+  for (int64_t i = 0; i < p->places; ++i) {
+    double change[6];
+    assert_int_equal(d->type->point(d->formulation, i, &point, NULL), 0);
+    operator_strain(&point, p->displacement, v->of, change);
+    for (int k = 0; k < 6 && point.components; ++k)
+      if (k != ZZ || d->points.space != SPACE_PLANE_STRESS)
+        assert_near(change[k], (strain[1][6 * i + k] - strain[0][6 * i + k]) / (2 * h), 1e-8);
+  }
+  operator_destroy(&point);
+  free(strain[0]);
+  free(strain[1]);
+}
+
+static void check_model(breccia_model *model, const Law *law, const char *name)
+{
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  Team *before = team_use(model->team);
+  sever_some(model);
+  displace(d, law->strain, 3);
+  domain_evaluate(d);
+  points_commit(&d->points);
+  displace(d, 1.3 * law->strain, 3);
+  assert_int_equal(domain_linearise(d, NULL), 0);
+  Vectors f = forces(d);
+  check_forces(d, &f, name);
+
+  Vectors v = vectors(p), step = vectors(p), found = vectors(p);
+  randomize(d, v.of, 1, 8);
+  Vectors sum = assembled(d, &v);
+  domain_linear_step(d, v.of, step.of);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) step.of[k][i] *= p->volume[i];
+  assert_alike(p, sum.of, step.of, 1e-11, name);
+
+  const double h = 1e-5 * law->strain;
+  double energies[2], work = 0, size = 0;
+  for (int side = 0; side < 2; ++side) {
+    move(d, &v, side ? 2 * h : -h);
+    domain_evaluate(d);
+    energies[side] = energy(d);
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i)
+        found.of[k][i] += (side ? 1 : -1) * p->internal[k][i] * p->volume[i] / (2 * h);
+  }
+  assert_alike(p, step.of, found.of, law->slack, name);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      work += f.of[k][i] * v.of[k][i];
+      size += fabs(f.of[k][i] * v.of[k][i]);
+    }
+  if (law->elastic) assert_near(work, -(energies[1] - energies[0]) / (2 * h), 1e-6 * size);
+  move(d, &v, -h);
+  if (d->points.where == POINTS_ON_PARTICLES) check_strains(d, &v, h);
+  forget(&f);
+  forget(&v);
+  forget(&step);
+  forget(&sum);
+  forget(&found);
+  team_use(before);
+}
+
+static void check_all(const char *formulation, const Law *laws, const Setting *settings, size_t count)
+{
+  char name[256];
+  for (size_t s = 0; s < count; ++s)
+    for (int n = 0; n < LAWS; ++n) {
+      breccia_model *model = body(formulation, &laws[n], &settings[s]);
+      snprintf(name, sizeof name, "%s of %s, %s, %s", laws[n].name, formulation, settings[s].space, settings[s].words);
+      check_model(model, &laws[n], name);
+      breccia_model_destroy(&model);
+    }
+}
+
+static void correspondence_is_the_sum_of_its_points(void **state)
+{
+  (void)state;
+  check_all("correspondence", solid, correspondence, sizeof correspondence / sizeof *correspondence);
+}
+
+static void bonds_are_the_sum_of_their_points(void **state)
+{
+  (void)state;
+  check_all("bond-based", fibre, bonds, sizeof bonds / sizeof *bonds);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(correspondence_is_the_sum_of_its_points),
+      cmocka_unit_test(bonds_are_the_sum_of_their_points),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
