@@ -61,7 +61,7 @@ int rest_find(const Explicit *s, Rest *rest, Error *error)
   for (int k = 0; k < 3; ++k) places_free(&free_force[k]);
   if (failed) return BRECCIA_FAILURE;
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
-  rest->kinetic = s->paid > 0 ? s->ledger.kinetic / s->paid : 0;
+  rest->kinetic = s->paid > 0 ? fmax(0, s->ledger.kinetic) / s->paid : 0; /* a rounding below zero is none */
   rest->reached = rest->unbalanced < rest_limit && rest->kinetic < rest_limit;
   return BRECCIA_OK;
 }

@@ -76,6 +76,24 @@ done
 sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
   fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"
 
+# What `check` is shown to tell is what it tells, the expected time of another machine aside.
+"$breccia" check "$source/examples/notched-beam/beam.yaml" | sed 's/, about [0-9.]* [a-z]*$//' > "$work/told"
+sed -n '/^## What `check` tells/,/^## /p' "$source/docs/choosing.md" | sed -n '/^```$/,/^```$/p' | sed '/^```$/d; s/, about [0-9.]* [a-z]*$//' > "$work/shown"
+[ -s "$work/shown" ] && diff "$work/shown" "$work/told" || fail "docs/choosing.md shows another 'breccia check' of the notched beam than the program tells"
+checks=$((checks + 1))
+
+# The decks that newcomers run first lose no energy, and one that is damped says that it has come to rest.
+"$breccia" new "$work/starter.yaml" > /dev/null
+cp "$source/examples/bar/bar.yaml" "$work/bar.yaml"
+sed 's/end time: 12 ms/end time: 12 ms, damping: {ratio: 1, at: 880 Hz}/' "$work/bar.yaml" > "$work/damped.yaml"
+for deck in starter bar damped; do
+  "$breccia" run "$work/$deck.yaml" > "$work/out" 2>&1 || fail "$deck.yaml: $(cat "$work/out")"
+  json "$work/$deck/summary.json" imbalance | awk '{exit !(NR == 1 && $1 >= 0 && $1 < 0.005)}' || fail "$deck.yaml: $(grep '^energy' "$work/out")"
+  checks=$((checks + 1))
+done
+contains "a damped bar" "$(cat "$work/out")" "
+at rest: forces out of balance are"
+
 # The guide's pieces, the first of each section, are one deck.
 awk '/^    [a-z]+:/{key = $1; on = !(key in seen) && key ~ /^(units|materials|body|cracks|peridynamics|failure|loads|solve|watch|results|pictures):$/; seen[key] = 1}
   /^ ? ? ?[^ ]/{on = 0} on{print substr($0, 5)}' "$source/docs/guide.md" > "$work/guide.yaml"
