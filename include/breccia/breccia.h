@@ -94,8 +94,10 @@ typedef struct breccia_options {
   const breccia_law *const
       *laws; /* laws of one's own, `law_count` of them, borrowed for the model's life; may be NULL */
   int law_count;
-  int threads; /* 0: what OMP_NUM_THREADS says, or one for each core that the process may use */
-  int force;   /* 1: accept a time step above the stable one */
+  int threads;                 /* 0: what OMP_NUM_THREADS says, or one for each core that the process may use */
+  int force;                   /* 1: accept a time step above the stable one */
+  const char *const *settings; /* "key.path=value" each, instead of what the deck says; borrowed for the model's life */
+  int setting_count;
 } breccia_options;
 
 /** Reads and checks a deck and builds the body, its families and its material points. Nothing is written.
@@ -130,6 +132,8 @@ BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, 
 BRECCIA_API const char *breccia_model_overview(breccia_model *model);
 /** What the deck's numbers mean in SI units: materials, body, waves, loads; some lines. */
 BRECCIA_API const char *breccia_model_plausibility(breccia_model *model);
+/** The deck as it is run, in YAML: settings, included files, aliases and expressions are worked out in it. */
+BRECCIA_API const char *breccia_model_deck(const breccia_model *model);
 BRECCIA_API const char *breccia_model_warnings(breccia_model *model);
 BRECCIA_API const char *breccia_model_outcome(breccia_model *model);
 

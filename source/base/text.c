@@ -98,7 +98,7 @@ int text_distance(const char *a, const char *b)
 bool text_resembles(const char *word, const char *candidate, int distance)
 {
   size_t longer = strlen(word) > strlen(candidate) ? strlen(word) : strlen(candidate);
-  return distance <= (longer < 6 ? 1 : (int)longer / 3);
+  return distance < (int)longer && distance <= (longer < 6 ? 1 : (int)longer / 3);
 }
 
 void text_file_name(const char *words, char *name, size_t size)

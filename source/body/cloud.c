@@ -76,7 +76,7 @@ int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const c
 {
   static const char *const names[] = {"x", "y", "z", "volume"};
   *cloud = (Cloud){0};
-  char *path = text_beside(reader->document->name, file);
+  char *path = text_beside(node_file(reader->document, node), file);
   if (!path) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
   int status = BRECCIA_OK;
   for (int k = 0; k < 4 && !status; ++k) {

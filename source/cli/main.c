@@ -102,6 +102,19 @@ int read_options(int argc, char **argv, const Verb *verb, const char **values,
   return optind;
 }
 
+int settings_begin(DeckSettings *settings, int option, int argc)
+{
+  *settings = (DeckSettings){option, calloc((size_t)argc + 1, sizeof(char *)), 0};
+  if (!settings->items) fprintf(stderr, "breccia: out of memory: options\n");
+  return !settings->items;
+}
+
+void settings_note(void *context, int option, const char *value)
+{
+  DeckSettings *settings = context;
+  if (option == settings->option) settings->items[settings->count++] = value;
+}
+
 static void print_help(FILE *out)
 {
   fprintf(out, "breccia %s: peridynamics for concrete, soil and rock\n\nusage: breccia VERB ...\n\n", BRECCIA_VERSION);

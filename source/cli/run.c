@@ -5,9 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { OUTPUT, STEPS, THREADS, RESTART, FORCE, QUIET, COUNT };
+enum { SET, OUTPUT, STEPS, THREADS, RESTART, FORCE, QUIET, COUNT };
 
 static const Option options[] = {
+    SET_OPTION,
     {"output", "DIR", "folder for the files (a folder beside the deck, named after it)"},
     {"steps", "N", "stop after N steps in all"},
     {"threads", "N", "number of threads (OMP_NUM_THREADS, or one for each core)"},
@@ -40,15 +41,17 @@ static void show(void *context, int64_t step, int64_t steps, double left)
           (long long)step, (long long)steps, time);
 }
 
-static int run(int argc, char **argv, const Verb *verb)
+/** How to go on: the same command with --restart. */
+static void tell_restart(const char *deck, const char *folder, const DeckSettings *settings)
 {
-  const char *values[COUNT];
-  int first = read_options(argc, argv, verb, values, NULL, NULL);
-  if (first < 0) return first == -2 ? 0 : 2;
-  if (argc - first != 1) {
-    fprintf(stderr, "breccia run: give one deck; see 'breccia run --help'\n");
-    return 2;
-  }
+  printf("'breccia run %s", deck);
+  for (int k = 0; k < settings->count; ++k) printf(" --set \"%s\"", settings->items[k]);
+  if (folder) printf(" --output %s", folder);
+  printf(" --restart' goes on from here\n");
+}
+
+static int run_deck(const char *deck, const char **values, const DeckSettings *settings)
+{
   long long steps = 0, threads = 0;
   if (values[STEPS] && read_whole(values[STEPS], "steps", 1, &steps)) return 2;
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return 2;
@@ -56,9 +59,11 @@ static int run(int argc, char **argv, const Verb *verb)
   struct sigaction action = {.sa_handler = on_signal};
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
-  const char *deck = argv[first];
   breccia_error *error = breccia_error_create();
-  const breccia_options wishes = {.threads = (int)(threads > 4096 ? 4096 : threads), .force = values[FORCE] != NULL};
+  const breccia_options wishes = {.threads = (int)(threads > 4096 ? 4096 : threads),
+                                  .force = values[FORCE] != NULL,
+                                  .settings = settings->items,
+                                  .setting_count = settings->count};
   breccia_model *model;
   int status = breccia_model_load_file(deck, &wishes, &model, error);
   if (status) return fail(error, status);
@@ -81,11 +86,26 @@ static int run(int argc, char **argv, const Verb *verb)
     const char *warnings = breccia_model_warnings(model);
     if (strlen(warnings) > told) fprintf(stderr, "%s\n", warnings + told + (warnings[told] == '\n'));
     if (*breccia_model_outcome(model)) printf("%s\n", breccia_model_outcome(model));
-    if (status == BRECCIA_INTERRUPTED) printf("'breccia run %s --restart' goes on from here\n", deck);
+    if (status == BRECCIA_INTERRUPTED) tell_restart(deck, values[OUTPUT], settings);
   }
   breccia_model_destroy(&model);
   free(folder);
   return fail(error, status == BRECCIA_INTERRUPTED ? 130 : status);
+}
+
+static int run(int argc, char **argv, const Verb *verb)
+{
+  const char *values[COUNT];
+  DeckSettings settings;
+  if (settings_begin(&settings, SET, argc)) return BRECCIA_FAILURE;
+  const int first = read_options(argc, argv, verb, values, settings_note, &settings);
+  int status = first == -2 ? 0 : 2;
+  if (first >= 0 && argc - first != 1)
+    fprintf(stderr, "breccia run: give one deck; see 'breccia run --help'\n");
+  else if (first >= 0)
+    status = run_deck(argv[first], values, &settings);
+  free(settings.items);
+  return status;
 }
 
 const Verb verb_run = {

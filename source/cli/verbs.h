@@ -33,6 +33,23 @@ extern const Verb *const verbs[];
 int read_options(int argc, char **argv, const Verb *verb, const char **values,
                  void (*on_each)(void *context, int option, const char *value), void *context);
 
+/* What --set gives, which may stand several times. */
+typedef struct DeckSettings {
+  int option;         /* its number in the verb's table */
+  const char **items; /* room for all arguments; owned */
+  int count;
+} DeckSettings;
+
+#define SET_OPTION                                                                                                     \
+  {                                                                                                                    \
+    "set", "KEY=VALUE", "a value instead of the deck's: body.beam.spacing=5mm, loads.2.velocity=[0, 1]; several"       \
+  }
+
+/** @return 0, or 1 after saying that memory is out */
+int settings_begin(DeckSettings *settings, int option, int argc);
+/** For read_options, with the settings as context. */
+void settings_note(void *settings, int option, const char *value);
+
 void print_verb_help(const Verb *verb, FILE *out);
 
 /** Prints an error's lines and returns the status. */

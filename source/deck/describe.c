@@ -1,5 +1,7 @@
 #include "deck/describe.h"
 
+#include "deck/expression.h"
+
 #include <string.h>
 
 enum { MOST_SECTIONS = 128 };
@@ -41,6 +43,8 @@ static const char *value_words(const Field *field)
   case FIELD_NAMED: return "map of names to";
   case FIELD_REFERENCE: return "a name, or";
   case FIELD_NUMBER_OR_SECTION: return "a number, or";
+  case FIELD_VALUES: return "map of names to values";
+  case FIELD_FILES: return "name of a file, or list of names";
   }
   return "";
 }
@@ -136,6 +140,49 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
       "![A cut, removed particles, and removed particles with cut faces](pictures/cut-and-removed.svg)\n\n"
       "A [crack](#crack) without width is a `cut`: bonds across it are gone, particles stay. A notch of some width is\n"
       "`remove`d; where it is narrower than the horizon, `cut faces: yes` cuts the bonds across it as well.\n\n"
+      "## Values that are used again\n\n"
+      "`variables` gives values names, and `${...}` puts them, or what is worked out of them, in any value:\n\n"
+      "```yaml\n"
+      "variables: {height: 0.1 m, dx: \"${height/20}\", E: 30 GPa, nu: 0.2}\n"
+      "materials:\n"
+      "  concrete: &concrete {model: elastic, density: 2400 kg/m3, Young modulus: \"${E}\", Poisson ratio: \"${nu}\"}\n"
+      "  weak: {<<: *concrete, Young modulus: \"${E/2}\"}\n"
+      "body:\n"
+      "  beam: {material: concrete, spacing: \"${dx}\", thickness: 0.1 m, lattice: square,\n"
+      "         shape: {box: {from: [0, 0], to: [\"${5*height}\", \"${height}\"]}}}\n"
+      "peridynamics: {space: plane stress}\n"
+      "solve: {explicit: {end time: \"${4*height/sqrt(E/(2400 kg/m3))}\"}}\n"
+      "```\n\n"
+      "Numbers keep their units: a length and a time cannot be added, a stress over a density is the square of a "
+      "velocity, and the "
+      "result\n"
+      "must be of the dimension that its key asks for. Numbers without a unit are plain numbers there too; where a "
+      "result is one, the "
+      "deck's\n"
+      "`units` say what it means. An expression has + - * / ^ ( ), numbers with or without a unit (`3 kN/m2`), "
+      "variables, `pi`\n"
+      "and the functions ");
+  expression_functions(text);
+  text_add(
+      text,
+      ". A name alone stands for the words\nof its variable, whatever they are. Quotation marks around `${...}` are "
+      "not "
+      "needed; editors like them.\n\n"
+      "Of YAML's own means, a value marked with `&name` is used again by `*name`, and `<<: *name` takes in the keys of "
+      "a "
+      "map; what stands\n"
+      "beside `<<` holds.\n\n"
+      "`include: materials.yaml` (or a list of names) in any map takes in the keys of another file, whose path is "
+      "relative to the "
+      "file that\n"
+      "names it. What the map says itself holds; maps that both have under one key are joined in the same way.\n\n"
+      "`breccia run DECK --set body.beam.spacing=\"2 mm\"` runs with another value (`check` and `study` take it too): "
+      "the keys that "
+      "lead\n"
+      "to it are parted by points, items of lists go by their number from 1 or by their `name`. `deck.yaml` in the "
+      "folder of results "
+      "is\n"
+      "the deck as it was run, with everything worked out.\n\n"
       "## How to read the tables\n\n"
       "Each section of the deck has a table of its keys. The column *default* says what happens without the key:\n\n"
       "| in the column *default* | the key |\n|---|---|\n"
@@ -171,6 +218,10 @@ void describe_markdown(const Section *root, const ParameterTable *tables, int ta
     if (*d->example) text_add(text, "| %s | `%s` |\n", d->name, d->example);
 }
 
+/* What a string must hold to stand for a number or a word that is worked out. */
+#define EXPRESSION "{\"type\": \"string\", \"pattern\": \"\\\\$\\\\{\"}"
+#define FILES "\"type\": [\"string\", \"array\"], \"items\": {\"type\": \"string\"}"
+
 static void add_value_schema(Text *text, const Field *field)
 {
   const char *number = "{\"type\": [\"number\", \"string\"]}";
@@ -178,17 +229,23 @@ static void add_value_schema(Text *text, const Field *field)
   case FIELD_NUMBER:
   case FIELD_QUANTITY:
   case FIELD_LENGTH: text_add(text, "\"type\": [\"number\", \"string\"]"); break;
-  case FIELD_COUNT: text_add(text, "\"type\": [\"integer\", \"number\"]"); break;
-  case FIELD_FLAG: text_add(text, "\"enum\": [true, false, \"yes\", \"no\", \"on\", \"off\"]"); break;
+  case FIELD_COUNT: text_add(text, "\"anyOf\": [{\"type\": [\"integer\", \"number\"]}, " EXPRESSION "]"); break;
+  case FIELD_FLAG:
+    text_add(text, "\"anyOf\": [{\"enum\": [true, false, \"yes\", \"no\", \"on\", \"off\"]}, " EXPRESSION "]");
+    break;
   case FIELD_TEXT: text_add(text, "\"type\": [\"string\", \"number\"]"); break;
   case FIELD_CHOICE:
-    text_add(text, "\"enum\": [");
+    text_add(text, "\"anyOf\": [{\"enum\": [");
     for (int k = 0; field->choice(k); ++k) {
       if (k) text_add(text, ", ");
       text_add_json(text, field->choice(k));
     }
-    text_add(text, "]");
+    text_add(text, "]}, " EXPRESSION "]");
     break;
+  case FIELD_VALUES:
+    text_add(text, "\"type\": \"object\", \"additionalProperties\": {\"type\": [\"number\", \"string\", \"boolean\"]}");
+    break;
+  case FIELD_FILES: text_add(text, FILES); break;
   case FIELD_POINT:
   case FIELD_FREE_POINT:
   case FIELD_COUNTS:
@@ -252,6 +309,9 @@ static void add_properties(Text *text, const Section *section, const ParameterTa
     add_meaning(text, table->parameters[k].meaning, table->parameters[k].standard);
     text_add(text, "}");
   }
+  bool includes = false;
+  for (int f = 0; f < section->field_count; ++f) includes |= section->fields[f].kind == FIELD_FILES;
+  if (!includes) text_add(text, ",\n      \"include\": {" FILES "}"); /* any map may take in a file */
   text_add(text, "}, \"required\": [");
   int some = 0;
   for (int f = 0; f < section->field_count; ++f)

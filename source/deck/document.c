@@ -1,20 +1,71 @@
-/* The only file that knows libfyaml. Aliases and merge keys are refused: a deck should read from top to bottom, and
- * they would let a small file unfold into a huge one. */
+/* The only file that knows libfyaml. Aliases and merge keys are followed here and not by the library, so that a small file cannot
+ * unfold into a huge one. An expression ${...} holds characters that mean something in YAML, above all inside { } and [ ]; they
+ * are hidden before the library reads the text, each by one character, so that columns stay. */
 #include "deck/document.h"
 
 #include "base/text.h"
 #include <errno.h>
 #include <libfyaml.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 40 };
+enum { DEEPEST = 40, MOST_COPIES = 100000 };
 
 typedef struct Builder {
   Document *document;
+  const char *file; /* NULL: the document's own */
+  bool setting;
   Error *error;
   int failed;
+  int aliases; /* being followed */
 } Builder;
+
+/* ---- expressions ---- */
+
+static const char hidden[] = "{}[],:#"; /* characters of expressions; the k-th is hidden as U+F0A0 + k */
+
+/** The text with the characters of expressions hidden. To be freed. @return NULL when memory is out */
+static char *hide_expressions(const char *text, size_t length, size_t *hidden_length)
+{
+  char *copy = malloc(3 * length + 1);
+  size_t n = 0;
+  for (size_t k = 0; copy && k < length;) {
+    const char *end = text[k] == '$' && k + 1 < length && text[k + 1] == '{' ? text + k + 1 : NULL;
+    while (end && end < text + length && *end != '}' && *end != '\n') ++end;
+    copy[n++] = text[k++];
+    if (!end || end == text + length || *end != '}') continue;
+    for (; text + k <= end; ++k) {
+      const char *found = strchr(hidden, text[k]);
+      if (!found || !text[k]) {
+        copy[n++] = text[k];
+        continue;
+      }
+      copy[n++] = '\xef';
+      copy[n++] = '\x82';
+      copy[n++] = (char)(0xa0 + (found - hidden));
+    }
+  }
+  if (copy) copy[n] = 0;
+  *hidden_length = n;
+  return copy;
+}
+
+static void show_expressions(char *text)
+{
+  char *to = text;
+  for (const char *from = text; *from;) {
+    const int k = from[0] == '\xef' && from[1] == '\x82' ? (unsigned char)from[2] - 0xa0 : -1;
+    if (k >= 0 && k < (int)sizeof hidden - 1) {
+      *to++ = hidden[k];
+      from += 3;
+    } else
+      *to++ = *from++;
+  }
+  *to = 0;
+}
+
+/* ---- the tree ---- */
 
 static void refuse(Builder *builder, const Node *node, const char *what)
 {
@@ -22,69 +73,157 @@ static void refuse(Builder *builder, const Node *node, const char *what)
   node_error(builder->document, node, builder->error, "%s", what);
 }
 
-static void place_at(Node *node, struct fy_node *from)
+static void place_at(const Builder *builder, Node *node, struct fy_node *from)
 {
   struct fy_token *token = from ? fy_node_get_scalar_token(from) : NULL;
   const struct fy_mark *mark = token ? fy_token_start_mark(token) : NULL;
-  if (!mark) return;
+  if (!mark || builder->setting) return;
   node->line = mark->line + 1;
   node->column = mark->column + 1;
+}
+
+static void build_scalar(Builder *builder, struct fy_node *from, Node *node)
+{
+  size_t length = 0;
+  const char *text = from ? fy_node_get_scalar(from, &length) : "";
+  char *copy = arena_copy(builder->document->arena, text ? text : "", text ? length : 0);
+  node->kind = NODE_SCALAR;
+  node->text = copy;
+  if (!copy) {
+    builder->failed = 1;
+    return;
+  }
+  if (memchr(copy, 0, length)) refuse(builder, node, "a zero byte in the text");
+  if (strchr(copy, '$')) show_expressions(copy);
+}
+
+static void build(Builder *builder, struct fy_node *from, Node *node, int depth);
+
+static void build_alias(Builder *builder, struct fy_node *from, Node *node, int depth)
+{
+  size_t length = 0;
+  const char *name = fy_node_get_scalar(from, &length);
+  struct fy_node *target = fy_node_resolve_alias(from);
+  node->column -= node->line > 0; /* the library means the name behind the star */
+  if (!target) {
+    builder->failed = 1;
+    node_error(
+        builder->document, node, builder->error,
+        "there is no anchor '&%.*s' before the alias '*%.*s'; mark the value to be used again, like '&%.*s 5 mm'",
+        (int)length, name, (int)length, name, (int)length, name);
+    return;
+  }
+  ++builder->aliases;
+  const Node place = *node;
+  build(builder, target, node, depth);
+  --builder->aliases;
+  if (node->line) return;
+  node->line = place.line; /* an empty value stands nowhere */
+  node->column = place.column;
+}
+
+static bool is_merge(const Node *key, struct fy_node *from)
+{
+  return key->kind == NODE_SCALAR && key->text && !strcmp(key->text, "<<") && fy_node_get_style(from) == FYNS_PLAIN;
+}
+
+/** Adds the entries of a map that merge keys name: what the map says itself comes first, and then what was merged before. */
+static void merge_into(Builder *builder, Node *node, const Node *merged)
+{
+  if (merged->kind == NODE_LIST) {
+    for (int k = 0; k < merged->count; ++k) merge_into(builder, node, &merged->items[k]);
+    return;
+  }
+  if (merged->kind != NODE_MAP) {
+    refuse(builder, merged, "'<<' takes in the keys of a map, like '<<: *common', where '&common' marks the map");
+    return;
+  }
+  Node *items = arena_zeroed(builder->document->arena, sizeof(Node) * (size_t)(node->count + merged->count + 1));
+  if (!items) {
+    builder->failed = 1;
+    return;
+  }
+  if (node->count) memcpy(items, node->items, sizeof(Node) * (size_t)node->count);
+  const int own = node->count;
+  for (int k = 0; k < merged->count; ++k) {
+    bool known = false;
+    for (int j = 0; j < own; ++j) known |= !strcmp(items[j].key, merged->items[k].key);
+    if (!known) items[node->count++] = merged->items[k];
+  }
+  node->items = items;
+}
+
+static void build_entry(Builder *builder, struct fy_node_pair *pair, Node *item, bool *merges, int depth)
+{
+  struct fy_node *key = pair ? fy_node_pair_key(pair) : NULL;
+  Node place = *item;
+  build(builder, key, &place, depth + 1);
+  item->key = place.kind == NODE_SCALAR && place.text ? place.text : "?";
+  item->line = item->key_line = place.line;
+  item->column = item->key_column = place.column;
+  *merges = key && is_merge(&place, key);
+  if (place.kind != NODE_SCALAR) refuse(builder, item, "a key must be words");
+  if (strstr(item->key, "${")) refuse(builder, item, "a key cannot hold an expression: ${...} stands in values");
+  build(builder, pair ? fy_node_pair_value(pair) : NULL, item, depth + 1);
 }
 
 static void build(Builder *builder, struct fy_node *from, Node *node, int depth)
 {
   Arena *arena = builder->document->arena;
-  place_at(node, from);
+  node->file = builder->file;
+  place_at(builder, node, from);
   if (depth > DEEPEST) {
-    refuse(builder, node, "nested too deeply");
+    refuse(builder, node,
+           builder->aliases ? "nested too deeply; does an alias stand inside the value that it names?"
+                            : "nested too deeply");
+    return;
+  }
+  if (builder->aliases && ++builder->document->copies > MOST_COPIES) {
+    if (builder->document->copies == MOST_COPIES + 1)
+      refuse(builder, node,
+             "aliases unfold into more than 100000 values; does one stand inside the value that it names?");
     return;
   }
   if (from && fy_node_is_alias(from)) {
-    refuse(builder, node, "aliases (*name) are not understood; write the value out");
+    build_alias(builder, from, node, depth + 1);
     return;
   }
   if (!from || fy_node_is_scalar(from)) {
-    size_t length = 0;
-    const char *text = from ? fy_node_get_scalar(from, &length) : "";
-    node->kind = NODE_SCALAR;
-    node->text = arena_copy(arena, text ? text : "", text ? length : 0);
-    enum fy_node_style style = from ? fy_node_get_style(from) : FYNS_PLAIN;
-    node->quoted = style == FYNS_SINGLE_QUOTED || style == FYNS_DOUBLE_QUOTED;
-    if (node->text && memchr(node->text, 0, length)) refuse(builder, node, "a zero byte in the text");
-    if (!node->text) builder->failed = 1;
+    build_scalar(builder, from, node);
     return;
   }
-  bool map = fy_node_is_mapping(from);
+  const bool map = fy_node_is_mapping(from);
+  const int count = map ? fy_node_mapping_item_count(from) : fy_node_sequence_item_count(from);
   node->kind = map ? NODE_MAP : NODE_LIST;
-  node->count = map ? fy_node_mapping_item_count(from) : fy_node_sequence_item_count(from);
-  node->items = arena_zeroed(arena, sizeof(Node) * (size_t)(node->count > 0 ? node->count : 1));
-  if (!node->items) {
+  node->items = arena_zeroed(arena, sizeof(Node) * (size_t)(count > 0 ? count : 1));
+  Node *merged = map ? arena_zeroed(arena, sizeof(Node) * (size_t)(count > 0 ? count : 1)) : NULL;
+  if (!node->items || (map && !merged)) {
     builder->failed = 1;
     return;
   }
   void *iterator = NULL;
-  for (int k = 0; k < node->count; ++k) {
-    Node *item = &node->items[k];
+  int merged_count = 0;
+  for (int k = 0; k < count; ++k) {
+    Node *item = &node->items[node->count];
+    bool merges = false;
+    item->file = node->file;
     item->line = node->line;
     item->column = node->column;
-    if (!map) {
+    if (map)
+      build_entry(builder, fy_node_mapping_iterate(from, &iterator), item, &merges, depth);
+    else
       build(builder, fy_node_sequence_iterate(from, &iterator), item, depth + 1);
-    } else {
-      struct fy_node_pair *pair = fy_node_mapping_iterate(from, &iterator);
-      struct fy_node *key = pair ? fy_node_pair_key(pair) : NULL;
-      Node place = *item;
-      build(builder, key, &place, depth + 1);
-      item->key = place.kind == NODE_SCALAR && place.text ? place.text : "?";
-      item->line = item->key_line = place.line;
-      item->column = item->key_column = place.column;
-      if (place.kind != NODE_SCALAR) refuse(builder, item, "a key must be words");
-      build(builder, pair ? fy_node_pair_value(pair) : NULL, item, depth + 1);
-    }
     if (k == 0 && (!node->line || !node->key)) { /* a list or map stands where its first item stands */
       node->line = map ? item->key_line : item->line;
       node->column = map ? item->key_column : item->column;
     }
+    if (merges) {
+      merged[merged_count++] = *item;
+      *item = (Node){0};
+    } else
+      ++node->count;
   }
+  for (int k = 0; k < merged_count; ++k) merge_into(builder, node, &merged[k]);
 }
 
 /** Line of the first directive (% at the start of a line), or 0. The library scans some of them for ever, and a deck has no
@@ -123,14 +262,56 @@ static const char *yaml_advice(const char *message)
   return "";
 }
 
+/** Says what the library found wrong. */
+static void tell_problem(const char *name, bool setting, struct fy_diag *diagnostics, Error *error)
+{
+  void *iterator = NULL;
+  struct fy_diag_error *problem = diagnostics ? fy_diag_errors_iterate(diagnostics, &iterator) : NULL;
+  char place[32] = "";
+  if (problem && !setting) snprintf(place, sizeof place, ":%d:%d", problem->line, problem->column);
+  if (problem) {
+    const char *message = problem->msg ? problem->msg : "it cannot be read", *advice = yaml_advice(message);
+    error_add(error, BRECCIA_USER_ERROR, "%s%s: not valid YAML: %s%s%s%s", name, place, advice, *advice ? " (" : "",
+              message, *advice ? ")" : "");
+  } else
+    error_add(error, BRECCIA_USER_ERROR, "%s:1:1: the deck is empty; 'breccia new' writes one to start from", name);
+}
+
+static int parse_into(Builder *builder, Node *root, const char *text, size_t length, const char *name)
+{
+  Error *error = builder->error;
+  const int directive = directive_line(text, length);
+  if (directive)
+    return error_add(error, BRECCIA_USER_ERROR, "%s:%d:1: not valid YAML for a deck: a line must not begin with %%",
+                     name, directive);
+  char *plain = hide_expressions(text, length, &length);
+  if (!plain) return error_add(error, BRECCIA_FAILURE, "out of memory: deck");
+  struct fy_diag_cfg quiet;
+  fy_diag_cfg_default(&quiet);
+  quiet.fp = NULL;
+  quiet.colorize = false;
+  struct fy_diag *diagnostics = fy_diag_create(&quiet);
+  fy_diag_set_collect_errors(diagnostics, true);
+  struct fy_parse_cfg configuration = {.flags = FYPCF_QUIET | FYPCF_ALLOW_DUPLICATE_KEYS, .diag = diagnostics};
+  struct fy_document *yaml = fy_document_build_from_string(&configuration, plain, length);
+  int failed = !yaml;
+  if (!yaml) {
+    tell_problem(name, builder->setting, diagnostics, error);
+  } else {
+    const int before = error_count(error);
+    root->line = root->column = builder->setting ? 0 : 1;
+    build(builder, fy_document_root(yaml), root, 0);
+    failed = builder->failed;
+    if (failed && error_count(error) == before) error_add(error, BRECCIA_FAILURE, "out of memory: deck");
+    fy_document_destroy(yaml);
+  }
+  fy_diag_destroy(diagnostics);
+  free(plain);
+  return failed;
+}
+
 Document *document_parse(const char *text, size_t length, const char *name, Error *error)
 {
-  int directive = directive_line(text, length);
-  if (directive) {
-    error_add(error, BRECCIA_USER_ERROR, "%s:%d:1: not valid YAML for a deck: a line must not begin with %%", name,
-              directive);
-    return NULL;
-  }
   Document *document = calloc(1, sizeof *document);
   Arena *arena = arena_create();
   if (!document || !arena || !(document->root = arena_zeroed(arena, sizeof(Node)))) {
@@ -141,35 +322,23 @@ Document *document_parse(const char *text, size_t length, const char *name, Erro
   }
   document->arena = arena;
   document->name = arena_copy(arena, name, strlen(name));
-  struct fy_diag_cfg quiet;
-  fy_diag_cfg_default(&quiet);
-  quiet.fp = NULL;
-  quiet.colorize = false;
-  struct fy_diag *diagnostics = fy_diag_create(&quiet);
-  fy_diag_set_collect_errors(diagnostics, true);
-  struct fy_parse_cfg configuration = {.flags = FYPCF_QUIET | FYPCF_ALLOW_DUPLICATE_KEYS, .diag = diagnostics};
-  struct fy_document *yaml = fy_document_build_from_string(&configuration, text, length);
-  int failed = !yaml;
-  if (!yaml) {
-    void *iterator = NULL;
-    struct fy_diag_error *problem = diagnostics ? fy_diag_errors_iterate(diagnostics, &iterator) : NULL;
-    if (problem) {
-      const char *message = problem->msg ? problem->msg : "it cannot be read", *advice = yaml_advice(message);
-      error_add(error, BRECCIA_USER_ERROR, "%s:%d:%d: not valid YAML: %s%s%s%s", name, problem->line, problem->column,
-                advice, *advice ? " (" : "", message, *advice ? ")" : "");
-    } else
-      error_add(error, BRECCIA_USER_ERROR, "%s:1:1: the deck is empty; 'breccia new' writes one to start from", name);
-  } else {
-    Builder builder = {document, error, 0};
-    document->root->line = document->root->column = 1;
-    build(&builder, fy_document_root(yaml), document->root, 0);
-    failed = builder.failed;
-    if (failed && !error_count(error)) error_add(error, BRECCIA_FAILURE, "out of memory: deck");
-    fy_document_destroy(yaml);
-  }
-  fy_diag_destroy(diagnostics);
-  if (failed) document_destroy(&document);
+  Builder builder = {.document = document, .error = error};
+  if (!document->name || parse_into(&builder, document->root, text, length, name)) document_destroy(&document);
   return document;
+}
+
+Node *document_parse_more(Document *document, const char *text, size_t length, const char *name, bool setting,
+                          Error *error)
+{
+  const char *file = arena_copy(document->arena, name, strlen(name));
+  Node *root = arena_zeroed(document->arena, sizeof(Node));
+  if (!file || !root) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: deck");
+    return NULL;
+  }
+  Builder builder = {.document = document, .file = file, .setting = setting, .error = error};
+  root->file = file;
+  return parse_into(&builder, root, text, length, name) ? NULL : root;
 }
 
 void document_destroy(Document **document)
@@ -188,14 +357,39 @@ const Node *node_get(const Node *map, const char *key)
   return NULL;
 }
 
+void node_place(const Document *document, const Node *node, char *words, size_t size)
+{
+  if (node->line)
+    snprintf(words, size, "%s:%d:%d", node->file ? node->file : document->name, node->line, node->column);
+  else
+    snprintf(words, size, "%s", node->file ? node->file : document->name);
+}
+
+const char *node_file(const Document *document, const Node *node)
+{
+  return node->file && node->line ? node->file : document->name;
+}
+
+Node node_of_key(const Node *item)
+{
+  Node place = *item;
+  place.line = item->key_line;
+  place.column = item->key_column;
+  place.written = NULL;
+  return place;
+}
+
 int node_error(const Document *document, const Node *node, Error *error, const char *format, ...)
 {
   Text words = {0};
+  char place[PLACE];
+  node_place(document, node, place, sizeof place);
   va_list arguments;
   va_start(arguments, format);
   text_add_list(&words, format, arguments);
   va_end(arguments);
-  error_add(error, BRECCIA_USER_ERROR, "%s:%d:%d: %s", document->name, node->line, node->column, text_words(&words));
+  error_add(error, BRECCIA_USER_ERROR, "%s: %s%s%s%s", place, text_words(&words), node->written ? " (written '" : "",
+            node->written ? node->written : "", node->written ? "')" : "");
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }

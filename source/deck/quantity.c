@@ -2,13 +2,13 @@
  * ("ton" is the US short ton, 6" an angle, MPa*m^0.5 a multiple) is refused with a hint. */
 #include "deck/quantity.h"
 
+#include "deck/units.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <udunits2.h>
 
 static const Dimension dimensions[] = {
     {"1", 0, 0, 0, ""},
@@ -58,7 +58,7 @@ static const struct {
     {"microstrain", "1e-6"}, {"deg", "arc_degree"},   {"kgf", "9.80665 N"},    {"tf", "9806.65 N"},
 };
 
-static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
+ut_unit *units_parse(const Units *units, const char *words, Text *reason)
 {
   for (const char *c = words; *c; ++c) {
     if (*c == '"' || *c == '\'') {
@@ -83,6 +83,10 @@ static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
       text_add(reason, "unit '%s': 'gr' is a grain of 65 mg to some; write g", words);
       return NULL;
     }
+    if (!strncmp(c, "rpm", 3) && !isalpha((unsigned char)c[3]) && (c == words || !isalpha((unsigned char)c[-1]))) {
+      text_add(reason, "unit '%s': 'rpm' is an angle by time to some; write turns per second as Hz", words);
+      return NULL;
+    }
     if (*c == '@' || !strncmp(c, "since", 5)) {
       text_add(reason, "unit '%s': units with an origin are not understood here", words);
       return NULL;
@@ -93,10 +97,9 @@ static ut_unit *parse_unit(const Units *units, const char *words, Text *reason)
   return unit;
 }
 
-/** True if a unit counts cycles, like Hz: a rate of 1/s is something else, though their dimensions are the same. */
-static bool counts_cycles(const char *unit)
+bool units_count_cycles(const char *unit)
 {
-  static const char *const names[] = {"Hz", "hertz", "Hertz", "rpm"};
+  static const char *const names[] = {"Hz", "hertz", "Hertz"};
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
     if (strstr(unit, names[k])) return true;
   return false;
@@ -153,7 +156,7 @@ Units *units_create(const char *length, const char *force, const char *time, Err
   const char *names[3] = {length, force, time}, *wanted[3] = {"m", "N", "s"}, *what[3] = {"length", "force", "time"};
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
-    units->base[k] = parse_unit(units, names[k], &reason);
+    units->base[k] = units_parse(units, names[k], &reason);
     ut_unit *standard = ut_parse(units->system, wanted[k], UT_ASCII);
     if (units->base[k] && !ut_are_convertible(units->base[k], standard))
       text_add(&reason, "unit '%s' is not a unit of %s", names[k], what[k]);
@@ -355,7 +358,7 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
     *value = number;
     return 0;
   }
-  if (!strcmp(dimension->name, "damping rate") && counts_cycles(end)) {
+  if (!strcmp(dimension->name, "damping rate") && units_count_cycles(end)) {
     text_add(reason,
              "'%s' is a frequency, but a rate is asked, like '30 1/s'; a ratio of critical damping at a frequency is "
              "written {ratio: 0.05, at: %s}",
@@ -363,7 +366,7 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
     return 1;
   }
   Text why = {0}, meant = {0};
-  ut_unit *given = parse_unit(units, end, &why), *target = given ? unit_of(units, dimension) : NULL;
+  ut_unit *given = units_parse(units, end, &why), *target = given ? unit_of(units, dimension) : NULL;
   const bool fits = target && alike(given, target);
   if (fits) {
     cv_converter *converter = ut_get_converter(given, target);

@@ -192,9 +192,7 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
     const Node *item = &node->items[k];
     for (int other = 0; wanted == NODE_MAP && other < k; ++other)
       if (!strcmp(node->items[other].key, item->key)) {
-        Node place = *item;
-        place.line = item->key_line;
-        place.column = item->key_column;
+        const Node place = node_of_key(item);
         node_error(reader->document, &place, reader->error, "%s: '%s' is defined twice (first in line %d)", label,
                    item->key, node->items[other].key_line);
       }
@@ -290,6 +288,8 @@ static void read_field(const DeckReader *reader, const Node *node, const char *l
       deck_number(reader, node, label, field->dimension, field->range, &either->value);
     break;
   }
+  case FIELD_VALUES:
+  case FIELD_FILES: break;
   case FIELD_REFERENCE: {
     Reference *reference = target;
     reference->node = node;
@@ -323,6 +323,13 @@ static void set_absent(const Field *field, void *target)
 
 /* ---- sections ---- */
 
+/** What a table says for a key that the deck leaves out, as if it stood where the section begins. */
+static Node node_standard(const Node *section, const char *words)
+{
+  return (Node){
+      .kind = NODE_SCALAR, .file = section->file, .line = section->line, .column = section->column, .text = words};
+}
+
 /** The section below this one in which a key stands, to say so; NULL if there is none. */
 static const Field *field_with(const Section *section, const char *given, const char **key)
 {
@@ -346,9 +353,7 @@ static void say_unknown_key(const DeckReader *reader, const Node *item, const Se
   if (!names) return;
   for (int k = 0; k < parameter_count; ++k) names[k] = parameters[k].name;
   for (int k = 0; k < section->field_count; ++k) names[parameter_count + k] = section->fields[k].key;
-  Node place = *item;
-  place.line = item->key_line;
-  place.column = item->key_column;
+  const Node place = node_of_key(item);
   Text advice = {0};
   const Field *above = field_with(section, item->key, &key);
   const char *nearest = spelling_nearest(item->key, names, count);
@@ -410,7 +415,7 @@ static void read_parameters(const DeckReader *reader, const Node *node, const Se
   for (int k = 0; k < count; ++k) {
     const breccia_parameter *parameter = &parameters[k];
     const Node *item = node_get(node, parameter->name);
-    Node standard = {.kind = NODE_SCALAR, .line = node->line, .column = node->column, .text = parameter->standard};
+    const Node standard = node_standard(node, parameter->standard);
     values[k] = NAN;
     if (!item && !parameter->standard && misspelt(node, section, parameters, count, parameter->name)) continue;
     if (!item && !parameter->standard)
@@ -480,9 +485,7 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
     told |= !known && (chosen || meant);
     for (int other = 0; other < k; ++other)
       if (!strcmp(node->items[other].key, item->key)) {
-        Node place = *item;
-        place.line = item->key_line;
-        place.column = item->key_column;
+        const Node place = node_of_key(item);
         node_error(reader->document, &place, reader->error, "%s: key '%s' stands here twice (first in line %d)",
                    section->name, item->key, node->items[other].key_line);
         break;
@@ -491,7 +494,7 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
   for (int f = 0; f < section->field_count; ++f) {
     const Field *field = &section->fields[f];
     const Node *item = node_get(node, field->key);
-    Node standard = {.kind = NODE_SCALAR, .line = node->line, .column = node->column, .text = field->standard};
+    const Node standard = node_standard(node, field->standard);
     set_absent(field, target + field->offset);
     if (item) {
       char label[160];

@@ -69,6 +69,8 @@ typedef enum FieldKind {
   FIELD_NAMED,             /* SectionList from a YAML map: name -> section */
   FIELD_REFERENCE,         /* Reference: words, or a section */
   FIELD_NUMBER_OR_SECTION, /* NumberOrSection */
+  FIELD_VALUES,            /* names with values, and */
+  FIELD_FILES,             /* names of files: both have had their effect when a section is read (deck/resolve) */
 } FieldKind;
 
 typedef struct Field {

@@ -1,6 +1,9 @@
 #include "model/deck_layout.h"
 
+#include "deck/resolve.h"
+
 #include <stdlib.h>
+#include <string.h>
 
 static const Field units_fields[] = {
     {"length", FIELD_TEXT, offsetof(UnitsSpec, length), NULL, UNITS_LENGTH, NULL, "unit of length", NULL, NULL, 0},
@@ -25,6 +28,8 @@ static const Section solve_section = {
     "solve", "How the equations are solved.", sizeof(SolveSpec), FIELDS(solve_fields), NULL, NULL, NULL, 0};
 
 static const Field deck_fields[] = {
+    {"include", FIELD_FILES, 0, NULL, "", NULL, "files beside this one whose keys are taken in", NULL, NULL, 0},
+    {"variables", FIELD_VALUES, 0, NULL, "", NULL, "values by name, for expressions like `${width/2}`", NULL, NULL, 0},
     {"title", FIELD_TEXT, offsetof(DeckSpec, title), NULL, "untitled", NULL, "stands over pictures", NULL, NULL, 0},
     {"units", FIELD_SECTION, offsetof(DeckSpec, units), NULL, "", NULL, UNITS_WORDS " when absent", &units_section,
      NULL, 0},
@@ -79,24 +84,36 @@ void *section_standard(const DeckReader *reader, const Section *section, const N
 {
   Node *empty = arena_zeroed(reader->document->arena, sizeof *empty);
   if (!empty) return NULL;
-  *empty = (Node){.kind = NODE_MAP, .line = place->line, .column = place->column};
+  *empty = (Node){.kind = NODE_MAP, .file = place->file, .line = place->line, .column = place->column};
   return section_read(reader, empty, section);
 }
 
-int deck_units(const Document *document, const LawList *laws, Units **units, Error *error)
+static int read_units(const DeckReader *plain, Units **units)
 {
+  const Document *document = plain->document;
   const Node *root = document->root, *node = node_get(root, "units");
-  Units *plain = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
-  if (!plain) return BRECCIA_FAILURE;
-  const DeckReader reader = {document, plain, laws, error};
+  Error *error = plain->error;
   const int before = error_count(error);
   const UnitsSpec *spec =
-      node ? section_read(&reader, node, &units_section) : section_standard(&reader, &units_section, root);
-  units_destroy(&plain);
+      node ? section_read(plain, node, &units_section) : section_standard(plain, &units_section, root);
   if (!spec || error_count(error) > before) return BRECCIA_USER_ERROR;
   Error *reason = breccia_error_create();
   *units = units_create(spec->length, spec->force, spec->time, reason);
   if (!*units) node_error(document, node ? node : root, error, "units: %s", breccia_error_text(reason));
   breccia_error_destroy(&reason);
   return *units ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}
+
+int deck_open(const DeckText *text, const Section *section, const LawList *laws, Document **document, Units **units,
+              Error *error)
+{
+  *units = NULL;
+  if (!(*document = document_parse(text->words, strlen(text->words), text->name, error))) return BRECCIA_USER_ERROR;
+  Units *plain = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
+  if (!plain) return BRECCIA_FAILURE;
+  const DeckReader reader = {*document, plain, laws, error};
+  int status = deck_resolve(*document, section, plain, text->settings, text->setting_count, error);
+  if (!status) status = read_units(&reader, units);
+  units_destroy(&plain);
+  return status;
 }

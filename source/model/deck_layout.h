@@ -35,8 +35,16 @@ extern const Section deck_section, units_section;
 /** Parameter tables of all laws, for the descriptions; to be freed. */
 ParameterTable *law_tables(const LawList *laws, int *count);
 
-/** What plain numbers mean in a file. It comes first: nothing else can be read without it. */
-int deck_units(const Document *document, const LawList *laws, Units **units, Error *error);
+typedef struct DeckText {
+  const char *words, *name;    /* of a file: its path */
+  const char *const *settings; /* "key.path=value" each, for values other than those written; may be NULL */
+  int setting_count;
+} DeckText;
+
+/** From text to a document in which nothing is left to work out, and what its plain numbers mean. Both are the caller's to destroy, also
+ *  after a failure. */
+int deck_open(const DeckText *text, const Section *section, const LawList *laws, Document **document, Units **units,
+              Error *error);
 
 /** A section as if it stood in the deck with nothing in it, so that all its defaults hold. */
 void *section_standard(const DeckReader *reader, const Section *section, const Node *place);

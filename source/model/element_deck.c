@@ -20,6 +20,9 @@ const Section fit_section = {"fit",
                              0};
 
 static const Field element_fields[] = {
+    {"include", FIELD_FILES, 0, NULL, "", NULL, "files beside this one whose keys are taken in", NULL, NULL, 0},
+    {"variables", FIELD_VALUES, 0, NULL, "", NULL, "values by name, for expressions like `${cohesion/2}`", NULL, NULL,
+     0},
     {"title", FIELD_TEXT, offsetof(ElementDeckSpec, title), NULL, "", NULL, "stands over the picture", NULL, NULL, 0},
     {"units", FIELD_SECTION, offsetof(ElementDeckSpec, units), NULL, "", NULL, UNITS_WORDS " when absent",
      &units_section, NULL, 0},
@@ -59,10 +62,9 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   size_t length;
   char *text = document_text(path, &length, error);
   if (!text) return BRECCIA_USER_ERROR;
-  deck->document = document_parse(text, length, path, error);
+  const DeckText words = {.words = text, .name = path};
+  int status = deck_open(&words, &element_deck_section, &deck->laws, &deck->document, &deck->units, error);
   free(text);
-  if (!deck->document) return BRECCIA_USER_ERROR;
-  int status = deck_units(deck->document, &deck->laws, &deck->units, error);
   if (status) return status;
   const Node *root = deck->document->root;
   if (!node_get(root, "material") && (node_get(root, "body") || node_get(root, "solve")))

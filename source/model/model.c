@@ -4,6 +4,7 @@
 #include "base/cores.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "deck/resolve.h"
 #include "deck/spelling.h"
 #include "model/plausibility.h"
 #include "results/curve_names.h"
@@ -26,10 +27,12 @@ int model_enter(breccia_model *model, Team **before, Error *error)
 
 /* ---- loading ---- */
 
-static int model_units(breccia_model *model, Error *error)
+/** The deck as it will be run, and its text for everybody who asks later what that was. */
+static int open_deck(breccia_model *model, const DeckText *words, Error *error)
 {
-  int status = deck_units(model->document, &model->laws, &model->units, error);
+  const int status = deck_open(words, &deck_section, &model->laws, &model->document, &model->units, error);
   model->reader = (DeckReader){model->document, model->units, &model->laws, error};
+  if (!status) deck_write(model->document, &model->deck);
   return status;
 }
 
@@ -153,8 +156,10 @@ static void warn_of_late_picture(breccia_model *model, const PictureSpec *pictur
   const double end = model->solver.end_time;
   if (time <= end * (1 + 1e-9)) return;
   const Node *place = section_place(picture, "at");
-  text_add(&model->warnings, "%swarning: %s:%d:%d: the run ends at %g, before the picture at %g, which is not made",
-           model->warnings.length ? "\n" : "", model->document->name, place->line, place->column, end, time);
+  char words[PLACE];
+  node_place(model->document, place, words, sizeof words);
+  text_add(&model->warnings, "%swarning: %s: the run ends at %g, before the picture at %g, which is not made",
+           model->warnings.length ? "\n" : "", words, end, time);
 }
 
 /** Adds times that are asked for by name, as far as the run goes. */
@@ -267,12 +272,14 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
   if (!options) options = &standard;
   Text ignored = {0};
   if (model) model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
-  if (!model || !error || !(model->deck_text = text_format("%s", deck))) {
+  if (!model || !error) {
     error_add(error, BRECCIA_FAILURE, "out of memory: model");
   } else if (!model_enter(model, &before, error)) {
     model->laws = (LawList){options->laws, options->law_count};
-    model->document = document_parse(deck, strlen(deck), name, error);
-    status = model->document ? model_units(model, error) : BRECCIA_USER_ERROR;
+    model->settings = options->settings;
+    model->setting_count = options->setting_count;
+    const DeckText words = {deck, name, options->settings, options->setting_count};
+    status = open_deck(model, &words, error);
     if (!status) status = build(model, options->force, error);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
     if (ignored.length) text_add(&model->warnings, "%s%s", model->warnings.length ? "\n" : "", ignored.characters);
@@ -317,7 +324,7 @@ void breccia_model_destroy(breccia_model **out)
   text_free(&model->outcome);
   free(model->schedule);
   free(model->stops);
-  free(model->deck_text);
+  text_free(&model->deck);
   free(model);
   *out = NULL;
 }
@@ -557,6 +564,11 @@ const char *breccia_model_plausibility(breccia_model *model)
   text_free(&model->plausibility);
   plausibility_describe(model, &model->plausibility);
   return text_words(&model->plausibility);
+}
+
+const char *breccia_model_deck(const breccia_model *model)
+{
+  return text_words(&model->deck);
 }
 
 const char *breccia_model_warnings(breccia_model *model)

@@ -12,7 +12,9 @@ typedef struct Peaks { /* over all states written */
 } Peaks;
 
 struct breccia_model {
-  char *deck_text;
+  Text deck;                   /* as it is run: nothing in it is left to work out */
+  const char *const *settings; /* with which it was loaded */
+  int setting_count;
   Document *document;
   Units *units;
   LawList laws;

@@ -18,8 +18,9 @@ __attribute__((format(printf, 3, 4))) static void warn(breccia_model *model, con
   va_start(arguments, format);
   text_add_list(&words, format, arguments);
   va_end(arguments);
-  text_add(&model->warnings, "%swarning: %s:%d:%d: %s", model->warnings.length ? "\n" : "", model->document->name,
-           place->line, place->column, text_words(&words));
+  char where[PLACE];
+  node_place(model->document, place, where, sizeof where);
+  text_add(&model->warnings, "%swarning: %s: %s", model->warnings.length ? "\n" : "", where, text_words(&words));
   text_free(&words);
 }
 

@@ -95,10 +95,45 @@ static int write_checkpoint(Run *run, Error *error)
   const double extras[CHECKPOINT_EXTRAS] = {p->displacement, p->velocity,  p->octahedral,
                                             p->mean_low,     p->mean_high, p->damage};
   run->last_checkpoint = clock_seconds();
-  const int status = checkpoint_write(run->wish->folder, &run->model->solver, run->model->deck_text, extras, error);
+  const int status =
+      checkpoint_write(run->wish->folder, &run->model->solver, text_words(&run->model->deck), extras, error);
   const double seconds = clock_seconds() - run->last_checkpoint;
   pace_note(&run->model->outlook.checkpoints, 1, seconds);
   run->paused += seconds;
+  return status;
+}
+
+/** Writes a small file whole, or not at all. */
+static int write_file(Run *run, const char *name, const Text *words, Error *error)
+{
+  char *path = text_format("%s/%s", run->wish->folder, name),
+       *part = text_format("%s/%s.part", run->wish->folder, name);
+  errno = 0;
+  FILE *file = part && path ? fopen(part, "w") : NULL;
+  int bad = !file || fwrite(text_words(words), 1, words->length, file) != words->length;
+  if (file && fclose(file)) bad = 1;
+  bad = bad || rename(part, path);
+  if (bad) error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : name, strerror(errno));
+  free(path);
+  free(part);
+  return bad ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+/** The deck as it is run, beside its results. */
+static int write_deck(Run *run, Error *error)
+{
+  const breccia_model *model = run->model;
+  Text words = {0};
+  text_add(&words, "# What was run, by Breccia %s, from ", BRECCIA_VERSION);
+  text_add_json(&words, model->document->name);
+  for (int k = 0; k < model->setting_count; ++k) {
+    text_add(&words, " --set ");
+    text_add_json(&words, model->settings[k]);
+  }
+  text_add(&words, "\n# Everything is worked out in it. Files that it names are beside the file above.\n%s",
+           text_words(&model->deck));
+  const int status = write_file(run, "deck.yaml", &words, error);
+  text_free(&words);
   return status;
 }
 
@@ -117,6 +152,7 @@ static int open_files(Run *run, Error *error)
   } else
     status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                 &names, error);
+  if (!status) status = write_deck(run, error);
   return status ? status : watches_open(model->watches, run->wish->folder, model->units, resume, error);
 }
 
@@ -323,6 +359,27 @@ static void add_number(Text *text, const char *key, double value)
     text_add(text, "\"%s\": null", key);
 }
 
+/** What the deck was made of: its file, settings from outside, its variables with their values. */
+static void add_origin(const breccia_model *model, Text *t)
+{
+  text_add(t, "  \"deck\": ");
+  text_add_json(t, model->document->name);
+  text_add(t, ",\n  \"settings\": [");
+  for (int k = 0; k < model->setting_count; ++k) {
+    text_add(t, "%s", k ? ", " : "");
+    text_add_json(t, model->settings[k]);
+  }
+  text_add(t, "],\n  \"variables\": {");
+  const Node *variables = node_get(model->document->root, "variables");
+  for (int k = 0; variables && k < variables->count; ++k) {
+    text_add(t, "%s", k ? ", " : "");
+    text_add_json(t, variables->items[k].key);
+    text_add(t, ": ");
+    text_add_json(t, variables->items[k].text);
+  }
+  text_add(t, "},\n");
+}
+
 static int write_summary(Run *run, int status, const char *problem, Error *error)
 {
   breccia_model *model = run->model;
@@ -334,6 +391,7 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   text_add_json(&t, model->spec->title);
   text_add(&t, ",\n  \"version\": \"%s\",\n  \"completed\": %s,\n", BRECCIA_VERSION,
            !status && s->step >= s->steps ? "true" : "false");
+  add_origin(model, &t);
   if (problem && *problem) {
     text_add(&t, "  \"problem\": ");
     text_add_json(&t, problem);
@@ -413,21 +471,10 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
   if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", text_words(&servers));
   text_free(&servers);
   text_add(&t, "\n}\n");
-  char *path = text_format("%s/summary.json", run->wish->folder),
-       *part = text_format("%s/summary.json.part", run->wish->folder);
-  errno = 0;
-  FILE *file = part ? fopen(part, "w") : NULL;
-  int bad = !file || fwrite(t.characters, 1, t.length, file) != t.length;
-  if (file && fclose(file)) bad = 1;
-  bad = bad || rename(part, path);
-  if (bad)
-    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : "summary", strerror(errno));
-  else
-    note_file(run, path);
-  free(path);
-  free(part);
+  const int status_written = write_file(run, "summary.json", &t, error);
+  if (!status_written) text_add(&run->files, "  %s/summary.json\n", run->wish->folder);
   text_free(&t);
-  return bad ? BRECCIA_FAILURE : BRECCIA_OK;
+  return status_written;
 }
 
 /** Says whether a body that was meant to come to rest has done so. */
@@ -538,7 +585,8 @@ static int finish(Run *run, int status, Error *error)
     watches_write(model->watches, &model->solver, true, error);
   }
   Text own = {0};
-  text_add(&own, "  %s/results.vtkhdf (and results.xdmf for older ParaView)\n", run->wish->folder);
+  text_add(&own, "  %s/deck.yaml (what was run)\n  %s/results.vtkhdf (and results.xdmf for older ParaView)\n",
+           run->wish->folder, run->wish->folder);
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
   text_free(&run->files);
   run->files = own;
@@ -565,7 +613,7 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   if (!status && wish->progress) status = model_expect(model, error);
   if (!status && wish->restart) {
     double extras[CHECKPOINT_EXTRAS];
-    status = checkpoint_read(wish->folder, &model->solver, model->deck_text, extras, error);
+    status = checkpoint_read(wish->folder, &model->solver, text_words(&model->deck), extras, error);
     if (!status) {
       model->peaks = (Peaks){extras[0], extras[1], extras[2], extras[3], extras[4], extras[5]};
       model->begun = true;

@@ -183,9 +183,12 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
         "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
         "--force",
         spec->time_step, share, s->stable);
-  if (share > 0.9)
-    text_add(warning, "%s:%d:%d: warning: time step: %g is %.2f times the stable step of %.4g", reader->document->name,
-             place->line, place->column, spec->time_step, share, s->stable);
+  if (share > 0.9) {
+    char where[PLACE];
+    node_place(reader->document, place, where, sizeof where);
+    text_add(warning, "%s: warning: time step: %g is %.2f times the stable step of %.4g", where, spec->time_step, share,
+             s->stable);
+  }
   const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
   const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-9);
   if (steps > 1e15)

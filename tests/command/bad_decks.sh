@@ -101,7 +101,7 @@ refuse 's/cut: {line: \[\[0.45, 0\], \[0.45, 0.2\]\]}/remove: {sphere: {centre: 
 refuse 's/^solve: .*/solve: {explicitt: {steps: 1}}/' 19:9 "unknown key 'explicitt'; did you mean 'explicit'?"
 refuse 's/^solve: .*//' 1:1 "missing key 'solve'"
 refuse 's/^title: .*/title: [/' '' 'not valid YAML'
-refuse 's/^title: .*/title: *other/' '' 'aliases (*name) are not understood'
+refuse 's/^title: .*/title: *other/' 1:8 "there is no anchor '&other' before the alias '*other'"
 
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/\[1, 0, 0\]/[1, 0, 2]/; s/^peri.*/peridynamics: {space: plane strain}/' \
   20:27 'has a part along z, but the body is plane'

@@ -6,6 +6,14 @@ mkdir -p build/fuzz/corpus
 for deck in examples/*/*.yaml; do
   cp "$deck" "build/fuzz/corpus/$(basename "$(dirname "$deck")")-$(basename "$deck")"
 done
+cat > build/fuzz/corpus/reuse.yaml << 'Y'
+--set body.block.spacing=${2*dx}
+variables: {width: 0.2 m, n: 4, dx: "${width/n}", E: 30 GPa, c: "${sqrt(E/(2400 kg/m3))}"}
+materials: {rock: &rock {model: elastic, density: 2400 kg/m3, Young modulus: "${E}", Poisson ratio: 0.2}, sand: {<<: *rock, density: 2}}
+body: {block: {material: rock, spacing: '${dx}', shape: {box: {from: [0, 0, 0], to: ["${2*width}", "${max(dx, 10 cm)}", 1]}}}}
+loads: [{name: pull, on: {face: x+}, velocity: ["${sin(30 deg)*c}", free, free]}]
+solve: {explicit: {end time: "${(1 + 2)^2 * 1 ms - abs(-1 us)}"}}
+Y
 LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_deck -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=4096 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
   -dict=tests/fuzz/deck.dict -verbosity=0 -print_final_stats=1 build/fuzz/corpus
 

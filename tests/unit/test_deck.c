@@ -1,4 +1,6 @@
+#include "deck/resolve.h"
 #include "deck/spelling.h"
+#include "model/deck_layout.h"
 #include "support.h"
 
 static double read_as(const char *dimension, const char *words)
@@ -174,6 +176,226 @@ static void all_errors_of_a_deck_come_in_one_go(void **state)
   free(words);
 }
 
+/* ---- decks that reuse ---- */
+
+/** A document whose settings, variables and expressions are worked out; NULL with the words of what is wrong. */
+static Document *resolved(const char *text, const char *setting, char **words)
+{
+  Error *error = breccia_error_create();
+  Units *units = units_create("m", "N", "s", error);
+  Document *document = document_parse(text, strlen(text), "deck", error);
+  const char *const settings[] = {setting};
+  if (document && deck_resolve(document, &deck_section, units, settings, setting != NULL, error))
+    document_destroy(&document);
+  *words = text_format("%s", breccia_error_text(error));
+  units_destroy(&units);
+  breccia_error_destroy(&error);
+  return document;
+}
+
+/** What a title "${expression}" becomes, with some variables; or what is wrong. To be freed. */
+static char *reckoned(const char *expression)
+{
+  char *deck = text_format(
+           "variables: {width: 0.5 m, n: 4, E: 30 GPa, nu: 0.2, phi: 30 deg, f: 10 Hz, law: j2, a: '${width/n}'}\n"
+           "title: \"%s\"\n",
+           expression),
+       *words;
+  Document *document = resolved(deck, NULL, &words);
+  if (document) {
+    free(words);
+    words = text_format("%s", node_get(document->root, "title")->text);
+  }
+  document_destroy(&document);
+  free(deck);
+  return words;
+}
+
+static void expressions_keep_the_units_of_quantities(void **state)
+{
+  (void)state;
+  const char *const cases[][2] = {
+      {"${width}", "0.5 m"},
+      {"${width/2}", "0.25 m"},
+      {"${a}", "0.125 m"},
+      {"${2*a + 5 mm}", "0.255 m"},
+      {"${-width + 1 m}", "0.5 m"},
+      {"${n}", "4"},
+      {"${n - 2^3^0*-1}", "6"}, /* powers from the right: 2^(3^0) */
+      {"${-2^2}", "-4"},
+      {"${(1 + 2)*3 - 4/2/2}", "8"},
+      {"${E/(2*(1 + nu))}", "12500000000 Pa"},
+      {"${E*width*10 mm}", "150000000 N"},
+      {"${sqrt(E/(2400 kg/m3))}", "3535.53390593274 m/s"}, /* 3e10/2400 = 1.25e7 */
+      {"${2400 kg/m3*width^3}", "300 kg"},
+      {"${min(width, 30 cm)} ${max(1, n, 2)}", "0.3 m 4"},
+      {"${sin(phi)} ${cos(60 deg)} ${2*phi}", "0.5 0.5 60 deg"},
+      {"${3*f} ${1/f}", "30 Hz 0.1 s"},
+      {"${floor(0.3 m/(0.1 m))} ${ceil(0.3 m/(0.1 m))} ${round(n/3)}", "3 3 1"},
+      {"${abs(-3 mm)}", "0.003 m"},
+      {"${5 %}", "0.05"},
+      {"${pi}", "3.14159265358979"},
+      {"${10 N/mm2}", "10000000 Pa"},
+      {"${width*phi*1 N*1 s}", "0.261799387799149 N*m*s*rad"}, /* 0.5 pi/6 */
+      {"${law}-${n}", "j2-4"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *found = reckoned(cases[k][0]);
+    if (strcmp(found, cases[k][1]) != 0) fail_msg("%s is %s, expected %s", cases[k][0], found, cases[k][1]);
+    free(found);
+  }
+}
+
+static void wrong_expressions_are_refused_at_their_place(void **state)
+{
+  (void)state;
+  const char *const cases[][2] = {
+      {"${widht}", "deck:2:11: title: there is no variable 'widht'; did you mean 'width'?"},
+      {"${width + n}", "deck:2:17: title: a length and a plain number cannot be added; give every quantity its unit"},
+      {"${width - 3 s}", "deck:2:17: title: a length and a time cannot be subtracted"},
+      {"${f + 3 1/s}", "deck:2:17: title: expected an operator before the second number"},
+      {"${f + 3/(1 s)}", "deck:2:13: title: a frequency and a rate cannot be added"},
+      {"${max(n, width)}",
+       "deck:2:11: title: a plain number and a length cannot be compared; give every quantity its unit"},
+      {"${n/0}", "deck:2:12: title: division by zero"},
+      {"${0^-1}", "deck:2:12: title: division by zero"},
+      {"${10^400}", "deck:2:11: title: the result is not a finite number"},
+      {"${(-8)^0.5}", "deck:2:15: title: a number below 0 has whole powers only"},
+      {"${sqrt(-n)}", "deck:2:11: title: the square root of a number below 0"},
+      {"${sqrt(width)}", "deck:2:11: title: the result is a quantity in m0.5, which no key of a deck takes"},
+      {"${sin(n)}", "deck:2:11: title: sin takes an angle with its unit, like sin(30 deg)"},
+      {"${round(width)}",
+       "deck:2:11: title: round takes a plain number, not a length; divide it by a quantity of its kind"},
+      {"${2^width}",
+       "deck:2:12: title: a power takes a plain number, not a length; divide it by a quantity of its kind"},
+      {"${law*2}", "deck:2:11: title: the variable 'law' cannot be reckoned with: 'j2' is not a number"},
+      {"${n = 3}", "deck:2:13: title: nothing is assigned here; variables have their values under 'variables'"},
+      {"${2,5}", "deck:2:12: title: write decimals with a point, like 10.5; commas part the numbers of a function"},
+      {"${0x10}", "deck:2:11: title: hexadecimal numbers are not read here"},
+      {"${2 mm^2}", "deck:2:13: title: write mm2 for the unit, or (2 mm)^2 for the power of the quantity"},
+      {"${20 degC}", "deck:2:14: title: unit 'degC' is none of length, force, mass, time or angle"},
+      {"${log(n)}",
+       "deck:2:11: title: there is no function 'log'; the functions are min, max, sqrt, abs, round, floor, "
+       "ceil, sin, cos, tan"},
+      {"${sqrt(n, 2)}", "deck:2:18: title: sqrt takes one number"},
+      {"${(n}", "deck:2:13: title: expected ')'"},
+      {"${n)}", "deck:2:12: title: this ')' has no '('"},
+      {"${n +}", "deck:2:14: title: the expression ends where a number is expected"},
+      {"${}", "deck:2:11: title: nothing stands in ${}"},
+      {"${n", "deck:2:9: title: '${n' has no '}' on its line"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *found = reckoned(cases[k][0]);
+    if (strcmp(found, cases[k][1]) != 0) fail_msg("%s: «%s», expected «%s»", cases[k][0], found, cases[k][1]);
+    free(found);
+  }
+}
+
+static void what_a_deck_reuses_is_that_value(void **state)
+{
+  (void)state;
+  /* text, path of the setting or NULL, what is written of it, or what is wrong */
+  const struct {
+    const char *text, *setting, *expected;
+  } cases[] = {
+      {"a: &x [1, {b: 2}]\nc: *x\n", NULL, "a:\n  - 1\n  - {b: 2}\nc:\n  - 1\n  - {b: 2}\n"},
+      {"a: &x {b: 1, c: 2}\nd: {<<: *x, c: 3}\n", NULL, "a:\n  b: 1\n  c: 2\nd:\n  c: 3\n  b: 1\n"},
+      {"a: &x {b: 1}\ne: &y {b: 2, c: 3}\nd: {<<: [*x, *y]}\n", NULL,
+       "a:\n  b: 1\ne:\n  b: 2\n  c: 3\nd:\n  b: 1\n  c: 3\n"},
+      {"a: *x\n", NULL,
+       "deck:1:4: there is no anchor '&x' before the alias '*x'; mark the value to be used again, like '&x 5 mm'"},
+      {"a: &x 3\nb: {<<: *x}\n", NULL,
+       "deck:1:7: '<<' takes in the keys of a map, like '<<: *common', where '&common' marks the map"},
+      {"variables: {a: '${b}', b: '${c + 1}', c: '${a}'}\n", NULL, "deck:1:45: c: the variable 'a' depends on itself"},
+      {"variables: {2a: 1}\n", NULL,
+       "deck:1:13: variables: '2a' is no name for a variable: it begins with a letter, and letters, digits and _ "
+       "follow"},
+      {"variables: {a: 1, a: 2}\n", NULL, "deck:1:19: variables: 'a' is defined twice (first in line 1)"},
+      {"variables: {sin: 1}\n", NULL, "deck:1:13: variables: 'sin' is a name of the expressions' own"},
+      {"variables: [1]\n", NULL,
+       "deck:1:1: variables: expected names and values, like 'variables: {width: 0.5 m, spacing: 5 mm}'"},
+      {"${a}: 1\n", NULL, "deck:1:1: a key cannot hold an expression: ${...} stands in values"},
+      {"title: a\n", "title=b", "title: b\n"},
+      {"variables: {a: 1 m}\ntitle: '${a*2}'\n", "variables.a=3 m", "variables:\n  a: 3 m\ntitle: 6 m\n"},
+      {"title: a\n", "solve.explicit.end time=5 ms", "title: a\nsolve:\n  explicit:\n    end time: 5 ms\n"},
+      {"loads: [{on: a}, {name: push, on: b}]\n", "loads.push.on=c", "loads:\n  - {on: a}\n  - {name: push, on: c}\n"},
+      {"loads: [{on: a}, {name: push, on: b}]\n", "loads.1.on={face: x+}",
+       "loads:\n  - {on: {face: x+}}\n  - {name: push, on: b}\n"},
+      {"materials: {M0.5: {density: 1}}\n", "materials.M0.5.density=2", "materials:\n  M0.5:\n    density: 2\n"},
+      {"title: a\n", "titel=b", "--set titel=b: there is no 'titel'; did you mean 'title'?"},
+      {"loads: [{on: a}]\n", "loads.2.on=c",
+       "--set loads.2.on=c: there is no item '2' in a list of 1; items go by their numbers from 1"},
+      {"title: a\n", "materials.m.density=2",
+       "--set materials.m.density=2: the deck has no 'materials' yet, which its items would have to be written into"},
+      {"title: a\n", "title.b=2", "--set title.b=2: 'b' would stand below the single value 'a'"},
+      {"title: a\n", "title", "--set title: expected key.path=value, like 'solve.explicit.end time=5 ms'"},
+      {"title: a\n", "title=", "--set title=: no value is given behind '='"},
+      {"title: a\n", "title=[1", "--set title=[1: not valid YAML: flow sequence without a closing bracket"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *words;
+    Document *document = resolved(cases[k].text, cases[k].setting, &words);
+    Text written = {0};
+    if (document) deck_write(document, &written);
+    const char *found = document ? text_words(&written) : words;
+    if (strncmp(found, cases[k].expected, strlen(cases[k].expected)) != 0 || strlen(found) != strlen(cases[k].expected))
+      fail_msg("%s%s: «%s», expected «%s»", cases[k].text, cases[k].setting ? cases[k].setting : "", found,
+               cases[k].expected);
+    text_free(&written);
+    document_destroy(&document);
+    free(words);
+  }
+}
+
+static void small_files_do_not_unfold_into_huge_ones(void **state)
+{
+  (void)state;
+  Text deck = {0};
+  char *words;
+  text_add(&deck, "a0: &a0 [1, 1]\n");
+  for (int k = 1; k < 30; ++k) text_add(&deck, "a%d: &a%d [*a%d, *a%d]\n", k, k, k - 1, k - 1);
+  assert_null(resolved(text_words(&deck), NULL, &words));
+  assert_non_null(strstr(words, "aliases unfold into more than 100000 values"));
+  free(words);
+  text_free(&deck);
+  text_add(&deck, "variables:\n  a0: xxxxxxxxxxxxxxxx\n");
+  for (int k = 1; k < 30; ++k) text_add(&deck, "  a%d: '${a%d}${a%d}'\n", k, k - 1, k - 1);
+  assert_null(resolved(text_words(&deck), NULL, &words));
+  assert_string_equal(words, "deck:8:8: a6: the result is longer than 1000 letters");
+  free(words);
+  text_free(&deck);
+  assert_null(resolved("a: &x {b: *x}\n", NULL, &words));
+  assert_non_null(strstr(words, "deck:1:"));
+  free(words);
+}
+
+static void a_written_deck_reads_as_the_same_deck(void **state)
+{
+  (void)state;
+  char *words, *again;
+  const char *text = "a: 'x: y #z'\nb: [\"\", 1 %, [2, -3.5e-4 m], {c: [], d: {}, e: \"q\\\"\\n\"}]\n"
+                     "'f g': {h: '-', i: \"'\"}\nk: {l: {m: [{n: 1}, {o: [{p: 2}]}]}}\nq:\nr: .5\ns: -x\nt: "
+                     "5\u00b0\nu: [\"a,b\", 'c]', \"{\"]\n";
+  Document *first = resolved(text, NULL, &words);
+  assert_non_null(first);
+  Text once = {0}, twice = {0};
+  deck_write(first, &once);
+  Document *second = resolved(text_words(&once), NULL, &again);
+  if (!second) fail_msg("%s\n%s", again, text_words(&once));
+  deck_write(second, &twice);
+  assert_string_equal(text_words(&once), text_words(&twice));
+  assert_string_equal(node_get(second->root, "a")->text, "x: y #z");
+  assert_string_equal(node_get(&node_get(second->root, "b")->items[3], "e")->text, "q\"\n");
+  assert_string_equal(node_get(second->root, "q")->text, "");
+  assert_string_equal(node_get(second->root, "u")->items[1].text, "c]");
+  document_destroy(&first);
+  document_destroy(&second);
+  text_free(&once);
+  text_free(&twice);
+  free(words);
+  free(again);
+}
+
 static void two_readings_of_one_text_are_one_model(void **state)
 {
   (void)state;
@@ -201,6 +423,11 @@ int main(void)
       cmocka_unit_test(intervals_hold_their_closed_ends_only),
       cmocka_unit_test(positions_of_nodes_are_those_of_the_text),
       cmocka_unit_test(all_errors_of_a_deck_come_in_one_go),
+      cmocka_unit_test(expressions_keep_the_units_of_quantities),
+      cmocka_unit_test(wrong_expressions_are_refused_at_their_place),
+      cmocka_unit_test(what_a_deck_reuses_is_that_value),
+      cmocka_unit_test(small_files_do_not_unfold_into_huge_ones),
+      cmocka_unit_test(a_written_deck_reads_as_the_same_deck),
       cmocka_unit_test(two_readings_of_one_text_are_one_model),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
