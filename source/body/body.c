@@ -6,38 +6,39 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *lattice_word(int k)
-{
-  static const char *const words[] = {"cubic", "square", "line", NULL};
-  return words[k];
-}
-
 static void check_block(const DeckReader *reader, void *section)
 {
   const BlockSpec *block = section;
-  bool square = !strcmp(block->lattice, "square"), line = !strcmp(block->lattice, "line");
+  const int dimensions = lattice_find(block->lattice)->dimensions;
+  const bool plane = dimensions == 2, line = dimensions == 1;
   if (line && isnan(block->area))
     node_error(reader->document, block->head.node, reader->error,
                "block: a line needs the 'area' of the bar's cross-section");
   if (!line && !isnan(block->area))
     node_error(reader->document, section_place(section, "area"), reader->error,
                "block: 'area' goes with 'lattice: line'");
-  if (square && isnan(block->thickness))
+  if (plane && isnan(block->thickness))
     node_error(reader->document, block->head.node, reader->error,
-               "block: a square lattice needs the 'thickness' of the plate (a plane body is 1 thick per unit depth)");
-  if (!square && !isnan(block->thickness))
-    node_error(reader->document, section_place(section, "thickness"), reader->error,
-               "block: 'thickness' goes with a square lattice; a cubic one has its own depth, a line an 'area'");
+               "block: a %s lattice needs the 'thickness' of the plate (a plane body is 1 thick per unit depth)",
+               block->lattice);
+  if (!plane && !isnan(block->thickness))
+    node_error(
+        reader->document, section_place(section, "thickness"), reader->error,
+        "block: 'thickness' goes with a square or hexagonal lattice; one in space has its own depth, a line an 'area'");
 }
 
 static const Field block_fields[] = {
     {"material", FIELD_TEXT, offsetof(BlockSpec, material), NULL, NULL, NULL, "name of one of the materials", NULL,
      NULL, 0},
     {"lattice", FIELD_CHOICE, offsetof(BlockSpec, lattice), NULL, "cubic", NULL,
-     "arrangement of the particles; square for plane bodies and line for bars along x, also of particles from a file",
+     "arrangement of the particles, also of those from a file: cubic or face-centred cubic (the densest; square layers "
+     "along x and y, each in "
+     "the hollows of the one below) in space, square or hexagonal (the densest; rows along x, each shifted by half a "
+     "spacing) in the plane, "
+     "line for bars along x",
      NULL, lattice_word, 0},
     {"spacing", FIELD_NUMBER, offsetof(BlockSpec, spacing), "length", NULL, "(0, inf)",
-     "distance of neighbouring particles; of particles from a file: their usual one", NULL, NULL, 0},
+     "distance of the nearest neighbours; of particles from a file: their usual one", NULL, NULL, 0},
     {"thickness", FIELD_NUMBER, offsetof(BlockSpec, thickness), "length", "", "(0, inf)", "of a plane body", NULL, NULL,
      0},
     {"area", FIELD_NUMBER, offsetof(BlockSpec, area), "area", "", "(0, inf)", "of the cross-section of a bar", NULL,
@@ -72,68 +73,73 @@ static const Box *leading_box(const Shape *shape)
   return shape ? shape->box : NULL;
 }
 
+/** Says that whole rows of a lattice do not fill a box. */
+static int say_box_unfilled(const Lattice *lattice, const DeckReader *reader, const Box *box, int k, double size)
+{
+  const double step = lattice->unit.size[k], rows = size / step, fewer = floor(rows) * step, more = ceil(rows) * step;
+  if (step == lattice->spacing)
+    return node_error(reader->document, box->head.node, reader->error,
+                      "box: its size along %c, %g, is not a whole number of spacings of %g (it is %.4g of them); a "
+                      "spacing of %.6g fits",
+                      "xyz"[k], size, step, rows, size / round(rows));
+  return node_error(
+      reader->document, box->head.node, reader->error,
+      "box: its size along %c, %g, is %.4g rows of a %s lattice, which stand %.6g apart; %.6g or %.6g holds "
+      "whole rows, a finer spacing comes nearer",
+      "xyz"[k], size, rows, lattice -> type -> name, step, fewer, more);
+}
+
+/** Fits rows of a lattice between two sides of a box. Where rows stand nearer than the spacing, no spacing makes them fit all sides of a
+ *  usual box: whole rows then stand in its middle, and each particle takes the more or less of volume that makes their sum the box's. */
+static int fit_box(Lattice *lattice, const DeckReader *reader, const Box *box, int k, double *low, double high)
+{
+  static const double most = 0.05; /* of the size: beyond it the body would be another */
+  const double step = lattice->unit.size[k], size = high - *low, rows = size / step;
+  if (rows < 1 - 1e-6)
+    return node_error(reader->document, box->head.node, reader->error,
+                      "box: its size along %c, %g, is less than one spacing of %g; take a finer spacing", "xyz"[k],
+                      size, step);
+  if (fabs(rows - round(rows)) <= 1e-6 * fmax(1, rows)) return BRECCIA_OK;
+  if (step == lattice->spacing || fabs(rows - round(rows)) > most * rows)
+    return say_box_unfilled(lattice, reader, box, k, size);
+  lattice->filled[k] = rows / round(rows);
+  *low += (size - round(rows) * step) / 2;
+  return BRECCIA_OK;
+}
+
 static int place_lattice(Lattice *lattice, const DeckReader *reader, const BlockSpec *block)
 {
-  double low[3], high[3], spacing = block->spacing;
-  lattice->spacing = spacing;
-  lattice->dimensions = !strcmp(block->lattice, "cubic") ? 3 : !strcmp(block->lattice, "square") ? 2 : 1;
-  if (block->file) {
-    lattice->across[0] = 1;
-    lattice->across[1] = 2;
-    return BRECCIA_OK;
-  }
-  shape_bounds(block->shape, spacing, low, high);
+  double low[3], high[3];
+  lattice_measure(lattice, lattice_find(block->lattice), block->spacing);
+  if (block->file) return BRECCIA_OK;
+  shape_bounds(block->shape, &lattice->unit, low, high);
   const Box *box = leading_box(block->shape);
   double anchor[3], far[3];
-  if (box) box_corners(box, spacing, anchor, far);
+  if (box) box_corners(box, &lattice->unit, anchor, far);
   double total = 1;
-  for (int k = 0; k < 3; ++k) {
-    if (k >= lattice->dimensions) {
-      lattice->origin[k] = 0;
-      lattice->cells[k] = 1;
-      continue;
-    }
+  for (int k = 0; k < lattice->dimensions; ++k) {
+    const double step = lattice->unit.size[k];
     if (box) {
-      double size = (far[k] - anchor[k]) / spacing;
-      if (size < 1 - 1e-6)
-        return node_error(reader->document, box->head.node, reader->error,
-                          "box: its size along %c, %g, is less than one spacing of %g; take a finer spacing", "xyz"[k],
-                          far[k] - anchor[k], spacing);
-      if (fabs(size - round(size)) > 1e-6 * fmax(1, size))
-        return node_error(reader->document, box->head.node, reader->error,
-                          "box: its size along %c, %g, is not a whole number of spacings of %g (it is %.4g of them); a "
-                          "spacing of %.6g fits",
-                          "xyz"[k], far[k] - anchor[k], spacing, size, (far[k] - anchor[k]) / round(size));
-      low[k] = anchor[k] + spacing * floor((low[k] - anchor[k]) / spacing + 1e-6);
+      int status = fit_box(lattice, reader, box, k, &anchor[k], far[k]);
+      if (status) return status;
+      low[k] = anchor[k] + step * floor((low[k] - anchor[k]) / step + 1e-6);
     }
-    double cells = ceil((high[k] - low[k]) / spacing - 1e-6);
+    double cells = ceil((high[k] - low[k]) / step - 1e-6);
     total *= fmax(cells, 1);
     lattice->cells[k] = cells < 1e9 && cells >= 1 ? (int64_t)cells : 1;
     if (!box) /* something round: centre the lattice in it */
-      low[k] -= (spacing * (double)lattice->cells[k] - (high[k] - low[k])) / 2;
-    lattice->origin[k] = low[k] + spacing / 2;
+      low[k] -= (step * (double)lattice->cells[k] - (high[k] - low[k])) / 2;
+    lattice->origin[k] = low[k] + lattice->unit.first[k];
   }
   if (!(total < 2e9))
     return node_error(reader->document, section_place(block, "spacing"), reader->error,
                       "block: %.3g lattice cells are more than the 2e9 that can be numbered; is the spacing right?",
                       total);
-  lattice->axis = 0;
-  for (int k = 1; k < 3; ++k)
-    if (lattice->cells[k] > lattice->cells[lattice->axis]) lattice->axis = k;
-  lattice->across[0] = lattice->axis == 0 ? 1 : 0;
-  lattice->across[1] = lattice->axis == 2 ? 1 : 2;
-  lattice->chunks = (lattice->cells[lattice->axis] + SLICE - 1) / SLICE;
-  lattice->volume = lattice->dimensions == 3   ? spacing * spacing * spacing
-                    : lattice->dimensions == 2 ? spacing * spacing * block->thickness
-                                               : spacing * block->area;
+  lattice_lay_rows(lattice);
+  lattice->volume = 1;
+  for (int k = 0; k < lattice->dimensions; ++k) lattice->volume *= lattice->unit.size[k] * lattice->filled[k];
+  lattice->volume *= lattice->dimensions == 2 ? block->thickness : lattice->dimensions == 1 ? block->area : 1;
   return BRECCIA_OK;
-}
-
-void lattice_cell(const Lattice *lattice, int64_t row, int64_t chunk, int lane, int64_t cell[3])
-{
-  cell[lattice->axis] = chunk * SLICE + lane;
-  cell[lattice->across[0]] = row % lattice->cells[lattice->across[0]];
-  cell[lattice->across[1]] = row / lattice->cells[lattice->across[0]];
 }
 
 /** True if a crack takes out a particle at this point. */
@@ -141,7 +147,7 @@ static bool removed(const Body *body, const Lattice *lattice, const double point
 {
   for (int c = 0; c < body->crack_count; ++c)
     if (body->cracks[c]->remove &&
-        shape_contains(body->cracks[c]->remove, lattice->spacing, lattice->dimensions, point, 1e-6 * lattice->spacing))
+        shape_contains(body->cracks[c]->remove, &lattice->unit, lattice->dimensions, point, 1e-6 * lattice->spacing))
       return true;
   return false;
 }
@@ -149,11 +155,10 @@ static bool removed(const Body *body, const Lattice *lattice, const double point
 static bool cell_present(const Body *body, const BlockSpec *block, const Lattice *lattice, const int64_t cell[3])
 {
   double point[3], tolerance = 1e-6 * lattice->spacing;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3; ++k)
     if (cell[k] >= lattice->cells[k]) return false;
-    point[k] = lattice->origin[k] + lattice->spacing * (double)cell[k];
-  }
-  return shape_contains(block->shape, lattice->spacing, lattice->dimensions, point, tolerance) &&
+  lattice_point(lattice, cell, point);
+  return shape_contains(block->shape, &lattice->unit, lattice->dimensions, point, tolerance) &&
          !removed(body, lattice, point);
 }
 
@@ -162,11 +167,6 @@ typedef struct Filling {
   uint8_t *present; /* [rows][chunks] lanes that hold a particle */
   Cloud cloud;
 } Filling;
-
-static int64_t lattice_row_count(const Lattice *lattice)
-{
-  return lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
-}
 
 typedef struct Occupation {
   const Body *body;
@@ -255,9 +255,10 @@ static void fill_lattice(Body *body, int b, const uint8_t *present, int32_t *num
       particles->block[slice] = b;
       for (int lane = 0; lane < SLICE; ++lane) {
         int64_t cell[3], place = (int64_t)slice * SLICE + lane;
+        double point[3];
         lattice_cell(lattice, row, chunk, lane, cell);
-        for (int k = 0; k < 3; ++k)
-          particles->position[k][place] = lattice->origin[k] + lattice->spacing * (double)cell[k];
+        lattice_point(lattice, cell, point);
+        for (int k = 0; k < 3; ++k) particles->position[k][place] = point[k];
         bool here = present[row * lattice->chunks + chunk] >> lane & 1;
         particles->volume[place] = here ? lattice->volume : 0;
         particles->density[place] = 1;
@@ -268,8 +269,7 @@ static void fill_lattice(Body *body, int b, const uint8_t *present, int32_t *num
   for (cell[2] = 0; cell[2] < lattice->cells[2]; ++cell[2])
     for (cell[1] = 0; cell[1] < lattice->cells[1]; ++cell[1])
       for (cell[0] = 0; cell[0] < lattice->cells[0]; ++cell[0]) {
-        int64_t row = cell[lattice->across[0]] + lattice->cells[lattice->across[0]] * cell[lattice->across[1]];
-        int64_t at = row * lattice->chunks + cell[lattice->axis] / SLICE;
+        int64_t at = lattice_row(lattice, cell) * lattice->chunks + cell[lattice->axis] / SLICE;
         int lane = (int)(cell[lattice->axis] % SLICE);
         if (!(present[at] >> lane & 1)) continue;
         int32_t place = lattice->slice[at] * SLICE + lane;
@@ -318,10 +318,13 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
     body->blocks[b] = blocks->items[b];
     int bad = place_lattice(&body->lattices[b], reader, body->blocks[b]);
     if (bad) status = bad;
-    body->largest_spacing = fmax(body->largest_spacing, body->blocks[b]->spacing);
+    if (body->blocks[b]->spacing > body->largest_spacing) {
+      body->largest_spacing = body->blocks[b]->spacing;
+      body->coarsest = &body->lattices[b];
+    }
     if (b && body->lattices[b].dimensions != body->lattices[0].dimensions)
       status = node_error(reader->document, section_place(body->blocks[b], "lattice"), error,
-                          "block: cubic and square lattices and lines cannot stand in one body");
+                          "block: lattices of space, of the plane and lines cannot stand in one body");
   }
   body->dimensions = body->lattices[0].dimensions;
   if (!status) status = fill(body, reader, fillings);

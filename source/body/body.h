@@ -2,15 +2,15 @@
 #ifndef BRECCIA_BODY_BODY_H
 #define BRECCIA_BODY_BODY_H
 
+#include "body/lattice.h"
 #include "body/particles.h"
-#include "body/shape.h"
 
 typedef enum Space { SPACE_3D, SPACE_PLANE_STRAIN, SPACE_PLANE_STRESS, SPACE_BAR } Space;
 
 typedef struct BlockSpec {
   SectionHead head;
   const char *material;
-  const char *lattice; /* "cubic", "square" or "line" */
+  const char *lattice;
   double spacing, thickness, area;
   Shape *shape; /* NULL: particles come from a file */
   const char *file;
@@ -31,18 +31,6 @@ typedef struct CrackSpec {
 
 extern const Section block_section, crack_section;
 
-/** A lattice that fills one block: cell (0,0,0) has its centre at `origin`. Rows run along `axis`. Particles from a file have
- *  none: no cells, no chunks; `spacing` is their usual distance then. */
-typedef struct Lattice {
-  double origin[3], spacing;
-  int64_t cells[3];
-  int axis, across[2]; /* axis of the rows, and the two others in ascending order */
-  int64_t chunks;      /* slices that a full row would have */
-  int32_t *slice;      /* [cells[across[1]]][cells[across[0]]][chunks] slice there, or -1 */
-  double volume;       /* of a particle */
-  int dimensions;      /* 3 cubic, 2 square, 1 line */
-} Lattice;
-
 typedef struct Body {
   Particles particles;
   int block_count;
@@ -51,8 +39,9 @@ typedef struct Body {
   int crack_count;
   const CrackSpec **cracks;
   double largest_spacing;
-  double low[3], high[3]; /* outermost particles */
-  int dimensions;         /* of all lattices */
+  const Lattice *coarsest; /* the one with that spacing */
+  double low[3], high[3];  /* outermost particles */
+  int dimensions;          /* of all lattices */
 } Body;
 
 /** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */
@@ -64,8 +53,5 @@ bool body_cuts(const Body *body, const double a[3], const double b[3]);
 /** True if a cut without thickness parts the two points, and no notch, whose faces stand apart.
  *  @param[out] normal  unit normal of the cut, towards b */
 bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3]);
-
-/** Lattice cell of a place: slice s, lane l. */
-void lattice_cell(const Lattice *lattice, int64_t row, int64_t chunk, int lane, int64_t cell[3]);
 
 #endif

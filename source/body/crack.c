@@ -236,8 +236,8 @@ static bool row_at(const Body *body, int axis, double x, double tolerance)
 {
   for (int n = 0; n < body->block_count; ++n) {
     const Lattice *lattice = &body->lattices[n];
-    double off = (x - lattice->origin[axis]) / lattice->spacing;
-    if (lattice->chunks && fabs(off - round(off)) * lattice->spacing <= tolerance) return true;
+    double off = (x - lattice->origin[axis]) / lattice->plane[axis];
+    if (lattice->chunks && fabs(off - round(off)) * lattice->plane[axis] <= tolerance) return true;
   }
   return false;
 }
@@ -247,7 +247,7 @@ static bool row_at(const Body *body, int axis, double x, double tolerance)
 static bool crosses_middle(const Box *box, const Body *body, const double a[3], const double b[3])
 {
   double low[3], high[3], length = distance(a, b, 3), end = at_end * length;
-  box_corners(box, body->largest_spacing, low, high);
+  box_corners(box, &body->coarsest->unit, low, high);
   const int dimensions = body->dimensions;
   int thin = 0;
   for (int k = 1; k < dimensions; ++k)
@@ -319,7 +319,7 @@ static bool runs_through_notch(const Body *body, const double a[3], const double
     for (int n = 1; n < PARTS; ++n) {
       double point[3];
       for (int k = 0; k < 3; ++k) point[k] = a[k] + (b[k] - a[k]) * n / PARTS;
-      if (shape_contains(crack->remove, body->largest_spacing, body->dimensions, point, 0)) return true;
+      if (shape_contains(crack->remove, &body->coarsest->unit, body->dimensions, point, 0)) return true;
     }
   }
   return false;

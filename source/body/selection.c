@@ -47,7 +47,7 @@ static int block_index(const Body *body, const char *name)
 }
 
 /** Says that nothing is selected, where the body is, and which particle is nearest to the middle of the shape asked for. */
-static void say_empty(const Particles *particles, int dimensions, double spacing, const SelectionSpec *spec,
+static void say_empty(const Particles *particles, int dimensions, const UnitCell *unit, const SelectionSpec *spec,
                       const Reference *reference, const DeckReader *reader)
 {
   Text words = {0};
@@ -55,7 +55,7 @@ static void say_empty(const Particles *particles, int dimensions, double spacing
   particles_bounds(particles, low, high);
   for (int k = 0; k < dimensions; ++k) text_add(&words, "%s%c from %g to %g", k ? ", " : "", "xyz"[k], low[k], high[k]);
   if (spec->inside) {
-    shape_bounds(spec->inside, spacing, from, to);
+    shape_bounds(spec->inside, unit, from, to);
     double middle[3] = {0};
     for (int k = 0; k < dimensions; ++k) middle[k] = (from[k] + to[k]) / 2;
     const int32_t near = particles_nearest(particles, middle);
@@ -67,6 +67,12 @@ static void say_empty(const Particles *particles, int dimensions, double spacing
              "the selection%s%s%s holds no particle; particles stand at %s", reference->name ? " '" : "",
              reference->name ? reference->name : "", reference->name ? "'" : "", text_words(&words));
   text_free(&words);
+}
+
+/** How far from the outermost particles the layers of a face reach: to the middle between two planes of particles. */
+static double face_depth(const Lattice *lattice, int axis, int64_t layers)
+{
+  return lattice->unit.size[axis] * (double)layers - lattice->plane[axis] / 2;
 }
 
 int selection_create(Selection *selection, const Body *body, const DeckReader *reader, const SectionList *named,
@@ -99,16 +105,17 @@ int selection_create(Selection *selection, const Body *body, const DeckReader *r
     int32_t place = particles->place_of[n];
     int own = particles->block[place / SLICE];
     double point[3] = {particles->position[0][place], particles->position[1][place], particles->position[2][place]};
-    double spacing = body->lattices[own].spacing;
+    const Lattice *lattice = &body->lattices[own];
     if (block >= 0 && own != block) continue;
-    if (spec->face && sign * point[axis] < outermost - spacing * ((double)spec->layers - 0.5)) continue;
-    if (spec->inside && !shape_contains(spec->inside, spacing, body->dimensions, point, 1e-6 * spacing)) continue;
+    if (spec->face && sign * point[axis] < outermost - face_depth(lattice, axis, spec->layers)) continue;
+    if (spec->inside && !shape_contains(spec->inside, &lattice->unit, body->dimensions, point, 1e-6 * lattice->spacing))
+      continue;
     if (nearest >= 0 && place != nearest) continue;
     selection->places[selection->count++] = place;
   }
   if (!selection->count) {
     selection_destroy(selection);
-    say_empty(particles, body->dimensions, body->largest_spacing, spec, reference, reader);
+    say_empty(particles, body->dimensions, &body->coarsest->unit, spec, reference, reader);
     return BRECCIA_USER_ERROR;
   }
   return BRECCIA_OK;

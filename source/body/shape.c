@@ -19,9 +19,11 @@ static const Field box_fields[] = {
     {"from", FIELD_POINT, offsetof(Box, from), "length", "", NULL, "lowest corner", NULL, NULL, 0},
     {"to", FIELD_POINT, offsetof(Box, to), "length", "", NULL, "highest corner", NULL, NULL, 0},
     {"particles", FIELD_COUNTS, offsetof(Box, particles), NULL, "", "[1, 1e7]",
-     "size as numbers of particles along x, y, z, instead of corners", NULL, NULL, 0},
+     "size as numbers of particles along x, y, z, instead of corners (of rows and layers where these stand nearer than "
+     "the spacing)",
+     NULL, NULL, 0},
     {"first particle", FIELD_POINT, offsetof(Box, first), "length", "", NULL,
-     "centre of the first particle, with 'particles' (half a spacing from the origin when absent)", NULL, NULL, 0},
+     "centre of the first particle, with 'particles' (the low corner is at the origin when absent)", NULL, NULL, 0},
 };
 const Section box_section = {"box", "A box along the axes.", sizeof(Box), FIELDS(box_fields), check_box, NULL, NULL, 0};
 
@@ -101,15 +103,15 @@ const Section shape_section = {"shape",       "What a block fills. Shapes nest: 
                                check_shape,   NULL,
                                NULL,          0};
 
-void box_corners(const Box *box, double spacing, double low[3], double high[3])
+void box_corners(const Box *box, const UnitCell *unit, double low[3], double high[3])
 {
   for (int k = 0; k < 3; ++k) {
     if (box->particles[0] < 0) {
       low[k] = box->from[k];
       high[k] = box->to[k];
     } else {
-      low[k] = isnan(box->first[k]) ? 0 : box->first[k] - spacing / 2;
-      high[k] = low[k] + spacing * (double)box->particles[k];
+      low[k] = isnan(box->first[k]) ? 0 : box->first[k] - unit->first[k];
+      high[k] = low[k] + unit->size[k] * (double)box->particles[k];
     }
   }
 }
@@ -124,11 +126,11 @@ bool polygon_contains(const double *corners, int count, double x, double y)
   return inside;
 }
 
-bool shape_contains(const Shape *shape, double spacing, int dimensions, const double p[3], double tolerance)
+bool shape_contains(const Shape *shape, const UnitCell *unit, int dimensions, const double p[3], double tolerance)
 {
   if (shape->box) {
     double low[3], high[3];
-    box_corners(shape->box, spacing, low, high);
+    box_corners(shape->box, unit, low, high);
     for (int k = 0; k < dimensions; ++k)
       if (p[k] < low[k] - tolerance || p[k] > high[k] + tolerance) return false;
     return true;
@@ -159,22 +161,22 @@ bool shape_contains(const Shape *shape, double spacing, int dimensions, const do
     return level && polygon_contains(polygon->corners.values, polygon->corners.count, p[0], p[1]);
   }
   for (int k = 0; k < shape->together.count; ++k)
-    if (shape_contains(shape->together.items[k], spacing, dimensions, p, tolerance)) return true;
-  if (!shape->difference.count || !shape_contains(shape->difference.items[0], spacing, dimensions, p, tolerance))
+    if (shape_contains(shape->together.items[k], unit, dimensions, p, tolerance)) return true;
+  if (!shape->difference.count || !shape_contains(shape->difference.items[0], unit, dimensions, p, tolerance))
     return false;
   for (int k = 1; k < shape->difference.count; ++k)
-    if (shape_contains(shape->difference.items[k], spacing, dimensions, p, -tolerance)) return false;
+    if (shape_contains(shape->difference.items[k], unit, dimensions, p, -tolerance)) return false;
   return true;
 }
 
-void shape_bounds(const Shape *shape, double spacing, double low[3], double high[3])
+void shape_bounds(const Shape *shape, const UnitCell *unit, double low[3], double high[3])
 {
   for (int k = 0; k < 3; ++k) {
     low[k] = INFINITY;
     high[k] = -INFINITY;
   }
   if (shape->box)
-    box_corners(shape->box, spacing, low, high);
+    box_corners(shape->box, unit, low, high);
   else if (shape->sphere) {
     for (int k = 0; k < 3; ++k) {
       low[k] = shape->sphere->centre[k] - shape->sphere->radius;
@@ -199,10 +201,10 @@ void shape_bounds(const Shape *shape, double spacing, double low[3], double high
     low[2] = polygon->bottom;
     high[2] = polygon->top;
   } else if (shape->difference.count)
-    shape_bounds(shape->difference.items[0], spacing, low, high);
+    shape_bounds(shape->difference.items[0], unit, low, high);
   for (int n = 0; n < shape->together.count; ++n) {
     double a[3], b[3];
-    shape_bounds(shape->together.items[n], spacing, a, b);
+    shape_bounds(shape->together.items[n], unit, a, b);
     for (int k = 0; k < 3; ++k) {
       low[k] = fmin(low[k], a[k]);
       high[k] = fmax(high[k], b[k]);

@@ -4,6 +4,11 @@
 
 #include "deck/section.h"
 
+/** The brick that a particle of a lattice takes along x, y, z, and where in it the first particle of all stands. */
+typedef struct UnitCell {
+  double size[3], first[3];
+} UnitCell;
+
 typedef struct Box {
   SectionHead head;
   double from[3], to[3]; /* NaN when given by particles */
@@ -38,15 +43,15 @@ typedef struct Shape {
 
 extern const Section shape_section, box_section;
 
-/** Corners of a box; `spacing` is needed where it is given by numbers of particles. */
-void box_corners(const Box *box, double spacing, double low[3], double high[3]);
+/** Corners of a box; `unit` is needed where it is given by numbers of particles. */
+void box_corners(const Box *box, const UnitCell *unit, double low[3], double high[3]);
 
 /** True if a point lies inside; a surface belongs to the shape within `tolerance`.
  *  @param[in] dimensions  further coordinates do not count */
-bool shape_contains(const Shape *shape, double spacing, int dimensions, const double point[3], double tolerance);
+bool shape_contains(const Shape *shape, const UnitCell *unit, int dimensions, const double point[3], double tolerance);
 
 /** Corners of a box that holds the shape. */
-void shape_bounds(const Shape *shape, double spacing, double low[3], double high[3]);
+void shape_bounds(const Shape *shape, const UnitCell *unit, double low[3], double high[3]);
 
 /** True if a point of the plane lies inside a polygon of `count` corners, three numbers each, seen along z. */
 bool polygon_contains(const double *corners, int count, double x, double y);

@@ -71,9 +71,10 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
                       "formulation: %s has no strain along a line; bars take bond-based", d->type->name);
   if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
-                    d->body.dimensions == 1   ? "space: a line needs '1-D'"
-                    : d->body.dimensions == 2 ? "space: a square lattice needs 'plane strain' or 'plane stress'"
-                                              : "space: '%s' needs a square lattice; this body's is cubic",
+                    d->body.dimensions == 1 ? "space: a line needs '1-D'"
+                    : d->body.dimensions == 2
+                        ? "space: a lattice of the plane needs 'plane strain' or 'plane stress'"
+                        : "space: '%s' needs a square or hexagonal lattice; this body's is one of space",
                     spec->peridynamics->space);
 }
 
@@ -86,7 +87,7 @@ static bool row_goes_on(const Domain *d, int64_t slice)
   if (!lattice->chunks) return false;
   for (int k = 0; k < 3; ++k) {
     double step = p->position[k][(slice + 1) * SLICE] - p->position[k][slice * SLICE];
-    if (fabs(step - (k == lattice->axis) * SLICE * lattice->spacing) > 0.5 * lattice->spacing) return false;
+    if (fabs(step - (k == lattice->axis) * SLICE * lattice->unit.size[k]) > 0.25 * lattice->spacing) return false;
   }
   return true;
 }

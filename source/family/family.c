@@ -20,54 +20,58 @@ static double volume_share(VolumeCorrection correction, double length, double ho
   return fmax(0, fmin(1, (horizon + r - length) / (2 * r)));
 }
 
-/** Lattice vectors of one block within reach, lattice row by lattice row. */
-static int add_patterns(Family *family, const Lattice *lattice, double reach, const Influence *influence,
-                        VolumeCorrection correction, Error *error)
+/** Fills a pattern. @return false if the lattice vector is beyond reach */
+static bool make_pattern(Pattern *pattern, const Family *family, const Lattice *lattice, const FamilySpec *spec,
+                         double reach, const int offset[3])
 {
-  int cells = (int)floor(reach / lattice->spacing * (1 + 1e-9)), extent[3] = {cells, cells, cells};
-  for (int k = lattice->dimensions; k < 3; ++k) extent[k] = 0;
-  const int axes[3] = {lattice->axis, lattice->across[0], lattice->across[1]};
-  const int first = family->pattern_count;
-  for (int pass = 0; pass < 2; ++pass) {
-    int count = first;
-    int offset[3];
-    for (offset[axes[2]] = -extent[axes[2]]; offset[axes[2]] <= extent[axes[2]]; ++offset[axes[2]])
-      for (offset[axes[1]] = -extent[axes[1]]; offset[axes[1]] <= extent[axes[1]]; ++offset[axes[1]]) {
-        int row_begins = count;
-        for (offset[axes[0]] = -extent[axes[0]]; offset[axes[0]] <= extent[axes[0]]; ++offset[axes[0]]) {
-          double length = lattice->spacing * sqrt((double)offset[0] * offset[0] + (double)offset[1] * offset[1] +
-                                                  (double)offset[2] * offset[2]);
-          if (length == 0 || length > reach * (1 + 1e-9)) continue;
-          double share = volume_share(correction, length, family->horizon, lattice->spacing / 2);
-          if (share == 0) continue;
-          if (pass) {
-            Pattern *row = &family->patterns[count];
-            for (int k = 0; k < 3; ++k) {
-              row->xi[k] = lattice->spacing * offset[k];
-              row->offset[k] = offset[k];
-            }
-            row->length = length;
-            row->weight = influence->value(fmin(1, length / family->horizon), length) * share * lattice->volume;
-            for (int k = 0; k < 3; ++k) row->weighted_xi[k] = row->weight * row->xi[k];
-            row->weight_by_length = row->weight / length;
-            row->by_square = 1 / (length * length);
-            row->row = row_begins;
-            row->kind = -1;
-          }
-          ++count;
-        }
-      }
-    if (count > UINT16_MAX)
-      return error_add(error, BRECCIA_USER_ERROR,
-                       "the horizon of %g reaches over so many spacings that a family would have more than %d bonds",
-                       family->horizon, UINT16_MAX);
-    if (!pass) {
-      Pattern *grown = realloc(family->patterns, sizeof(Pattern) * (size_t)(count ? count : 1));
-      if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: bond patterns");
-      family->patterns = grown;
-    }
-    family->pattern_count = count;
+  double way[3];
+  lattice_vector(lattice, offset, way);
+  const double length = lattice->spacing * sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+  if (length == 0 || length > reach * (1 + 1e-9)) return false;
+  const double share = volume_share(spec->correction, length, family->horizon, lattice->spacing / 2);
+  if (share == 0) return false;
+  *pattern = (Pattern){.length = length, .kind = -1};
+  pattern->weight = spec->influence->value(fmin(1, length / family->horizon), length) * share * lattice->volume;
+  for (int k = 0; k < 3; ++k) {
+    pattern->xi[k] = lattice->spacing * way[k];
+    pattern->weighted_xi[k] = pattern->weight * pattern->xi[k];
+    pattern->offset[k] = offset[k];
   }
+  pattern->weight_by_length = pattern->weight / length;
+  pattern->by_square = 1 / (length * length);
+  pattern->twice = (int)lround(2 * pattern->xi[lattice->axis] / lattice->unit.size[lattice->axis]);
+  return true;
+}
+
+/** Lattice vectors of one block within reach, lattice row by lattice row. */
+static int add_patterns(Family *family, const Lattice *lattice, const FamilySpec *spec, double reach, Error *error)
+{
+  const int axes[3] = {lattice->axis, lattice->across[0], lattice->across[1]};
+  int extent[3] = {0}, room = family->pattern_count; /* rows are shifted by less than one for each row and layer */
+  for (int n = 2, further = 0; n >= 0; --n) {
+    if (axes[n] < lattice->dimensions) extent[n] = (int)(reach / lattice->unit.size[axes[n]] * (1 + 1e-9)) + further;
+    further += extent[n];
+  }
+  int offset[3];
+  for (offset[axes[2]] = -extent[2]; offset[axes[2]] <= extent[2]; ++offset[axes[2]])
+    for (offset[axes[1]] = -extent[1]; offset[axes[1]] <= extent[1]; ++offset[axes[1]]) {
+      const int row_begins = family->pattern_count;
+      for (offset[axes[0]] = -extent[0]; offset[axes[0]] <= extent[0]; ++offset[axes[0]]) {
+        Pattern pattern;
+        if (!make_pattern(&pattern, family, lattice, spec, reach, offset)) continue;
+        pattern.row = row_begins;
+        if (family->pattern_count == room) {
+          Pattern *grown = realloc(family->patterns, sizeof(Pattern) * (size_t)(room = 2 * room + 64));
+          if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: bond patterns");
+          family->patterns = grown;
+        }
+        family->patterns[family->pattern_count++] = pattern;
+      }
+      if (family->pattern_count > UINT16_MAX)
+        return error_add(error, BRECCIA_USER_ERROR,
+                         "the horizon of %g reaches over so many spacings that a family would have more than %d bonds",
+                         family->horizon, UINT16_MAX);
+    }
   return BRECCIA_OK;
 }
 
@@ -75,17 +79,12 @@ static int add_patterns(Family *family, const Lattice *lattice, double reach, co
 static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk, const int offset[3],
                             int32_t *base)
 {
-  int64_t cell[3];
+  int64_t cell[3], there[3];
   lattice_cell(lattice, row, chunk, 0, cell);
-  for (int k = 0; k < 2; ++k) {
-    int axis = lattice->across[k];
-    cell[axis] += offset[axis];
-    if (cell[axis] < 0 || cell[axis] >= lattice->cells[axis]) return 0;
-  }
-  int64_t start = cell[lattice->axis] + offset[lattice->axis];
+  if (!lattice_neighbour(lattice, cell, offset, there)) return 0;
+  int64_t start = there[lattice->axis];
   int64_t near = start >= 0 ? start / SLICE : (start - SLICE + 1) / SLICE, shift = start - near * SLICE;
-  int64_t other = cell[lattice->across[0]] + lattice->cells[lattice->across[0]] * cell[lattice->across[1]];
-  const int32_t *slices = lattice->slice + other * lattice->chunks;
+  const int32_t *slices = lattice->slice + lattice_row(lattice, there) * lattice->chunks;
   int32_t a = near >= 0 && near < lattice->chunks ? slices[near] : -1;
   int32_t b = shift && near + 1 >= 0 && near + 1 < lattice->chunks ? slices[near + 1] : -1;
   if (a < 0 && b < 0) return 0;
@@ -185,7 +184,7 @@ static Rows *slice_rows(const Body *body, Error *error)
   Rows *rows = memory_zeroed((size_t)body->particles.slices, sizeof *rows, "slice rows", error);
   for (int b = 0; rows && b < body->block_count; ++b) {
     const Lattice *lattice = &body->lattices[b];
-    int64_t count = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
+    const int64_t count = lattice_row_count(lattice);
     for (int64_t row = 0; row < count; ++row)
       for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
         int32_t slice = lattice->slice[row * lattice->chunks + chunk];
@@ -260,7 +259,7 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
   for (int b = 0; b < blocks && !status; ++b) {
     double reach = spec->horizon + (spec->correction == VOLUME_PARTIAL_BEYOND ? body->lattices[b].spacing / 2 : 0);
     bool cloud = !body->lattices[b].chunks;
-    if (!cloud) status = add_patterns(family, &body->lattices[b], reach, spec->influence, spec->correction, error);
+    if (!cloud) status = add_patterns(family, &body->lattices[b], spec, reach, error);
     stored_too |= cloud;
     family->pattern_begin[b + 1] = family->pattern_count;
     if (!status && spec->row_sums && !cloud) status = lattice_rows_choose(family, b, error);

@@ -21,7 +21,8 @@ typedef struct Pattern {              /* a relative lattice vector */
   double length, weight;              /* weight: influence x volume correction x volume of the neighbour */
   double weighted_xi[3];              /* weight x xi */
   double weight_by_length, by_square; /* weight / length, 1 / length^2 */
-  int offset[3];                      /* in spacings */
+  int offset[3];                      /* in primitive vectors (lattice_vector) */
+  int twice;                          /* how far the neighbour is along the row, in half cells */
   int row;                            /* alike for patterns that lead to the same lattice row */
   int kind;                           /* of that row, or -1 */
 } Pattern;

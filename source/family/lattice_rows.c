@@ -16,13 +16,12 @@ typedef struct Candidate {
 
 static bool same_kind(const RowKind *a, const RowKind *b)
 {
-  return a->reach == b->reach && !memcmp(a->weight, b->weight, sizeof a->weight);
+  return a->neighbours == b->neighbours && !memcmp(a->weight, b->weight, sizeof a->weight);
 }
 
 static int gain(const Candidate *candidate)
 {
-  int neighbours = 2 * candidate->kind.reach + 1;
-  return candidate->rows * (neighbours - 2) - MAKING;
+  return candidate->rows * (candidate->kind.neighbours - 2) - MAKING;
 }
 
 /** Stable: patterns without sums first. */
@@ -49,10 +48,9 @@ int lattice_rows_choose(Family *family, int b, Error *error)
     for (int begin = first, end; begin < first + count; begin = end) {
       const Pattern *row = &family->patterns[begin];
       for (end = begin + 1; end < first + count && family->patterns[end].row == begin;) ++end;
-      int reach = -row->offset[lattice->axis];
-      if (reach > ROW_REACH || end - begin != 2 * reach + 1) continue; /* too long, or the particle's own row */
-      RowKind kind = {.reach = reach};
-      for (int s = 0; s <= 2 * reach; ++s) {
+      RowKind kind = {.reach = (1 - row->twice) / 2, .neighbours = 1 - row->twice};
+      if (kind.reach > ROW_REACH || end - begin != kind.neighbours) continue; /* too long, or its own row */
+      for (int s = 0; s < kind.neighbours; ++s) {
         kind.weight[s] = row[s].weight;
         kind.moment[s] = row[s].weight * row[s].xi[lattice->axis];
       }
@@ -115,12 +113,16 @@ static void find_present(void *context, int64_t row)
   const Lattice *lattice = of->lattice;
   const LatticeRows *rows = &of->family->rows;
   const int width = 2 * rows->reach + 1;
+  int64_t cell[3];
+  lattice_cell(lattice, row, 0, 0, cell);
+  const bool late = lattice_row_shift(lattice, cell) > 0.25;
   for (int64_t chunk = 0; chunk < lattice->chunks; ++chunk) {
     const int32_t *row_slices = lattice->slice + row * lattice->chunks;
     int64_t slice = row_slices[chunk];
     if (slice < 0) continue;
     uint8_t *present = rows->present + slice * width;
     rows->complete[slice] = 1;
+    rows->late[slice] = late;
     for (int s = 0; s < width; ++s) {
       present[s] = present_lanes(of->family->particles, row_slices, lattice->chunks, chunk, s - rows->reach);
       rows->complete[slice] &= present[s] == UINT8_MAX;
@@ -141,17 +143,18 @@ int lattice_rows_create(Family *family, const Body *body, Error *error)
   size_t slices = (size_t)p->slices;
   rows->present = memory_zeroed(slices * (size_t)width, 1, "lattice rows", error);
   rows->complete = memory_zeroed(slices, 1, "lattice rows", error);
+  rows->late = memory_zeroed(slices, 1, "lattice rows", error);
   rows->first = memory_zeroed(slices, sizeof *rows->first, "lattice rows", error);
   rows->begin = memory_zeroed(slices + 1, sizeof *rows->begin, "lattice rows", error);
   rows->count = memory_zeroed(slices, sizeof *rows->count, "lattice rows", error);
   rows->condition = memory_zeroed(slices, 1, "lattice rows", error);
-  if (!rows->present || !rows->complete || !rows->first || !rows->begin || !rows->count || !rows->condition)
+  if (!rows->present || !rows->complete || !rows->late || !rows->first || !rows->begin || !rows->count ||
+      !rows->condition)
     return BRECCIA_FAILURE;
   for (int b = 0; b < body->block_count; ++b) {
     const Lattice *lattice = &body->lattices[b];
-    int64_t count = lattice->cells[lattice->across[0]] * lattice->cells[lattice->across[1]];
     LatticeOfFamily of = {family, lattice};
-    team_each(count, find_present, &of);
+    team_each(lattice_row_count(lattice), find_present, &of);
   }
   for (int32_t slice = 0; slice < (int32_t)p->slices; ++slice) /* of particles that stand in no lattice */
     if (!body->lattices[p->block[slice]].chunks)
@@ -169,6 +172,7 @@ void lattice_rows_destroy(LatticeRows *rows)
   free(rows->kind);
   free(rows->present);
   free(rows->complete);
+  free(rows->late);
   free(rows->first);
   free(rows->begin);
   free(rows->whole);
@@ -177,20 +181,30 @@ void lattice_rows_destroy(LatticeRows *rows)
   *rows = (LatticeRows){0};
 }
 
-/** @return the middle slot of the row whose slots are begin .. end - 1 if the row is whole, or -1 */
+/** Places along its row, from where its sums are kept, of the neighbour in a slot. */
+static int along_row(const Family *family, int64_t slot, bool late)
+{
+  const int twice = family->patterns[family->pattern[slot]].twice;
+  return (twice + (twice % 2 ? late ? 1 : -1 : 0)) / 2;
+}
+
+/** @return of the slots begin .. end - 1 of a row the one that leads to where its sums are kept, if the row is whole, or -1 */
 static int64_t middle_of_whole(const Family *family, int64_t slice, int64_t begin, int64_t end)
 {
   const LatticeRows *rows = &family->rows;
-  int block = family->particles->block[slice], axis = family->lattices[block].axis;
+  const int block = family->particles->block[slice];
+  const bool late = rows->late[slice];
   int64_t middle = begin;
-  while (middle < end && family->patterns[family->pattern[middle]].offset[axis]) ++middle;
+  while (middle < end && along_row(family, middle, late)) ++middle;
   if (middle == end) return -1;
   const RowKind *kind = &rows->kind[block * ROW_KINDS + family->patterns[family->pattern[begin]].kind];
-  const uint8_t *present = rows->present + family->base[middle] / SLICE * (2 * rows->reach + 1) + rows->reach;
-  unsigned own = lattice_rows_lanes(rows, slice);
+  const int64_t there = family->base[middle] / SLICE;
+  const uint8_t *present = rows->present + there * (2 * rows->reach + 1) + rows->reach;
+  const unsigned own = lattice_rows_lanes(rows, slice);
+  const int first = lattice_row_begin(kind, rows->late[there]);
   int64_t slot = begin;
-  for (int along = -kind->reach; along <= kind->reach; ++along) {
-    bool listed = slot < end && family->patterns[family->pattern[slot]].offset[axis] == along;
+  for (int along = first; along < first + kind->neighbours; ++along) {
+    bool listed = slot < end && along_row(family, slot, late) == along;
     if ((own & present[along]) != (listed ? family->intact[slot] : 0u)) return -1;
     slot += listed;
   }
@@ -221,7 +235,7 @@ size_t lattice_rows_bytes(const Family *family)
 {
   const LatticeRows *rows = &family->rows;
   if (!rows->present) return 0;
-  size_t slices = (size_t)family->particles->slices, slice = (size_t)(2 * rows->reach + 3) + sizeof *rows->first;
+  size_t slices = (size_t)family->particles->slices, slice = (size_t)(2 * rows->reach + 4) + sizeof *rows->first;
   return slices * (slice + sizeof *rows->begin + sizeof *rows->count) +
          (size_t)rows->begin[slices] * sizeof *rows->whole;
 }

@@ -7,6 +7,9 @@
  * neighbours with equal weights. Sums along them are made once per place; a particle reads 2 numbers instead of 5.
  *
  * Rows are of one kind if their weights are alike; kinds with too few rows or neighbours have no sums (kind -1).
+ * A row whose particles stand half a cell further along than those of a particle's own row has no neighbour in its middle: as many on
+ * either side. Its sums are kept where the particle's own chunk of the row would be, so that they too are read in slices. Which of the
+ * two neighbours nearest to the middle is at that place depends on which row is the shifted one; `late` tells.
  * The row of a slice is whole if each of its particles has an intact bond to every particle of the row within reach. Bonds of
  * other rows, and bonds between lattices, are summed slot by slot. */
 #ifndef BRECCIA_FAMILY_LATTICE_ROWS_H
@@ -17,9 +20,10 @@
 enum { ROW_KINDS = 4, ROW_REACH = SLICE };
 
 typedef struct RowKind {
-  int reach;                        /* neighbours from -reach to reach along the row */
-  double weight[2 * ROW_REACH + 1]; /* [reach + s] weight of a bond to the s-th neighbour from the middle */
-  double moment[2 * ROW_REACH + 1]; /* weight times distance from the middle */
+  int reach;                        /* neighbours at most so many places along the row */
+  int neighbours;                   /* 2 reach + 1, or 2 reach where the row is shifted */
+  double weight[2 * ROW_REACH + 1]; /* [neighbours] of the bonds to them, in order */
+  double moment[2 * ROW_REACH + 1]; /* weight times distance along the row from the particle */
 } RowKind;
 
 typedef struct LatticeRows {
@@ -27,6 +31,7 @@ typedef struct LatticeRows {
   RowKind *kind;     /* [lattices][ROW_KINDS] */
   uint8_t *present;  /* [slices][2 reach + 1] lanes for which a particle is so many places further in the same row */
   uint8_t *complete; /* [slices] 1: there is one for all lanes and distances */
+  uint8_t *late;     /* [slices] 1: in a row shifted by half a cell */
   int64_t *first;    /* [slices] first slot of a row that has sums; they come after all others */
   int64_t *begin;    /* [slices + 1] first of the slice's entries in `whole` */
   uint16_t *
@@ -41,16 +46,23 @@ typedef enum RowCondition {
   ROWS_GAPS = 2,   /* a bond of a slot that belongs to no whole row is missing */
 } RowCondition;
 
-LANES_INLINE void lattice_row_sums_reaching(const RowKind *kind, int reach, const uint8_t *present, const double *q,
-                                            double *sum, double *moment)
+/** Along which place of a row the neighbours of one kind begin, counted from where the sums are kept. */
+LANES_INLINE int lattice_row_begin(const RowKind *kind, bool late)
+{
+  return kind->neighbours % 2 || late ? -kind->reach : 1 - kind->reach;
+}
+
+LANES_INLINE void lattice_row_sums_of(const RowKind *kind, int begin, int neighbours, const uint8_t *present,
+                                      const double *q, double *sum, double *moment)
 {
   for (int half = 0; half < SLICE / LANES; ++half) {
     Lanes s = {0}, m = {0};
-    for (int along = -reach; along <= reach; ++along) {
+    for (int n = 0; n < neighbours; ++n) {
+      const int along = begin + n;
       Lanes value = lanes_load(q + LANES * half + along);
       if (present) value = lanes_where(lanes_mask((unsigned)present[along] >> (LANES * half) & 15u), value);
-      if (sum) s += value * lanes_set(kind->weight[reach + along]);
-      if (moment) m += value * lanes_set(kind->moment[reach + along]);
+      if (sum) s += value * lanes_set(kind->weight[n]);
+      if (moment) m += value * lanes_set(kind->moment[n]);
     }
     if (sum) lanes_store(sum + LANES * half, s);
     if (moment) lanes_store(moment + LANES * half, m);
@@ -64,13 +76,19 @@ LANES_INLINE void lattice_row_sums(const LatticeRows *rows, const RowKind *kind,
                                    double *sum, double *moment)
 {
   const uint8_t *present = rows->present + slice * (2 * rows->reach + 1) + rows->reach;
+  const int begin = lattice_row_begin(kind, rows->late[slice]);
   q += slice * SLICE;
   if (!rows->complete[slice])
-    lattice_row_sums_reaching(kind, kind->reach, present, q, sum, moment);
-  else if (kind->reach == 2) /* the usual horizon of 3.015 spacings; loops of known length take a third less time */
-    lattice_row_sums_reaching(kind, 2, NULL, q, sum, moment);
+    lattice_row_sums_of(kind, begin, kind->neighbours, present, q, sum, moment);
+  else if (kind->neighbours ==
+           5) /* as with the usual horizon of 3.015 spacings; loops of known length take a third less time */
+    lattice_row_sums_of(kind, -2, 5, NULL, q, sum, moment);
+  else if (kind->neighbours == 6) /* of face-centred cubic lattices, this and the next */
+    lattice_row_sums_of(kind, begin, 6, NULL, q, sum, moment);
+  else if (kind->neighbours == 4)
+    lattice_row_sums_of(kind, begin, 4, NULL, q, sum, moment);
   else
-    lattice_row_sums_reaching(kind, kind->reach, NULL, q, sum, moment);
+    lattice_row_sums_of(kind, begin, kind->neighbours, NULL, q, sum, moment);
 }
 
 /** Lanes of a slice that hold a particle, a bit each. */

@@ -152,6 +152,29 @@ double bond_characteristic_length(const BondLength *of)
                                : 2 * c * pow(of->horizon, 4) * influence_moment(of, 3);
 }
 
+/** Says which moduli a lattice shows whose axes are not alike: along each, and the least and largest over all directions. */
+static void describe_directions(const BondBased *b, int block, double unit, Text *text)
+{
+  enum { ANGLES = 90 };
+  const double step = acos(-1) / ANGLES;
+  const int dimensions = b->body->dimensions;
+  double least = INFINITY, largest = 0;
+  for (int azimuth = 0; azimuth < ANGLES; ++azimuth)
+    for (int height = 0; height <= (dimensions == 3 ? ANGLES / 2 : 0); ++height) {
+      const double round = azimuth * step, up = height * step;
+      const double n[3] = {cos(round) * cos(up), sin(round) * cos(up), sin(up)}, young = lattice_young(b, block, n);
+      least = fmin(least, young);
+      largest = fmax(largest, young);
+    }
+  text_add(text, "%s: a uniaxial patch shows ", b->body->blocks[block]->head.name);
+  for (int k = 0; k < dimensions; ++k) {
+    const double n[3] = {k == 0, k == 1, k == 2};
+    text_add(text, k ? ", %.3f along %c" : "%.3f of the wanted modulus along %c", unit * lattice_young(b, block, n),
+             "xyz"[k]);
+  }
+  text_add(text, "; %.3f to %.3f in all directions\n", unit * least, unit * largest);
+}
+
 void bond_describe(const void *formulation, Text *text)
 {
   const BondBased *b = formulation;
@@ -168,6 +191,10 @@ void bond_describe(const void *formulation, Text *text)
     if (b->body->dimensions == 1) {
       text_add(text, "%s: a stretched bar shows %.3f of the wanted modulus\n", b->body->blocks[block]->head.name,
                c * lattice_young(b, block, axis) / wanted);
+      continue;
+    }
+    if (b->body->lattices[block].type->turns < b->body->dimensions) {
+      describe_directions(b, block, c / wanted, text);
       continue;
     }
     text_add(text,

@@ -104,7 +104,7 @@ static int check_shapes(const Correspondence *c, Error *error)
     return error_add(
         error, BRECCIA_USER_ERROR,
         "particle %d at [%g, %g, %g] has %d bonds that do not span %s, so that it has no strain; the horizon is "
-        "%g: give the body at least two layers in every direction, a longer horizon, or a square lattice in the "
+        "%g: give the body at least two layers in every direction, a longer horizon, or a lattice of the "
         "plane",
         n, p->position[0][place], p->position[1][place], p->position[2][place], family_count(c->family, place),
         c->plane ? "the plane" : "space", c->family->horizon);

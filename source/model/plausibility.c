@@ -231,7 +231,7 @@ static Extent extent_of(const breccia_model *model)
   double low[3], high[3];
   particles_bounds(d->particles, low, high);
   for (int k = 0; k < d->body.dimensions; ++k) {
-    e.size[k] = in_si(model, "length", high[k] - low[k] + d->body.largest_spacing);
+    e.size[k] = in_si(model, "length", high[k] - low[k] + d->body.coarsest->plane[k]);
     e.largest = fmax(e.largest, e.size[k]);
     e.smallest = fmin(e.smallest, e.size[k]);
   }

@@ -81,7 +81,7 @@ refuse 's/body force: \[1, 0, 0\], //' 18:6 "none of 'body force', 'force'"
 refuse 's/body force: \[1, 0, 0\]/body force: [1 kN, 0, 0]/' 18:40 'wrong dimension; expected a force per volume'
 refuse 's/ramp to: 0.1 s/table: [[0, 0], [1, 1], [1, 2]]/' 18:85 'times must grow'
 refuse 's/horizon: 3.015 spacings/horizon: 0.05/' 15:25 'so that no particle has a neighbour'
-refuse 's/horizon: 3.015 spacings/space: plane stress/' 15:23 'needs a square lattice'
+refuse 's/horizon: 3.015 spacings/space: plane stress/' 15:23 'needs a square or hexagonal lattice'
 refuse 's/horizon: 3.015 spacings/zero-energy control: {silling: 0.1, wan: 0.1}/' 15:57 'more than one of'
 refuse 's/horizon: 3.015 spacings/influence: gausian/' 15:27 "did you mean 'gaussian'?"
 refuse 's/stretch: 0.05/stretch: 0/' 16:29 'it must be greater than 0'

@@ -96,3 +96,30 @@ int material_refusal(const char *name, const char *commas, char *reason, size_t 
   breccia_error_destroy(&error);
   return status;
 }
+
+void assert_families_are_all_pairs(const breccia_model *model)
+{
+  const Particles *p = model->domain.particles;
+  const Family *f = &model->domain.family;
+  double reach = f->horizon * (1 + 1e-9);
+  int64_t bonds = 0;
+  for (int64_t a = 0; a < p->count; ++a) {
+    int32_t i = p->place_of[a];
+    int expected = 0;
+    for (int64_t b = 0; b < p->count; ++b) {
+      int32_t j = p->place_of[b];
+      double x[3], y[3], square = 0;
+      for (int k = 0; k < 3; ++k) {
+        x[k] = p->position[k][i];
+        y[k] = p->position[k][j];
+        square += (y[k] - x[k]) * (y[k] - x[k]);
+      }
+      bool near = a != b && sqrt(square) <= reach && !body_cuts(&model->domain.body, x, y);
+      expected += near;
+      if (near != family_joins(f, i, j)) fail_msg("pair %d %d: all pairs say %d", (int)a, (int)b, near);
+    }
+    assert_int_equal(family_count(f, i), expected);
+    bonds += expected;
+  }
+  assert_int_equal(f->bonds, bonds);
+}

@@ -28,6 +28,8 @@ void assert_near_at(double a, double b, double tolerance, const char *what, cons
 void deform_uniformly(breccia_model *model, const double f[9]);
 /** Internal forces of the displacements held. */
 void compute_forces(breccia_model *model);
+/** Compares every family with all pairs of the body tried one by one. */
+void assert_families_are_all_pairs(const breccia_model *model);
 /** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */
 Material material_of(const char *law, ...);
 /** Tries to prepare a material of "name=value" words with commas between. @return its status; `reason` tells why it is refused */

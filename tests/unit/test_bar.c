@@ -105,7 +105,7 @@ static void what_a_bar_cannot_have_is_refused(void **state)
       {"formulation: bond-based, space: 1-D", "lattice: line", "", "a line needs the 'area'"},
       {"formulation: bond-based", "lattice: line, area: 1", "", "space: a line needs '1-D'"},
       {"formulation: bond-based, space: 1-D", "lattice: square, thickness: 1", "",
-       "a square lattice needs 'plane strain'"},
+       "a lattice of the plane needs 'plane strain'"},
       {"formulation: bond-based, space: 1-D", "lattice: line, area: 1",
        "loads: [{on: {all: yes}, body force: [0, 1, 0]}]\n", "has a part along y, but the body is a bar along x"},
       {"space: 1-D", "lattice: line, area: 1", "", "correspondence has no strain along a line"},

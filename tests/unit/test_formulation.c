@@ -179,14 +179,21 @@ static void forget_rows(Family *f)
 static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state)
 {
   (void)state;
-  /* Rows along x, y and z, ended by faces, a hole and a cut, and torn by broken bonds; controls alike and different. */
+  /* Rows along x, y and z, ended by faces, a hole and a cut, and torn by broken bonds; controls alike and different. In the last two
+   * every other row is shifted by half a cell. */
   const char *const bodies[] = {
       "cubic, shape: {difference: [{box: {particles: [27, 12, 9]}}, {sphere: {centre: [16, 6.5, "
       "4.5], radius: 2.6}}]}",
-      "cubic, shape: {box: {particles: [9, 21, 8]}}", "cubic, shape: {box: {particles: [8, 9, 19]}}",
-      "square, thickness: 1, shape: {polygon: {corners: [[0, 5], [6, 0], [20, 0], [22, 13], [12, 20], [2, 18]]}}"};
-  for (int b = 0; b < 4; ++b)
+      "cubic, shape: {box: {particles: [9, 21, 8]}}",
+      "cubic, shape: {box: {particles: [8, 9, 19]}}",
+      "square, thickness: 1, shape: {polygon: {corners: [[0, 5], [6, 0], [20, 0], [22, 13], [12, 20], [2, 18]]}}",
+      "face-centred cubic, shape: {difference: [{box: {particles: [27, 12, 11]}}, {sphere: {centre: [16, 6.5, 4], "
+      "radius: 2.6}}]}",
+      "face-centred cubic, shape: {box: {particles: [8, 21, 9]}}",
+      "hexagonal, thickness: 1, shape: {polygon: {corners: [[0, 5], [6, 0], [20, 0], [22, 13], [12, 20], [2, 18]]}}"};
+  for (int b = 0; b < 7; ++b)
     for (int c = 0; c < 2 * CONTROLS; ++c) {
+      const bool flat = !strncmp(bodies[b], "square", 6) || !strncmp(bodies[b], "hexagonal", 9);
       breccia_model *model = model_of(
           "materials:\n"
           "  m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}\n"
@@ -196,8 +203,8 @@ static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state
           "body: {a: {material: m, spacing: 1, lattice: %s}, b: {material: n, spacing: 1, lattice: %s, shape: {box: "
           "{from: [-9, 0, 0], to: [-1, 3, %d]}}}}\n"
           "solve: {explicit: {steps: 1}}\n",
-          c < CONTROLS ? "150" : "90", b == 3 ? "plane strain" : "3-D", b == 3 ? 5.015 : 3.015, controls[c % CONTROLS],
-          bodies[b], b == 3 ? "square, thickness: 1" : "cubic", b == 3 ? 1 : 3);
+          c < CONTROLS ? "150" : "90", flat ? "plane strain" : "3-D", flat ? 5.015 : 3.015, controls[c % CONTROLS],
+          bodies[b], flat ? "square, thickness: 1" : "cubic", flat ? 1 : 3);
       Domain *d = &model->domain;
       Particles *p = d->particles;
       Family *f = &d->family;
