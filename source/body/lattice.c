@@ -87,10 +87,10 @@ int64_t lattice_row(const Lattice *lattice, const int64_t cell[3])
   return cell[lattice->across[0]] + lattice->cells[lattice->across[0]] * cell[lattice->across[1]];
 }
 
-/** Where a row lies in primitive vectors. Counts of cells begin anew in every row (and rows in every layer); what was left out of the
- *  multiples for that is `begin`, and what remains of the shift is `rest`. */
+/** How a row stands to the first one. Cells are counted from the low side in every row, rows from there in every layer: of the shift of a row
+ * the whole cells are taken off, `whole`, and `rest` remains. */
 typedef struct RowStart {
-  int64_t begin[2]; /* along `axis`, along across[0] */
+  int64_t whole[2]; /* along `axis`, along across[0] */
   double rest[2];
 } RowStart;
 
@@ -98,13 +98,13 @@ static RowStart row_start(const Lattice *lattice, int64_t row, int64_t layer)
 {
   static const double rounding = 1e-9;
   RowStart start;
-  double shift = lattice->shift[2] * (double)layer, whole = floor(shift + rounding);
-  start.begin[1] = (int64_t)whole;
-  start.rest[1] = fmax(0, shift - whole);
-  shift = lattice->shift[0] * (double)(row - start.begin[1]) + lattice->shift[1] * (double)layer;
-  whole = floor(shift + rounding);
-  start.begin[0] = (int64_t)whole;
-  start.rest[0] = fmax(0, shift - whole);
+  double shift = lattice->shift[2] * (double)layer, cells = floor(shift + rounding);
+  start.whole[1] = (int64_t)cells;
+  start.rest[1] = fmax(0, shift - cells);
+  shift = lattice->shift[0] * (double)(row - start.whole[1]) + lattice->shift[1] * (double)layer;
+  cells = floor(shift + rounding);
+  start.whole[0] = (int64_t)cells;
+  start.rest[0] = fmax(0, shift - cells);
   return start;
 }
 
@@ -132,8 +132,8 @@ bool lattice_neighbour(const Lattice *lattice, const int64_t cell[3], const int 
   const int along = lattice->axis, row = lattice->across[0], layer = lattice->across[1];
   other[layer] = cell[layer] + offset[layer];
   const RowStart here = row_start_of(lattice, cell), layer_there = row_start(lattice, 0, other[layer]);
-  other[row] = cell[row] + offset[row] + layer_there.begin[1] - here.begin[1];
-  other[along] = cell[along] + offset[along] + row_start_of(lattice, other).begin[0] - here.begin[0];
+  other[row] = cell[row] + offset[row] + layer_there.whole[1] - here.whole[1];
+  other[along] = cell[along] + offset[along] + row_start_of(lattice, other).whole[0] - here.whole[0];
   return other[row] >= 0 && other[row] < lattice->cells[row] && other[layer] >= 0 &&
          other[layer] < lattice->cells[layer];
 }
