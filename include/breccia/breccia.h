@@ -150,8 +150,8 @@ BRECCIA_API int64_t breccia_model_places(const breccia_model *model);
 /** Global number of the particle in each place, or -1, [places]. Numbers run along x first, then y, then z, block by block. */
 BRECCIA_API const int32_t *breccia_model_numbers(const breccia_model *model);
 /** The model's own array, [places]; read it, write to it between steps. Names: "position x", "displacement x",
- *  "velocity x" (and y, z), "volume", "density"; read-only in meaning: "force x" (internal, per volume), "strain xx", "stress xx" ...
- *  (with bonds: as of this call)
+ *  "velocity x" (and y, z), "volume", "density"; read-only in meaning: "force x" (internal, per volume), "external force x",
+ *  "acceleration x", "strain xx", "stress xx" ... (with bonds: as of this call)
  *  @return NULL if there is no such array */
 BRECCIA_API double *breccia_model_array(breccia_model *model, const char *name);
 

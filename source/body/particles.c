@@ -76,6 +76,22 @@ void particles_destroy(Particles *particles)
   *particles = (Particles){0};
 }
 
+void particles_state(Particles *p, StateList *list)
+{
+  state_add_vector(list, "position", "length", STATE_SHOWN, p->position, p->places);
+  state_add_vector(list, "displacement", "length", STATE_TRIED, p->displacement, p->places);
+  state_add_vector(list, "velocity", "velocity", STATE_TRIED, p->velocity, p->places);
+  state_add_vector(list, "external force", "force per volume", STATE_COMMITTED, p->external, p->places);
+  const StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .role = STATE_SHOWN, .count = p->places};
+  StateRow volume = row, density = row;
+  volume.unit = "volume";
+  volume.values = p->volume;
+  density.unit = "density";
+  density.values = p->density;
+  state_add(list, &volume, "volume", NULL);
+  state_add(list, &density, "density", NULL);
+}
+
 void particles_bounds(const Particles *particles, double low[3], double high[3])
 {
   for (int k = 0; k < 3; ++k) {

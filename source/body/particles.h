@@ -9,6 +9,7 @@
 
 #include "base/lanes.h"
 #include "base/memory.h"
+#include "base/state.h"
 #include <stdint.h>
 
 typedef struct Particles {
@@ -29,6 +30,9 @@ void places_free(double **array);
 
 int particles_create(Particles *particles, int64_t slices, int64_t count, Error *error);
 void particles_destroy(Particles *particles);
+
+/** Rows of positions, motion, forces of loads, volumes and densities. */
+void particles_state(Particles *particles, StateList *list);
 
 /** Largest extent of the present particles: low and high corner of their centres. */
 void particles_bounds(const Particles *particles, double low[3], double high[3]);

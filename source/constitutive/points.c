@@ -118,6 +118,64 @@ void points_commit(Points *points)
   remote_points_commit(points);
 }
 
+static int histories_ready(void *owner, Error *error)
+{
+  return points_save(owner, error);
+}
+
+static int histories_resume(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  Points *points = owner;
+  (void)numbers, (void)count;
+  if (points->history_size) memcpy(points->trial, points->committed, sizeof(double) * points->history_size);
+  return points_resume(points, error);
+}
+
+void points_state(Points *points, StateList *list)
+{
+  static const StateCare histories = {.ready = histories_ready, .resume = histories_resume};
+  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  const bool here = points->where == POINTS_ON_PARTICLES;
+  StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .count = points->places};
+  for (int k = 0; k < 6 && points->strain[0]; ++k) {
+    row.unit = "1";
+    row.values = points->strain[k];
+    /* Across the plane of plane stress the law finds it, from where it was. */
+    row.role = !here ? STATE_SHOWN : k == ZZ && points->space == SPACE_PLANE_STRESS ? STATE_TRIED : STATE_FOLLOWS;
+    state_add(list, &row, "strain", parts[k]);
+    row.unit = "stress";
+    row.values = points->stress[k];
+    row.role = !here ? STATE_SHOWN : points_are_linear(points) ? STATE_FOLLOWS : STATE_TRIED;
+    state_add(list, &row, "stress", parts[k]);
+  }
+  if (points->gave_up)
+    state_add(list,
+              &(StateRow){.unit = "1",
+                          .kind = STATE_BYTES,
+                          .entity = STATE_OF_PLACE,
+                          .role = STATE_TRIED,
+                          .count = points->places,
+                          .values = points->gave_up},
+              "failed laws", NULL);
+  row = (StateRow){.unit = "1", .kind = STATE_NUMBERS, .role = STATE_COMMITTED};
+  row.count = (int64_t)points->identity_size;
+  row.values = points->identity;
+  if (points->identity_size) state_add(list, &row, "servers", NULL);
+  row.entity = STATE_OF_POINT;
+  row.count = (int64_t)points->history_size;
+  row.values = points->committed;
+  row.care = &histories;
+  row.owner = points;
+  state_add(list, &row, "history", NULL);
+}
+
+bool points_are_linear(const Points *points)
+{
+  for (int k = 0; k < points->material_count; ++k)
+    if (!points->materials[k].law->linear) return false;
+  return true;
+}
+
 /** True if the stress zz of point i of a batch is nothing beside its other stresses and what its strain zz would make
  *  elastically. */
 static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i)

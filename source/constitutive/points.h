@@ -99,8 +99,14 @@ double points_bond_elastic_share(const Points *points, int64_t slice, int64_t sl
 /** Mean over the intact bonds of a place of history number k of its own law, as committed. */
 double points_bond_history(const Points *points, int64_t place, int k);
 
+/** True if no law dissipates or remembers: stresses are those of the strains, to the bit. */
+bool points_are_linear(const Points *points);
+
 /** Makes the trial state the committed one. */
 void points_commit(Points *points);
+
+/** Rows of strains, stresses, histories, and of what servers hold. Of points on bonds, strains and stresses are only shown. */
+void points_state(Points *points, StateList *list);
 
 /* ---- laws that run in other processes (constitutive/remote); nothing happens where none does ---- */
 

@@ -733,18 +733,26 @@ double contact_eigenvalue(const Contact *c)
 
 enum { SAVED_START = 3, SAVED_ROW = 4, SAVED_PAIR = 13 };
 
-/** Writes the state, or counts its numbers if `out` is NULL: work of friction, travel, and how many rows; of each row its number and how it
+static int32_t rows_with_pairs(const Contact *c)
+{
+  int32_t count = 0;
+  for (int32_t r = 0; r < c->row_count; ++r) count += c->rows[r].count > 0;
+  return count;
+}
+
+/** Writes the state, or counts its numbers if `out` is NULL: work of friction, travel, and how many rows have pairs; of each its number and how it
  *  has turned; of each pair with a state both numbers, rest, whether friction holds it, spring, way and normal. */
 static int64_t write_state(const Contact *c, double *out)
 {
   const Particles *p = &c->body->particles;
   int64_t count = SAVED_START;
   if (out)
-    memcpy(out, (const double[]){c->friction_work, c->travelled, (double)c->row_count}, SAVED_START * sizeof *out);
+    memcpy(out, (const double[]){c->friction_work, c->travelled, (double)rows_with_pairs(c)},
+           SAVED_START * sizeof *out);
   for (int64_t i = 0; i < p->count;
        ++i) { /* by number: rows stand in the order of events, which a restart does not know */
-    if (c->row_of[p->place_of[i]] < 0) continue;
-    const ContactRow *row = &c->rows[c->row_of[p->place_of[i]]];
+    const ContactRow *row = c->row_of[p->place_of[i]] < 0 ? NULL : &c->rows[c->row_of[p->place_of[i]]];
+    if (!row || !row->count) continue;
     const double state[SAVED_ROW] = {(double)i, row->to[0], row->to[1], row->to[2]};
     if (out) memcpy(out + count, state, sizeof state);
     count += SAVED_ROW;
@@ -800,7 +808,10 @@ int contact_resume(Contact *c, const double *numbers, int64_t count)
     row->turning = false;
   }
   for (int32_t r = 0; r < c->row_count; ++r)
-    for (int32_t n = 0; n < c->rows[r].count; ++n) c->rows[r].pairs[n].rest = 1;
+    for (int32_t n = 0; n < c->rows[r].count; ++n) {
+      c->rows[r].pairs[n].rest = 1;
+      if (c->rows[r].grips) c->rows[r].grips[2 * n + c->committed].touching = false;
+    }
   for (const double *state = pairs; state < end; state += SAVED_PAIR) {
     const int32_t place = saved_place(c, state[0]), other = saved_place(c, state[1]);
     ContactPair *pair = place < 0 || other < 0 ? NULL : pair_for(c, place, other);
@@ -817,4 +828,22 @@ int contact_resume(Contact *c, const double *numbers, int64_t count)
     }
   }
   return 0;
+}
+
+static int64_t save_row(const void *owner, double **numbers)
+{
+  return contact_save(owner, numbers);
+}
+
+static int resume_row(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)error;
+  return contact_resume(owner, numbers, count) ? STATE_MISFIT : BRECCIA_OK;
+}
+
+void contact_state(Contact *c, StateList *list)
+{
+  static const StateCare care = {.save = save_row, .resume = resume_row};
+  if (c->spec)
+    state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &care, .owner = c}, "contact", NULL);
 }

@@ -97,6 +97,9 @@ void contact_commit(Contact *contact);
 /** The most that contact adds to the largest eigenvalue of stiffness over mass. */
 double contact_eigenvalue(const Contact *contact);
 
+/** The row of what contact remembers; bonds and displacements stand before it. */
+void contact_state(Contact *contact, StateList *list);
+
 /** The committed state as numbers, to be saved: of a pair that broke when pressed, and of one that friction holds. @return how many, or -1
  *  @param[out] numbers  to be freed; NULL if there are none */
 int64_t contact_save(const Contact *contact, double **numbers);

@@ -15,6 +15,7 @@ static const Dimension dimensions[] = {
     {"angle", 0, 0, 0, "deg"},
     {"length", 1, 0, 0, "m"},
     {"area", 2, 0, 0, "m2"},
+    {"volume", 3, 0, 0, "m3"},
     {"time", 0, 0, 1, "s"},
     {"frequency", 0, 0, -1, "Hz"},
     {"damping rate", 0, 0, -1, "1/s"},

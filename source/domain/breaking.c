@@ -129,8 +129,6 @@ void domain_break(Domain *d, const Moment *moment)
   TEAM_SINGLE
   {
     d->broken_before = d->broken_count;
-    d->fracture_before = d->fracture_energy;
-    d->motion_before = d->motion;
     d->motion += moment->motion;
     d->torn_count = 0;
   }
@@ -176,8 +174,6 @@ void domain_book(Domain *d, double time_step)
 
 void domain_mend(Domain *d)
 {
-  uint8_t *gave_up = d->points.gave_up;
-  for (int64_t i = 0; gave_up && i < d->particles->places; ++i) gave_up[i] = (gave_up[i] & CONSUMED) != 0;
   for (int64_t n = 0; n < d->torn_count; ++n) d->is_torn[d->torn[n].place] = 0;
   d->torn_count = 0;
   for (int64_t n = d->broken_before; n < d->broken_count; ++n) {
@@ -187,8 +183,6 @@ void domain_mend(Domain *d)
     for (int end = 0; end < 2 && d->type->renew; ++end) d->type->renew(d->formulation, (end ? b : a) / SLICE);
   }
   d->broken_count = d->broken_before;
-  d->fracture_energy = d->fracture_before;
-  d->motion = d->motion_before;
   d->out_of_memory = false;
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
   if (d->contact.spec && !d->contact.failed) contact_search(&d->contact);

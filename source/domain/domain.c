@@ -6,20 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void domain_resume(Domain *d)
-{
-  for (int64_t n = 0; n < d->broken_count; ++n) {
-    contact_bond_broke(&d->contact, d->particles->place_of[d->broken[n].a], d->particles->place_of[d->broken[n].b]);
-    for (int end = 0; end < 2; ++end) {
-      int64_t slice = d->particles->place_of[end ? d->broken[n].b : d->broken[n].a] / SLICE;
-      lattice_rows_mark(&d->family, slice);
-      if (d->type->renew) d->type->renew(d->formulation, slice);
-    }
-  }
-  domain_show_states(d);
-  if (d->contact.spec) contact_search(&d->contact);
-}
-
 double domain_history(const Domain *d, int64_t place, int k)
 {
   if (d->points.where == POINTS_NOWHERE) return 0;
@@ -70,9 +56,7 @@ int domain_observe(Domain *d, Error *error)
 
 bool domain_is_elastic(const Domain *d)
 {
-  for (int k = 0; k < d->material_count; ++k)
-    if (!d->materials[k].law->linear) return false;
-  return true;
+  return points_are_linear(&d->points);
 }
 
 static void store_block(void *context, int64_t b)

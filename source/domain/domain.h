@@ -66,10 +66,8 @@ typedef struct Domain {
   double fracture_energy; /* that bonds had received, and neither gave back nor dissipated, when they broke */
   Torn *torn;
   int64_t torn_count, torn_capacity;
-  uint8_t *is_torn;       /* [places] */
-  int64_t broken_before;  /* bonds, at the beginning of the step under way */
-  double fracture_before; /* energy, then */
-  double motion_before;
+  uint8_t *is_torn;      /* [places] */
+  int64_t broken_before; /* bonds, at the beginning of the step under way */
   bool any_suspect;      /* in the step under way */
   bool out_of_memory;    /* while bonds broke */
   double force_sum;      /* of all internal force components' magnitudes, as of the last domain_forces */
@@ -106,9 +104,11 @@ int domain_linearise(Domain *domain, Error *error);
  *  @param[out] change  arrays of places_array */
 void domain_linear_step(Domain *domain, double *const v[3], double *const change[3]);
 
-/** Takes up a state that was read from a file: displacements, stresses and intact bits are in place; shapes, deformations and force
- *  states follow from them, to the same bits as in the run that left them. */
-void domain_resume(Domain *domain);
+/** Rows of particles, points, bonds and contact. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
+ *  deformations and force states follow to the same bits. */
+void domain_state(Domain *domain, StateList *list);
+/** Forces, strains and stresses of the state that a step began with, after all rows that it had tried have come back. */
+void domain_follow(Domain *domain);
 
 /** Breaks the bonds that the criterion says, by all threads, and renews the families concerned. Displacements are those at the end of
  *  the step under way, strains and stresses those at its beginning. */
@@ -117,7 +117,7 @@ void domain_break(Domain *domain, const Moment *moment);
 /** After the forces of the step, by all threads: books what its broken bonds had received. */
 void domain_book(Domain *domain, double time_step);
 
-/** Takes back what domain_break did in a step that failed; displacements are those of its beginning again. */
+/** Mends the bonds that domain_break broke in a step that failed; displacements are those of its beginning again. */
 void domain_mend(Domain *domain);
 
 /** Lets no bond break between particles that are marked or have an intact bond to one that is.

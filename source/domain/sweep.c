@@ -187,6 +187,23 @@ void domain_show_states(Domain *d)
   team_run(show_states, d);
 }
 
+static void remake_forces(void *context)
+{
+  Domain *d = context;
+  run_all(d, &(Purpose){.no_law = true});
+  contact_resist(&d->contact);
+}
+
+void domain_follow(Domain *d)
+{
+  if (domain_is_elastic(d))
+    domain_evaluate(d);
+  else if (d->points.where == POINTS_ON_PARTICLES)
+    team_run(remake_forces, d);
+  else
+    domain_show_states(d);
+}
+
 /* ---- linearised steps ---- */
 
 int domain_linearise(Domain *d, Error *error)

@@ -357,6 +357,18 @@ double family_volume(const Family *family, int32_t place)
   return volume;
 }
 
+void family_state(Family *family, StateList *list)
+{
+  state_add(list,
+            &(StateRow){.unit = "1",
+                        .kind = STATE_BYTES,
+                        .entity = STATE_OF_SLOT,
+                        .role = STATE_COMMITTED,
+                        .count = family->slots,
+                        .values = family->intact},
+            "intact", NULL);
+}
+
 size_t family_bytes(const Family *family)
 {
   size_t slot = sizeof *family->base + sizeof *family->pattern + sizeof *family->intact;

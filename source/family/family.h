@@ -113,6 +113,9 @@ int family_count(const Family *family, int32_t place);
 /** Sum of the neighbours' volumes over intact bonds of a place; at the start it is what damage is measured against. */
 double family_volume(const Family *family, int32_t place);
 
+/** The row of intact bits. What follows from them (lattice rows) is marked again by who gives them back. */
+void family_state(Family *family, StateList *list);
+
 /** Bytes that bonds take. */
 size_t family_bytes(const Family *family);
 

@@ -391,39 +391,6 @@ const int32_t *breccia_model_numbers(const breccia_model *model)
   return model->domain.particles->number;
 }
 
-double *breccia_model_array(breccia_model *model, const char *name)
-{
-  Particles *p = model->domain.particles;
-  static const char *const voigt[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
-  const struct {
-    const char *name;
-    double **arrays;
-  } vectors[] = {
-      {"position", p->position}, {"displacement", p->displacement}, {"velocity", p->velocity}, {"force", p->internal}};
-  char wanted[64];
-  for (int v = 0; v < 4; ++v)
-    for (int k = 0; k < 3; ++k) {
-      snprintf(wanted, sizeof wanted, "%s %c", vectors[v].name, "xyz"[k]);
-      if (!strcmp(wanted, name)) return vectors[v].arrays[k];
-    }
-  const bool strain = !strncmp(name, "strain ", 7), stress = !strncmp(name, "stress ", 7);
-  if (strain || stress) {
-    Team *before = team_use(model->team);
-    const int bad = domain_observe(&model->domain, NULL);
-    team_use(before);
-    if (bad) return NULL;
-  }
-  for (int k = 0; k < 6; ++k) {
-    snprintf(wanted, sizeof wanted, "stress %s", voigt[k]);
-    if (!strcmp(wanted, name)) return model->domain.points.stress[k];
-    snprintf(wanted, sizeof wanted, "strain %s", voigt[k]);
-    if (!strcmp(wanted, name)) return model->domain.points.strain[k];
-  }
-  if (!strcmp(name, "volume")) return p->volume;
-  if (!strcmp(name, "density")) return p->density;
-  return NULL;
-}
-
 int model_field_names(const breccia_model *model, TextList *names, Error *error)
 {
   const DeckSpec *spec = model->spec;

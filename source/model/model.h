@@ -43,6 +43,9 @@ int model_enter(breccia_model *model, Team **before, Error *error);
 /** Prepares forces and accelerations of the first state, once. */
 int model_begin(breccia_model *model, Error *error);
 
+/** Rows of the whole state: of the domain, the solver and the largest values so far. */
+void model_state(breccia_model *model, StateList *list);
+
 /** Names of the fields that results are written of, without doubles: those of the deck, those of its pictures, and displacement.
  *  @param[out] names  its items are to be freed */
 int model_field_names(const breccia_model *model, TextList *names, Error *error);

@@ -91,12 +91,15 @@ static int write_results(Run *run, Error *error)
 
 static int write_checkpoint(Run *run, Error *error)
 {
-  const Peaks *p = &run->model->peaks;
-  const double extras[CHECKPOINT_EXTRAS] = {p->displacement, p->velocity,  p->octahedral,
-                                            p->mean_low,     p->mean_high, p->damage};
+  breccia_model *model = run->model;
   run->last_checkpoint = clock_seconds();
-  const int status =
-      checkpoint_write(run->wish->folder, &run->model->solver, text_words(&run->model->deck), extras, error);
+  if (!points_can_save(&model->domain.points))
+    return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
+  StateList state = {0};
+  model_state(model, &state);
+  const CheckpointOf of = {text_words(&model->deck), model->domain.particles->count};
+  const int status = checkpoint_write(run->wish->folder, &state, &of, error);
+  state_list_destroy(&state);
   const double seconds = clock_seconds() - run->last_checkpoint;
   pace_note(&run->model->outlook.checkpoints, 1, seconds);
   run->paused += seconds;
@@ -134,6 +137,18 @@ static int write_deck(Run *run, Error *error)
            text_words(&model->deck));
   const int status = write_file(run, "deck.yaml", &words, error);
   text_free(&words);
+  return status;
+}
+
+static int read_checkpoint(Run *run, Error *error)
+{
+  breccia_model *model = run->model;
+  StateList state = {0};
+  model_state(model, &state);
+  const CheckpointOf of = {text_words(&model->deck), model->domain.particles->count};
+  const int status = checkpoint_read(run->wish->folder, &state, &of, error);
+  state_list_destroy(&state);
+  model->begun = !status;
   return status;
 }
 
@@ -611,14 +626,7 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   int status = make_folder(wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
   if (!status && wish->progress) status = model_expect(model, error);
-  if (!status && wish->restart) {
-    double extras[CHECKPOINT_EXTRAS];
-    status = checkpoint_read(wish->folder, &model->solver, text_words(&model->deck), extras, error);
-    if (!status) {
-      model->peaks = (Peaks){extras[0], extras[1], extras[2], extras[3], extras[4], extras[5]};
-      model->begun = true;
-    }
-  }
+  if (!status && wish->restart) status = read_checkpoint(&run, error);
   run.steps = steps_wanted(&run); /* only now: a checkpoint may know of more */
   if (!status) status = model_begin(model, error);
   if (!status) status = open_files(&run, error);

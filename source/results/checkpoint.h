@@ -1,16 +1,19 @@
-/* Everything that a step depends on, in one HDF5 file that is written whole or not at all. */
+/* A state in one HDF5 file that is written whole or not at all. */
 #ifndef BRECCIA_RESULTS_CHECKPOINT_H
 #define BRECCIA_RESULTS_CHECKPOINT_H
 
-#include "solver/explicit.h"
+#include "base/state.h"
 
-/** Numbers that a run keeps beside the solver's state. */
-enum { CHECKPOINT_EXTRAS = 8 };
+/** What a checkpoint belongs to. */
+typedef struct CheckpointOf {
+  const char *deck; /* the text that the run was made from */
+  int64_t particles;
+} CheckpointOf;
 
-/** Writes <folder>/checkpoint.h5 (temporary file, fsync, rename). `deck` is the text that the run was made from. */
-int checkpoint_write(const char *folder, Explicit *solver, const char *deck, const double *extras, Error *error);
+/** Writes <folder>/checkpoint.h5 (temporary file, fsync, rename). */
+int checkpoint_write(const char *folder, const StateList *state, const CheckpointOf *of, Error *error);
 
-/** Reads it back into a solver freshly set up from the same deck, to the same bits; another deck, version or body is refused. */
-int checkpoint_read(const char *folder, Explicit *solver, const char *deck, double *extras, Error *error);
+/** Reads it back into a body freshly set up from the same deck, to the same bits; another deck, version or body is refused. */
+int checkpoint_read(const char *folder, const StateList *state, const CheckpointOf *of, Error *error);
 
 #endif

@@ -156,6 +156,53 @@ void explicit_stop_at(Explicit *s, const double *times, int64_t count)
   if (isnan(s->fixed)) plan_steps(s);
 }
 
+void explicit_state(Explicit *s, StateList *list)
+{
+  Ledger *l = &s->ledger;
+  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration,
+                   s->domain->particles->places);
+  const struct {
+    const char *name, *unit;
+    double *value;
+  } numbers[] = {{"time", "time", &s->time},
+                 {"work on bonds", "energy", &l->bond_work},
+                 {"external work", "energy", &l->external_work},
+                 {"work of damping", "energy", &l->damping_work},
+                 {"kinetic energy", "energy", &l->kinetic},
+                 {"energy between steps", "energy", &l->between},
+                 {"kinetic energy at the start", "energy", &s->kinetic_at_start},
+                 {"paid energy", "energy", &s->paid},
+                 {"stable step", "time", &s->stable},
+                 {"time step", "time", &s->time_step},
+                 {"plan from", "time", &s->plan.from},
+                 {"plan to", "time", &s->plan.to}};
+  const struct {
+    const char *name;
+    int64_t *value;
+  } counts[] = {{"step", &s->step},
+                {"steps", &s->steps},
+                {"first step of the plan", &s->plan.first},
+                {"steps of the plan", &s->plan.count},
+                {"broken at the stable step", &s->broken_at_estimate},
+                {"step of the stable step", &s->step_at_estimate},
+                {"unsound steps", &s->unsound_steps}};
+  for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
+    state_add_number(list, numbers[k].name, numbers[k].unit, STATE_TRIED, numbers[k].value);
+  for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k)
+    state_add_count(list, counts[k].name, STATE_TRIED, counts[k].value);
+}
+
+/** Room for what steps try. */
+static int keep_state(Explicit *s, Error *error)
+{
+  StateList list = {0};
+  domain_state(s->domain, &list);
+  explicit_state(s, &list);
+  const int status = state_keep(&s->before, &list, error);
+  state_list_destroy(&list);
+  return status;
+}
+
 int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec,
                     const DeckReader *reader, bool force, Text *warning)
 {
@@ -168,10 +215,7 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
   for (int n = 0; n < loading->constraint_count; ++n)
     if (parts_of(&loading->constraints[n]) > parts) parts = parts_of(&loading->constraints[n]);
   s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", reader->error);
-  if (domain->points.server)
-    failed |= !(s->kept = memory_zeroed(15 * (size_t)domain->particles->places, sizeof *s->kept, "state of servers",
-                                        reader->error));
-  if (failed || !s->sums || !s->parts) return BRECCIA_FAILURE;
+  if (failed || !s->sums || !s->parts || keep_state(s, reader->error)) return BRECCIA_FAILURE;
   int status = find_stable_step(s, reader->error);
   if (status) return status;
   s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
@@ -209,7 +253,7 @@ void explicit_destroy(Explicit *s)
   for (int k = 0; k < 3; ++k) places_free(&s->acceleration[k]);
   free(s->sums);
   free(s->parts);
-  free(s->kept);
+  state_copy_destroy(&s->before);
   *s = (Explicit){0};
 }
 
@@ -445,25 +489,12 @@ static const char *describe_failed_law(const Domain *d, int64_t place, char *wor
   return words;
 }
 
-/** Keeps what only servers could tell again, or gives it back. */
-static void keep(Explicit *s, bool back)
-{
-  const Domain *d = s->domain;
-  const size_t places = (size_t)d->particles->places;
-  for (int k = 0; k < 15 && s->kept; ++k) {
-    double *array = k < 3 ? d->particles->internal[k] : k < 9 ? d->points.strain[k - 3] : d->points.stress[k - 9];
-    double *copy = s->kept + (size_t)k * places;
-    if (array) memcpy(back ? array : copy, back ? copy : array, places * sizeof *array);
-  }
-}
-
-/** Takes the state back to the start of the step, and says what happened.
- *  @param[in] before  the ledger then */
-static int retreat(Explicit *s, const Ledger *before, Error *error)
+/** Takes the state back to the start of the step, and says what happened. */
+static int retreat(Explicit *s, Error *error)
 {
   Domain *d = s->domain;
   const Particles *p = d->particles;
-  const double dt = s->time_step, c = s->spec->damping;
+  const double dt = s->time_step;
   const int32_t failed = (int32_t)d->failed_place, bad = failed >= 0 ? failed : first_bad_particle(p);
   const int left = family_count(&d->family, bad);
   char words[320];
@@ -486,19 +517,10 @@ static int retreat(Explicit *s, const Ledger *before, Error *error)
         "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
         "%g, stable step %g, kinetic energy %g)",
         (long long)s->step + 1, s->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
-        p->position[2][bad], cause, dt, s->stable, before->kinetic);
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      const double half = p->velocity[k][i];
-      p->displacement[k][i] -= dt * half;
-      p->velocity[k][i] = (half - 0.5 * dt * s->acceleration[k][i]) / (1 - 0.5 * c * dt);
-    }
-  s->ledger = *before;
+        p->position[2][bad], cause, dt, s->stable, s->ledger.kinetic);
+  state_undo(&s->before);
   domain_mend(d);
-  if (s->kept)
-    keep(s, true);
-  else
-    domain_evaluate(d); /* strains and stresses of the state that is left */
+  domain_follow(d);
   return BRECCIA_FAILURE;
 }
 
@@ -541,7 +563,10 @@ static void advance(void *context)
   Explicit *s = context;
   Domain *d = s->domain;
   const double end = time_after_step(s);
-  TEAM_FOR (b, d->block_count) kick_and_drift(s, b);
+  TEAM_FOR (b, d->block_count) {
+    state_note_places(&s->before, d->blocks[b].first * SLICE, d->blocks[b].last * SLICE);
+    kick_and_drift(s, b);
+  }
   prescribe_displacements(s);
   domain_break(d, &(Moment){s->step + 1, end, s->time_step, sqrt(3) * s->motion});
   domain_forces(d);
@@ -562,10 +587,9 @@ int explicit_advance(Explicit *s, Text *warning, Error *error)
 {
   const int status = follow_stable_step(s, warning, error);
   if (status) return status;
-  const Ledger before = s->ledger;
-  keep(s, false);
+  state_note_others(&s->before);
   team_run(advance, s);
-  if (!is_sound(s)) return retreat(s, &before, error);
+  if (!is_sound(s)) return retreat(s, error);
   points_commit(&s->domain->points);
   contact_commit(&s->domain->contact);
   return watch_energy(s, error);

@@ -67,11 +67,10 @@ typedef struct Explicit {
   double kinetic_at_start;
   int64_t unsound_steps; /* up to now, in each of which energy has come from nothing */
   double paid;           /* the most that loads, motions and speeds at the start have put in so far */
-  double *
-      kept; /* [15][places] forces, strains and stresses before the step under way, if a server may fail to give them again */
-  double motion;      /* largest component of any displacement increment in the step under way */
-  double (*sums)[6];  /* [blocks] of BOND_WORK ... (explicit.c) */
-  double (*parts)[6]; /* the same for parts of prescribed selections */
+  StateCopy before;      /* what the step under way has tried, as it was */
+  double motion;         /* largest component of any displacement increment in the step under way */
+  double (*sums)[6];     /* [blocks] of BOND_WORK ... (explicit.c) */
+  double (*parts)[6];    /* the same for parts of prescribed selections */
 } Explicit;
 
 /** Sets up; finds the stable step and checks a chosen one against it.
@@ -80,6 +79,9 @@ typedef struct Explicit {
 int explicit_create(Explicit *solver, Domain *domain, const Loading *loading, const ExplicitSpec *spec,
                     const DeckReader *reader, bool force, Text *warning);
 void explicit_destroy(Explicit *solver);
+
+/** Rows of the clock, of what is summed over steps and of the plan of steps, and of the accelerations. */
+void explicit_state(Explicit *solver, StateList *list);
 
 /** Tells times, ascending, at which steps shall end if the program chooses them; borrowed. Before the first step. */
 void explicit_stop_at(Explicit *solver, const double *times, int64_t count);

@@ -1,0 +1,70 @@
+/* The state of a domain: its rows, and how what follows from them is made again. */
+#include "domain/domain.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { NUMBERS_PER_BOND = 4 }; /* step, time and both ends of a broken bond, as saved */
+
+/** What follows from the bonds of both ends of a broken or mended one. */
+static void renew_ends(Domain *d, const BrokenBond *bond)
+{
+  for (int end = 0; end < 2; ++end) {
+    const int64_t slice = d->particles->place_of[end ? bond->b : bond->a] / SLICE;
+    lattice_rows_mark(&d->family, slice);
+    if (d->type->renew) d->type->renew(d->formulation, slice);
+  }
+}
+
+static int64_t save_broken(const void *owner, double **numbers)
+{
+  const Domain *d = owner;
+  double *rows = *numbers = malloc(sizeof(double) * (size_t)(NUMBERS_PER_BOND * d->broken_count + 1));
+  if (!rows) return -1;
+  for (int64_t n = 0; n < d->broken_count; ++n) {
+    const BrokenBond *bond = &d->broken[n];
+    memcpy(rows + NUMBERS_PER_BOND * n, (const double[]){(double)bond->step, bond->time, bond->a, bond->b},
+           NUMBERS_PER_BOND * sizeof *rows);
+  }
+  return NUMBERS_PER_BOND * d->broken_count;
+}
+
+/** Displacements, stresses and intact bits are in place; shapes, deformations and force states follow from them, to the same bits as
+ *  in the run that left them. */
+static int resume_broken(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  Domain *d = owner;
+  const double particles = (double)d->particles->count;
+  if (count % NUMBERS_PER_BOND) return STATE_MISFIT;
+  for (int64_t n = 0; n < d->broken_count; ++n) {
+    contact_bond_mended(&d->contact, d->particles->place_of[d->broken[n].a], d->particles->place_of[d->broken[n].b]);
+    renew_ends(d, &d->broken[n]);
+  }
+  d->broken_count = 0;
+  for (const double *row = numbers; row < numbers + count; row += NUMBERS_PER_BOND) {
+    if (!(row[2] >= 0 && row[2] < particles && row[3] >= 0 && row[3] < particles)) return STATE_MISFIT;
+    const BrokenBond bond = {(int64_t)row[0], row[1], (int32_t)row[2], (int32_t)row[3]};
+    if (domain_record(d, &bond)) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
+    contact_bond_broke(&d->contact, d->particles->place_of[bond.a], d->particles->place_of[bond.b]);
+    renew_ends(d, &bond);
+  }
+  memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
+  domain_show_states(d);
+  if (d->contact.spec) contact_search(&d->contact);
+  return BRECCIA_OK;
+}
+
+void domain_state(Domain *d, StateList *list)
+{
+  static const StateCare broken = {.save = save_broken, .resume = resume_broken};
+  const bool laws_in_forces = d->points.where != POINTS_ON_PARTICLES && !domain_is_elastic(d);
+  particles_state(d->particles, list);
+  state_add_vector(list, "force", "force per volume", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
+                   d->particles->internal, d->particles->places);
+  points_state(&d->points, list);
+  family_state(&d->family, list);
+  state_add_number(list, "motion", "length", STATE_TRIED, &d->motion);
+  state_add_number(list, "fracture energy", "energy", STATE_TRIED, &d->fracture_energy);
+  state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &broken, .owner = d}, "broken bonds", NULL);
+  contact_state(&d->contact, list);
+}
