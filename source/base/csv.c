@@ -37,48 +37,104 @@ static double number_of(const char *cell)
   return *end == ',' || *end == '\n' || !*end ? value : NAN;
 }
 
+typedef struct Table { /* a file's content, its heading without an end of line */
+  char *text, *heading, *rows;
+} Table;
+
+/** @return whether the file could be read; `rows` is NULL if it has no heading */
+static bool read_table(Table *table, const char *path, Error *error)
+{
+  *table = (Table){.text = text_read_file(path, NULL)};
+  if (!table->text) {
+    error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
+    return false;
+  }
+  table->heading = table->text;
+  while (table->heading && *table->heading == '#') {
+    table->heading = strchr(table->heading, '\n');
+    if (table->heading) ++table->heading;
+  }
+  char *end = table->heading ? strchr(table->heading, '\n') : NULL;
+  if (!end) return true;
+  *end = 0;
+  if (end > table->heading && end[-1] == '\r') end[-1] = 0;
+  table->rows = end + 1;
+  return true;
+}
+
+static size_t most_rows(const Table *table)
+{
+  size_t rows = 1;
+  for (const char *c = table->rows; *c; ++c) rows += *c == '\n';
+  return rows;
+}
+
+/** The next row of numbers or words. @param[in,out] at  behind it afterwards
+ *  @return where its cell in that column begins, `end` if it has none; NULL after the last row
+ *  @param[out] end  of the row */
+static char *next_cell(char **at, int column, CsvState state, char **end)
+{
+  while (**at) {
+    char *row = *at, *next = strchr(row, '\n');
+    if (!next && state == CSV_LIVING) return NULL;
+    *end = next ? next : row + strlen(row);
+    *at = next ? next + 1 : *end;
+    if (*row == '#' || row + strspn(row, " \t\r") >= *end) continue;
+    for (int k = 0; row && k < column; ++k) {
+      row = memchr(row, ',', (size_t)(*end - row));
+      if (row) ++row;
+    }
+    return row ? row : *end;
+  }
+  return NULL;
+}
+
 double *csv_column(const char *path, const char *column, CsvState state, int *count, char *label, Error *error)
 {
-  char *text = text_read_file(path, NULL), *heading = text;
+  Table table;
   *count = 0;
-  if (!text) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
-    return NULL;
-  }
-  while (heading && *heading == '#') {
-    heading = strchr(heading, '\n');
-    if (heading) ++heading;
-  }
-  char *end = heading ? strchr(heading, '\n') : NULL;
-  int index = -1;
-  if (end) {
-    *end = 0;
-    if (end > heading && end[-1] == '\r') end[-1] = 0;
-    index = column_index(heading, column, label);
-  }
+  if (!read_table(&table, path, error)) return NULL;
+  const int index = table.rows ? column_index(table.heading, column, label) : -1;
   if (index < 0) {
     error_add(error, BRECCIA_USER_ERROR, "%s: has no column '%s'; its columns are %s", path, column,
-              end ? heading : "none");
-    free(text);
+              table.rows ? table.heading : "none");
+    free(table.text);
     return NULL;
   }
-  size_t capacity = 1;
-  for (char *c = end + 1; *c; ++c) capacity += *c == '\n';
-  double *values = malloc(sizeof(double) * capacity);
-  for (char *row = end + 1; values && *row;) {
-    char *next = strchr(row, '\n');
-    if (!next && state == CSV_LIVING) break;
-    if (!next) next = row + strlen(row);
-    char *cell = row;
-    for (int k = 0; cell && k < index; ++k) {
-      cell = memchr(cell, ',', (size_t)(next - cell));
-      if (cell) ++cell;
-    }
-    bool blank = row + strspn(row, " \t\r") >= next;
-    if (*row != '#' && !blank) values[(*count)++] = cell ? number_of(cell) : NAN;
-    row = *next ? next + 1 : next;
-  }
-  free(text);
+  double *values = malloc(sizeof(double) * most_rows(&table));
+  char *at = table.rows, *cell, *end;
+  while (values && (cell = next_cell(&at, index, state, &end))) values[(*count)++] = cell < end ? number_of(cell) : NAN;
+  free(table.text);
   if (!values) error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
   return values;
+}
+
+int csv_words(CsvWords *words, const char *path, const char *column, Error *error)
+{
+  static const char *const around = " \t\r\"";
+  Table table;
+  *words = (CsvWords){0};
+  if (!read_table(&table, path, error)) return BRECCIA_USER_ERROR;
+  const int index = table.rows ? column_index(table.heading, column, NULL) : -1;
+  words->text = table.text;
+  if (index < 0) return BRECCIA_OK;
+  words->cells = malloc(sizeof(char *) * most_rows(&table));
+  if (!words->cells) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
+  char *at = table.rows, *cell, *end;
+  while ((cell = next_cell(&at, index, CSV_FINISHED, &end))) {
+    char *comma = memchr(cell, ',', (size_t)(end - cell));
+    if (comma) end = comma;
+    *end = 0;
+    cell += strspn(cell, around);
+    while (end > cell && strchr(around, end[-1])) *--end = 0;
+    words->cells[words->count++] = cell;
+  }
+  return BRECCIA_OK;
+}
+
+void csv_words_destroy(CsvWords *words)
+{
+  free(words->cells);
+  free(words->text);
+  *words = (CsvWords){0};
 }

@@ -15,4 +15,15 @@ typedef enum CsvState {
  *  @return its values, to be freed, or NULL with a message */
 double *csv_column(const char *path, const char *column, CsvState state, int *count, char *label, Error *error);
 
+/** A column of words: blanks and quotation marks around them do not count. */
+typedef struct CsvWords {
+  char **cells; /* [count]; "" where a row has none */
+  int count;
+  char *text; /* what they point into */
+} CsvWords;
+
+/** @return 0 (cells is NULL if the file has no such column), BRECCIA_USER_ERROR if it cannot be read, BRECCIA_FAILURE */
+int csv_words(CsvWords *words, const char *path, const char *column, Error *error);
+void csv_words_destroy(CsvWords *words);
+
 #endif

@@ -47,7 +47,8 @@ static const Field block_fields[] = {
      "what the particles fill; one stands in the middle of each lattice cell whose centre is inside", &shape_section,
      NULL, 'A'},
     {"file", FIELD_TEXT, offsetof(BlockSpec, file), NULL, "", NULL,
-     "instead: a CSV file beside the deck with columns x, y, z and volume, in the deck's units, of particles that "
+     "instead: a CSV file beside the deck with columns x, y, z, volume and, where wanted, group (a name), in the "
+     "deck's units, of particles that "
      "stand "
      "anywhere",
      NULL, NULL, 'A'},
@@ -278,6 +279,38 @@ static void fill_lattice(Body *body, int b, const uint8_t *present, int32_t *num
       }
 }
 
+/** Number of a group; a new one is added. @return -1 without memory */
+static int32_t group_number(Body *body, const char *name)
+{
+  for (int g = 0; g < body->group_count; ++g)
+    if (!strcmp(body->groups[g], name)) return g;
+  char **grown = realloc(body->groups, sizeof(char *) * (size_t)(body->group_count + 1));
+  if (!grown) return -1;
+  body->groups = grown;
+  char *copy = text_format("%s", name);
+  if (!copy) return -1;
+  body->groups[body->group_count] = copy;
+  return body->group_count++;
+}
+
+/** Remembers the groups of particles from a file, the first of which has that number. */
+static int keep_groups(Body *body, const Cloud *cloud, int32_t first, Error *error)
+{
+  if (!cloud->groups.cells) return BRECCIA_OK;
+  const int64_t count = body->particles.count;
+  if (!body->group_of) {
+    body->group_of = memory_zeroed((size_t)count, sizeof *body->group_of, "groups", error);
+    if (!body->group_of) return BRECCIA_FAILURE;
+    for (int64_t n = 0; n < count; ++n) body->group_of[n] = -1;
+  }
+  for (int64_t n = 0; n < cloud->count; ++n) {
+    if (!*cloud->groups.cells[n]) continue;
+    body->group_of[first + n] = group_number(body, cloud->groups.cells[n]);
+    if (body->group_of[first + n] < 0) return error_add(error, BRECCIA_FAILURE, "out of memory: groups");
+  }
+  return BRECCIA_OK;
+}
+
 /** Sees that all blocks have particles and makes them. */
 static int fill(Body *body, const DeckReader *reader, Filling *fillings)
 {
@@ -292,9 +325,10 @@ static int fill(Body *body, const DeckReader *reader, Filling *fillings)
   if (!status) status = particles_create(&body->particles, slices, count, reader->error);
   int32_t number = 0;
   for (int b = 0; b < body->block_count && !status; ++b)
-    if (body->blocks[b]->file)
+    if (body->blocks[b]->file) {
+      status = keep_groups(body, &fillings[b].cloud, number, reader->error);
       cloud_fill(&fillings[b].cloud, &body->particles, begin[b], b, &number);
-    else
+    } else
       fill_lattice(body, b, fillings[b].present, &number);
   free(begin);
   return status;
@@ -341,6 +375,9 @@ void body_destroy(Body *body)
 {
   particles_destroy(&body->particles);
   for (int b = 0; body->lattices && b < body->block_count; ++b) free(body->lattices[b].slice);
+  for (int g = 0; g < body->group_count; ++g) free(body->groups[g]);
+  free(body->groups);
+  free(body->group_of);
   free(body->lattices);
   free(body->blocks);
   free(body->cracks);

@@ -42,6 +42,9 @@ typedef struct Body {
   const Lattice *coarsest; /* the one with that spacing */
   double low[3], high[3];  /* outermost particles */
   int dimensions;          /* of all lattices */
+  int group_count;         /* groups that files name */
+  char **groups;           /* [group_count] their names */
+  int32_t *group_of;       /* [particles] by number; -1: in none. NULL if no file names any */
 } Body;
 
 /** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */

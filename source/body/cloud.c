@@ -1,6 +1,5 @@
 #include "body/cloud.h"
 
-#include "base/csv.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,6 +94,7 @@ int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const c
     cloud->count = count;
     breccia_error_destroy(&words);
   }
+  if (!status && csv_words(&cloud->groups, path, "group", reader->error)) status = BRECCIA_FAILURE;
   free(path);
   if (!status) status = check_rows(cloud, reader, node, file);
   return status;
@@ -105,6 +105,7 @@ void cloud_destroy(Cloud *cloud)
   for (int k = 0; k < 3; ++k) free(cloud->position[k]);
   free(cloud->volume);
   free(cloud->order);
+  csv_words_destroy(&cloud->groups);
   *cloud = (Cloud){0};
 }
 
@@ -115,6 +116,7 @@ void cloud_thin(Cloud *cloud, const uint8_t *gone)
     if (gone[n]) continue;
     for (int k = 0; k < 3; ++k)
       if (cloud->position[k]) cloud->position[k][count] = cloud->position[k][n];
+    if (cloud->groups.cells) cloud->groups.cells[count] = cloud->groups.cells[n];
     cloud->volume[count++] = cloud->volume[n];
   }
   cloud->count = count;

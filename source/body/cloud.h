@@ -2,6 +2,7 @@
 #ifndef BRECCIA_BODY_CLOUD_H
 #define BRECCIA_BODY_CLOUD_H
 
+#include "base/csv.h"
 #include "body/particles.h"
 #include "deck/section.h"
 
@@ -9,10 +10,11 @@ typedef struct Cloud {
   int64_t count;
   double *position[3]; /* [count] in the file's order; those beyond the body's dimensions are NULL */
   double *volume;
-  int32_t *order; /* [count] along a curve that fills space, so that neighbours come near each other */
+  CsvWords groups; /* [count] names; no cells if the file tells none */
+  int32_t *order;  /* [count] along a curve that fills space, so that neighbours come near each other */
 } Cloud;
 
-/** Reads a CSV file with columns x, y, z (as many as the body has dimensions) and volume, in the deck's units; its place is relative to the deck.
+/** Reads a CSV file with columns x, y, z (as many as the body has dimensions) and volume, in the deck's units, and, if it is there, group; its place is relative to the deck.
  *  @param[in] node  where the deck names the file */
 int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, int dimensions);
 void cloud_destroy(Cloud *cloud);

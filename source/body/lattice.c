@@ -147,6 +147,11 @@ void lattice_vector(const Lattice *lattice, const int offset[3], double way[3])
   }
 }
 
+double lattice_period(const LatticeType *type, int axis)
+{
+  return axis == 0 ? type->vector[0][0] : type->vector[1][1] * planes_per_cell(type, 0);
+}
+
 /** Keeps of a polygon what is nearer to the origin than to a point. @return the new number of corners */
 static int keep_nearer(double corners[][2], int count, const double point[2])
 {

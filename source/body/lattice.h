@@ -69,6 +69,9 @@ bool lattice_neighbour(const Lattice *lattice, const int64_t cell[3], const int 
 /** That many primitive vectors, in spacings. */
 void lattice_vector(const Lattice *lattice, const int offset[3], double way[3]);
 
+/** Distance, in spacings, from a particle to the next one straight along x (axis 0) or y (1). */
+double lattice_period(const LatticeType *type, int axis);
+
 /** Corners of the part of the plane x-y that is nearer to a particle than to its neighbours in that plane, in spacings, anticlockwise.
  *  @param[out] corners  room for 6
  *  @return how many */

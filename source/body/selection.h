@@ -1,4 +1,5 @@
-/* Parts of a body by name or on the spot: by box, block, face and layers, or nearest to a point. */
+/* Parts of a body by name or on the spot: by block, group, face and layers, shape, or nearest to a point; what several have
+ * together or in common, and what is left without others. */
 #ifndef BRECCIA_BODY_SELECTION_H
 #define BRECCIA_BODY_SELECTION_H
 
@@ -6,11 +7,12 @@
 
 typedef struct SelectionSpec {
   SectionHead head;
-  const char *block, *face;
+  const char *block, *group, *face;
   int64_t layers;
   Shape *inside;
   double nearest[3];
   bool all;
+  ReferenceList any_of, all_of, except;
 } SelectionSpec;
 
 extern const Section selection_section;
@@ -20,8 +22,8 @@ typedef struct Selection {
   int64_t count;
 } Selection;
 
-/** Resolves a reference to a named selection or one given on the spot. Every condition given must hold.
- *  Says so when nothing is selected. */
+/** Resolves a reference to a named selection, a group of a file, or a selection given on the spot. Every condition given must hold.
+ *  Says so when nothing is selected, here or in a selection that this one is made of. */
 int selection_create(Selection *selection, const Body *body, const DeckReader *reader, const SectionList *named,
                      const Reference *reference);
 void selection_destroy(Selection *selection);

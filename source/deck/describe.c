@@ -42,6 +42,7 @@ static const char *value_words(const Field *field)
   case FIELD_SECTIONS: return "list of";
   case FIELD_NAMED: return "map of names to";
   case FIELD_REFERENCE: return "a name, or";
+  case FIELD_REFERENCES: return "a name, a list of names, or";
   case FIELD_NUMBER_OR_SECTION: return "a number, or";
   case FIELD_VALUES: return "map of names to values";
   case FIELD_FILES: return "name of a file, or list of names";
@@ -272,6 +273,12 @@ static void add_value_schema(Text *text, const Field *field)
     break;
   case FIELD_REFERENCE:
     text_add(text, "\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/$defs/%s\"}]", field->section->name);
+    break;
+  case FIELD_REFERENCES:
+    text_add(text,
+             "\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/$defs/%s\"}, {\"type\": \"array\", \"minItems\": 1, "
+             "\"items\": {\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/$defs/%s\"}]}}]",
+             field->section->name, field->section->name);
     break;
   }
 }

@@ -24,6 +24,7 @@ static const char *kind_words(FieldKind kind)
   case FIELD_SECTION: return "keys and values";
   case FIELD_SECTIONS: return "a list, each item starting with '- '";
   case FIELD_NAMED: return "names, each with its keys and values";
+  case FIELD_REFERENCES: return "a name, keys and values, or a list of such";
   default: return "a single value";
   }
 }
@@ -223,6 +224,31 @@ static void say_choices(const DeckReader *reader, const Node *node, const char *
   text_free(&advice);
 }
 
+static void read_reference(const DeckReader *reader, const Node *node, const char *label, const Field *field,
+                           Reference *reference)
+{
+  reference->node = node;
+  if (node->kind == NODE_SCALAR && *node->text)
+    reference->name = node->text;
+  else if (node->kind == NODE_LIST)
+    node_error(reader->document, node, reader->error, "%s: expected one name, or keys and values; found a list", label);
+  else
+    reference->section = section_read(reader, node, field->section);
+}
+
+static void read_references(const DeckReader *reader, const Node *node, const char *label, const Field *field,
+                            ReferenceList *list)
+{
+  const bool many = node->kind == NODE_LIST;
+  const int count = many ? node->count : 1;
+  list->items = zeroed(reader, sizeof(Reference) * (size_t)(count ? count : 1));
+  if (!count)
+    node_error(reader->document, node, reader->error, "%s: expected %s; found an empty list", label,
+               kind_words(field->kind));
+  for (int k = 0; list->items && k < count; ++k)
+    read_reference(reader, many ? &node->items[k] : node, label, field, &list->items[list->count++]);
+}
+
 static void read_field(const DeckReader *reader, const Node *node, const char *label, const Field *field, void *target)
 {
   switch (field->kind) {
@@ -290,18 +316,8 @@ static void read_field(const DeckReader *reader, const Node *node, const char *l
   }
   case FIELD_VALUES:
   case FIELD_FILES: break;
-  case FIELD_REFERENCE: {
-    Reference *reference = target;
-    reference->node = node;
-    if (node->kind == NODE_SCALAR && *node->text)
-      reference->name = node->text;
-    else if (node->kind == NODE_LIST)
-      node_error(reader->document, node, reader->error, "%s: expected one name, or keys and values; found a list",
-                 label);
-    else
-      reference->section = section_read(reader, node, field->section);
-    break;
-  }
+  case FIELD_REFERENCE: read_reference(reader, node, label, field, target); break;
+  case FIELD_REFERENCES: read_references(reader, node, label, field, target); break;
   }
 }
 
@@ -532,12 +548,16 @@ void section_unknown(const DeckReader *reader, const Node *node, const char *wha
 {
   const char **names = zeroed(reader, sizeof(char *) * (size_t)(list->count + 1));
   if (!names) return;
+  for (int k = 0; k < list->count; ++k) names[k] = ((const SectionHead *)list->items[k])->name;
+  name_unknown(reader, node, what, name, names, list->count);
+}
+
+void name_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
+                  const char *const *names, int count)
+{
   Text words = {0};
-  for (int k = 0; k < list->count; ++k) {
-    names[k] = ((const SectionHead *)list->items[k])->name;
-    text_add(&words, "%s'%s'", k ? ", " : "", names[k]);
-  }
-  const char *nearest = spelling_nearest(name, names, list->count);
+  for (int k = 0; k < count; ++k) text_add(&words, "%s'%s'", k ? ", " : "", names[k]);
+  const char *nearest = spelling_nearest(name, names, count);
   node_error(reader->document, node, reader->error, "there is no %s '%s'; %s%s%sthe deck defines %s%s", what, name,
              nearest ? "did you mean '" : "", nearest ? nearest : "", nearest ? "'? (" : "",
              words.length ? words.characters : "none", nearest ? ")" : "");

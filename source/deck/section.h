@@ -49,6 +49,11 @@ typedef struct
   const Node *node;
 } Reference;
 
+typedef struct ReferenceList {
+  Reference *items;
+  int count;
+} ReferenceList;
+
 typedef enum FieldKind {
   FIELD_NUMBER,            /* double; NaN when optional and absent */
   FIELD_QUANTITY,          /* const Node *: a number whose dimension is known later, for deck_number */
@@ -68,6 +73,7 @@ typedef enum FieldKind {
   FIELD_SECTIONS,          /* SectionList from a YAML list */
   FIELD_NAMED,             /* SectionList from a YAML map: name -> section */
   FIELD_REFERENCE,         /* Reference: words, or a section */
+  FIELD_REFERENCES,        /* ReferenceList: one of them, or a list */
   FIELD_NUMBER_OR_SECTION, /* NumberOrSection */
   FIELD_VALUES,            /* names with values, and */
   FIELD_FILES,             /* names of files: both have had their effect when a section is read (deck/resolve) */
@@ -123,6 +129,9 @@ void *section_find(const SectionList *list, const char *name);
 int deck_number(const DeckReader *reader, const Node *node, const char *label, const char *dimension_name,
                 const char *range, double *value);
 
+/** Says that `name` is none of `names`. */
+void name_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
+                  const char *const *names, int count);
 /** Says that `name` is none of the names in the list. */
 void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
                      const SectionList *list);

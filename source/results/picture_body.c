@@ -46,8 +46,8 @@ static void shorter(const Scene *scene, int64_t from, int64_t to, double vector[
   }
 }
 
-/** Of each particle the way to its neighbour along x (axis 0) or y, as the body is drawn: the shorter of the two, because what tears
- *  grows longer; as in the reference shape where there is none or where both are torn. */
+/** Of each particle the way to its neighbour along x (axis 0) or y, as the body is drawn, over its length in spacings: the shorter of the
+ *  two, because what tears grows longer; as in the reference shape where there is none or where both are torn. */
 static int neighbour_vectors(const Scene *scene, const ResultView *view, int axis, double (*vectors)[2])
 {
   Order *order = malloc(sizeof(Order) * (size_t)(scene->count + 1));
@@ -60,7 +60,9 @@ static int neighbour_vectors(const Scene *scene, const ResultView *view, int axi
   qsort(order, (size_t)scene->count, sizeof *order, by_row);
   for (int64_t k = 1; k < scene->count; ++k) {
     const Order *p = &order[k - 1], *q = &order[k];
-    if (p->plane != q->plane || llabs(p->row - q->row) > 1 || llabs(q->along - p->along - 1000) > 2) continue;
+    const double period = lattice_period(view->lattices[p->particle], axis);
+    if (p->plane != q->plane || llabs(p->row - q->row) > 1 || llabs(q->along - p->along - llround(1000 * period)) > 2)
+      continue;
     shorter(scene, p->particle, q->particle, vectors[p->particle]);
     double back[2] = {-vectors[q->particle][0], -vectors[q->particle][1]};
     shorter(scene, p->particle, q->particle, back);
@@ -68,6 +70,8 @@ static int neighbour_vectors(const Scene *scene, const ResultView *view, int axi
     vectors[q->particle][1] = back[1];
   }
   free(order);
+  for (int64_t n = 0; n < scene->count; ++n)
+    for (int k = 0; k < 2; ++k) vectors[n][k] /= lattice_period(view->lattices[n], axis);
   double mean = 0;
   int64_t found = 0;
   for (int64_t n = 0; n < scene->count; ++n)
@@ -85,14 +89,16 @@ static int neighbour_vectors(const Scene *scene, const ResultView *view, int axi
   return 0;
 }
 
-/** The part of the plane that belongs to a particle: a square, turned and stretched with its neighbours. */
-static void draw_cell(cairo_t *cr, const Page *page, double x, double y, const double a[2], const double b[2])
+/** The part of the plane that belongs to a particle, turned and stretched with its neighbours. */
+static void draw_cell(cairo_t *cr, const Page *page, double x, double y, const double a[2], const double b[2],
+                      const LatticeType *lattice)
 {
-  static const double corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-  const double half = 0.54 * page->scale; /* a little more than half, or seams show */
-  for (int c = 0; c < 4; ++c) {
-    const double dx = half * (corners[c][0] * a[0] + corners[c][1] * b[0]);
-    const double dy = half * (corners[c][0] * a[1] + corners[c][1] * b[1]);
+  double corners[6][2];
+  const int count = lattice_cell_corners(lattice, corners);
+  const double size = 1.08 * page->scale; /* a little more than its own part, or seams show */
+  for (int c = 0; c < count; ++c) {
+    const double dx = size * (corners[c][0] * a[0] + corners[c][1] * b[0]);
+    const double dy = size * (corners[c][0] * a[1] + corners[c][1] * b[1]);
     if (c)
       cairo_line_to(cr, x + dx, y - dy);
     else
@@ -144,8 +150,11 @@ static int draw_flat(cairo_t *cr, const Page *page, const Scene *scene, const Re
     cairo_set_source_rgb(cr, rgb[0], rgb[1], rgb[2]);
     const double x = page->left + (scene->x[n] - scene->x0) * page->scale;
     const double y = page->top + page->high - (scene->y[n] - scene->y0) * page->scale;
+    const double along[2] = {view->spacings[n], 0}, up[2] = {0, view->spacings[n]};
     if (cells)
-      draw_cell(cr, page, x, y, a[n], b[n]);
+      draw_cell(cr, page, x, y, a[n], b[n], view->lattices[n]);
+    else if (page->thick == 0 && view->lattices[n]->vector[1][0] != 0) /* no square */
+      draw_cell(cr, page, x, y, along, up, view->lattices[n]);
     else
       draw_square(cr, page, x, y, view->spacings[n] * page->scale);
   }

@@ -127,10 +127,14 @@ static int write_geometry(hid_t root, const Domain *d)
   const Particles *p = d->particles;
   double *positions = malloc(sizeof(double) * 3 * (size_t)p->count),
          *spacings = malloc(sizeof(double) * (size_t)p->count);
-  int bad = !positions || !spacings;
+  uint8_t *lattices = malloc((size_t)p->count);
+  int bad = !positions || !spacings || !lattices;
   for (int64_t n = 0; !bad && n < p->count; ++n) {
     for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
-    spacings[n] = d->body.lattices[p->block[p->place_of[n] / SLICE]].spacing;
+    const Lattice *lattice = &d->body.lattices[p->block[p->place_of[n] / SLICE]];
+    spacings[n] = lattice->spacing;
+    lattices[n] = 0;
+    while (strcmp(lattice_word(lattices[n]), lattice->type->name)) ++lattices[n];
   }
   if (!bad) {
     bad |= dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
@@ -144,11 +148,18 @@ static int write_geometry(hid_t root, const Domain *d)
     bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
     bad |= dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
     bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)p->count, spacings);
+    bad |= dataset_create(own, "Lattice", H5T_STD_U8LE, 1, 4096);
+    bad |= dataset_write(own, "Lattice", H5T_NATIVE_UINT8, 1, 0, (hsize_t)p->count, lattices);
+    Text names = {0};
+    for (int k = 0; lattice_word(k); ++k) text_add(&names, "%s%s", k ? ";" : "", lattice_word(k));
+    bad |= attribute_text(own, "Lattice", "names", text_words(&names));
+    text_free(&names);
     H5Gclose(own);
     H5Fclose(file);
   }
   free(positions);
   free(spacings);
+  free(lattices);
   return bad;
 }
 

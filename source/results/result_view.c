@@ -46,6 +46,36 @@ static void *read_all(hid_t where, const char *name, hid_t type, size_t size, hs
   return values;
 }
 
+/** Which lattice each particle stands on: numbers in a list of names. Files of earlier versions tell none: square, as cells of cubic ones are
+ *  seen too. @return NULL without memory */
+static const LatticeType **read_lattices(hid_t own, int64_t particles)
+{
+  enum { MOST = 32 };
+  const LatticeType *types[MOST] = {lattice_find("square")},
+                    **lattices = malloc(sizeof *lattices * (size_t)(particles + 1));
+  uint8_t *numbers = NULL;
+  if (H5Lexists(own, "Lattice", H5P_DEFAULT) > 0) {
+    char names[512];
+    hsize_t rows = 0;
+    hid_t set = H5Dopen2(own, "Lattice", H5P_DEFAULT);
+    attribute_read_text(set, "names", names, sizeof names);
+    H5Dclose(set);
+    numbers = read_all(own, "Lattice", H5T_NATIVE_UINT8, 1, &rows);
+    int k = 0;
+    for (char *rest = names, *name; k < MOST && (name = strtok_r(rest, ";", &rest)); ++k) types[k] = lattice_find(name);
+    if ((int64_t)rows < particles) {
+      free(numbers);
+      numbers = NULL;
+    }
+  }
+  for (int64_t n = 0; lattices && n < particles; ++n) {
+    const int number = numbers ? numbers[n] : 0;
+    lattices[n] = number < MOST && types[number] ? types[number] : lattice_find("square");
+  }
+  free(numbers);
+  return lattices;
+}
+
 int result_view_open(ResultView *view, const char *path, Error *error)
 {
   *view = (ResultView){.file = -1};
@@ -63,6 +93,7 @@ int result_view_open(ResultView *view, const char *path, Error *error)
     view->times = read_all(root, "Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps);
     view->step_numbers = read_all(root, "Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL);
     view->spacings = read_all(own, "Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL);
+    if (view->positions) view->lattices = read_lattices(own, (int64_t)particles);
     attribute_read_text(own, "title", view->title, sizeof view->title);
     attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
     attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
@@ -76,7 +107,7 @@ int result_view_open(ResultView *view, const char *path, Error *error)
   }
   if (root >= 0) H5Gclose(root);
   if (own >= 0) H5Gclose(own);
-  if (!view->positions || !view->times || !view->step_numbers || !view->spacings) {
+  if (!view->positions || !view->times || !view->step_numbers || !view->spacings || !view->lattices) {
     result_view_close(view);
     return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
   }
@@ -93,6 +124,7 @@ void result_view_close(ResultView *view)
   free(view->times);
   free(view->step_numbers);
   free(view->spacings);
+  free(view->lattices);
   *view = (ResultView){.file = -1};
 }
 

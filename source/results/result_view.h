@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "body/lattice.h"
 #include <stdint.h>
 
 typedef struct ResultView {
@@ -13,7 +14,8 @@ typedef struct ResultView {
   int64_t *step_numbers;
   double *times, *positions; /* [particles][3] */
   double spacing;
-  double *spacings; /* [particles] */
+  double *spacings;             /* [particles] */
+  const LatticeType **lattices; /* [particles] */
   bool plane;
   char title[256], length_unit[64], time_unit[64];
 } ResultView;

@@ -76,6 +76,14 @@ refuse 's/{face: x+, layers: 2}/{layers: 2}/' 12:3 'say what is selected'
 refuse 's/face: x+/block: dam/' 12:16 "there is no block 'dam'"
 refuse 's/on: end/on: edn/' 18:22 "there is no selection 'edn'; did you mean 'end'? (the deck defines 'end')"
 refuse 's/on: end/on: {nearest: [0, 0, 0], face: x+}/' 18:18 'the selection holds no particle'
+refuse 's/on: end/on: {group: edn}/' 18:30 "there is no selection 'edn'; did you mean 'end'?"
+refuse 's/on: end/on: {except: {all: yes}}/' 18:18 "the selection holds no particle; 'except' leaves none of the 150 that its other keys select"
+refuse 's/on: end/on: {all of: [end, {face: x-}]}/' 18:18 "'all of' leaves none of the 150"
+refuse 's/on: end/on: {any of: [end, {nearest: [0, 0, 0], face: x+}]}/' 18:38 'the selection holds no particle; particles stand at'
+refuse 's/on: end/on: {any of: []}/' 18:23 'any of: expected a name, keys and values, or a list of such; found an empty list'
+refuse 's/on: end/on: {union: [end]}/' 18:23 "unknown key 'union'; did you mean 'any of'?"
+refuse 's/end: {face: x+, layers: 2}/end: {any of: [end, {face: x-}]}/' 12:18 "the selection 'end' is made of itself"
+refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: fcc/' 10:14 "'fcc' is not known; did you mean 'face-centred cubic'?"
 refuse 's/body force: \[1, 0, 0\]/body force: [1, 0, 0], force: [1, 0, 0]/' 18:50 "more than one of"
 refuse 's/body force: \[1, 0, 0\], //' 18:6 "none of 'body force', 'force'"
 refuse 's/body force: \[1, 0, 0\]/body force: [1 kN, 0, 0]/' 18:40 'wrong dimension; expected a force per volume'

@@ -385,6 +385,41 @@ static void selections_hold_what_they_say(void **state)
   breccia_model_destroy(&model);
 }
 
+static void selections_join_others_have_them_in_common_and_leave_them_out(void **state)
+{
+  (void)state;
+  /* Of 10 x 5 x 3 particles the end has 3 x 5 x 3, the base 10 x 3, both together 9 less than their sum. */
+  const struct {
+    const char *words;
+    int64_t count;
+  } cases[] = {{"{any of: [end, base]}", 45 + 30 - 9},
+               {"{all of: [end, base]}", 9},
+               {"{all of: [end, base, {face: z+}]}", 3},
+               {"{except: base}", 150 - 30},
+               {"{all: yes, except: [end, base]}", 150 - 66},
+               {"{group: end}", 45},
+               {"{group: end, face: x-}", 15}, /* the face of the end, not of the body */
+               {"{group: end, except: {nearest: [9, 0, 0]}}", 44},
+               {"{any of: [{face: x-}, {face: x+}], face: z-}", 10},
+               {"{any of: {all of: [end, {except: base}]}}", 36},
+               {"rest", 150 - 9}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *model = model_of(
+        MATERIAL SOLVE
+        "body: {b: {material: m, spacing: 1, shape: {box: {particles: [10, 5, 3], first particle: [0, 0, 0]}}}}\n"
+        "selections: {rest: {except: corner}, corner: {all of: [base, end]}, end: {face: x+, layers: 3}, base: {face: "
+        "y-}}\n"
+        "loads: [{on: %s, body force: [1, 0, 0]}]\n",
+        cases[k].words);
+    const Selection *selection = &model->loading.loads[0].selection;
+    assert_int_equal(selection->count, cases[k].count);
+    for (int64_t n = 1; n < selection->count; ++n) /* each once, by its number */
+      assert_true(model->domain.particles->number[selection->places[n - 1]] <
+                  model->domain.particles->number[selection->places[n]]);
+    breccia_model_destroy(&model);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -401,6 +436,7 @@ int main(void)
       cmocka_unit_test(weights_of_bonds_are_influence_times_volume),
       cmocka_unit_test(particles_on_top_of_each_other_are_refused),
       cmocka_unit_test(selections_hold_what_they_say),
+      cmocka_unit_test(selections_join_others_have_them_in_common_and_leave_them_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

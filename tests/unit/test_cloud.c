@@ -240,6 +240,48 @@ static void threads_do_not_change_a_bit(void **state)
   remove(FILE_NAME);
 }
 
+static void groups_of_a_file_are_selections(void **state)
+{
+  (void)state;
+  /* A grid whose columns by x are of the groups a, b, c, and none, in a mixed order; the crack takes out the particles beyond y = 0.7. */
+  static const char *const names[] = {"a", " \"b\" ", "north wall", ""};
+  FILE *file = fopen(FILE_NAME, "w");
+  assert_non_null(file);
+  fprintf(file, "x,y,group,volume\r\n");
+  for (int n = 0; n < 80; ++n) {
+    const int i = n * 37 % 80;
+    fprintf(file, "%g,%g,%s,0.01\r\n", 0.1 * (i % 8), 0.1 * (i / 8), names[i % 4]);
+  }
+  fclose(file);
+  const struct {
+    const char *on;
+    int columns, particles;
+  } cases[] = {{"a", 0, 2 * 7}, {"{group: b}", 1, 2 * 7}, {"north wall", 2, 2 * 7}, {"{group: a, face: x+}", 0, 7}};
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *model =
+        model_of("materials: {m: {density: 1.5, " SOLID "}}\nperidynamics: {space: plane strain}\n"
+                 "body: {f: {material: m, lattice: square, thickness: 1, spacing: 0.1, file: " FILE_NAME
+                 "}, g: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [4, 4], "
+                 "first particle: [2, 2]}}}}\n"
+                 "cracks: [{remove: {box: {from: [-1, 0.65], to: [1, 1]}}}]\n"
+                 "loads: [{on: %s, body force: [1, 0]}]\nsolve: {explicit: {steps: 1}}\n",
+                 cases[k].on);
+    const Selection *selection = &model->loading.loads[0].selection;
+    assert_int_equal(selection->count, cases[k].particles);
+    for (int64_t n = 0; n < selection->count; ++n)
+      assert_int_equal(lround(10 * model->domain.particles->position[0][selection->places[n]]) % 4, cases[k].columns);
+    breccia_model_destroy(&model);
+  }
+  char *words =
+      refusal_of("materials: {m: {density: 1.5, " SOLID "}}\nperidynamics: {space: plane strain}\n"
+                 "body: {f: {material: m, lattice: square, thickness: 1, spacing: 0.1, file: " FILE_NAME "}}\n"
+                 "selections: {a: {face: x-}}\nloads: [{on: a, body force: [1, 0]}]\n"
+                 "solve: {explicit: {steps: 1}}\n");
+  assert_non_null(strstr(words, "'a' is the name of a selection and of a group in a file"));
+  free(words);
+  remove(FILE_NAME);
+}
+
 static void wrong_files_are_refused_with_the_reason(void **state)
 {
   (void)state;
@@ -279,6 +321,7 @@ int main(void)
       cmocka_unit_test(scattered_particles_have_exact_gradients_and_balance),
       cmocka_unit_test(scattered_bonds_are_calibrated_inside_the_body),
       cmocka_unit_test(threads_do_not_change_a_bit),
+      cmocka_unit_test(groups_of_a_file_are_selections),
       cmocka_unit_test(wrong_files_are_refused_with_the_reason),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

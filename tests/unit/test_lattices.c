@@ -203,6 +203,32 @@ static void layers_of_a_face_are_whole_cells(void **state)
   }
 }
 
+static void cells_of_the_plane_tile_it(void **state)
+{
+  (void)state;
+  /* The part nearest to a particle has the area of its brick, and each corner is equally far from two neighbours at least. */
+  for (int k = 0; lattice_word(k); ++k) {
+    const LatticeType *type = lattice_find(lattice_word(k));
+    double corners[6][2], area = 0;
+    const int count = lattice_cell_corners(type, corners);
+    for (int n = 0; n < count; ++n) {
+      const double *a = corners[n], *b = corners[(n + 1) % count];
+      area += (a[0] * b[1] - a[1] * b[0]) / 2;
+      int near = 0;
+      for (int i = -2; i <= 2; ++i)
+        for (int j = -2; j <= 2; ++j) {
+          const double x = i * type->vector[0][0] + j * type->vector[1][0], y = j * type->vector[1][1];
+          assert_true(hypot(a[0] - x, a[1] - y) > hypot(a[0], a[1]) - 1e-9);
+          near += fabs(hypot(a[0] - x, a[1] - y) - hypot(a[0], a[1])) < 1e-9;
+        }
+      assert_true(near >= 3);
+    }
+    assert_int_equal(count, type->vector[1][0] != 0 ? 6 : 4);
+    assert_near(area, type->vector[0][0] * type->vector[1][1], 1e-12);
+  }
+  assert_near(lattice_period(lattice_find("hexagonal"), 1), sqrt(3), 1e-12);
+}
+
 /* ---- elasticity ---- */
 
 static breccia_model *bonded(const char *lattice, const char *space, const char *more)
@@ -416,6 +442,7 @@ int main(void)
       cmocka_unit_test(a_box_is_filled_alike_from_both_sides),
       cmocka_unit_test(a_box_that_would_become_another_is_refused),
       cmocka_unit_test(layers_of_a_face_are_whole_cells),
+      cmocka_unit_test(cells_of_the_plane_tile_it),
       cmocka_unit_test(hexagonal_bonds_are_isotropic_in_the_plane),
       cmocka_unit_test(face_centred_bonds_have_cubic_symmetry_and_differ_less_than_cubic_ones),
       cmocka_unit_test(calibration_makes_its_field_exact),
