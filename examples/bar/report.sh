@@ -1,10 +1,6 @@
 #!/bin/bash
 # Varies how fast the bar is loaded and how it is damped, and writes the two tables of docs/choosing.md that show it (half a minute).
-set -eu
-cd "$(dirname "$0")"
-breccia=$PWD/../../build/release/breccia
-work=$(mktemp -d)
-trap 'rm -r "$work"' EXIT
+. "$(dirname "$0")/../common.sh"
 page=../../docs/choosing.md
 period=$(awk 'BEGIN {print 4 * 1 / sqrt(30e9 / 2400)}') # 4 L / sqrt(E / density), s
 static=                                                 # end displacement at rest, m
@@ -30,17 +26,11 @@ rest() { awk -v s="$static" '{if ($2 > 1.01 * s || $2 < 0.99 * s) late = $1; if 
 ratio() { awk -v r="$1" -v t="$period" 'BEGIN {printf "damping: {ratio: %g, at: %.6g Hz}", r, 1 / t}'; }
 static=$(pull "" 20 "$(ratio 1)" | tail -1 | cut -d' ' -f2)
 
-between() { # between NAME: puts what comes in between the marks of that name in the page
-  local new
-  new=$(cat)
-  { sed "/^<!-- $1 -->\$/q" $page; echo; echo "$new"; echo; sed -n "/^<!-- end of $1 -->\$/,\$p" $page; } > "$work/page"
-  mv "$work/page" $page
-}
 {
   names="| loading time t / T |" line="|---|" values="| largest displacement beyond the static one |"
   for t in 0 0.5 1 1.5 2.5 5 5.5 10 10.5; do names+=" $t |" line+="---|" values+=" $(beyond $t) |"; done
   echo "$names"; echo "$line"; echo "$values"
-} | between "loading time"
+} | between "loading time" "$page"
 {
   names="| |" line="|---|" after="| at rest after |" most="| largest displacement over the static one |"
   add() { # add NAME SOLUTION
@@ -51,4 +41,4 @@ between() { # between NAME: puts what comes in between the marks of that name in
   for r in 0.2 0.5 1 2; do add $r "$(ratio $r)"; done
   for alpha in 0.5 0.8; do add "local $alpha" "local damping: $alpha"; done
   echo "$names"; echo "$line"; echo "$after"; echo "$most"
-} | between damping
+} | between damping "$page"

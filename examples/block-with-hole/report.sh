@@ -4,25 +4,20 @@
 #   report.sh --with-opensees  run the block with its law in OpenSees too (some ten minutes more)
 #   report.sh --only-write     write from the results that are there
 #   report.sh --control        run the strengths of zero-energy control only, and write their table
-set -eu
-cd "$(dirname "$0")"
-breccia=../../build/release/breccia
+. "$(dirname "$0")/../common.sh"
 # First break by strength of control, with the constant 12E and with 18K: the same strength times 18K / 12E, which is
 # 3K / 2E = (3K + G) / 6G.
 ratio=$(awk '/shear modulus:/ {G = $3} /bulk modulus:/ {K = $3} END {printf "%.10g", (3 * K + G) / (6 * G)}' block.yaml)
 strengths="none 0.05 0.1 0.2"
 control() { # control STRENGTH FACTOR: runs the block, and tells when and where its first bond breaks
   if [ "$1" = none ]; then words="none: yes"; else words="silling: $(awk -v s="$1" -v f="$2" 'BEGIN {printf "%.10g", s * f}')"; fi
-  sed "s/zero-energy control: {silling: 0.1}/zero-energy control: {$words}/; /^pictures:/,\$d" block.yaml > block-control.yaml
-  $breccia run block-control.yaml --quiet > /dev/null
-  sed -n 's/.*"first_broken_bond": {.*"time": \([^,]*\),.*"at": \[\([^]]*\)\].*/\1 \2/p' block-control/summary.json |
+  sed "s/zero-energy control: {silling: 0.1}/zero-energy control: {$words}/; /^pictures:/,\$d" block.yaml > "$work/control.yaml"
+  "$breccia" run "$work/control.yaml" --quiet > /dev/null
+  sed -n 's/.*"first_broken_bond": {.*"time": \([^,]*\),.*"at": \[\([^]]*\)\].*/\1 \2/p' "$work/control/summary.json" |
     awk '{gsub(",", ""); printf "%.2f ms at (%g, %g, %g)", 1000 * $1, $2, $3, $4}'
-  rm -r block-control block-control.yaml
 }
 write_control() {
   {
-    sed '/^<!-- control -->$/q' README.md
-    echo
     echo "| strength G_s | first bond breaks with 12E/(πδ⁴), as here | with 18K/(πδ⁴), as elsewhere ($(awk -v r="$ratio" 'BEGIN {printf "%.3f", r}') times 12E) |"
     echo "|---|---|---|"
     for strength in $strengths; do
@@ -30,23 +25,19 @@ write_control() {
       [ $strength = none ] || there=$(control $strength "$ratio")
       echo "| $strength | $here | $there |"
     done
-    echo
-    sed -n '/^<!-- end of control -->$/,$p' README.md
-  } > README.new
-  mv README.new README.md
+  } | between control README.md
 }
 if [ "${1:-}" = --control ]; then
   write_control
   exit
 fi
 if [ "${1:-}" != --only-write ]; then
-  $breccia run block.yaml --quiet
-  sed 's/history: {ramp to: 8 ms}/history: {table: [[0, 0], [6 ms, 0.75], [8 ms, 0.75]]}/; s/6.4 ms\]/6.4 ms, 8 ms]/' block.yaml > block-30.yaml
-  $breccia run block-30.yaml --quiet
-  rm block-30.yaml
+  "$breccia" run block.yaml --quiet
+  sed 's/history: {ramp to: 8 ms}/history: {table: [[0, 0], [6 ms, 0.75], [8 ms, 0.75]]}/; s/6.4 ms\]/6.4 ms, 8 ms]/' block.yaml > "$work/block.yaml"
+  "$breccia" run "$work/block.yaml" --output block-30 --quiet
   write_control
 fi
-[ "${1:-}" != --with-opensees ] || $breccia run block-opensees.yaml --quiet
+[ "${1:-}" != --with-opensees ] || "$breccia" run block-opensees.yaml --quiet
 
 # Surfaces of Table 2. Files: a particle's histories (cap parameter in column 3), then its stresses (columns 9 to 14).
 surfaces='BEGIN {FS = ","; T = -2068.4; R = 4.43}
@@ -78,7 +69,7 @@ row_at() { awk -F, -v t="$3" -v c="$4" 'NR > 1 && $2 >= t - 1e-9 {print $c; exit
 damages() { printf "%.3f, %.3f" "$(row_at "$1" beside "$2" 3)" "$(row_at "$1" above "$2" 3)"; }
 growth() { awk -v x="$(row_at "$1" "$2" "$3" 4)" 'BEGIN {printf "%+.2f", 1000 * x}'; }
 # Uniaxial compressive stress of the law at a strain of 0.004 and at 0.02, the critical stretch (MPa).
-alone() { sed "s/^test:.*/test: {$1}/" ../materials/cap.yaml > alone.yaml; $breccia material alone.yaml; rm alone.yaml; }
+alone() { sed "s/^test:.*/test: {$1}/" ../materials/cap.yaml > "$work/alone.yaml"; "$breccia" material "$work/alone.yaml"; }
 strength() { alone "kind: uniaxial, strain: -$1" | awk -F, 'NR > 1 && $7 < least {least = $7} END {printf "%.1f", -least / 1000}'; }
 isotropic() { alone "kind: isotropic, strain: -0.01" | awk -F, 'END {printf "%.3f", $7 / 1000}'; }
 # I1 = 3 K (volume strain less what the cap has given) with the cap at I1.
@@ -91,7 +82,6 @@ on_envelope() {
   alone "kind: undrained shear, strain: 0.02" | awk -F, 'function F(i) {return 26614 - 7997.9 * exp(-6.3816e-5 * i) + 0.11 * i}
     END {I = -($7 + $8 + $9); m = -I / 3; printf "%.6f", sqrt(($7 - m) ^ 2 + ($8 - m) ^ 2 + ($9 - m) ^ 2 + 2 * ($10 ^ 2 + $11 ^ 2 + $12 ^ 2)) / F(I)}'
 }
-number() { sed -n "s/.*\"$2\": \([^,}]*\).*/\1/p" "$1/summary.json" | head -1 | awk -v s="$3" -v f="$4" '{printf f, $1 * s}'; }
 # A figure of both runs inside the program and of that in OpenSees, which tells no caps.
 in_opensees() { [ -e block-opensees/summary.json ] && "$@" || echo "not run"; }
 row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | $(in_opensees $3 block-opensees "${@:4}") |"; }
@@ -107,18 +97,15 @@ apart() {
 }
 # The law alone, inside the program and in OpenSees, along the same path: how far it comes, and how far apart the stresses are.
 along() {
-  { sed -n '1,/^material:/p' ../materials/cap.yaml | sed '$d'; sed -n '/^material:/,/^test/p' ../materials/cap.yaml | sed '$d'; echo "test: {$1}"; } > home.yaml
-  { echo "units: {length: m, force: kN, time: s}"; sed -n '/^  concrete:/,/^$/p' block-opensees.yaml | sed 's/^  //; s/concrete/material/'; echo "test: {$1}"; } > away.yaml
-  $breccia material home.yaml --output home.csv
-  words=$($breccia material away.yaml --output away.csv 2>&1 || true)
-  paste -d, home.csv away.csv | awk -F, -v words="$words" '
+  { sed -n '1,/^material:/p' ../materials/cap.yaml | sed '$d'; sed -n '/^material:/,/^test/p' ../materials/cap.yaml | sed '$d'; echo "test: {$1}"; } > "$work/home.yaml"
+  { echo "units: {length: m, force: kN, time: s}"; sed -n '/^  concrete:/,/^$/p' block-opensees.yaml | sed 's/^  //; s/concrete/material/'; echo "test: {$1}"; } > "$work/away.yaml"
+  "$breccia" material "$work/home.yaml" --output "$work/home.csv"
+  words=$("$breccia" material "$work/away.yaml" --output "$work/away.csv" 2>&1 || true)
+  paste -d, "$work/home.csv" "$work/away.csv" | awk -F, -v words="$words" '
     NR > 1 && NF == 24 && $19 != "" {for (k = 7; k <= 12; ++k) {a = $k < 0 ? -$k : $k; d = $k - $(k + 12); if (d < 0) d = -d; if (a > top) top = a; if (d > most) most = d}}
     END {if (words != "") {sub(/: OpenSees server: it returned/, ":", words); sub(/ for its point 0/, "", words); print words} else printf "to %.0e", most / top}'
-  rm home.yaml away.yaml home.csv away.csv
 }
 {
-  sed '/^<!-- computed -->$/q' README.md
-  echo
   echo "| figure | published | ramp to 40 MPa | ramp that stops at 30 MPa | ramp to 40 MPa, law in OpenSees |"
   echo "|---|---|---|---|---|"
   row_with_caps "above the hole (p): first meets (ms)" "cut-off, then envelope, then cap" order p
@@ -137,7 +124,7 @@ along() {
     "$(strength 0.02 | awk '{printf "%.1f", $1 * 2 / 3}') MPa."
   echo
   if [ -e block-opensees/summary.json ]; then
-    echo "Computing took $(number block wall_seconds 1 %.0f) s, in OpenSees $(number block-opensees wall_seconds 1 %.0f) s. The curves of p, q, the corner, width and height inside the program and in OpenSees"
+    echo "The curves of p, q, the corner, width and height inside the program and in OpenSees"
     echo "differ by $(apart block block-opensees 0.002) of the largest value up to 2 ms, $(apart block block-opensees 0.004) up to 4 ms, $(apart block block-opensees 0.006) up to 6 ms and $(apart block block-opensees 0.008) up to 8 ms."
     echo
     echo "| the law alone, CapPlasticity of OpenSees against ours | stresses agree | which is right |"
@@ -150,19 +137,17 @@ along() {
     echo "| isotropic to 1 % along each axis | $(along "kind: isotropic, strain: -0.01") | ours: a mean stress of $(isotropic) MPa, in closed form $(isotropic_closed) MPa; OpenSees divides by \|s\|, which is 0 |"
     echo
   fi
-  sed -n '/^<!-- end of computed -->$/,$p' README.md
-} > README.new
-mv README.new README.md
+} | between computed README.md
 
 mkdir -p pictures
-draw() { $breccia plot "$1" --field "$2" --time "$3" --view -90:0 --size 330 --output "pictures/$4.png" "${@:5}" > /dev/null; }
+draw() { "$breccia" plot "$1" --field "$2" --time "$3" --view -90:0 --size 330 --output "pictures/$4.png" "${@:5}" > /dev/null; }
 for time in 2.8 5.6 6.4; do draw block "deviator norm" "$(awk -v t=$time 'BEGIN {print t / 1000}')" deviator-$time; done
 draw block damage 0.0062 damage-6.2 --range each
 draw block-30 damage 0.008 damage-30 --range 0:1
 # Stress paths in the plane of I1 and |s| (MPa), with envelope, cut-off, and the first and last cap.
 for w in p q; do
-  awk "$surfaces"' FNR > 1 && t <= 6.4 {print I / 1000, s / 1000, cap}' block/$w-history.csv block/$w.csv > path.txt
-  last=$(tail -1 path.txt | cut -d' ' -f3)
+  awk "$surfaces"' FNR > 1 && t <= 6.4 {print I / 1000, s / 1000, cap}' block/$w-history.csv block/$w.csv > "$work/path.txt"
+  last=$(tail -1 "$work/path.txt" | cut -d' ' -f3)
   gnuplot <<END
 F(i) = 26.614 - 7.9979 * exp(-0.063816 * i) + 0.11 * i
 set terminal pngcairo size 800,520 font "sans,12"
@@ -183,8 +168,7 @@ set arrow from T,0 to T,F(T) nohead lw 1.5 lc rgb "#555555"
 plot T + (75 - T) * t, F(T + (75 - T) * t) w l lw 1.5 lc rgb "#555555" title "failure envelope and tension cut-off", \
   k0 + R * F(k0) * sin(pi / 2 * t), F(k0) * cos(pi / 2 * t) w l lw 1.5 dt 2 lc rgb "#21918c" title "cap at first", \
   k1 + R * F(k1) * sin(pi / 2 * t), F(k1) * cos(pi / 2 * t) w l lw 1.5 lc rgb "#c8501e" title "cap at the end", \
-  "path.txt" using 1:2 w l lw 2 lc rgb "#3b3f87" title "particle $w"
+  "$work/path.txt" using 1:2 w l lw 2 lc rgb "#3b3f87" title "particle $w"
 END
-  rm path.txt
 done
 ls -l pictures | awk '$5 > 150000 {print $9 " is larger than 150 kB"; bad = 1} END {exit bad}'

@@ -3,33 +3,29 @@
 #   report.sh                  run everything inside the program (about six minutes on two cores), then write
 #   report.sh --with-opensees  run the plate of clay in OpenSees too (a quarter of an hour more)
 #   report.sh --only-write     write from the results that are there
-set -eu
-cd "$(dirname "$0")"
-breccia=../../build/release/breccia
+. "$(dirname "$0")/../common.sh"
 
 variant() { # variant DECK NAME CONTROL
-  sed "s/zero-energy control: {silling: 0.1}/zero-energy control: {$3}/" "$1.yaml" > "$1-$2.yaml"
-  $breccia run "$1-$2.yaml" --quiet || [ $? = 1 ] # a run that the program stops is told in the table
-  rm "$1-$2.yaml"
+  sed "s/zero-energy control: {silling: 0.1}/zero-energy control: {$3}/" "$1.yaml" > "$work/$1.yaml"
+  "$breccia" run "$work/$1.yaml" --output "$1-$2" --quiet || [ $? = 1 ] # a run that the program stops is told in the table
 }
 if [ "${1:-}" != --only-write ]; then
   for deck in clay elastic; do
-    $breccia run $deck.yaml --quiet
+    "$breccia" run $deck.yaml --quiet
     variant $deck none "none: yes"
     variant $deck one "silling: 1"
   done
-  $breccia run rest.yaml --quiet
+  "$breccia" run rest.yaml --quiet
 fi
-[ "${1:-}" != --with-opensees ] || $breccia run clay-opensees.yaml --quiet
+[ "${1:-}" != --with-opensees ] || "$breccia" run clay-opensees.yaml --quiet
 
 # Value of a column at the first row whose other column is at least something.
 #   first FILE WANTED COLUMN LEAST        columns by number
 first() { awk -F, -v w="$2" -v c="$3" -v l="$4" 'NR > 1 && $c >= l {print $w; exit}' "$1"; }
 last() { tail -1 "$1" | cut -d, -f"$2"; }
-number() { awk -v x="$1" -v f="$2" -v s="${3:-1}" 'BEGIN {if (x == "") print "not"; else printf f, x * s}'; }
-summary() { sed -n "s/.*\"$2\": \([^,}]*\).*/\1/p" "$1/summary.json" | head -1; }
 # Load when the opening passes 0.05 mm; the ramp is linear over 0.02 s.
 onset() { number "$(first "$1/$2.csv" 2 4 0.00005)" "%.0f" "$(awk -v p="$3" 'BEGIN {print p / 0.02}')"; }
+imbalance() { number "$(summary "$1" imbalance)" "%.1g" 100; }
 outcome() {
   case $(summary "$1" completed) in
     true) echo "to its end" ;;
@@ -54,19 +50,11 @@ apart() {
       END {for (k = 1; k <= n; ++k) if (top[k] > 0) print most[k] / top[k]}'
   done | sort -g | tail -1
 }
-# Share of the time that was waited for servers, and what one did for another, in the summary of a run.
-waited() { grep -o '"waiting_share": [0-9.e-]*' "$1/summary.json" | awk '{sum += $2} END {printf "%.0f", 100 * sum}'; }
-gigabytes() { grep -o '"bytes_[a-z]*": [0-9]*' "$1/summary.json" | awk '{sum += $2} END {printf "%.1f", sum / 1e9}'; }
 difference_to_opensees() { number "$(apart clay clay-opensees)" "%.1g"; }
-time_in_opensees() {
-  echo "$(number "$(summary clay-opensees wall_seconds)" "%.1f" 0.0166667), $(waited clay-opensees) % of it waiting for OpenSees, $(gigabytes clay-opensees) GB sent and received"
-}
 # The same figure of the run in OpenSees, if there is one.
 in_opensees() { [ -e clay-opensees/summary.json ] && "$@" || echo "not run"; }
 
 {
-  sed '/^<!-- computed -->$/q' README.md
-  echo
   echo "| figure | published | computed | law in OpenSees |"
   echo "|---|---|---|---|"
   echo "| clay: load at which the crack begins to open (kN/m³) | 126 | $(onset clay mouth 750) at the mouth, $(onset clay middle 750) in the middle of the crack (0.05 mm) | $(in_opensees onset clay-opensees mouth 750), $(in_opensees onset clay-opensees middle 750) |"
@@ -80,7 +68,6 @@ in_opensees() { [ -e clay-opensees/summary.json ] && "$@" || echo "not run"; }
   echo "| clay: the same, point n | yes | $(backbone clay/point-n.csv) | $(in_opensees backbone clay-opensees/point-n.csv) |"
   echo "| elastic at rest at 500 kN/m³: opening of the mouth (mm) | 3.34 (finite elements) | $(number "$(last rest/mouth.csv 4)" "%.3f" 1000) |  |"
   echo "| clay: bonds broken by 0.092 s | | $(summary clay broken_bonds) | $(in_opensees summary clay-opensees broken_bonds) |"
-  echo "| clay: time to compute (min, two cores) | | $(number "$(summary clay wall_seconds)" "%.1f" 0.0166667) | $(in_opensees time_in_opensees) |"
   echo "| clay: largest difference of any curve, of its largest value | | | $(in_opensees difference_to_opensees) |"
   echo
   echo "Variants of zero-energy control (Silling's, strength G_s):"
@@ -94,25 +81,22 @@ in_opensees() { [ -e clay-opensees/summary.json ] && "$@" || echo "not run"; }
   echo "| clay: bonds broken by 0.092 s | $(summary clay-none broken_bonds) | $(summary clay broken_bonds) | $(summary clay-one broken_bonds) |"
   echo "| clay: the run | $(outcome clay-none) | $(outcome clay) | $(outcome clay-one) |"
   echo "| clay: severed | $(severed clay-none) | $(severed clay) | $(severed clay-one) |"
-  echo "| energy error of the elastic run (% of the largest) | $(number "$(summary elastic-none imbalance)" "%.1g" 100) | $(number "$(summary elastic imbalance)" "%.1g" 100) | $(number "$(summary elastic-one imbalance)" "%.1g" 100) |"
-  echo
-  sed -n '/^<!-- end of computed -->$/,$p' README.md
-} | sed 's/| [^|]*not run[^|]* |$/| not run |/' > README.new
-mv README.new README.md
+  echo "| elastic: energy imbalance (%) | $(imbalance elastic-none) | $(imbalance elastic) | $(imbalance elastic-one) |"
+} | sed 's/| [^|]*not run[^|]* |$/| not run |/' | between computed README.md
 
 mkdir -p pictures
 for deck in clay elastic; do
   top=30; [ $deck = elastic ] && top=2000
   times="0.036 0.048 0.0792"; [ $deck = elastic ] && times="0.036 0.074 0.0912"
   for time in $times; do
-    $breccia plot $deck --field "octahedral shear stress" --time $time --range 0:$top --output pictures/$deck-$time.png > /dev/null
+    "$breccia" plot $deck --field "octahedral shear stress" --time $time --range 0:$top --output pictures/$deck-$time.png > /dev/null
   done
 done
-$breccia plot clay --field damage --time 0.0792 --range 0:1 --output pictures/clay-damage.png > /dev/null
-$breccia plot clay elastic --curve "mouth.distance : pull.value" --title "Load against crack width at the mouth, until 0.02 s" \
+"$breccia" plot clay --field damage --time 0.0792 --range 0:1 --output pictures/clay-damage.png > /dev/null
+"$breccia" plot clay elastic --curve "mouth.distance : pull.value" --title "Load against crack width at the mouth, until 0.02 s" \
   --range 0.0598:0.066   --output pictures/opening-against-load.png > /dev/null
 seq 0 1000 | awk '{g = 0.1 * ($1 / 1000) ^ 3; if ($1 % 25 == 0) printf "%g,%g\n", g, 60000 * g / (1 + g / 5.0251256e-4)}' > backbone.csv
-$breccia plot clay --curve "point m.octahedral shear strain : point m.octahedral shear stress" --overlay backbone.csv \
+"$breccia" plot clay --curve "point m.octahedral shear strain : point m.octahedral shear stress" --overlay backbone.csv \
   --title "Octahedral shear stress and strain next to the tip, and the backbone" --range 0:0.12 --output pictures/backbone.png > /dev/null
 rm backbone.csv
 ls -l pictures | awk '$5 > 150000 {print $9 " is larger than 150 kB"; bad = 1} END {exit bad}'
