@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-const Verb *const verbs[] = {&verb_run,       &verb_check, &verb_new,    &verb_plot,       &verb_models, &verb_material,
-                             &verb_calibrate, &verb_serve, &verb_schema, &verb_completion, NULL};
+const Verb *const verbs[] = {&verb_run,      &verb_study,     &verb_check, &verb_new,    &verb_plot,       &verb_models,
+                             &verb_material, &verb_calibrate, &verb_serve, &verb_schema, &verb_completion, NULL};
 
 enum { MOST_OPTIONS = 32 };
 

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct Run {
   breccia_model *model;
@@ -122,7 +123,7 @@ static int write_file(Run *run, const char *name, const Text *words, Error *erro
   return bad ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
-/** The deck as it is run, beside its results. */
+/** The deck as it is run, beside its results. What is told of an earlier run would be told of another deck. */
 static int write_deck(Run *run, Error *error)
 {
   const breccia_model *model = run->model;
@@ -135,7 +136,10 @@ static int write_deck(Run *run, Error *error)
   }
   text_add(&words, "\n# Everything is worked out in it. Files that it names are beside the file above.\n%s",
            text_words(&model->deck));
+  char *summary = run->wish->restart ? NULL : text_format("%s/summary.json", run->wish->folder);
+  if (summary) unlink(summary);
   const int status = write_file(run, "deck.yaml", &words, error);
+  free(summary);
   text_free(&words);
   return status;
 }

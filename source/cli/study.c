@@ -1,0 +1,276 @@
+/* Cases of a study run in processes of their own: one that fails takes no other with it, and gives back all its memory. */
+#include "model/study.h"
+#include "base/cores.h"
+#include "cli/verbs.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { VARY, TOGETHER, SET, RESULT, CURVE, OUTPUT, JOBS, THREADS, AGAIN, CHECK, QUIET, COUNT };
+
+static const Option options[] = {
+    {"vary", "KEY=VALUES",
+     "what is varied: body.beam.spacing=2 mm:8 mm:4 (four values), or a list a, b, c; several: all combinations"},
+    {"together", NULL,
+     "with several --vary: the first values of all, then the second ..., instead of all combinations"},
+    SET_OPTION,
+    {"result", "NAME",
+     "column of the table: peaks.displacement and other numbers of summary.json, 'peak watch.column' (maximum, "
+     "minimum, last); several"},
+    {"curve", "CURVE", "'watch.column : watch.column' of all cases in one picture (those of the deck); several"},
+    {"output", "DIR", "folder of the cases and the table (beside the deck, DECK-study)"},
+    {"jobs", "N", "cases at a time (1)"},
+    {"threads", "N", "threads of each case (all cores, shared among the jobs)"},
+    {"again", NULL, "run cases again that are done"},
+    {"check", NULL, "say which cases there are and what would be run; run nothing"},
+    {"quiet", NULL, "print the table and errors only"},
+    {0},
+};
+
+static volatile int interrupted;
+
+/* A second signal ends the program at once. */
+static void on_signal(int number)
+{
+  interrupted = number;
+  signal(number, SIG_DFL);
+}
+
+typedef struct Job {
+  pid_t process; /* 0: free */
+  int which;
+  time_t begun;
+} Job;
+
+typedef struct Work {
+  const Study *study;
+  const StudyWish *wish;
+  Job *jobs;
+  int job_count, threads, failures;
+  bool again, quiet;
+} Work;
+
+/** Runs a case to its end. What `breccia run` would print goes into a file beside its results. @return exit status */
+static int run_case(const Work *work, const StudyCase *one, bool restart)
+{
+  char *path = text_format("%s/log.txt", one->folder);
+  FILE *log = path && (!mkdir(one->folder, 0777) || errno == EEXIST) ? fopen(path, restart ? "a" : "w") : NULL;
+  if (!log) {
+    fprintf(stderr, "%s: cannot be written: %s\n", path ? path : one->folder, strerror(errno));
+    return BRECCIA_USER_ERROR;
+  }
+  breccia_error *error = breccia_error_create();
+  const breccia_options wishes = {
+      .threads = work->threads, .settings = one->settings, .setting_count = work->study->setting_count};
+  breccia_model *model;
+  int status = breccia_model_load_file(work->wish->deck, &wishes, &model, error);
+  if (!status) {
+    fprintf(log, "%s\n", breccia_model_overview(model));
+    fflush(log);
+    const breccia_run wish = {.folder = one->folder, .restart = restart, .interrupted = &interrupted};
+    status = breccia_model_run(model, &wish, error);
+    fprintf(log, "%s\n%s\n", breccia_model_warnings(model), breccia_model_outcome(model));
+    breccia_model_destroy(&model);
+  }
+  fprintf(log, "%s\n", breccia_error_text(error));
+  if (status && status != BRECCIA_INTERRUPTED) fprintf(stderr, "%s: %s\n", one->name, breccia_error_text(error));
+  breccia_error_destroy(&error);
+  fclose(log);
+  free(path);
+  return status == BRECCIA_INTERRUPTED ? 130 : status;
+}
+
+static int begin_case(Work *work, Job *job, int k, bool restart)
+{
+  const StudyCase *one = &work->study->cases[k];
+  fflush(NULL);
+  const pid_t process = fork();
+  if (process < 0) {
+    fprintf(stderr, "breccia study: %s: no process can be started: %s\n", one->name, strerror(errno));
+    return 1;
+  }
+  if (!process) _exit(run_case(work, one, restart));
+  *job = (Job){process, k, time(NULL)};
+  if (!work->quiet)
+    printf("%d of %d: %s%s\n", k + 1, work->study->count, one->name, restart ? ", from its checkpoint" : "");
+  fflush(stdout);
+  return 0;
+}
+
+/** Waits until a case has ended. */
+static void end_case(Work *work)
+{
+  int status = 0;
+  pid_t process;
+  while ((process = waitpid(-1, &status, 0)) < 0 && errno == EINTR)
+    for (int j = 0; j < work->job_count; ++j) /* Ctrl-C reaches them by itself */
+      if (interrupted == SIGTERM && work->jobs[j].process) kill(work->jobs[j].process, SIGTERM);
+  for (int j = 0; j < work->job_count; ++j) {
+    Job *job = &work->jobs[j];
+    if (process < 0 || job->process != process) continue;
+    const StudyCase *one = &work->study->cases[job->which];
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    if (WIFSIGNALED(status)) fprintf(stderr, "%s: ended by signal %d\n", one->name, WTERMSIG(status));
+    work->failures += code && code != 130;
+    if (!work->quiet)
+      printf("%d of %d: %s: %s, %ld s\n", job->which + 1, work->study->count, one->name,
+             code == 130 ? "stopped"
+             : code      ? "failed"
+                         : "done",
+             (long)(time(NULL) - job->begun));
+    fflush(stdout);
+    job->process = 0;
+  }
+}
+
+static bool is_running(const Work *work)
+{
+  for (int j = 0; j < work->job_count; ++j)
+    if (work->jobs[j].process) return true;
+  return false;
+}
+
+static void run_cases(Work *work)
+{
+  for (int k = 0; k < work->study->count && !interrupted; ++k) {
+    const CaseState state = work->again ? CASE_NEW : study_state(&work->study->cases[k]);
+    if (state == CASE_DONE) {
+      if (!work->quiet) printf("%d of %d: %s: was done\n", k + 1, work->study->count, work->study->cases[k].name);
+      continue;
+    }
+    Job *free_job = NULL;
+    while (!free_job) {
+      for (int j = 0; j < work->job_count && !free_job; ++j)
+        if (!work->jobs[j].process) free_job = &work->jobs[j];
+      if (!free_job) end_case(work);
+    }
+    if (!interrupted && begin_case(work, free_job, k, state == CASE_STOPPED)) ++work->failures;
+  }
+  while (is_running(work)) end_case(work);
+}
+
+typedef struct Lists { /* of options that may be repeated */
+  const char **items[COUNT];
+  int count[COUNT];
+} Lists;
+
+static void note(void *context, int option, const char *value)
+{
+  Lists *lists = context;
+  lists->items[option][lists->count[option]++] = value;
+}
+
+static void list_cases(const Study *study)
+{
+  static const char *const words[] = {[CASE_NEW] = "to be run",
+                                      [CASE_STOPPED] = "to go on",
+                                      [CASE_FAILED] = "failed, to be run again",
+                                      [CASE_DONE] = "done"};
+  for (int k = 0; k < study->count; ++k)
+    printf("%d of %d: %s: %s\n", k + 1, study->count, study->cases[k].name, words[study_state(&study->cases[k])]);
+}
+
+static int study_deck(const StudyWish *wish, const char **values, breccia_error *error)
+{
+  long long jobs = 1, threads = 0;
+  if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &jobs)) return BRECCIA_USER_ERROR;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return BRECCIA_USER_ERROR;
+  Study study;
+  int status = study_plan(&study, wish, error);
+  if (!status && values[CHECK]) {
+    list_cases(&study);
+    study_destroy(&study);
+    return BRECCIA_OK;
+  }
+  if (jobs > study.count) jobs = study.count;
+  Text ignored = {0};
+  const int all = threads_by_default(&ignored);
+  text_free(&ignored);
+  Work work = {.study = &study,
+               .wish = wish,
+               .jobs = calloc((size_t)jobs + 1, sizeof(Job)),
+               .job_count = (int)jobs,
+               .threads = threads      ? (int)(threads > 4096 ? 4096 : threads)
+                          : jobs > all ? 1
+                                       : (int)(all / (jobs ? jobs : 1)),
+               .again = values[AGAIN] != NULL,
+               .quiet = values[QUIET] != NULL};
+  if (!status && !work.jobs) status = BRECCIA_FAILURE;
+  if (!status && mkdir(wish->folder, 0777) && errno != EEXIST) {
+    fprintf(stderr, "%s: the folder cannot be made: %s\n", wish->folder, strerror(errno));
+    status = BRECCIA_USER_ERROR;
+  }
+  Text table = {0}, files = {0};
+  if (!status) {
+    run_cases(&work);
+    status = study_report(&study, wish, &table, &files, error);
+    printf("%s%s", work.quiet || !table.length ? "" : "\n", text_words(&table));
+    if (!work.quiet && files.length) printf("\nwritten:\n%s", text_words(&files));
+    if (interrupted) printf("'breccia study' with the same arguments goes on from here\n");
+    if (!status && work.failures) status = BRECCIA_FAILURE;
+    if (interrupted) status = 130;
+  }
+  text_free(&table);
+  text_free(&files);
+  free(work.jobs);
+  study_destroy(&study);
+  return status;
+}
+
+static int run(int argc, char **argv, const Verb *verb)
+{
+  const char *values[COUNT];
+  Lists lists = {0};
+  bool full = false;
+  for (int k = 0; k < COUNT; ++k) full |= !(lists.items[k] = calloc((size_t)argc + 1, sizeof(char *)));
+  breccia_error *error = breccia_error_create();
+  int status = full ? error_add(error, BRECCIA_FAILURE, "out of memory: options") : BRECCIA_OK;
+  const int first = status ? -1 : read_options(argc, argv, verb, values, note, &lists);
+  if (!status && first < 0)
+    status = first == -2 ? 0 : 2;
+  else if (!status && argc - first != 1) {
+    fprintf(stderr, "breccia study: give one deck; see 'breccia study --help'\n");
+    status = BRECCIA_USER_ERROR;
+  } else if (!status) {
+    struct sigaction action = {.sa_handler = on_signal};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    char *beside = result_folder(argv[first]),
+         *folder = values[OUTPUT] ? text_format("%s", values[OUTPUT]) : text_format("%s-study", beside);
+    const StudyWish wish = {.deck = argv[first],
+                            .folder = folder,
+                            .varied = lists.items[VARY],
+                            .varied_count = lists.count[VARY],
+                            .settings = lists.items[SET],
+                            .setting_count = lists.count[SET],
+                            .results = lists.items[RESULT],
+                            .result_count = lists.count[RESULT],
+                            .curves = lists.items[CURVE],
+                            .curve_count = lists.count[CURVE],
+                            .together = values[TOGETHER] != NULL};
+    status = study_deck(&wish, values, error);
+    free(folder);
+    free(beside);
+  }
+  for (int k = 0; k < COUNT; ++k) free(lists.items[k]);
+  return fail(error, status);
+}
+
+const Verb verb_study = {
+    "study",
+    "DECK --vary KEY=VALUES [options]",
+    "run a deck with several values of some of its keys, and compare",
+    options,
+    "Each case has a folder of its own; those that are done are not run again, and one that was stopped goes on from "
+    "its\n"
+    "checkpoint. table.csv and table.txt have a row for each case; pictures show the curves of all cases, and each "
+    "result\n"
+    "over the first varied key.\n"
+    "Exit status: 0 all cases done, 1 one or more failed, 2 the deck or the arguments are wrong, 130 stopped.",
+    run};
