@@ -54,7 +54,8 @@ void body_destroy(Body *body);
 /** True if the segment between two points crosses one of the body's cuts; alike from both ends. */
 bool body_cuts(const Body *body, const double a[3], const double b[3]);
 /** True if a cut without thickness parts the two points, and no notch, whose faces stand apart.
- *  @param[out] normal  unit normal of the cut, towards b */
-bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3]);
+ *  @param[out] normal  unit normal of the cut, towards b
+ *  @param[out] level   of the plane of the cut along it: normal . x of its points */
+bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3], double *level);
 
 #endif

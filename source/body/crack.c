@@ -273,8 +273,11 @@ static bool comes_first(const double a[3], const double b[3])
   return true;
 }
 
-/** The line piece or polygon of a crack that a segment crosses. @param[out] normal  of any length and side; may be NULL */
-static bool cut_crossed(const Body *body, const CutSpec *cut, const double a[3], const double b[3], double normal[3])
+/** The line piece or polygon of a crack that a segment crosses.
+ *  @param[out] normal  of any length and side; may be NULL
+ *  @return a corner of it, or NULL if none is crossed */
+static const double *cut_crossed(const Body *body, const CutSpec *cut, const double a[3], const double b[3],
+                                 double normal[3])
 {
   const NumberList *line = &cut->line, *polygon = &cut->polygon;
   const double *p = polygon->values;
@@ -283,7 +286,7 @@ static bool cut_crossed(const Body *body, const CutSpec *cut, const double a[3],
       const int i = (k + 1) % 3, j = (k + 2) % 3;
       normal[k] = (p[3 + i] - p[i]) * (p[6 + j] - p[j]) - (p[3 + j] - p[j]) * (p[6 + i] - p[i]);
     }
-    return true;
+    return p;
   }
   for (int n = 0; n + 1 < line->count; ++n) {
     if (!line_crossed(body, line, n, a, b)) continue;
@@ -293,9 +296,9 @@ static bool cut_crossed(const Body *body, const CutSpec *cut, const double a[3],
       normal[1] = c[3] - c[0];
       normal[2] = 0;
     }
-    return true;
+    return c;
   }
-  return false;
+  return NULL;
 }
 
 bool body_cuts(const Body *body, const double a[3], const double b[3])
@@ -325,22 +328,28 @@ static bool runs_through_notch(const Body *body, const double a[3], const double
   return false;
 }
 
-bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3])
+bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3], double *level)
 {
   if (!comes_first(a, b)) {
-    bool closed = body_closed_cut(body, b, a, normal);
+    bool closed = body_closed_cut(body, b, a, normal, level);
     for (int k = 0; k < 3 && closed; ++k) normal[k] = -normal[k];
+    if (closed) *level = -*level;
     return closed;
   }
-  int c = 0;
-  while (c < body->crack_count && !(body->cracks[c]->cut && cut_crossed(body, body->cracks[c]->cut, a, b, normal))) ++c;
-  if (c == body->crack_count || runs_through_notch(body, a, b)) return false;
+  const double *corner = NULL;
+  for (int c = 0; c < body->crack_count && !corner; ++c)
+    if (body->cracks[c]->cut) corner = cut_crossed(body, body->cracks[c]->cut, a, b, normal);
+  if (!corner || runs_through_notch(body, a, b)) return false;
   double size = 0, along = 0;
   for (int k = 0; k < 3; ++k) {
     size += normal[k] * normal[k];
     along += normal[k] * (b[k] - a[k]);
   }
   size = along < 0 ? -sqrt(size) : sqrt(size);
-  for (int k = 0; k < 3; ++k) normal[k] /= size;
+  *level = 0;
+  for (int k = 0; k < 3; ++k) {
+    normal[k] /= size;
+    *level += normal[k] * corner[k];
+  }
   return true;
 }

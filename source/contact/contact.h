@@ -1,12 +1,11 @@
 /* Particles that no bond joins keep each other off: two bodies that meet, and the faces of a crack that closes (docs/theory.md 2).
  *
- * Pairs that may touch are kept in rows, by number. A pair that a bond joined, until a cut or a break parted it, resists as soon as it is
- * nearer than it was, as stiffly as that bond; any pair resists once the faces meet, that is, once outermost particles are half a
- * spacing of each from each other. How near a pair is, is measured across the face between them, which follows from where
- * the bonded neighbours of both ends lie; along the face it slides, and friction holds it by a spring that gives way at the
- * coefficient times the pressure. Rows are found again when particles have moved by half of what they reach beyond any contact, and with them
- * where faces look; between, that is kept: normals that tremble with every particle would feed energy to bodies that rest on each
- * other. What friction remembers is tried and committed like the state of points. */
+ * Contact has an energy, a function of the positions alone between events, and its forces are the derivatives of it: momentum, angular
+ * momentum and energy are kept. Pairs that may touch are kept in rows, by number, each from both its ends. A pair resists when it is nearer
+ * than its rest, measured across the face between its ends; the normal of the face follows the deformation gradients of both
+ * families, so that part of the force acts on these. Which face, and the rest, are chosen when pairs are found again, and only for those
+ * that do not press: nothing jumps then. Where families of pressing pairs lose bonds, the rest is set so that the energy stays.
+ * Pairs are found again when particles have moved by half of what rows reach beyond any contact. */
 #ifndef BRECCIA_CONTACT_CONTACT_H
 #define BRECCIA_CONTACT_CONTACT_H
 
@@ -20,36 +19,58 @@ typedef struct ContactSpec {
 
 extern const Section contact_section;
 
+typedef enum PairKind {
+  PAIR_NEW,    /* nothing is known of it yet */
+  PAIR_BROKEN, /* its bond broke: it resists along itself */
+  PAIR_CUT,    /* a plane cut parts it: it resists across the cut, as bonds did */
+  PAIR_MET     /* its ends belong to faces that meet */
+} PairKind;
+
+/** A pair that may touch. What concerns direction is told from the end of the lower number to that of the higher one. */
 typedef struct ContactPair {
   int32_t neighbour; /* place */
-  bool bond;         /* this was a bond */
-  bool found;        /* by the last search */
-  double rest; /* of a bond: share of its distance below which it resists; 1, or less where it broke when pressed */
-  double normal[3]; /* of the cut that parted it, in the reference, towards the neighbour; 0: none did */
+  PairKind kind;
+  bool bond;           /* this was a bond */
+  bool found;          /* by the last search */
+  double normal[2][3]; /* of the face, in the reference, as the lower and the higher end know it; 0: it does not */
+  double depth;        /* of both ends below their faces */
+  double rest;         /* distance across the face below which it resists */
 } ContactPair;
 
-/** What friction remembers of a pair that touches. */
+/** What friction remembers of a pair that touches or nearly does; direction as in ContactPair. */
 typedef struct Grip {
-  bool touching;
-  double spring[3], way[3], normal[3]; /* elastic slip, way to the neighbour and normal when it was found */
+  bool known;               /* way and normal are */
+  double spring[3];         /* elastic slip times the square root of the stiffness: half its square is what it stores;
+                               0 unless it touches */
+  double pull[3];           /* force along the face, per volume squared */
+  double way[3], normal[3]; /* to the higher end, and of the face */
 } Grip;
 
-enum { MOST_FACES = 7 }; /* six sides of a lattice cell, and that of lost bonds */
+enum { MOST_CUTS = 3, MOST_FACES = 4 + 6 }; /* cuts, that of lost bonds, six sides of a lattice cell */
+
+/** How a family is deformed. */
+typedef struct Frame {
+  bool known; /* the family has bonds enough to tell */
+  double gradient[9];
+} Frame;
 
 typedef struct ContactRow {
   int32_t place, count, capacity;
-  ContactPair *pairs;    /* ascending by number of the neighbour */
-  Grip *grips;           /* [capacity][2] committed and trial; NULL without friction */
-  bool stale;            /* the family has changed since the faces were found */
-  bool turning;          /* it is to be found how the family has turned */
-  bool near;             /* a pair may touch */
-  double inward[3];      /* mean way to the bonded neighbours in the reference; 0: too few */
-  double from[3], to[3]; /* unit vectors of it, in the reference and now: how the family has turned; 0: unknown */
-  double lost[3];        /* unit normal of the face that lost bonds have left, in the reference; 0: there is none */
-  int faces;             /* that the particle has */
-  double face[MOST_FACES][3], turned[MOST_FACES][3]; /* their unit normals, in the reference and now */
-  double depth;                                      /* below the face */
-  double slid; /* work of friction at the last evaluation, of both sides of each pair */
+  ContactPair *pairs; /* ascending by number of the neighbour */
+  Grip *grips;        /* [capacity][2] committed and trial; NULL without friction */
+  bool stale;         /* the family has changed since its shape was found */
+  bool faceless;      /* its faces are to be found */
+  bool torn;          /* the family has lost bonds in the step under way */
+  bool near, framed;  /* a pair may press; one that needs frames */
+  bool pulls;         /* there is a pull */
+  double shape[9];    /* inverse of sum of V xi (x) xi over the family; 0: too few bonds */
+  Frame frame, before; /* now; before bonds broke in the step under way */
+  double pull[9];      /* derivative of contact's energy by the deformation gradient, times shape */
+  int faces, cuts;     /* the first faces are those of cuts */
+  double face[MOST_FACES][3]; /* their unit normals in the reference, outwards */
+  double level[MOST_CUTS];    /* of the planes of cuts along their normals */
+  double depth;               /* below the faces */
+  double stored, slid; /* energy, and work of friction, of the last evaluation: half of that of each pair */
 } ContactRow;
 
 typedef struct Contact {
@@ -58,7 +79,9 @@ typedef struct Contact {
   const Family *family;
   double *young;    /* [blocks] */
   double *constant; /* [blocks] of a bond: force per volume squared and stretch */
+  double *smoothed; /* [blocks] share of it that pairs across a cut have (press.c) */
   uint8_t *touched; /* [places] a bond of this particle may be missing */
+  uint8_t *marked;  /* [slices] some of its particles are pulled at by frames */
   int32_t *row_of;  /* [places] or -1 */
   ContactRow *rows;
   int32_t row_count, row_capacity;
@@ -67,6 +90,10 @@ typedef struct Contact {
   double travelled;     /* sum of largest motions since the rows were made */
   int committed;        /* which grips are committed */
   double friction_work; /* dissipated by friction up to the last commit */
+  bool cuts;            /* a closed cut parts some pairs */
+  bool choosing;        /* pairs were found again: those that do not press choose their faces */
+  bool remembered;      /* frames before bonds broke in the step under way are known */
+  bool torn;            /* rows are */
   bool failed;          /* memory was out */
 } Contact;
 
@@ -77,6 +104,8 @@ int contact_create(Contact *contact, const ContactSpec *spec, const Body *body, 
                    bool whole, double bonds, const double *young, Error *error);
 void contact_destroy(Contact *contact);
 
+/** By all threads, before bonds break at the displacements held: what pressing pairs have to keep. */
+void contact_remember(Contact *contact);
 /** Tells that the bond between two places is gone. */
 void contact_bond_broke(Contact *contact, int32_t a, int32_t b);
 /** Tells that it is there again, as if it had never broken. */
@@ -94,13 +123,13 @@ void contact_resist(Contact *contact);
 /** Makes what the last evaluation found the committed state, and adds the work of friction. Called by one thread. */
 void contact_commit(Contact *contact);
 
+/** Energy that pressed pairs and the springs of friction hold at the displacements held, as committed. */
+double contact_energy(Contact *contact);
+
 /** The most that contact adds to the largest eigenvalue of stiffness over mass. */
 double contact_eigenvalue(const Contact *contact);
 
-/** The row of what contact remembers; bonds and displacements stand before it. */
-void contact_state(Contact *contact, StateList *list);
-
-/** The committed state as numbers, to be saved: of a pair that broke when pressed, and of one that friction holds. @return how many, or -1
+/** The committed state as numbers, to be saved. @return how many, or -1
  *  @param[out] numbers  to be freed; NULL if there are none */
 int64_t contact_save(const Contact *contact, double **numbers);
 /** Takes it up again, when displacements and bonds are as they were. @return nonzero if the numbers cannot be those of this body */

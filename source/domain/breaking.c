@@ -151,6 +151,7 @@ void domain_break(Domain *d, const Moment *moment)
   }
   if (!d->any_suspect) return;
   find_energies(d, moment->time_step, false);
+  contact_remember(&d->contact);
   TEAM_SINGLE break_suspects(d, moment);
 }
 

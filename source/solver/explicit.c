@@ -607,8 +607,7 @@ Energy explicit_energy(const Explicit *s)
               .friction = d->contact.friction_work,
               .between = l->between};
   const bool elastic = domain_is_elastic(d);
-  e.stored = elastic && d->contact.spec ? e.internal
-                                        : domain_stored_energy(d); /* what contact stores is not known by itself */
+  e.stored = domain_stored_energy(d) + contact_energy(&d->contact);
   if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
   const double error = l->external_work + s->kinetic_at_start + l->between - l->kinetic - l->damping_work - e.stored -
                        e.dissipated - e.fracture - e.friction;

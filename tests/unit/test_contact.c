@@ -169,6 +169,162 @@ static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void *
   }
 }
 
+/** Forces of contact alone on all places [force]: those with it less those without. */
+static double *contact_forces(breccia_model *model)
+{
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  double *force = malloc(3 * sizeof *force * (size_t)p->places);
+  compute_forces(model);
+  for (int k = 0; k < 3; ++k) memcpy(force + k * p->places, p->internal[k], sizeof *force * (size_t)p->places);
+  const ContactSpec *spec = d->contact.spec;
+  d->contact.spec = NULL;
+  compute_forces(model);
+  d->contact.spec = spec;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      force[k * p->places + i] = (force[k * p->places + i] - p->internal[k][i]) * p->volume[i];
+  return force;
+}
+
+/** Fails unless the forces of contact are the derivative of its energy, and no force or couple is left in all. */
+static void check_derivative(breccia_model *model, double spacing, const char *what)
+{
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  double *force = contact_forces(model), largest = 0, sum[3] = {0}, couple[3] = {0}, worst = 0;
+  int checked = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double x[3], f[3];
+    for (int k = 0; k < 3; ++k) {
+      x[k] = p->position[k][i] + p->displacement[k][i];
+      sum[k] += f[k] = force[k * p->places + i];
+      largest = fmax(largest, fabs(f[k]));
+    }
+    for (int k = 0; k < 3; ++k) couple[k] += x[(k + 1) % 3] * f[(k + 2) % 3] - x[(k + 2) % 3] * f[(k + 1) % 3];
+  }
+  assert_true(largest > 0);
+  for (int k = 0; k < 3; ++k) {
+    assert_near_at(sum[k], 0, 1e-11 * largest, what, __FILE__, __LINE__);
+    assert_near_at(couple[k], 0, 1e-10 * largest * spacing, what, __FILE__, __LINE__);
+  }
+  for (int64_t n = 0; n < p->count; n += 3) {
+    const int32_t i = p->place_of[n];
+    for (int k = 0; k < d->body.dimensions; ++k) {
+      const double h = 1e-5 * spacing, here = p->displacement[k][i];
+      double energy[2];
+      for (int side = 0; side < 2; ++side) {
+        p->displacement[k][i] = here + (side ? h : -h);
+        energy[side] = contact_energy(&d->contact);
+      }
+      p->displacement[k][i] = here;
+      worst = fmax(worst, fabs((energy[1] - energy[0]) / (2 * h) + force[k * p->places + i]));
+      checked += fabs(force[k * p->places + i]) > 1e-3 * largest;
+    }
+  }
+  assert_true(checked > 20);
+  assert_near_at(worst, 0, 2e-5 * largest, what, __FILE__, __LINE__);
+  free(force);
+}
+
+/** A smooth deformation of all particles, of a few per cent of the size of the body. */
+static void wave(const breccia_model *model, double size, double amplitude)
+{
+  const Particles *p = model->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double x = p->position[0][i] / size, y = p->position[1][i] / size, z = p->position[2][i] / size;
+    p->displacement[0][i] += amplitude * size * sin(3 * y + 2 * z);
+    p->displacement[1][i] += amplitude * size * sin(2 * x + 3 * z);
+    if (model->domain.body.dimensions == 3) p->displacement[2][i] += amplitude * size * sin(3 * x - 2 * y);
+  }
+}
+
+/** Turns everything by half a radian about an axis that is no lattice axis (in the plane about its normal). */
+static void rotate(const breccia_model *model)
+{
+  const Particles *p = model->domain.particles;
+  const double c = cos(0.5), s = sin(0.5), r = sqrt(1.0 / 3);
+  const double axis[2][3] = {{0, 0, 1}, {r, r, r}}, *a = axis[model->domain.body.dimensions == 3];
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double x[3], along = 0;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = p->position[k][i] + p->displacement[k][i];
+      along += a[k] * x[k];
+    }
+    for (int k = 0; k < 3; ++k)
+      p->displacement[k][i] = c * x[k] + s * (a[(k + 1) % 3] * x[(k + 2) % 3] - a[(k + 2) % 3] * x[(k + 1) % 3]) +
+                              (1 - c) * along * a[k] - p->position[k][i];
+  }
+}
+
+static void forces_are_the_derivative_of_the_energy(void **state)
+{
+  (void)state;
+  /* A cut body in space and in the plane, pressed, then slid too, then turned too. */
+  for (int plane = 0; plane < 2; ++plane) {
+    breccia_model *model =
+        plane ? model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}}\nperidynamics: "
+                         "{formulation: bond-based, space: plane stress}\nbody: {b: {material: m, lattice: square, "
+                         "thickness: 0.1, spacing: 0.01, shape: {box: {particles: [12, 10]}}}}\n"
+                         "cracks: [{cut: {line: [[-1, 0.05], [1, 0.05]]}}]\ncontact: {}\n"
+                         "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                         FIBRE)
+              : model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}}\nperidynamics: "
+                         "{formulation: bond-based}\nbody: {b: {material: m, spacing: 0.01, shape: {box: {particles: "
+                         "[6, 5, 8]}}}}\ncracks: [{cut: {polygon: [[-1, -1, 0.04], [1, -1, 0.04], [1, 1, 0.04], "
+                         "[-1, 1, 0.04]]}}]\ncontact: {}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                         FIBRE);
+    const Particles *p = model->domain.particles;
+    const int across = plane ? 1 : 2;
+    const double level = plane ? 0.05 : 0.04;
+    for (int64_t i = 0; i < p->places; ++i)
+      p->displacement[across][i] = p->position[across][i] > level ? -4e-4 : 0;
+    wave(model, 0.06, 0.01);
+    check_derivative(model, 0.01, "pressed");
+    for (int64_t i = 0; i < p->places; ++i) p->displacement[0][i] += p->position[across][i] > level ? 0.0137 : 0;
+    contact_search(&model->domain.contact);
+    check_derivative(model, 0.01, "slid");
+    rotate(model);
+    check_derivative(model, 0.01, "turned");
+    breccia_model_destroy(&model);
+  }
+  /* Bodies of unlike spacing that meet at an angle, sound and with broken bonds. */
+  for (int broken = 0; broken < 2; ++broken) {
+    breccia_model *model = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}}\n"
+        "peridynamics: {formulation: bond-based, horizon: 0.0202}\nbody:\n"
+        "  one: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.06, 0.05, 0.03]}}}\n"
+        "  two: {material: m, spacing: 0.006, shape: {box: {from: [0.011, 0.008, 0.05], to: [0.047, 0.038, 0.068]}}}\n"
+        "contact: {}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+        FIBRE);
+    Domain *d = &model->domain;
+    const Particles *p = d->particles;
+    compute_forces(model);
+    for (int n = 0; n < 4 && broken; ++n) { /* of the upper face of the lower body */
+      const int32_t a = p->place_of[6 * 5 * 2 + 8 + 6 * (n / 2)], b = a - 1 + 2 * (n % 2);
+      assert_true(family_break(&d->family, a, b));
+      contact_bond_broke(&d->contact, a, b);
+      d->type->renew(d->formulation, a / SLICE);
+      d->type->renew(d->formulation, b / SLICE);
+    }
+    for (int64_t i = 0; i < p->places; ++i)
+      if (p->block[i / SLICE]) p->displacement[2][i] = -0.0199;
+    contact_search(&d->contact); /* nearly touching: it chooses its faces */
+    compute_forces(model);
+    wave(model, 0.06, 0.004);
+    for (int64_t i = 0; i < p->places; ++i)
+      if (p->block[i / SLICE]) p->displacement[2][i] -= 6e-4;
+    if (broken) p->displacement[0][p->place_of[6 * 5 * 2 + 8]] += 2e-3;
+    check_derivative(model, 0.01, broken ? "unlike, broken" : "unlike");
+    rotate(model);
+    check_derivative(model, 0.01, "unlike, turned");
+    breccia_model_destroy(&model);
+  }
+}
+
 #define LEVEL_CUT "cracks: [{cut: {polygon: [[-1, -1, 0.09], [1, -1, 0.09], [1, 1, 0.09], [-1, 1, 0.09]]}}]\n"
 
 static breccia_model *column(const char *formulation, const char *law, const char *more)
@@ -390,6 +546,7 @@ int main(void)
       cmocka_unit_test(without_contact_they_pass_through_each_other),
       cmocka_unit_test(particles_at_rest_and_bonds_feel_no_contact),
       cmocka_unit_test(a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed),
+      cmocka_unit_test(forces_are_the_derivative_of_the_energy),
       cmocka_unit_test(a_closed_cut_is_as_stiff_as_the_body_and_opens_freely),
       cmocka_unit_test(faces_of_a_cut_slide_freely_or_with_coulombs_friction),
       cmocka_unit_test(a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle),

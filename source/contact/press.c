@@ -1,0 +1,401 @@
+/* Energy and forces of pairs (docs/theory.md 2).
+ *
+ * A pair stores V_a V_b k g^2 / 2, with g = rest - y.n, n the unit vector of nu = sum of cof(F) N over both ends that know the face, and k a
+ * function of rho^2 = y.y - (y.n)^2, the square of the distance along the face. With p the derivative by n,
+ *   dE = [-k g n + g^2 k' (y - (y.n) n)] . dy + p . dn,   p = -g (k + g k' (y.n)) y,
+ *   p . dn = q . dnu,   q = (p - (p.n) n) / |nu|,   q . d(cof(F) N) = [(q (x) N) x F] : dF,
+ * where (A x F)_mK = e_mni e_KLJ F_nL A_iJ. What acts on F acts on the family by V_j (A x F) K^-1 xi. */
+#include "contact/contact_parts.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Weight of pairs of faces that meet, by their distance q along the face in spacings: the quadratic B-spline, whose sums over a row
+ * of particles are 1, and weighted by their places 0, wherever the row is met: faces of particles are smooth so. */
+static const double spline_reach = 1.5;
+/** Integral of the spline over a plane, in spacings squared. */
+static const double spline_plane = 1.2762720155208536; /* 2 pi 13 / 64 */
+
+/* Pairs across a cut fade between these shares of the horizon: sums over lattices that slide then vary by 1 %, and not by 20 %. */
+static const double fade_from = 0.7, fade_to = 1.05;
+
+static double fade(double square, double horizon, double *slope)
+{
+  const double from = fade_from * fade_from * horizon * horizon, to = fade_to * fade_to * horizon * horizon;
+  const double t = (square - from) / (to - from);
+  *slope = 0;
+  if (t <= 0) return 1;
+  if (t >= 1) return 0;
+  *slope = -6 * t * (1 - t) / (to - from);
+  return 1 - t * t * (3 - 2 * t);
+}
+
+double contact_cut_reach(const Contact *c)
+{
+  return fade_to * c->family->horizon;
+}
+
+double contact_met_reach(double spacing)
+{
+  return spacing * sqrt(1 + spline_reach * spline_reach);
+}
+
+double contact_reach(const Contact *c, const ContactPair *pair, int32_t place)
+{
+  if (pair->kind == PAIR_BROKEN) return pair->rest;
+  const double along =
+      pair->kind == PAIR_CUT
+          ? contact_cut_reach(c)
+          : spline_reach *
+                fmax(contact_lattice(c, place)->spacing, contact_lattice(c, pair->neighbour)->spacing);
+  return sqrt(pair->rest * pair->rest + along * along);
+}
+
+double contact_smoothed(const Contact *c, int block)
+{
+  /* A bond at the angle psi across a face counts there by cos^3 psi; over all axes of the lattice. */
+  const Lattice *lattice = &c->body->lattices[block];
+  const double horizon = c->family->horizon, step = lattice->chunks ? lattice->spacing : horizon / 8;
+  const int reach = (int)ceil(fade_to * horizon / step);
+  double whole = 0, faded = 0, slope;
+  int n[3];
+  const int extent[3] = {reach, c->body->dimensions > 1 ? reach : 0, c->body->dimensions > 2 ? reach : 0};
+  for (n[2] = -extent[2]; n[2] <= extent[2]; ++n[2])
+    for (n[1] = -extent[1]; n[1] <= extent[1]; ++n[1])
+      for (n[0] = -extent[0]; n[0] <= extent[0]; ++n[0]) {
+        const double length = step * sqrt((double)(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
+        double share = 0;
+        for (int k = 0; k < 3 && length > 0; ++k) share += pow(step * abs(n[k]) / length, 3);
+        if (length <= horizon * (1 + 1e-9)) whole += share;
+        faded += share * fade(length * length, horizon, &slope);
+      }
+  return faded > 0 ? whole / faded : 1;
+}
+
+/** Stiffness of faces that meet, where one particle stands right opposite another, per weight: that of a layer of both bodies. */
+static double met_stiffness(const Contact *c, int one, int two, double *wide)
+{
+  const double da = c->body->lattices[one].spacing, db = c->body->lattices[two].spacing;
+  *wide = fmax(da, db);
+  const BlockSpec *block = c->body->blocks[0];
+  const double plane = c->body->dimensions == 3   ? spline_plane * *wide * *wide
+                       : c->body->dimensions == 2 ? *wide * block->thickness
+                                                  : 0.75 * block->area;
+  const double young = 2 * c->young[one] * c->young[two] / (c->young[one] + c->young[two]);
+  return c->spec->stiffness * young / ((da + db) / 2 * da * db) / plane;
+}
+
+/** Stiffness of a pair at a square of its distance along the face; `press->central` is known. */
+static void find_stiffness(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
+                           double square, Press *press)
+{
+  const Particles *p = &c->body->particles;
+  const int one = p->block[low->place / SLICE], two = p->block[high->place / SLICE];
+  press->slope = 0;
+  if (pair->kind == PAIR_MET) {
+    double wide;
+    const double k = met_stiffness(c, one, two, &wide), q = sqrt(square) / wide;
+    if (press->central || q == 0) {
+      press->stiffness = 0.75 * k;
+      press->slope = press->central ? 0 : -k / (wide * wide);
+    } else {
+      const double left = fmax(0, spline_reach - q);
+      press->stiffness = k * (q < 0.5 ? 0.75 - q * q : 0.5 * left * left);
+      press->slope = -k / (wide * wide) * (q < 0.5 ? 1 : left / (2 * q));
+    }
+    return;
+  }
+  const double mean = (c->constant[one] + c->constant[two]) / 2;
+  if (press->central) {
+    press->stiffness = mean / particles_distance(p, low->place, high->place);
+    return;
+  }
+  const double smoothed = (c->smoothed[one] + c->smoothed[two]) / 2;
+  const double least = (c->body->lattices[one].spacing + c->body->lattices[two].spacing) / 4;
+  const double length = fmax(pair->depth, least) * fmax(pair->depth, least) + square; /* squared */
+  double slope;
+  const double faded = fade(length, c->family->horizon, &slope);
+  const double k = smoothed * mean * pair->depth * pair->depth / (length * sqrt(length));
+  press->stiffness = k * faded;
+  press->slope = k * (slope - 1.5 * faded / length);
+}
+
+/** Adds cof(F) N of one end. */
+static void add_normal(const Frame *frame, const double normal[3], double sum[3])
+{
+  const double *f = frame->gradient;
+  if (!frame->known) return;
+  for (int i = 0; i < 3; ++i) {
+    const int m = (i + 1) % 3, n = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int k = (j + 1) % 3, l = (j + 2) % 3;
+      if (normal[j] != 0) sum[i] += (f[3 * m + k] * f[3 * n + l] - f[3 * m + l] * f[3 * n + k]) * normal[j];
+    }
+  }
+}
+
+bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
+                   bool before, Press *press)
+{
+  double nu[3] = {0};
+  present_way(&c->body->particles, low->place, high->place, press->way);
+  if (pair->kind == PAIR_NEW) return false;
+  if (pair->kind != PAIR_BROKEN) {
+    add_normal(before ? &low->before : &low->frame, pair->normal[0], nu);
+    add_normal(before ? &high->before : &high->frame, pair->normal[1], nu);
+  }
+  const double size = dot(nu, nu), length = dot(press->way, press->way);
+  press->central = !(size > 0);
+  if (press->central) {
+    press->across = sqrt(length);
+    for (int k = 0; k < 3; ++k) press->normal[k] = press->across > 0 ? press->way[k] / press->across : 0;
+  } else {
+    for (int k = 0; k < 3; ++k) press->normal[k] = nu[k];
+    make_unit(press->normal);
+    press->across = dot(press->way, press->normal);
+  }
+  memcpy(press->long_normal, nu, sizeof nu);
+  press->gap = pair->rest - press->across;
+  press->stiffness = 0;
+  find_stiffness(c, low, high, pair, fmax(0, length - press->across * press->across), press);
+  press->energy = press->stiffness * press->gap * press->gap / 2;
+  return press->gap > 0 && press->stiffness > 0;
+}
+
+/** Lets the energy of a pair stay as it was before bonds broke around it. */
+static void keep_energy(const Contact *c, const ContactRow *low, const ContactRow *high, ContactPair *pair)
+{
+  Press old, now;
+  if (pair->kind == PAIR_BROKEN || pair->kind == PAIR_NEW) return;
+  const bool pressed = contact_press(c, low, high, pair, true, &old);
+  const bool presses = contact_press(c, low, high, pair, false, &now);
+  if (pressed && now.stiffness > 0)
+    pair->rest = now.across + sqrt(2 * old.energy / now.stiffness);
+  else if (presses)
+    pair->rest = now.across;
+}
+
+/* ---- sweeps over rows ---- */
+
+static void look_around(const Contact *c, ContactRow *row)
+{
+  row->near = row->framed = c->choosing;
+  for (int32_t n = 0; n < row->count && !(row->near && row->framed); ++n) {
+    const ContactPair *pair = &row->pairs[n];
+    double y[3];
+    present_way(&c->body->particles, row->place, pair->neighbour, y);
+    const double reach = contact_reach(c, pair, row->place);
+    if (!(dot(y, y) < reach * reach)) continue;
+    row->near = true;
+    row->framed |= pair->kind != PAIR_BROKEN;
+  }
+  if (row->faceless && c->choosing) {
+    contact_find_faces(c, row);
+    row->faceless = false;
+  }
+  if (row->framed && !(c->remembered && !row->stale)) contact_find_frame(c, row);
+}
+
+void contact_remember(Contact *c)
+{
+  if (!c->spec) return;
+  TEAM_FOR (r, c->row_count) {
+    look_around(c, &c->rows[r]);
+    c->rows[r].before = c->rows[r].frame;
+  }
+  TEAM_SINGLE c->remembered = true;
+}
+
+static void choose_row(const Contact *c, const ContactRow *row)
+{
+  for (int32_t n = 0; n < row->count; ++n)
+    contact_choose(c, row, &c->rows[c->row_of[row->pairs[n].neighbour]], &row->pairs[n]);
+}
+
+static void keep_row(const Contact *c, const ContactRow *row)
+{
+  for (int32_t n = 0; n < row->count; ++n) {
+    const ContactRow *other = &c->rows[c->row_of[row->pairs[n].neighbour]];
+    if (!row->torn && !other->torn) continue;
+    const bool first = is_low(c, row, other);
+    keep_energy(c, first ? row : other, first ? other : row, &row->pairs[n]);
+  }
+}
+
+/** Adds the force of a pair to that on its row, and its part of the derivative by the row's deformation gradient. */
+static void add_pair(const Contact *c, const ContactRow *row, const ContactRow *other, const ContactPair *pair,
+                     const Press *m, const double pull[3], double force[3], double moment[9])
+{
+  const Particles *p = &c->body->particles;
+  const bool first = is_low(c, row, other);
+  const double share = p->volume[other->place] * (first ? 1 : -1);
+  const double along = m->gap * m->gap * m->slope;
+  double q[3];
+  for (int k = 0; k < 3; ++k) {
+    const double side = m->way[k] - m->across * m->normal[k];
+    force[k] += share * (along * side - m->stiffness * m->gap * m->normal[k] + pull[k]);
+    q[k] = -m->gap * (m->stiffness + m->gap * m->slope * m->across) * m->way[k] - m->across * pull[k];
+  }
+  if (m->central || !row->frame.known) return;
+  flatten(m->normal, q);
+  const double size = p->volume[row->place] * p->volume[other->place] / sqrt(dot(m->long_normal, m->long_normal));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) moment[3 * i + j] += size * q[i] * pair->normal[!first][j];
+}
+
+/** The derivative by F from that by cof(F) N, and what the family is pulled with. */
+static void find_pull(ContactRow *row, const double a[9])
+{
+  const double *f = row->frame.gradient;
+  double stress[9];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int m = (i + 1) % 3, n = (i + 2) % 3, k = (j + 1) % 3, l = (j + 2) % 3;
+      stress[3 * i + j] = f[3 * m + k] * a[3 * n + l] - f[3 * m + l] * a[3 * n + k] - f[3 * n + k] * a[3 * m + l] +
+                          f[3 * n + l] * a[3 * m + k];
+    }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      row->pull[3 * i + j] = 0;
+      for (int k = 0; k < 3; ++k) row->pull[3 * i + j] += stress[3 * i + k] * row->shape[3 * k + j];
+    }
+}
+
+static void mark_family(Contact *c, const ContactRow *row)
+{
+  const Family *f = c->family;
+  const int64_t slice = row->place / SLICE;
+  __atomic_store_n(&c->marked[slice], 1, __ATOMIC_RELAXED);
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    if (f->intact[slot] >> (row->place % SLICE) & 1)
+      __atomic_store_n(&c->marked[family_bond(f, slice, slot, row->place % SLICE).neighbour / SLICE], 1,
+                       __ATOMIC_RELAXED);
+}
+
+/** Energy and forces of the pairs of a row. @param[in] only_energy  of the committed state */
+static void resist_row(Contact *c, ContactRow *row, bool only_energy)
+{
+  const Particles *p = &c->body->particles;
+  double force[3] = {0}, moment[9] = {0};
+  row->slid = row->stored = 0;
+  row->pulls = false;
+  for (int32_t n = 0; n < row->count; ++n) {
+    const ContactPair *pair = &row->pairs[n];
+    const ContactRow *other = &c->rows[c->row_of[pair->neighbour]];
+    const Grip *before = row->grips ? &row->grips[2 * n + c->committed] : NULL;
+    Grip *after = row->grips && !only_energy ? &row->grips[2 * n + !c->committed] : NULL;
+    const double half = p->volume[row->place] * p->volume[other->place] / 2;
+    const bool first = is_low(c, row, other);
+    const ContactRow *low = first ? row : other, *high = first ? other : row;
+    Press m;
+    if (after) after->known = false;
+    if (only_energy && before && before->known) row->stored += half * dot(before->spring, before->spring) / 2;
+    if (!row->near || !other->near) continue; /* nor did it press before: rows reach far beyond */
+    const bool presses = contact_press(c, low, high, pair, false, &m);
+    double pull[3] = {0};
+    if (after) {
+      row->slid += half * contact_grip(before, after, &m, c->spec->friction);
+      row->stored += half * dot(after->spring, after->spring) / 2;
+      memcpy(pull, after->pull, sizeof pull);
+    }
+    if (!presses) continue;
+    row->stored += half * m.energy;
+    if (only_energy) continue;
+    add_pair(c, row, other, pair, &m, pull, force, moment);
+    row->pulls |= !m.central && row->frame.known;
+  }
+  if (only_energy) return;
+  for (int k = 0; k < 3; ++k) p->internal[k][row->place] += force[k];
+  row->pulls = row->pulls && c->body->dimensions > 1;
+  if (!row->pulls) return;
+  find_pull(row, moment);
+  mark_family(c, row);
+}
+
+static const ContactRow *pulling_row(const Contact *c, int32_t place)
+{
+  const ContactRow *row = c->row_of[place] < 0 ? NULL : &c->rows[c->row_of[place]];
+  return row && row->pulls ? row : NULL;
+}
+
+/** Forces on the particles of a slice from what acts on the deformation gradients of theirs and of their neighbours. */
+static void gather(const Contact *c, int64_t slice)
+{
+  const Family *f = c->family;
+  const Particles *p = f->particles;
+  for (int lane = 0; lane < SLICE; ++lane) {
+    const int32_t place = (int32_t)(slice * SLICE + lane);
+    if (p->number[place] < 0) continue;
+    const ContactRow *row = pulling_row(c, place);
+    double force[3] = {0};
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      if (!(f->intact[slot] >> lane & 1)) continue;
+      const Bond bond = family_bond(f, slice, slot, lane);
+      const ContactRow *other = pulling_row(c, bond.neighbour);
+      const double share = p->volume[bond.neighbour] / p->volume[place];
+      for (int i = 0; i < 3 && (row || other); ++i)
+        for (int j = 0; j < 3; ++j)
+          force[i] += ((row ? share * row->pull[3 * i + j] : 0) + (other ? other->pull[3 * i + j] : 0)) * bond.xi[j];
+    }
+    for (int k = 0; k < 3; ++k) p->internal[k][place] += force[k];
+  }
+}
+
+void contact_resist(Contact *c)
+{
+  if (!c->spec) return;
+  const bool choosing = c->choosing, keeping = c->torn && c->remembered; /* before anyone changes them */
+  TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
+  if (choosing) {
+    TEAM_FOR (r, c->row_count) choose_row(c, &c->rows[r]);
+  }
+  if (keeping) {
+    TEAM_FOR (r, c->row_count) keep_row(c, &c->rows[r]);
+  }
+  TEAM_SINGLE
+  {
+    for (int32_t r = 0; r < c->row_count && c->torn; ++r) c->rows[r].torn = false;
+    c->choosing = c->torn = c->remembered = false;
+    memset(c->marked, 0, (size_t)c->body->particles.slices);
+  }
+  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r], false);
+  TEAM_FOR (s, c->body->particles.slices)
+    if (c->marked[s]) gather(c, s);
+}
+
+static void find_stored(void *context)
+{
+  Contact *c = context;
+  TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
+  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r], true);
+}
+
+/** Sum over rows in the order of places: they stand in the order of events, which a restart does not know. */
+static double sum_rows(const Contact *c, size_t offset)
+{
+  double sum = 0;
+  for (int64_t place = 0; place < c->body->particles.places; ++place)
+    if (c->row_of[place] >= 0) sum += *(const double *)((const char *)&c->rows[c->row_of[place]] + offset);
+  return sum;
+}
+
+double contact_energy(Contact *c)
+{
+  if (!c->spec) return 0;
+  team_run(find_stored, c);
+  return sum_rows(c, offsetof(ContactRow, stored));
+}
+
+void contact_commit(Contact *c)
+{
+  if (!c->spec || !(c->spec->friction > 0)) return;
+  c->committed = !c->committed;
+  c->friction_work += sum_rows(c, offsetof(ContactRow, slid));
+}
+
+double contact_eigenvalue(const Contact *c)
+{
+  return c->stiffest;
+}
