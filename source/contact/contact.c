@@ -119,6 +119,7 @@ void contact_destroy(Contact *c)
   free(c->touched);
   free(c->young);
   free(c->smoothed);
+  free(c->kept);
   free(c->marked);
   free(c->constant);
   *c = (Contact){.spec = NULL};
@@ -325,7 +326,9 @@ void contact_forget_pairs(Contact *c)
 void contact_follow(Contact *c, double motion)
 {
   if (!c->spec) return;
+  c->travelled_before = c->travelled;
   c->travelled += motion;
-  if (c->travelled > c->margin / 2) contact_search(c);
+  if (!(c->travelled > c->margin / 2)) return;
+  contact_keep(c);
+  contact_search(c);
 }
-

@@ -50,27 +50,27 @@ enum { MOST_CUTS = 3, MOST_FACES = 4 + 6 }; /* cuts, that of lost bonds, six sid
 
 /** How a family is deformed. */
 typedef struct Frame {
-  bool known; /* the family has bonds enough to tell */
-  double gradient[9];
+  bool known;                      /* the family has bonds enough to tell; else cofactor is 0 */
+  double gradient[9], cofactor[9]; /* F, and what takes normals of the reference to those of now */
 } Frame;
 
 typedef struct ContactRow {
   int32_t place, count, capacity;
-  ContactPair *pairs; /* ascending by number of the neighbour */
-  Grip *grips;        /* [capacity][2] committed and trial; NULL without friction */
-  bool stale;         /* the family has changed since its shape was found */
-  bool faceless;      /* its faces are to be found */
-  bool torn;          /* the family has lost bonds in the step under way */
-  bool near, framed;  /* a pair may press; one that needs frames */
-  bool pulls;         /* there is a pull */
-  double shape[9];    /* inverse of sum of V xi (x) xi over the family; 0: too few bonds */
-  Frame frame, before; /* now; before bonds broke in the step under way */
-  double pull[9];      /* derivative of contact's energy by the deformation gradient, times shape */
-  int faces, cuts;     /* the first faces are those of cuts */
+  ContactPair *pairs;         /* ascending by number of the neighbour */
+  Grip *grips;                /* [capacity][2] committed and trial; NULL without friction */
+  bool stale;                 /* the family has changed since its shape was found */
+  bool faceless;              /* its faces are to be found */
+  bool torn;                  /* the family has lost bonds in the step under way */
+  bool near, framed;          /* a pair may press; one that needs frames */
+  bool pulls;                 /* there is a pull */
+  double shape[9];            /* inverse of sum of V xi (x) xi over the family; 0: too few bonds */
+  Frame frame, before;        /* now; before bonds broke in the step under way */
+  double pull[9];             /* derivative of contact's energy by the deformation gradient, times shape */
+  int faces, cuts;            /* the first faces are those of cuts */
   double face[MOST_FACES][3]; /* their unit normals in the reference, outwards */
   double level[MOST_CUTS];    /* of the planes of cuts along their normals */
   double depth;               /* below the faces */
-  double stored, slid; /* energy, and work of friction, of the last evaluation: half of that of each pair */
+  double stored, slid;        /* energy, and work of friction, of the last evaluation: half of that of each pair */
 } ContactRow;
 
 typedef struct Contact {
@@ -85,16 +85,19 @@ typedef struct Contact {
   int32_t *row_of;  /* [places] or -1 */
   ContactRow *rows;
   int32_t row_count, row_capacity;
-  double stiffest;      /* the most that contact adds to an eigenvalue */
-  double margin;        /* how far the rows reach beyond any contact */
-  double travelled;     /* sum of largest motions since the rows were made */
-  int committed;        /* which grips are committed */
-  double friction_work; /* dissipated by friction up to the last commit */
-  bool cuts;            /* a closed cut parts some pairs */
-  bool choosing;        /* pairs were found again: those that do not press choose their faces */
-  bool remembered;      /* frames before bonds broke in the step under way are known */
-  bool torn;            /* rows are */
-  bool failed;          /* memory was out */
+  double stiffest;         /* the most that contact adds to an eigenvalue */
+  double margin;           /* how far the rows reach beyond any contact */
+  double travelled;        /* sum of largest motions since the rows were made */
+  int committed;           /* which grips are committed */
+  double friction_work;    /* dissipated by friction up to the last commit */
+  bool cuts;               /* a closed cut parts some pairs */
+  bool choosing;           /* pairs were found again: those that do not press choose their faces */
+  bool remembered;         /* frames before bonds broke in the step under way are known */
+  bool torn;               /* rows are */
+  double travelled_before; /* the step under way */
+  double *kept;            /* the state before the step under way, as numbers, if it has changed since; or NULL */
+  int64_t kept_count;
+  bool failed; /* memory was out */
 } Contact;
 
 /** @param[in] whole  bonds are as stiff as in a whole family wherever they are
@@ -110,6 +113,9 @@ void contact_remember(Contact *contact);
 void contact_bond_broke(Contact *contact, int32_t a, int32_t b);
 /** Tells that it is there again, as if it had never broken. */
 void contact_bond_mended(Contact *contact, int32_t a, int32_t b);
+
+/** Takes back what a step that failed has changed, when its broken bonds are mended. */
+void contact_undo(Contact *contact);
 
 /** Finds the pairs again. */
 void contact_search(Contact *contact);
@@ -128,6 +134,9 @@ double contact_energy(Contact *contact);
 
 /** The most that contact adds to the largest eigenvalue of stiffness over mass. */
 double contact_eigenvalue(const Contact *contact);
+
+/** The row of what contact remembers; bonds and displacements stand before it. */
+void contact_state(Contact *contact, StateList *list);
 
 /** The committed state as numbers, to be saved. @return how many, or -1
  *  @param[out] numbers  to be freed; NULL if there are none */

@@ -7,11 +7,12 @@
 
 /** A pair as it stands; direction as in ContactPair, all per volume squared. */
 typedef struct Press {
-  bool central;   /* its own direction is the normal */
-  double way[3];  /* to the higher end */
+  bool central;                     /* its own direction is the normal */
+  double way[3];                    /* to the higher end */
   double normal[3], long_normal[3]; /* unit; as the frames of both ends make it */
   double across, gap;               /* distance along the normal; rest less it */
-  double stiffness, slope;          /* and its derivative by the square of the distance along the face */
+  double square;                    /* of the distance along the face */
+  double stiffness, slope;          /* and its derivative by that square; 0 unless the gap is above 0 */
   double energy;
 } Press;
 
@@ -63,6 +64,10 @@ ContactRow *contact_row_for(Contact *c, int32_t place);
 ContactPair *contact_pair_for(Contact *c, int32_t place, int32_t neighbour);
 /** Removes all pairs that are no former bonds. */
 void contact_forget_pairs(Contact *c);
+
+/* State (contact_state.c). */
+/** Before pairs or rests change in a step: keeps them, once. */
+void contact_keep(Contact *c);
 
 /* Faces (faces.c). */
 /** Finds the shape of the family of a row, if it has changed, and how it is deformed. */

@@ -105,3 +105,38 @@ int contact_resume(Contact *c, const double *numbers, int64_t count)
   for (int32_t r = 0; r < c->row_count; ++r) c->rows[r].torn = false;
   return 0;
 }
+
+void contact_keep(Contact *c)
+{
+  if (c->kept) return;
+  c->kept_count = contact_save(c, &c->kept);
+  if (c->kept_count < 0) c->failed = true;
+}
+
+void contact_undo(Contact *c)
+{
+  if (!c->spec) return;
+  const double travelled = c->travelled_before;
+  if (c->kept && contact_resume(c, c->kept, c->kept_count)) c->failed = true;
+  free(c->kept);
+  c->kept = NULL;
+  c->travelled = travelled;
+}
+
+static int64_t save_row(const void *owner, double **numbers)
+{
+  return contact_save(owner, numbers);
+}
+
+static int resume_row(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)error;
+  return contact_resume(owner, numbers, count) ? STATE_MISFIT : BRECCIA_OK;
+}
+
+void contact_state(Contact *c, StateList *list)
+{
+  static const StateCare care = {.save = save_row, .resume = resume_row};
+  if (c->spec)
+    state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &care, .owner = c}, "contact", NULL);
+}

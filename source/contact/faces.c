@@ -6,7 +6,8 @@
 
 static const double least_offset = 0.25; /* of neighbours to one side, in spacings: less shows no face */
 static const double least_cosine = 0.2;  /* between a pair and the normal of its face */
-static const double least_shape = 1e-3;  /* determinant of a family's shape over that of a ball: flatter ones tell no gradient */
+static const double least_shape =
+    1e-3; /* determinant of a family's shape over that of a ball: flatter ones tell no gradient */
 
 /* ---- frames ---- */
 
@@ -37,6 +38,16 @@ static bool find_shape(const Contact *c, int32_t place, double shape[9])
   return true;
 }
 
+static void find_cofactor(Frame *frame)
+{
+  const double *f = frame->gradient;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int m = (i + 1) % 3, n = (i + 2) % 3, k = (j + 1) % 3, l = (j + 2) % 3;
+      frame->cofactor[3 * i + j] = frame->known ? f[3 * m + k] * f[3 * n + l] - f[3 * m + l] * f[3 * n + k] : 0;
+    }
+}
+
 void contact_find_frame(const Contact *c, ContactRow *row)
 {
   const Family *f = c->family;
@@ -48,9 +59,11 @@ void contact_find_frame(const Contact *c, ContactRow *row)
     row->stale = false;
   }
   double moment[9] = {0}, *gradient = row->frame.gradient;
-  if (!row->frame.known) return;
   for (int n = 0; n < 9; ++n) gradient[n] = n % 4 == 0;
-  if (c->body->dimensions == 1) return;
+  if (!row->frame.known || c->body->dimensions == 1) {
+    find_cofactor(&row->frame);
+    return;
+  }
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = family_bond(f, slice, slot, lane);
@@ -63,6 +76,7 @@ void contact_find_frame(const Contact *c, ContactRow *row)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) gradient[3 * i + j] += moment[3 * i + k] * row->shape[3 * k + j];
+  find_cofactor(&row->frame);
 }
 
 /* ---- faces of one particle ---- */
@@ -171,19 +185,11 @@ int contact_common_cut(const Contact *c, const ContactRow *row, const ContactRow
   return -1;
 }
 
-/** How a normal of the reference stands now: by the cofactor of F, times a sign; unit. @return false if that is not known */
+/** How a normal of the reference stands now, times a sign; unit. @return false if that is not known */
 static bool present_face(const ContactRow *row, const double normal[3], double sign, double now[3])
 {
-  const double *f = row->frame.gradient;
-  if (!row->frame.known) return false;
-  for (int i = 0; i < 3; ++i) {
-    now[i] = 0;
-    for (int j = 0; j < 3; ++j) {
-      const int m = (i + 1) % 3, n = (i + 2) % 3, k = (j + 1) % 3, l = (j + 2) % 3;
-      now[i] += sign * (f[3 * m + k] * f[3 * n + l] - f[3 * m + l] * f[3 * n + k]) * normal[j];
-    }
-  }
-  return make_unit(now);
+  for (int i = 0; i < 3; ++i) now[i] = sign * dot(row->frame.cofactor + 3 * i, normal);
+  return row->frame.known && make_unit(now);
 }
 
 /** The faces that lie against each other, or else the one face, across which two rows are farthest apart, as convex bodies are. */

@@ -55,6 +55,6 @@ double contact_grip(const Grip *before, Grip *after, const Press *press, double 
     turned[k] = press->normal[k] - before->normal[k];
   }
   return work_of(before->pull, before->way, before->normal, moved, turned) / 2 +
-         work_of(after->pull, after->way, after->normal, moved, turned) / 2 +
-         dot(before->spring, before->spring) / 2 - dot(after->spring, after->spring) / 2;
+         work_of(after->pull, after->way, after->normal, moved, turned) / 2 + dot(before->spring, before->spring) / 2 -
+         dot(after->spring, after->spring) / 2;
 }

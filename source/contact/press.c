@@ -45,11 +45,9 @@ double contact_met_reach(double spacing)
 double contact_reach(const Contact *c, const ContactPair *pair, int32_t place)
 {
   if (pair->kind == PAIR_BROKEN) return pair->rest;
-  const double along =
-      pair->kind == PAIR_CUT
-          ? contact_cut_reach(c)
-          : spline_reach *
-                fmax(contact_lattice(c, place)->spacing, contact_lattice(c, pair->neighbour)->spacing);
+  const double along = pair->kind == PAIR_CUT ? contact_cut_reach(c)
+                                              : spline_reach * fmax(contact_lattice(c, place)->spacing,
+                                                                    contact_lattice(c, pair->neighbour)->spacing);
   return sqrt(pair->rest * pair->rest + along * along);
 }
 
@@ -87,10 +85,11 @@ static double met_stiffness(const Contact *c, int one, int two, double *wide)
   return c->spec->stiffness * young / ((da + db) / 2 * da * db) / plane;
 }
 
-/** Stiffness of a pair at a square of its distance along the face; `press->central` is known. */
+/** Stiffness of a pair as it stands; distances are known. */
 static void find_stiffness(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                           double square, Press *press)
+                           Press *press)
 {
+  const double square = press->square;
   const Particles *p = &c->body->particles;
   const int one = p->block[low->place / SLICE], two = p->block[high->place / SLICE];
   press->slope = 0;
@@ -122,46 +121,29 @@ static void find_stiffness(const Contact *c, const ContactRow *low, const Contac
   press->slope = k * (slope - 1.5 * faded / length);
 }
 
-/** Adds cof(F) N of one end. */
-static void add_normal(const Frame *frame, const double normal[3], double sum[3])
-{
-  const double *f = frame->gradient;
-  if (!frame->known) return;
-  for (int i = 0; i < 3; ++i) {
-    const int m = (i + 1) % 3, n = (i + 2) % 3;
-    for (int j = 0; j < 3; ++j) {
-      const int k = (j + 1) % 3, l = (j + 2) % 3;
-      if (normal[j] != 0) sum[i] += (f[3 * m + k] * f[3 * n + l] - f[3 * m + l] * f[3 * n + k]) * normal[j];
-    }
-  }
-}
-
 bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
                    bool before, Press *press)
 {
-  double nu[3] = {0};
-  present_way(&c->body->particles, low->place, high->place, press->way);
+  double *nu = press->long_normal;
+  press->stiffness = press->slope = press->energy = press->gap = 0;
   if (pair->kind == PAIR_NEW) return false;
-  if (pair->kind != PAIR_BROKEN) {
-    add_normal(before ? &low->before : &low->frame, pair->normal[0], nu);
-    add_normal(before ? &high->before : &high->frame, pair->normal[1], nu);
-  }
+  present_way(&c->body->particles, low->place, high->place, press->way);
+  const double *one = before ? low->before.cofactor : low->frame.cofactor;
+  const double *two = before ? high->before.cofactor : high->frame.cofactor;
+  for (int k = 0; k < 3; ++k)
+    nu[k] = pair->kind == PAIR_BROKEN ? 0 : dot(one + 3 * k, pair->normal[0]) + dot(two + 3 * k, pair->normal[1]);
   const double size = dot(nu, nu), length = dot(press->way, press->way);
   press->central = !(size > 0);
-  if (press->central) {
-    press->across = sqrt(length);
-    for (int k = 0; k < 3; ++k) press->normal[k] = press->across > 0 ? press->way[k] / press->across : 0;
-  } else {
-    for (int k = 0; k < 3; ++k) press->normal[k] = nu[k];
-    make_unit(press->normal);
-    press->across = dot(press->way, press->normal);
-  }
-  memcpy(press->long_normal, nu, sizeof nu);
+  press->across = press->central ? sqrt(length) : 0;
+  const double scale = press->central ? (press->across > 0 ? 1 / press->across : 0) : 1 / sqrt(size);
+  for (int k = 0; k < 3; ++k) press->normal[k] = scale * (press->central ? press->way[k] : nu[k]);
+  if (!press->central) press->across = dot(press->way, press->normal);
   press->gap = pair->rest - press->across;
-  press->stiffness = 0;
-  find_stiffness(c, low, high, pair, fmax(0, length - press->across * press->across), press);
+  press->square = fmax(0, length - press->across * press->across);
+  if (!(press->gap > 0)) return false;
+  find_stiffness(c, low, high, pair, press);
   press->energy = press->stiffness * press->gap * press->gap / 2;
-  return press->gap > 0 && press->stiffness > 0;
+  return press->stiffness > 0;
 }
 
 /** Lets the energy of a pair stay as it was before bonds broke around it. */
@@ -171,6 +153,7 @@ static void keep_energy(const Contact *c, const ContactRow *low, const ContactRo
   if (pair->kind == PAIR_BROKEN || pair->kind == PAIR_NEW) return;
   const bool pressed = contact_press(c, low, high, pair, true, &old);
   const bool presses = contact_press(c, low, high, pair, false, &now);
+  find_stiffness(c, low, high, pair, &now);
   if (pressed && now.stiffness > 0)
     pair->rest = now.across + sqrt(2 * old.energy / now.stiffness);
   else if (presses)
@@ -205,7 +188,11 @@ void contact_remember(Contact *c)
     look_around(c, &c->rows[r]);
     c->rows[r].before = c->rows[r].frame;
   }
-  TEAM_SINGLE c->remembered = true;
+  TEAM_SINGLE
+  {
+    contact_keep(c);
+    c->remembered = true;
+  }
 }
 
 static void choose_row(const Contact *c, const ContactRow *row)
@@ -390,7 +377,10 @@ double contact_energy(Contact *c)
 
 void contact_commit(Contact *c)
 {
-  if (!c->spec || !(c->spec->friction > 0)) return;
+  if (!c->spec) return;
+  free(c->kept);
+  c->kept = NULL;
+  if (!(c->spec->friction > 0)) return;
   c->committed = !c->committed;
   c->friction_work += sum_rows(c, offsetof(ContactRow, slid));
 }

@@ -186,5 +186,5 @@ void domain_mend(Domain *d)
   d->broken_count = d->broken_before;
   d->out_of_memory = false;
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
-  if (d->contact.spec && !d->contact.failed) contact_search(&d->contact);
+  contact_undo(&d->contact);
 }

@@ -525,8 +525,7 @@ static int retreat(Explicit *s, Error *error)
 }
 
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.
- *  Contact takes and gives a little when its
- *  faces are found again. The second bound is wide, because a step close to the stable one hardly follows the shortest waves. */
+ *  The second bound is wide, because a step close to the stable one hardly follows the shortest waves. */
 static int watch_energy(Explicit *s, Error *error)
 {
   /* Steps: when a load sets in, all energies are next to nothing, and what presses at first may come from faces that settle. */

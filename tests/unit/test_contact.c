@@ -1,7 +1,8 @@
 /* Particles that no bond joins keep each other off. */
 #include "support.h"
 
-/** Two blocks that fly at each other with 15 m/s each, a little beside each other. */
+/** Two blocks that fly at each other with 15 m/s each, a little beside each other. They meet within a step or two, all particles of
+ *  a face at once: of that a step of 0.8 of the stable one makes an error of up to 2 % of the energy, of either sign. */
 static breccia_model *blocks(const char *formulation, const char *law, const char *contact)
 {
   breccia_model *model = model_of(
@@ -9,7 +10,7 @@ static breccia_model *blocks(const char *formulation, const char *law, const cha
       "%s}\nbody:\n"
       "  left: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.08, 0.06, 0.05]}}}\n"
       "  right: {material: m, spacing: 0.01, shape: {box: {from: [0.115, 0.013, 0.004], to: [0.175, 0.063, 0.054]}}}\n"
-      "%ssolve: {explicit: {steps: 1000000}}\n",
+      "%ssolve: {explicit: {steps: 1000000, safety: 0.5}}\n",
       law, formulation, contact);
   const Particles *p = model->domain.particles;
   for (int32_t n = 0; n < p->count; ++n) p->velocity[0][p->place_of[n]] = p->block[p->place_of[n] / SLICE] ? -15 : 15;
@@ -280,8 +281,7 @@ static void forces_are_the_derivative_of_the_energy(void **state)
     const Particles *p = model->domain.particles;
     const int across = plane ? 1 : 2;
     const double level = plane ? 0.05 : 0.04;
-    for (int64_t i = 0; i < p->places; ++i)
-      p->displacement[across][i] = p->position[across][i] > level ? -4e-4 : 0;
+    for (int64_t i = 0; i < p->places; ++i) p->displacement[across][i] = p->position[across][i] > level ? -4e-4 : 0;
     wave(model, 0.06, 0.01);
     check_derivative(model, 0.01, "pressed");
     for (int64_t i = 0; i < p->places; ++i) p->displacement[0][i] += p->position[across][i] > level ? 0.0137 : 0;
@@ -377,6 +377,59 @@ static void a_closed_cut_is_as_stiff_as_the_body_and_opens_freely(void **state)
   }
 }
 
+static void a_block_that_slides_on_a_cut_gains_nothing(void **state)
+{
+  (void)state;
+  /* Halves pressed together by 50 kN/m3 each and pushed along the cut and a little off it, over two spacings. */
+  const char *const kinds[][2] = {{"bond-based", FIBRE}, {"correspondence", SOLID}};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *model =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}}\nperidynamics: "
+                 "{formulation: %s}\nbody: {b: {material: m, spacing: 0.01, shape: {box: {particles: [8, 5, 8]}}}}\n"
+                 "cracks: [{cut: {polygon: [[-1, -1, 0.04], [1, -1, 0.04], [1, 1, 0.04], [-1, 1, 0.04]]}}]\n"
+                 "contact: {}\nloads:\n  - {on: {inside: {box: {from: [-1, -1, 0.04], to: [1, 1, 1]}}}, body force: "
+                 "[0, 0, -50000]}\n  - {on: {inside: {box: {from: [-1, -1, -1], to: [1, 1, 0.04]}}}, body force: "
+                 "[0, 0, 50000]}\nsolve: {explicit: {steps: 1000000}}\n",
+                 kinds[k][1], kinds[k][0]);
+    const Particles *p = model->domain.particles;
+    for (int64_t i = 0; i < p->places; ++i) {
+      const double side = p->position[2][i] > 0.04 ? 1 : -1;
+      p->velocity[0][i] = side * 5;
+      p->velocity[2][i] = side * -0.5;
+    }
+    double most = 0;
+    while (breccia_model_time(model) < 2e-3) {
+      step_surely(model, 20);
+      const Energy e = explicit_energy(&model->solver);
+      const double given = model->solver.kinetic_at_start + e.external;
+      assert_near(e.kinetic + e.stored, given, 0.01 * model->solver.kinetic_at_start);
+      assert_true(e.imbalance < 5e-3);
+      most = fmax(most, contact_energy(&model->domain.contact));
+    }
+    assert_true(mean_motion(model, 0, 0.04, 1) - mean_motion(model, 0, 0.04, -1) > 0.019);
+    assert_true(most > 1e-4 * model->solver.kinetic_at_start); /* it was pressed */
+    breccia_model_destroy(&model);
+  }
+}
+
+static void bodies_that_crumble_gain_nothing(void **state)
+{
+  (void)state;
+  const char *const kinds[][2] = {
+      {"bond-based", "model: elastic-brittle, Young modulus: 3 GPa, tensile strength: 3 MPa"},
+      {"correspondence", SOLID}};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *model =
+        blocks(kinds[k][0], kinds[k][1], k ? "failure: {critical stretch: 2e-3}\ncontact: {}\n" : "contact: {}\n");
+    while (breccia_model_time(model) < 2e-3) step_surely(model, 10);
+    assert_true(breccia_model_broken_bonds(model) > 5000);
+    const Energy e = explicit_energy(&model->solver);
+    assert_near(e.kinetic + e.stored + e.fracture - e.between, model->solver.kinetic_at_start,
+                0.015 * model->solver.kinetic_at_start);
+    breccia_model_destroy(&model);
+  }
+}
+
 /** Force on what lies above the middle of a column. */
 static void force_above(const breccia_model *model, double height, double force[3])
 {
@@ -458,9 +511,9 @@ static void a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle(voi
     while (breccia_model_time(model) < 1.3 * duration) step_surely(model, 10);
     const double slid = mean_motion(model, 0, 0.05, 1);
     Energy e = explicit_energy(&model->solver);
-    /* the rest goes into vibrations, more where particles of one face pass over those of another lattice */
-    assert_near(slid, way, (fine ? 0.25 : 0.06) * way);
-    assert_near(e.friction, model->solver.kinetic_at_start, 0.15 * model->solver.kinetic_at_start);
+    /* the rest goes into vibrations */
+    assert_near(slid, way, (fine ? 0.03 : 0.04) * way);
+    assert_near(e.friction, model->solver.kinetic_at_start, 0.02 * model->solver.kinetic_at_start);
     assert_true(e.imbalance < 0.01);
     const double rest = mean_motion(model, 0, 0.05, 1);
     step_surely(model, 200);
@@ -548,6 +601,8 @@ int main(void)
       cmocka_unit_test(a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed),
       cmocka_unit_test(forces_are_the_derivative_of_the_energy),
       cmocka_unit_test(a_closed_cut_is_as_stiff_as_the_body_and_opens_freely),
+      cmocka_unit_test(a_block_that_slides_on_a_cut_gains_nothing),
+      cmocka_unit_test(bodies_that_crumble_gain_nothing),
       cmocka_unit_test(faces_of_a_cut_slide_freely_or_with_coulombs_friction),
       cmocka_unit_test(a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle),
       cmocka_unit_test(bodies_of_unlike_spacing_that_meet_keep_their_momentum),
