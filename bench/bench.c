@@ -85,9 +85,17 @@ static double force_seconds(Domain *d, int threads)
 /** Stresses of all points on particles once more; of points on bonds the law is part of the forces. */
 static double law_seconds(Domain *d)
 {
-  if (d->points.where != POINTS_ON_PARTICLES) return 0;
+  if (d->points.components != 6) return 0;
   double start = clock_seconds();
-  for (int64_t b = 0; b < d->block_count; ++b) points_update(&d->points, d->blocks[b].first, d->blocks[b].last, NULL);
+  for (int64_t b = 0; b < d->block_count; ++b) {
+    const int64_t first = d->blocks[b].first * SLICE;
+    double *strain[6], *stress[6];
+    for (int k = 0; k < 6; ++k) {
+      strain[k] = d->points.strain[k] + first;
+      stress[k] = d->points.stress[k] + first;
+    }
+    points_update(&d->points, first, (int)(d->blocks[b].last * SLICE - first), strain, stress);
+  }
   return clock_seconds() - start;
 }
 

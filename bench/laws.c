@@ -3,7 +3,7 @@
 #include "measure.h"
 
 #include "base/random.h"
-#include "constitutive/points.h"
+#include "points/points.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +71,7 @@ static void prepare(Batch *b, const Sample *sample, const Units *units, double s
   breccia_error_destroy(&error);
   b->count = points;
   const size_t values = (size_t)b->material.history_values;
-  b->components = b->material.law->uniaxial ? 1 : 6;
+  b->components = b->material.law->components;
   b->committed = numbers(values * (size_t)points);
   b->trial = numbers(values * (size_t)points);
   b->plastic = malloc((size_t)points);

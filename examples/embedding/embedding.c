@@ -54,6 +54,7 @@ static const breccia_law bimodular = {
     .parameters = parameters,
     .parameter_count = 2,
     .constants_size = sizeof(Bimodular),
+    .components = 6,
     .prepare = prepare,
     .moduli = moduli,
     .update = update,

@@ -44,8 +44,8 @@ typedef struct breccia_parameter {
   const char *meaning;
 } breccia_parameter;
 
-/** Points handed to a law at once. Component order xx yy zz xy yz zx, engineering shear strains, tension positive. A uniaxial
- *  law has one component: strain[0], stress[0], and one number of tangent per point. */
+/** Points handed to a law at once. Component order xx yy zz xy yz zx, engineering shear strains, tension positive. A
+ *  law of one component has strain[0], stress[0], and one number of tangent per point. */
 typedef struct breccia_batch {
   int count;
   const double *strain[6]; /* total strain, [count] each */
@@ -55,8 +55,10 @@ typedef struct breccia_batch {
    * a long history may rely on that and copy only what changed. Both start as `begin` made them. */
   const double *committed;
   double *trial;
-  double *tangent;   /* out, [count][36] row by row, d stress / d strain; NULL: not wanted */
-  int elastic_stage; /* 1: respond elastically whatever the law (gravity stage) */
+  double *tangent;        /* out, [count][36] row by row, d stress / d strain; NULL: not wanted */
+  int elastic_stage;      /* 1: respond elastically whatever the law (gravity stage) */
+  double time, time_step; /* at the end of the step under way, and its length; 0 where time does not pass */
+  const double *length;   /* over which a fracture energy is spread, [count]; NULL: not known */
 } breccia_batch;
 
 /** A constitutive law: strain to stress for many points. */
@@ -68,13 +70,15 @@ typedef struct breccia_law {
   const breccia_parameter *parameters;
   int parameter_count;
   size_t constants_size; /* bytes that `prepare` fills */
-  int uniaxial;          /* 1: takes one strain (of a bond), 0: the six of a point in space */
+  int components;        /* 6: takes the strains of a point in space, 1: one strain (of a bond) */
   int linear;            /* 1: stress is a constant times strain up to failure, so that points need not be kept */
   /** Parameter values (in table order) to constants. @return 0, or 1 with the reason in words */
   int (*prepare)(const double *values, void *constants, char *reason, size_t reason_size);
+  /** Gives back what `prepare` took beside the constants. NULL: nothing. */
+  void (*release)(void *constants);
   /** Elastic moduli of the undamaged material, for stable steps and zero-energy control. */
   void (*moduli)(const void *constants, double *bulk, double *shear);
-  /** Of a uniaxial law: the strain beyond which a point carries nothing for good, so that its bond breaks. NULL: never. */
+  /** Of a law of one component: the strain beyond which a point carries nothing for good, so that its bond breaks. NULL: never. */
   double (*failure_strain)(const void *constants);
   /** Numbers of history per point; NULL: none. */
   int (*history_values)(const void *constants);

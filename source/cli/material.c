@@ -277,7 +277,7 @@ static int run_words(const char **values, const Settings *settings, const Output
     static const Node nowhere = {.kind = NODE_MAP, .line = 1, .column = 1};
     status = read_test(values, units, &spec, error);
     spec.head.node = &nowhere;
-    if (!status) status = element_test_create(&test, &reader, &spec, NULL, law->uniaxial);
+    if (!status) status = element_test_create(&test, &reader, &spec, NULL, law->components == 1);
     if (!status) status = run_test(&test, &material, units, o, error);
     element_test_destroy(&test);
   }

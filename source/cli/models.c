@@ -32,7 +32,7 @@ static void print_page(void)
     printf("\n## %s\n", pass ? "Along one direction: bonds, bars, links" : "In space");
     for (int k = 0; law_at(NULL, k); ++k) {
       const breccia_law *law = law_at(NULL, k);
-      if (law->uniaxial != pass) continue;
+      if ((law->components == 1) != pass) continue;
       printf("\n### %s\n\n%s. Source: %s. %c%s.%s%s%s\n\n", law->name, law->about, law->source,
              law->maturity[0] - 'a' + 'A', law->maturity + 1, law->opensees ? " In OpenSees: `" : "",
              law->opensees ? law->opensees : "", law->opensees ? "`." : "");

@@ -22,7 +22,7 @@ static int begin_in_server(Driver *d, Error *error)
 int driver_create(Driver *d, const Material *material, Error *error)
 {
   const size_t values = (size_t)material->history_values + 1;
-  *d = (Driver){.material = material, .components = material->law->uniaxial ? 1 : 6};
+  *d = (Driver){.material = material, .components = material->law->components};
   d->committed = memory_zeroed(values, sizeof(double), "history", error);
   d->trial = memory_zeroed(values, sizeof(double), "history", error);
   if (!d->committed || !d->trial) return BRECCIA_FAILURE;

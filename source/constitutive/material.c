@@ -76,8 +76,11 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;
   }
-  if (law->prepare(values, material->constants, reason, size)) {
-    material_destroy(material);
+  if (law->components != 1 && law->components != 6)
+    snprintf(reason, size, "the law says that it takes %d strains; there are 6 in space, or 1", law->components);
+  if ((law->components != 1 && law->components != 6) || law->prepare(values, material->constants, reason, size)) {
+    free(material->constants); /* which were not made, so that there is nothing to release */
+    *material = (Material){0};
     return BRECCIA_USER_ERROR;
   }
   law->moduli(material->constants, &material->bulk, &material->shear);
@@ -248,7 +251,7 @@ int material_from_words(Material *material, const breccia_law *law, const char *
   for (int w = 0; w < count && own_count < MOST_WORDS; ++w) {
     static const char *const names[2] = {"smallest strain=", "largest strain="};
     int which = 0;
-    while (which < 2 && (!law->uniaxial || strncmp(words[w], names[which], strlen(names[which])))) ++which;
+    while (which < 2 && (law->components != 1 || strncmp(words[w], names[which], strlen(names[which])))) ++which;
     if (which == 2)
       own[own_count++] = words[w];
     else if (sscanf(words[w] + strlen(names[which]), "%lf", &limits[which]) != 1 ||
@@ -268,7 +271,7 @@ int material_from_words(Material *material, const breccia_law *law, const char *
 
 void material_destroy(Material *material)
 {
-  if (material->law == &law_min_max) material_destroy(min_max_base(material->constants));
+  if (material->constants && material->law->release) material->law->release(material->constants);
   remote_close(&material->remote);
   free(material->constants);
   *material = (Material){0};

@@ -12,9 +12,9 @@ typedef struct MinMax {
 
 /* A row of history is that of the law inside and, last, 1 for a point that failed. */
 
-Material *min_max_base(void *constants)
+static void release(void *constants)
 {
-  return &((MinMax *)constants)->base;
+  material_destroy(&((MinMax *)constants)->base);
 }
 
 static void moduli(const void *constants, double *bulk, double *shear)
@@ -74,7 +74,10 @@ static int update(const void *constants, const breccia_batch *batch)
                                .committed = old,
                                .trial = new,
                                .tangent = batch->tangent ? batch->tangent + i : NULL,
-                               .elastic_stage = batch->elastic_stage};
+                               .elastic_stage = batch->elastic_stage,
+                               .time = batch->time,
+                               .time_step = batch->time_step,
+                               .length = batch->length ? batch->length + i : NULL};
     if (c->base.law->update(c->base.constants, &one) >= 0) return i;
   }
   return -1;
@@ -86,7 +89,8 @@ const breccia_law law_min_max = {
     .source = "MinMax of OpenSees",
     .maturity = "verified against its definition",
     .constants_size = sizeof(MinMax),
-    .uniaxial = 1,
+    .release = release,
+    .components = 1,
     .moduli = moduli,
     .failure_strain = failure_strain,
     .history_values = history_values,
@@ -98,7 +102,7 @@ const breccia_law law_min_max = {
 int material_limit(Material *material, double smallest, double largest, char *reason, size_t size)
 {
   if (isnan(smallest) && isnan(largest)) return BRECCIA_OK;
-  const bool uniaxial = material->law->uniaxial;
+  const bool uniaxial = material->law->components == 1;
   MinMax *c = uniaxial ? calloc(1, sizeof *c) : NULL;
   if (!c) {
     snprintf(reason, size, "%s",

@@ -6,7 +6,4 @@
 
 extern const breccia_law law_min_max;
 
-/** The material inside. */
-Material *min_max_base(void *constants);
-
 #endif

@@ -65,7 +65,7 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
 static void judge(Domain *d, const Moment *moment, bool only_note)
 {
   const Family *f = &d->family;
-  const uint8_t *gave_up = d->points.gave_up;
+  const uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
     for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
@@ -88,7 +88,7 @@ static void judge(Domain *d, const Moment *moment, bool only_note)
 static void break_suspects(Domain *d, const Moment *moment)
 {
   judge(d, moment, false);
-  uint8_t *gave_up = d->points.gave_up;
+  uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
     if (d->broken_count > d->broken_before && d->type->renew) d->type->renew(d->formulation, s);
@@ -125,11 +125,13 @@ static void find_energies(Domain *d, double time_step, bool after)
 
 void domain_break(Domain *d, const Moment *moment)
 {
-  const bool judges = d->failure.criterion || d->points.gave_up;
+  const bool judges = d->failure.criterion || d->gave_up;
   TEAM_SINGLE
   {
     d->broken_before = d->broken_count;
     d->motion += moment->motion;
+    d->points.time = moment->time;
+    d->points.time_step = moment->time_step;
     d->torn_count = 0;
   }
   if (d->contact.spec) {
@@ -141,8 +143,8 @@ void domain_break(Domain *d, const Moment *moment)
       d->suspects[s] = 0;
       if (d->failure.criterion && d->motion >= d->look_again[s])
         d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);
-      for (int lane = 0; d->points.gave_up && lane < SLICE; ++lane)
-        if (d->points.gave_up[s * SLICE + lane]) d->suspects[s] = 1;
+      for (int lane = 0; d->gave_up && lane < SLICE; ++lane)
+        if (d->gave_up[s * SLICE + lane]) d->suspects[s] = 1;
     }
   TEAM_SINGLE
   {
@@ -168,7 +170,7 @@ void domain_book(Domain *d, double time_step)
     d->torn_count = 0;
     /* Laws that yield as their strains jump dissipate what they gain by it. */
     d->fracture_energy += domain_is_elastic(d) ? sum : fmax(0, sum);
-    uint8_t *gave_up = d->points.gave_up;
+    uint8_t *gave_up = d->gave_up;
     for (int64_t i = 0; gave_up && d->any_suspect && i < d->particles->places; ++i) gave_up[i] &= (uint8_t)~CONSUMED;
   }
 }

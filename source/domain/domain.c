@@ -8,16 +8,25 @@
 
 double domain_history(const Domain *d, int64_t place, int k)
 {
-  if (d->points.where == POINTS_NOWHERE) return 0;
-  if (d->points.where == POINTS_ON_BONDS) return points_bond_history(&d->points, place, k);
+  if (!d->points.components) return 0;
+  if (d->points.components == 6) return points_history(&d->points, place)[k];
   const int64_t slice = place / SLICE;
-  return d->points
-      .committed[d->points.history_start[slice] + place % SLICE * d->materials[d->material[slice]].history_values + k];
+  const int lane = (int)(place % SLICE);
+  double sum = 0;
+  int count = 0;
+  for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot)
+    if (d->family.intact[slot] >> lane & 1) {
+      int64_t rows[2];
+      bond_list_rows(&d->bonds, &d->family, slice, slot, lane, rows);
+      sum += points_history(&d->points, rows[0])[k];
+      ++count;
+    }
+  return count ? sum / count : 0;
 }
 
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
 {
-  if (d->points.where == POINTS_ON_PARTICLES) {
+  if (d->points.components == 6) {
     for (int k = 0; k < 6; ++k) {
       strain[k] = d->points.strain[k][place];
       stress[k] = d->points.stress[k][place];
@@ -41,15 +50,19 @@ static void observe(void *context, int64_t n)
   double strain[6], stress[6];
   domain_look(d, place, strain, stress);
   for (int k = 0; k < 6; ++k) {
-    d->points.strain[k][place] = strain[k];
-    d->points.stress[k][place] = stress[k];
+    d->strain[k][place] = strain[k];
+    d->stress[k][place] = stress[k];
   }
 }
 
 int domain_observe(Domain *d, Error *error)
 {
-  if (d->points.where == POINTS_ON_PARTICLES) return BRECCIA_OK;
-  if (points_show(&d->points, error)) return BRECCIA_FAILURE;
+  if (d->points.components == 6) return BRECCIA_OK;
+  for (int k = 0; k < 6; ++k) {
+    if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
+    if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
+    if (!d->strain[k] || !d->stress[k]) return BRECCIA_FAILURE;
+  }
   team_each(d->particles->count, observe, d);
   return BRECCIA_OK;
 }
@@ -89,11 +102,12 @@ double domain_damage(const Domain *d, int32_t place)
 size_t domain_particle_bytes(const Domain *d)
 {
   size_t places = (size_t)d->particles->places;
-  size_t arrays = 15 + 2 + 1 + (d->points.where == POINTS_ON_PARTICLES ? 12 : 0);
+  size_t arrays = 15 + 2 + 1 + (d->points.components == 6 ? 12 : 0);
   return places * sizeof(double) * arrays + places * sizeof(int32_t) * 2 + 2 * d->points.history_size * sizeof(double);
 }
 
 size_t domain_bytes(const Domain *d)
 {
-  return domain_particle_bytes(d) + family_bytes(&d->family) + d->type->bytes(d->formulation);
+  return domain_particle_bytes(d) + family_bytes(&d->family) + bond_list_bytes(&d->bonds, &d->family) +
+         d->type->bytes(d->formulation);
 }

@@ -12,11 +12,6 @@ typedef struct Span { /* slices first .. last - 1, of one material, at most BLOC
   int64_t first, last;
 } Span;
 
-typedef struct Part { /* blocks first .. last - 1, those of them whose points are in a server of a material */
-  int material, server;
-  int64_t first, last;
-} Part;
-
 typedef struct BrokenBond {
   int64_t step;
   double time;
@@ -45,17 +40,20 @@ typedef struct Domain {
   Material *materials;
   int material_count;
   int32_t *material; /* [slices] */
+  BondList bonds;    /* where points are on bonds; empty otherwise */
   Points points;
+  double *strain[6],
+      *stress
+          [6]; /* [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
+  uint8_t *
+      gave_up; /* [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
   const FormulationType *type;
   void *formulation;
   Failure failure;
   Contact contact;
   Span *blocks;
   int64_t block_count;
-  Part *parts; /* of laws in other processes */
-  int part_count;
-  int32_t *part_of;      /* [blocks] or -1; NULL: no law is in a server */
-  double *carry;         /* [blocks][CARRY][BLOCK], where there are parts */
+  int64_t *lowest;       /* [blocks] first block that holds a neighbour of a particle of the block */
   bool rows_cut;         /* a row is longer than a block */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */

@@ -12,18 +12,18 @@ static int check_law(const Domain *d, const DeckReader *reader, const MaterialSp
 {
   const LawList *laws = reader->context;
   const breccia_law *law = spec->model ? law_find(laws, spec->model) : made;
-  if (law->uniaxial == d->type->uniaxial) return BRECCIA_OK;
+  if (law->components == d->type->components) return BRECCIA_OK;
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
-    if (law_at(laws, k)->uniaxial == d->type->uniaxial)
+    if (law_at(laws, k)->components == d->type->components)
       text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
   node_error(reader->document,
              section_place(spec, spec->model      ? "model"
                                  : spec->opensees ? "opensees"
                                                   : "remote"),
              reader->error, "material '%s': '%s' is a law of %s; %s takes %s", spec->head.name,
-             spec->model ? law->name : law->source, law->uniaxial ? "one strain" : "strain in space", d->type->name,
-             text_words(&words));
+             spec->model ? law->name : law->source, law->components == 1 ? "one strain" : "strain in space",
+             d->type->name, text_words(&words));
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
@@ -58,15 +58,15 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
 static int check_space(const Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Space space = peridynamics_space(spec->peridynamics);
-  if (d->type->uniaxial && spec->peridynamics->control)
+  if (d->type->components == 1 && spec->peridynamics->control)
     return node_error(reader->document, section_place(spec->peridynamics, "zero-energy control"), reader->error,
                       "zero-energy control: is for correspondence; %s has no modes without energy: leave it out",
                       d->type->name);
-  if (!d->type->uniaxial && strcmp(spec->peridynamics->surface_correction, "none"))
+  if (d->type->components == 6 && strcmp(spec->peridynamics->surface_correction, "none"))
     return node_error(reader->document, section_place(spec->peridynamics, "surface correction"), reader->error,
                       "surface correction: is for bond-based peridynamics; the strains of %s are exact at surfaces",
                       d->type->name);
-  if (d->body.dimensions == 1 && !d->type->uniaxial)
+  if (d->body.dimensions == 1 && d->type->components == 6)
     return node_error(reader->document, section_place(spec->peridynamics, "formulation"), reader->error,
                       "formulation: %s has no strain along a line; bars take bond-based", d->type->name);
   if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
@@ -98,7 +98,7 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   if (spec && !isnan(spec->critical_stretch) && !isnan(spec->fracture_energy))
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
-  if (spec && !isnan(spec->fracture_energy) && !d->type->uniaxial)
+  if (spec && !isnan(spec->fracture_energy) && d->type->components == 6)
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
                       "'critical stretch'");
@@ -115,9 +115,30 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   return BRECCIA_OK;
 }
 
-static bool same_server(const Domain *d, int64_t a, int64_t b)
+static int find_lowest(Domain *d, Error *error)
 {
-  return !d->points.server || d->points.server[a] == d->points.server[b];
+  const Family *f = &d->family;
+  int32_t *block_of = memory_zeroed((size_t)d->particles->slices, sizeof *block_of, "blocks", error);
+  d->lowest = memory_zeroed((size_t)d->block_count, sizeof *d->lowest, "blocks", error);
+  if (!block_of || !d->lowest) {
+    free(block_of);
+    return BRECCIA_FAILURE;
+  }
+  for (int64_t b = 0; b < d->block_count; ++b)
+    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) block_of[s] = (int32_t)b;
+  for (int64_t b = 0; b < d->block_count; ++b) {
+    d->lowest[b] = b;
+    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s)
+      for (int64_t slot = f->first[s]; slot < f->first[s + 1]; ++slot)
+        for (int lane = 0; lane < SLICE; ++lane) {
+          if (!(f->intact[slot] >> lane & 1)) continue;
+          const int32_t there =
+              slot < f->stored[s] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+          if (block_of[there / SLICE] < d->lowest[b]) d->lowest[b] = block_of[there / SLICE];
+        }
+  }
+  free(block_of);
+  return BRECCIA_OK;
 }
 
 /* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
@@ -129,10 +150,9 @@ static int share_out(Domain *d, Error *error)
   if (!d->blocks) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < slices;) {
     int64_t end = s + 1, row_end = row_goes_on(d, s) ? s : end;
-    for (; end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s] && same_server(d, s, end);
-         ++end)
+    for (; end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s]; ++end)
       if (!row_goes_on(d, end)) row_end = end + 1;
-    if (row_end > s && same_server(d, s, row_end - 1)) end = row_end;
+    if (row_end > s) end = row_end;
     d->rows_cut |= row_goes_on(d, end - 1);
     d->blocks[d->block_count++] = (Span){s, end};
     s = end;
@@ -141,33 +161,7 @@ static int share_out(Domain *d, Error *error)
   d->block_failed = memory_zeroed((size_t)d->block_count, sizeof(int64_t), "block sums", error);
   if (!d->block_sum || !d->block_failed) return BRECCIA_FAILURE;
   for (int64_t b = 0; b < d->block_count; ++b) d->block_failed[b] = -1;
-  return BRECCIA_OK;
-}
-
-/** Blocks whose laws run in one server, to be sent together. In plane stress each block finds its strain across the plane by itself. */
-static int make_parts(Domain *d, Error *error)
-{
-  const Points *p = &d->points;
-  if (!p->server || p->where != POINTS_ON_PARTICLES || p->space == SPACE_PLANE_STRESS) return BRECCIA_OK;
-  int most = 0;
-  for (int k = 0; k < d->material_count; ++k)
-    if (d->materials[k].remote) most += remote_servers(d->materials[k].remote);
-  d->parts = memory_zeroed((size_t)most, sizeof(Part), "servers", error);
-  d->part_of = memory_zeroed((size_t)d->block_count, sizeof(int32_t), "servers", error);
-  d->carry = memory_zeroed((size_t)d->block_count * CARRY * BLOCK, sizeof(double), "servers", error);
-  if (!d->parts || !d->part_of || !d->carry) return BRECCIA_FAILURE;
-  for (int64_t b = 0; b < d->block_count; ++b) {
-    const int64_t slice = d->blocks[b].first;
-    d->part_of[b] = -1;
-    if (!d->materials[d->material[slice]].remote) continue;
-    int k = 0;
-    while (k < d->part_count && (d->parts[k].material != d->material[slice] || d->parts[k].server != p->server[slice]))
-      ++k;
-    if (k == d->part_count) d->parts[d->part_count++] = (Part){d->material[slice], p->server[slice], b, b};
-    d->parts[k].last = b + 1;
-    d->part_of[b] = k;
-  }
-  return BRECCIA_OK;
+  return find_lowest(d, error);
 }
 
 static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
@@ -193,20 +187,87 @@ static int create_contact(Domain *d, const DomainSpec *spec, Space space, Error 
   if (!young) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < d->particles->slices; ++s)
     young[d->particles->block[s]] = material_young(&d->materials[d->material[s]]);
-  const bool whole = d->type->uniaxial && !strcmp(spec->peridynamics->surface_correction, "none");
+  const bool whole = d->type->components == 1 && !strcmp(spec->peridynamics->surface_correction, "none");
   int status = contact_create(&d->contact, spec->contact, &d->body, &d->family, space, whole,
-                              d->type->uniaxial ? 1 : 0.8, young, error);
+                              d->type->components == 1 ? 1 : 0.8, young, error);
   free(young);
   return status;
 }
 
-/** Where material points are needed. */
-static PointsWhere points_where(const Domain *d)
+/** Runs of points, one after another: a row joins the last run if it is of the same material. */
+typedef struct Runs {
+  PointsRun *runs;
+  int64_t count, rows, capacity;
+} Runs;
+
+static int add_rows(Runs *r, int material, int64_t rows, Error *error)
 {
-  if (!d->type->uniaxial) return POINTS_ON_PARTICLES;
-  for (int k = 0; k < d->material_count; ++k)
-    if (!d->materials[k].law->linear) return POINTS_ON_BONDS;
-  return POINTS_NOWHERE;
+  if (!rows) return BRECCIA_OK;
+  if (!r->count || r->runs[r->count - 1].material != material) {
+    if (r->count == r->capacity) {
+      r->capacity = 2 * r->capacity + 16;
+      PointsRun *grown = realloc(r->runs, sizeof *grown * (size_t)r->capacity);
+      if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: runs of points");
+      r->runs = grown;
+    }
+    r->runs[r->count++] = (PointsRun){material, r->rows, 0};
+  }
+  r->runs[r->count - 1].count += rows;
+  r->rows += rows;
+  return BRECCIA_OK;
+}
+
+/** Rows of the bonds of a slice: its own material's, then those of the materials at other ends. */
+static int add_bonds(const Domain *d, int64_t slice, Runs *r, Error *error)
+{
+  const BondList *l = &d->bonds;
+  int64_t own = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]), n = l->single_first[slice];
+  for (; n < l->single_first[slice + 1] && l->single[n] >= 0; ++n) ++own;
+  int status = add_rows(r, d->material[slice], own, error);
+  for (; n < l->single_first[slice + 1] && !status; ++n) {
+    int64_t slot;
+    int lane;
+    bond_list_bond(l, &d->family, slice, r->rows, &slot, &lane);
+    status = add_rows(r, d->material[family_bond(&d->family, slice, slot, lane).neighbour / SLICE], 1, error);
+  }
+  return status;
+}
+
+/** Points on particles where laws take six strains; on bonds where they take one, unless all are linear. */
+static int create_points(Domain *d, Space space, bool may_give_up, double length, Error *error)
+{
+  const Particles *p = d->particles;
+  PointsSpec spec = {.components = d->type->components,
+                     .plane_stress = space == SPACE_PLANE_STRESS,
+                     .materials = d->materials,
+                     .material_count = d->material_count,
+                     .may_give_up = may_give_up,
+                     .length = length};
+  bool linear = d->type->components == 1;
+  for (int k = 0; k < d->material_count; ++k) linear = linear && d->materials[k].law->linear;
+  if (linear) spec.components = 0;
+  if (spec.components == 1 && bond_list_create(&d->bonds, &d->family, d->material, error)) return BRECCIA_FAILURE;
+  Runs runs = {0};
+  int status = BRECCIA_OK;
+  for (int64_t s = 0; s < p->slices && !status && spec.components; ++s)
+    status = spec.components == 6 ? add_rows(&runs, d->material[s], SLICE, error) : add_bonds(d, s, &runs, error);
+  uint8_t *present = status ? NULL : memory_zeroed((size_t)runs.rows, 1, "points", error);
+  if (!present) status = BRECCIA_FAILURE;
+  for (int64_t i = 0; i < runs.rows && !status && spec.components == 6; ++i) present[i] = p->number[i] >= 0;
+  if (spec.components == 1 && !status) bond_list_mark(&d->bonds, &d->family, present);
+  spec.runs = runs.runs;
+  spec.run_count = runs.count;
+  spec.present = present;
+  if (!status) status = points_create(&d->points, &spec, error);
+  for (int k = 0; k < 6 && spec.components == 6; ++k) {
+    d->strain[k] = d->points.strain[k];
+    d->stress[k] = d->points.stress[k];
+  }
+  free(runs.runs);
+  free(present);
+  if (status || !may_give_up) return status;
+  d->gave_up = spec.components == 6 ? d->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
+  return d->gave_up ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 static void weigh_family(void *context, int64_t place)
@@ -265,16 +326,16 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if ((status = family_create(&d->family, &d->body, &family, error))) return status;
   team_each(d->particles->places, weigh_family, d);
 
-  const PointsSpec points = {.where = points_where(d),
-                             .space = space,
-                             .family = &d->family,
-                             .materials = d->materials,
-                             .material_count = d->material_count,
-                             .material = d->material,
-                             .may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break")};
-  if ((status = points_create(&d->points, &points, error))) return status;
-  if ((status = share_out(d, error)) || (status = make_parts(d, error))) return status;
-  FormulationParts parts = {pd, &d->body, d->particles, &d->family, &d->points};
+  const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
+  if ((status = create_points(d, space, may_give_up, length, error)) || (status = share_out(d, error))) return status;
+  const FormulationParts parts = {.spec = pd,
+                                  .body = &d->body,
+                                  .particles = d->particles,
+                                  .family = &d->family,
+                                  .points = &d->points,
+                                  .bonds = d->points.components == 1 ? &d->bonds : NULL,
+                                  .materials = d->materials,
+                                  .material = d->material};
   d->formulation = d->type->create(&parts, error);
   if (!d->formulation) return BRECCIA_USER_ERROR;
   status = create_failure(d, reader, spec->failure, length);
@@ -300,16 +361,22 @@ void domain_destroy(Domain *d)
 {
   if (d->formulation) d->type->destroy(d->formulation);
   contact_destroy(&d->contact);
+  if (d->points.components != 6) {
+    for (int k = 0; k < 6; ++k) {
+      places_free(&d->strain[k]);
+      places_free(&d->stress[k]);
+    }
+    free(d->gave_up);
+  }
   points_destroy(&d->points);
+  bond_list_destroy(&d->bonds);
   family_destroy(&d->family);
   body_destroy(&d->body);
   for (int k = 0; k < d->material_count; ++k) material_destroy(&d->materials[k]);
   free(d->materials);
   free(d->material);
   free(d->blocks);
-  free(d->parts);
-  free(d->part_of);
-  free(d->carry);
+  free(d->lowest);
   free(d->block_sum);
   free(d->block_failed);
   free(d->family_volume);

@@ -1,6 +1,8 @@
 /* The state of a domain: its rows, and how what follows from them is made again. */
 #include "domain/domain.h"
 
+#include "base/tensor.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,13 +56,37 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   return BRECCIA_OK;
 }
 
+/** What people see of points on bonds. */
+static void show_strains(Domain *d, StateList *list)
+{
+  StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .role = STATE_SHOWN, .count = d->particles->places};
+  for (int k = 0; k < 6; ++k) {
+    row.unit = "1";
+    row.values = d->strain[k];
+    state_add(list, &row, "strain", component_names[k]);
+    row.unit = "stress";
+    row.values = d->stress[k];
+    state_add(list, &row, "stress", component_names[k]);
+  }
+}
+
 void domain_state(Domain *d, StateList *list)
 {
   static const StateCare broken = {.save = save_broken, .resume = resume_broken};
-  const bool laws_in_forces = d->points.where != POINTS_ON_PARTICLES && !domain_is_elastic(d);
+  const bool laws_in_forces = d->points.components != 6 && !domain_is_elastic(d);
   particles_state(d->particles, list);
   state_add_vector(list, "force", "force per volume", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
                    d->particles->internal, d->particles->places);
+  if (d->points.components != 6 && d->strain[0]) show_strains(d, list);
+  if (d->gave_up)
+    state_add(list,
+              &(StateRow){.unit = "1",
+                          .kind = STATE_BYTES,
+                          .entity = STATE_OF_PLACE,
+                          .role = STATE_TRIED,
+                          .count = d->particles->places,
+                          .values = d->gave_up},
+              "failed laws", NULL);
   points_state(&d->points, list);
   family_state(&d->family, list);
   state_add_number(list, "motion", "length", STATE_TRIED, &d->motion);

@@ -25,9 +25,10 @@ static double force_magnitude(const Particles *p, const Span *span)
   return lanes_total(sum);
 }
 
-/** Phases `from` .. `to` - 1 of a formulation that follow each other within a block; `law` is the first that reads stresses, if any. */
+/** Phases `from` .. `to` - 1 of a formulation that follow each other within a block; `law` is the first that reads stresses, if any. From
+ *  `close` on they need that the blocks with lower neighbours are done too. */
 typedef struct Group {
-  int from, law, to;
+  int from, law, close, to;
 } Group;
 
 /** The group that begins with a phase. */
@@ -35,101 +36,121 @@ static Group group_from(const Domain *d, int from)
 {
   const Phase *phases = d->type->phases;
   unsigned written = 0;
-  Group group = {from, -1, from};
+  Group group = {from, -1, MOST_PHASES, from};
   for (int p = from; p < MOST_PHASES && phases[p].run; group.to = ++p) {
     const unsigned read = phases[p].of_neighbours | (d->rows_cut ? phases[p].along_rows : 0);
     if (p > from && (read & written || phases[p].by_one || phases[from].by_one)) break;
+    if (phases[p].of_lower & written && group.close == MOST_PHASES) group.close = p;
     if (phases[p].reads & OF_STRESSES && group.law < 0) group.law = p;
     written |= phases[p].writes;
   }
   return group;
 }
 
-static void run_phases(Domain *d, int from, int to, int64_t block, const Sweep *sweep, const Purpose *purpose)
+static void run_phases(Domain *d, int from, int to, const Sweep *sweep, const Purpose *purpose)
 {
-  for (int p = from; p < to; ++p) {
-    const Phase *phase = &d->type->phases[p];
-    if (phase->writes & purpose->without) continue;
-    const int64_t failed = phase->run(d->formulation, sweep);
-    if (phase->writes & OF_FORCES && d->points.where != POINTS_ON_PARTICLES) d->block_failed[block] = failed;
-  }
+  for (int p = from; p < to; ++p)
+    if (!(d->type->phases[p].writes & purpose->without)) d->type->phases[p].run(d->formulation, sweep);
 }
 
-/** @param[in] change  [12][BLOCK] room for changes of strains and stresses */
-static Sweep sweep_of(Domain *d, int64_t block, double *carry, double *change, const Purpose *purpose)
-{
-  const Span *span = &d->blocks[block];
-  Sweep sweep = {.first = span->first, .last = span->last, .carry = carry, .at = purpose->at};
-  for (int k = 0; k < 6; ++k) {
-    sweep.strain[k] = purpose->at ? change + k * BLOCK : d->points.strain[k] + span->first * SLICE;
-    sweep.stress[k] = purpose->at ? change + (6 + k) * BLOCK : d->points.stress[k] + span->first * SLICE;
-  }
-  return sweep;
-}
-
-static void run_group(Domain *d, const Group *group, int64_t block, const Purpose *purpose)
+/** A block of points on particles, or of none.
+ *  @param[in] send  only up to the law: strains are sent to servers */
+static void run_places(Domain *d, const Group *group, int64_t block, const Purpose *purpose, bool send)
 {
   _Alignas(64) double carry[CARRY * BLOCK], change[12 * BLOCK];
-  if (purpose->at && d->points.space == SPACE_PLANE_STRESS) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
-  const Sweep sweep = sweep_of(d, block, carry, change, purpose);
-  run_phases(d, group->from, group->law < 0 ? group->to : group->law, block, &sweep, purpose);
+  const Span *span = &d->blocks[block];
+  const int64_t first = span->first * SLICE;
+  const int count = (int)(span->last * SLICE - first);
+  Sweep sweep = {.first = span->first, .last = span->last, .carry = carry, .at = purpose->at};
+  if (purpose->at && d->points.plane_stress) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
+  for (int k = 0; k < 6; ++k) {
+    sweep.strain[k] = purpose->at ? change + k * BLOCK : d->points.strain[k] + first;
+    sweep.stress[k] = purpose->at ? change + (6 + k) * BLOCK : d->points.stress[k] + first;
+  }
+  run_phases(d, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
   if (group->law < 0) return;
-  if (purpose->at)
-    points_change(&d->points, sweep.first, sweep.last, sweep.strain, sweep.stress);
-  else if (!purpose->no_law)
-    d->block_failed[block] = points_update(&d->points, sweep.first, sweep.last, NULL);
-  run_phases(d, group->law, group->to, block, &sweep, purpose);
+  if (send) {
+    points_send(&d->points, first, count, sweep.strain);
+    return;
+  }
+  if (d->points.components == 6) {
+    if (purpose->at)
+      points_change(&d->points, first, count, sweep.strain, sweep.stress);
+    else if (!purpose->no_law)
+      d->block_failed[block] = points_update(&d->points, first, count, sweep.strain, sweep.stress);
+  }
+  run_phases(d, group->law, group->to, &sweep, purpose);
 }
 
-/** The same of all blocks, where some have laws in servers: strains go out part by part, so that servers work while further
- *  parts are deformed. */
-static void run_in_parts(Domain *d, const Group *group, const Purpose *purpose)
+/** Both ends of bonds whose laws could not be integrated are marked; several threads may mark one end. */
+static void mark_ends(Domain *d, int64_t slice, int64_t row, int count)
 {
-  for (int k = 0; k < d->part_count; ++k) {
-    const Part *part = &d->parts[k];
-    TEAM_FOR (n, part->last - part->first) {
-      const int64_t b = part->first + n;
-      if (d->part_of[b] != k) continue;
-      const Sweep sweep = sweep_of(d, b, d->carry + b * CARRY * BLOCK, NULL, purpose);
-      run_phases(d, group->from, group->law, b, &sweep, purpose);
-      points_pack(&d->points, sweep.first, sweep.last);
-    }
-    if (team_turn(k)) points_post(&d->points, part->material, part->server);
-  }
-  TEAM_FOR (b, d->block_count)
-    if (d->part_of[b] < 0) run_group(d, group, b, purpose);
-  for (int k = 0; k < d->part_count; ++k) {
-    const Part *part = &d->parts[k];
-    TEAM_SINGLE
-    {
-      const int64_t failed = points_collect(&d->points, part->material, part->server);
-      for (int64_t b = part->first; b < part->last; ++b)
-        if (d->part_of[b] == k)
-          d->block_failed[b] = failed >= d->blocks[b].first * SLICE && failed < d->blocks[b].last * SLICE ? failed : -1;
-    }
-    TEAM_FOR (n, part->last - part->first) {
-      const int64_t b = part->first + n;
-      if (d->part_of[b] != k) continue;
-      const Sweep sweep = sweep_of(d, b, d->carry + b * CARRY * BLOCK, NULL, purpose);
-      points_unpack(&d->points, sweep.first, sweep.last);
-      run_phases(d, group->law, group->to, b, &sweep, purpose);
-    }
+  for (int64_t r = row; r < row + count; ++r) {
+    int64_t slot;
+    int lane;
+    if (!d->points.gave_up[r]) continue;
+    d->points.gave_up[r] = 0;
+    bond_list_bond(&d->bonds, &d->family, slice, r, &slot, &lane);
+    __atomic_fetch_or(&d->gave_up[slice * SLICE + lane], 1, __ATOMIC_RELAXED);
+    __atomic_fetch_or(&d->gave_up[family_bond(&d->family, slice, slot, lane).neighbour], 1, __ATOMIC_RELAXED);
   }
 }
 
-/** Laws act on bonds, and some run in servers: a group that makes forces is gone through once before to gather strains. */
-static void gather_bonds(Domain *d, const Group *group, const Purpose *purpose)
+/** Place of the owner of a bond's row. */
+static int64_t owner_of(const Domain *d, int64_t slice, int64_t row)
 {
-  TEAM_SINGLE points_gather_bonds(&d->points);
-  if (d->points.pass != PASS_GATHER) return;
-  TEAM_FOR (b, d->block_count) run_group(d, group, b, purpose);
-  TEAM_SINGLE points_ask_bonds(&d->points);
+  int64_t slot;
+  int lane;
+  bond_list_bond(&d->bonds, &d->family, slice, row, &slot, &lane);
+  return slice * SLICE + lane;
+}
+
+/** A block of points on bonds, chunk by chunk of rows of one slice and material. */
+static void run_bonds(Domain *d, const Group *group, int64_t block, const Purpose *purpose, bool send)
+{
+  _Alignas(64) double carry[CARRY * BLOCK], strain[BLOCK], stress[BLOCK];
+  Sweep sweep = {.carry = carry, .strain = {strain}, .stress = {stress}};
+  int64_t failed = -1;
+  for (int64_t slice = d->blocks[block].first; slice < d->blocks[block].last; ++slice) {
+    const int64_t end = d->bonds.first[slice + 1];
+    for (sweep.row = d->bonds.first[slice]; sweep.row < end; sweep.row += sweep.rows) {
+      const PointsRun *run = &d->points.runs[points_run(&d->points, sweep.row)];
+      const int64_t left = (run->first + run->count < end ? run->first + run->count : end) - sweep.row;
+      sweep.rows = left < BLOCK ? (int)left : BLOCK;
+      sweep.first = slice;
+      sweep.last = slice + 1;
+      run_phases(d, group->from, group->law, &sweep, purpose);
+      if (send) {
+        points_send(&d->points, sweep.row, sweep.rows, sweep.strain);
+        continue;
+      }
+      const int64_t bad = points_update(&d->points, sweep.row, sweep.rows, sweep.strain, sweep.stress);
+      if (bad >= 0 && failed < 0) failed = owner_of(d, slice, bad);
+      if (d->points.gave_up) mark_ends(d, slice, sweep.row, sweep.rows);
+      run_phases(d, group->law, group->to, &sweep, purpose);
+    }
+  }
+  d->block_failed[block] = failed;
+}
+
+static void run_group(Domain *d, const Group *group, int64_t block, const Purpose *purpose, bool send)
+{
+  if (group->law < 0 || d->points.components != 1)
+    run_places(d, group, block, purpose, send);
+  else if (!purpose->at && !purpose->no_law)
+    run_bonds(d, group, block, purpose, send);
+}
+
+/** Phases of a block that have waited for lower blocks. */
+static void finish_block(Domain *d, const Group *group, int64_t b, const Purpose *purpose, unsigned writes)
+{
+  run_group(d, group, b, purpose, false);
+  if (writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
 }
 
 static void run_all(Domain *d, const Purpose *purpose)
 {
-  const bool remote = d->points.server && !purpose->at && !purpose->no_law;
-  const bool parts = remote && d->part_count && !d->points.elastic_stage && points_begun(&d->points);
+  const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&d->points);
   for (int p = 0; p < MOST_PHASES && d->type->phases[p].run;) {
     const Group group = group_from(d, p);
     p = group.to;
@@ -137,18 +158,27 @@ static void run_all(Domain *d, const Purpose *purpose)
     for (int n = group.from; n < group.to; ++n) writes |= d->type->phases[n].writes & ~purpose->without;
     if (!writes) continue;
     if (d->type->phases[group.from].by_one) {
-      TEAM_SINGLE d->type->phases[group.from].run(d->formulation,
-                                                  &(Sweep){.last = d->particles->slices, .at = purpose->at});
+      TEAM_SINGLE
+      d->type->phases[group.from].run(d->formulation, &(Sweep){.last = d->particles->slices, .at = purpose->at});
       continue;
     }
-    if (remote && d->points.where == POINTS_ON_BONDS && writes & OF_FORCES) gather_bonds(d, &group, purpose);
-    if (parts && group.law >= 0)
-      run_in_parts(d, &group, purpose);
-    else
-      TEAM_FOR (b, d->block_count) {
-        run_group(d, &group, b, purpose);
-        if (writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
-      }
+    if (ahead && group.law >= 0) { /* servers work while strains of further points are found */
+      TEAM_FOR (b, d->block_count) run_group(d, &group, b, purpose, true);
+      TEAM_SINGLE points_await(&d->points);
+    }
+    Group before = group, after = {group.close, -1, MOST_PHASES, group.to};
+    const bool in_two = group.close < group.to;
+    if (in_two) before.to = group.close;
+    const TeamShare share = team_share(d->block_count);
+    TEAM_FOR (b, d->block_count) {
+      run_group(d, &before, b, purpose, false);
+      if (in_two && d->lowest[b] >= share.first) finish_block(d, &after, b, purpose, writes);
+      if (!in_two && writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
+    }
+    if (in_two) {
+      TEAM_FOR (b, d->block_count) /* the rest, whose neighbours were another thread's */
+        if (d->lowest[b] < share.first) finish_block(d, &after, b, purpose, writes);
+    }
   }
 }
 
@@ -198,7 +228,7 @@ void domain_follow(Domain *d)
 {
   if (domain_is_elastic(d))
     domain_evaluate(d);
-  else if (d->points.where == POINTS_ON_PARTICLES)
+  else if (d->points.components == 6)
     team_run(remake_forces, d);
   else
     domain_show_states(d);

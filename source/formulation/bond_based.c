@@ -21,8 +21,9 @@ static void destroy(void *formulation)
   free(b->range);
   free(b->surface);
   free(b->gaps);
-  free(b->tension);
-  free(b->slope);
+  places_free(&b->pull);
+  places_free(&b->tension);
+  places_free(&b->slope);
   free(b);
 }
 
@@ -30,7 +31,7 @@ const Material *bond_material(const BondBased *b, int block)
 {
   int64_t slice = 0;
   while (b->particles->block[slice] != block) ++slice;
-  return &b->points->materials[b->points->material[slice]];
+  return &b->materials[b->material[slice]];
 }
 
 static void *create(const FormulationParts *parts, Error *error)
@@ -44,6 +45,9 @@ static void *create(const FormulationParts *parts, Error *error)
                    .family = parts->family,
                    .body = parts->body,
                    .points = parts->points,
+                   .bonds = parts->bonds,
+                   .materials = parts->materials,
+                   .material = parts->material,
                    .space = peridynamics_space(parts->spec),
                    .influence = influence_find(parts->spec->influence)};
   int calibration = 0;
@@ -82,7 +86,8 @@ static void *create(const FormulationParts *parts, Error *error)
     destroy(b);
     return NULL;
   }
-  if (f->stored_slots && !(b->shown = places_array(BOND_SHOWN * b->particles->places, "bond constants", error))) {
+  if ((f->stored_slots && !(b->shown = places_array(BOND_SHOWN * b->particles->places, "bond constants", error))) ||
+      (b->bonds && !(b->pull = places_array(b->bonds->count, "pulls of bonds", error)))) {
     destroy(b);
     return NULL;
   }
@@ -114,7 +119,9 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
     along += y[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
   }
   const double length = sqrt(square), stretch = (length - bond.length) / bond.length;
-  const double share = points_bond_elastic_share(b->points, slice, slot, lane, stretch);
+  int64_t rows[2];
+  if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
+  const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch) : 1;
   *energy =
       (StoredEnergy){.stored = 0.5 * share * pull * length * (length - bond.length), .half_work = 0.5 * pull * along};
   energy->beside = energy->stored;
@@ -166,7 +173,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
   const Particles *p = b->particles;
-  const double *constant = b->points->where == POINTS_ON_BONDS ? b->per_stress : b->stiffness;
+  const double *constant = b->bonds ? b->per_stress : b->stiffness;
   for (int64_t place = sweep->first * SLICE; b->shown && !sweep->at && place < sweep->last * SLICE; ++place) {
     double *shown = b->shown + BOND_SHOWN * place;
     for (int k = 0; k < 3; ++k) {
@@ -189,8 +196,8 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   const BondBased *b = formulation;
   if (sweep->at)
     bond_resist_changes(b, sweep);
-  else if (b->points->where == POINTS_ON_BONDS)
-    return bond_resist_points(b, sweep->first, sweep->last);
+  else if (b->bonds)
+    bond_resist_points(b, sweep->first, sweep->last);
   else
     bond_resist_springs(b, sweep->first, sweep->last);
   return -1;
@@ -200,6 +207,7 @@ static size_t bytes(const void *formulation)
 {
   const BondBased *b = formulation;
   return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
+         (b->bonds ? sizeof(double) * (size_t)b->bonds->count : 0) +
          (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0);
 }
 
@@ -208,13 +216,15 @@ const FormulationType formulation_bond_based = {
     .about = "every bond is a fibre with a uniaxial law of its own; Poisson's ratio is 1/4 (1/3 in plane stress)",
     .source = "Silling 2000; Silling and Askari 2005",
     .maturity = "verified against closed forms on lattices",
-    .uniaxial = 1,
+    .components = 1,
     .bond_lengths = true,
     .create = create,
     .destroy = destroy,
     .renew = renew,
-    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, false, show_displacements},
-               {OF_DISPLACEMENTS, OF_FORCES, OF_DISPLACEMENTS | OF_SHOWN, 0, false, resist}},
+    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, 0, false, show_displacements},
+               {OF_DISPLACEMENTS, OF_STRAINS, OF_DISPLACEMENTS | OF_SHOWN, 0, 0, false, bond_stretch},
+               {OF_STRESSES, OF_STATES, 0, 0, 0, false, bond_pull_of_stress},
+               {OF_DISPLACEMENTS, OF_FORCES, OF_DISPLACEMENTS | OF_SHOWN, OF_STATES, 0, false, resist}},
     .linearise = bond_linearise,
     .half_state = half_state,
     .point_count = bond_point_count,

@@ -16,7 +16,10 @@ typedef struct BondBased {
   const Particles *particles;
   const Family *family;
   const Body *body;
-  Points *points;
+  const Points *points;
+  const BondList *bonds; /* NULL: bonds need no points */
+  const Material *materials;
+  const int32_t *material; /* [slices] */
   Space space;
   const Influence *influence;
   double *stiffness;       /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
@@ -25,10 +28,26 @@ typedef struct BondBased {
   double *numbers;         /* of these rows */
   double *shown;           /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
   float *surface;          /* [slots][8] surface correction; NULL: none */
-  double *tension, *slope; /* [slots][8] of bonds with points, as of the last linearisation; NULL before */
+  double *pull;            /* [rows of bonds] of bonds with points (bond_points.c) */
+  double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
 } BondBased;
+
+/* g / d = sum of these times (-d)^n: Taylor's series, whose next term 429 / 2048 (-d)^6 is replaced by lower ones (Chebyshev), so that the
+ * error stays below 5e-17 up to |d| = 2^-8. */
+static const double bond_terms[SPRING_TERMS] = {0.5 + 429.0 / 2048 * 0x1p-48 / 32,          3.0 / 8,
+                                                5.0 / 16 - 429.0 / 2048 * 0x1p-32 * 0.5625, 35.0 / 128,
+                                                63.0 / 256 + 429.0 / 2048 * 0x1p-16 * 1.5,  231.0 / 1024};
+
+/** g(d) = 1 - (1 + d)^-1/2 for |d| up to this. */
+#define BOND_SERIES_LIMIT 0x1p-8
+LANES_INLINE Lanes bond_series(Lanes d)
+{
+  Lanes sum = lanes_set(bond_terms[SPRING_TERMS - 1]);
+  for (int n = SPRING_TERMS - 2; n >= 0; --n) sum = lanes_set(bond_terms[n]) - d * sum;
+  return d * sum;
+}
 
 /** Material of a block. */
 const Material *bond_material(const BondBased *b, int block);
@@ -88,8 +107,10 @@ LANES_INLINE BondEnds bond_gather(const BondBased *b, int64_t slice, int64_t slo
 /** Forces on slices first .. last - 1 from linear bonds. */
 void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
 
-/** The same from bonds with points (bond_points.c). @return a place whose law could not be integrated, or -1 */
-int64_t bond_resist_points(const BondBased *b, int64_t first, int64_t last);
+/** Of bonds with points: stretches of a chunk of rows, their pulls from stresses, forces from pulls (bond_points.c). */
+int64_t bond_stretch(void *formulation, const Sweep *sweep);
+int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep);
+void bond_resist_points(const BondBased *b, int64_t first, int64_t last);
 
 /** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */
 void bond_resist_changes(const BondBased *b, const Sweep *sweep);
@@ -97,8 +118,12 @@ int bond_linearise(void *formulation, Error *error);
 int64_t bond_point_count(const void *formulation);
 int bond_point(const void *formulation, int64_t number, Operator *point, Error *error);
 
-/** Force of a bond per volume of the neighbour, weight and length of y: c s / |y|, or what its points make of it.
+/** Tension of a bond and its slope, per weight: c s and c, or c / E times what laws answer to its stretch (bond_linear.c).
  *  @param[out] y  from the place to its neighbour, as deformed */
+void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3],
+                  double *tension, double *slope);
+
+/** Tension over |y|, times the surface correction: force per volume, weight and length of y. */
 double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3]);
 
 /** c by the continuum's integrals (docs/theory.md 2, table and general rule). */

@@ -63,8 +63,8 @@ LANES_INLINE void add_change(const BondBased *b, double *const at[3], int64_t sl
   const Lanes length = lanes_root(square), stretch = d / (h.length * (length + h.length));
   Lanes tension = h.constant * stretch, slope = h.constant, weight = h.weight;
   if (b->tension) {
-    tension = lanes_load(b->tension + slot * SLICE + LANES * half);
-    slope = lanes_load(b->slope + slot * SLICE + LANES * half);
+    tension = bond_list_load(b->bonds, b->family, b->tension, slice, slot, half);
+    slope = bond_list_load(b->bonds, b->family, b->slope, slice, slot, half);
   }
   if (b->surface) weight *= bond_surface(b, slot, half);
   const Lanes across = weight * tension / length, turned = (weight * slope / h.length - across) * along / square;
@@ -92,57 +92,55 @@ void bond_resist_changes(const BondBased *b, const Sweep *sweep)
 
 /* ---- bonds one by one ---- */
 
-/** Stretch of a bond, and the bond as deformed. */
-static double stretch_of(const BondBased *b, int64_t place, const Bond *bond, double y[3])
+void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3],
+                  double *tension, double *slope)
 {
-  double d = 0, square = 0;
+  const int64_t place = slice * SLICE + lane, other = bond->neighbour / SLICE;
+  const int32_t *block = b->particles->block;
+  double d = 0;
   for (int k = 0; k < 3; ++k) {
     const double eta = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][place];
     y[k] = bond->xi[k] + eta;
     d += eta * (bond->xi[k] + y[k]);
-    square += y[k] * y[k];
   }
-  return d / (bond->length * (sqrt(square) + bond->length));
-}
-
-/** Tension of a bond and its slope: c s and c, or c / E times what laws answer. */
-static void find_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, double *tension, double *slope)
-{
-  const Bond bond = family_bond(b->family, slice, slot, lane);
-  const int32_t *block = b->particles->block;
-  const int64_t other = bond.neighbour / SLICE;
-  double y[3], stretch = stretch_of(b, slice * SLICE + lane, &bond, y);
-  if (b->points->where == POINTS_NOWHERE) {
+  d /= bond->length * bond->length;
+  const double stretch = d / (1 + sqrt(1 + d));
+  if (!b->bonds) {
     *slope = (b->stiffness[block[slice]] + b->stiffness[block[other]]) / 2;
     *tension = *slope * stretch;
     return;
   }
-  double tangent, partner_tangent;
-  double own = points_bond_stress(b->points, slice, slot, lane, false, stretch, &tangent), partner = own;
-  partner_tangent = tangent;
-  if (b->points->material[other] != b->points->material[slice])
-    partner = points_bond_stress(b->points, slice, slot, lane, true, stretch, &partner_tangent);
-  *tension = (b->per_stress[block[slice]] * own + b->per_stress[block[other]] * partner) / 2;
-  *slope = (b->per_stress[block[slice]] * tangent + b->per_stress[block[other]] * partner_tangent) / 2;
+  int64_t rows[2];
+  double tangent[2], own = b->per_stress[block[slice]] / 2, there = b->per_stress[block[other]] / 2;
+  bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
+  const double stress = points_try(b->points, rows[0], stretch, &tangent[0]);
+  double partner = stress;
+  tangent[1] = tangent[0];
+  if (rows[1] != rows[0]) partner = points_try(b->points, rows[1], stretch, &tangent[1]);
+  *tension = own * stress + there * partner;
+  *slope = own * tangent[0] + there * tangent[1];
 }
 
 static void linearise_slice(void *context, int64_t slice)
 {
   const BondBased *b = context;
   const Family *f = b->family;
-  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane)
-      if (f->intact[slot] >> lane & 1)
-        find_tension(b, slice, slot, lane, &b->tension[slot * SLICE + lane], &b->slope[slot * SLICE + lane]);
+  for (int64_t row = b->bonds->first[slice]; row < b->bonds->first[slice + 1]; ++row) {
+    int64_t slot;
+    int lane;
+    double y[3];
+    if (bond_list_bond(b->bonds, f, slice, row, &slot, &lane) || !(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, lane);
+    bond_tension(b, slice, slot, lane, &bond, y, &b->tension[row], &b->slope[row]);
+  }
 }
 
 int bond_linearise(void *formulation, Error *error)
 {
   BondBased *b = formulation;
-  const size_t count = (size_t)b->family->slots * SLICE;
-  if (b->points->where == POINTS_NOWHERE) return BRECCIA_OK;
-  if (!b->tension) b->tension = memory_zeroed(count, sizeof(double), "linearised step", error);
-  if (!b->slope) b->slope = memory_zeroed(count, sizeof(double), "linearised step", error);
+  if (!b->bonds) return BRECCIA_OK;
+  if (!b->tension) b->tension = places_array(b->bonds->count, "linearised step", error);
+  if (!b->slope) b->slope = places_array(b->bonds->count, "linearised step", error);
   if (!b->tension || !b->slope) return BRECCIA_FAILURE;
   team_each(b->particles->slices, linearise_slice, b);
   return BRECCIA_OK;
@@ -183,7 +181,7 @@ int bond_point(const void *formulation, int64_t number, Operator *point, Error *
   OperatorPlace *p = operator_add(point, bond.neighbour, error);
   if (!p) return BRECCIA_FAILURE;
   double y[3], length = 0;
-  stretch_of(b, place, &bond, y);
+  bond_tension(b, slice, slot, lane, &bond, y, &point->stress[0], &point->tangent[0]);
   for (int k = 0; k < 3; ++k) length += y[k] * y[k];
   length = sqrt(length);
   for (int k = 0; k < 3; ++k) p->g[k] = y[k] / (length * bond.length);
@@ -191,7 +189,6 @@ int bond_point(const void *formulation, int64_t number, Operator *point, Error *
   point->components = 1;
   point->volume = b->particles->volume[place] * bond.weight * bond.length;
   if (b->surface) point->volume *= (double)b->surface[slot * SLICE + lane];
-  find_tension(b, slice, slot, lane, &point->stress[0], &point->tangent[0]);
   operator_close(point);
   return BRECCIA_OK;
 }

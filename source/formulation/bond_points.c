@@ -1,140 +1,195 @@
-/* Bonds whose law has a history: the stretch of each bond goes to its material point, batches of slots of a slice at a time, and what comes
- * back is a stress that acts on c / E times the bond's weight. Both sides of a bond keep its history; they see the same stretches to
- * the last bit and so remember the same. A bond between two materials is half a fibre of each, side by side. */
+/* Bonds whose law has a history. Each bond has its material point once, in its row of the bond list: the stretch of the bond goes to it, and what
+ * comes back is a stress that acts on c / E times the bond's weight. Both ends then read their bond's pull, force per length of y:
+ * per volume of the particle on lattices, and per volume of the neighbour too on stored bonds, where that differs from end to end. A bond
+ * between two materials is half a fibre of each, side by side, with a row for each. */
 #include "formulation/bond_based.h"
 
 #include <math.h>
 
-enum { SLOTS = BLOCK / SLICE };
+enum { AHEAD = 12 }; /* slots */
 
-typedef struct Batch {
-  double stretch[BLOCK], stress[BLOCK];
-  double lever[BLOCK]; /* weight / |y|; of stored slots times the mean c / E */
-  double y[3][BLOCK];
-} Batch;
+/** Rows of a slice that are worked on together. */
+typedef struct Chunk {
+  int64_t slice, row;
+  int count;
+  double *strain, *lever; /* [count]; lever: pull per stress */
+} Chunk;
 
-/** Stretch and lever of a bond from xi and eta. */
-static inline double stretch_of(const double xi[3], const double eta[3], double length, double y[3], double *ratio)
+/** Stretch and |xi| / |y| from d = eta . (xi + y) / |xi|^2. Small stretches, as nearly all are, without root and quotients: these took more
+ *  time than all else. */
+LANES_INLINE Lanes stretch_of(Lanes d, Lanes *shortened)
 {
-  double d = 0;
-  for (int k = 0; k < 3; ++k) {
-    y[k] = xi[k] + eta[k];
-    d += eta[k] * (xi[k] + y[k]);
+  const LaneMask large = lanes_absolute(d) > lanes_set(BOND_SERIES_LIMIT);
+  if (large[0] | large[1] | large[2] | large[3]) {
+    const Lanes ratio = lanes_root(lanes_set(1) + d);
+    *shortened = lanes_set(1) / ratio;
+    return d / (lanes_set(1) + ratio);
   }
-  d /= length * length;
-  *ratio = sqrt(1 + d); /* |y| / |xi| */
-  return d / (1 + *ratio);
+  const Lanes g = bond_series(d);
+  *shortened = lanes_set(1) - g;
+  return d * *shortened - g;
 }
 
-LANES_INLINE void stretch_lattice(const BondBased *b, int64_t slice, int64_t slot, int half, Batch *batch, int at)
+LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_t slot, int half, int at)
 {
   const Family *f = b->family;
   const Pattern *row = &f->patterns[f->pattern[slot]];
-  const int64_t there = f->base[slot] + LANES * half, here = slice * SLICE + LANES * half;
+  const int64_t there = f->base[slot] + LANES * half, here = chunk->slice * SLICE + LANES * half;
+  const LaneMask intact = lanes_half(f->intact[slot], half);
   Lanes d = {0};
   for (int k = 0; k < 3; ++k) {
     const double *u = b->particles->displacement[k];
-    Lanes xi = lanes_set(row->xi[k]), eta = lanes_load(u + there) - lanes_load(u + here), y = xi + eta;
+    const Lanes xi = lanes_set(row->xi[k]), eta = lanes_load(u + there) - lanes_load(u + here), y = xi + eta;
     d += eta * (xi + y);
-    lanes_store(batch->y[k] + at, y);
   }
-  d = lanes_where(lanes_half(f->intact[slot], half), d) * lanes_set(row->by_square);
-  Lanes ratio = lanes_root(lanes_set(1) + d);
-  lanes_store(batch->stretch + at, d / (lanes_set(1) + ratio));
-  lanes_store(batch->lever + at, lanes_set(row->weight_by_length) / ratio);
+  d = lanes_where(intact, d) * lanes_set(row->by_square);
+  Lanes shortened,
+      lever = lanes_where(intact, lanes_set(row->weight_by_length * b->per_stress[b->particles->block[chunk->slice]]));
+  if (b->surface) lever *= bond_surface(b, slot, half);
+  lanes_store(chunk->strain + at, stretch_of(d, &shortened));
+  lanes_store(chunk->lever + at, lever * shortened);
 }
 
-LANES_INLINE void stretch_stored(const BondBased *b, int64_t slice, int64_t slot, int half, Batch *batch, int at)
-{
-  Lanes own[3];
-  for (int k = 0; k < 3; ++k) own[k] = lanes_load(b->particles->displacement[k] + slice * SLICE + LANES * half);
-  BondEnds ends = bond_gather(b, slice, slot, half, own);
-  Lanes ratio = lanes_root(lanes_set(1) + ends.d);
-  lanes_store(batch->stretch + at, ends.d / (lanes_set(1) + ratio));
-  lanes_store(batch->lever + at, ends.constant * ends.weight_by_length / ratio);
-  for (int k = 0; k < 3; ++k) lanes_store(batch->y[k] + at, ends.y[k]);
-}
-
-/** Makes the mean stress of both halves of a bond, weighted by c / E, out of the stress of its own, where the other end may be of another
- *  material. Broken bonds (with stretch 0) too, so that both their histories stay what they were. @return the place of a failure or -1 */
-static int64_t join_stresses(const BondBased *b, int64_t slice, int64_t slot, int lane, double stretch, double *stress)
+/** Four stored bonds, each of one row. */
+LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, int at)
 {
   const Family *f = b->family;
-  const int32_t *block = b->particles->block;
-  const int64_t other = f->neighbour[(int64_t)f->base[slot] * SLICE + lane] / SLICE;
-  if (b->points->material[other] == b->points->material[slice]) return -1;
-  double partner, own = b->per_stress[block[slice]], there = b->per_stress[block[other]];
-  int64_t bad = points_update_partner(b->points, slice, slot, lane, stretch, &partner);
-  *stress = (own * *stress + there * partner) / (own + there);
-  return bad;
-}
-
-/** @return a place whose law could not be integrated, or -1 */
-LANES_INLINE int64_t resist_slice(const BondBased *b, int64_t slice)
-{
-  const Family *f = b->family;
-  const int64_t stored = f->stored[slice], last = f->first[slice + 1];
-  const Lanes per_stress = lanes_set(b->per_stress[b->particles->block[slice]]);
-  Lanes force[2][3] = {{{0}}};
-  int64_t bad = -1;
-  Batch batch;
-  for (int64_t first = f->first[slice]; first < last && bad < 0; first += SLOTS) {
-    const int count = last - first < SLOTS ? (int)(last - first) : SLOTS;
-    for (int n = 0; n < count; ++n)
-      if (first + n < stored)
-        for (int half = 0; half < 2; ++half)
-          stretch_lattice(b, slice, first + n, half, &batch, n * SLICE + LANES * half);
-      else
-        for (int half = 0; half < 2; ++half)
-          stretch_stored(b, slice, first + n, half, &batch, n * SLICE + LANES * half);
-    bad = points_update_bonds(b->points, slice, first, count, batch.stretch, batch.stress);
-    for (int n = 0; n < count * SLICE && b->points->partner_values && bad < 0; ++n)
-      if (first + n / SLICE >= stored)
-        bad = join_stresses(b, slice, first + n / SLICE, n % SLICE, batch.stretch[n], &batch.stress[n]);
-    for (int n = 0; n < count; ++n)
-      for (int half = 0; half < 2; ++half) {
-        const int at = n * SLICE + LANES * half;
-        Lanes pull = lanes_load(batch.stress + at) * lanes_load(batch.lever + at);
-        pull = lanes_where(lanes_half(f->intact[first + n], half), pull);
-        if (b->surface) pull *= bond_surface(b, first + n, half);
-        if (first + n < stored) pull *= per_stress;
-        for (int k = 0; k < 3; ++k) force[half][k] += pull * lanes_load(batch.y[k] + at);
-      }
+  int32_t here[LANES], there[LANES];
+  Lanes x[2][LANES], u[2][LANES], d = {0}, square = {0}, lever;
+  for (int n = 0; n < LANES; ++n) {
+    const int i = at + n < chunk->count ? at + n : chunk->count - 1;
+    int64_t slot;
+    int lane;
+    const bool second = bond_list_bond(b->bonds, f, chunk->slice, chunk->row + i, &slot, &lane);
+    const int64_t place = (int64_t)f->base[slot] * SLICE + lane;
+    here[n] = (int32_t)(chunk->slice * SLICE + lane);
+    there[n] = f->neighbour[place];
+    const double own = b->shown[BOND_SHOWN * (int64_t)here[n] + 7],
+                 other = b->shown[BOND_SHOWN * (int64_t)there[n] + 7];
+    const bool mixed = b->material[here[n] / SLICE] != b->material[there[n] / SLICE];
+    lever[n] = f->intact[slot] >> lane & 1 ? 0.5 * (mixed ? (second ? other : own) : own + other) : 0;
+    if (f->scale) lever[n] *= f->scale[place];
+    if (b->surface) lever[n] *= (double)b->surface[slot * SLICE + lane];
   }
-  for (int half = 0; half < 2; ++half)
-    for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
-  return bad;
+  lanes_gather_rows(b->shown, BOND_SHOWN, here, x[0]);
+  lanes_gather_rows(b->shown, BOND_SHOWN, there, x[1]);
+  lanes_gather_rows(b->shown + LANES, BOND_SHOWN, here, u[0]);
+  lanes_gather_rows(b->shown + LANES, BOND_SHOWN, there, u[1]);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes xi = x[1][k] - x[0][k], eta = u[1][k] - u[0][k];
+    d += eta * (xi + xi + eta);
+    square += xi * xi;
+  }
+  const LaneMask intact = lever != lanes_set(0);
+  d = lanes_where(intact, d) / square;
+  Lanes shortened;
+  lanes_store(chunk->strain + at, stretch_of(d, &shortened));
+  lanes_store(chunk->lever + at, lever * shortened / lanes_root(square));
 }
 
 BRECCIA_CLONES
-static int64_t resist_points(const BondBased *b, int64_t first, int64_t last)
+static void stretch_chunk(const BondBased *b, const Chunk *chunk)
 {
-  int64_t failed = -1;
-  for (int64_t slice = first; slice < last; ++slice) {
-    int64_t bad = resist_slice(b, slice);
-    if (failed < 0) failed = bad;
+  const BondList *l = b->bonds;
+  const int64_t slice = chunk->slice, from = chunk->row - l->first[slice],
+                lattice = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]);
+  int at = 0;
+  for (; at < chunk->count && from + at < lattice; at += SLICE) {
+    const int64_t slot = b->family->first[slice] + l->owned[l->owned_first[slice] + (from + at) / SLICE];
+    for (int half = 0; half < 2; ++half) stretch_lattice(b, chunk, slot, half, at + LANES * half);
   }
-  return failed;
+  for (; at < chunk->count; at += LANES) stretch_singles(b, chunk, at);
 }
 
-int64_t bond_resist_points(const BondBased *b, int64_t first, int64_t last)
+int64_t bond_stretch(void *formulation, const Sweep *sweep)
 {
-  return resist_points(b, first, last);
+  const BondBased *b = formulation;
+  if (b->bonds) stretch_chunk(b, &(Chunk){sweep->first, sweep->row, sweep->rows, sweep->strain[0], sweep->carry});
+  return -1;
+}
+
+int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep)
+{
+  const BondBased *b = formulation;
+  if (!b->bonds) return -1;
+  int64_t slot;
+  int lane;
+  const double *stress = sweep->stress[0], *lever = sweep->carry;
+  if (!bond_list_bond(b->bonds, b->family, sweep->first, sweep->row, &slot, &lane)) {
+    for (int i = 0; i < sweep->rows; ++i) b->pull[sweep->row + i] = stress[i] * lever[i];
+    return -1;
+  }
+  for (int i = 0; i < sweep->rows; ++i) { /* second rows add to the first of their bonds */
+    bond_list_bond(b->bonds, b->family, sweep->first, sweep->row + i, &slot, &lane);
+    b->pull[b->bonds->stored_row[(int64_t)b->family->base[slot] * SLICE + lane]] += stress[i] * lever[i];
+  }
+  return -1;
+}
+
+LANES_INLINE void resist_lattice(const BondBased *b, int64_t slice, int64_t slot, int half, bool gaps, Lanes force[3],
+                                 const Lanes own[3])
+{
+  const Family *f = b->family;
+  const Pattern *row = &f->patterns[f->pattern[slot]];
+  const int64_t there = f->base[slot] + LANES * half;
+  Lanes pull = bond_list_load(b->bonds, f, b->pull, slice, slot, half);
+  if (!half) { /* pulls of bonds that others own lie far apart: without this most of the time is waiting for them */
+    const int32_t *ahead = b->bonds->slot_row[slot + AHEAD];
+    __builtin_prefetch(b->pull + ahead[0]);
+    __builtin_prefetch(b->pull + ahead[1]);
+  }
+  if (gaps) pull = lanes_where(lanes_half(f->intact[slot], half), pull);
+  for (int k = 0; k < 3; ++k)
+    force[k] += pull * (lanes_set(row->xi[k]) + (lanes_load(b->particles->displacement[k] + there) - own[k]));
+}
+
+LANES_INLINE void resist_stored(const BondBased *b, int64_t slice, int64_t slot, int half, Lanes force[3],
+                                const Lanes own[3])
+{
+  const Family *f = b->family;
+  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
+  Lanes x[LANES], u[LANES], pull = bond_list_load(b->bonds, f, b->pull, slice, slot, half);
+  lanes_gather_rows(b->shown, BOND_SHOWN, f->neighbour + at, x);
+  lanes_gather_rows(b->shown + LANES, BOND_SHOWN, f->neighbour + at, u);
+  pull = lanes_where(lanes_half(f->intact[slot], half), pull * x[3]);
+  for (int k = 0; k < 3; ++k)
+    force[k] += pull * ((x[k] - lanes_load(b->particles->position[k] + here)) + (u[k] - own[k]));
+}
+
+LANES_INLINE void resist_slice(const BondBased *b, int64_t slice, bool gaps)
+{
+  const Family *f = b->family;
+  const int64_t stored = f->stored[slice], last = f->first[slice + 1];
+  for (int half = 0; half < 2; ++half) {
+    Lanes force[3] = {{0}}, own[3];
+    for (int k = 0; k < 3; ++k) own[k] = lanes_load(b->particles->displacement[k] + slice * SLICE + LANES * half);
+    for (int64_t slot = f->first[slice]; slot < stored; ++slot) resist_lattice(b, slice, slot, half, gaps, force, own);
+    for (int64_t slot = stored; slot < last; ++slot) resist_stored(b, slice, slot, half, force, own);
+    for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[k]);
+  }
+}
+
+BRECCIA_CLONES
+static void resist_points(const BondBased *b, int64_t first, int64_t last)
+{
+  const BondBased local = *b; /* so that stores are seen not to change it */
+  for (int64_t slice = first; slice < last; ++slice)
+    if (local.gaps[slice])
+      resist_slice(&local, slice, true);
+    else
+      resist_slice(&local, slice, false);
+}
+
+void bond_resist_points(const BondBased *b, int64_t first, int64_t last)
+{
+  resist_points(b, first, last);
 }
 
 double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3])
 {
-  const int64_t here = slice * SLICE + lane, other = bond->neighbour / SLICE;
-  const int32_t *block = b->particles->block;
-  double eta[3], ratio;
-  for (int k = 0; k < 3; ++k)
-    eta[k] = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][here];
-  double stretch = stretch_of(bond->xi, eta, bond->length, y, &ratio);
-  const Points *p = b->points;
-  if (b->surface) ratio /= b->surface[slot * SLICE + lane];
-  if (p->where == POINTS_NOWHERE)
-    return (b->stiffness[block[slice]] + b->stiffness[block[other]]) / 2 * stretch / (bond->length * ratio);
-  double own = points_bond_stress(p, slice, slot, lane, false, stretch, NULL), partner = own;
-  if (p->material[other] != p->material[slice]) partner = points_bond_stress(p, slice, slot, lane, true, stretch, NULL);
-  return (b->per_stress[block[slice]] * own + b->per_stress[block[other]] * partner) / 2 / (bond->length * ratio);
+  double tension, slope, length = 0;
+  bond_tension(b, slice, slot, lane, bond, y, &tension, &slope);
+  for (int k = 0; k < 3; ++k) length += y[k] * y[k];
+  if (b->surface) tension *= (double)b->surface[slot * SLICE + lane];
+  return tension / sqrt(length);
 }

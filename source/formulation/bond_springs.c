@@ -9,13 +9,7 @@
  * reciprocal root by Newton's steps from a short series, for stretches from -13 to 11 %; root and quotients. Of a slice all bonds go the
  * same way, the first that is good for all of them. */
 typedef enum Range { RANGE_SERIES, RANGE_NEWTON, RANGE_ANY } Range;
-static const double range_limit[] = {0x1p-8, 0.25}; /* largest |d| */
-
-/* g / d = sum of these times (-d)^n: Taylor's series, whose next term 429 / 2048 (-d)^6 is replaced by lower ones (Chebyshev), so that the
- * error stays below 5e-17 up to |d| = 2^-8. */
-static const double series[SPRING_TERMS] = {0.5 + 429.0 / 2048 * 0x1p-48 / 32,          3.0 / 8,
-                                            5.0 / 16 - 429.0 / 2048 * 0x1p-32 * 0.5625, 35.0 / 128,
-                                            63.0 / 256 + 429.0 / 2048 * 0x1p-16 * 1.5,  231.0 / 1024};
+static const double range_limit[] = {BOND_SERIES_LIMIT, 0.25}; /* largest |d| */
 
 /* The table of lattice bonds. Components of reference vectors are few, and so are lengths with weights: each number stands there as often
  * as a vector has lanes, so that arithmetic takes it from memory (a tenth faster than spreading one). What is read of a length: */
@@ -35,7 +29,7 @@ static void put_length(BondBased *b, int64_t at, const Pattern *pattern)
 {
   const double square = pattern->length * pattern->length;
   double scale = -pattern->weight_by_length / 2; /* series in -d, and halved because vectors are doubled */
-  for (int n = 0; n < SPRING_TERMS; ++n) put(b, at + LENGTH_PULL + LANES * n, (scale /= square) * series[n]);
+  for (int n = 0; n < SPRING_TERMS; ++n) put(b, at + LENGTH_PULL + LANES * n, (scale /= square) * bond_terms[n]);
   put(b, at + LENGTH_LIMIT, range_limit[RANGE_SERIES] * square);
   b->numbers[at + LENGTH_KEY] = pattern->length;
   b->numbers[at + LENGTH_KEY + 1] = pattern->weight;
@@ -73,9 +67,7 @@ int bond_springs_create(BondBased *b, Error *error)
 LANES_INLINE Lanes shortening(Lanes d, Range range)
 {
   if (range == RANGE_SERIES) {
-    Lanes sum = lanes_set(series[SPRING_TERMS - 1]);
-    for (int n = SPRING_TERMS - 2; n >= 0; --n) sum = lanes_set(series[n]) - d * sum;
-    return d * sum;
+    return bond_series(d);
   }
   if (range == RANGE_NEWTON) {
     Lanes r = lanes_set(35.0 / 128), x = lanes_set(0.5) + lanes_set(0.5) * d;

@@ -294,7 +294,7 @@ LANES_INLINE void strain_half(const Correspondence *c, const SliceShape *shape, 
   for (int k = 0; k < 9; ++k) lanes_store(gradients + k * BLOCK, g[k]);
   for (int k = 0; k < 9 && at; ++k) g0[k] = lanes_load(at + k * SLICE);
   for (int k = 0; k < 6; ++k) {
-    if (k == ZZ && c->points->space == SPACE_PLANE_STRESS) continue; /* that strain is the law's affair */
+    if (k == ZZ && c->points->plane_stress) continue; /* that strain is the law's affair */
     int r = symmetric_row[k], col = symmetric_column[k];
     Lanes strain = g[3 * r + col] + g[3 * col + r];
     if (c->finite && !at) strain += g[r] * g[col] + g[3 + r] * g[3 + col] + g[6 + r] * g[6 + col];
@@ -474,17 +474,18 @@ const FormulationType formulation_correspondence = {
     .about = "non-ordinary state-based: one strain per particle from its family, with control of zero-energy modes",
     .source = "Silling et al. 2007; Silling 2017 and Wan et al. 2019 for the control",
     .maturity = "verified against patch tests and finite elements",
+    .components = 6,
     .row_sums = true,
     .may_stiffen = true,
     .create = correspondence_create,
     .destroy = correspondence_destroy,
     .renew = correspondence_renew,
-    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, false, show_displacements},
-               {OF_DISPLACEMENTS, OF_STRAINS, OF_SHOWN, 0, false, deform},
-               {OF_DISPLACEMENTS | OF_STRESSES, OF_STATES, 0, 0, false, respond},
-               {OF_STATES, OF_SUMS, 0, OF_STATES, false, sum_states},
-               {OF_DISPLACEMENTS | OF_STATES, OF_FORCES, OF_STATES | OF_SUMS, 0, false, resist},
-               {OF_DISPLACEMENTS, OF_FORCES, OF_FORCES, 0, true, correspondence_finish}},
+    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, 0, false, show_displacements},
+               {OF_DISPLACEMENTS, OF_STRAINS, OF_SHOWN, 0, 0, false, deform},
+               {OF_DISPLACEMENTS | OF_STRESSES, OF_STATES, 0, 0, 0, false, respond},
+               {OF_STATES, OF_SUMS, 0, 0, OF_STATES, false, sum_states},
+               {OF_DISPLACEMENTS | OF_STATES, OF_FORCES, OF_STATES | OF_SUMS, 0, 0, false, resist},
+               {OF_DISPLACEMENTS, OF_FORCES, OF_FORCES, 0, 0, true, correspondence_finish}},
     .linearise = correspondence_linearise,
     .half_state = correspondence_half_state,
     .point_count = correspondence_point_count,

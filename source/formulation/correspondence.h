@@ -25,7 +25,7 @@ enum { MOST_PULLS = 9 + 3 + 6 };
 typedef struct Correspondence {
   const Particles *particles;
   const Family *family;
-  Points *points;
+  const Points *points;
   const Body *body;
   bool plane, finite;
   Control control;

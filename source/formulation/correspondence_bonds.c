@@ -5,7 +5,7 @@
 void correspondence_axial_spring(const Correspondence *c, double *const u[3], int64_t place, const Bond *bond,
                                  double pull[3], double spring[6])
 {
-  const Material *m = &c->points->materials[c->points->material[place / SLICE]];
+  const Material *m = points_material(c->points, place);
   const double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
   double y[3], square = 0;
   for (int k = 0; k < 3; ++k) {
@@ -171,7 +171,7 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   *energy = (StoredEnergy){0};
   if (c->shapes.mode[place] == SHAPE_AXIAL) sum_axial_energy(c, place, time, energy);
   if (c->shapes.mode[place] == SHAPE_AXIAL || c->shapes.mode[place] == SHAPE_FREE) return;
-  const Material *m = &points->materials[points->material[slice]];
+  const Material *m = points_material(points, place);
   const double volume = c->particles->volume[place];
   const double share = shape_of_slice(&c->shapes, slice)->share[place % SLICE];
   Sums sums;
@@ -180,10 +180,10 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   sum_bonds(c, place, time, &sums);
   strain_of(c, place, sums.now, g, strain);
   strain_of(c, place, sums.before, g_before, strain_before);
-  if (points->space == SPACE_PLANE_STRESS) strain[ZZ] = strain_before[ZZ] = points->strain[ZZ][place];
+  if (points->plane_stress) strain[ZZ] = strain_before[ZZ] = points->strain[ZZ][place];
   for (int k = 0; k < 6; ++k) /* a law that may yield is not asked: its stress is that of the beginning of the step */
     change[k] = m->law->linear ? strain[k] - points->strain[k][place] : 0;
-  if (points->space == SPACE_PLANE_STRESS) /* such that the stress zz stays */
+  if (points->plane_stress) /* such that the stress zz stays */
     change[ZZ] = -(m->bulk - 2 * m->shear / 3) / (m->bulk + 4 * m->shear / 3) * (change[XX] + change[YY]);
   for (int k = 0; k < 3; ++k) trace += change[k];
   for (int k = 0; k < 6; ++k) {

@@ -46,7 +46,7 @@ static void set_hold(void *context, int64_t slice)
 {
   const Correspondence *c = context;
   const SliceShape *shape = shape_of_slice(&c->shapes, slice);
-  const Material *m = &c->points->materials[c->points->material[slice]];
+  const Material *m = points_material(c->points, slice * SLICE);
   double scale = c->strength * micromodulus(c->body, material_young(m), c->family->horizon) / c->family->horizon;
   double lambda = m->bulk - 2 * m->shear / 3;
   for (int lane = 0; lane < SLICE; ++lane) {

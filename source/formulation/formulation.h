@@ -3,9 +3,9 @@
 #ifndef BRECCIA_FORMULATION_FORMULATION_H
 #define BRECCIA_FORMULATION_FORMULATION_H
 
-#include "constitutive/points.h"
-#include "family/family.h"
+#include "family/bond_list.h"
 #include "formulation/operator.h"
+#include "points/points.h"
 
 typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
   SectionHead head;
@@ -36,7 +36,10 @@ typedef struct FormulationParts {
   const Body *body;
   const Particles *particles;
   const Family *family;
-  Points *points;
+  const Points *points;
+  const BondList *bonds; /* of points on bonds; NULL if there are none */
+  const Material *materials;
+  const int32_t *material; /* [slices] which of the materials */
 } FormulationParts;
 
 /** What the length of bonds that cross a crack depends on. */
@@ -72,9 +75,11 @@ typedef enum Quantity {
 typedef struct Sweep {
   int64_t first, last;
   double *carry; /* [CARRY][BLOCK] numbers that one phase leaves for a later one: they need never leave the cache */
-  /** [6][places of the block] of points on particles: strains that are found and stresses that are answered; in a linearised step
-   *  their changes. */
+  /** Strains that are found and stresses that are answered, in a linearised step their changes: [6][places of the block] of points on
+   *  particles. Of points on bonds [1][rows], of a chunk of rows of one material; the block is then their slice. */
   double *strain[6], *stress[6];
+  int64_t row; /* of points on bonds: the first of them (family/bond_list.h) */
+  int rows;
   /** NULL: forces of the displacements held. Otherwise a linearised step: changes of forces with changes v of displacements, which
    *  stand in their place, and these are the displacements at which it was linearised. */
   double *const *at;
@@ -83,9 +88,9 @@ typedef struct Sweep {
 typedef struct Phase {
   unsigned reads, writes; /* Quantity bits, of the block's own places */
   unsigned of_neighbours; /* and what it reads of neighbours: all blocks have written that before */
-  unsigned
-      along_rows; /* what it reads of neighbours in the same lattice row; only rows longer than a block need wait for that */
-  bool by_one; /* one thread calls it once, for few places anywhere */
+  unsigned of_lower;      /* what it reads of neighbours with lower places only, so that it may follow close behind */
+  unsigned along_rows;    /* what it reads along its lattice row; only rows longer than a block wait for that */
+  bool by_one;            /* one thread calls it once, for few places anywhere */
   /** @return -1, or a place whose law could not be integrated */
   int64_t (*run)(void *formulation, const Sweep *sweep);
 } Phase;
@@ -94,7 +99,7 @@ enum { MOST_PHASES = 8 };
 
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
-  int uniaxial;      /* laws act on bonds, not on points in space */
+  int components;    /* of laws: 6, at points in space on particles, or 1, on bonds */
   bool row_sums;     /* neighbours read sums along lattice rows */
   bool bond_lengths; /* lengths of stored bonds are read in sweeps */
   bool may_stiffen;  /* the largest eigenvalue of stiffness over mass may grow as bonds break */

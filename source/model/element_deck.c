@@ -77,8 +77,8 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   status = material_create(&deck->material, &deck->reader, deck->spec->material, NAN);
   deck->law = deck->material.law;
   if (!status)
-    status =
-        element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages, deck->law->uniaxial);
+    status = element_test_create(&deck->test, &deck->reader, deck->spec->test, &deck->spec->stages,
+                                 deck->law->components == 1);
   if (!status && deck->spec->against) deck->against = text_beside(path, deck->spec->against);
   return status;
 }

@@ -522,7 +522,7 @@ const char *breccia_model_overview(breccia_model *model)
   model_expect(model, NULL);
   const Task task = model_task(model, s->step, s->steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
-  if (d->points.server) text_add(text, " and what its material servers take");
+  if (d->points.servers) text_add(text, " and what its material servers take");
   return text_words(text);
 }
 

@@ -159,7 +159,7 @@ static void check_material(breccia_model *model, int k)
   check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_place(spec, "fracture energy"));
   if (failure && !isnan(failure->fracture_energy))
     check_fracture_energy(model, m, failure->fracture_energy, section_place(failure, "fracture energy"));
-  const bool softens = !m->law->uniaxial && !isnan(parameter(model, m, "fracture energy"));
+  const bool softens = m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
   if (softens && !isfinite(model->domain.failure.limit[k]))
     warn(model, section_place(spec, "model"),
          "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "

@@ -66,7 +66,7 @@ static void update_peaks(breccia_model *model)
       u += pow(d->particles->displacement[k][place], 2);
       v += pow(d->particles->velocity[k][place], 2);
     }
-    for (int k = 0; k < 6; ++k) s[k] = d->points.stress[k][place];
+    for (int k = 0; k < 6; ++k) s[k] = d->stress[k][place];
     peaks->displacement = fmax(peaks->displacement, sqrt(u));
     peaks->velocity = fmax(peaks->velocity, sqrt(v));
     peaks->octahedral = fmax(peaks->octahedral, tensor_octahedral_shear(s));

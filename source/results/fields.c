@@ -21,11 +21,11 @@ static void internal_force(const Domain *d, int32_t place, double *value)
 }
 static void stress(const Domain *d, int32_t place, double *value)
 {
-  for (int k = 0; k < 6; ++k) value[k] = d->points.stress[k][place];
+  for (int k = 0; k < 6; ++k) value[k] = d->stress[k][place];
 }
 static void strain(const Domain *d, int32_t place, double *value)
 {
-  for (int k = 0; k < 6; ++k) value[k] = d->points.strain[k][place];
+  for (int k = 0; k < 6; ++k) value[k] = d->strain[k][place];
 }
 static void gradient(const Domain *d, int32_t place, double *value)
 {

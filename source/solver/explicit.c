@@ -476,13 +476,13 @@ static int32_t first_bad_particle(const Particles *p)
 static const char *describe_failed_law(const Domain *d, int64_t place, char *words, size_t size)
 {
   const Material *m = &d->materials[d->material[place / SLICE]];
-  if (d->points.where != POINTS_ON_PARTICLES) {
+  if (d->points.components != 6) {
     snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law->name,
              m->name);
     return words;
   }
   double e[6];
-  for (int k = 0; k < 6; ++k) e[k] = d->points.strain[k][place];
+  for (int k = 0; k < 6; ++k) e[k] = d->strain[k][place];
   snprintf(words, size,
            "the law %s of material '%s' could not be integrated at the strain xx %g, yy %g, zz %g, xy %g, yz %g, zx %g",
            m->law->name, m->name, e[0], e[1], e[2], e[3], e[4], e[5]);

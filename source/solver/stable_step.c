@@ -127,7 +127,7 @@ int stable_step(Domain *d, double *step, Error *error)
     failed |= !(base_f[k] = places_array(places, "stable step", error));
     for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_array(places, "stable step", error));
   }
-  for (int k = 0; k < 6 && d->points.where == POINTS_ON_PARTICLES; ++k) {
+  for (int k = 0; k < 6 && d->points.components == 6; ++k) {
     failed |= !(trial.strain[k] = places_array(places, "stable step", error));
     failed |= !(trial.stress[k] = places_array(places, "stable step", error));
   }

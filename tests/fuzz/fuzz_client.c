@@ -109,7 +109,7 @@ static void use(Remote *r, Error *error)
   for (int step = 0; step < 2; ++step) {
     int64_t bad;
     double *to = remote_strains(r, 0);
-    for (int k = 0; to && k < POINTS * (law->uniaxial ? 1 : 6); ++k) to[k] = 1e-3 * k;
+    for (int k = 0; to && k < POINTS * (law->components); ++k) to[k] = 1e-3 * k;
     if (to) remote_post(r, 0);
     if (!remote_collect(r, 0, &bad)) check_problem(r, true);
     remote_commit(r);

@@ -23,7 +23,7 @@ bool point_may_try(Point *p, const double *strain, double *stress, double *tange
 {
   breccia_batch batch = {
       .count = 1, .committed = p->committed, .trial = p->trial, .tangent = tangent, .elastic_stage = elastic};
-  for (int k = 0; k < (p->m->law->uniaxial ? 1 : 6); ++k) {
+  for (int k = 0; k < (p->m->law->components); ++k) {
     batch.strain[k] = strain + k;
     batch.stress[k] = stress + k;
   }

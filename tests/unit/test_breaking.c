@@ -282,6 +282,7 @@ static const breccia_law vase = {.name = "vase",
                                  .source = "this test",
                                  .maturity = "experimental",
                                  .constants_size = 1,
+                                 .components = 6,
                                  .prepare = vase_prepare,
                                  .moduli = vase_moduli,
                                  .update = vase_update};
@@ -326,7 +327,7 @@ static void a_step_that_fails_leaves_nothing_behind(void **state)
     while (!status && m->solver.step < m->solver.steps) {
       memcpy(intact, d->family.intact, slots);
       memcpy(u, d->particles->displacement[0], places * sizeof *u);
-      memcpy(stress, d->points.stress[0], places * sizeof *stress);
+      memcpy(stress, d->stress[0], places * sizeof *stress);
       ledger = m->solver.ledger;
       fracture = d->fracture_energy;
       broken = d->broken_count;
@@ -339,7 +340,7 @@ static void a_step_that_fails_leaves_nothing_behind(void **state)
     assert_memory_equal(&ledger, &m->solver.ledger, sizeof ledger);
     for (size_t i = 0; i < places; ++i) {
       assert_near(d->particles->displacement[0][i], u[i], 1e-15);
-      assert_near(d->points.stress[0][i], stress[i], 1e-8);
+      assert_near(d->stress[0][i], stress[i], 1e-8);
     }
     with_breaking += d->broken_capacity > 0 && broken > 0;
     free(intact);
@@ -357,7 +358,7 @@ static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
   bool marked = false;
   while (!marked && whole->solver.step < whole->solver.steps) {
     breccia_model_step(whole, 1, NULL);
-    for (int64_t i = 0; i < whole->domain.particles->places; ++i) marked |= whole->domain.points.gave_up[i];
+    for (int64_t i = 0; i < whole->domain.particles->places; ++i) marked |= whole->domain.gave_up[i];
   }
   assert_true(marked);
   char folder[] = "/tmp/breccia-XXXXXX";

@@ -61,7 +61,7 @@ static void deformation_gradient_of_a_linear_field_is_exact_everywhere(void **st
       for (int k = 0; k < 6; ++k) {
         int r = symmetric_row[k], s = symmetric_column[k];
         double strain = f[r] * f[s] + f[3 + r] * f[3 + s] + f[6 + r] * f[6 + s] - (r == s);
-        assert_near(d->points.strain[k][d->particles->place_of[n]], k < 3 ? strain / 2 : strain, 3e-12);
+        assert_near(d->strain[k][d->particles->place_of[n]], k < 3 ? strain / 2 : strain, 3e-12);
       }
     }
     breccia_model_destroy(&model);
@@ -104,10 +104,10 @@ static void strain_and_stress_of_a_stretched_bar_are_those_of_green_lagrange(voi
   compute_forces(model);
   compute_forces(small);
   int32_t i = model->domain.particles->place_of[100];
-  assert_near(model->domain.points.strain[0][i], e + e * e / 2, 1e-13);
-  assert_near(model->domain.points.stress[0][i], 180 * (e + e * e / 2), 1e-10);
-  assert_near(model->domain.points.stress[1][i], 60 * (e + e * e / 2), 1e-10);
-  assert_near(small->domain.points.strain[0][i], e, 1e-13);
+  assert_near(model->domain.strain[0][i], e + e * e / 2, 1e-13);
+  assert_near(model->domain.stress[0][i], 180 * (e + e * e / 2), 1e-10);
+  assert_near(model->domain.stress[1][i], 60 * (e + e * e / 2), 1e-10);
+  assert_near(small->domain.strain[0][i], e, 1e-13);
   breccia_model_destroy(&model);
   breccia_model_destroy(&small);
 }
@@ -275,7 +275,7 @@ static void force_is_minus_the_gradient_of_the_energy(void **state)
       energy[side] = 0;
       for (int64_t j = 0; j < p->places; ++j)
         for (int c = 0; c < 6; ++c)
-          energy[side] += 0.5 * p->volume[j] * model->domain.points.stress[c][j] * model->domain.points.strain[c][j];
+          energy[side] += 0.5 * p->volume[j] * model->domain.stress[c][j] * model->domain.strain[c][j];
     }
     p->displacement[k][i] = u;
     assert_near(before[k][i] * p->volume[i], -(energy[1] - energy[0]) / (2 * h), 1e-6 * 150);
@@ -356,9 +356,9 @@ static void plane_stress_and_plane_strain_have_their_moduli(void **state)
     deform_uniformly(model, f);
     compute_forces(model);
     int32_t i = model->domain.particles->place_of[57];
-    assert_near(model->domain.points.stress[0][i], cases[k].xx * 1e-6, 1e-9 * 180e-3);
-    assert_near(model->domain.points.stress[1][i], cases[k].yy * 1e-6, 1e-9 * 180e-3);
-    assert_near(model->domain.points.stress[2][i], cases[k].zz * 1e-6, 1e-9 * 180e-3);
+    assert_near(model->domain.stress[0][i], cases[k].xx * 1e-6, 1e-9 * 180e-3);
+    assert_near(model->domain.stress[1][i], cases[k].yy * 1e-6, 1e-9 * 180e-3);
+    assert_near(model->domain.stress[2][i], cases[k].zz * 1e-6, 1e-9 * 180e-3);
     breccia_model_destroy(&model);
   }
 }

@@ -213,8 +213,9 @@ static const breccia_parameter tired_parameters[] = {{"limit", "1", NULL, "(0, i
 #define TIRED(word, one_strain, function)                                                                              \
   {                                                                                                                    \
     .name = word, .about = "softens and gives up", .source = "this test", .maturity = "experimental",                  \
-    .parameters = tired_parameters, .parameter_count = 1, .constants_size = sizeof(double), .uniaxial = one_strain,    \
-    .prepare = tired_prepare, .moduli = tired_moduli, .history_values = tired_values, .update = function               \
+    .parameters = tired_parameters, .parameter_count = 1, .constants_size = sizeof(double),                            \
+    .components = (one_strain) ? 1 : 6, .prepare = tired_prepare, .moduli = tired_moduli,                              \
+    .history_values = tired_values, .update = function                                                                 \
   }
 static const breccia_law tired = TIRED("tired", 0, tired_update), tired_bond = TIRED("tired-1d", 1, tired_update_bond);
 

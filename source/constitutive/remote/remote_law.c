@@ -137,7 +137,7 @@ void remote_make_law(Remote *r)
                          .source = r->command,
                          .maturity = "experimental",
                          .constants_size = sizeof(Remote *),
-                         .uniaxial = r->components == 1,
+                         .components = r->components,
                          .moduli = law_moduli,
                          .failure_strain = law_failure_strain,
                          .history_values = law_history_values,

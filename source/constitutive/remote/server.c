@@ -173,7 +173,7 @@ static ChannelStatus tell_law(Server *s, const Frame *asked, const Session *h)
   text_add(
       &reply,
       "components: %d\nbulk: %.17g\nshear: %.17g\nfailure: %.17g\nstate: %d\niterates: 1\nsaves: 1\nsession: %lu\n",
-      h->material.law->uniaxial ? 1 : 6, h->material.bulk, h->material.shear, material_failure_strain(&h->material),
+      h->material.law->components, h->material.bulk, h->material.shear, material_failure_strain(&h->material),
       h->material.history_values, (unsigned long)h->number);
   return answer_text(s, asked, &reply);
 }
@@ -229,7 +229,7 @@ static int64_t evaluate(Session *h, int64_t first, int64_t count, const uint8_t 
                         uint8_t *tangents)
 {
   const breccia_law *law = h->material.law;
-  const int components = law->uniaxial ? 1 : 6, values = h->material.history_values;
+  const int components = law->components, values = h->material.history_values;
   double e[6][CHUNK], s[6][CHUNK], row[6], tangent[36 * CHUNK];
   for (int64_t from = 0; from < count; from += CHUNK) {
     const int n = count - from < CHUNK ? (int)(count - from) : CHUNK;
@@ -262,7 +262,7 @@ static int64_t evaluate(Session *h, int64_t first, int64_t count, const uint8_t 
 static ChannelStatus trial(Server *s, const Frame *asked, const uint8_t *payload)
 {
   Session *h = &s->held;
-  const uint32_t components = h->material.law->uniaxial ? 1 : 6;
+  const uint32_t components = (uint32_t)h->material.law->components;
   const bool tangent = asked->flags & TRIAL_WANTS_TANGENT;
   const uint32_t per_point = (uint32_t)sizeof(double) * components * (1 + (tangent ? components : 0));
   uint32_t first = 0;
@@ -336,7 +336,8 @@ static ChannelStatus laws(Server *s, const Frame *asked)
   for (int uniaxial = 0; uniaxial < 2; ++uniaxial) {
     text_add(&reply, "%s", uniaxial ? "uniaxial:" : "space:");
     for (int k = 0; law_at(s->spec->laws, k); ++k)
-      if (law_at(s->spec->laws, k)->uniaxial == uniaxial) text_add(&reply, " %s", law_at(s->spec->laws, k)->name);
+      if ((law_at(s->spec->laws, k)->components == 1) == uniaxial)
+        text_add(&reply, " %s", law_at(s->spec->laws, k)->name);
     text_add(&reply, "\n");
   }
   return answer_text(s, asked, &reply);

@@ -245,6 +245,7 @@ const breccia_law law_bounding_surface_clay = {
     .opensees = "nDMaterial J2CyclicBoundingSurface",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Bounding),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

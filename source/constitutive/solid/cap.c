@@ -280,6 +280,7 @@ const breccia_law law_cap = {
     .opensees = "nDMaterial CapPlasticity",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Cap),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

@@ -285,6 +285,7 @@ const breccia_law law_damage_plasticity = {
     .opensees = "nDMaterial ASDConcrete3D (similar)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(DamagePlasticity),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

@@ -164,6 +164,7 @@ const breccia_law law_drucker_prager = {
     .opensees = "nDMaterial DruckerPrager",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(DruckerPrager),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

@@ -41,6 +41,7 @@ const breccia_law law_elastic = {
     .opensees = "nDMaterial ElasticIsotropic",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Elasticity),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .update = update,

@@ -114,6 +114,7 @@ const breccia_law law_j2 = {
     .opensees = "nDMaterial J2Plasticity (without the kinematic part)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(J2),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

@@ -162,6 +162,7 @@ const breccia_law law_mazars = {
         "D = a_t D_t + (1 − a_t) D_c, a_t the share of strain that tensile stresses make; D never falls",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Mazars),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

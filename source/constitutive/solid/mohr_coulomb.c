@@ -210,6 +210,7 @@ const breccia_law law_mohr_coulomb = {
                  "flow with ψ instead of φ on the pyramid, normal to the cut-off; no hardening",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(MohrCoulomb),
+    .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
     .history_values = history_values,

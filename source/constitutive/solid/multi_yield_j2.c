@@ -115,6 +115,7 @@ const breccia_law law_multi_yield_j2 = {
     .opensees = "nDMaterial PressureIndependMultiYield",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(MultiYield),
+    .components = 6,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = multi_yield_history_values,

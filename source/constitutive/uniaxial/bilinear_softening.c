@@ -25,6 +25,7 @@ static double failure_strain(const void *constants)
   return ((const Softening *)constants)->end;
 }
 
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
   return softening_update(constants, constants, envelope, batch);
@@ -38,7 +39,7 @@ const breccia_law law_bilinear_softening = {
     .equations = "σ = E ε up to f_t, then a line to 0; area G_F/l; unloading to the origin",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Softening),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .failure_strain = failure_strain,

@@ -109,7 +109,7 @@ const breccia_law law_concrete02 = {
     .opensees = "uniaxialMaterial Concrete02",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Concrete02),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = history_values,

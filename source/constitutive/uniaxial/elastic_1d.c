@@ -39,7 +39,7 @@ const breccia_law law_elastic_1d = {
     .opensees = "uniaxialMaterial Elastic",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Elastic1d),
-    .uniaxial = 1,
+    .components = 1,
     .linear = 1,
     .prepare = prepare,
     .moduli = moduli,

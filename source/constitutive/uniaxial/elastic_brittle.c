@@ -79,7 +79,7 @@ const breccia_law law_elastic_brittle = {
     .equations = "σ = E ε up to f_t or to E s²/2 = G_F/l, then nothing for good",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Brittle),
-    .uniaxial = 1,
+    .components = 1,
     .linear = 1,
     .prepare = prepare,
     .moduli = moduli,

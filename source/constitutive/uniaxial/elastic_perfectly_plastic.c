@@ -69,7 +69,7 @@ const breccia_law law_elastic_perfectly_plastic = {
     .opensees = "uniaxialMaterial ElasticPP",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Perfect),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = history_values,

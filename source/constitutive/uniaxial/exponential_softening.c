@@ -43,6 +43,7 @@ static double failure_strain(const void *constants)
   return ((const Exponential *)constants)->curve.end;
 }
 
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
   return softening_update(constants, &((const Exponential *)constants)->curve, envelope, batch);
@@ -58,7 +59,7 @@ const breccia_law law_exponential_softening = {
                  "G_F/l; unloading to the origin",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Exponential),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .failure_strain = failure_strain,

@@ -60,7 +60,7 @@ const breccia_law law_kent_scott_park = {
     .opensees = "uniaxialMaterial Concrete01",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(ConcreteEnvelope),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = history_values,

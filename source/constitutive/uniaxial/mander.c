@@ -91,7 +91,7 @@ const breccia_law law_mander = {
     .opensees = "uniaxialMaterial Concrete04 (similar)",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Mander),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = history_values,

@@ -121,7 +121,7 @@ const breccia_law law_menegotto_pinto = {
     .opensees = "uniaxialMaterial Steel02",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Pinto),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = history_values,

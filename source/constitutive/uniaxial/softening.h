@@ -3,6 +3,7 @@
 #ifndef BRECCIA_CONSTITUTIVE_UNIAXIAL_SOFTENING_H
 #define BRECCIA_CONSTITUTIVE_UNIAXIAL_SOFTENING_H
 
+#include "base/lanes.h"
 #include "constitutive/law.h"
 
 #include <math.h>
@@ -49,28 +50,46 @@ static inline int softening_prepare(Softening *c, const double *values, double a
   return 1;
 }
 
+/** A point strained beyond the peak: damage, if it grows, and stress and tangent then. */
+__attribute__((always_inline)) static inline void softening_beyond(const void *constants, const Softening *c,
+                                                                   SofteningEnvelope envelope,
+                                                                   const breccia_batch *batch, int i)
+{
+  const double strain = batch->strain[0][i];
+  double slope = 0, x = (strain - c->peak) / (c->end - c->peak);
+  const double stress = x < 1 ? c->strength * envelope(constants, x, &slope) : 0;
+  if (!(stress < batch->stress[0][i])) return;
+  batch->trial[i] = x < 1 ? 1 - stress / (c->young * strain) : 1;
+  batch->stress[0][i] = stress;
+  if (batch->tangent) batch->tangent[i] = x < 1 ? c->strength * slope / (c->end - c->peak) : 0;
+}
+
+/* Four points at a time up to the peak. Signs of strains follow no rule that a processor could guess, so that branches cost more than the law;
+ * and histories that are what they were are not written, as a bond takes most of its time to move them. */
 __attribute__((always_inline)) static inline int
 softening_update(const void *constants, const Softening *c, SofteningEnvelope envelope, const breccia_batch *batch)
 {
-  for (int i = 0; i < batch->count; ++i) {
-    const double strain = batch->strain[0][i];
-    double damage = batch->committed[i], tangent = c->young;
+  const Lanes young = lanes_set(c->young), one = lanes_set(1);
+  const double peak = batch->elastic_stage ? INFINITY : c->peak, softened = batch->elastic_stage ? INFINITY : 0;
+  int i = 0;
+  for (; i + LANES <= batch->count; i += LANES) {
+    const Lanes strain = lanes_load(batch->strain[0] + i), damage = lanes_load(batch->committed + i);
+    const Lanes whole = lanes_choose(strain > lanes_set(softened), one - damage, one);
+    const LaneMask beyond = strain > lanes_set(peak), stale = lanes_load(batch->trial + i) != damage;
+    lanes_store(batch->stress[0] + i, young * strain * whole);
+    if (batch->tangent) lanes_store(batch->tangent + i, young * whole);
+    if (stale[0] | stale[1] | stale[2] | stale[3]) lanes_store(batch->trial + i, damage);
+    if (beyond[0] | beyond[1] | beyond[2] | beyond[3])
+      for (int k = 0; k < LANES; ++k)
+        if (beyond[k]) softening_beyond(constants, c, envelope, batch, i + k);
+  }
+  for (; i < batch->count; ++i) {
+    const double strain = batch->strain[0][i], damage = batch->committed[i];
+    const double whole = strain > softened ? 1 - damage : 1;
     batch->trial[i] = damage;
-    batch->stress[0][i] = c->young * strain;
-    if (strain > 0 && !batch->elastic_stage) {
-      batch->stress[0][i] *= 1 - damage;
-      tangent *= 1 - damage;
-      if (strain > c->peak) {
-        double slope = 0, x = (strain - c->peak) / (c->end - c->peak);
-        double stress = x < 1 ? c->strength * envelope(constants, x, &slope) : 0;
-        if (stress < batch->stress[0][i]) {
-          batch->trial[i] = x < 1 ? 1 - stress / (c->young * strain) : 1;
-          batch->stress[0][i] = stress;
-          tangent = x < 1 ? c->strength * slope / (c->end - c->peak) : 0;
-        }
-      }
-    }
-    if (batch->tangent) batch->tangent[i] = tangent;
+    batch->stress[0][i] = c->young * strain * whole;
+    if (batch->tangent) batch->tangent[i] = c->young * whole;
+    if (strain > peak) softening_beyond(constants, c, envelope, batch, i);
   }
   return -1;
 }

@@ -74,7 +74,7 @@ const breccia_law law_steel_bilinear = {
     .opensees = "uniaxialMaterial Steel01",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Steel),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .history_values = history_values,

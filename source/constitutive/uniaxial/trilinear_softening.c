@@ -45,6 +45,7 @@ static double failure_strain(const void *constants)
   return ((const Trilinear *)constants)->curve.end;
 }
 
+BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
   return softening_update(constants, &((const Trilinear *)constants)->curve, envelope, batch);
@@ -58,7 +59,7 @@ const breccia_law law_trilinear_softening = {
     .equations = "σ = E ε up to f_t, a line to the kink and a line to 0; area G_F/l; unloading to the origin",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(Trilinear),
-    .uniaxial = 1,
+    .components = 1,
     .prepare = prepare,
     .moduli = moduli,
     .failure_strain = failure_strain,

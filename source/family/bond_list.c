@@ -1,0 +1,213 @@
+#include "family/bond_list.h"
+
+#include "base/team.h"
+#include <stdlib.h>
+
+typedef struct Build {
+  BondList *list;
+  const Family *family;
+  const int32_t *material;
+} Build;
+
+static int32_t stored_neighbour(const Family *f, int64_t slot, int lane)
+{
+  return f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+}
+
+/** Whether a lane of a stored slot owns a bond. */
+static bool owns_stored(const Family *f, int64_t slice, int64_t slot, int lane)
+{
+  return f->intact[slot] >> lane & 1 && stored_neighbour(f, slot, lane) > slice * SLICE + lane;
+}
+
+/** Second rows of a slice, of the materials above `after` in their order. @return the least of these materials, or -1 */
+static int32_t next_material(const Build *b, int64_t slice, int32_t after)
+{
+  const Family *f = b->family;
+  int32_t next = -1;
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      if (!owns_stored(f, slice, slot, lane)) continue;
+      const int32_t there = b->material[stored_neighbour(f, slot, lane) / SLICE];
+      if (there != b->material[slice] && there > after && (next < 0 || there < next)) next = there;
+    }
+  return next;
+}
+
+static void count_slice(void *context, int64_t slice)
+{
+  const Build *b = context;
+  const Family *f = b->family;
+  int64_t owned = 0, single = 0;
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) owned += bond_list_owns(f, slice, slot);
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane)
+      if (owns_stored(f, slice, slot, lane))
+        single += b->material[stored_neighbour(f, slot, lane) / SLICE] == b->material[slice] ? 1 : 2;
+  b->list->owned_first[slice + 1] = owned;
+  b->list->single_first[slice + 1] = single;
+}
+
+/** Rows of bonds that a slice owns. */
+static void fill_slice(void *context, int64_t slice)
+{
+  const Build *b = context;
+  const Family *f = b->family;
+  BondList *l = b->list;
+  int64_t owned = l->owned_first[slice], single = l->single_first[slice], row = l->first[slice];
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+    if (!bond_list_owns(f, slice, slot)) continue;
+    l->owned[owned++] = (uint16_t)(slot - f->first[slice]);
+    l->slot_row[slot][0] = (int32_t)row;
+    row += SLICE;
+  }
+  for (int32_t material = -1, first = 1; first || material >= 0; first = 0) {
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        const int64_t at = (int64_t)f->base[slot] * SLICE + lane;
+        const int32_t code = (int32_t)(SLICE * (slot - f->first[slice])) + lane;
+        if (!owns_stored(f, slice, slot, lane)) continue;
+        if (!first && b->material[f->neighbour[at] / SLICE] != material) continue;
+        (first ? l->stored_row : l->partner_row)[at] = (int32_t)row++;
+        l->single[single++] = first ? code : -1 - code;
+      }
+    material = next_material(b, slice, material);
+  }
+}
+
+/** Slot of a slice with a lattice vector the opposite of that of a pattern, or -1. */
+static int64_t opposite_slot(const Family *f, int64_t slice, const Pattern *pattern)
+{
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+    const int *offset = f->patterns[f->pattern[slot]].offset;
+    if (offset[0] == -pattern->offset[0] && offset[1] == -pattern->offset[1] && offset[2] == -pattern->offset[2])
+      return slot;
+  }
+  return -1;
+}
+
+/** Where bonds that others own have their rows. */
+static void mate_slice(void *context, int64_t slice)
+{
+  const Build *b = context;
+  const Family *f = b->family;
+  BondList *l = b->list;
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+    if (bond_list_owns(f, slice, slot)) continue;
+    const int32_t shift = f->base[slot] & (SLICE - 1),
+                  owners[2] = {(f->base[slot] - shift) / SLICE, (f->base[slot] - shift) / SLICE + 1};
+    for (int n = 0; n < (shift ? 2 : 1); ++n) {
+      const int64_t there = owners[n] >= 0 ? opposite_slot(f, owners[n], &f->patterns[f->pattern[slot]]) : -1;
+      l->slot_row[slot][n] = there < 0 ? 0 : l->slot_row[there][0] + shift - (n ? SLICE : 0);
+    }
+  }
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int32_t place = (int32_t)(slice * SLICE + lane), owner = stored_neighbour(f, slot, lane);
+      if (!(f->intact[slot] >> lane & 1) || owner > place) continue;
+      const int64_t there = family_slot(f, owner, place), at = (int64_t)f->base[slot] * SLICE + lane,
+                    seen = (int64_t)f->base[there] * SLICE + owner % SLICE;
+      l->stored_row[at] = l->stored_row[seen];
+      if (l->partner_row) l->partner_row[at] = l->partner_row[seen];
+    }
+}
+
+int bond_list_create(BondList *l, const Family *f, const int32_t *material, Error *error)
+{
+  const int64_t slices = f->particles->slices;
+  bool several = false;
+  for (int64_t s = 0; s < slices; ++s) several |= material[s] != material[0];
+  *l = (BondList){
+      .first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
+      .owned_first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
+      .single_first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
+      .slot_row = memory_zeroed((size_t)f->slots + BOND_LIST_SPARE, sizeof *l->slot_row, "list of bonds", error),
+      .stored_row = memory_zeroed((size_t)f->stored_slots * SLICE, sizeof(int32_t), "list of bonds", error)};
+  if (several) l->partner_row = memory_zeroed((size_t)f->stored_slots * SLICE, sizeof(int32_t), "list of bonds", error);
+  if (!l->first || !l->owned_first || !l->single_first || !l->slot_row || !l->stored_row ||
+      (several && !l->partner_row))
+    return BRECCIA_FAILURE;
+  for (int64_t n = 0; several && n < f->stored_slots * SLICE; ++n) l->partner_row[n] = -1;
+  Build build = {l, f, material};
+  team_each(slices, count_slice, &build);
+  for (int64_t s = 0; s < slices; ++s) {
+    l->owned_first[s + 1] += l->owned_first[s];
+    l->single_first[s + 1] += l->single_first[s];
+    l->first[s + 1] = SLICE * l->owned_first[s + 1] + l->single_first[s + 1];
+  }
+  l->count = l->first[slices];
+  if (l->count > INT32_MAX - SLICE)
+    return error_add(
+        error, BRECCIA_USER_ERROR,
+        "%lld bonds are more than laws with a history can be kept for; at most %d: take a shorter horizon or a "
+        "wider spacing",
+        (long long)l->count, INT32_MAX - SLICE);
+  l->owned = memory_zeroed((size_t)l->owned_first[slices], sizeof *l->owned, "list of bonds", error);
+  l->single = memory_zeroed((size_t)l->single_first[slices], sizeof *l->single, "list of bonds", error);
+  if (!l->owned || !l->single) return BRECCIA_FAILURE;
+  team_each(slices, fill_slice, &build);
+  team_each(slices, mate_slice, &build);
+  return BRECCIA_OK;
+}
+
+void bond_list_destroy(BondList *l)
+{
+  free(l->first);
+  free(l->owned_first);
+  free(l->owned);
+  free(l->single_first);
+  free(l->single);
+  free(l->slot_row);
+  free(l->stored_row);
+  free(l->partner_row);
+  *l = (BondList){0};
+}
+
+void bond_list_rows(const BondList *l, const Family *f, int64_t slice, int64_t slot, int lane, int64_t rows[2])
+{
+  if (slot < f->stored[slice]) {
+    const int shift = f->base[slot] & (SLICE - 1);
+    const bool second = !bond_list_owns(f, slice, slot) && lane + shift >= SLICE;
+    rows[0] = rows[1] = l->slot_row[slot][second] + lane;
+    return;
+  }
+  const int64_t at = (int64_t)f->base[slot] * SLICE + lane;
+  const int32_t partner = l->partner_row ? l->partner_row[at] : -1;
+  const bool owner = f->neighbour[at] > slice * SLICE + lane;
+  rows[0] = rows[1] = l->stored_row[at];
+  if (partner >= 0) rows[owner] = partner;
+}
+
+bool bond_list_bond(const BondList *l, const Family *f, int64_t slice, int64_t row, int64_t *slot, int *lane)
+{
+  const int64_t n = row - l->first[slice], lattice = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]);
+  if (n < lattice) {
+    *slot = f->first[slice] + l->owned[l->owned_first[slice] + n / SLICE];
+    *lane = (int)(n % SLICE);
+    return false;
+  }
+  const int32_t single = l->single[l->single_first[slice] + n - lattice], code = single < 0 ? -1 - single : single;
+  *slot = f->first[slice] + code / SLICE;
+  *lane = code % SLICE;
+  return single < 0;
+}
+
+void bond_list_mark(const BondList *l, const Family *f, uint8_t *present)
+{
+  for (int64_t slice = 0; slice < f->particles->slices; ++slice)
+    for (int64_t row = l->first[slice]; row < l->first[slice + 1]; ++row) {
+      int64_t slot;
+      int lane;
+      bond_list_bond(l, f, slice, row, &slot, &lane);
+      present[row] = f->intact[slot] >> lane & 1;
+    }
+}
+
+size_t bond_list_bytes(const BondList *l, const Family *f)
+{
+  if (!l->first) return 0;
+  const int64_t slices = f->particles->slices;
+  return 3 * (size_t)slices * sizeof *l->first + (size_t)l->owned_first[slices] * sizeof *l->owned +
+         (size_t)l->single_first[slices] * sizeof *l->single + (size_t)f->slots * sizeof *l->slot_row +
+         (size_t)f->stored_slots * SLICE * sizeof(int32_t) * (l->partner_row ? 2 : 1);
+}

@@ -1,0 +1,65 @@
+/* Every bond once, in rows, for what belongs to bonds and not to their two ends: material points of laws that act on them. Made only where
+ * somebody asks for it.
+ *
+ * A bond has its row in the slice of its end with the lower place, its owner. Rows of a slice: eight for each of its lattice slots that lead
+ * to higher places, lane by lane (also where a lane has no bond); then one for each stored bond of which it is the owner; then a second one
+ * for each of these that joins two materials, for the material of the other end.
+ * Always true: rows first[s] .. first[s + 1] - 1 are those of slice s; rows of one material in one slice lie side by side, the owner's first. */
+#ifndef BRECCIA_FAMILY_BOND_LIST_H
+#define BRECCIA_FAMILY_BOND_LIST_H
+
+#include "family/family.h"
+
+enum { BOND_LIST_SPARE = 16 };
+
+typedef struct BondList {
+  int64_t count;         /* rows */
+  int64_t *first;        /* [slices + 1] */
+  int64_t *owned_first;  /* [slices + 1] entries of `owned` */
+  uint16_t *owned;       /* lattice slots that have rows, counted from the first slot of their slice */
+  int64_t *single_first; /* [slices + 1] entries of `single` */
+  int32_t
+      *single; /* stored bonds that have rows: 8 (slot - first slot of the slice) + lane; second rows: -1 less that */
+  /** [slots][2] of a lattice slot: the row of lane 0. Where the neighbours are the owners, they may stand in two slices: lanes with neighbours in the
+   *  first of them have row [0] + lane, the others [1] + lane. */
+  int32_t (*slot_row)[2]; /* with BOND_LIST_SPARE entries behind the last */
+  int32_t *stored_row;    /* [stored_slots][8] the row of the owner's material */
+  int32_t *partner_row;   /* [stored_slots][8] of the other end's, or -1; NULL: there is one material */
+} BondList;
+
+/** @param[in] material  [slices] */
+int bond_list_create(BondList *list, const Family *family, const int32_t *material, Error *error);
+void bond_list_destroy(BondList *list);
+
+/** Rows of the bond of a lane: of the law of this end and of that at the other end, the same one if they are of one material. */
+void bond_list_rows(const BondList *list, const Family *family, int64_t slice, int64_t slot, int lane, int64_t rows[2]);
+
+/** Slot and lane of a row of a slice. @return whether it is a second row */
+bool bond_list_bond(const BondList *list, const Family *family, int64_t slice, int64_t row, int64_t *slot, int *lane);
+
+/** Marks the rows that have a bond. @param[out] present  [count] */
+void bond_list_mark(const BondList *list, const Family *family, uint8_t *present);
+
+size_t bond_list_bytes(const BondList *list, const Family *family);
+
+/** True if the bonds of a lattice slot have their rows in its own slice. */
+static inline bool bond_list_owns(const Family *family, int64_t slice, int64_t slot)
+{
+  return family->base[slot] > slice * SLICE;
+}
+
+/** Numbers per row, as half a slot sees its bonds; what stands where there is none is of no use.
+ *  @param[in] rows  [count] with spare entries (places_array) */
+LANES_INLINE Lanes bond_list_load(const BondList *list, const Family *family, const double *rows, int64_t slice,
+                                  int64_t slot, int half)
+{
+  if (slot >= family->stored[slice])
+    return lanes_gather(rows, list->stored_row + (int64_t)family->base[slot] * SLICE + LANES * half);
+  const int32_t *row = list->slot_row[slot];
+  const int shift = family->base[slot] & (SLICE - 1);
+  const Lanes first = lanes_load(rows + row[0] + LANES * half);
+  if (!shift || bond_list_owns(family, slice, slot)) return first;
+  return lanes_choose(lanes_half(255u >> shift, half), first, lanes_load(rows + row[1] + LANES * half));
+}
+
+#endif

@@ -1,0 +1,96 @@
+/* Plane stress of any law of points in space: the strain across the plane is found such that the stress there vanishes. */
+#include "base/tensor.h"
+#include "points/points_parts.h"
+
+#include <math.h>
+
+breccia_batch batch_part(const breccia_batch *whole, const Material *m, int components, int first, int count)
+{
+  breccia_batch part = *whole;
+  part.count = count;
+  part.committed += (ptrdiff_t)m->history_values * first;
+  part.trial += (ptrdiff_t)m->history_values * first;
+  for (int k = 0; k < components; ++k) {
+    part.strain[k] += first;
+    part.stress[k] += first;
+  }
+  if (part.tangent) part.tangent += components * components * first;
+  if (part.length) part.length += first;
+  return part;
+}
+
+/** True if the stress zz of point i of a batch is nothing beside its other stresses and what its strain zz would make
+ *  elastically. */
+static bool is_free_of_zz(const Material *m, const breccia_batch *batch, int i)
+{
+  double scale = (m->bulk + 4 * m->shear / 3) * fabs(batch->strain[ZZ][i]);
+  for (int k = 0; k < 6; ++k) scale += fabs(batch->stress[k][i]);
+  return fabs(batch->stress[ZZ][i]) <= 1e-12 * scale;
+}
+
+/** Strain zz of one point where Newton's method does not end: between two strains whose stresses zz differ in sign. The stress of some
+ *  laws jumps there (explicit schemes, reversals under neutral loading): then the nearer side of the jump is taken.
+ *  @return true if it was found */
+static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, double *strain_zz)
+{
+  enum { MOST_DOUBLINGS = 60, MOST_HALVINGS = 200 };
+  breccia_batch one = batch_part(batch, m, 6, at, 1);
+  double *const x = strain_zz + at, ends[2] = {*x, *x}, values[2];
+  if (m->law->update(m->constants, &one) >= 0) return false;
+  values[0] = values[1] = one.stress[ZZ][0];
+  double step = -values[0] / (m->bulk + 4 * m->shear / 3);
+  for (int n = 0; n < MOST_DOUBLINGS && values[0] * values[1] > 0; ++n, step *= 2) {
+    ends[0] = ends[1];
+    values[0] = values[1];
+    *x = ends[1] += step;
+    if (m->law->update(m->constants, &one) >= 0) return false;
+    values[1] = one.stress[ZZ][0];
+  }
+  for (int n = 0; n < MOST_HALVINGS && !is_free_of_zz(m, &one, 0); ++n) {
+    /* The secant where it lies well inside, otherwise the middle. */
+    const double share = values[0] / (values[0] - values[1]);
+    *x = ends[0] + (n % 3 != 2 && share > 0.01 && share < 0.99 ? share : 0.5) * (ends[1] - ends[0]);
+    if (m->law->update(m->constants, &one) >= 0) return false;
+    const int side = one.stress[ZZ][0] * values[0] > 0 ? 0 : 1;
+    ends[side] = *x;
+    values[side] = one.stress[ZZ][0];
+  }
+  if (is_free_of_zz(m, &one, 0)) return true;
+  *x = ends[fabs(values[0]) < fabs(values[1]) ? 0 : 1];
+  return values[0] * values[1] <= 0 && m->law->update(m->constants, &one) < 0;
+}
+
+/** Strain zz by Newton's method with the law's own tangent, for all points of a batch at once, and alone for those where it does
+ *  not end: at corners, in softening, and with tangents that are not those of whole steps. */
+int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
+{
+  enum { MOST_ITERATIONS = 20 };
+  double local[BLOCK * 36], *const tangent = batch->tangent;
+  batch->tangent = tangent ? tangent : local;
+  for (int iteration = 0;; ++iteration) {
+    int bad = m->law->update(m->constants, batch), worst = -1;
+    if (bad >= 0) return bad;
+    for (int i = 0; i < batch->count; ++i) {
+      if (is_free_of_zz(m, batch, i)) continue;
+      worst = i;
+      if (iteration == MOST_ITERATIONS) {
+        if (!bisect_zz(m, batch, i, strain_zz)) return i;
+        continue;
+      }
+      const double stiffness = batch->tangent[36 * i + 7 * ZZ];
+      strain_zz[i] -= batch->stress[ZZ][i] / (stiffness > 0 ? stiffness : m->bulk + 4 * m->shear / 3);
+    }
+    if (worst < 0 || iteration == MOST_ITERATIONS) break;
+  }
+  for (int i = 0; tangent && i < batch->count; ++i) {
+    double *d = tangent + 36 * i;
+    double column[6], row[6], pivot = d[7 * ZZ] > 0 ? d[7 * ZZ] : m->bulk + 4 * m->shear / 3;
+    for (int k = 0; k < 6; ++k) {
+      column[k] = d[6 * k + ZZ];
+      row[k] = d[6 * ZZ + k];
+    }
+    for (int r = 0; r < 6; ++r)
+      for (int k = 0; k < 6; ++k) d[6 * r + k] = r == ZZ || k == ZZ ? 0 : d[6 * r + k] - column[r] * row[k] / pivot;
+  }
+  return -1;
+}

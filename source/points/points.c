@@ -1,0 +1,316 @@
+#include "points/points.h"
+
+#include "base/team.h"
+#include "base/tensor.h"
+#include "points/points_parts.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_VALUES = 256 }; /* history numbers of a point that can be tried out */
+
+static void begin_run(void *context, int64_t n)
+{
+  const Points *points = context;
+  const PointsRun *run = &points->runs[n];
+  const Material *m = &points->materials[run->material];
+  for (int64_t i = 0; i < run->count && m->law->begin; ++i)
+    m->law->begin(m->constants, points->committed + points->history_first[n] + i * m->history_values);
+}
+
+static int create_runs(Points *points, const PointsSpec *spec, Error *error)
+{
+  points->runs = memory_zeroed((size_t)spec->run_count, sizeof *points->runs, "runs of points", error);
+  points->history_first = memory_zeroed((size_t)spec->run_count, sizeof(int64_t), "runs of points", error);
+  if (!points->runs || !points->history_first) return BRECCIA_FAILURE;
+  int64_t total = 0;
+  for (int64_t n = 0; n < spec->run_count; ++n) {
+    points->runs[n] = spec->runs[n];
+    points->history_first[n] = total;
+    points->count += spec->runs[n].count;
+    total += spec->runs[n].count * spec->materials[spec->runs[n].material].history_values;
+  }
+  points->history_size = (size_t)total;
+  return BRECCIA_OK;
+}
+
+int points_create(Points *points, const PointsSpec *spec, Error *error)
+{
+  *points = (Points){.components = spec->components,
+                     .plane_stress = spec->plane_stress,
+                     .materials = spec->materials,
+                     .material_count = spec->material_count,
+                     .run_count = spec->run_count};
+  for (int i = 0; i < BLOCK; ++i) points->length[i] = spec->length;
+  if (create_runs(points, spec, error)) return BRECCIA_FAILURE;
+  if (spec->may_give_up && !(points->gave_up = memory_zeroed((size_t)points->count, 1, "failed laws", error)))
+    return BRECCIA_FAILURE;
+  points->committed = memory_zeroed(points->history_size, sizeof(double), "histories", error);
+  points->trial = memory_zeroed(points->history_size, sizeof(double), "histories", error);
+  if (!points->committed || !points->trial) return BRECCIA_FAILURE;
+  for (int k = 0; k < 6 && points->components == 6; ++k) {
+    points->strain[k] = places_array(points->count, "strains", error);
+    points->stress[k] = places_array(points->count, "stresses", error);
+    if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
+  }
+  team_each(points->run_count, begin_run, points);
+  points_take_up(points);
+  return point_servers_create(points, spec->present, error);
+}
+
+void points_destroy(Points *points)
+{
+  for (int k = 0; k < 6; ++k) {
+    places_free(&points->strain[k]);
+    places_free(&points->stress[k]);
+  }
+  free(points->committed);
+  free(points->trial);
+  free(points->runs);
+  free(points->history_first);
+  free(points->gave_up);
+  free(points->tangent);
+  point_servers_destroy(points);
+  *points = (Points){0};
+}
+
+int64_t points_run(const Points *points, int64_t row)
+{
+  int64_t low = 0, high = points->run_count;
+  while (high - low > 1) {
+    const int64_t middle = (low + high) / 2;
+    if (points->runs[middle].first <= row)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+const Material *points_material(const Points *points, int64_t row)
+{
+  return &points->materials[points->runs[points_run(points, row)].material];
+}
+
+/** Where the history of a row begins. */
+static int64_t history_at(const Points *points, int64_t row)
+{
+  const int64_t n = points_run(points, row);
+  return points->history_first[n] +
+         (row - points->runs[n].first) * points->materials[points->runs[n].material].history_values;
+}
+
+const double *points_history(const Points *points, int64_t row)
+{
+  return points->committed + history_at(points, row);
+}
+
+void points_take_up(Points *points)
+{
+  if (points->history_size) memcpy(points->trial, points->committed, sizeof(double) * points->history_size);
+}
+
+void points_commit(Points *points)
+{
+  double *trial = points->trial;
+  points->trial = points->committed;
+  points->committed = trial;
+  point_servers_commit(points);
+}
+
+bool points_are_linear(const Points *points)
+{
+  for (int k = 0; k < points->material_count; ++k)
+    if (!points->materials[k].law->linear) return false;
+  return true;
+}
+
+static int histories_ready(void *owner, Error *error)
+{
+  return points_save(owner, error);
+}
+
+static int histories_resume(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)numbers, (void)count;
+  points_take_up(owner);
+  return points_resume(owner, error);
+}
+
+void points_state(Points *points, StateList *list)
+{
+  static const StateCare histories = {.ready = histories_ready, .resume = histories_resume};
+  StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .count = points->count};
+  for (int k = 0; k < 6 && points->strain[0]; ++k) {
+    row.unit = "1";
+    row.values = points->strain[k];
+    /* Across the plane of plane stress the law finds it, from where it was. */
+    row.role = k == ZZ && points->plane_stress ? STATE_TRIED : STATE_FOLLOWS;
+    state_add(list, &row, "strain", component_names[k]);
+    row.unit = "stress";
+    row.values = points->stress[k];
+    row.role = points_are_linear(points) ? STATE_FOLLOWS : STATE_TRIED;
+    state_add(list, &row, "stress", component_names[k]);
+  }
+  row = (StateRow){.unit = "1", .kind = STATE_NUMBERS, .role = STATE_COMMITTED};
+  row.count = (int64_t)points->identity_size;
+  row.values = points->identity;
+  if (points->identity_size) state_add(list, &row, "servers", NULL);
+  row.entity = STATE_OF_POINT;
+  row.count = (int64_t)points->history_size;
+  row.values = points->committed;
+  row.care = &histories;
+  row.owner = points;
+  state_add(list, &row, "history", NULL);
+}
+
+/* ---- the door to laws ---- */
+
+/** What laws see of rows of one run. */
+static breccia_batch batch_of(const Points *points, int64_t first, int count, double *const strain[6],
+                              double *const stress[6])
+{
+  const int64_t row = history_at(points, first);
+  const int components = points->components;
+  breccia_batch batch = {.count = count,
+                         .committed = points->committed + row,
+                         .trial = points->trial + row,
+                         .elastic_stage = points->elastic_stage,
+                         .time = points->time,
+                         .time_step = points->time_step,
+                         .length = isnan(points->length[0]) ? NULL : points->length};
+  if (points->keeps_tangents) batch.tangent = points->tangent + first * components * components;
+  for (int k = 0; k < components; ++k) {
+    batch.strain[k] = strain[k];
+    batch.stress[k] = stress[k];
+  }
+  return batch;
+}
+
+static int update_batch(const Points *points, const Material *m, breccia_batch *batch, double *const strain[6])
+{
+  return points->plane_stress && points->components == 6 ? plane_stress_update(m, batch, strain[ZZ])
+                                                         : m->law->update(m->constants, batch);
+}
+
+/** One point after the other: those that cannot be integrated are marked, carry nothing and keep their history. */
+static void update_one_by_one(Points *points, const Material *m, const breccia_batch *batch, int64_t first,
+                              double *const strain[6])
+{
+  const int n = points->components;
+  for (int i = 0; i < batch->count; ++i) {
+    breccia_batch one = batch_part(batch, m, n, i, 1);
+    double *here[6] = {NULL};
+    for (int k = 0; k < n; ++k) here[k] = strain[k] + i;
+    if (update_batch(points, m, &one, here) < 0) continue;
+    points->gave_up[first + i] |= 1;
+    for (int k = 0; k < n; ++k) one.stress[k][0] = 0;
+    memcpy(one.trial, one.committed, sizeof(double) * (size_t)m->history_values);
+    for (int k = 0; batch->tangent && k < n * n; ++k) batch->tangent[n * n * i + k] = 0;
+  }
+}
+
+int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
+{
+  const Material *m = points_material(points, first);
+  breccia_batch batch = batch_of(points, first, count, strain, stress);
+  if (m->remote && points_ask_ahead(points)) return point_servers_answer(points, m, &batch, first);
+  const int bad = update_batch(points, m, &batch, strain);
+  if (bad < 0) return -1;
+  if (!points->gave_up || m->remote) return first + bad;
+  batch = batch_of(points, first, count, strain, stress);
+  update_one_by_one(points, m, &batch, first, strain);
+  return -1;
+}
+
+/* ---- tangents ---- */
+
+int points_keep_tangents(Points *points, bool keep, Error *error)
+{
+  const size_t size = (size_t)(points->components * points->components);
+  if (!points->tangent &&
+      !(points->tangent = memory_zeroed(size * (size_t)points->count, sizeof(double), "tangents", error)))
+    return BRECCIA_FAILURE;
+  points->keeps_tangents = keep;
+  return BRECCIA_OK;
+}
+
+void points_tangent(const Points *points, int64_t row, double *tangent)
+{
+  const int size = points->components * points->components;
+  for (int k = 0; k < size; ++k) tangent[k] = points->tangent ? points->tangent[size * row + k] : 0;
+}
+
+void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
+{
+  for (int i = 0; i < count; ++i) {
+    const double *d = points->tangent + 36 * (first + i);
+    for (int r = 0; r < 6; ++r) {
+      double sum = 0;
+      for (int k = 0; k < 6; ++k) sum += d[6 * r + k] * strain[k][i];
+      stress[r][i] = sum;
+    }
+  }
+}
+
+/* ---- points tried out ---- */
+
+double points_try(const Points *points, int64_t row, double strain, double *tangent)
+{
+  const Material *m = points_material(points, row);
+  double stress = NAN, scratch[MOST_VALUES], *const at[6] = {&strain}, *const to[6] = {&stress};
+  breccia_batch batch = batch_of(points, row, 1, at, to);
+  batch.trial = scratch;
+  batch.tangent = tangent;
+  if (m->remote) {
+    stress = point_servers_last_stress(batch.committed);
+    if (tangent) *tangent = strain != 0 ? stress / strain : material_young(m);
+    return stress;
+  }
+  if (m->history_values > MOST_VALUES) return NAN;
+  memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
+  m->law->update(m->constants, &batch);
+  return stress;
+}
+
+double points_softness(const Points *points, int64_t row)
+{
+  const Material *m = points_material(points, row);
+  if (m->remote || m->law->linear || m->history_values > MOST_VALUES) return 1;
+  double strain[6], before[6], after[6], scratch[MOST_VALUES], square = 0, mean = 0, stiffest = 0;
+  double *at[6], *to[6];
+  for (int k = 0; k < 6; ++k) {
+    at[k] = &strain[k];
+    to[k] = &after[k];
+    before[k] = points->stress[k][row];
+    square += before[k] * before[k] * (k < 3 ? 1 : 2);
+  }
+  for (int k = 0; k < 3; ++k) mean += before[k] / 3;
+  breccia_batch batch = batch_of(points, row, 1, at, to);
+  batch.trial = scratch;
+  batch.tangent = NULL;
+  /* A small step back and one ahead, elastically: damage is felt both ways, yielding one way. */
+  for (int side = -1; side <= 1; side += 2) {
+    const double step = side * 1e-3;
+    double product = 0;
+    for (int k = 0; k < 6; ++k) {
+      const double deviator = k < 3 ? before[k] - mean : before[k];
+      strain[k] = points->strain[k][row] +
+                  step * (deviator / m->shear * (k < 3 ? 0.5 : 1) + (k < 3 ? mean / (3 * m->bulk) : 0));
+    }
+    if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
+    if (m->law->update(m->constants, &batch) >= 0) continue;
+    for (int k = 0; k < 6; ++k) product += before[k] * (after[k] - before[k]) * (k < 3 ? 1 : 2);
+    if (square > 0) stiffest = fmax(stiffest, product / (step * square));
+  }
+  return stiffest > 0 ? 1 / fmin(1, stiffest) : 1;
+}
+
+double points_elastic_share(const Points *points, int64_t row, double strain)
+{
+  if (strain == 0) return 1;
+  const double back = 1e-3, stress = points_try(points, row, strain, NULL);
+  const double drop = stress - points_try(points, row, strain - back * strain, NULL);
+  const double share = back * stress / drop;
+  return share > 0 ? fmin(1, share) : stress == 0 ? 0 : 1;
+}

@@ -1,0 +1,125 @@
+/* Material points, and only they: rows of strain, stress and history, committed and trial, in runs of one material. Who owns the points knows
+ * where they are: particles by place, bonds by their rows in a list (family/bond_list.h).
+ *
+ * Points take six strains or one. Of six components strain and stress are arrays over rows; of one they exist only while they are worked
+ * on. Histories are rows per point, because a law with a long history touches little of it. Commit is a swap. Plane stress, points that
+ * cannot be integrated, and laws in other processes stay behind points_update. */
+#ifndef BRECCIA_POINTS_POINTS_H
+#define BRECCIA_POINTS_POINTS_H
+
+#include "body/body.h"
+#include "constitutive/material.h"
+
+enum { BLOCK = 128 }; /* points worked on together: their strains, stresses and states stay in the first-level cache */
+
+/** Rows first .. first + count - 1, of one material. */
+typedef struct PointsRun {
+  int material;
+  int64_t first, count;
+} PointsRun;
+
+typedef struct PointServers PointServers; /* laws in other processes (points/servers.c) */
+
+typedef struct Points {
+  int components; /* 6 or 1; 0: there are no points, because all laws are linear */
+  bool plane_stress;
+  int64_t count;
+  double *strain[6], *stress[6]; /* [count] of points of six components */
+  double *committed, *trial;
+  size_t history_size; /* numbers in each of them */
+  PointsRun *runs;     /* [run_count], in order; they cover all rows */
+  int64_t run_count;
+  int64_t *history_first; /* [run_count] */
+  const Material *materials;
+  int material_count;
+  double *tangent; /* [count][36] or [count], once they were kept; NULL before */
+  bool keeps_tangents;
+  uint8_t
+      *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
+  int elastic_stage;      /* laws respond elastically while it is set */
+  double time, time_step; /* for laws with rates: at the end of the step under way, and its length */
+  double length[BLOCK];   /* over which laws spread a fracture energy, alike for all points; NaN: unknown */
+  PointServers *servers;  /* NULL: no law is remote */
+  double *identity;       /* by which the servers are found again after a restart */
+  size_t identity_size;
+} Points;
+
+typedef struct PointsSpec {
+  int components;
+  bool plane_stress;
+  const PointsRun *runs; /* borrowed while points are made */
+  int64_t run_count;
+  const Material *materials; /* borrowed for good */
+  int material_count;
+  const uint8_t *present; /* [rows] 0 where a row has no point; NULL: all have one */
+  bool may_give_up;       /* points that cannot be integrated are marked and carry nothing */
+  double length;
+} PointsSpec;
+
+int points_create(Points *points, const PointsSpec *spec, Error *error);
+void points_destroy(Points *points);
+
+/** The run of a row. */
+int64_t points_run(const Points *points, int64_t row);
+const Material *points_material(const Points *points, int64_t row);
+/** Committed history of a row. */
+const double *points_history(const Points *points, int64_t row);
+
+/** The one door to laws: stress, trial history and, where they are kept, tangents of `count` rows, of one run and at most BLOCK. In plane
+ *  stress the strain zz is found such that the stress zz vanishes.
+ *  @param[in,out] strain, stress  [components][count]
+ *  @return -1, or a row whose law could not be integrated */
+int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
+
+/** Makes points keep the tangents of their next updates, or no longer. */
+int points_keep_tangents(Points *points, bool keep, Error *error);
+/** The tangent kept of a row, [components][components]; in plane stress the rows and columns of zz are condensed out. 0 if there is none. */
+void points_tangent(const Points *points, int64_t row, double *tangent);
+/** Changes of the stresses of `count` rows of six components with changes of their strains, by the tangents kept. */
+void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
+
+/** Stress of a point of one strain; histories stay as they are.
+ *  @param[out] tangent  its slope; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
+double points_try(const Points *points, int64_t row, double strain, double *tangent);
+
+/** Share of the elastic energy of its stress that a point in space would give back, over that of an undamaged one: 1 where it
+ *  unloads with its first moduli, more where damage has made it softer. Laws in servers are taken to unload elastically. */
+double points_softness(const Points *points, int64_t row);
+
+/** Share of the strain of a point of one strain that is elastic, 0 to 1: stress over strain, seen over the slope at which the law unloads. */
+double points_elastic_share(const Points *points, int64_t row, double strain);
+
+/** True if no law dissipates or remembers: stresses are those of the strains, to the bit. */
+bool points_are_linear(const Points *points);
+
+/** Rows of strains, stresses, histories, and of what servers hold. */
+void points_state(Points *points, StateList *list);
+
+/** Makes the trial state the committed one. */
+void points_commit(Points *points);
+/** The committed state was put in place from outside: makes the trial one the same. */
+void points_take_up(Points *points);
+
+/* ---- laws that run in other processes (constitutive/remote); nothing happens where none does ---- */
+
+/** Makes the points in the servers: nothing was strained yet. */
+int points_begin(Points *points, Error *error);
+/** Brings histories and `identity` up to date, to be saved. */
+int points_save(Points *points, Error *error);
+/** Takes up servers and their points from histories and `identity` as they were saved. */
+int points_resume(Points *points, Error *error);
+/** Whether servers are to be asked for all points at once: then all strains are sent with points_send and the answers awaited with points_await,
+ *  by one thread, before points_update gives them out. */
+bool points_ask_ahead(const Points *points);
+/** Sends strains of `count` rows of one run; those of a server go out when the last of them is there. */
+void points_send(Points *points, int64_t first, int count, double *const strain[6]);
+void points_await(Points *points);
+/** Whether all that points remember can still be saved: not, when a server is lost that remembers for them. Reaches servers
+ *  again if one did not answer as it should. */
+bool points_can_save(Points *points);
+/** A line per server: points per second, waiting, bytes; as objects of a JSON list if `json`. */
+void points_report(const Points *points, double run_seconds, bool json, Text *text);
+/** What went wrong in a server, one line; "" if nothing did. */
+const char *points_problem(const Points *points);
+
+#endif
