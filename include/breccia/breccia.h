@@ -128,7 +128,9 @@ typedef struct breccia_run {
 } breccia_run;
 
 /** Runs to the end and writes results, histories, checkpoints, pictures and summary.json.
- *  @return BRECCIA_INTERRUPTED after a clean stop on request; BRECCIA_FAILURE after writing the last good state */
+ *  @return BRECCIA_INTERRUPTED after a clean stop on request; BRECCIA_FAILURE otherwise. After a step that failed the state before it is
+ *  written, and a checkpoint of it. After "energy from nothing" results and histories hold the state at which the run stopped, to
+ *  show what went wrong, and the checkpoint written before stays. */
 BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, breccia_error *error);
 
 /** What a run would do, in some lines; warnings about the deck, one per line; what a run did and which files it wrote.

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_LINES = 30 }; /* more are no help; the first are to be mended first */
+
 struct breccia_error {
   Text text;
   int count;
@@ -47,8 +49,11 @@ int error_add(Error *error, int status, const char *format, ...)
   text_add_list(&line, format, arguments);
   va_end(arguments);
   if (!line.characters || !holds_line(error, line.characters)) {
-    if (error->count++) text_add(&error->text, "\n");
-    text_add(&error->text, "%s", line.characters ? line.characters : format);
+    if (error->count < MOST_LINES)
+      text_add(&error->text, "%s%s", error->count ? "\n" : "", line.characters ? line.characters : format);
+    else if (error->count == MOST_LINES)
+      text_add(&error->text, "\nand more, which are told when these are mended");
+    ++error->count;
   }
   text_free(&line);
   return status;

@@ -8,7 +8,8 @@
 
 typedef struct breccia_error Error;
 
-/** Adds one line to the error (NULL: the line is dropped; a line that stands there already is not said twice).
+/** Adds one line to the error (NULL: the line is dropped; a line that stands there already is not said twice;
+ *  of very many the first are kept).
  *  @return `status`, so that a caller can write `return error_add(error, BRECCIA_USER_ERROR, "...")` */
 int error_add(Error *error, int status, const char *format, ...) __attribute__((format(printf, 3, 4)));
 

@@ -28,8 +28,8 @@ static void check_block(const DeckReader *reader, void *section)
 }
 
 static const Field block_fields[] = {
-    {"material", FIELD_TEXT, offsetof(BlockSpec, material), NULL, NULL, NULL, "name of one of the materials", NULL,
-     NULL, 0},
+    {"material", FIELD_NAME, offsetof(BlockSpec, material), "material", NULL, NULL, "name of one of the materials",
+     NULL, NULL, 0},
     {"lattice", FIELD_CHOICE, offsetof(BlockSpec, lattice), NULL, "cubic", NULL,
      "arrangement of the particles, also of those from a file: cubic or face-centred cubic (the densest; square layers "
      "along x and y, each in "
@@ -96,6 +96,10 @@ static int fit_box(Lattice *lattice, const DeckReader *reader, const Box *box, i
 {
   static const double most = 0.05; /* of the size: beyond it the body would be another */
   const double step = lattice->unit.size[k], size = high - *low, rows = size / step;
+  if (k == 2 && size == 0)
+    return node_error(reader->document, box->head.node, reader->error,
+                      "box: it has no size along z; give points three numbers, or take 'lattice: square' for a plane "
+                      "body");
   if (rows < 1 - 1e-6)
     return node_error(reader->document, box->head.node, reader->error,
                       "box: its size along %c, %g, is less than one spacing of %g; take a finer spacing", "xyz"[k],

@@ -1,5 +1,6 @@
 #include "body/selection.h"
 
+#include "deck/names.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +22,7 @@ static void check_selection(const DeckReader *reader, void *section)
 }
 
 static const Field selection_fields[] = {
-    {"block", FIELD_TEXT, offsetof(SelectionSpec, block), NULL, "", NULL, "particles of this block", NULL, NULL, 0},
+    {"block", FIELD_NAME, offsetof(SelectionSpec, block), "block", "", NULL, "particles of this block", NULL, NULL, 0},
     {"group", FIELD_TEXT, offsetof(SelectionSpec, group), NULL, "", NULL,
      "particles of this group (column `group` of a block's file), or of the selection that has this name", NULL, NULL,
      0},
@@ -196,9 +197,11 @@ static int find_spec(const Resolving *r, uint8_t *held)
   const SelectionSpec *spec = r->spec;
   const Particles *p = &r->body->particles;
   const int block = spec->block ? block_index(r->body, spec->block) : -1;
-  if (spec->block && block < 0)
-    return node_error(r->reader->document, section_place(spec, "block"), r->reader->error,
-                      "block: there is no block '%s'", spec->block);
+  if (spec->block && block < 0) return BRECCIA_USER_ERROR; /* said when the deck was read */
+  if (spec->face && spec->face[0] - 'x' >= r->body->dimensions)
+    return node_error(r->reader->document, section_place(spec, "face"), r->reader->error,
+                      "face: the body has no face %s; it %s", spec->face,
+                      r->body->dimensions == 2 ? "is plane: x-, x+, y- or y+" : "is a bar along x: x- or x+");
   for (int64_t n = 0; n < p->count; ++n) held[n] = block < 0 || p->block[p->place_of[n] / SLICE] == block;
   int status = BRECCIA_OK;
   if (spec->group) {

@@ -150,8 +150,12 @@ static int obey(int argc, char **argv)
   }
   if (nearest && text_resembles(word, nearest, best))
     fprintf(stderr, "breccia: there is no verb '%s'; did you mean '%s'?\n", word, nearest);
-  else
-    fprintf(stderr, "breccia: there is no verb '%s'; 'breccia --help' lists them\n", word);
+  else {
+    const char *ending = strrchr(word, '.');
+    const bool deck = ending && (!strcmp(ending, ".yaml") || !strcmp(ending, ".yml"));
+    fprintf(stderr, "breccia: there is no verb '%s'; %s%s%s'breccia --help' lists them\n", word,
+            deck ? "a deck is run by 'breccia run " : "", deck ? word : "", deck ? "'; " : "");
+  }
   return 2;
 }
 

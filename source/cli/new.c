@@ -56,7 +56,10 @@ static int write_new(const char *path, const void *bytes, size_t length)
 {
   FILE *file = fopen(path, "wx");
   if (!file) {
-    fprintf(stderr, "%s: %s\n", path, errno == EEXIST ? "exists already; choose another name" : strerror(errno));
+    const char *reason = errno == EEXIST   ? "exists already; choose another name"
+                         : errno == ENOENT ? "cannot be written: the folder does not exist; make it first"
+                                           : strerror(errno);
+    fprintf(stderr, "%s: %s\n", path, reason);
     return 2;
   }
   bool bad = fwrite(bytes, 1, length, file) != length;

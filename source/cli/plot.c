@@ -45,7 +45,8 @@ static const Option options[] = {
     {"size", "PIXELS", "largest width of the body in the picture (640; 460 in space)"},
     {"movie", "FILE.mp4", "all written steps as a movie; needs ffmpeg"},
     {"rate", "N", "with --movie: written steps a second (so that it lasts about ten seconds)"},
-    {"curve", "X:Y", "instead: columns of histories, like 'opening.distance:pull.value'; more Y behind commas"},
+    {"curve", "X:Y",
+     "instead: columns of histories, like 'opening.distance:pull.value'; more Y behind commas; -Y turns the sign"},
     {"energy", NULL, "instead: all energies over time"},
     {"overlay", "FILE.csv", "with --curve: two columns drawn as points"},
     {"log", "x|y|xy", "with --curve: logarithmic axes"},
@@ -148,6 +149,9 @@ static int draw_steps(const char *path, const char **values, const PictureOption
     if (read_number(values[TIME], "time", &time)) status = BRECCIA_USER_ERROR;
     for (int k = 0; !status && k < view.steps; ++k)
       if (fabs(view.times[k] - time) < fabs(view.times[first] - time)) first = last = k;
+    if (!status && view.steps && (time < 0 || time > view.times[view.steps - 1] * (1 + 1e-6)))
+      status = error_add(error, BRECCIA_USER_ERROR, "--time %s: the run wrote states up to the time %g only",
+                         values[TIME], view.times[view.steps - 1]);
   } else if (!strcmp(wanted, "all"))
     first = 0;
   else if (strcmp(wanted, "last")) {
@@ -157,8 +161,13 @@ static int draw_steps(const char *path, const char **values, const PictureOption
     for (int k = 0; k < view.steps; ++k)
       if (view.step_numbers[k] == number) found = k;
     if (!status && found < 0) {
+      enum { SHORT = 20 };
       Text list = {0};
-      for (int k = 0; k < view.steps; ++k) text_add(&list, "%s%lld", k ? ", " : "", (long long)view.step_numbers[k]);
+      for (int k = 0; k < view.steps; ++k) {
+        if (k && k < view.steps - 1 && view.steps > SHORT) continue;
+        text_add(&list, "%s%lld", !k ? "" : view.steps > SHORT ? " ... " : ", ", (long long)view.step_numbers[k]);
+      }
+      if (view.steps > SHORT) text_add(&list, " (%d states); --time takes the nearest", view.steps);
       status = error_add(error, BRECCIA_USER_ERROR, "step %lld was not written; these were: %s", number,
                          list.length ? list.characters : "none");
       text_free(&list);

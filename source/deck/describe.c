@@ -30,6 +30,7 @@ static const char *value_words(const Field *field)
   case FIELD_COUNT: return "whole number";
   case FIELD_FLAG: return "yes or no";
   case FIELD_TEXT: return "words";
+  case FIELD_NAME: return "name";
   case FIELD_CHOICE: return "one of";
   case FIELD_POINT: return "[x, y, z]";
   case FIELD_FREE_POINT: return "[x, y, z], each may be `free`";
@@ -234,7 +235,8 @@ static void add_value_schema(Text *text, const Field *field)
   case FIELD_FLAG:
     text_add(text, "\"anyOf\": [{\"enum\": [true, false, \"yes\", \"no\", \"on\", \"off\"]}, " EXPRESSION "]");
     break;
-  case FIELD_TEXT: text_add(text, "\"type\": [\"string\", \"number\"]"); break;
+  case FIELD_TEXT:
+  case FIELD_NAME: text_add(text, "\"type\": [\"string\", \"number\"]"); break;
   case FIELD_CHOICE:
     text_add(text, "\"anyOf\": [{\"enum\": [");
     for (int k = 0; field->choice(k); ++k) {

@@ -255,6 +255,8 @@ static const char *yaml_advice(const char *message)
       {"missing comma",
        "inside { } and [ ] a comma parts items, each bracket is closed, and words that hold ': ' stand in quotation "
        "marks"},
+      {"mismatched flow", "a bracket is opened and not closed, or closed and not opened"},
+      {"in sequence while in mapping", "each item of this list begins with '- ', and all in the same column"},
       {"unterminated", "a quotation mark or bracket is not closed"},
   };
   for (size_t k = 0; k < sizeof advice / sizeof *advice; ++k)

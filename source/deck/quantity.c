@@ -155,13 +155,16 @@ Units *units_create(const char *length, const char *force, const char *time, Err
   }
   units->degree = ut_parse(units->system, "arc_degree", UT_ASCII);
   const char *names[3] = {length, force, time}, *wanted[3] = {"m", "N", "s"}, *what[3] = {"length", "force", "time"};
+  static const char *const examples[3] = {"m, mm or ft", "N, kN or lbf", "s or ms"};
   for (int k = 0; k < 3; ++k) {
     Text reason = {0};
     units->base[k] = units_parse(units, names[k], &reason);
     ut_unit *standard = ut_parse(units->system, wanted[k], UT_ASCII);
-    if (units->base[k] && !ut_are_convertible(units->base[k], standard))
+    if (!units->base[k])
+      text_add(&reason, "; expected a unit of %s, like %s", what[k], examples[k]);
+    else if (!ut_are_convertible(units->base[k], standard))
       text_add(&reason, "unit '%s' is not a unit of %s", names[k], what[k]);
-    else if (units->base[k]) {
+    else {
       cv_converter *converter = ut_get_converter(units->base[k], standard);
       units->size[k] = converter ? cv_convert_double(converter, 1) : NAN;
       cv_free(converter);

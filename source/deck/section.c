@@ -1,5 +1,6 @@
 #include "deck/section.h"
 
+#include "deck/names.h"
 #include "deck/spelling.h"
 
 #include <ctype.h>
@@ -183,7 +184,8 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
 {
   NodeKind wanted = field->kind == FIELD_NAMED ? NODE_MAP : NODE_LIST;
   if (node->kind != wanted) {
-    node_error(reader->document, node, reader->error, "%s: expected %s", label, kind_words(field->kind));
+    node_error(reader->document, node, reader->error, "%s: expected %s%s", label, kind_words(field->kind),
+               node->kind == NODE_LIST ? "; found a list: leave out the '- '" : "");
     return 1;
   }
   list->items = zeroed(reader, sizeof(void *) * (size_t)(node->count ? node->count : 1));
@@ -224,12 +226,19 @@ static void say_choices(const DeckReader *reader, const Node *node, const char *
   text_free(&advice);
 }
 
+static void check_name(const DeckReader *reader, const Node *node, const char *what, const char *name)
+{
+  const int before = error_count(reader->error);
+  name_check(reader, node, what, name);
+  if (reader->unknown) *reader->unknown += error_count(reader->error) - before;
+}
+
 static void read_reference(const DeckReader *reader, const Node *node, const char *label, const Field *field,
                            Reference *reference)
 {
   reference->node = node;
   if (node->kind == NODE_SCALAR && *node->text)
-    reference->name = node->text;
+    check_name(reader, node, field->section->name, reference->name = node->text);
   else if (node->kind == NODE_LIST)
     node_error(reader->document, node, reader->error, "%s: expected one name, or keys and values; found a list", label);
   else
@@ -270,6 +279,12 @@ static void read_field(const DeckReader *reader, const Node *node, const char *l
       node_error(reader->document, node, reader->error, "%s: expected words", label);
     else
       *(const char **)target = node->text;
+    break;
+  case FIELD_NAME:
+    if (node->kind != NODE_SCALAR || !*node->text)
+      node_error(reader->document, node, reader->error, "%s: expected a name", label);
+    else
+      check_name(reader, node, field->dimension, *(const char **)target = node->text);
     break;
   case FIELD_POINT:
   case FIELD_FREE_POINT: read_point(reader, node, label, field, target); break;
@@ -541,25 +556,4 @@ void *section_find(const SectionList *list, const char *name)
     if (head->name && !strcmp(head->name, name)) return head;
   }
   return NULL;
-}
-
-void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
-                     const SectionList *list)
-{
-  const char **names = zeroed(reader, sizeof(char *) * (size_t)(list->count + 1));
-  if (!names) return;
-  for (int k = 0; k < list->count; ++k) names[k] = ((const SectionHead *)list->items[k])->name;
-  name_unknown(reader, node, what, name, names, list->count);
-}
-
-void name_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
-                  const char *const *names, int count)
-{
-  Text words = {0};
-  for (int k = 0; k < count; ++k) text_add(&words, "%s'%s'", k ? ", " : "", names[k]);
-  const char *nearest = spelling_nearest(name, names, count);
-  node_error(reader->document, node, reader->error, "there is no %s '%s'; %s%s%sthe deck defines %s%s", what, name,
-             nearest ? "did you mean '" : "", nearest ? nearest : "", nearest ? "'? (" : "",
-             words.length ? words.characters : "none", nearest ? ")" : "");
-  text_free(&words);
 }

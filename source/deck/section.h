@@ -61,6 +61,7 @@ typedef enum FieldKind {
   FIELD_COUNT,             /* int64_t; -1 when optional and absent */
   FIELD_FLAG,              /* bool */
   FIELD_TEXT,              /* const char * */
+  FIELD_NAME,              /* const char *: the name of something that the deck defines elsewhere */
   FIELD_CHOICE,            /* const char *, one of Field.choice */
   FIELD_POINT,             /* double[3]; a third component left out is 0; NaN when optional and absent */
   FIELD_FREE_POINT,        /* the same, where the word 'free' makes a component NaN */
@@ -83,7 +84,7 @@ typedef struct Field {
   const char *key;
   FieldKind kind;
   size_t offset;
-  const char *dimension; /* of numbers; NULL where there are none */
+  const char *dimension; /* of numbers; of a FIELD_NAME what has the name (deck/names.h); else NULL */
   const char *standard;  /* default as written in a deck; NULL: required; "": optional */
   const char *range;     /* interval like "(0, inf)", in deck units; NULL: any */
   const char *meaning;
@@ -97,6 +98,7 @@ typedef struct DeckReader {
   const Units *units;
   const void *context; /* what Section.parameters needs */
   Error *error;
+  int *unknown; /* counts the messages that are only about unknown names; may be NULL */
 } DeckReader;
 
 struct Section {
@@ -128,12 +130,5 @@ void *section_find(const SectionList *list, const char *name);
 /** A number with or without a unit from a node, checked against a range. @return 0, or 1 after saying what is wrong */
 int deck_number(const DeckReader *reader, const Node *node, const char *label, const char *dimension_name,
                 const char *range, double *value);
-
-/** Says that `name` is none of `names`. */
-void name_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
-                  const char *const *names, int count);
-/** Says that `name` is none of the names in the list. */
-void section_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
-                     const SectionList *list);
 
 #endif

@@ -39,18 +39,16 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
     Material *new = &d->materials[d->material_count];
     int bad =
         material->model ? check_law(d, reader, material, NULL) : 0; /* what its parameters lack may follow from that */
-    if (!bad) {
+    if (!bad && (bad = material_create(new, reader, material, length)))
+      material_destroy(new);
+    else if (!bad)
       ++d->material_count;
-      bad = material_create(new, reader, material, length);
-    }
     if (!bad && new->remote) bad = check_law(d, reader, material, new->law);
     if (bad) status = bad;
   }
   for (int b = 0; b < spec->blocks->count; ++b) {
     const BlockSpec *block = spec->blocks->items[b];
-    if (section_find(spec->materials, block->material)) continue;
-    section_unknown(reader, section_place(block, "material"), "material", block->material, spec->materials);
-    status = BRECCIA_USER_ERROR;
+    if (!section_find(spec->materials, block->material)) status = BRECCIA_USER_ERROR; /* said when the deck was read */
   }
   return status;
 }

@@ -144,11 +144,20 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
   }
 }
 
+/** Where bonds leave no stress across a plane, Poisson's ratio is 1/3 (docs/theory.md 2): E_zz = -(E_xx + E_yy) / 2, down to a
+ *  thickness of nothing. */
+static double thickness_ratio(const double f[9])
+{
+  const double sum = (f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4]) / 2 - 1; /* E_xx + E_yy */
+  return sqrt(fmax(0, 1 - sum));
+}
+
 static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const BondBased *b = formulation;
   ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->dimensions, 0);
   shape_gradient(b->family, (int32_t)place, shape.inverse, f);
+  if (b->space == SPACE_PLANE_STRESS) f[8] = thickness_ratio(f);
 }
 
 /** Half of the sum of force (x) y over the bonds. In plane strain each bond of the plane stands for a fan of bonds that slant through the

@@ -31,15 +31,16 @@ int model_enter(breccia_model *model, Team **before, Error *error)
 static int open_deck(breccia_model *model, const DeckText *words, Error *error)
 {
   const int status = deck_open(words, &deck_section, &model->laws, &model->document, &model->units, error);
-  model->reader = (DeckReader){model->document, model->units, &model->laws, error};
+  model->reader = (DeckReader){model->document, model->units, &model->laws, error, NULL};
   if (!status) deck_write(model->document, &model->deck);
   return status;
 }
 
-static int check_names(const breccia_model *model, const Domain *domain, const TextList *names, const Node *place)
+static int check_names(const breccia_model *model, const Domain *domain, const TextList *names, const Node *list)
 {
   int status = BRECCIA_OK;
   for (int k = 0; k < names->count; ++k) {
+    const Node *place = list->kind == NODE_LIST ? &list->items[k] : list;
     bool known = output_field_find(names->items[k]) != NULL;
     for (int m = 0; m < domain->material_count; ++m)
       known |= history_field_index(&domain->materials[m], names->items[k]) >= 0;
@@ -95,7 +96,7 @@ static int check_column(const breccia_model *model, const CurveNames *names, int
     text_file_name(words[k], file, sizeof file);
     if (!strcmp(file, wanted)) watch = k;
   }
-  bool known = false;
+  bool known = watch >= 0 && watches_column(model->watches, watch, 2, columns[0], 64); /* it is wrong itself */
   const char *given = watch < 0 ? names->watch[which] : names->column[which];
   for (int c = 0; watch >= 0 && c < 64 && !watches_column(model->watches, watch, c, columns[c], 64); ++c) {
     words[c] = columns[c];
@@ -120,7 +121,8 @@ static int check_curve(const breccia_model *model, const PictureSpec *picture)
   CurveNames names;
   if (curve_names(picture->curve, &names))
     return node_error(model->document, place, model->reader.error,
-                      "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value'",
+                      "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or "
+                      "with a minus 'tip.y : -grip.y'",
                       picture->curve);
   int status = BRECCIA_OK;
   for (int k = 0; k < names.count && !status; ++k) status = check_column(model, &names, k, place);
@@ -232,26 +234,31 @@ static int build(breccia_model *model, bool force, Error *error)
   if (looks_like_test(model->document->root))
     return error_add(error, BRECCIA_USER_ERROR, "%s: is a laboratory test; 'breccia material %s' runs it",
                      model->document->name, model->document->name);
+  int unknown = 0; /* names: what does not need them is checked all the same */
+  model->reader.unknown = &unknown;
   DeckSpec *spec = section_read(&model->reader, model->document->root, &deck_section);
-  if (!spec || error_count(error)) return BRECCIA_USER_ERROR;
+  model->reader.unknown = NULL;
+  if (!spec || error_count(error) > unknown) return BRECCIA_USER_ERROR;
   model->spec = spec;
   if (!spec->peridynamics)
     spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
   if (!spec->peridynamics) return BRECCIA_FAILURE;
   DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure, spec->contact};
   int status = domain_create(&model->domain, &model->reader, &parts), bad;
-  if (!model->domain.particles || !model->domain.particles->count) return status ? status : BRECCIA_USER_ERROR;
-  /* What follows needs the body only: its mistakes are told together with those of the rest. */
-  bad = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, &spec->selections);
-  if (bad) status = bad;
+  /* What follows needs the body or the materials only: its mistakes are told together with those of the rest. */
+  const bool stands = model->domain.particles && model->domain.particles->count;
+  if (stands) {
+    bad = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, &spec->selections);
+    if (bad) status = bad;
+  }
   if (model->domain.family.first) {
     bad = watches_create(&model->watches, &model->domain, &model->loading, &model->reader, &spec->watches,
                          &spec->selections);
     if (bad) status = bad;
   }
-  bad = check_results(model);
-  if (bad) status = bad;
-  if (!status) status = hold_grips(model, error);
+  if (model->domain.material_count == spec->materials.count && (bad = check_results(model))) status = bad;
+  if (!status && unknown) status = BRECCIA_USER_ERROR;
+  if (!status) status = stands ? hold_grips(model, error) : BRECCIA_USER_ERROR;
   if (status) return status;
   status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics,
                            &model->reader, force, &model->warnings);
@@ -517,8 +524,11 @@ const char *breccia_model_overview(breccia_model *model)
   text_add(text, "\n");
   if (d->type->describe) d->type->describe(d->formulation, text);
   plausibility_in_short(model, text);
-  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g), %.0f MB, about ", (long long)s->steps,
-           s->time_step, time, s->time_step / s->stable, s->stable, (double)domain_bytes(d) / 1e6);
+  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g)", (long long)s->steps, s->time_step, time,
+           s->time_step / s->stable, s->stable);
+  const double last = explicit_last_step(s);
+  if (isfinite(last)) text_add(text, ", the last one %.4g so as to end at %g,", last, s->end_time);
+  text_add(text, "%s %.0f MB, about ", isfinite(last) ? "" : ",", (double)domain_bytes(d) / 1e6);
   model_expect(model, NULL);
   const Task task = model_task(model, s->step, s->steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));

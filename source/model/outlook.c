@@ -1,6 +1,5 @@
 #include "model/outlook.h"
 
-#include "results/result_file.h"
 #include <math.h>
 
 #define BYTE_SECONDS 2e-9 /* 500 MB/s */
@@ -16,15 +15,9 @@ void outlook_expect(Outlook *o, double step_seconds, double state_bytes, double 
   o->picture_seconds = PICTURE_SECONDS + PARTICLE_SECONDS * (double)particles;
 }
 
-double outlook_bytes(const Outlook *o, int64_t states)
-{
-  const double all = (double)states, copied = fmin(all, floor(COPY_LIMIT / o->state_bytes));
-  return o->state_bytes * (copied * (copied + 1) / 2 + (all - copied));
-}
-
 double outlook_left(const Outlook *o, const Task *t)
 {
-  const double bytes = outlook_bytes(o, t->states) - outlook_bytes(o, t->states_written);
+  const double bytes = o->state_bytes * (double)(t->states - t->states_written);
   const double work = (double)t->steps * pace_of(&o->steps) + bytes * pace_of(&o->bytes);
   const double checkpoints = fmax((double)t->checkpoints, floor(work / t->checkpoint_seconds)) + 1; /* one at the end */
   return work + checkpoints * pace_of(&o->checkpoints) + (double)t->pictures * o->picture_seconds;

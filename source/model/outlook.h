@@ -24,9 +24,6 @@ typedef struct Task { /* what is still to be done */
 void outlook_expect(Outlook *outlook, double step_seconds, double state_bytes, double checkpoint_bytes,
                     int64_t particles);
 
-/** Bytes that are moved to write so many states: a small result file is copied for each of them, a large one is extended. */
-double outlook_bytes(const Outlook *outlook, int64_t states);
-
 /** @return seconds */
 double outlook_left(const Outlook *outlook, const Task *task);
 

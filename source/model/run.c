@@ -85,7 +85,7 @@ static int write_results(Run *run, Error *error)
   const int status = result_file_write(run->results, &model->domain, model->solver.step, model->solver.time, error);
   const double seconds = clock_seconds() - start;
   Outlook *o = &model->outlook;
-  pace_note(&o->bytes, outlook_bytes(o, run->next_write) - outlook_bytes(o, run->next_write - 1), seconds);
+  pace_note(&o->bytes, o->state_bytes, seconds);
   run->paused += seconds;
   return status;
 }
@@ -93,6 +93,7 @@ static int write_results(Run *run, Error *error)
 static int write_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
+  if (result_file_show(run->results, error)) return BRECCIA_FAILURE; /* a restart takes them up from there */
   run->last_checkpoint = clock_seconds();
   if (!points_can_save(&model->domain.points))
     return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
@@ -399,6 +400,16 @@ static void add_origin(const breccia_model *model, Text *t)
   text_add(t, "},\n");
 }
 
+/** The bond that broke first, and its middle; NULL if none did. */
+static const BrokenBond *first_broken(const Domain *d, double middle[3])
+{
+  if (!d->broken_count) return NULL;
+  const BrokenBond *bond = &d->broken[0];
+  const int32_t a = d->particles->place_of[bond->a], b = d->particles->place_of[bond->b];
+  for (int k = 0; k < 3; ++k) middle[k] = (d->particles->position[k][a] + d->particles->position[k][b]) / 2;
+  return bond;
+}
+
 static int write_summary(Run *run, int status, const char *problem, Error *error)
 {
   breccia_model *model = run->model;
@@ -422,17 +433,15 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
            s->stable);
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
-  if (d->broken_count) {
-    const BrokenBond *b = &d->broken[0];
-    int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
-    double x[3];
-    for (int k = 0; k < 3; ++k) x[k] = (d->particles->position[k][a] + d->particles->position[k][c]) / 2;
+  double x[3];
+  const BrokenBond *first = first_broken(d, x);
+  if (first)
     text_add(
         &t,
         "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
         "%.10g]},\n",
-        (long long)b->step, b->time, b->a, b->b, x[0], x[1], x[2]);
-  } else
+        (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2]);
+  else
     text_add(&t, "  \"first_broken_bond\": null,\n");
   text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)d->broken_count);
   const struct {
@@ -537,17 +546,15 @@ static void tell_outcome(Run *run, int status)
     units_name(model->units, dimension_find(dimension), unit, sizeof unit);
     if (l->name) text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(l, s->time), unit);
   }
-  if (d->broken_count) {
-    const BrokenBond *b = &d->broken[0];
-    int32_t a = d->particles->place_of[b->a], c = d->particles->place_of[b->b];
+  double x[3];
+  const BrokenBond *first = first_broken(d, x);
+  if (first)
     text_add(
         t,
         "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
-        (long long)b->step, b->time, time, (d->particles->position[0][a] + d->particles->position[0][c]) / 2,
-        (d->particles->position[1][a] + d->particles->position[1][c]) / 2,
-        (d->particles->position[2][a] + d->particles->position[2][c]) / 2, length, (long long)d->broken_count,
+        (long long)first->step, first->time, time, x[0], x[1], x[2], length, (long long)d->broken_count,
         (long long)d->family.bonds / 2);
-  } else if (d->failure.criterion)
+  else if (d->failure.criterion)
     text_add(t, "no bond broke\n");
   const struct {
     const char *words;
@@ -603,6 +610,7 @@ static int finish(Run *run, int status, Error *error)
     write_results(run, error);
     watches_write(model->watches, &model->solver, true, error);
   }
+  if (result_file_show(run->results, error) && !status) status = BRECCIA_FAILURE;
   Text own = {0};
   text_add(&own, "  %s/deck.yaml (what was run)\n  %s/results.vtkhdf (and results.xdmf for older ParaView)\n",
            run->wish->folder, run->wish->folder);

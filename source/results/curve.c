@@ -11,13 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { AXIS_WORDS = 2 * CURVE_NAME + 4 };
+enum { AXIS_WORDS = 2 * CURVE_NAME + 8 };
 
 static int read_curve(const char *words, CurveNames *names, Error *error)
 {
   if (!curve_names(words, names)) return BRECCIA_OK;
   return error_add(error, BRECCIA_USER_ERROR,
-                   "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value'", words);
+                   "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or with "
+                   "a minus 'tip.y : -grip.y'",
+                   words);
 }
 
 void curve_name(const char *words, char *name, size_t size)
@@ -44,6 +46,7 @@ static double *history_column(const char *folder, const CurveNames *names, int k
   *steps = csv_column(path, "step", CSV_LIVING, count, ignored, error);
   if (*steps) values = csv_column(path, names->column[k], CSV_LIVING, count, label, error);
   free(path);
+  for (int i = 0; values && names->minus[k] && i < *count; ++i) values[i] = -values[i];
   const char *open = strrchr(label, '(');
   if (open && open > label && label[strlen(label) - 1] == ')')
     snprintf(unit, 64, "%.*s", (int)strcspn(open + 1, ")"), open + 1);
@@ -112,13 +115,13 @@ int curve_points(const char *path, double **x, double **y, int *count, Error *er
 
 static void name_column(const CurveNames *names, int k, char *words)
 {
-  const char *watch = names->watch[k], *column = names->column[k];
+  const char *watch = names->watch[k], *column = names->column[k], *sign = names->minus[k] ? "-" : "";
   if (!strcmp(column, "time") || !strcmp(column, "step") || !strcmp(column, watch))
-    snprintf(words, AXIS_WORDS, "%s", column);
+    snprintf(words, AXIS_WORDS, "%s%s", sign, column);
   else if (!strcmp(column, "value")) /* of a load */
-    snprintf(words, AXIS_WORDS, "%s", watch);
+    snprintf(words, AXIS_WORDS, "%s%s", sign, watch);
   else
-    snprintf(words, AXIS_WORDS, "%s, %s", watch, column);
+    snprintf(words, AXIS_WORDS, "%s%s, %s", sign, watch, column);
 }
 
 static bool of_one_watch(const CurveNames *names)
@@ -139,7 +142,7 @@ static char *title_of(const CurveNames *names, int column, const char *const *fo
     if (k != folder && !strcmp(here, there)) snprintf(here, sizeof here, "%s", folders[folder]);
   }
   if (of_one_watch(names))
-    snprintf(words, sizeof words, "%s", names->column[column]);
+    snprintf(words, sizeof words, "%s%s", names->minus[column] ? "-" : "", names->column[column]);
   else
     name_column(names, column, words);
   if (names->count == 2) return text_format("%s", here);

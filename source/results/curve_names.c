@@ -9,9 +9,12 @@ static int add_name(const char *begin, const char *end, CurveNames *names)
   const char *dot = NULL;
   while (begin < end && *begin == ' ') ++begin;
   while (end > begin && end[-1] == ' ') --end;
+  const bool minus = begin < end && *begin == '-';
+  for (begin += minus; begin < end && *begin == ' ';) ++begin;
   for (const char *c = begin; c < end; ++c)
     if (*c == '.') dot = c;
   if (!dot || dot == begin || dot + 1 == end || names->count == CURVE_COLUMNS) return 1;
+  names->minus[names->count] = minus;
   snprintf(names->watch[names->count], CURVE_NAME, "%.*s", (int)(dot - begin), begin);
   snprintf(names->column[names->count++], CURVE_NAME, "%.*s", (int)(end - dot - 1), dot + 1);
   return 0;

@@ -1,11 +1,14 @@
-/* What a curve draws: "watch.column : watch.column". */
+/* What a curve draws: "watch.column : watch.column", each with or without a minus before it. */
 #ifndef BRECCIA_RESULTS_CURVE_NAMES_H
 #define BRECCIA_RESULTS_CURVE_NAMES_H
+
+#include <stdbool.h>
 
 enum { CURVE_NAME = 160, CURVE_COLUMNS = 17 };
 
 typedef struct CurveNames { /* first of the horizontal axis, then of all columns of the vertical one */
   int count;
+  bool minus[CURVE_COLUMNS]; /* a minus stands before the name: the column is drawn with the other sign */
   char watch[CURVE_COLUMNS][CURVE_NAME], column[CURVE_COLUMNS][CURVE_NAME];
 } CurveNames;
 

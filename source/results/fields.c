@@ -78,8 +78,10 @@ static const OutputField fields[] = {
     {"stress", "stress",
      "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain); of bonds: virial stress", 6,
      voigt, stress, false},
-    {"strain", "1", "strain as the law takes it, engineering shear; with bonds: Green-Lagrange of the family", 6, voigt,
-     strain, false},
+    {"strain", "1",
+     "strain as the law takes it, engineering shear; with bonds: Green-Lagrange of the family, zz in plane stress by "
+     "nu = 1/3",
+     6, voigt, strain, false},
     {"deformation gradient", "1", "F, row by row", 9, full, gradient, false},
     {"octahedral shear stress", "stress", "sqrt(2 J2 / 3)", 1, NULL, octahedral, false},
     {"octahedral shear strain", "1", "twice the octahedral measure of the strain deviator: 2 / sqrt(3) |e|", 1, NULL,

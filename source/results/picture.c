@@ -21,7 +21,7 @@ static const Field picture_fields[] = {
      NULL, 'A'},
     {"curve", FIELD_TEXT, offsetof(PictureSpec, curve), NULL, "", NULL,
      "columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis; several for the "
-     "vertical one have commas between them",
+     "vertical one have commas between them; a minus before a name turns the sign",
      NULL, NULL, 'A'},
     {"energy", FIELD_FLAG, offsetof(PictureSpec, energy), NULL, "", NULL,
      "all energies over time; needs a watch with 'energy: yes'", NULL, NULL, 'A'},
@@ -32,8 +32,9 @@ static const Field picture_fields[] = {
     {"deformed", FIELD_NUMBER, offsetof(PictureSpec, deformed), "1", "1", NULL, "scale of the displacements drawn",
      NULL, NULL, 0},
     {"view", FIELD_POINT, offsetof(PictureSpec, view), "angle", "", NULL,
-     "[azimuth, elevation] of the eye; from the front for flat bodies and aslant for others when absent", NULL, NULL,
-     0},
+     "[azimuth, elevation] of the eye; when absent [-60, 25], from the side and a little above; flat bodies are "
+     "seen from the front",
+     NULL, NULL, 0},
     {"range", FIELD_POINT, offsetof(PictureSpec, range), "1", "", NULL,
      "[lowest, highest] value of the colour scale, or of the horizontal axis of a curve, in the deck's units", NULL,
      NULL, 0},

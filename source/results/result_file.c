@@ -1,5 +1,6 @@
 #include "results/result_file.h"
 
+#include "base/clock.h"
 #include "base/team.h"
 #include "results/dataset.h"
 #include "results/result_view.h"
@@ -22,7 +23,9 @@ typedef struct Column {
 } Column;
 
 struct ResultFile {
-  char *path, *xdmf;
+  char *path, *part, *xdmf;
+  bool hidden;                                  /* `part` holds states that `path` lacks */
+  double copied_at, copy_seconds, list_seconds; /* list_seconds: of results.xdmf, the last time */
   int64_t particles, writes, broken_written;
   bool single;
   Column *columns;
@@ -197,12 +200,13 @@ static ResultFile *prepare(const char *folder, const Domain *d, const Units *uni
   ResultFile *file = calloc(1, sizeof *file);
   if (!file) return NULL;
   file->path = text_format("%s/results.vtkhdf", folder);
+  file->part = text_format("%s/results.vtkhdf.part", folder);
   file->xdmf = text_format("%s/results.xdmf", folder);
   file->particles = d->particles->count;
   file->single = names->single;
   file->title = title;
   file->columns = calloc((size_t)names->count + 1, sizeof(Column));
-  if (!file->path || !file->xdmf || !file->columns) {
+  if (!file->path || !file->part || !file->xdmf || !file->columns) {
     result_file_destroy(&file);
     error_add(error, BRECCIA_FAILURE, "out of memory: result file");
     return NULL;
@@ -224,8 +228,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
   ResultFile *file = *out = prepare(folder, d, units, title, names, error);
   if (!file) return BRECCIA_FAILURE;
   errno = 0;
-  char *temporary = text_format("%s.part", file->path);
-  hid_t h5 = H5Fcreate(temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t h5 = H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   int bad = h5 < 0;
   if (!bad) {
     hid_t root = H5Gcreate2(h5, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -250,8 +253,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     H5Gclose(own);
     bad |= H5Fclose(h5) < 0;
   }
-  bad = bad || rename(temporary, file->path);
-  free(temporary);
+  bad = bad || rename(file->part, file->path);
   return bad ? file_error(file->path, error) : BRECCIA_OK;
 }
 
@@ -285,28 +287,28 @@ static int write_xdmf(const ResultFile *file)
   return bad;
 }
 
-/** Cuts (count < written) or extends the lists of steps. */
-static int write_steps(hid_t root, const ResultFile *file)
+/** Cuts the lists of steps to those of `file`, or extends them. @param[in] from  the first that is not in them */
+static int write_steps(hid_t root, const ResultFile *file, int64_t from)
 {
   hid_t steps = H5Gopen2(root, "Steps", H5P_DEFAULT), offsets = H5Gopen2(steps, "PointDataOffsets", H5P_DEFAULT);
-  hsize_t n = (hsize_t)file->writes;
+  const hsize_t first = (hsize_t)from, n = (hsize_t)(file->writes - from);
   int64_t *zeros = calloc((size_t)n * 4 + 4, sizeof(int64_t)), *ones = calloc((size_t)n + 1, sizeof(int64_t));
   int64_t *starts = calloc((size_t)n + 1, sizeof(int64_t));
   int bad = !zeros || !ones || !starts || steps < 0 || offsets < 0;
   for (hsize_t k = 0; !bad && k < n; ++k) {
     ones[k] = 1;
-    starts[k] = (int64_t)k * file->particles;
+    starts[k] = (from + (int64_t)k) * file->particles;
   }
   if (!bad) {
-    bad |= dataset_write(steps, "Values", H5T_NATIVE_DOUBLE, 1, 0, n, file->times);
-    bad |= dataset_write(steps, "StepNumbers", H5T_NATIVE_INT64, 1, 0, n, file->steps);
-    bad |= dataset_write(steps, "PartOffsets", H5T_NATIVE_INT64, 1, 0, n, zeros);
-    bad |= dataset_write(steps, "NumberOfParts", H5T_NATIVE_INT64, 1, 0, n, ones);
-    bad |= dataset_write(steps, "PointOffsets", H5T_NATIVE_INT64, 1, 0, n, zeros);
-    bad |= dataset_write(steps, "CellOffsets", H5T_NATIVE_INT64, 4, 0, n, zeros);
-    bad |= dataset_write(steps, "ConnectivityIdOffsets", H5T_NATIVE_INT64, 4, 0, n, zeros);
+    bad |= dataset_write(steps, "Values", H5T_NATIVE_DOUBLE, 1, first, n, file->times + from);
+    bad |= dataset_write(steps, "StepNumbers", H5T_NATIVE_INT64, 1, first, n, file->steps + from);
+    bad |= dataset_write(steps, "PartOffsets", H5T_NATIVE_INT64, 1, first, n, zeros);
+    bad |= dataset_write(steps, "NumberOfParts", H5T_NATIVE_INT64, 1, first, n, ones);
+    bad |= dataset_write(steps, "PointOffsets", H5T_NATIVE_INT64, 1, first, n, zeros);
+    bad |= dataset_write(steps, "CellOffsets", H5T_NATIVE_INT64, 4, first, n, zeros);
+    bad |= dataset_write(steps, "ConnectivityIdOffsets", H5T_NATIVE_INT64, 4, first, n, zeros);
     for (int c = 0; c < file->column_count; ++c)
-      bad |= dataset_write(offsets, file->columns[c].name, H5T_NATIVE_INT64, 1, 0, n, starts);
+      bad |= dataset_write(offsets, file->columns[c].name, H5T_NATIVE_INT64, 1, first, n, starts);
     bad |= attribute_numbers(steps, "NSteps", H5T_NATIVE_INT64, 1, &file->writes);
   }
   free(zeros);
@@ -361,7 +363,7 @@ static int append(ResultFile *file, const char *path, const Domain *d)
   bad = bad ||
         dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
   bad = bad || create_state(h5, file, file->writes - 1);
-  bad = bad || H5Fflush(h5, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file);
+  bad = bad || H5Fflush(h5, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file, file->writes - 1);
   if (own >= 0) H5Gclose(own);
   if (data >= 0) H5Gclose(data);
   if (root >= 0) H5Gclose(root);
@@ -382,6 +384,18 @@ double result_file_state_bytes(const Domain *d, const ResultNames *names)
   return (double)d->particles->count * numbers * (names->single ? 4 : 8);
 }
 
+/** Moves the copy into place, and lists its states for older readers, which takes as long as copying where states are small. */
+static int show(ResultFile *file, Error *error)
+{
+  const double start = clock_seconds();
+  errno = 0;
+  const int bad = (file->hidden && rename(file->part, file->path)) || write_xdmf(file);
+  if (bad) return file_error(file->path, error);
+  file->hidden = false;
+  file->list_seconds = clock_seconds() - start;
+  return BRECCIA_OK;
+}
+
 int result_file_write(ResultFile *file, const Domain *d, int64_t step, double time, Error *error)
 {
   if (grow_times(file)) return error_add(error, BRECCIA_FAILURE, "out of memory: result file");
@@ -390,18 +404,28 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
   file->steps[file->writes++] = step;
   errno = 0;
   struct stat status;
-  int bad = stat(file->path, &status);
-  if (!bad && status.st_size < COPY_LIMIT) {
-    char *temporary = text_format("%s.part", file->path);
-    bad = copy_file(file->path, temporary) || append(file, temporary, d) || rename(temporary, file->path);
-    if (bad) remove(temporary);
-    free(temporary);
-  } else if (!bad)
-    bad = append(file, file->path, d);
-  bad = bad || write_xdmf(file);
-  if (!bad) return BRECCIA_OK;
-  --file->writes;
-  return file_error(file->path, error);
+  int bad = 0;
+  const bool in_place = !file->hidden && !(bad = stat(file->path, &status)) && status.st_size >= COPY_LIMIT;
+  if (!file->hidden && !in_place && !bad) {
+    file->copied_at = clock_seconds();
+    bad = copy_file(file->path, file->part);
+    file->copy_seconds = clock_seconds() - file->copied_at;
+  }
+  bad = bad || append(file, in_place ? file->path : file->part, d);
+  if (bad) {
+    if (!in_place) remove(file->part);
+    file->hidden = false;
+    --file->writes;
+    return file_error(file->path, error);
+  }
+  file->hidden = !in_place;
+  const bool soon = clock_seconds() - file->copied_at < SELDOM * (file->copy_seconds + file->list_seconds);
+  return file->hidden && soon ? BRECCIA_OK : show(file, error);
+}
+
+int result_file_show(ResultFile *file, Error *error)
+{
+  return file->hidden ? show(file, error) : BRECCIA_OK;
 }
 
 /** A state in the middle of a run was due; at its end one may stand only because the run ended there. */
@@ -433,9 +457,8 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   if (!same)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds another number of particles than the deck", file->path);
   errno = 0;
-  char *temporary = text_format("%s.part", file->path);
-  int bad = copy_file(file->path, temporary);
-  hid_t h5 = bad ? -1 : H5Fopen(temporary, H5F_ACC_RDWR, H5P_DEFAULT);
+  int bad = copy_file(file->path, file->part);
+  hid_t h5 = bad ? -1 : H5Fopen(file->part, H5F_ACC_RDWR, H5P_DEFAULT);
   bad |= h5 < 0;
   if (!bad) {
     hid_t root = H5Gopen2(h5, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
@@ -448,14 +471,13 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
     hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     for (int64_t k = 0; k < file->writes && !bad; ++k) bad = create_state(h5, file, k);
     H5Gclose(states);
-    bad |= write_steps(root, file);
+    bad |= write_steps(root, file, file->writes);
     H5Gclose(own);
     H5Gclose(data);
     H5Gclose(root);
     bad |= H5Fclose(h5) < 0;
   }
-  bad = bad || rename(temporary, file->path) || write_xdmf(file);
-  free(temporary);
+  bad = bad || rename(file->part, file->path) || write_xdmf(file);
   return bad ? file_error(file->path, error) : BRECCIA_OK;
 }
 
@@ -463,6 +485,7 @@ void result_file_destroy(ResultFile **file)
 {
   if (!file || !*file) return;
   free((*file)->path);
+  free((*file)->part);
   free((*file)->xdmf);
   free((*file)->columns);
   free((*file)->times);

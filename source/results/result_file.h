@@ -1,14 +1,16 @@
 /* The result file: VTKHDF 2.0 (HDF5), one cloud of points with time steps, and a small XDMF file beside it for older readers.
  *
  * Components of tensors stand in VTK's order, xx yy zz xy yz xz. Breccia/States/<step>/<field> shows one step of one field, for readers that
- * cannot take a part of a dataset (meshio). Positions are the reference positions, written once; every write adds one step of each field. Small files are copied, extended
- * and renamed into place, so that a run killed at any moment leaves a whole one; above COPY_LIMIT bytes they are extended in place. */
+ * cannot take a part of a dataset (meshio). Positions are the reference positions, written once; every write adds one step of each field.
+ * Small files are copied, extended and renamed into place, so that a run killed at any moment leaves a whole one; above COPY_LIMIT bytes
+ * they are extended in place. A copy takes further states until the time since it was made is SELDOM times what copying took: else a
+ * thousand states would cost a thousand copies, each longer than the one before. */
 #ifndef BRECCIA_RESULTS_RESULT_FILE_H
 #define BRECCIA_RESULTS_RESULT_FILE_H
 
 #include "results/fields.h"
 
-enum { COPY_LIMIT = 256 << 20 };
+enum { COPY_LIMIT = 256 << 20, SELDOM = 10 };
 
 typedef struct ResultFile ResultFile;
 
@@ -35,8 +37,10 @@ int result_file_resume(ResultFile **file, const char *folder, const Domain *doma
                        const char *title, const ResultNames *names, const WrittenAt *due, Error *error);
 /** Bytes that one state takes in a file with these fields. */
 double result_file_state_bytes(const Domain *domain, const ResultNames *names);
-/** Adds the present state. */
+/** Adds the present state. It may stand only in the copy at first; result_file_show shows it. */
 int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
+/** Puts all states into the file that others read. */
+int result_file_show(ResultFile *file, Error *error);
 void result_file_destroy(ResultFile **file);
 
 #endif

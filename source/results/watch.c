@@ -41,7 +41,7 @@ static const Field watch_fields[] = {
      "distance of the particles nearest to two points, and its growth", NULL, NULL, 'A'},
     {"bond between", FIELD_POINTS, offsetof(WatchSpec, bond), "length", "", NULL,
      "stretch of the bond between the particles nearest to two points, and whether it is intact", NULL, NULL, 'A'},
-    {"load", FIELD_TEXT, offsetof(WatchSpec, load), NULL, "", NULL, "value of a named load", NULL, NULL, 'A'},
+    {"load", FIELD_NAME, offsetof(WatchSpec, load), "load", "", NULL, "value of a named load", NULL, NULL, 'A'},
     {"energy", FIELD_FLAG, offsetof(WatchSpec, energy), NULL, "", NULL,
      "the energy ledger and the number of broken bonds", NULL, NULL, 'A'},
 };
@@ -226,11 +226,12 @@ static int name_histories(Watch *w, const Domain *domain, const DeckReader *read
     w->history[count++] = k;
   }
   w->history[count] = -1;
+  if (!count)
+    return node_error(reader->document, section_place(w->spec, "history of"), reader->error,
+                      "history of: %s has no named history", m->law->name);
   w->own = (Kind){w->columns, history_row};
   w->kind = &w->own;
-  if (count) return BRECCIA_OK;
-  return node_error(reader->document, section_place(w->spec, "history of"), reader->error,
-                    "history of: %s has no named history", m->law->name);
+  return BRECCIA_OK;
 }
 
 static int resolve(Watch *w, const Domain *domain, const Loading *loading, const DeckReader *reader,
@@ -275,8 +276,7 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
     w->kind = &w->own;
     return BRECCIA_OK;
   }
-  return node_error(reader->document, section_place(spec, "load"), reader->error,
-                    "load: no load has the name '%s'; give it one with 'name:'", spec->load);
+  return BRECCIA_USER_ERROR; /* said when the deck was read */
 }
 
 int watches_create(Watches **out, const Domain *domain, const Loading *loading, const DeckReader *reader,
@@ -383,7 +383,8 @@ int watches_column(const Watches *watches, int k, int c, char *name, size_t size
     snprintf(name, size, "%s", first[c]);
     return 0;
   }
-  const char *column = watches->items[k].kind->columns;
+  const Kind *kind = watches->items[k].kind;
+  const char *column = kind ? kind->columns : NULL;
   for (int n = 2; n < c && column; ++n) {
     column = strchr(column, ',');
     if (column) ++column;

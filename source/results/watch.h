@@ -24,7 +24,8 @@ int watches_create(Watches **watches, const Domain *domain, const Loading *loadi
 int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */
 int watches_write(Watches *watches, const Explicit *solver, bool last, Error *error);
-/** Names the c-th column of the k-th history. @return 0, or 1 after the last */
+/** Names the c-th column of the k-th history; of one that could not be resolved only step and time are known.
+ *  @return 0, or 1 after the last */
 int watches_column(const Watches *watches, int k, int c, char *name, size_t size);
 /** Name of the k-th history. */
 const char *watches_name(const Watches *watches, int k);

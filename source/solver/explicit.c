@@ -42,8 +42,8 @@ static const Field explicit_fields[] = {
     {"safety", FIELD_NUMBER, offsetof(ExplicitSpec, safety), "1", "0.8", "(0, 1]",
      "share of the stable step taken when 'time step' is absent", NULL, NULL, 0},
     {"steps", FIELD_COUNT, offsetof(ExplicitSpec, steps), NULL, "", "[0, 1e15]", "number of steps", NULL, NULL, 'A'},
-    {"end time", FIELD_NUMBER, offsetof(ExplicitSpec, end_time), "time", "", "(0, inf)", "steps until this time", NULL,
-     NULL, 'A'},
+    {"end time", FIELD_NUMBER, offsetof(ExplicitSpec, end_time), "time", "", "(0, inf)",
+     "the run ends at this time, if need be with a shorter last step", NULL, NULL, 'A'},
     {"damping", FIELD_NUMBER_OR_SECTION, offsetof(ExplicitSpec, damping_given), "damping rate", "0", "[0, inf)",
      "mass-proportional damping: a rate c (force density - c rho v), or a ratio of critical damping at a frequency",
      &damping_section, NULL, 0},
@@ -96,10 +96,17 @@ static void step_to(Explicit *s, double stop, double longest)
   s->time_step = (stop - s->time) / (double)count;
 }
 
+/** True if steps of this length have become too long for the body. */
+static bool is_too_long(const Explicit *s, double step)
+{
+  return !s->force && step > (isnan(s->spec->time_step) ? 1.1 * longest_step(s) : s->stable);
+}
+
 /** Plans steps up to the next time at which one has to end, and foresees how many there will be in all. */
 static void plan_steps(Explicit *s)
 {
-  const double longest = fmin(longest_step(s), isnan(s->fixed) ? INFINITY : s->fixed), tiny = 1e-6 * longest;
+  const double longest = isnan(s->fixed) || is_too_long(s, s->fixed) ? longest_step(s) : s->fixed,
+               tiny = 1e-6 * longest;
   double stop = s->end_time, from;
   if (!isnan(s->fixed)) stop = fmin(stop, s->fixed * (floor(s->time / s->fixed + 1e-6) + 1));
   for (int64_t k = s->stop_count; isnan(s->fixed) && k-- > 0;)
@@ -116,12 +123,6 @@ static void plan_steps(Explicit *s)
   s->steps = s->plan.first + s->plan.count + (int64_t)later;
 }
 
-/** True if the present steps have become too long for the body. */
-static bool steps_are_too_long(const Explicit *s)
-{
-  return !s->force && s->time_step > (isnan(s->spec->time_step) ? 1.1 * longest_step(s) : s->stable);
-}
-
 /** Where bonds have broken the stable step may have fallen: finds it again, but only so often that it costs little. */
 static int follow_stable_step(Explicit *s, Text *warning, Error *error)
 {
@@ -130,7 +131,7 @@ static int follow_stable_step(Explicit *s, Text *warning, Error *error)
   if (s->domain->type->may_stiffen && broken && since >= (2 * broken * SHARE > s->domain->family.bonds ? SOON : LATE)) {
     const int status = find_stable_step(s, error);
     if (status) return status;
-    if (steps_are_too_long(s)) {
+    if (is_too_long(s, s->time_step)) {
       if (!isnan(s->spec->time_step))
         text_add(warning,
                  "%swarning: step %lld: broken bonds have lowered the stable step to %.4g; the time step of %g is "
@@ -203,6 +204,12 @@ static int keep_state(Explicit *s, Error *error)
   return status;
 }
 
+/** How many steps of the deck's length there are until the end; 0 without such a length. */
+static int64_t whole_steps(const Explicit *s)
+{
+  return isnan(s->fixed) ? 0 : (int64_t)floor(s->end_time / s->fixed + 1e-6);
+}
+
 int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const ExplicitSpec *spec,
                     const DeckReader *reader, bool force, Text *warning)
 {
@@ -234,18 +241,27 @@ int explicit_create(Explicit *s, Domain *domain, const Loading *loading, const E
              s->stable);
   }
   const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
-  const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-9);
+  const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-6);
   if (steps > 1e15)
     return node_error(reader->document, spec->head.node, reader->error, "explicit: %.3g steps are too many", steps);
-  s->end_time = isnan(s->fixed) ? spec->end_time : steps * s->fixed;
-  if (isnan(s->fixed)) {
+  s->end_time = spec->steps >= 0 ? steps * s->fixed : spec->end_time;
+  const int64_t whole = whole_steps(s);
+  if (!whole && spec->steps != 0) {
     plan_steps(s);
     return BRECCIA_OK;
   }
+  /* Fixed steps are planned at once; what is left of the end time after them becomes a shorter last one. */
   s->time_step = s->fixed;
-  s->steps = s->plan.count = (int64_t)steps;
-  s->plan.to = s->end_time;
+  s->steps = (int64_t)steps;
+  s->plan.count = whole;
+  s->plan.to = whole == s->steps ? s->end_time : (double)whole * s->fixed;
   return BRECCIA_OK;
+}
+
+double explicit_last_step(const Explicit *s)
+{
+  const double left = s->end_time - (double)whole_steps(s) * s->fixed;
+  return left > 1e-6 * s->fixed ? left : NAN;
 }
 
 void explicit_destroy(Explicit *s)

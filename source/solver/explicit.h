@@ -82,6 +82,8 @@ void explicit_destroy(Explicit *solver);
 
 /** Rows of the clock, of what is summed over steps and of the plan of steps, and of the accelerations. */
 void explicit_state(Explicit *solver, StateList *list);
+/** Length of the last step where it is shorter than the `time step` of the deck, so that the run ends at its `end time`; else NaN. */
+double explicit_last_step(const Explicit *solver);
 
 /** Tells times, ascending, at which steps shall end if the program chooses them; borrowed. Before the first step. */
 void explicit_stop_at(Explicit *solver, const double *times, int64_t count);

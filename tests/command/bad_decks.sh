@@ -99,10 +99,10 @@ refuse 's/steps: 10/steps: 10, damping: 120 Hz/' 19:40 "damping: '120 Hz' is a f
 refuse 's/steps: 10/steps: 10, damping: 2 kPa/' 19:40 "expected a damping rate, like '1.5 1/s'"
 refuse 's/steps: 10/steps: 10, damping: {ratio: 0.05}/' 19:31 "damping: missing key 'at'"
 refuse 's/displacement of: end/displacment of: end/' 21:9 "unknown key 'displacment of'; did you mean 'displacement of'?"
-refuse 's/displacement of: end/load: push/' 21:15 "no load has the name 'push'"
+refuse 's/displacement of: end/load: push/' 21:15 "there is no load 'push'; the deck defines 'pull'"
 refuse 's/displacement of: end/opening between: [[0, 0, 0], [0, 0, 0]]/' 21:9 'the same particle is nearest to both points'
 refuse 's/displacement of: end/bond between: [[0, 0, 0], [1, 0, 0]]/' 21:9 'no bond joins'
-refuse 's/displacement, damage/displacement, colour/' 22:11 "there is no field 'colour'; the fields are displacement"
+refuse 's/displacement, damage/displacement, colour/' 22:34 "there is no field 'colour'; the fields are displacement"
 refuse 's/field: damage/field: pressure/' 24:13 "there is no field 'pressure'"
 refuse 's/line: \[\[0.45, 0\], \[0.45, 0.2\]\]/line: [[0.45, 0]]/' 14:12 'needs at least two points'
 refuse 's/cut: {line: \[\[0.45, 0\], \[0.45, 0.2\]\]}/remove: {sphere: {centre: [0, 0, 0], radius: 9}}/' 10:5 'no lattice cell has its centre inside'
@@ -165,6 +165,37 @@ refuse 's/{box: {from/{cuboid: {from/' 10:13 "unknown key 'cuboid'; did you mean
 refuse 's/{field: damage}/{curve: "tap.x : tip.y"}/' 24:14 "there is no history 'tap'; did you mean 'tip'?"
 refuse 's/{field: damage}/{curve: "tip.x : tip.force"}/' 24:14 "curve: tip: there is no column 'force'; its columns are step, time, x, y, z"
 refuse 's/{field: damage}/{curve: "tip.x , tip.y"}/' 24:14 "should be 'watch.column : watch.column'"
+
+# Unknown names are told all at once, each at its own place, with wrong keys or with what else is wrong
+cat > "$work/names.yaml" <<'Y'
+title: Names
+materials: {rock: {model: elastic, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {wall: {material: rok, spacing: 0.1 m, shape: {box: {from: [0, 0, 0], to: [1 m, 1 m, 1 m]}}}}
+selections: {top: {face: z+, block: wal}}
+loads: [{name: push, on: topp, force: [0, 0, 1 N]}, {on: {block: hall}, force: [0, 0, 1 N]}]
+solve: {explicit: {steps: 1}}
+watch: {a: {displacement of: botom}, b: {load: pull}}
+results: {fields: [damage, damag, colour]}
+Y
+cat > "$work/wanted" <<'Y'
+names.yaml:3:25: there is no material 'rok'; did you mean 'rock'? (the deck defines 'rock')
+names.yaml:4:37: there is no block 'wal'; did you mean 'wall'? (the deck defines 'wall')
+names.yaml:5:26: there is no selection 'topp'; did you mean 'top'? (the deck defines 'top')
+names.yaml:5:66: there is no block 'hall'; did you mean 'wall'? (the deck defines 'wall')
+names.yaml:7:30: there is no selection 'botom'; the deck defines 'top'
+names.yaml:7:48: there is no load 'pull'; the deck defines 'push'
+names.yaml:8:28: there is no field 'damag'; did you mean 'damage'?
+names.yaml:8:35: there is no field 'colour'; the fields are displacement
+Y
+(cd "$work" && "$breccia" check names.yaml 2>&1 | sed 's/\(are displacement\),.*/\1/') > "$work/out"
+equal "all unknown names" "$(cat "$work/out")" "$(cat "$work/wanted")"
+sed -i 's/title:/titel:/; s/spacing:/spacin:/' "$work/names.yaml"
+(cd "$work" && "$breccia" check names.yaml > out 2>&1)
+equal "names beside wrong keys" "$(grep -c 'there is no' "$work/out") $(grep -c 'unknown key' "$work/out")" "6 2"
+refuse 's/displacement of: end/load: pul/; s/{field: damage}/{curve: "tip.value : tip.factor"}/' 21:15 "there is no load 'pul'; did you mean 'pull'?"
+sed 's/table: .*//; s/ramp to: 0.1 s/table: ['"$(for k in $(seq 40); do printf '[%d, x%d], ' $k $k; done)"'[50, 1]]/' "$work/good.yaml" > "$work/deck.yaml"
+(cd "$work" && "$breccia" check deck.yaml > out 2>&1)
+equal "forty wrong numbers" "$(wc -l < "$work/out") $(tail -1 "$work/out")" "31 and more, which are told when these are mended"
 
 # YAML that is none
 refuse 's/^    spacing/\tspacing/' 9:2 'indent with blanks, not with tabs'
@@ -230,6 +261,14 @@ for word in hold break; do
   "$breccia" check "$work/deck.yaml" 2> "$work/errors" > /dev/null
   equal "near grips: $word: warnings" "$(cat "$work/errors")" ""
 done
+
+# Plane decks with keys of space, and the reverse; brackets and dashes
+refuse 's/to: \[1, 0.5, 0.3\]/to: [1, 0.5]/' 10:13 "box: it has no size along z; give points three numbers, or take 'lattice: square' for a plane body"
+refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/face: x+/face: z+/; s/^peri.*/peridynamics: {space: plane strain}/' \
+  14:15 'face: the body has no face z+; it is plane: x-, x+, y- or y+'
+refuse 's/\[0.45, 0.2\]\]}}/[0.45, 0.2]}}/' 14:41 'a bracket is opened and not closed'
+refuse 's/^  plate:/  - plate:/' 6:1 "body: expected names, each with its keys and values; found a list: leave out the '- '"
+refuse 's/force: kN/force: kn/' 2:1 "units: unit 'kn' is not known; expected a unit of force, like N, kN or lbf"
 
 # Files that are no decks at all
 for content in '' '- a' 'words' '42' '%' '%TAG'; do

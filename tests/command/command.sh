@@ -14,6 +14,10 @@ done
 "$breccia" rnu 2> out; equal "rnu: status" $? 2
 contains "rnu" "$(cat out)" "did you mean 'run'?"
 "$breccia" > /dev/null 2>&1; equal "no verb: status" $? 2
+"$breccia" wall.yaml > out 2>&1; equal "a deck for a verb: status" $? 2
+contains "a deck for a verb" "$(cat out)" "a deck is run by 'breccia run wall.yaml'"
+"$breccia" new no-folder/wall.yaml > out 2>&1; equal "new in no folder: status" $? 2
+contains "new in no folder" "$(cat out)" "no-folder/wall.yaml: cannot be written: the folder does not exist"
 "$breccia" run > /dev/null 2> out; equal "run without deck: status" $? 2
 "$breccia" run a.yaml --steps many 2> out; equal "run --steps many: status" $? 2
 contains "run --steps many" "$(cat out)" "--steps: 'many' is not a whole number"

@@ -33,6 +33,14 @@ equal "all steps" "$(wc -l < out)" 3
 "$breccia" plot bar --curve "end.x : pull.value" --output curve.svg > out 2>&1 || fail "curve: $(cat out)"
 contains "curve" "$(cat curve.svg)" "<svg"
 printf 'a,b\n0,0\n1,1\n' > measured.csv
+"$breccia" plot bar --curve "end.time : end.x" --output plus.svg > out 2>&1 || fail "plus: $(cat out)"
+"$breccia" plot bar --curve "end.time : - end.x" --output minus.svg > out 2>&1 || fail "minus: $(cat out)"
+contains "minus: label" "$(cat minus.svg)" "-end, x"
+# the largest number at the axis has become the smallest
+numbers() { sed -n 's/.*<tspan[^>]*>[ ]*\([-−]\{0,1\}[0-9.]*\)[ ]*<.*/\1/p' "$1" | sed 's/−/-/' | sort -g; }
+lowest=$(numbers minus.svg | head -1)
+contains "minus: numbers" "$lowest" "-"
+contains "minus: numbers" " $(numbers plus.svg | tr '\n' ' ')" " ${lowest#-} "
 "$breccia" plot bar bar --curve "end.x:end.y" --overlay measured.csv --output curve.png > out 2>&1 || fail "overlay: $(cat out)"
 # units that read well, labels and titles that are asked for, legends by folder
 sed 's/units:.*//; 1i units: {length: m, force: kN, time: s}' bar.yaml > other.yaml
@@ -95,6 +103,7 @@ wrong "there is no field 'colour'" bar --field colour
 wrong "choose one" bar --field stress
 wrong "none called 'q'" bar --field stress --component q
 wrong "was not written; these were: 0, 20, 40" bar --field damage --step 7
+wrong "the run wrote states up to the time" bar --field damage --time 1e9
 wrong "should end in .png, .svg or .pdf" bar --output picture.gif
 wrong "there is no such file" nowhere
 wrong "has no column 'q'" bar --curve end.q:end.x

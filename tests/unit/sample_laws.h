@@ -24,6 +24,9 @@ Material sample_cap(void);
 Material sample_coulomb(void);
 double sample_cap_envelope(double pressure);
 
+/** "glass": elastic up to a strain xx of 1e-3, where it gives up. */
+extern const breccia_law law_of_glass;
+
 /** First invariant, and length of the deviator. */
 void stress_invariants(const double stress[6], double *first, double *length);
 

@@ -98,6 +98,31 @@ static void plane_strain_presses_across_the_plane_as_hooke_says(void **state)
   breccia_model_destroy(&model);
 }
 
+static void plane_stress_makes_the_plate_thinner_by_a_third_of_poisson(void **state)
+{
+  (void)state;
+  /* nu = 1/3: an expansion s of the plane makes the plate thinner by nu / (1 - nu) 2 s = s, a pull e with e_yy = -e / 3 by e / 3. */
+  const double s = 1e-6;
+  const struct {
+    double f[9], thinner;
+  } cases[] = {{{1 + s, 0, 0, 0, 1 + s, 0, 0, 0, 1}, s},
+               {{1 + 3 * s, 0, 0, 0, 1 - s, 0, 0, 0, 1}, s},
+               {{1, s, 0, s, 1, 0, 0, 0, 1}, 0},
+               {{0, -1, 0, 1, 0, 0, 0, 0, 1}, 0}}; /* turned about z */
+  const char *const spaces[] = {"plane stress", "plane strain"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *model = plate(spaces[k], "horizon: 3.015", 9);
+    const int32_t middle = particles_nearest(model->domain.particles, (double[]){4.5, 4.5, 0});
+    for (int c = 0; c < 4; ++c) {
+      double stress[6], strain[6];
+      stress_in_the_middle(model, cases[c].f, stress);
+      domain_look(&model->domain, middle, strain, stress);
+      assert_near(strain[ZZ], k ? 0 : -cases[c].thinner, 3e-12);
+    }
+    breccia_model_destroy(&model);
+  }
+}
+
 static void what_bonds_of_the_plane_lose_is_lost_across_it_too(void **state)
 {
   (void)state;
@@ -460,6 +485,7 @@ int main(void)
       cmocka_unit_test(a_single_bond_has_its_force_to_the_last_digits),
       cmocka_unit_test(uniform_expansion_has_the_energy_that_theory_tabulates),
       cmocka_unit_test(plane_strain_presses_across_the_plane_as_hooke_says),
+      cmocka_unit_test(plane_stress_makes_the_plate_thinner_by_a_third_of_poisson),
       cmocka_unit_test(what_bonds_of_the_plane_lose_is_lost_across_it_too),
       cmocka_unit_test(check_tells_the_modulus_that_a_patch_shows),
       cmocka_unit_test(a_quadratic_field_has_the_force_of_the_continuum),

@@ -1,4 +1,5 @@
 #include "base/random.h"
+#include "sample_laws.h"
 #include "solver/stable_step.h"
 #include "support.h"
 
@@ -395,43 +396,10 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
   breccia_model_destroy(&m);
 }
 
-/** Elastic until a strain xx of 1e-3; there it gives up. */
-static int glass_prepare(const double *values, void *constants, char *reason, size_t size)
-{
-  (void)values, (void)constants, (void)reason, (void)size;
-  return 0;
-}
-static void glass_moduli(const void *constants, double *bulk, double *shear)
-{
-  (void)constants;
-  *bulk = 1e5;
-  *shear = 6e4;
-}
-static int glass_update(const void *constants, const breccia_batch *batch)
-{
-  (void)constants;
-  for (int i = 0; i < batch->count; ++i) {
-    if (batch->strain[0][i] > 1e-3) return i;
-    const double volumetric = 6e4 * (batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i]);
-    for (int k = 0; k < 6; ++k)
-      batch->stress[k][i] = (k < 3 ? volumetric : 0) + (k < 3 ? 2 : 1) * 6e4 * batch->strain[k][i];
-  }
-  return -1;
-}
-static const breccia_law glass = {.name = "glass",
-                                  .about = "gives up",
-                                  .source = "this test",
-                                  .maturity = "experimental",
-                                  .constants_size = 1,
-                                  .components = 6,
-                                  .prepare = glass_prepare,
-                                  .moduli = glass_moduli,
-                                  .update = glass_update};
-
 static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **state)
 {
   (void)state;
-  const breccia_law *const laws[] = {&glass};
+  const breccia_law *const laws[] = {&law_of_glass};
   for (int breaks = 0; breaks < 2; ++breaks) {
     const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1 + breaks};
     breccia_error *error = breccia_error_create();
