@@ -56,17 +56,8 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
 static int check_space(const Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Space space = peridynamics_space(spec->peridynamics);
-  if (d->type->components == 1 && spec->peridynamics->control)
-    return node_error(reader->document, section_place(spec->peridynamics, "zero-energy control"), reader->error,
-                      "zero-energy control: is for correspondence; %s has no modes without energy: leave it out",
-                      d->type->name);
-  if (d->type->components == 6 && strcmp(spec->peridynamics->surface_correction, "none"))
-    return node_error(reader->document, section_place(spec->peridynamics, "surface correction"), reader->error,
-                      "surface correction: is for bond-based peridynamics; the strains of %s are exact at surfaces",
-                      d->type->name);
-  if (d->body.dimensions == 1 && d->type->components == 6)
-    return node_error(reader->document, section_place(spec->peridynamics, "formulation"), reader->error,
-                      "formulation: %s has no strain along a line; bars take bond-based", d->type->name);
+  const int status = d->type->check ? d->type->check(spec->peridynamics, &d->body, reader) : BRECCIA_OK;
+  if (status) return status;
   if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
                     d->body.dimensions == 1 ? "space: a line needs '1-D'"
@@ -96,7 +87,7 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   if (spec && !isnan(spec->critical_stretch) && !isnan(spec->fracture_energy))
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
-  if (spec && !isnan(spec->fracture_energy) && d->type->components == 6)
+  if (spec && !isnan(spec->fracture_energy) && !d->type->stretch_from_energy)
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
                       "'critical stretch'");

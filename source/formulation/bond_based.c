@@ -9,6 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+static int check(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader)
+{
+  (void)body;
+  if (!spec->control) return BRECCIA_OK;
+  return node_error(reader->document, section_place(spec, "zero-energy control"), reader->error,
+                    "zero-energy control: is for correspondence; bond-based has no modes without energy: leave it out");
+}
+
 static void destroy(void *formulation)
 {
   BondBased *b = formulation;
@@ -227,6 +235,8 @@ const FormulationType formulation_bond_based = {
     .maturity = "verified against closed forms on lattices",
     .components = 1,
     .bond_lengths = true,
+    .stretch_from_energy = true,
+    .check = check,
     .create = create,
     .destroy = destroy,
     .renew = renew,

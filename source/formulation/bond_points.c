@@ -13,45 +13,49 @@ typedef struct Chunk {
   int64_t slice, row;
   int count;
   double *strain, *lever; /* [count]; lever: pull per stress */
+  const double *u[3];
+  double per_stress;
 } Chunk;
 
-/** Stretch and |xi| / |y| from d = eta . (xi + y) / |xi|^2. Small stretches, as nearly all are, without root and quotients: these took more
- *  time than all else. */
-LANES_INLINE Lanes stretch_of(Lanes d, Lanes *shortened)
+/** Stretch and |xi| / |y| from d = eta . (xi + y) / |xi|^2. By the series without root and quotients, which would take more time than all
+ *  else; lanes for which it is not good are marked. */
+LANES_INLINE Lanes stretch_of(Lanes d, bool series, Lanes *shortened, LaneMask *beyond)
 {
-  const LaneMask large = lanes_absolute(d) > lanes_set(BOND_SERIES_LIMIT);
-  if (large[0] | large[1] | large[2] | large[3]) {
+  if (!series) {
     const Lanes ratio = lanes_root(lanes_set(1) + d);
     *shortened = lanes_set(1) / ratio;
     return d / (lanes_set(1) + ratio);
   }
   const Lanes g = bond_series(d);
+  *beyond |= (LaneMask)(lanes_absolute(d) > lanes_set(BOND_SERIES_LIMIT));
   *shortened = lanes_set(1) - g;
   return d * *shortened - g;
 }
 
-LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_t slot, int half, int at)
+LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_t slot, int half, int at, bool gaps,
+                                  bool series, LaneMask *beyond)
 {
   const Family *f = b->family;
   const Pattern *row = &f->patterns[f->pattern[slot]];
   const int64_t there = f->base[slot] + LANES * half, here = chunk->slice * SLICE + LANES * half;
-  const LaneMask intact = lanes_half(f->intact[slot], half);
-  Lanes d = {0};
+  Lanes d = {0}, shortened, lever = lanes_set(row->weight_by_length) * lanes_set(chunk->per_stress);
   for (int k = 0; k < 3; ++k) {
-    const double *u = b->particles->displacement[k];
-    const Lanes xi = lanes_set(row->xi[k]), eta = lanes_load(u + there) - lanes_load(u + here), y = xi + eta;
-    d += eta * (xi + y);
+    const Lanes eta = lanes_load(chunk->u[k] + there) - lanes_load(chunk->u[k] + here);
+    d += eta * (lanes_set(2 * row->xi[k]) + eta);
   }
-  d = lanes_where(intact, d) * lanes_set(row->by_square);
-  Lanes shortened,
-      lever = lanes_where(intact, lanes_set(row->weight_by_length * b->per_stress[b->particles->block[chunk->slice]]));
+  if (gaps) {
+    const LaneMask intact = lanes_half(f->intact[slot], half);
+    d = lanes_where(intact, d);
+    lever = lanes_where(intact, lever);
+  }
+  d *= lanes_set(row->by_square);
   if (b->surface) lever *= bond_surface(b, slot, half);
-  lanes_store(chunk->strain + at, stretch_of(d, &shortened));
+  lanes_store(chunk->strain + at, stretch_of(d, series, &shortened, beyond));
   lanes_store(chunk->lever + at, lever * shortened);
 }
 
 /** Four stored bonds, each of one row. */
-LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, int at)
+LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, int at, bool series, LaneMask *beyond)
 {
   const Family *f = b->family;
   int32_t here[LANES], there[LANES];
@@ -83,28 +87,48 @@ LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, int at
   const LaneMask intact = lever != lanes_set(0);
   d = lanes_where(intact, d) / square;
   Lanes shortened;
-  lanes_store(chunk->strain + at, stretch_of(d, &shortened));
+  lanes_store(chunk->strain + at, stretch_of(d, series, &shortened, beyond));
   lanes_store(chunk->lever + at, lever * shortened / lanes_root(square));
 }
 
-BRECCIA_CLONES
-static void stretch_chunk(const BondBased *b, const Chunk *chunk)
+/** @return whether all stretches are small enough for the series, if that is asked for */
+LANES_INLINE bool stretch_rows(const BondBased *b, const Chunk *chunk, bool gaps, bool series)
 {
   const BondList *l = b->bonds;
   const int64_t slice = chunk->slice, from = chunk->row - l->first[slice],
                 lattice = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]);
+  LaneMask beyond = {0};
   int at = 0;
   for (; at < chunk->count && from + at < lattice; at += SLICE) {
     const int64_t slot = b->family->first[slice] + l->owned[l->owned_first[slice] + (from + at) / SLICE];
-    for (int half = 0; half < 2; ++half) stretch_lattice(b, chunk, slot, half, at + LANES * half);
+    for (int half = 0; half < 2; ++half)
+      stretch_lattice(b, chunk, slot, half, at + LANES * half, gaps, series, &beyond);
   }
-  for (; at < chunk->count; at += LANES) stretch_singles(b, chunk, at);
+  for (; at < chunk->count; at += LANES) stretch_singles(b, chunk, at, series, &beyond);
+  return !(beyond[0] | beyond[1] | beyond[2] | beyond[3]);
+}
+
+BRECCIA_CLONES
+static void stretch_chunk(const BondBased *b, const Sweep *sweep)
+{
+  const BondBased local = *b; /* so that stores are seen not to change it */
+  const Particles *p = b->particles;
+  const Chunk chunk = {.slice = sweep->first,
+                       .row = sweep->row,
+                       .count = sweep->rows,
+                       .strain = sweep->strain[0],
+                       .lever = sweep->carry,
+                       .u = {p->displacement[0], p->displacement[1], p->displacement[2]},
+                       .per_stress = b->per_stress[p->block[sweep->first]]};
+  const bool small =
+      local.gaps[chunk.slice] ? stretch_rows(&local, &chunk, true, true) : stretch_rows(&local, &chunk, false, true);
+  if (!small) stretch_rows(&local, &chunk, true, false);
 }
 
 int64_t bond_stretch(void *formulation, const Sweep *sweep)
 {
   const BondBased *b = formulation;
-  if (b->bonds) stretch_chunk(b, &(Chunk){sweep->first, sweep->row, sweep->rows, sweep->strain[0], sweep->carry});
+  if (b->bonds) stretch_chunk(b, sweep);
   return -1;
 }
 
@@ -126,8 +150,8 @@ int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep)
   return -1;
 }
 
-LANES_INLINE void resist_lattice(const BondBased *b, int64_t slice, int64_t slot, int half, bool gaps, Lanes force[3],
-                                 const Lanes own[3])
+LANES_INLINE void resist_lattice(const BondBased *b, const double *const u[3], int64_t slice, int64_t slot, int half,
+                                 bool gaps, Lanes force[3], const Lanes own[3])
 {
   const Family *f = b->family;
   const Pattern *row = &f->patterns[f->pattern[slot]];
@@ -139,8 +163,7 @@ LANES_INLINE void resist_lattice(const BondBased *b, int64_t slice, int64_t slot
     __builtin_prefetch(b->pull + ahead[1]);
   }
   if (gaps) pull = lanes_where(lanes_half(f->intact[slot], half), pull);
-  for (int k = 0; k < 3; ++k)
-    force[k] += pull * (lanes_set(row->xi[k]) + (lanes_load(b->particles->displacement[k] + there) - own[k]));
+  for (int k = 0; k < 3; ++k) force[k] += pull * (lanes_set(row->xi[k]) + (lanes_load(u[k] + there) - own[k]));
 }
 
 LANES_INLINE void resist_stored(const BondBased *b, int64_t slice, int64_t slot, int half, Lanes force[3],
@@ -160,10 +183,13 @@ LANES_INLINE void resist_slice(const BondBased *b, int64_t slice, bool gaps)
 {
   const Family *f = b->family;
   const int64_t stored = f->stored[slice], last = f->first[slice + 1];
+  double *const *all = b->particles->displacement;
+  const double *const u[3] = {all[0], all[1], all[2]};
   for (int half = 0; half < 2; ++half) {
     Lanes force[3] = {{0}}, own[3];
-    for (int k = 0; k < 3; ++k) own[k] = lanes_load(b->particles->displacement[k] + slice * SLICE + LANES * half);
-    for (int64_t slot = f->first[slice]; slot < stored; ++slot) resist_lattice(b, slice, slot, half, gaps, force, own);
+    for (int k = 0; k < 3; ++k) own[k] = lanes_load(u[k] + slice * SLICE + LANES * half);
+    for (int64_t slot = f->first[slice]; slot < stored; ++slot)
+      resist_lattice(b, u, slice, slot, half, gaps, force, own);
     for (int64_t slot = stored; slot < last; ++slot) resist_stored(b, slice, slot, half, force, own);
     for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[k]);
   }

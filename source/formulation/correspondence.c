@@ -477,6 +477,7 @@ const FormulationType formulation_correspondence = {
     .components = 6,
     .row_sums = true,
     .may_stiffen = true,
+    .check = correspondence_check,
     .create = correspondence_create,
     .destroy = correspondence_destroy,
     .renew = correspondence_renew,

@@ -75,6 +75,7 @@ static inline int state_length(Control control)
 }
 
 /* Making, and what follows from the shapes of families (correspondence_setup.c). */
+int correspondence_check(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader);
 void *correspondence_create(const FormulationParts *parts, Error *error);
 void correspondence_destroy(void *formulation);
 void correspondence_renew(void *formulation, int64_t slice);

@@ -5,6 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+int correspondence_check(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader)
+{
+  if (strcmp(spec->surface_correction, "none"))
+    return node_error(
+        reader->document, section_place(spec, "surface correction"), reader->error,
+        "surface correction: is for bond-based peridynamics; the strains of correspondence are exact at surfaces");
+  if (body->dimensions == 1)
+    return node_error(reader->document, section_place(spec, "formulation"), reader->error,
+                      "formulation: correspondence has no strain along a line; bars take bond-based");
+  return BRECCIA_OK;
+}
+
 void correspondence_destroy(void *formulation)
 {
   Correspondence *c = formulation;

@@ -102,7 +102,11 @@ typedef struct FormulationType {
   int components;    /* of laws: 6, at points in space on particles, or 1, on bonds */
   bool row_sums;     /* neighbours read sums along lattice rows */
   bool bond_lengths; /* lengths of stored bonds are read in sweeps */
-  bool may_stiffen;  /* the largest eigenvalue of stiffness over mass may grow as bonds break */
+  bool
+      stretch_from_energy; /* a critical stretch of bonds follows from a fracture energy: sqrt(2 G / (E characteristic length)) */
+  bool may_stiffen; /* the largest eigenvalue of stiffness over mass may grow as bonds break */
+  /** Refuses what the deck asks for and the formulation has not: keys that are others', spaces. NULL: takes all. */
+  int (*check)(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader);
   /** Makes a formulation for a body. Says where families are too poor for it. */
   void *(*create)(const FormulationParts *parts, Error *error);
   void (*destroy)(void *formulation);

@@ -210,10 +210,22 @@ static void update_one_by_one(Points *points, const Material *m, const breccia_b
   }
 }
 
+/** Histories of as many rows behind these, which are worked on next. */
+static void fetch_ahead(const Points *points, const breccia_batch *batch, int values)
+{
+  const ptrdiff_t size = (ptrdiff_t)batch->count * values;
+  if (batch->committed + 2 * size > points->committed + points->history_size) return;
+  for (ptrdiff_t k = size; k < 2 * size; k += 8) {
+    __builtin_prefetch(batch->committed + k);
+    __builtin_prefetch(batch->trial + k);
+  }
+}
+
 int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
 {
   const Material *m = points_material(points, first);
   breccia_batch batch = batch_of(points, first, count, strain, stress);
+  if (points->components == 1 && m->history_values <= 2) fetch_ahead(points, &batch, m->history_values);
   if (m->remote && points_ask_ahead(points)) return point_servers_answer(points, m, &batch, first);
   const int bad = update_batch(points, m, &batch, strain);
   if (bad < 0) return -1;

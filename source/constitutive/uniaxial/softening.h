@@ -78,10 +78,11 @@ softening_update(const void *constants, const Softening *c, SofteningEnvelope en
     const LaneMask beyond = strain > lanes_set(peak), stale = lanes_load(batch->trial + i) != damage;
     lanes_store(batch->stress[0] + i, young * strain * whole);
     if (batch->tangent) lanes_store(batch->tangent + i, young * whole);
-    if (stale[0] | stale[1] | stale[2] | stale[3]) lanes_store(batch->trial + i, damage);
-    if (beyond[0] | beyond[1] | beyond[2] | beyond[3])
-      for (int k = 0; k < LANES; ++k)
-        if (beyond[k]) softening_beyond(constants, c, envelope, batch, i + k);
+    const LaneMask either = stale | beyond;
+    if (!(either[0] | either[1] | either[2] | either[3])) continue;
+    lanes_store(batch->trial + i, damage);
+    for (int k = 0; k < LANES; ++k)
+      if (beyond[k]) softening_beyond(constants, c, envelope, batch, i + k);
   }
   for (; i < batch->count; ++i) {
     const double strain = batch->strain[0][i], damage = batch->committed[i];
