@@ -166,25 +166,24 @@ void points_state(Points *points, StateList *list)
 
 /* ---- the door to laws ---- */
 
-/** What laws see of rows of one run. */
-static breccia_batch batch_of(const Points *points, int64_t first, int count, double *const strain[6],
-                              double *const stress[6])
+/** What laws see of rows of one run. Field by field into its place: made whole and copied, it cost more than the law of a bond. */
+static void make_batch(breccia_batch *batch, const Points *points, int64_t first, int count, double *const *strain,
+                       double *const *stress)
 {
   const int64_t row = history_at(points, first);
   const int components = points->components;
-  breccia_batch batch = {.count = count,
-                         .committed = points->committed + row,
-                         .trial = points->trial + row,
-                         .elastic_stage = points->elastic_stage,
-                         .time = points->time,
-                         .time_step = points->time_step,
-                         .length = isnan(points->length[0]) ? NULL : points->length};
-  if (points->keeps_tangents) batch.tangent = points->tangent + first * components * components;
-  for (int k = 0; k < components; ++k) {
-    batch.strain[k] = strain[k];
-    batch.stress[k] = stress[k];
+  batch->count = count;
+  batch->committed = points->committed + row;
+  batch->trial = points->trial + row;
+  batch->tangent = points->keeps_tangents ? points->tangent + first * components * components : NULL;
+  batch->elastic_stage = points->elastic_stage;
+  batch->time = points->time;
+  batch->time_step = points->time_step;
+  batch->length = isnan(points->length[0]) ? NULL : points->length;
+  for (int k = 0; k < 6; ++k) {
+    batch->strain[k] = k < components ? strain[k] : NULL;
+    batch->stress[k] = k < components ? stress[k] : NULL;
   }
-  return batch;
 }
 
 static int update_batch(const Points *points, const Material *m, breccia_batch *batch, double *const strain[6])
@@ -224,13 +223,14 @@ static void fetch_ahead(const Points *points, const breccia_batch *batch, int va
 int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
 {
   const Material *m = points_material(points, first);
-  breccia_batch batch = batch_of(points, first, count, strain, stress);
+  breccia_batch batch;
+  make_batch(&batch, points, first, count, strain, stress);
   if (points->components == 1 && m->history_values <= 2) fetch_ahead(points, &batch, m->history_values);
   if (m->remote && points_ask_ahead(points)) return point_servers_answer(points, m, &batch, first);
   const int bad = update_batch(points, m, &batch, strain);
   if (bad < 0) return -1;
   if (!points->gave_up || m->remote) return first + bad;
-  batch = batch_of(points, first, count, strain, stress);
+  make_batch(&batch, points, first, count, strain, stress);
   update_one_by_one(points, m, &batch, first, strain);
   return -1;
 }
@@ -270,8 +270,9 @@ void points_change(const Points *points, int64_t first, int count, double *const
 double points_try(const Points *points, int64_t row, double strain, double *tangent)
 {
   const Material *m = points_material(points, row);
-  double stress = NAN, scratch[MOST_VALUES], *const at[6] = {&strain}, *const to[6] = {&stress};
-  breccia_batch batch = batch_of(points, row, 1, at, to);
+  double stress = NAN, scratch[MOST_VALUES], *const at[1] = {&strain}, *const to[1] = {&stress};
+  breccia_batch batch;
+  make_batch(&batch, points, row, 1, at, to);
   batch.trial = scratch;
   batch.tangent = tangent;
   if (m->remote) {
@@ -298,7 +299,8 @@ double points_softness(const Points *points, int64_t row)
     square += before[k] * before[k] * (k < 3 ? 1 : 2);
   }
   for (int k = 0; k < 3; ++k) mean += before[k] / 3;
-  breccia_batch batch = batch_of(points, row, 1, at, to);
+  breccia_batch batch;
+  make_batch(&batch, points, row, 1, at, to);
   batch.trial = scratch;
   batch.tangent = NULL;
   /* A small step back and one ahead, elastically: damage is felt both ways, yielding one way. */
