@@ -27,16 +27,19 @@ static const Case cases[] = {
 };
 
 typedef struct BenchBody {
-  const char *name, *block, *cracks;
+  const char *name, *space, *block, *cracks;
 } BenchBody;
 
 #define NOTCH "cracks: [{remove: {box: {from: [2.4, 0, -1], to: [2.43, 1.2, 1]}}, cut faces: yes}]\n"
 static const BenchBody bodies[] = {
-    {"cube 32³", "shape: {box: {particles: [32, 32, 32]}}", ""},
-    {"cube 40³", "shape: {box: {particles: [40, 40, 40]}}", ""},
-    {"cube 80³", "shape: {box: {particles: [80, 80, 80]}}", ""},
-    {"notched plate", "shape: {box: {particles: [160, 120, 6]}}", NOTCH},
-    {"scattered", "file: scattered.csv", ""},
+    {"cube 32³", "3-D", "shape: {box: {particles: [32, 32, 32]}}", ""},
+    {"cube 40³", "3-D", "shape: {box: {particles: [40, 40, 40]}}", ""},
+    {"cube 80³", "3-D", "shape: {box: {particles: [80, 80, 80]}}", ""},
+    {"face-centred 40³", "3-D", "lattice: face-centred cubic, shape: {box: {particles: [40, 40, 40]}}", ""},
+    {"square 256²", "plane strain", "lattice: square, thickness: 1, shape: {box: {particles: [256, 256]}}", ""},
+    {"hexagonal 256²", "plane strain", "lattice: hexagonal, thickness: 1, shape: {box: {particles: [256, 256]}}", ""},
+    {"notched plate", "3-D", "shape: {box: {particles: [160, 120, 6]}}", NOTCH},
+    {"scattered", "3-D", "file: scattered.csv", ""},
 };
 
 static breccia_model *load(const char *folder, const BenchBody *body, const Case *c)
@@ -44,11 +47,12 @@ static breccia_model *load(const char *folder, const BenchBody *body, const Case
   Text deck = {0};
   text_add(&deck,
            "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n"
-           "peridynamics: {formulation: %s}\nbody: {b: {material: m, spacing: 0.03, %s}}\n%s"
+           "peridynamics: {formulation: %s, space: %s}\nbody: {b: {material: m, spacing: 0.03, %s}}\n%s"
            "%ssolve: {explicit: {steps: 1000000}}\n"
            "loads: [{on: {face: x+, layers: 3}, body force: [400, 0, 0], history: {ramp to: 0.02}}, {on: {face: x-, "
            "layers: 3}, velocity: [0, 0, 0]}]\n",
-           c->words, c->formulation, body->block, body->cracks, c->bonds ? "" : "failure: {critical stretch: 0.05}\n");
+           c->words, c->formulation, body->space, body->block, body->cracks,
+           c->bonds ? "" : "failure: {critical stretch: 0.05}\n");
   char *name = text_format("%s/deck", folder);
   breccia_model *model = NULL;
   breccia_error *error = breccia_error_create();

@@ -60,6 +60,7 @@ Plain *plain_create(const Domain *d)
         k[c] += p->volume[j] * (p->position[symmetric_row[c]][j] - p->position[symmetric_row[c]][here]) *
                 (p->position[symmetric_column[c]][j] - p->position[symmetric_column[c]][here]);
       }
+    if (k[ZZ] == 0) k[ZZ] = 1; /* a body of the plane */
     tensor_inverse(k, plain->inverse + 6 * i);
   }
   return plain;

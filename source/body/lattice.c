@@ -29,6 +29,11 @@ const LatticeType *lattice_find(const char *name)
   return NULL;
 }
 
+bool lattice_is_grid(const LatticeType *type)
+{
+  return type->vector[1][0] == 0 && type->vector[2][0] == 0 && type->vector[2][1] == 0;
+}
+
 /** How many planes across axis k, one after the other, there are until one is met whose particles stand like those of the first. */
 static int planes_per_cell(const LatticeType *type, int k)
 {

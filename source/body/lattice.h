@@ -41,6 +41,9 @@ const char *lattice_word(int k);
 /** @return NULL if there is none of that name */
 const LatticeType *lattice_find(const char *name);
 
+/** True if the vectors are along x, y and z. */
+bool lattice_is_grid(const LatticeType *type);
+
 /** Sizes of a lattice of that type; no cells yet. */
 void lattice_measure(Lattice *lattice, const LatticeType *type, double spacing);
 
