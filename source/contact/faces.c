@@ -166,11 +166,15 @@ void contact_find_faces(const Contact *c, ContactRow *row)
   }
   for (int k = 0; k < 3 && volume > 0; ++k) lost[k] = lost[k] / volume - inward[k];
   if (volume > 0 && sqrt(dot(lost, lost)) >= least_offset * lattice->spacing) add_face(row, lost);
-  if (lattice->chunks) {
+  if (lattice->chunks && lattice_is_grid(lattice->type)) {
     add_sides(c, row);
   } else if (row->faces == 0 && sqrt(dot(inward, inward)) >= least_offset * lattice->spacing) {
     const double away[3] = {-inward[0], -inward[1], -inward[2]};
     add_face(row, away);
+    /* Where rows are shifted: half the way to the next particles across, so that bodies that touch do not press on each other. */
+    double across = 0;
+    for (int k = 0; k < 3 && row->faces; ++k) across += fabs(row->face[0][k]) * lattice->plane[k];
+    if (lattice->chunks && row->faces) row->depth = fmin(row->depth, across / 2);
   }
 }
 

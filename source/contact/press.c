@@ -55,7 +55,8 @@ double contact_smoothed(const Contact *c, int block)
 {
   /* A bond at the angle psi across a face counts there by cos^3 psi; over all axes of the lattice. */
   const Lattice *lattice = &c->body->lattices[block];
-  const double horizon = c->family->horizon, step = lattice->chunks ? lattice->spacing : horizon / 8;
+  const double horizon = c->family->horizon,
+               step = lattice->chunks && lattice_is_grid(lattice->type) ? lattice->spacing : horizon / 8;
   const int reach = (int)ceil(fade_to * horizon / step);
   double whole = 0, faded = 0, slope;
   int n[3];

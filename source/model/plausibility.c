@@ -246,6 +246,16 @@ static Extent extent_of(const breccia_model *model)
   return e;
 }
 
+/** Says where whole rows of a lattice do not fill their box, and what is done about it. */
+static void describe_filling(const Body *body, Text *text)
+{
+  for (int b = 0; b < body->block_count; ++b)
+    for (int k = 0; k < body->dimensions; ++k)
+      if (body->lattices[b].filled[k] != 1)
+        text_add(text, "; rows of %s take %.4g of their box along %c, and each particle %.4g of its volume",
+                 body->blocks[b]->head.name, 1 / body->lattices[b].filled[k], "xyz"[k], body -> lattices[b].filled[k]);
+}
+
 static void describe_body(const breccia_model *model, const Extent *e, Text *text)
 {
   const int dimensions = model->domain.body.dimensions;
@@ -257,6 +267,7 @@ static void describe_body(const breccia_model *model, const Extent *e, Text *tex
   quantity_describe(e->mass, "kg", text);
   text_add(text, "; a wave travels through in ");
   quantity_describe(e->crossing, "s", text);
+  describe_filling(&model->domain.body, text);
 }
 
 void plausibility_in_short(const breccia_model *model, Text *text)
