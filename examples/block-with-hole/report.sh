@@ -84,7 +84,8 @@ on_envelope() {
     END {I = -($7 + $8 + $9); m = -I / 3; printf "%.6f", sqrt(($7 - m) ^ 2 + ($8 - m) ^ 2 + ($9 - m) ^ 2 + 2 * ($10 ^ 2 + $11 ^ 2 + $12 ^ 2)) / F(I)}'
 }
 # A figure of both runs inside the program and of that in OpenSees, which tells no caps.
-in_opensees() { [ -e block-opensees/summary.json ] && "$@" || echo "not run"; }
+whole_in_opensees() { grep -qs '"completed": true' block-opensees/summary.json; }
+in_opensees() { whole_in_opensees && "$@" || echo "not run"; }
 row() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | $(in_opensees $3 block-opensees "${@:4}") |"; }
 row_with_caps() { echo "| $1 | $2 | $($3 block "${@:4}") | $($3 block-30 "${@:4}") | |"; }
 # Largest difference between the curves of two runs up to a time, over the largest value of each column.
@@ -124,7 +125,7 @@ along() {
   echo "net section, two thirds of the block, reaches these under $(strength 0.004 | awk '{printf "%.1f", $1 * 2 / 3}') and" \
     "$(strength 0.02 | awk '{printf "%.1f", $1 * 2 / 3}') MPa."
   echo
-  if [ -e block-opensees/summary.json ]; then
+  if whole_in_opensees; then
     echo "The curves of p, q, the corner, width and height inside the program and in OpenSees"
     echo "differ by $(apart block block-opensees 0.002) of the largest value up to 2 ms, $(apart block block-opensees 0.004) up to 4 ms, $(apart block block-opensees 0.006) up to 6 ms and $(apart block block-opensees 0.008) up to 8 ms."
     echo
