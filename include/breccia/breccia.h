@@ -148,6 +148,8 @@ BRECCIA_API int64_t breccia_model_bonds(const breccia_model *model);        /* d
 BRECCIA_API int64_t breccia_model_broken_bonds(const breccia_model *model); /* pairs */
 BRECCIA_API int64_t breccia_model_steps_done(const breccia_model *model);
 BRECCIA_API double breccia_model_time(const breccia_model *model);
+/** "stage 2 of 3, NAME"; "" where a deck has one stage. Valid until the model is next used. */
+BRECCIA_API const char *breccia_model_stage(breccia_model *model);
 BRECCIA_API double breccia_model_time_step(const breccia_model *model);
 BRECCIA_API double breccia_model_stable_time_step(const breccia_model *model);
 
@@ -157,7 +159,8 @@ BRECCIA_API int64_t breccia_model_places(const breccia_model *model);
 BRECCIA_API const int32_t *breccia_model_numbers(const breccia_model *model);
 /** The model's own array, [places]; read it, write to it between steps. Names: "position x", "displacement x",
  *  "velocity x" (and y, z), "volume", "density"; read-only in meaning: "force x" (internal, per volume), "external force x",
- *  "acceleration x", "strain xx", "stress xx" ... (with bonds: as of this call)
+ *  "acceleration x", "strain xx", "stress xx" ... (with bonds: as of this call), "displacement at zero x": what results subtract from the
+ *  displacement after a stage with `displacements: zero`
  *  @return NULL if there is no such array */
 BRECCIA_API double *breccia_model_array(breccia_model *model, const char *name);
 

@@ -67,6 +67,7 @@ void particles_destroy(Particles *particles)
     places_free(&particles->velocity[k]);
     places_free(&particles->internal[k]);
     places_free(&particles->external[k]);
+    places_free(&particles->zero[k]);
   }
   places_free(&particles->volume);
   places_free(&particles->density);
@@ -76,11 +77,19 @@ void particles_destroy(Particles *particles)
   *particles = (Particles){0};
 }
 
+int particles_make_zero(Particles *p, Error *error)
+{
+  int failed = 0;
+  for (int k = 0; k < 3; ++k) failed |= !(p->zero[k] = places_array(p->places, "displacements", error));
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
 void particles_state(Particles *p, StateList *list)
 {
   state_add_vector(list, "position", "length", STATE_SHOWN, p->position, p->places);
   state_add_vector(list, "displacement", "length", STATE_TRIED, p->displacement, p->places);
   state_add_vector(list, "velocity", "velocity", STATE_TRIED, p->velocity, p->places);
+  if (p->zero[0]) state_add_vector(list, "displacement at zero", "length", STATE_COMMITTED, p->zero, p->places);
   state_add_vector(list, "external force", "force per volume", STATE_COMMITTED, p->external, p->places);
   const StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .role = STATE_SHOWN, .count = p->places};
   StateRow volume = row, density = row;

@@ -17,6 +17,7 @@ typedef struct Particles {
   double *position[3], *displacement[3], *velocity[3];
   double *internal[3]; /* force per volume from bonds */
   double *external[3]; /* force per volume from loads */
+  double *zero[3];     /* displacements that are shown as none; NULL: 0 */
   double *volume;      /* 0 in unused places */
   double *density;
   int32_t *number;   /* [places] global number or -1 */
@@ -30,6 +31,16 @@ void places_free(double **array);
 
 int particles_create(Particles *particles, int64_t slices, int64_t count, Error *error);
 void particles_destroy(Particles *particles);
+
+/** Room for `zero`. */
+int particles_make_zero(Particles *particles, Error *error);
+
+/** Displacement of a place as it is shown: from `zero` on. */
+static inline double particles_moved(const Particles *particles, int k, int32_t place)
+{
+  return particles->zero[k] ? particles->displacement[k][place] - particles->zero[k][place]
+                            : particles->displacement[k][place];
+}
 
 /** Rows of positions, motion, forces of loads, volumes and densities. */
 void particles_state(Particles *particles, StateList *list);

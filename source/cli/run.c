@@ -29,7 +29,7 @@ static void on_signal(int number)
 
 static void show(void *context, int64_t step, int64_t steps, double left)
 {
-  (void)context;
+  breccia_model *model = *(breccia_model **)context;
   char time[32];
   if (left < 100)
     snprintf(time, sizeof time, "%.0f s", left);
@@ -37,8 +37,10 @@ static void show(void *context, int64_t step, int64_t steps, double left)
     snprintf(time, sizeof time, "%.0f min", left / 60);
   else
     snprintf(time, sizeof time, "%.1f h", left / 3600);
-  fprintf(stderr, "\r%3.0f %%  step %lld of %lld, %s left \033[K", steps ? 100.0 * (double)step / (double)steps : 100.0,
-          (long long)step, (long long)steps, time);
+  const char *stage = breccia_model_stage(model);
+  fprintf(stderr, "\r%3.0f %%  %s%sstep %lld of %lld, %s left \033[K",
+          steps ? 100.0 * (double)step / (double)steps : 100.0, stage, *stage ? ", " : "", (long long)step,
+          (long long)steps, time);
 }
 
 /** How to go on: the same command with --restart. */
@@ -79,7 +81,8 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
                             .restart = values[RESTART] != NULL,
                             .steps = steps,
                             .interrupted = &interrupted,
-                            .progress = !quiet && terminal ? show : NULL};
+                            .progress = !quiet && terminal ? show : NULL,
+                            .context = &model};
   status = breccia_model_run(model, &wish, error);
   if (!quiet && terminal) fprintf(stderr, "\r\033[K");
   if (!quiet) {

@@ -41,6 +41,7 @@ static const char *value_words(const Field *field)
   case FIELD_TEXTS: return "list of words";
   case FIELD_SECTION: return "see";
   case FIELD_SECTIONS: return "list of";
+  case FIELD_ONE_OR_SECTIONS: return "one, or a list of";
   case FIELD_NAMED: return "map of names to";
   case FIELD_REFERENCE: return "a name, or";
   case FIELD_REFERENCES: return "a name, a list of names, or";
@@ -266,6 +267,12 @@ static void add_value_schema(Text *text, const Field *field)
   case FIELD_SECTION: text_add(text, "\"$ref\": \"#/$defs/%s\"", field->section->name); break;
   case FIELD_SECTIONS:
     text_add(text, "\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/%s\"}", field->section->name);
+    break;
+  case FIELD_ONE_OR_SECTIONS:
+    text_add(text,
+             "\"anyOf\": [{\"$ref\": \"#/$defs/%s\"}, {\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": "
+             "\"#/$defs/%s\"}}]",
+             field->section->name, field->section->name);
     break;
   case FIELD_NAMED:
     text_add(text, "\"type\": \"object\", \"additionalProperties\": {\"$ref\": \"#/$defs/%s\"}", field->section->name);

@@ -207,6 +207,19 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
   return 0;
 }
 
+static void read_one_or_sections(const DeckReader *reader, const Node *node, const char *label, const Field *field,
+                                 SectionList *list)
+{
+  if (node->kind == NODE_LIST) {
+    if (!node->count) node_error(reader->document, node, reader->error, "%s: the list is empty", label);
+    read_sections(reader, node, label, field, list);
+    return;
+  }
+  void *one = section_read(reader, node, field->section);
+  if (!one || !(list->items = zeroed(reader, sizeof(void *)))) return;
+  list->items[list->count++] = one;
+}
+
 /* ---- fields ---- */
 
 static void say_choices(const DeckReader *reader, const Node *node, const char *label, const Field *field)
@@ -318,6 +331,7 @@ static void read_field(const DeckReader *reader, const Node *node, const char *l
     break;
   }
   case FIELD_SECTION: *(void **)target = section_read(reader, node, field->section); break;
+  case FIELD_ONE_OR_SECTIONS: read_one_or_sections(reader, node, label, field, target); break;
   case FIELD_SECTIONS:
   case FIELD_NAMED: read_sections(reader, node, label, field, target); break;
   case FIELD_NUMBER_OR_SECTION: {
@@ -366,7 +380,8 @@ static const Field *field_with(const Section *section, const char *given, const 
 {
   for (int f = 0; f < section->field_count; ++f) {
     const Section *below = section->fields[f].section;
-    const bool one = section->fields[f].kind == FIELD_SECTION || section->fields[f].kind == FIELD_REFERENCE;
+    const bool one = section->fields[f].kind == FIELD_SECTION || section->fields[f].kind == FIELD_REFERENCE ||
+                     section->fields[f].kind == FIELD_ONE_OR_SECTIONS;
     for (int k = 0; below && one && k < below->field_count; ++k)
       if (spelling_same(given, below->fields[k].key)) {
         *key = below->fields[k].key;

@@ -72,6 +72,7 @@ typedef enum FieldKind {
   FIELD_TEXTS,             /* TextList */
   FIELD_SECTION,           /* pointer to the section's struct; NULL when absent */
   FIELD_SECTIONS,          /* SectionList from a YAML list */
+  FIELD_ONE_OR_SECTIONS,   /* SectionList from one section, or from a YAML list of one or more */
   FIELD_NAMED,             /* SectionList from a YAML map: name -> section */
   FIELD_REFERENCE,         /* Reference: words, or a section */
   FIELD_REFERENCES,        /* ReferenceList: one of them, or a list */

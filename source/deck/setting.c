@@ -132,8 +132,9 @@ static int step_into(const Path *path, Place *place, const char **key)
   /* Keys that depend on another, like the parameters of a material, are judged when the deck is read. */
   const bool judged_later = last && place->section && place->section->parameters;
   if (!item && !field && !judged_later) return refuse_key(path, map, place->section, *key, length);
+  const bool listed = item && item->kind == NODE_LIST;
   const bool section = field && (field->kind == FIELD_SECTION || field->kind == FIELD_NUMBER_OR_SECTION ||
-                                 field->kind == FIELD_REFERENCE);
+                                 field->kind == FIELD_REFERENCE || (field->kind == FIELD_ONE_OR_SECTIONS && !listed));
   if (!item && !last && !section)
     return refuse(path, "the deck has no '%s' yet, which its items would have to be written into", field->key);
   if (!item && !(item = add_entry(path, map, *key, length))) return 1;

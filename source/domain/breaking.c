@@ -125,7 +125,7 @@ static void find_energies(Domain *d, double time_step, bool after)
 
 void domain_break(Domain *d, const Moment *moment)
 {
-  const bool judges = d->failure.criterion || d->gave_up;
+  const bool judges = (d->failure.criterion || d->gave_up) && !d->points.elastic_stage;
   TEAM_SINGLE
   {
     d->broken_before = d->broken_count;

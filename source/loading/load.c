@@ -2,6 +2,7 @@
 
 #include "base/team.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,7 +71,7 @@ static void add_constraints(Loading *loading, const Load *load)
     const double *value = kind ? spec->velocity : spec->displacement;
     for (int k = 0; k < 3; ++k) {
       if (isnan(value[k])) continue;
-      Constraint c = {load, {0}, value[k], kind};
+      Constraint c = {.load = load, .value = value[k], .is_velocity = kind};
       c.direction[k] = 1;
       loading->constraints[loading->constraint_count++] = c;
     }
@@ -79,10 +80,10 @@ static void add_constraints(Loading *loading, const Load *load)
   const double *d = spec->along->direction, length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   bool is_velocity = isnan(spec->along->displacement);
   loading->constraints[loading->constraint_count++] =
-      (Constraint){load,
-                   {d[0] / length, d[1] / length, d[2] / length},
-                   is_velocity ? spec->along->velocity : spec->along->displacement,
-                   is_velocity};
+      (Constraint){.load = load,
+                   .direction = {d[0] / length, d[1] / length, d[2] / length},
+                   .value = is_velocity ? spec->along->velocity : spec->along->displacement,
+                   .is_velocity = is_velocity};
 }
 
 /** Two motions of one particle must be at right angles, or they contradict each other. */
@@ -97,6 +98,7 @@ static int check_constraints(const Loading *loading, const Particles *particles,
     for (int64_t n = 0; n < first->load->selection.count; ++n) marked[first->load->selection.places[n]] = 1;
     for (int b = a + 1; b < loading->constraint_count; ++b) {
       const Constraint *second = &loading->constraints[b];
+      if (first->load->behind <= second->load->first || second->load->behind <= first->load->first) continue;
       double cosine = 0;
       for (int k = 0; k < 3; ++k) cosine += first->direction[k] * second->direction[k];
       if (fabs(cosine) < 1e-9) continue;
@@ -135,27 +137,79 @@ static int check_directions(const LoadSpec *spec, int dimensions, const DeckRead
   return BRECCIA_OK;
 }
 
-int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
-                   const SectionList *selections)
+static int create_load(Load *load, const Body *body, const DeckReader *reader, const SectionList *selections)
 {
-  *loading = (Loading){0};
-  loading->loads = memory_zeroed((size_t)loads->count, sizeof(Load), "loads", reader->error);
-  loading->constraints = memory_zeroed((size_t)loads->count * 3, sizeof(Constraint), "loads", reader->error);
-  if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
   static const Node everywhere = {.kind = NODE_MAP};
   SelectionSpec all = {.head = {NULL, &everywhere}, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
+  Reference reference = load->spec->on;
+  if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
+  int status = selection_create(&load->selection, body, reader, selections, &reference);
+  if (!status) status = check_directions(load->spec, body->dimensions, reader);
+  for (int64_t n = 0; n < load->selection.count; ++n) load->volume += body->particles.volume[load->selection.places[n]];
+  return status;
+}
+
+/** Ends the loads of a name that began before a stage. @return how many */
+static int end_loads(Loading *loading, const char *name, int64_t stage)
+{
+  int ended = 0;
+  for (int k = 0; k < loading->count; ++k) {
+    Load *load = &loading->loads[k];
+    if (!load->spec->name || strcmp(load->spec->name, name) || load->first >= stage || load->behind <= stage) continue;
+    load->behind = stage;
+    ++ended;
+  }
+  return ended;
+}
+
+static int end_named(Loading *loading, const DeckReader *reader, const LoadStage *stage, int64_t number)
+{
   int status = BRECCIA_OK;
-  for (int k = 0; k < loads->count; ++k) {
+  for (int k = 0; k < stage->without->count; ++k)
+    if (!end_loads(loading, stage->without->items[k], number))
+      status = node_error(reader->document, section_place(stage->section, "without"), reader->error,
+                          "without: no load that acts before this stage has the name '%s'; give it one with 'name:'",
+                          stage->without->items[k]);
+  return status;
+}
+
+/** Adds the loads of a list, from a stage on. */
+static int add_loads(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *specs,
+                     int64_t stage, const SectionList *selections)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < specs->count; ++k) {
+    const LoadSpec *spec = specs->items[k];
+    if (spec->name) end_loads(loading, spec->name, stage);
     Load *load = &loading->loads[loading->count++];
-    load->spec = loads->items[k];
-    Reference reference = load->spec->on;
-    if (!reference.node) reference = (Reference){NULL, &all, &everywhere};
-    int bad = selection_create(&load->selection, body, reader, selections, &reference);
-    if (!bad) bad = check_directions(load->spec, body->dimensions, reader);
+    *load = (Load){.spec = spec, .first = stage, .behind = INT64_MAX};
+    const int bad = create_load(load, body, reader, selections);
     if (bad) status = bad;
-    for (int64_t n = 0; n < load->selection.count; ++n)
-      load->volume += body->particles.volume[load->selection.places[n]];
+    const int before = loading->constraint_count;
     add_constraints(loading, load);
+    for (int c = before; stage > 0 && c < loading->constraint_count; ++c)
+      if (!(loading->constraints[c].from =
+                memory_zeroed((size_t)load->selection.count, sizeof(double), "prescribed motions", reader->error)))
+        return BRECCIA_FAILURE;
+  }
+  return status;
+}
+
+int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
+                   const LoadStage *stages, int stage_count, const SectionList *selections)
+{
+  *loading = (Loading){0};
+  size_t most = (size_t)loads->count;
+  for (int s = 0; s < stage_count; ++s) most += (size_t)stages[s].loads->count;
+  loading->loads = memory_zeroed(most, sizeof(Load), "loads", reader->error);
+  loading->constraints = memory_zeroed(3 * most, sizeof(Constraint), "loads", reader->error);
+  if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
+  int status = add_loads(loading, body, reader, loads, 0, selections);
+  for (int s = 0; s < stage_count; ++s) {
+    int bad = end_named(loading, reader, &stages[s], s);
+    if (bad) status = bad;
+    bad = add_loads(loading, body, reader, stages[s].loads, s, selections);
+    if (bad) status = bad;
   }
   return status ? status : check_constraints(loading, &body->particles, reader);
 }
@@ -163,9 +217,59 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
 void loading_destroy(Loading *loading)
 {
   for (int k = 0; k < loading->count; ++k) selection_destroy(&loading->loads[k].selection);
+  for (int c = 0; c < loading->constraint_count; ++c) free(loading->constraints[c].from);
   free(loading->loads);
   free(loading->constraints);
   *loading = (Loading){0};
+}
+
+void loading_enter(Loading *loading, int64_t stage)
+{
+  loading->stage = stage;
+}
+
+void loading_begin(Loading *loading, Particles *p, double time)
+{
+  for (int k = 0; k < loading->count; ++k)
+    if (loading->loads[k].first == loading->stage) loading->loads[k].begin = time;
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    const Selection *selection = &constraint->load->selection;
+    if (constraint->load->first != loading->stage || !constraint->from) continue;
+    for (int64_t n = 0; n < selection->count; ++n) {
+      constraint->from[n] = 0;
+      for (int k = 0; k < 3; ++k)
+        constraint->from[n] += p->displacement[k][selection->places[n]] * constraint->direction[k];
+    }
+  }
+  for (int k = 0; k < 3; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
+}
+
+void loading_state(Loading *loading, StateList *list)
+{
+  char name[40];
+  for (int k = 0; k < loading->count; ++k) {
+    if (!loading->loads[k].first) continue;
+    snprintf(name, sizeof name, "load %d begins", k);
+    state_add_number(list, name, "time", STATE_COMMITTED, &loading->loads[k].begin);
+  }
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (!constraint->from) continue;
+    snprintf(name, sizeof name, "motion %d begins", c);
+    state_add(list,
+              &(StateRow){.unit = "length",
+                          .kind = STATE_NUMBERS,
+                          .role = STATE_COMMITTED,
+                          .count = constraint->load->selection.count,
+                          .values = constraint->from},
+              name, NULL);
+  }
+}
+
+double load_factor(const Load *load, double time)
+{
+  return history_factor(load->spec->history, time - load->begin);
 }
 
 static bool is_force(const LoadSpec *spec)
@@ -179,15 +283,15 @@ void loading_apply(const Loading *loading, Particles *p, double time)
 {
   for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
     const Selection *selection = &loading->loads[l].selection;
-    if (!is_force(loading->loads[l].spec)) continue;
+    if (!is_force(loading->loads[l].spec) || !load_acts(loading, &loading->loads[l])) continue;
     TEAM_FOR (n, selection->count)
       for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
   }
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     const LoadSpec *spec = load->spec;
-    if (!is_force(spec)) continue;
-    double factor = history_factor(spec->history, time), uniform[3] = {0}, per_density[3] = {0};
+    if (!is_force(spec) || !load_acts(loading, load)) continue;
+    double factor = load_factor(load, time), uniform[3] = {0}, per_density[3] = {0};
     for (int k = 0; k < 3; ++k) {
       if (!isnan(spec->body_force[k])) uniform[k] = factor * spec->body_force[k];
       if (!isnan(spec->force[k])) uniform[k] = factor * spec->force[k] / load->volume;
@@ -200,9 +304,10 @@ void loading_apply(const Loading *loading, Particles *p, double time)
   }
 }
 
-double constraint_displacement(const Constraint *constraint, double time)
+double constraint_displacement(const Constraint *constraint, double run_time)
 {
   const HistorySpec *history = constraint->load->spec->history;
+  const double time = run_time - constraint->load->begin;
   if (!constraint->is_velocity) return constraint->value * history_factor(history, time);
   if (!history || history->constant) return constraint->value * time;
   if (history->sine) {

@@ -24,7 +24,9 @@ extern const Section load_section;
 typedef struct Load {
   const LoadSpec *spec;
   Selection selection;
-  double volume; /* of the selected particles */
+  double volume;         /* of the selected particles */
+  int64_t first, behind; /* acts in the stages first .. behind - 1 */
+  double begin;          /* time of the run from which its history counts */
 } Load;
 
 /** A motion prescribed to the particles of a load in one direction. */
@@ -33,19 +35,45 @@ typedef struct Constraint {
   double direction[3]; /* unit vector */
   double value;
   bool is_velocity;
+  double *from; /* [particles of the load] displacement in that direction when the load began; NULL: 0 */
 } Constraint;
 
+/** What a stage of the run changes in the loads. */
+typedef struct LoadStage {
+  const SectionList *loads; /* that begin with it; one of the name of an earlier load takes its place */
+  const TextList *without;  /* names of earlier loads that end */
+  const void *section;      /* of the deck, for messages */
+} LoadStage;
+
 typedef struct Loading {
+  int64_t stage; /* under way */
   int count;
   Load *loads;
   Constraint *constraints;
   int constraint_count;
 } Loading;
 
-/** Resolves the loads of a deck on a body; says where a selection is empty or motions contradict each other. */
+/** Resolves the loads of a deck on a body; says where a selection is empty or motions of one stage contradict each other.
+ *  @param[in] loads  those of the deck, from the first stage on */
 int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
-                   const SectionList *selections);
+                   const LoadStage *stages, int stage_count, const SectionList *selections);
 void loading_destroy(Loading *loading);
+
+/** Lets the loads of a stage act, those of other stages not. */
+void loading_enter(Loading *loading, int64_t stage);
+/** Begins with the loads that are new in the stage under way: their histories count from this time, their motions from where the particles
+ *  are. Forces of loads that have ended are taken off. */
+void loading_begin(Loading *loading, Particles *particles, double time);
+/** Rows of when and where loads began that are not there from the start. */
+void loading_state(Loading *loading, StateList *list);
+
+/** Whether a load acts in the stage under way. */
+static inline bool load_acts(const Loading *loading, const Load *load)
+{
+  return load->first <= loading->stage && loading->stage < load->behind;
+}
+/** Factor of a load at a time of the run. */
+double load_factor(const Load *load, double time);
 
 /** Sets the external force per volume of all particles to what the loads say at a time. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
@@ -59,7 +87,7 @@ const char *load_kind(const LoadSpec *load, const char **dimension);
 /** Length of the vector that a load prescribes at factor 1. */
 double load_magnitude(const LoadSpec *load);
 
-/** Displacement along its direction that a constraint prescribes at a time, from the start at time 0. */
+/** Displacement along its direction that a constraint prescribes at a time of the run, from where its load began. */
 double constraint_displacement(const Constraint *constraint, double time);
 
 #endif

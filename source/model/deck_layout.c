@@ -20,13 +20,6 @@ const Section units_section = {"units",
                                NULL,
                                0};
 
-static const Field solve_fields[] = {
-    {"explicit", FIELD_SECTION, offsetof(SolveSpec, explicit_dynamics), NULL, NULL, NULL, "explicit dynamics",
-     &explicit_section, NULL, 0},
-};
-static const Section solve_section = {
-    "solve", "How the equations are solved.", sizeof(SolveSpec), FIELDS(solve_fields), NULL, NULL, NULL, 0};
-
 static const Field deck_fields[] = {
     {"include", FIELD_FILES, 0, NULL, "", NULL, "files beside this one whose keys are taken in", NULL, NULL, 0},
     {"variables", FIELD_VALUES, 0, NULL, "", NULL, "values by name, for expressions like `${width/2}`", NULL, NULL, 0},
@@ -49,7 +42,8 @@ static const Field deck_fields[] = {
      "what keeps particles off each other that no bond joins; nothing when absent", &contact_section, NULL, 0},
     {"loads", FIELD_SECTIONS, offsetof(DeckSpec, loads), NULL, "", NULL, "forces and prescribed motions", &load_section,
      NULL, 0},
-    {"solve", FIELD_SECTION, offsetof(DeckSpec, solve), NULL, NULL, NULL, "how it is solved", &solve_section, NULL, 0},
+    {"solve", FIELD_ONE_OR_SECTIONS, offsetof(DeckSpec, solve), NULL, NULL, NULL,
+     "how it is solved; a list: stage after stage", &solve_section, NULL, 0},
     {"watch", FIELD_NAMED, offsetof(DeckSpec, watches), NULL, "", NULL, "histories by name", &watch_section, NULL, 0},
     {"results", FIELD_SECTION, offsetof(DeckSpec, results), NULL, "", NULL, "what is kept", &results_section, NULL, 0},
     {"pictures", FIELD_SECTIONS, offsetof(DeckSpec, pictures), NULL, "", NULL,

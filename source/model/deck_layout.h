@@ -7,26 +7,21 @@
 #include "results/picture.h"
 #include "results/results_spec.h"
 #include "results/watch.h"
+#include "solver/solver.h"
 
 typedef struct UnitsSpec {
   SectionHead head;
   const char *length, *force, *time;
 } UnitsSpec;
 
-typedef struct SolveSpec {
-  SectionHead head;
-  ExplicitSpec *explicit_dynamics;
-} SolveSpec;
-
 typedef struct DeckSpec {
   SectionHead head;
   const char *title;
   UnitsSpec *units;
-  SectionList materials, body, selections, cracks, loads, watches, pictures;
+  SectionList materials, body, selections, cracks, loads, solve, watches, pictures; /* solve: stages of SolveSpec */
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;
   ContactSpec *contact;
-  SolveSpec *solve;
   ResultsSpec *results;
 } DeckSpec;
 

@@ -155,7 +155,7 @@ static int by_value(const void *a, const void *b)
 
 static void warn_of_late_picture(breccia_model *model, const PictureSpec *picture, double time)
 {
-  const double end = model->solver.end_time;
+  const double end = model->solver.clock.end_time;
   if (time <= end * (1 + 1e-9)) return;
   const Node *place = section_place(picture, "at");
   char words[PLACE];
@@ -164,43 +164,44 @@ static void warn_of_late_picture(breccia_model *model, const PictureSpec *pictur
            model->warnings.length ? "\n" : "", words, end, time);
 }
 
-/** Adds times that are asked for by name, as far as the run goes. */
-static void add_times(double *list, int64_t *count, const NumberList *times, double end)
+/** Adds times that are asked for by name, as far as they fall into the stage. */
+static void add_times(double *list, int64_t *count, const NumberList *times, double begin, double end)
 {
   for (int k = 0; k < times->count; ++k)
-    if (times->values[k] <= end * (1 + 1e-9)) list[(*count)++] = fmin(times->values[k], end);
+    if (times->values[k] >= begin && times->values[k] <= end * (1 + 1e-9))
+      list[(*count)++] = fmin(times->values[k], end);
 }
 
-/** Times at which results are written: evenly, and where pictures and the deck ask for them. Does not depend on how far a
- *  run goes, so that a restarted run writes the same. */
-static int make_schedule(breccia_model *model, Error *error)
+int model_make_schedule(breccia_model *model, bool again, Error *error)
 {
   const ResultsSpec *r = model->spec->results;
-  const double end = model->solver.end_time;
+  const Clock *clock = &model->solver.clock;
+  const double begin = clock->stage_time, end = clock->stage_end;
   const int64_t even = r->every > 0 ? 0 : r->number;
   int64_t most = 2 + even + r->times.count;
   for (int k = 0; k < model->spec->pictures.count; ++k)
     most += ((const PictureSpec *)model->spec->pictures.items[k])->times.count;
-  if (most > 10000000 || (r->every > 0 && model->solver.steps / r->every > 10000000))
+  if (most > 10000000 || (r->every > 0 && model->solver.clock.steps / r->every > 10000000))
     return node_error(model->document, r->head.node, error, "results: %lld states are too many to write",
-                      (long long)(r->every > 0 ? model->solver.steps / r->every : most));
+                      (long long)(r->every > 0 ? model->solver.clock.steps / r->every : most));
+  free(model->schedule);
+  free(model->stops);
   model->schedule = memory_zeroed((size_t)most, sizeof(double), "schedule", error);
   model->stops = memory_zeroed((size_t)most, sizeof(double), "schedule", error);
   if (!model->schedule || !model->stops) return BRECCIA_FAILURE;
   int64_t n = 0;
-  add_times(model->stops, &n, &r->times, end);
+  add_times(model->stops, &n, &r->times, begin, end);
   for (int p = 0; p < model->spec->pictures.count; ++p) {
     const PictureSpec *picture = model->spec->pictures.items[p];
-    add_times(model->stops, &n, &picture->times, end);
-    for (int k = 0; k < picture->times.count; ++k) warn_of_late_picture(model, picture, picture->times.values[k]);
+    add_times(model->stops, &n, &picture->times, begin, end);
   }
   qsort(model->stops, (size_t)n, sizeof(double), by_value);
-  explicit_stop_at(&model->solver, model->stops, n);
+  solver_stop_at(&model->solver, model->stops, n, again);
   double *list = model->schedule;
   memcpy(list, model->stops, sizeof(double) * (size_t)n);
-  list[n++] = 0;
+  list[n++] = begin;
   list[n++] = end;
-  for (int64_t k = 1; k <= even; ++k) list[n++] = end * ((double)k / (double)even);
+  for (int64_t k = 1; k <= even; ++k) list[n++] = begin + (end - begin) * ((double)k / (double)even);
   qsort(list, (size_t)n, sizeof(double), by_value);
   model->schedule_count = n;
   return BRECCIA_OK;
@@ -208,7 +209,7 @@ static int make_schedule(breccia_model *model, Error *error)
 
 bool model_has_passed(const breccia_model *model, int64_t k, double time)
 {
-  return k < model->schedule_count && model->schedule[k] <= time + (0.5 - 1e-6) * model->solver.time_step;
+  return k < model->schedule_count && model->schedule[k] <= time + (0.5 - 1e-6) * model->solver.clock.time_step;
 }
 
 /** True for a file of `breccia material`: one material, a test or stages, no body. */
@@ -226,6 +227,21 @@ static int hold_grips(breccia_model *model, Error *error)
   loading_mark_held(&model->loading, held);
   const int status = domain_hold_grips(&model->domain, held, error);
   free(held);
+  return status;
+}
+
+static int create_loading(breccia_model *model, Error *error)
+{
+  const DeckSpec *spec = model->spec;
+  LoadStage *stages = memory_zeroed((size_t)spec->solve.count, sizeof *stages, "stages", error);
+  if (!stages) return BRECCIA_FAILURE;
+  for (int k = 0; k < spec->solve.count; ++k) {
+    const SolveSpec *stage = spec->solve.items[k];
+    stages[k] = (LoadStage){&stage->loads, &stage->without, stage};
+  }
+  const int status = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, stages,
+                                    spec->solve.count, &spec->selections);
+  free(stages);
   return status;
 }
 
@@ -248,7 +264,7 @@ static int build(breccia_model *model, bool force, Error *error)
   /* What follows needs the body or the materials only: its mistakes are told together with those of the rest. */
   const bool stands = model->domain.particles && model->domain.particles->count;
   if (stands) {
-    bad = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, &spec->selections);
+    bad = create_loading(model, error);
     if (bad) status = bad;
   }
   if (model->domain.family.first) {
@@ -260,9 +276,17 @@ static int build(breccia_model *model, bool force, Error *error)
   if (!status && unknown) status = BRECCIA_USER_ERROR;
   if (!status) status = stands ? hold_grips(model, error) : BRECCIA_USER_ERROR;
   if (status) return status;
-  status = explicit_create(&model->solver, &model->domain, &model->loading, spec->solve->explicit_dynamics,
-                           &model->reader, force, &model->warnings);
-  if (!status) status = make_schedule(model, error);
+  model->solver = (Solver){.domain = &model->domain,
+                           .loading = &model->loading,
+                           .stages = &spec->solve,
+                           .reader = &model->reader,
+                           .force = force};
+  status = solver_create(&model->solver, &model->warnings, error);
+  if (!status) status = model_make_schedule(model, true, error);
+  for (int p = 0; !status && p < spec->pictures.count; ++p) {
+    const PictureSpec *picture = spec->pictures.items[p];
+    for (int k = 0; k < picture->times.count; ++k) warn_of_late_picture(model, picture, picture->times.values[k]);
+  }
   if (!status) plausibility_warn(model);
   return status;
 }
@@ -319,7 +343,7 @@ void breccia_model_destroy(breccia_model **out)
   if (!out || !*out) return;
   breccia_model *model = *out;
   watches_destroy(&model->watches);
-  explicit_destroy(&model->solver);
+  solver_destroy(&model->solver);
   loading_destroy(&model->loading);
   domain_destroy(&model->domain);
   team_destroy(&model->team);
@@ -329,6 +353,7 @@ void breccia_model_destroy(breccia_model **out)
   text_free(&model->overview);
   text_free(&model->plausibility);
   text_free(&model->outcome);
+  text_free(&model->stage);
   free(model->schedule);
   free(model->stops);
   text_free(&model->deck);
@@ -341,11 +366,22 @@ void breccia_model_destroy(breccia_model **out)
 int model_begin(breccia_model *model, Error *error)
 {
   if (model->begun) return BRECCIA_OK;
-  const int status = points_begin(&model->domain.points, error);
-  if (status) return status;
-  explicit_begin(&model->solver);
-  model->begun = true;
-  return BRECCIA_OK;
+  int status = points_begin(&model->domain.points, error);
+  if (!status) status = solver_begin(&model->solver, error);
+  model->begun = !status;
+  return status;
+}
+
+int model_advance(breccia_model *model, Error *error)
+{
+  int status = BRECCIA_OK;
+  while (!status && model->solver.clock.ended && !solver_is_done(&model->solver)) {
+    model->states_before += model->schedule_count;
+    status = solver_next_stage(&model->solver, &model->warnings, error);
+    if (!status) status = model_make_schedule(model, true, error);
+  }
+  if (status || solver_is_done(&model->solver)) return status;
+  return solver_advance(&model->solver, &model->warnings, error);
 }
 
 int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error)
@@ -353,8 +389,8 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   Team *before;
   if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
   int status = model_begin(model, error);
-  for (int64_t k = 0; !status && k < steps && model->solver.step < model->solver.steps; ++k)
-    status = explicit_advance(&model->solver, &model->warnings, error);
+  for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
+    status = model_advance(model, error);
   team_use(before);
   return status;
 }
@@ -375,19 +411,29 @@ int64_t breccia_model_broken_bonds(const breccia_model *model)
 }
 int64_t breccia_model_steps_done(const breccia_model *model)
 {
-  return model->solver.step;
+  return model->solver.clock.step;
+}
+const char *breccia_model_stage(breccia_model *model)
+{
+  const Clock *clock = &model->solver.clock;
+  char name[64];
+  text_free(&model->stage);
+  if (clock->stages > 1)
+    text_add(&model->stage, "stage %lld of %lld, %s", (long long)clock->stage + 1, (long long)clock->stages,
+             solver_stage_name(&model->solver, clock->stage, name, sizeof name));
+  return text_words(&model->stage);
 }
 double breccia_model_time(const breccia_model *model)
 {
-  return model->solver.time;
+  return model->solver.clock.time;
 }
 double breccia_model_time_step(const breccia_model *model)
 {
-  return model->solver.time_step;
+  return model->solver.clock.time_step;
 }
 double breccia_model_stable_time_step(const breccia_model *model)
 {
-  return model->solver.stable;
+  return model->solver.clock.stable;
 }
 int64_t breccia_model_places(const breccia_model *model)
 {
@@ -426,9 +472,11 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
 {
   const ResultsSpec *r = model->spec->results;
   Task task = {.steps = last - first, .states_written = states_written, .checkpoint_seconds = r->checkpoint_seconds};
-  const Explicit *s = &model->solver;
+  const Clock *s = &model->solver.clock;
   const double time = last >= s->steps ? s->end_time : s->end_time * (double)last / (double)s->steps;
   while (task.states < model->schedule_count && model->schedule[task.states] <= time) ++task.states;
+  task.states += model->states_before;
+  if (r->every <= 0) task.states += r->number * (s->stages - 1 - s->stage);
   if (r->every > 0) task.states += last / r->every;
   if (r->checkpoint_steps > 0) task.checkpoints = last / r->checkpoint_steps - first / r->checkpoint_steps;
   for (int k = 0; k < model->spec->pictures.count; ++k) {
@@ -454,7 +502,7 @@ static double measure_evaluation(breccia_model *model)
     fastest = fmin(fastest, seconds - before);
     before = seconds;
     quiet &= !cores_are_short();
-    const double whole = one * (double)model->solver.steps;
+    const double whole = one * (double)model->solver.clock.steps;
     const double enough = quiet && one < 1.1 * fastest ? fmin(0.1, whole / 30) : fmin(2, whole / 10);
     if (count >= FEWEST && seconds > enough) return one;
   }
@@ -491,10 +539,30 @@ static void add_duration(Text *text, double seconds)
     text_add(text, "%.1f h", seconds / 3600);
 }
 
+/** A line for each stage: what changes with it, and how it may end. */
+static void describe_stages(const breccia_model *model, const char *time, Text *text)
+{
+  const Solver *s = &model->solver;
+  const int64_t begin = s->clock.step;
+  char name[64];
+  for (int64_t k = 0; k < s->clock.stages; ++k) {
+    const SolveSpec *stage = s->stages->items[k];
+    text_add(text, "stage '%s': ", solver_stage_name(s, k, name, sizeof name));
+    solver_describe_stage(s, k, time, text);
+    if (!strcmp(stage->laws, "elastic")) text_add(text, ", elastic");
+    if (!strcmp(stage->displacements, "zero")) text_add(text, ", displacements from zero");
+    if (stage->loads.count) text_add(text, ", %d new load%s", stage->loads.count, stage->loads.count > 1 ? "s" : "");
+    text_add(text, "\n");
+  }
+  text_add(text, "%lld steps at most, the first of %.4g %s (%.2f of the stable %.4g)",
+           (long long)(s->clock.steps - begin), s->clock.time_step, time, s->clock.time_step / s->clock.stable,
+           s->clock.stable);
+}
+
 const char *breccia_model_overview(breccia_model *model)
 {
   const Domain *d = &model->domain;
-  const Explicit *s = &model->solver;
+  const Solver *s = &model->solver;
   Text *text = &model->overview;
   text_free(text);
   int fewest = INT32_MAX, most = 0;
@@ -524,13 +592,14 @@ const char *breccia_model_overview(breccia_model *model)
   text_add(text, "\n");
   if (d->type->describe) d->type->describe(d->formulation, text);
   plausibility_in_short(model, text);
-  text_add(text, "\n%lld steps of %.4g %s (%.2f of the stable %.4g)", (long long)s->steps, s->time_step, time,
-           s->time_step / s->stable, s->stable);
-  const double last = explicit_last_step(s);
-  if (isfinite(last)) text_add(text, ", the last one %.4g so as to end at %g,", last, s->end_time);
-  text_add(text, "%s %.0f MB, about ", isfinite(last) ? "" : ",", (double)domain_bytes(d) / 1e6);
+  text_add(text, "\n");
+  if (s->clock.stages > 1)
+    describe_stages(model, time, text);
+  else
+    s->type->describe(s, time, text);
+  text_add(text, ", %.0f MB, about ", (double)domain_bytes(d) / 1e6);
   model_expect(model, NULL);
-  const Task task = model_task(model, s->step, s->steps, 0);
+  const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (d->points.servers) text_add(text, " and what its material servers take");
   return text_words(text);

@@ -5,7 +5,7 @@
 #include "base/team.h"
 #include "model/deck_layout.h"
 #include "model/outlook.h"
-#include "solver/explicit.h"
+#include "solver/solver.h"
 
 typedef struct Peaks { /* over all states written */
   double displacement, velocity, octahedral, mean_low, mean_high, damage;
@@ -22,16 +22,17 @@ struct breccia_model {
   const DeckSpec *spec;
   Domain domain;
   Loading loading;
-  Explicit solver;
+  Solver solver;
   Watches *watches;
-  Text warnings, overview, plausibility, outcome;
+  Text warnings, overview, plausibility, outcome, stage;
   Outlook outlook;
   bool begun;
   int threads; /* wanted; 0: as many as the machine has to spare */
   Team *team;
-  double *schedule; /* ascending times at which results are written, besides every so many steps */
+  double *schedule; /* ascending times of the stage at which results are written, besides every so many steps */
   double *stops;    /* those of them that steps of the program's own choice meet exactly */
   int64_t schedule_count;
+  int64_t states_before; /* that were due in earlier stages */
   Peaks peaks;
   double run_seconds;
   int64_t run_steps;
@@ -42,6 +43,14 @@ int model_enter(breccia_model *model, Team **before, Error *error);
 
 /** Prepares forces and accelerations of the first state, once. */
 int model_begin(breccia_model *model, Error *error);
+
+/** One step; before it the next stage begins if one has ended. Nothing after the last. */
+int model_advance(breccia_model *model, Error *error);
+
+/** Times at which results of the stage under way are written: evenly, and where pictures and the deck ask for them. Does not depend on how
+ *  far a run goes, so that a restarted run writes the same.
+ *  @param[in] again  plan steps to end with them; not where a plan has been taken up from a file */
+int model_make_schedule(breccia_model *model, bool again, Error *error);
 
 /** Rows of the whole state: of the domain, the solver and the largest values so far. */
 void model_state(breccia_model *model, StateList *list);

@@ -16,7 +16,7 @@ void model_state(breccia_model *model, StateList *list)
                  {"highest mean stress", "stress", &peaks->mean_high},
                  {"largest damage", "1", &peaks->damage}};
   domain_state(&model->domain, list);
-  explicit_state(&model->solver, list);
+  solver_state(&model->solver, list);
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)
     state_add_number(list, largest[k].name, largest[k].unit, STATE_COMMITTED, largest[k].value);
 }

@@ -395,7 +395,7 @@ void plausibility_describe(const breccia_model *model, Text *text)
   for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
   describe_frequencies(model, &e, text);
   for (int k = 0; k < model->loading.count; ++k) describe_load(model, model->loading.loads[k].spec, &e, text);
-  const double time = in_si(model, "time", (double)model->solver.steps * model->solver.time_step);
+  const double time = in_si(model, "time", (double)model->solver.clock.steps * model->solver.clock.time_step);
   text_add(text, "  the run: ");
   quantity_describe(time, "s", text);
   text_add(text, ", %.3g travel times of a wave", time / e.crossing);

@@ -63,7 +63,7 @@ static void update_peaks(breccia_model *model)
     int32_t place = d->particles->place_of[n];
     double u = 0, v = 0, s[6];
     for (int k = 0; k < 3; ++k) {
-      u += pow(d->particles->displacement[k][place], 2);
+      u += pow(particles_moved(d->particles, k, place), 2);
       v += pow(d->particles->velocity[k][place], 2);
     }
     for (int k = 0; k < 6; ++k) s[k] = d->stress[k][place];
@@ -82,7 +82,8 @@ static int write_results(Run *run, Error *error)
   const double start = clock_seconds();
   if (domain_observe(&model->domain, error)) return BRECCIA_FAILURE;
   update_peaks(model);
-  const int status = result_file_write(run->results, &model->domain, model->solver.step, model->solver.time, error);
+  const int status =
+      result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
   const double seconds = clock_seconds() - start;
   Outlook *o = &model->outlook;
   pace_note(&o->bytes, o->state_bytes, seconds);
@@ -149,24 +150,31 @@ static int read_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   StateList state = {0};
+  const int64_t stage = checkpoint_count(run->wish->folder, "stage");
+  if (stage > 0 && stage < model->solver.clock.stages && solver_enter(&model->solver, stage, error))
+    return BRECCIA_FAILURE;
   model_state(model, &state);
   const CheckpointOf of = {text_words(&model->deck), model->domain.particles->count};
   const int status = checkpoint_read(run->wish->folder, &state, &of, error);
   state_list_destroy(&state);
   model->begun = !status;
-  return status;
+  return status ? status : model_make_schedule(model, false, error);
 }
 
 static int open_files(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   const ResultNames names = {run->names.items, run->names.count, !strcmp(model->spec->results->precision, "single")};
-  int64_t resume = run->wish->restart ? model->solver.step : -1;
+  int64_t resume = run->wish->restart ? model->solver.clock.step : -1;
   int status;
   if (run->wish->restart) {
-    const WrittenAt at = {model->schedule, model->schedule_count, model->spec->results->every,
-                          model->solver.time_step / 2, model->solver.step};
-    while (model_has_passed(model, run->next_write, model->solver.time)) ++run->next_write;
+    const WrittenAt at = {model->schedule,
+                          model->schedule_count,
+                          model->spec->results->every,
+                          model->solver.clock.time_step / 2,
+                          model->solver.clock.step,
+                          model->solver.clock.ended && model->solver.clock.stages > 1};
+    while (model_has_passed(model, run->next_write, model->solver.clock.time)) ++run->next_write;
     status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                 &names, &at, error);
   } else
@@ -180,27 +188,28 @@ static int open_files(Run *run, Error *error)
 
 static void show_progress(Run *run, bool always)
 {
-  const Explicit *s = &run->model->solver;
+  const Solver *s = &run->model->solver;
   double now = clock_seconds();
   if (!run->wish->progress || (!always && now - run->last_progress < 0.2)) return;
-  pace_note(&run->model->outlook.steps, (double)(s->step - run->told_at), now - run->last_progress - run->paused);
+  pace_note(&run->model->outlook.steps, (double)(s->clock.step - run->told_at), now - run->last_progress - run->paused);
   run->last_progress = now;
-  run->told_at = s->step;
+  run->told_at = s->clock.step;
   run->paused = 0;
-  const Task left = model_task(run->model, s->step, run->steps, run->next_write);
-  run->wish->progress(run->wish->context, s->step, run->steps, outlook_left(&run->model->outlook, &left));
+  const Task left = model_task(run->model, s->clock.step, run->steps, run->model->states_before + run->next_write);
+  run->wish->progress(run->wish->context, s->clock.step, run->steps, outlook_left(&run->model->outlook, &left));
 }
 
 static int due(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  const Explicit *s = &model->solver;
+  const Solver *s = &model->solver;
   const ResultsSpec *r = model->spec->results;
   int status = watches_write(model->watches, s, false, error);
-  bool write = r->every > 0 && s->step % r->every == 0;
-  for (; model_has_passed(model, run->next_write, s->time); ++run->next_write) write = true;
+  bool write = r->every > 0 && s->clock.step % r->every == 0;
+  for (; model_has_passed(model, run->next_write, s->clock.time); ++run->next_write) write = true;
+  write |= s->clock.ended && s->clock.stages > 1;
   if (!status && write) status = write_results(run, error);
-  bool by_steps = r->checkpoint_steps > 0 && s->step && s->step % r->checkpoint_steps == 0;
+  bool by_steps = r->checkpoint_steps > 0 && s->clock.step && s->clock.step % r->checkpoint_steps == 0;
   if (!status && (by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
     status = write_checkpoint(run, error);
   return status;
@@ -209,19 +218,31 @@ static int due(Run *run, Error *error)
 /** Steps at which to stop: as many as wished for, or as the run has as far as it can be foreseen. */
 static int64_t steps_wanted(const Run *run)
 {
-  const int64_t wished = run->wish->steps, steps = run->model->solver.steps;
+  const int64_t wished = run->wish->steps, steps = run->model->solver.clock.steps;
   return wished > 0 && wished < steps ? wished : steps;
+}
+
+/** What was due at the end of the stage before has been written. */
+static void begin_stage(Run *run)
+{
+  run->next_write = 0;
+  while (run->next_write < run->model->schedule_count &&
+         run->model->schedule[run->next_write] <= run->model->solver.clock.stage_time)
+    ++run->next_write;
 }
 
 static int loop(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  Explicit *s = &model->solver;
+  Solver *s = &model->solver;
   int status = run->wish->restart ? BRECCIA_OK : due(run, error);
-  while (!status && s->step < run->steps) {
+  while (!status && !solver_is_done(s) && s->clock.step < run->steps) {
     if (run->wish->interrupted && *run->wish->interrupted) return BRECCIA_INTERRUPTED;
-    if ((status = explicit_advance(s, &model->warnings, error))) break;
-    ++model->run_steps;
+    const int64_t stage = s->clock.stage, step = s->clock.step;
+    status = model_advance(model, error);
+    if (s->clock.stage != stage) begin_stage(run);
+    if (status) break;
+    model->run_steps += s->clock.step - step;
     run->steps = steps_wanted(run);
     status = due(run, error);
     show_progress(run, false);
@@ -281,8 +302,8 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
   PictureSurvey survey;
   int status = spec->same_range ? picture_survey(view, 0, view->steps - 1, false, &o, &survey, error) : BRECCIA_OK;
   for (int t = 0; !status && t < (spec->times.count ? spec->times.count : 1); ++t) {
-    const double time = spec->times.count ? spec->times.values[t] : run->model->solver.time;
-    if (time > run->model->solver.time * (1 + 1e-9)) continue; /* the run did not come so far */
+    const double time = spec->times.count ? spec->times.values[t] : run->model->solver.clock.time;
+    if (time > run->model->solver.clock.time * (1 + 1e-9)) continue; /* the run did not come so far */
     const int step = nearest_write(view, time);
     char name[160];
     picture_name(view, step, spec->field, spec->component, spec->times.count > 0, name, sizeof name);
@@ -357,12 +378,13 @@ static void draw_pictures(Run *run)
 
 /* ---- summary ---- */
 
-static double load_peak(const LoadSpec *l, double time)
+static double load_peak(const Load *load, double time)
 {
   enum { SAMPLES = 1000 };
   double peak = 0;
-  for (int k = 0; k <= SAMPLES; ++k) peak = fmax(peak, fabs(history_factor(l->history, time * k / SAMPLES)));
-  return peak * load_magnitude(l);
+  for (int k = 0; k <= SAMPLES; ++k)
+    peak = fmax(peak, fabs(load_factor(load, load->begin + (time - load->begin) * k / SAMPLES)));
+  return peak * load_magnitude(load->spec);
 }
 
 static double nanoseconds_per_bond(const breccia_model *model)
@@ -410,17 +432,45 @@ static const BrokenBond *first_broken(const Domain *d, double middle[3])
   return bond;
 }
 
+/** The stages that have begun, where there are several. */
+static void add_stages(const Solver *s, Text *text)
+{
+  if (s->clock.stages == 1) return;
+  text_add(text, "  \"stages\": [");
+  for (int64_t k = 0; k <= s->clock.stage; ++k) {
+    const StageRecord *r = &s->records[k];
+    char name[64];
+    text_add(text, "%s{\"name\": ", k ? ", " : "");
+    text_add_json(text, solver_stage_name(s, k, name, sizeof name));
+    text_add(text, ", \"steps\": [%.0f, %.0f], ", r->first_step, r->last_step);
+    text_add(text, "\"times\": [%.10g, %.10g], \"at_rest\": %s}", r->begin, r->end,
+             r->came_to_rest > 0 ? "true" : "false");
+  }
+  text_add(text, "],\n");
+}
+
+static void tell_stages(const Solver *s, const char *time, Text *text)
+{
+  for (int64_t k = 0; s->clock.stages > 1 && k <= s->clock.stage; ++k) {
+    const StageRecord *r = &s->records[k];
+    char name[64];
+    text_add(text, "stage '%s': steps %.0f to %.0f, time %.6g to %.6g %s%s\n",
+             solver_stage_name(s, k, name, sizeof name), r->first_step, r->last_step, r->begin, r->end, time,
+             r->came_to_rest > 0 ? ", came to rest" : "");
+  }
+}
+
 static int write_summary(Run *run, int status, const char *problem, Error *error)
 {
   breccia_model *model = run->model;
   const Domain *d = &model->domain;
-  const Explicit *s = &model->solver;
-  Energy e = explicit_energy(s);
+  const Solver *s = &model->solver;
+  Energy e = solver_energy(s);
   Text t = {0};
   text_add(&t, "{\n  \"title\": ");
   text_add_json(&t, model->spec->title);
   text_add(&t, ",\n  \"version\": \"%s\",\n  \"completed\": %s,\n", BRECCIA_VERSION,
-           !status && s->step >= s->steps ? "true" : "false");
+           !status && solver_is_done(s) ? "true" : "false");
   add_origin(model, &t);
   if (problem && *problem) {
     text_add(&t, "  \"problem\": ");
@@ -428,9 +478,10 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
     text_add(&t, ",\n");
   }
   text_add(&t, "  \"particles\": %lld,\n  \"bonds\": %lld,\n  \"steps\": %lld,\n", (long long)d->particles->count,
-           (long long)d->family.bonds / 2, (long long)s->step);
-  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->time, s->time_step,
-           s->stable);
+           (long long)d->family.bonds / 2, (long long)s->clock.step);
+  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->clock.time,
+           s->clock.time_step, s->clock.stable);
+  add_stages(s, &t);
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
   double x[3];
@@ -476,7 +527,7 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
     text_add(&t, "%s{\"name\": ", k ? ", " : "");
     text_add_json(&t, l->name ? l->name : "");
     text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
-    add_number(&t, "peak", load_peak(l, s->time));
+    add_number(&t, "peak", load_peak(&model->loading.loads[k], s->clock.time));
     text_add(&t, ", \"unit\": ");
     text_add_json(&t, unit);
     text_add(&t, "}");
@@ -506,7 +557,7 @@ static int write_summary(Run *run, int status, const char *problem, Error *error
 }
 
 /** Says whether a body that was meant to come to rest has done so. */
-static void tell_rest(const Explicit *s, Text *t)
+static void tell_rest(const Solver *s, Text *t)
 {
   Rest rest;
   if (rest_find(s, &rest, NULL) || !rest.meant) return;
@@ -526,8 +577,8 @@ static void tell_outcome(Run *run, int status)
 {
   breccia_model *model = run->model;
   const Domain *d = &model->domain;
-  const Explicit *s = &model->solver;
-  Energy e = explicit_energy(s);
+  const Solver *s = &model->solver;
+  Energy e = solver_energy(s);
   Text *t = &model->outcome;
   char time[64], length[64];
   units_name(model->units, dimension_find("time"), time, sizeof time);
@@ -537,14 +588,17 @@ static void tell_outcome(Run *run, int status)
            status == BRECCIA_INTERRUPTED ? "stopped on request"
            : status                      ? "stopped by a failure"
                                          : "finished",
-           (long long)s->step, (long long)s->steps, s->time, time, model->run_seconds, (long long)model->run_steps,
-           nanoseconds_per_bond(model));
+           (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
+           (long long)model->run_steps, nanoseconds_per_bond(model));
+  tell_stages(s, time, t);
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;
     const char *dimension, *kind = load_kind(l, &dimension);
     char unit[64];
     units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    if (l->name) text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(l, s->time), unit);
+    if (l->name)
+      text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(&model->loading.loads[k], s->clock.time),
+               unit);
   }
   double x[3];
   const BrokenBond *first = first_broken(d, x);
@@ -567,8 +621,8 @@ static void tell_outcome(Run *run, int status)
                   {" + fracture ", e.fracture, true},
                   {" + friction ", e.friction, e.friction != 0},
                   {" + damping ", e.damping, e.damping != 0},
-                  {" - kinetic at the start ", s->kinetic_at_start, s->kinetic_at_start > 0},
-                  {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->paid}};
+                  {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
+                  {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->ledger.paid}};
   for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
     if (!energies[k].told) continue;
     text_add(t, "%s", energies[k].words);
@@ -606,7 +660,7 @@ static int finish(Run *run, int status, Error *error)
     int bad = write_checkpoint(run, error);
     if (bad) status = bad;
   } else { /* the last good state; of energy from nothing the checkpoint before is the better one */
-    if (!model->solver.unsound_steps) write_checkpoint(run, error);
+    if (!model->solver.ledger.unsound_steps) write_checkpoint(run, error);
     write_results(run, error);
     watches_write(model->watches, &model->solver, true, error);
   }
@@ -644,7 +698,7 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   if (!status) status = open_files(&run, error);
   if (!status) {
     run.started = run.last_checkpoint = run.last_progress = clock_seconds();
-    run.told_at = model->solver.step;
+    run.told_at = model->solver.clock.step;
     status = finish(&run, loop(&run, error), error);
   }
   result_file_destroy(&run.results);

@@ -161,3 +161,15 @@ int checkpoint_read(const char *folder, const StateList *state, const Checkpoint
   free(path);
   return status;
 }
+
+int64_t checkpoint_count(const char *folder, const char *name)
+{
+  char *path = text_format("%s/checkpoint.h5", folder);
+  int64_t count = -1;
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  hid_t file = path ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
+  if (file < 0 || load(file, name, H5T_NATIVE_INT64, 1, &count)) count = -1;
+  if (file >= 0) H5Fclose(file);
+  free(path);
+  return count;
+}

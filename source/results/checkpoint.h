@@ -16,4 +16,7 @@ int checkpoint_write(const char *folder, const StateList *state, const Checkpoin
 /** Reads it back into a body freshly set up from the same deck, to the same bits; another deck, version or body is refused. */
 int checkpoint_read(const char *folder, const StateList *state, const CheckpointOf *of, Error *error);
 
+/** A count of a checkpoint that may be there, which has to be known before its state is taken up; -1 if it cannot be read. */
+int64_t checkpoint_count(const char *folder, const char *name);
+
 #endif

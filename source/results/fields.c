@@ -9,7 +9,7 @@ static void vector_at(double *const from[3], int32_t place, double *value)
 }
 static void displacement(const Domain *d, int32_t place, double *value)
 {
-  vector_at(d->particles->displacement, place, value);
+  for (int k = 0; k < 3; ++k) value[k] = particles_moved(d->particles, k, place);
 }
 static void velocity(const Domain *d, int32_t place, double *value)
 {

@@ -432,6 +432,7 @@ int result_file_show(ResultFile *file, Error *error)
 static bool was_due(const WrittenAt *due, int64_t step, double time)
 {
   if (step != due->last) return step < due->last;
+  if (due->stage_end) return true;
   if (due->every > 0 && step % due->every == 0) return true;
   for (int64_t k = 0; k < due->count; ++k)
     if (fabs(due->times[k] - time) <= due->tolerance) return true;

@@ -30,6 +30,7 @@ typedef struct WrittenAt {
   int64_t every;    /* one in so many steps; or none */
   double tolerance; /* of times */
   int64_t last;     /* step up to which they are kept */
+  bool stage_end;   /* a stage of several ended with it */
 } WrittenAt;
 
 /** Takes up the file of a run that stopped, keeping only the states that were due. */

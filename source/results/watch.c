@@ -57,7 +57,7 @@ const Section watch_section = {"watch",
 typedef struct Watch Watch;
 typedef struct Kind {
   const char *columns; /* name:dimension, separated by commas */
-  void (*row)(const Watch *watch, const Explicit *solver, double *values);
+  void (*row)(const Watch *watch, const Solver *solver, double *values);
 } Kind;
 
 enum { MOST_COLUMNS = 16 };
@@ -89,15 +89,20 @@ static void mean(double *const from[3], const Selection *s, double *values)
     values[k] /= (double)s->count;
   }
 }
-static void displacement_row(const Watch *w, const Explicit *s, double *values)
+static void displacement_row(const Watch *w, const Solver *s, double *values)
 {
-  mean(s->domain->particles->displacement, &w->selection, values);
+  const Particles *p = s->domain->particles;
+  mean(p->displacement, &w->selection, values);
+  if (!p->zero[0]) return;
+  double zero[3];
+  mean(p->zero, &w->selection, zero);
+  for (int k = 0; k < 3; ++k) values[k] -= zero[k];
 }
-static void velocity_row(const Watch *w, const Explicit *s, double *values)
+static void velocity_row(const Watch *w, const Solver *s, double *values)
 {
   mean(s->domain->particles->velocity, &w->selection, values);
 }
-static void force_row(const Watch *w, const Explicit *s, double *values)
+static void force_row(const Watch *w, const Solver *s, double *values)
 {
   const Particles *p = s->domain->particles;
   for (int k = 0; k < 3; ++k) {
@@ -106,7 +111,7 @@ static void force_row(const Watch *w, const Explicit *s, double *values)
       values[k] += p->internal[k][w->selection.places[n]] * p->volume[w->selection.places[n]];
   }
 }
-static void stress_row(const Watch *w, const Explicit *s, double *values)
+static void stress_row(const Watch *w, const Solver *s, double *values)
 {
   double *strain = values, *stress = values + 6, tensor[6];
   for (int k = 0; k < 12; ++k) values[k] = 0;
@@ -120,7 +125,7 @@ static void stress_row(const Watch *w, const Explicit *s, double *values)
   values[13] = tensor_octahedral_shear(stress);
   values[14] = (stress[XX] + stress[YY] + stress[ZZ]) / 3;
 }
-static void history_row(const Watch *w, const Explicit *s, double *values)
+static void history_row(const Watch *w, const Solver *s, double *values)
 {
   for (int c = 0; c < MOST_COLUMNS && w->history[c] >= 0; ++c) {
     values[c] = 0;
@@ -128,7 +133,7 @@ static void history_row(const Watch *w, const Explicit *s, double *values)
       values[c] += domain_history(s->domain, w->selection.places[n], w->history[c]) / (double)w->selection.count;
   }
 }
-static void damage_row(const Watch *w, const Explicit *s, double *values)
+static void damage_row(const Watch *w, const Solver *s, double *values)
 {
   values[0] = values[1] = 0;
   for (int64_t n = 0; n < w->selection.count; ++n) {
@@ -137,7 +142,8 @@ static void damage_row(const Watch *w, const Explicit *s, double *values)
     values[1] = fmax(values[1], damage);
   }
 }
-static void distances(const Watch *w, const Explicit *s, double *now, double *reference)
+/** Distance of the ends now, and where displacements count from. */
+static void distances(const Watch *w, const Solver *s, double *now, double *reference)
 {
   const Particles *p = s->domain->particles;
   *now = *reference = 0;
@@ -145,33 +151,40 @@ static void distances(const Watch *w, const Explicit *s, double *now, double *re
     double xi = p->position[k][w->ends[1]] - p->position[k][w->ends[0]];
     double y = xi + p->displacement[k][w->ends[1]] - p->displacement[k][w->ends[0]];
     *now += y * y;
+    if (p->zero[k]) xi += p->zero[k][w->ends[1]] - p->zero[k][w->ends[0]];
     *reference += xi * xi;
   }
   *now = sqrt(*now);
   *reference = sqrt(*reference);
 }
-static void opening_row(const Watch *w, const Explicit *s, double *values)
+static void opening_row(const Watch *w, const Solver *s, double *values)
 {
   double reference;
   distances(w, s, &values[0], &reference);
   values[1] = values[0] - reference;
 }
-static void bond_row(const Watch *w, const Explicit *s, double *values)
+static void bond_row(const Watch *w, const Solver *s, double *values)
 {
   double now, reference;
   distances(w, s, &now, &reference);
-  values[0] = now / reference - 1;
+  values[0] = now / particles_distance(s->domain->particles, w->ends[0], w->ends[1]) - 1;
   values[1] = family_joins(&s->domain->family, w->ends[0], w->ends[1]);
 }
-static void load_row(const Watch *w, const Explicit *s, double *values)
+static void load_row(const Watch *w, const Solver *s, double *values)
 {
-  values[0] = history_factor(w->load->history, s->time);
-  values[1] = values[0] * load_magnitude(w->load);
+  values[0] = values[1] = 0;
+  for (int l = 0; l < s->loading->count;
+       ++l) { /* of that name one acts at most, or several that begin together: the last */
+    const Load *load = &s->loading->loads[l];
+    if (!load->spec->name || strcmp(load->spec->name, w->spec->load) || !load_acts(s->loading, load)) continue;
+    values[0] = load_factor(load, s->clock.time);
+    values[1] = values[0] * load_magnitude(load->spec);
+  }
 }
-static void energy_row(const Watch *w, const Explicit *s, double *values)
+static void energy_row(const Watch *w, const Solver *s, double *values)
 {
   (void)w;
-  Energy e = explicit_energy(s);
+  Energy e = solver_energy(s);
   const double row[] = {e.kinetic,    e.internal,  e.stored,
                         e.dissipated, e.external,  e.damping,
                         e.fracture,   e.imbalance, (double)s->domain->broken_count,
@@ -352,21 +365,21 @@ int watches_open(Watches *watches, const char *folder, const Units *units, int64
   return BRECCIA_OK;
 }
 
-int watches_write(Watches *watches, const Explicit *solver, bool last, Error *error)
+int watches_write(Watches *watches, const Solver *solver, bool last, Error *error)
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
-    if (w->last_step == solver->step || (solver->step % w->spec->every && !last)) continue;
+    if (w->last_step == solver->clock.step || (solver->clock.step % w->spec->every && !last)) continue;
     double values[MOST_COLUMNS];
     int columns = 1;
     for (const char *c = w->kind->columns; *c; ++c) columns += *c == ',';
     w->kind->row(w, solver, values);
-    fprintf(w->file, "%lld,%.10g", (long long)solver->step, solver->time);
+    fprintf(w->file, "%lld,%.10g", (long long)solver->clock.step, solver->clock.time);
     for (int c = 0; c < columns; ++c) fprintf(w->file, ",%.17g", values[c]);
     fprintf(w->file, "\n");
     if (fflush(w->file))
       return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    w->last_step = solver->step;
+    w->last_step = solver->clock.step;
   }
   return BRECCIA_OK;
 }

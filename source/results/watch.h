@@ -2,7 +2,7 @@
 #ifndef BRECCIA_RESULTS_WATCH_H
 #define BRECCIA_RESULTS_WATCH_H
 
-#include "solver/explicit.h"
+#include "solver/solver.h"
 
 typedef struct WatchSpec {
   SectionHead head;
@@ -23,7 +23,7 @@ int watches_create(Watches **watches, const Domain *domain, const Loading *loadi
 /** Opens <folder>/<name>.csv for each; with `resume_after` >= 0 old files are kept up to that step and continued. */
 int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */
-int watches_write(Watches *watches, const Explicit *solver, bool last, Error *error);
+int watches_write(Watches *watches, const Solver *solver, bool last, Error *error);
 /** Names the c-th column of the k-th history; of one that could not be resolved only step and time are known.
  *  @return 0, or 1 after the last */
 int watches_column(const Watches *watches, int k, int c, char *name, size_t size);

@@ -7,26 +7,26 @@
 const double rest_limit = 1e-3;
 
 /** True if a history says the same at the end as a hundredth of the time before. */
-static bool is_steady(const HistorySpec *history, double time)
+static bool is_steady(const Load *load, double time)
 {
-  const double now = history_factor(history, time), before = history_factor(history, 0.99 * time);
+  const double now = load_factor(load, time), before = load_factor(load, time - 0.01 * (time - load->begin));
   return fabs(now - before) <= 1e-9 * fmax(fabs(now), 1);
 }
 
-static bool is_meant(const Explicit *s)
+static bool is_meant(const Solver *s)
 {
-  if (!(s->spec->damping > 0 || s->spec->local_damping > 0)) return false;
+  if (!s->type->damps(s)) return false;
   for (int k = 0; k < s->loading->count; ++k)
-    if (!is_steady(s->loading->loads[k].spec->history, s->time)) return false;
+    if (load_acts(s->loading, &s->loading->loads[k]) && !is_steady(&s->loading->loads[k], s->clock.time)) return false;
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *c = &s->loading->constraints[n];
-    const HistorySpec *history = c->load->spec->history;
-    if (c->is_velocity && c->value != 0 && history_factor(history, s->time) != 0) return false;
+    if (load_acts(s->loading, c->load) && c->is_velocity && c->value != 0 && load_factor(c->load, s->clock.time) != 0)
+      return false;
   }
   return true;
 }
 
-int rest_find(const Explicit *s, Rest *rest, Error *error)
+int rest_find(const Solver *s, Rest *rest, Error *error)
 {
   *rest = (Rest){.meant = is_meant(s)};
   if (!rest->meant) return BRECCIA_OK;
@@ -40,7 +40,7 @@ int rest_find(const Explicit *s, Rest *rest, Error *error)
   }
   for (int n = 0; !failed && n < s->loading->constraint_count; ++n) { /* what a support carries is balanced */
     const Constraint *c = &s->loading->constraints[n];
-    for (int64_t at = 0; at < c->load->selection.count; ++at) {
+    for (int64_t at = 0; load_acts(s->loading, c->load) && at < c->load->selection.count; ++at) {
       const int32_t i = c->load->selection.places[at];
       double along = 0;
       for (int k = 0; k < 3; ++k) along += free_force[k][i] * c->direction[k];
@@ -61,7 +61,8 @@ int rest_find(const Explicit *s, Rest *rest, Error *error)
   for (int k = 0; k < 3; ++k) places_free(&free_force[k]);
   if (failed) return BRECCIA_FAILURE;
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
-  rest->kinetic = s->paid > 0 ? fmax(0, s->ledger.kinetic) / s->paid : 0; /* a rounding below zero is none */
+  rest->kinetic =
+      s->ledger.paid > 0 ? fmax(0, s->ledger.kinetic) / s->ledger.paid : 0; /* a rounding below zero is none */
   rest->reached = rest->unbalanced < rest_limit && rest->kinetic < rest_limit;
   return BRECCIA_OK;
 }

@@ -2,7 +2,7 @@
 #ifndef BRECCIA_SOLVER_REST_H
 #define BRECCIA_SOLVER_REST_H
 
-#include "solver/explicit.h"
+#include "solver/solver.h"
 
 typedef struct Rest {
   bool meant;        /* there is damping, and no load or motion changes any more */
@@ -15,6 +15,6 @@ typedef struct Rest {
 extern const double rest_limit;
 
 /** @return status; of the state between two steps */
-int rest_find(const Explicit *solver, Rest *rest, Error *error);
+int rest_find(const Solver *solver, Rest *rest, Error *error);
 
 #endif

@@ -47,9 +47,9 @@ static void the_stable_step_hardly_falls_whatever_bonds_break(void **state)
         break_some(&m->domain, 0.15 / (1 - gone), &seed);
         gone += 0.15;
         assert_int_equal(stable_step(&m->domain, &step, NULL), 0);
-        if (step < least[k] * m->solver.stable)
+        if (step < least[k] * m->solver.clock.stable)
           fail_msg("body %d%s: %.2f of the stable step is left when %.2f of the bonds are gone", b, more[k],
-                   step / m->solver.stable, gone);
+                   step / m->solver.clock.stable, gone);
       }
       breccia_model_destroy(&m);
     }
@@ -80,7 +80,7 @@ static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
       breccia_model *m = struck_plate(spaces[k], fine ? ", safety: 0.2" : "");
       breccia_error *error = breccia_error_create();
       if (breccia_model_step(m, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
-      const Energy e = explicit_energy(&m->solver);
+      const Energy e = solver_energy(&m->solver);
       const Particles *p = m->domain.particles;
       double fastest = 0;
       for (int64_t n = 0; n < p->count; ++n)
@@ -114,14 +114,14 @@ static void two_particles_spend_what_their_bond_received(void **state)
                  "solve: {explicit: {end time: %g}}\n",
                  fine ? 0.01 : 1.0, fine ? 2e-3 : 2e-5);
     double before = 0;
-    while (!m->domain.broken_count && m->solver.step < m->solver.steps) {
+    while (!m->domain.broken_count && m->solver.clock.step < m->solver.clock.steps) {
       before = m->solver.ledger.bond_work;
       breccia_model_step(m, 1, NULL);
     }
     assert_true(m->domain.broken_count == 1);
     assert_true(before > 0);
     breccia_model_step(m, INT64_MAX, NULL);
-    const Energy e = explicit_energy(&m->solver);
+    const Energy e = solver_energy(&m->solver);
     const double received = m->solver.ledger.bond_work;
     assert_near(e.fracture, received, 1e-12 * received);
     assert_near(e.stored, 0, 1e-12 * received);
@@ -167,7 +167,7 @@ static void a_cut_through_bonds_costs_half_c_s0_squared_of_each(void **state)
       }
     assert_true(across > 50);
     assert_int_equal(breccia_model_step(m, INT64_MAX, NULL), 0);
-    const Energy e = explicit_energy(&m->solver);
+    const Energy e = solver_energy(&m->solver);
     print_message("%s: booked %.4f of the sum over the cut, %lld of %lld bonds\n", space ? "3-D" : "plane",
                   e.fracture / wanted, (long long)d->broken_count, (long long)across);
     assert_int_equal(d->broken_count, across);
@@ -191,7 +191,7 @@ static void bonds_that_soften_dissipate(void **state)
                "        {on: {face: x+, layers: 3}, velocity: [0.05, free], history: {ramp to: 2e-4}}]\n"
                "solve: {explicit: {end time: 1.2e-3}}\n");
   assert_int_equal(breccia_model_step(m, INT64_MAX, NULL), 0);
-  const Energy e = explicit_energy(&m->solver);
+  const Energy e = solver_energy(&m->solver);
   assert_true(e.dissipated > 0.1 * e.internal);
   assert_true(e.stored > 0 && e.dissipated > 0);
   assert_near(e.stored + e.dissipated, e.internal, 1e-9 * e.internal);
@@ -226,7 +226,7 @@ static void damped_bodies_come_to_rest_at_the_default_step(void **state)
       assert_near(u, 1e-4 * (p->position[0][p->place_of[30]] - 0.2), 0.03 * 2.9e-4);
     } else { /* creeps: each step is no longer than the damping's own time */
       assert_false(rest.reached);
-      assert_true(m->solver.time_step <= 1 / 4e4);
+      assert_true(m->solver.clock.time_step <= 1 / 4e4);
     }
     breccia_error_destroy(&error);
     breccia_model_destroy(&m);
@@ -242,14 +242,14 @@ static void steps_end_with_the_times_that_are_asked_for(void **state)
                                    "solve: {explicit: {end time: 0.0271}}\n");
   const double wanted[] = {0.0031, 0.0137, 0.02, 0.0271};
   int met = 0;
-  while (m->solver.step < m->solver.steps) {
+  while (m->solver.clock.step < m->solver.clock.steps) {
     breccia_model_step(m, 1, NULL);
-    assert_true(m->solver.time_step <= 0.8 * m->solver.stable * (1 + 1e-12));
-    assert_true(m->solver.time_step > 0.4 * m->solver.stable);
-    if (met < 4 && m->solver.time == wanted[met]) ++met;
+    assert_true(m->solver.clock.time_step <= 0.8 * m->solver.clock.stable * (1 + 1e-12));
+    assert_true(m->solver.clock.time_step > 0.4 * m->solver.clock.stable);
+    if (met < 4 && m->solver.clock.time == wanted[met]) ++met;
   }
   assert_int_equal(met, 4);
-  assert_true(m->solver.time == 0.0271);
+  assert_true(m->solver.clock.time == 0.0271);
   breccia_model_destroy(&m);
 }
 
@@ -272,16 +272,16 @@ static void a_chosen_step_ends_with_the_end_time_by_a_shorter_last_one(void **st
                   "solve: {explicit: {%s}}\n",
              cases[k].solve);
     breccia_model *m = model_of(deck);
-    assert_int_equal(m->solver.steps, cases[k].steps);
+    assert_int_equal(m->solver.clock.steps, cases[k].steps);
     snprintf(words, sizeof words, "the last one %.4g so as to end at %g", cases[k].last, cases[k].end);
     assert_true((strstr(breccia_model_overview(m), words) != NULL) == isfinite(cases[k].last));
     for (int64_t step = 1; step < cases[k].steps; ++step) {
       assert_int_equal(breccia_model_step(m, 1, NULL), 0);
-      assert_near(m->solver.time, 1e-4 * (double)step, 1e-12);
+      assert_near(m->solver.clock.time, 1e-4 * (double)step, 1e-12);
     }
     assert_int_equal(breccia_model_step(m, 10, NULL), 0);
-    assert_int_equal(m->solver.step, cases[k].steps);
-    assert_near(m->solver.time, cases[k].end, 1e-15);
+    assert_int_equal(m->solver.clock.step, cases[k].steps);
+    assert_near(m->solver.clock.time, cases[k].end, 1e-15);
     breccia_model_destroy(&m);
   }
 }
@@ -343,7 +343,7 @@ static void a_step_that_fails_leaves_nothing_behind(void **state)
     double fracture = 0;
     int64_t broken = 0;
     int status = 0;
-    while (!status && m->solver.step < m->solver.steps) {
+    while (!status && m->solver.clock.step < m->solver.clock.steps) {
       free(before);
       before = bits_of_state(d, &bytes);
       memcpy(intact, d->family.intact, slots);
@@ -371,19 +371,19 @@ static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
   (void)state;
   breccia_model *whole = pulled_vase("failed laws: break");
   bool marked = false;
-  while (!marked && whole->solver.step < whole->solver.steps) {
+  while (!marked && whole->solver.clock.step < whole->solver.clock.steps) {
     breccia_model_step(whole, 1, NULL);
     for (int64_t i = 0; i < whole->domain.particles->places; ++i) marked |= whole->domain.gave_up[i];
   }
   assert_true(marked);
   char folder[] = "/tmp/breccia-XXXXXX";
   assert_non_null(mkdtemp(folder));
-  breccia_run run = {.folder = folder, .steps = whole->solver.step};
+  breccia_run run = {.folder = folder, .steps = whole->solver.clock.step};
   breccia_model *first = pulled_vase("failed laws: break"), *second = pulled_vase("failed laws: break");
   assert_int_equal(breccia_model_run(first, &run, NULL), 0);
   breccia_model_step(whole, 40, NULL);
   run.restart = 1;
-  run.steps = whole->solver.step;
+  run.steps = whole->solver.clock.step;
   assert_int_equal(breccia_model_run(second, &run, NULL), 0);
   assert_true(whole->domain.broken_count > 0);
   assert_int_equal(second->domain.broken_count, whole->domain.broken_count);
@@ -414,7 +414,7 @@ static void bonds_that_give_more_than_they_received_stop_the_run(void **state)
       "loads: [{on: {inside: {box: {from: [-0.001, 0.076], to: [0.0025, 0.124]}}}, velocity: [16.5, free]}]\n"
       "solve: {explicit: {end time: 40e-6}}\n";
   assert_int_equal(breccia_model_load_string(deck, "deck", NULL, &m, error), 0);
-  assert_int_equal(breccia_model_step(m, m->solver.steps, error), BRECCIA_FAILURE);
+  assert_int_equal(breccia_model_step(m, m->solver.clock.steps, error), BRECCIA_FAILURE);
   assert_non_null(strstr(breccia_error_text(error), "energy from nothing"));
   breccia_model_destroy(&m);
   breccia_error_destroy(&error);

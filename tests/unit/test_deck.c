@@ -319,6 +319,8 @@ static void what_a_deck_reuses_is_that_value(void **state)
       {"variables: {a: 1 m}\ntitle: '${a*2}'\n", "variables.a=3 m", "variables:\n  a: 3 m\ntitle: 6 m\n"},
       {"title: a\n", "solve.explicit.end time=5 ms", "title: a\nsolve:\n  explicit:\n    end time: 5 ms\n"},
       {"loads: [{on: a}, {name: push, on: b}]\n", "loads.push.on=c", "loads:\n  - {on: a}\n  - {name: push, on: c}\n"},
+      {"solve: [{explicit: {steps: 1}}, {name: push, explicit: {steps: 2}}]\n", "solve.push.explicit.safety=0.5",
+       "solve:\n  - {explicit: {steps: 1}}\n  - {name: push, explicit: {steps: 2, safety: 0.5}}\n"},
       {"loads: [{on: a}, {name: push, on: b}]\n", "loads.1.on={face: x+}",
        "loads:\n  - {on: {face: x+}}\n  - {name: push, on: b}\n"},
       {"materials: {M0.5: {density: 1}}\n", "materials.M0.5.density=2", "materials:\n  M0.5:\n    density: 2\n"},

@@ -261,6 +261,7 @@ static void a_step_that_fails_gives_back_every_bit(void **state)
       int status = 0;
       int64_t step = 0;
       StateCopy before = {0}, after;
+      breccia_model_step(m, 0, NULL); /* forces of the first state */
       while (!status && breccia_model_steps_done(m) < 60) {
         state_copy_destroy(&before);
         copy_state(m, &before);

@@ -1,0 +1,45 @@
+/* The energies of a run: what loads and motions have put in, and where it went. */
+#ifndef BRECCIA_SOLVER_LEDGER_H
+#define BRECCIA_SOLVER_LEDGER_H
+
+#include "domain/domain.h"
+#include "solver/clock.h"
+
+/** What is summed over steps. */
+typedef struct Ledger {
+  double bond_work, external_work, damping_work;
+  double kinetic; /* as of now */
+  double between; /* kinetic energy at full steps exceeds what the works say by the sum of this (explicit.c) */
+  double kinetic_at_start;
+  double paid;           /* the most that loads, motions and speeds at the start have put in so far */
+  int64_t damped;        /* there has been damping: its work is more than roundings */
+  int64_t unsound_steps; /* up to now, in each of which energy has come from nothing */
+} Ledger;
+
+/** Where the work went: external + kinetic at the start + between = kinetic + stored + dissipated + fracture + friction + damping + error. */
+typedef struct Energy {
+  double kinetic;
+  double internal;   /* stored + dissipated: work on bonds, less what went with broken ones */
+  double stored;     /* that unloading would give back */
+  double dissipated; /* by laws: yielding and softening */
+  double external;   /* work of loads and prescribed motions */
+  double damping;
+  double fracture; /* work that broken bonds had received and not given back or dissipated */
+  double friction; /* of contact */
+  double
+      between; /* what the kinetic energy of the speeds at full steps is above that of the works (explicit.c): short waves
+                       that the step hardly follows */
+  double
+      imbalance; /* the error without it, over the most that loads, motions and the speeds at the start have put in */
+} Energy;
+
+Energy ledger_energy(const Ledger *ledger, Domain *domain);
+
+/** After a step: fails if energy has come from nothing for some steps: bonds gave back more than they had received, or no work explains
+ *  the speeds. */
+int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, Error *error);
+
+/** Rows of the sums. */
+void ledger_state(Ledger *ledger, StateList *list);
+
+#endif

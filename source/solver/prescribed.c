@@ -1,0 +1,131 @@
+/* Prescribed motions in explicit steps. In a prescribed direction loads, reaction and damping together do whatever work the change of
+ * kinetic energy and the bonds ask for; that sum is booked as external. The sweeps over all particles have booked the free motion, which is
+ * taken back here. Particles are shared out in parts whose sums are added in order; held faces are large enough for one thread
+ * alone to hold up all others. */
+#include "base/team.h"
+#include "solver/explicit.h"
+
+#include <math.h>
+
+enum { PART = 512 };
+
+int64_t explicit_parts_of(const Constraint *constraint)
+{
+  return (constraint->load->selection.count + PART - 1) / PART;
+}
+
+static double along(double *const vector[3], const double direction[3], int32_t i)
+{
+  return vector[0][i] * direction[0] + vector[1][i] * direction[1] + vector[2][i] * direction[2];
+}
+
+static int64_t part_end(const Constraint *constraint, int64_t part)
+{
+  int64_t end = (part + 1) * PART;
+  return end < constraint->load->selection.count ? end : constraint->load->selection.count;
+}
+
+void explicit_add_to_ledger(Explicit *s, const double *sums)
+{
+  s->ledger->bond_work += sums[BOND_WORK];
+  s->ledger->external_work += sums[EXTERNAL_WORK];
+  s->ledger->damping_work += sums[DAMPING_WORK];
+  s->ledger->kinetic += sums[KINETIC];
+  s->ledger->between += sums[BETWEEN];
+}
+
+static void add_parts(Explicit *s, const Constraint *constraint)
+{
+  for (int64_t part = 0; part < explicit_parts_of(constraint); ++part) {
+    const double *sums = s->parts[part];
+    explicit_add_to_ledger(s, sums);
+    s->motion = fmax(s->motion, sums[MOTION]);
+  }
+}
+
+static void move_part(Explicit *s, const Constraint *constraint, double target, int64_t part)
+{
+  const Particles *p = s->domain->particles;
+  const double *d = constraint->direction;
+  double dt = s->clock->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, between = 0, largest = 0;
+  for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
+    int32_t i = constraint->load->selection.places[k];
+    double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
+    double fi = along(p->internal, d, i), fe = along(p->external, d, i);
+    double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
+           off = (constraint->from ? constraint->from[k] + target : target) - along(p->displacement, d, i);
+    largest = fmax(largest, fabs(drifted + off));
+    double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
+    bond -= fi * (work - free_work);
+    damping -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
+    external += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
+    between += dt * dt / 8 * p->density[i] * p->volume[i] * (a - c * v) * (a - c * v);
+    for (int j = 0; j < 3; ++j) {
+      p->displacement[j][i] += off * d[j];
+      p->velocity[j][i] += off / dt * d[j];
+    }
+  }
+  double *sums = s->parts[part];
+  sums[BOND_WORK] = bond;
+  sums[EXTERNAL_WORK] = external;
+  sums[DAMPING_WORK] = damping;
+  sums[KINETIC] = 0;
+  sums[BETWEEN] = between;
+  sums[MOTION] = largest;
+}
+
+void explicit_prescribe_displacements(Explicit *s)
+{
+  TEAM_SINGLE
+  {
+    s->motion = 0;
+    for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
+  }
+  for (int n = 0; n < s->loading->constraint_count; ++n) { /* one after the other: they may share particles */
+    const Constraint *constraint = &s->loading->constraints[n];
+    if (!load_acts(s->loading, constraint->load)) continue;
+    double target = constraint_displacement(constraint, s->clock->time + s->clock->time_step);
+    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, target, part);
+    TEAM_SINGLE add_parts(s, constraint);
+  }
+}
+
+static void speed_part(Explicit *s, const Constraint *constraint, double moved, double rate, int64_t part)
+{
+  const Particles *p = s->domain->particles;
+  const double *d = constraint->direction;
+  double dt = s->clock->time_step, c = s->spec->damping, external = 0, damping = 0, kinetic = 0, between = 0;
+  for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
+    int32_t i = constraint->load->selection.places[k];
+    double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
+    double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * moved * p->volume[i];
+    kinetic += 0.5 * mass * (rate * rate - v * v);
+    damping -= (fi + fe - p->density[i] * (a - c * v)) * work;
+    external += 0.5 * mass * rate * rate - fe * work - fi * work;
+    between -= dt * dt / 8 * mass * (a - c * v) * (a - c * v);
+    for (int j = 0; j < 3; ++j) {
+      p->velocity[j][i] += (rate - v) * d[j];
+      s->acceleration[j][i] -= a * d[j];
+    }
+  }
+  double *sums = s->parts[part];
+  sums[BOND_WORK] = sums[MOTION] = 0;
+  sums[EXTERNAL_WORK] = external;
+  sums[DAMPING_WORK] = damping;
+  sums[KINETIC] = kinetic;
+  sums[BETWEEN] = between;
+}
+
+void explicit_prescribe_velocities(Explicit *s)
+{
+  double dt = s->clock->time_step;
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *constraint = &s->loading->constraints[n];
+    if (!load_acts(s->loading, constraint->load)) continue;
+    double before = constraint_displacement(constraint, s->clock->time - dt);
+    double moved = constraint_displacement(constraint, s->clock->time) - before;
+    double rate = (constraint_displacement(constraint, s->clock->time + dt) - before) / (2 * dt);
+    TEAM_FOR (part, explicit_parts_of(constraint)) speed_part(s, constraint, moved, rate, part);
+    TEAM_SINGLE add_parts(s, constraint);
+  }
+}

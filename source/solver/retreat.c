@@ -1,0 +1,64 @@
+/* An explicit step that has come to forces that are no numbers, or to no forces at all. */
+#include "solver/explicit.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static int32_t first_bad_particle(const Particles *p)
+{
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k)
+      if (!isfinite(p->internal[k][p->place_of[n]])) return p->place_of[n];
+  return p->place_of[0];
+}
+
+/** Which law could not be integrated, and at which strain. */
+static const char *describe_failed_law(const Domain *d, int64_t place, char *words, size_t size)
+{
+  const Material *m = &d->materials[d->material[place / SLICE]];
+  if (d->points.components != 6) {
+    snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law->name,
+             m->name);
+    return words;
+  }
+  double e[6];
+  for (int k = 0; k < 6; ++k) e[k] = d->strain[k][place];
+  snprintf(words, size,
+           "the law %s of material '%s' could not be integrated at the strain xx %g, yy %g, zz %g, xy %g, yz %g, zx %g",
+           m->law->name, m->name, e[0], e[1], e[2], e[3], e[4], e[5]);
+  return words;
+}
+
+int explicit_retreat(Explicit *s, Error *error)
+{
+  Domain *d = s->domain;
+  const Particles *p = d->particles;
+  const double dt = s->clock->time_step;
+  const int32_t failed = (int32_t)d->failed_place, bad = failed >= 0 ? failed : first_bad_particle(p);
+  const int left = family_count(&d->family, bad);
+  char words[320];
+  const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
+  if (dt > s->clock->stable)
+    cause = "the time step is above the stable one";
+  else if (failed >= 0)
+    cause = describe_failed_law(d, failed, words, sizeof words);
+  else if (left < 4)
+    cause = "it has lost nearly all its bonds";
+  if (d->out_of_memory || d->contact.failed)
+    error_add(error, BRECCIA_FAILURE, "step %lld (time %g): out of memory: %s", (long long)s->clock->step + 1,
+              s->clock->time + dt, d->out_of_memory ? "broken bonds" : "contact");
+  else if (*points_problem(&d->points))
+    error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->clock->step + 1, s->clock->time + dt,
+              points_problem(&d->points));
+  else
+    error_add(
+        error, BRECCIA_FAILURE,
+        "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
+        "%g, stable step %g, kinetic energy %g)",
+        (long long)s->clock->step + 1, s->clock->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
+        p->position[2][bad], cause, dt, s->clock->stable, s->ledger->kinetic);
+  state_undo(&s->before);
+  domain_mend(d);
+  domain_follow(d);
+  return BRECCIA_FAILURE;
+}

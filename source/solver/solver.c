@@ -1,0 +1,233 @@
+#include "solver/solver.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SOLVER(name, about)                                                                                            \
+  extern const SolverType name##_solver;                                                                               \
+  extern const Section name##_section;
+#include "solver/solvers.h"
+#undef SOLVER
+
+static const SolverType *const types[] = {
+#define SOLVER(name, about) &name##_solver,
+#include "solver/solvers.h"
+#undef SOLVER
+};
+
+static const char *laws_word(int k)
+{
+  static const char *const words[] = {"as given", "elastic", NULL};
+  return words[k];
+}
+
+static const char *displacements_word(int k)
+{
+  static const char *const words[] = {"keep", "zero", NULL};
+  return words[k];
+}
+
+static const Field solve_fields[] = {
+#define SOLVER(name, about)                                                                                            \
+  {#name, FIELD_SECTION, offsetof(SolveSpec, of[SOLVER_##name]), NULL, "", NULL, about, &name##_section, NULL, 'S'},
+#include "solver/solvers.h"
+#undef SOLVER
+    {"name", FIELD_TEXT, offsetof(SolveSpec, name), NULL, "", NULL, "of the stage, for messages and the summary", NULL,
+     NULL, 0},
+    {"laws", FIELD_CHOICE, offsetof(SolveSpec, laws), NULL, "as given", NULL,
+     "elastic: while this stage lasts, all laws answer elastically and no bond breaks", NULL, laws_word, 0},
+    {"displacements", FIELD_CHOICE, offsetof(SolveSpec, displacements), NULL, "keep", NULL,
+     "zero: displacements that are written, drawn and watched count from the beginning of this stage; stresses, "
+     "strains and what laws remember stay",
+     NULL, displacements_word, 0},
+    {"loads", FIELD_SECTIONS, offsetof(SolveSpec, loads), NULL, "", NULL,
+     "loads that begin with this stage; histories count from its beginning, prescribed motions from where the "
+     "particles are then. Earlier loads go on; one of the same name is replaced",
+     &load_section, NULL, 0},
+    {"without", FIELD_TEXTS, offsetof(SolveSpec, without), NULL, "", NULL, "names of earlier loads that end", NULL,
+     NULL, 0},
+};
+const Section solve_section = {"solve",
+                               "How the equations are solved, or a stage of that.",
+                               sizeof(SolveSpec),
+                               FIELDS(solve_fields),
+                               NULL,
+                               NULL,
+                               NULL,
+                               0};
+
+static const SolveSpec *stage_of(const Solver *s, int64_t stage)
+{
+  return s->stages->items[stage];
+}
+
+static int type_of(const SolveSpec *stage)
+{
+  int k = 0;
+  while (!stage->of[k]) ++k;
+  return k;
+}
+
+/** Steps and end of the run, from those of the stage under way and what later ones may take. */
+static void foresee(Solver *s)
+{
+  double steps = 0, time = 0;
+  for (int64_t k = s->clock.stage + 1; k < s->clock.stages; ++k) {
+    const SolveSpec *stage = stage_of(s, k);
+    types[type_of(stage)]->foresee(stage->of[type_of(stage)], &s->clock, &steps, &time);
+  }
+  s->clock.steps = s->clock.stage_last + (int64_t)fmin(steps, 1e15);
+  s->clock.end_time = s->clock.stage_end + time;
+}
+
+const char *solver_stage_name(const Solver *s, int64_t stage, char *name, size_t size)
+{
+  if (stage_of(s, stage)->name)
+    snprintf(name, size, "%s", stage_of(s, stage)->name);
+  else
+    snprintf(name, size, "%lld", (long long)stage + 1);
+  return name;
+}
+
+void solver_describe_stage(const Solver *s, int64_t stage, const char *time, Text *text)
+{
+  const int type = type_of(stage_of(s, stage));
+  types[type]->describe_stage(stage_of(s, stage)->of[type], time, text);
+}
+
+/** Servers are not told of elastic stages, so that what they remember would not fit. */
+static int check_laws(const Solver *s, Error *error)
+{
+  for (int64_t k = 0; k < s->clock.stages; ++k)
+    for (int m = 0; m < s->domain->material_count && !strcmp(stage_of(s, k)->laws, "elastic"); ++m)
+      if (s->domain->materials[m].remote)
+        return node_error(s->reader->document, section_place(stage_of(s, k), "laws"), error,
+                          "laws: the law of material '%s' runs in a server, which cannot be told to be elastic for a "
+                          "stage; leave 'laws' out",
+                          s->domain->materials[m].name);
+  return BRECCIA_OK;
+}
+
+int solver_enter(Solver *s, int64_t stage, Error *error)
+{
+  if (s->own) s->type->destroy(s);
+  s->clock.stage = stage;
+  s->stage = stage_of(s, stage);
+  s->type = types[type_of(s->stage)];
+  s->spec = s->stage->of[type_of(s->stage)];
+  s->stops = NULL;
+  s->stop_count = 0;
+  s->domain->points.elastic_stage = !strcmp(s->stage->laws, "elastic");
+  loading_enter(s->loading, stage);
+  return s->type->create(s, error);
+}
+
+int solver_create(Solver *s, Text *warning, Error *error)
+{
+  bool zeroes = false;
+  s->clock.stages = s->stages->count;
+  s->clock.stable = INFINITY;
+  s->records = memory_zeroed((size_t)s->clock.stages, sizeof *s->records, "stages", error);
+  for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
+  if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
+  int status = check_laws(s, error);
+  if (!status) status = solver_enter(s, 0, error);
+  if (!status) status = s->type->plan(s, warning, error);
+  for (int64_t k = 1; !status && k < s->clock.stages; ++k) {
+    const int type = type_of(stage_of(s, k));
+    status = types[type]->check(s, stage_of(s, k)->of[type], error);
+  }
+  if (!status) foresee(s);
+  return status;
+}
+
+void solver_destroy(Solver *s)
+{
+  if (s->own) s->type->destroy(s);
+  free(s->records);
+  *s = (Solver){0};
+}
+
+static void zero_displacements(Particles *p)
+{
+  for (int k = 0; k < 3; ++k) memcpy(p->zero[k], p->displacement[k], sizeof(double) * (size_t)p->places);
+}
+
+int solver_next_stage(Solver *s, Text *warning, Error *error)
+{
+  Clock *clock = &s->clock;
+  int status = solver_enter(s, clock->stage + 1, error);
+  if (status) return status;
+  clock->stage_step = clock->step;
+  clock->stage_time = clock->time;
+  clock->ended = 0;
+  if (!strcmp(s->stage->displacements, "zero")) zero_displacements(s->domain->particles);
+  loading_begin(s->loading, s->domain->particles, clock->time);
+  status = s->type->plan(s, warning, error);
+  if (status) return status;
+  foresee(s);
+  return solver_begin(s, error);
+}
+
+bool solver_is_done(const Solver *s)
+{
+  return s->clock.ended && s->clock.stage + 1 == s->clock.stages;
+}
+
+void solver_stop_at(Solver *s, const double *times, int64_t count, bool again)
+{
+  s->stops = times;
+  s->stop_count = count;
+  if (again) s->type->plan_again(s);
+  foresee(s);
+}
+
+int solver_begin(Solver *s, Error *error)
+{
+  s->ledger.damped |= s->type->damps(s);
+  s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
+  const int status = s->type->begin(s, error);
+  if (s->clock.stage == 0) s->ledger.paid = s->ledger.kinetic_at_start = s->ledger.kinetic;
+  return status;
+}
+
+int solver_advance(Solver *s, Text *warning, Error *error)
+{
+  const int status = s->type->advance(s, warning, error);
+  if (status) return status;
+  foresee(s);
+  s->records[s->clock.stage].last_step = (double)s->clock.step;
+  s->records[s->clock.stage].end = s->clock.time;
+  return ledger_watch(&s->ledger, s->domain, &s->clock, error);
+}
+
+Energy solver_energy(const Solver *s)
+{
+  return ledger_energy(&s->ledger, s->domain);
+}
+
+void solver_state(Solver *s, StateList *list)
+{
+  Clock *clock = &s->clock;
+  state_add_count(list, "step", STATE_TRIED, &clock->step);
+  state_add_count(list, "steps", STATE_TRIED, &clock->steps);
+  state_add_number(list, "time", "time", STATE_TRIED, &clock->time);
+  state_add_number(list, "end time", "time", STATE_TRIED, &clock->end_time);
+  state_add_number(list, "time step", "time", STATE_TRIED, &clock->time_step);
+  state_add_number(list, "stable step", "time", STATE_TRIED, &clock->stable);
+  state_add_count(list, "stage", STATE_TRIED, &clock->stage);
+  state_add_count(list, "first step of the stage", STATE_TRIED, &clock->stage_step);
+  state_add_number(list, "begin of the stage", "time", STATE_TRIED, &clock->stage_time);
+  state_add_count(list, "last step of the stage", STATE_TRIED, &clock->stage_last);
+  state_add_number(list, "end of the stage", "time", STATE_TRIED, &clock->stage_end);
+  state_add_count(list, "stage has ended", STATE_TRIED, &clock->ended);
+  state_add(
+      list,
+      &(StateRow){.unit = "1", .role = STATE_COMMITTED, .count = STAGE_NUMBERS * clock->stages, .values = s->records},
+      "stages", NULL);
+  loading_state(s->loading, list);
+  ledger_state(&s->ledger, list);
+  s->type->state(s, list);
+}

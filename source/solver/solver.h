@@ -1,0 +1,119 @@
+/* What takes a body from one state to the next. A solver is a table entry; nobody outside of this room knows which one it is: they see the
+ * clock, the ledger of energies and the rows of its state. */
+#ifndef BRECCIA_SOLVER_SOLVER_H
+#define BRECCIA_SOLVER_SOLVER_H
+
+#include "loading/load.h"
+#include "solver/ledger.h"
+
+enum {
+#define SOLVER(name, about) SOLVER_##name,
+#include "solver/solvers.h"
+#undef SOLVER
+  SOLVERS
+};
+
+/** A stage of a run: which solver, with which loads, from which displacements on. */
+typedef struct SolveSpec {
+  SectionHead head;
+  const char *name, *laws, *displacements;
+  SectionList loads; /* that begin with it */
+  TextList without;  /* names of loads that end */
+  void *of[SOLVERS]; /* the section of the solver that is given; NULL: not this one */
+} SolveSpec;
+
+extern const Section solve_section;
+
+typedef struct SolverType SolverType;
+
+/** How a stage went. */
+typedef struct StageRecord {
+  double first_step, last_step, begin, end; /* steps done and times at its begin and end */
+  double came_to_rest;                      /* 1: it ended because the body was at rest */
+} StageRecord;
+enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
+
+/** A run: stages one after another, each by one of the solvers. What is pointed to is borrowed. */
+typedef struct Solver {
+  Domain *domain;
+  Loading *loading;
+  const SectionList *stages; /* of SolveSpec, one at least */
+  const DeckReader *reader;  /* for messages that point into the deck */
+  bool force;                /* accept a chosen step above the stable one */
+  Clock clock;
+  Ledger ledger;
+  const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */
+  int64_t stop_count;
+  StageRecord *records;   /* [stages] */
+  const SolverType *type; /* of the stage under way */
+  const SolveSpec *stage;
+  const void *spec; /* the type's section */
+  void *own;        /* what the type keeps */
+} Solver;
+
+struct SolverType {
+  const char *name;
+  /** Memory only. */
+  int (*create)(Solver *solver, Error *error);
+  void (*destroy)(Solver *solver);
+  /** Looks at the body as it is: how long the steps are, how many there will be, and so when the stage ends. Says which keys do not fit it.
+   *  @param[out] warning  remarks for the user are added */
+  int (*plan)(Solver *solver, Text *warning, Error *error);
+  /** Mistakes of a later stage with this section that can be seen before the run. */
+  int (*check)(Solver *solver, const void *spec, Error *error);
+  /** Other times are asked for. */
+  void (*plan_again)(Solver *solver);
+  /** Forces and accelerations of the state held, before the first step. */
+  int (*begin)(Solver *solver, Error *error);
+  /** One step, of the clock too, and whether the stage has ended; solver_advance says what holds after a failure. */
+  int (*advance)(Solver *solver, Text *warning, Error *error);
+  /** Rows of what it keeps. */
+  void (*state)(Solver *solver, StateList *list);
+  /** Whether something takes energy out of motions, so that a body may come to rest. */
+  bool (*damps)(const Solver *solver);
+  /** Steps and time that a stage with this section will take at most, by the stable step of the body as it is. */
+  void (*foresee)(const void *spec, const Clock *clock, double *steps, double *time);
+  /** The steps to come of the stage under way, in words. @param[in] time  unit of time */
+  void (*describe)(const Solver *solver, const char *time, Text *text);
+  /** How a stage with this section goes and ends, in words. */
+  void (*describe_stage)(const void *spec, const char *time, Text *text);
+};
+
+/** Sets up the first stage and plans its steps. `solver` has domain, loading, stages, reader and force, and is zero beyond; destroy it in any
+ *  case. Mistakes in later stages are told as far as they can be seen beforehand. */
+int solver_create(Solver *solver, Text *warning, Error *error);
+void solver_destroy(Solver *solver);
+
+/** Name of a stage: as in the deck, or its number from 1. @return `name` */
+const char *solver_stage_name(const Solver *solver, int64_t stage, char *name, size_t size);
+
+/** How a stage goes and ends, in words. @param[in] time  unit of time */
+void solver_describe_stage(const Solver *solver, int64_t stage, const char *time, Text *text);
+
+/** Makes ready for the state of a stage, which is to be taken up from a file. */
+int solver_enter(Solver *solver, int64_t stage, Error *error);
+
+/** Begins with the next stage, when one has ended: its loads, its laws, its displacements from zero if so wished. */
+int solver_next_stage(Solver *solver, Text *warning, Error *error);
+
+/** Whether the last stage has ended. */
+bool solver_is_done(const Solver *solver);
+
+/** Tells times of the run, ascending, at which steps of the stage under way shall end if the program chooses them; borrowed.
+ *  @param[in] again  plan the steps to come with them; not where a plan has been taken up from a file */
+void solver_stop_at(Solver *solver, const double *times, int64_t count, bool again);
+
+/** Before the first step. */
+int solver_begin(Solver *solver, Error *error);
+
+/** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit; where energies give the reason
+ *  the step has been taken.
+ *  @param[out] warning  a remark for the user is added, if there is one */
+int solver_advance(Solver *solver, Text *warning, Error *error);
+
+Energy solver_energy(const Solver *solver);
+
+/** Rows of the clock, the ledger and what the solver keeps. */
+void solver_state(Solver *solver, StateList *list);
+
+#endif

@@ -1,0 +1,183 @@
+/* How long explicit steps are: a plan of steps of one length leads to the next time at which one has to end, and is made again when the stable
+ * step has fallen. */
+#include "solver/explicit.h"
+#include "solver/stable_step.h"
+
+#include <math.h>
+
+/** The longest step that the program takes by itself. */
+static double longest_step(const Explicit *s)
+{
+  return s->spec->safety * s->clock->stable;
+}
+
+/** Damping shortens the stable step: local damping by 1 / sqrt(1 + its share), as its force changes sign with the velocity;
+ *  mass-proportional damping leaves it, but is followed only by steps of up to its own time (docs/theory.md 7). */
+static int find_damped(Domain *domain, const ExplicitSpec *spec, double *stable, Error *error)
+{
+  const int status = stable_step(domain, stable, error);
+  if (status) return status;
+  *stable /= sqrt(1 + spec->local_damping);
+  if (spec->damping > 0) *stable = fmin(*stable, 1 / spec->damping);
+  return BRECCIA_OK;
+}
+
+static int find_stable_step(Explicit *s, Error *error)
+{
+  const int status = find_damped(s->domain, s->spec, &s->clock->stable, error);
+  s->broken_at_estimate = s->domain->broken_count;
+  s->step_at_estimate = s->clock->step;
+  return status;
+}
+
+/** Steps of one length from the present time on: as long as allowed, and as many as end with the stop. */
+static void step_to(Explicit *s, double stop, double longest)
+{
+  const int64_t count = (int64_t)fmax(1, ceil((stop - s->clock->time) / longest - 1e-9));
+  s->plan.from = s->clock->time;
+  s->plan.to = stop;
+  s->plan.first = s->clock->step;
+  s->plan.count = count;
+  s->clock->time_step = (stop - s->clock->time) / (double)count;
+}
+
+/** True if steps of this length have become too long for the body. */
+static bool is_too_long(const Explicit *s, double step)
+{
+  return !s->force && step > (isnan(s->spec->time_step) ? 1.1 * longest_step(s) : s->clock->stable);
+}
+
+/** Plans steps up to the next time at which one has to end, and foresees how many there will be in all. */
+static void plan_steps(Explicit *s, const Solver *run)
+{
+  const double longest = isnan(s->fixed) || is_too_long(s, s->fixed) ? longest_step(s) : s->fixed,
+               tiny = 1e-6 * longest;
+  double stop = s->clock->stage_end, from;
+  if (!isnan(s->fixed)) {
+    const double begin = s->clock->stage_time;
+    stop = fmin(stop, begin + s->fixed * (floor((s->clock->time - begin) / s->fixed + 1e-6) + 1));
+  }
+  for (int64_t k = run->stop_count; isnan(s->fixed) && k-- > 0;)
+    if (run->stops[k] > s->clock->time + tiny && run->stops[k] < s->clock->stage_end - tiny) stop = run->stops[k];
+  step_to(s, stop, longest);
+  double later = 0;
+  from = stop;
+  for (int64_t k = 0; isnan(s->fixed) && k < run->stop_count; ++k)
+    if (run->stops[k] > from + tiny && run->stops[k] < s->clock->stage_end - tiny) {
+      later += ceil((run->stops[k] - from) / longest - 1e-9);
+      from = run->stops[k];
+    }
+  if (s->clock->stage_end > from + tiny) later += ceil((s->clock->stage_end - from) / longest - 1e-9);
+  s->clock->stage_last = s->plan.first + s->plan.count + (int64_t)later;
+}
+
+int explicit_follow(Solver *run, Text *warning, Error *error)
+{
+  Explicit *s = run->own;
+  enum { SOON = 100, LATE = 1000, SHARE = 100 }; /* steps; one bond in so many */
+  const int64_t broken = s->domain->broken_count - s->broken_at_estimate, since = s->clock->step - s->step_at_estimate;
+  if (s->domain->type->may_stiffen && broken && since >= (2 * broken * SHARE > s->domain->family.bonds ? SOON : LATE)) {
+    const int status = find_stable_step(s, error);
+    if (status) return status;
+    if (is_too_long(s, s->clock->time_step)) {
+      if (!isnan(s->spec->time_step))
+        text_add(warning,
+                 "%swarning: step %lld: broken bonds have lowered the stable step to %.4g; the time step of %g is "
+                 "divided from here on",
+                 warning->length ? "\n" : "", (long long)s->clock->step, s->clock->stable, s->fixed);
+      plan_steps(s, run);
+    }
+  }
+  if (s->clock->step == s->plan.first + s->plan.count) plan_steps(s, run);
+  return BRECCIA_OK;
+}
+
+double explicit_time_after_step(const Explicit *s)
+{
+  const int64_t taken = s->clock->step + 1 - s->plan.first;
+  return taken == s->plan.count ? s->plan.to : s->plan.from + (double)taken * s->clock->time_step;
+}
+
+/** A step that the deck chooses must be a stable one. */
+static int check_time_step(const Solver *run, const ExplicitSpec *spec, double stable, Text *warning, Error *error)
+{
+  const double chosen = spec->time_step, share = chosen / stable;
+  const Document *document = run->reader->document;
+  const Node *place = section_place(spec, "time step");
+  if (share > 1 && !run->force)
+    return node_error(
+        document, place, error,
+        "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
+        "--force",
+        chosen, share, stable);
+  if (warning && share > 0.9) {
+    char where[PLACE];
+    node_place(document, place, where, sizeof where);
+    text_add(warning, "%s%s: warning: time step: %g is %.2f times the stable step of %.4g", warning->length ? "\n" : "",
+             where, chosen, share, stable);
+  }
+  return BRECCIA_OK;
+}
+
+/** How many steps of the deck's length there are until the end of the stage; 0 without such a length. */
+static int64_t whole_steps(const Explicit *s)
+{
+  return isnan(s->fixed) ? 0 : (int64_t)floor((s->clock->stage_end - s->clock->stage_time) / s->fixed + 1e-6);
+}
+
+int explicit_plan(Solver *run, Text *warning, Error *error)
+{
+  Explicit *s = run->own;
+  const ExplicitSpec *spec = s->spec;
+  int status = find_stable_step(s, error);
+  if (status || (status = check_time_step(run, spec, s->clock->stable, warning, error))) return status;
+  s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
+  const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
+  const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-6);
+  if (steps > 1e15)
+    return node_error(run->reader->document, spec->head.node, error, "explicit: %.3g steps are too many", steps);
+  s->clock->stage_end = s->clock->stage_time + (spec->steps >= 0 ? steps * s->fixed : spec->end_time);
+  const int64_t whole = whole_steps(s);
+  if (!whole && spec->steps != 0) {
+    plan_steps(s, run);
+    return BRECCIA_OK;
+  }
+  /* Fixed steps are planned at once; what is left of the end time after them becomes a shorter last one. */
+  s->clock->time_step = s->fixed;
+  s->clock->stage_last = s->clock->step + (int64_t)steps;
+  s->clock->ended = steps == 0;
+  s->plan.from = s->clock->time;
+  s->plan.first = s->clock->step;
+  s->plan.count = whole;
+  s->plan.to = whole == (int64_t)steps ? s->clock->stage_end : s->plan.from + (double)whole * s->fixed;
+  return BRECCIA_OK;
+}
+
+double explicit_last_step(const Explicit *s)
+{
+  const double left = s->clock->stage_end - s->clock->stage_time - (double)whole_steps(s) * s->fixed;
+  return left > 1e-6 * s->fixed ? left : NAN;
+}
+
+int explicit_check(Solver *run, const void *spec, Error *error)
+{
+  double stable;
+  if (isnan(((const ExplicitSpec *)spec)->time_step)) return BRECCIA_OK;
+  const int status = find_damped(run->domain, spec, &stable, error);
+  return status ? status : check_time_step(run, spec, stable, NULL, error);
+}
+
+void explicit_plan_again(Solver *run)
+{
+  Explicit *s = run->own;
+  if (isnan(s->fixed)) plan_steps(s, run);
+}
+
+void explicit_foresee(const void *section, const Clock *clock, double *steps, double *time)
+{
+  const ExplicitSpec *spec = section;
+  const double step = isnan(spec->time_step) ? spec->safety * clock->stable : spec->time_step;
+  const double count = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-9);
+  *steps += count;
+  *time += spec->steps >= 0 ? count * step : spec->end_time;
+}

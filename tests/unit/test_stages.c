@@ -1,0 +1,264 @@
+/* Runs in stages: loads, laws, damping and ends that change from one to the next. */
+#include "support.h"
+
+#include <unistd.h>
+
+static void run_all(breccia_model *model)
+{
+  Error *error = breccia_error_create();
+  if (breccia_model_step(model, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+}
+
+/** Mean shown displacement along x of the outermost particles at an end. */
+static double shown_at(const breccia_model *model, bool right)
+{
+  const Particles *p = model->domain.particles;
+  double low[3], high[3], sum = 0;
+  int count = 0;
+  particles_bounds(p, low, high);
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    if (fabs(p->position[0][i] - (right ? high : low)[0]) > 1e-9) continue;
+    sum += particles_moved(p, 0, i);
+    ++count;
+  }
+  return sum / count;
+}
+
+#define BAR                                                                                                            \
+  "units: {length: m, force: kN, time: s}\n"                                                                           \
+  "materials: {m: {model: elastic-1d, Young modulus: 1e6, density: 2}}\n"                                              \
+  "body: {bar: {material: m, lattice: line, spacing: 0.05, area: 0.01, shape: {box: {particles: [80, 1], first "       \
+  "particle: [0.025, 0]}}}}\n"                                                                                         \
+  "peridynamics: {formulation: bond-based, space: 1-D, horizon: 3.015 spacings, surface correction: energy}\n"
+
+static void gravity_then_a_load_give_what_each_gives_alone(void **state)
+{
+  (void)state;
+  /* A bar hangs at its left end: rho g L^2 / (2 E) by its weight, then F L / (E A) by a force at its free end, shown from zero on. */
+  const char *hold = "{on: {face: x-, layers: 3}, displacement: [0, 0]}",
+             *pull = "{on: {face: x+, layers: 3}, force: [2, 0]}", *weight = "{gravity: [200, 0]}",
+             *rest = "explicit: {end time: 2, damping: 300, rest: 1e-6}";
+  breccia_model *chain = model_of(BAR "loads: [%s, %s]\nsolve:\n  - {name: own weight, %s}\n"
+                                      "  - {name: pulled, displacements: zero, loads: [%s], %s}\n",
+                                  hold, weight, rest, pull, rest),
+                *kept =
+                    model_of(BAR "loads: [%s, %s]\nsolve: [{%s}, {loads: [%s], %s}]\n", hold, weight, rest, pull, rest),
+                *alone = model_of(BAR "loads: [%s, %s]\nsolve: {%s}\n", hold, pull, rest);
+  while (chain->solver.clock.stage == 0) assert_int_equal(breccia_model_step(chain, 1, NULL), 0);
+  const Particles *p = chain->domain.particles;
+  const double under_weight = p->zero[0][p->place_of[79]];
+  run_all(chain);
+  run_all(kept);
+  run_all(alone);
+  const double length = 4 - 2.5 * 0.05, /* from the middle of what is held */
+      by_weight = 2 * 200 * length * length / (2 * 1e6), by_force = 2 * (length - 1.5 * 0.05) / (1e6 * 0.01);
+  assert_near(under_weight, by_weight, 0.03 * by_weight);
+  assert_near(shown_at(chain, true), by_force, 0.03 * by_force);
+  assert_near(shown_at(chain, true), shown_at(alone, true), 1e-4 * by_force);
+  assert_near(shown_at(kept, true), under_weight + shown_at(alone, true), 1e-4 * by_force);
+  for (int k = 0; k < 2; ++k) { /* before the 2 s that each may take */
+    const StageRecord *r = &chain->solver.records[k];
+    assert_true(r->came_to_rest == 1 && r->end - r->begin < 1.9);
+  }
+  assert_true(solver_energy(&chain->solver).imbalance < 5e-3);
+  breccia_model_destroy(&chain);
+  breccia_model_destroy(&kept);
+  breccia_model_destroy(&alone);
+}
+
+static void histories_and_motions_count_from_the_beginning_of_their_stage(void **state)
+{
+  (void)state;
+  const char *deck =
+      BAR "loads:\n"
+          "  - {on: {face: x-, layers: 3}, displacement: [0, 0]}\n"
+          "  - {name: jack, on: {face: x+, layers: 3}, velocity: [0.1, 0]}\n"
+          "solve:\n"
+          "  - explicit: {end time: 0.01, damping: 300}\n"
+          "  - loads: [{name: jack, on: {face: x+, layers: 3}, displacement: [-2e-4, 0], history: {ramp to: "
+          "0.005}}]\n"
+          "    explicit: {end time: 0.006, damping: 300}\n"
+          "  - loads: [{name: jack, on: {face: x+, layers: 3}, velocity: [0.2, 0]}]\n"
+          "    explicit: {end time: 0.005, damping: 300}\n"
+          "  - {without: [jack], explicit: {end time: 0.1, damping: 300}}\n"
+          "watch: {jack: {load: jack}}\n";
+  breccia_model *m = model_of("%s", deck);
+  const double ends[] = {0.01, 0.016, 0.021}, moved[] = {1e-3, 0.8e-3, 1.8e-3};
+  for (int k = 0; k < 3; ++k) {
+    while (!m->solver.clock.ended || m->solver.clock.stage < k) assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+    assert_int_equal(m->solver.clock.stage, k);
+    assert_near(m->solver.clock.time, ends[k], 1e-12);
+    assert_near(shown_at(m, true), moved[k], 1e-12);
+  }
+  run_all(m);
+  assert_near(shown_at(m, true), 0, 1e-6); /* the jack has let go */
+  breccia_model_destroy(&m);
+}
+
+static void in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of("units: {length: m, force: kN, time: s}\n"
+               "materials: {m: {model: j2, density: 2, bulk modulus: 1e5, shear modulus: 6e4, yield stress: 100}}\n"
+               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\n"
+               "failure: {critical stretch: 1.5e-3, near grips: break}\n"
+               "loads: [{on: {face: x-, layers: 3}, displacement: [0, free, free]},\n"
+               "        {on: {face: x+, layers: 3}, displacement: [3e-3, free, free], history: {ramp to: 0.02}}]\n"
+               "solve: [{laws: elastic, explicit: {end time: 0.05, damping: 100}}, {explicit: {end time: 0.01, "
+               "damping: 100}}]\n");
+  const int32_t middle = particles_nearest(m->domain.particles, (const double[3]){0.55, 0.15, 0.15});
+  const double *strain = m->domain.points.strain[0], *stress = m->domain.points.stress[0];
+  while (!m->solver.clock.ended) assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+  assert_near(stress[middle], 1.5e5 * strain[middle], 0.05 * stress[middle]); /* E = 9KG / (3K + G) */
+  assert_true(stress[middle] > 200);
+  assert_int_equal(breccia_model_broken_bonds(m), 0);
+  breccia_model_step(m, 1, NULL);
+  assert_int_equal(m->solver.clock.stage, 1);
+  assert_true(stress[middle] < 200);
+  assert_true(breccia_model_broken_bonds(m) > 0);
+  breccia_model_destroy(&m);
+}
+
+static StateCopy state_of(breccia_model *m)
+{
+  StateCopy copy;
+  StateList list = {0};
+  model_state(m, &list);
+  assert_int_equal(state_copy(&copy, &list, NULL), 0);
+  state_list_destroy(&list);
+  return copy;
+}
+
+static void assert_same_state(const StateCopy *a, const StateCopy *b)
+{
+  assert_int_equal(a->count, b->count);
+  for (int k = 0; k < a->count; ++k)
+    if (a->rows[k].count != b->rows[k].count ||
+        memcmp(a->values[k], b->values[k], state_size(&a->rows[k]) * (size_t)a->rows[k].count))
+      fail_msg("'%s' is not the same", a->rows[k].name);
+}
+
+static breccia_model *struck_plate(void)
+{
+  return model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {clay: {model: multi-yield-j2, density: 1.5, shear modulus: 60000, bulk modulus: 100000, "
+      "octahedral strength: 30}}\n"
+      "body: {plate: {material: clay, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: "
+      "[24, 16]}}}}\n"
+      "peridynamics: {space: plane stress}\n"
+      "failure: {critical stretch: 0.004, near grips: break}\n"
+      "loads: [{on: {face: y-, layers: 3}, displacement: [free, 0]}, {gravity: [0, -50]}]\n"
+      "solve:\n"
+      "  - {name: own weight, laws: elastic, explicit: {end time: 0.5, local damping: 0.8, rest: 1e-3}}\n"
+      "  - {name: pull, displacements: zero, explicit: {end time: 0.02, damping: 20},\n"
+      "     loads: [{name: pull, on: {face: y+, layers: 2}, velocity: [free, 1], history: {ramp to: 0.01}}]}\n"
+      "  - {name: let go, without: [pull], explicit: {steps: 150, safety: 0.5}}\n"
+      "results: {number: 4, checkpoint steps: 50}\n");
+}
+
+static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
+{
+  (void)state;
+  breccia_model *whole = struck_plate();
+  run_all(whole);
+  const StateCopy wanted = state_of(whole);
+  assert_true(breccia_model_broken_bonds(whole) > 0);
+  assert_true(whole->solver.records[0].came_to_rest == 1);
+  for (int stage = 0; stage < 3; ++stage)
+    for (int at_end = 0; at_end < 2; ++at_end) {
+      char folder[] = "/tmp/breccia-XXXXXX", command[64];
+      const StageRecord *r = &whole->solver.records[stage];
+      assert_non_null(mkdtemp(folder));
+      Error *error = breccia_error_create();
+      breccia_run run = {.folder = folder,
+                         .steps = (int64_t)(at_end ? r->last_step : (r->first_step + r->last_step) / 2)};
+      breccia_model *first = struck_plate(), *second = struck_plate();
+      if (breccia_model_run(first, &run, error)) fail_msg("%s", breccia_error_text(error));
+      assert_int_equal(first->solver.clock.stage, stage);
+      run.restart = 1;
+      run.steps = 0;
+      if (breccia_model_run(second, &run, error)) fail_msg("%s", breccia_error_text(error));
+      for (int k = 0; k < 3; ++k)
+        assert_memory_equal(&second->solver.records[k], &whole->solver.records[k], sizeof(StageRecord));
+      second->peaks = whole->peaks = (Peaks){0}; /* of the states written: none in a run by steps */
+      const StateCopy found = state_of(second), expected = state_of(whole);
+      assert_same_state(&expected, &found);
+      StateCopy copies[] = {found, expected};
+      for (int k = 0; k < 2; ++k) state_copy_destroy(&copies[k]);
+      breccia_model_destroy(&first);
+      breccia_model_destroy(&second);
+      breccia_error_destroy(&error);
+      snprintf(command, sizeof command, "rm -r %s", folder);
+      assert_int_equal(system(command), 0);
+    }
+  StateCopy last = wanted;
+  state_copy_destroy(&last);
+  breccia_model_destroy(&whole);
+}
+
+static void one_stage_in_a_list_is_the_same_as_no_list(void **state)
+{
+  (void)state;
+  breccia_model *plain =
+                    model_of(BAR "loads: [{gravity: [200, 0]}]\nsolve: {explicit: {time step: 2e-5, steps: 200}}\n"),
+                *list =
+                    model_of(BAR "loads: [{gravity: [200, 0]}]\nsolve: [{explicit: {time step: 2e-5, steps: 200}}]\n"),
+                *halves = model_of(
+                    BAR
+                    "loads: [{gravity: [200, 0]}]\n"
+                    "solve: [{explicit: {time step: 2e-5, steps: 90}}, {explicit: {time step: 2e-5, steps: 110}}]\n");
+  run_all(plain);
+  run_all(list);
+  run_all(halves);
+  StateCopy a = state_of(plain), b = state_of(list);
+  assert_same_state(&a, &b);
+  assert_int_equal(halves->solver.clock.step, 200);
+  const Particles *p = plain->domain.particles, *q = halves->domain.particles;
+  assert_memory_equal(p->displacement[0], q->displacement[0], sizeof(double) * (size_t)p->places);
+  state_copy_destroy(&a);
+  state_copy_destroy(&b);
+  breccia_model_destroy(&plain);
+  breccia_model_destroy(&list);
+  breccia_model_destroy(&halves);
+}
+
+static void what_does_not_fit_is_said(void **state)
+{
+  (void)state;
+  const struct {
+    const char *solve, *words;
+  } wrong[] = {
+      {"solve: []\n", "solve: the list is empty"},
+      {"solve: [{explicit: {steps: 1}}, {without: [jack], explicit: {steps: 1}}]\n",
+       "without: no load that acts before this stage has the name 'jack'"},
+      {"solve: {explicit: {steps: 1, rest: 1e-3}}\n", "rest: without 'damping' or 'local damping' a body"},
+      {"solve: [{explicit: {steps: 1}}, {name: late, explicit: {steps: 1, time step: 1}}]\n", "times the stable step"},
+      {"solve: [{laws: plastic, explicit: {steps: 1}}]\n", "elastic"},
+      {"solve: [{name: nothing}]\n", "none of 'explicit' is given"},
+  };
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck, BAR "loads: [{gravity: [200, 0]}]\n%s", wrong[k].solve);
+    char *words = refusal_of(deck);
+    if (!strstr(words, wrong[k].words)) fail_msg("expected '%s', found '%s'", wrong[k].words, words);
+    assert_non_null(strstr(words, "deck:"));
+    free(words);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(gravity_then_a_load_give_what_each_gives_alone),
+      cmocka_unit_test(histories_and_motions_count_from_the_beginning_of_their_stage),
+      cmocka_unit_test(in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break),
+      cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
+      cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),
+      cmocka_unit_test(what_does_not_fit_is_said),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
