@@ -10,3 +10,10 @@ for file in examples/materials/*.yaml; do
   name=$(basename "$file" .yaml)
   $breccia material "$file" --picture "docs/models/$name.png" --output /dev/null > /dev/null
 done
+made=$(mktemp -d)
+mkdir -p docs/lattices
+for name in plane space; do
+  $breccia run "scripts/lattices-$name.yaml" --output "$made/$name" > /dev/null
+  cp "$made/$name/pictures/$name.png" docs/lattices/
+done
+rm -r "$made"

@@ -240,18 +240,27 @@ static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state
 static void rows_of_an_intact_lattice_are_whole_to_its_ends(void **state)
 {
   (void)state;
-  /* with a step in the body, so that rows begin in the last lane of a slice too */
-  breccia_model *model = model_of(
-      "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
-      "body: {b: {material: m, spacing: 1, shape: {union: [{box: {from: [7, 0, 0], to: [21, 7, 6]}}, {box: {from: [0, "
-      "0, 6], to: [21, 7, 9]}}]}}}\n"
-      "solve: {explicit: {steps: 1}}\n");
-  const Family *f = &model->domain.family;
-  for (int64_t s = 0; s < f->particles->slices; ++s) {
-    assert_true(f->rows.count[s] > 0);
-    assert_int_equal(f->rows.condition[s] & ROWS_RAGGED, 0);
+  /* with a step in the body, so that rows begin in the last lane of a slice too; also where rows are shifted by half a cell */
+  const char *const lattices[] = {"cubic", "face-centred cubic"};
+  for (int l = 0; l < 2; ++l) {
+    const double layer = l ? sqrt(0.5) : 1;
+    breccia_model *model =
+        model_of("materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
+                 "peridynamics: {horizon: %g spacings}\n"
+                 "body: {b: {material: m, lattice: %s, spacing: 1, shape: {union: [{box: {from: [7, 0, 0], to: [21, 7, "
+                 "%.15g]}}, {box: {from: [0, 0, %.15g], to: [21, 7, %.15g]}}]}}}\n"
+                 "solve: {explicit: {steps: 1}}\n",
+                 l ? 4.015 : 3.015, lattices[l], 6 * layer, 6 * layer, 10 * layer);
+    const Family *f = &model->domain.family;
+    bool shifted = false;
+    for (int64_t s = 0; s < f->particles->slices; ++s) {
+      assert_true(f->rows.count[s] > 0);
+      assert_int_equal(f->rows.condition[s] & ROWS_RAGGED, 0);
+    }
+    for (int k = 0; k < f->rows.kinds; ++k) shifted |= f->rows.kind[k].neighbours % 2 == 0;
+    assert_int_equal(shifted, l);
+    breccia_model_destroy(&model);
   }
-  breccia_model_destroy(&model);
 }
 
 static void force_is_minus_the_gradient_of_the_energy(void **state)

@@ -195,7 +195,7 @@ static void layers_of_a_face_are_whole_cells(void **state)
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     breccia_model *model =
         model_of(MATERIAL SOLVE "peridynamics: {space: %s}\n"
-                                "body: {b: {material: m, %s, spacing: 1, shape: {box: {particles: %s}}}}\n"
+                                "body: {b: {material: m, %s, spacing: 0.3, shape: {box: {particles: %s}}}}\n"
                                 "loads: [{on: {%s}, velocity: [0, 0, 0]}]\n",
                  cases[k].space, cases[k].lattice, cases[k].box, cases[k].face);
     assert_int_equal(model->loading.loads[0].selection.count, cases[k].count);
