@@ -3,7 +3,7 @@
  * Bonds that break are found at the displacements of the end of the step. What a bond had received until then: the energy stored with it,
  * less what is stored without it, less half of what its force would have done along the step, because the trapezium rule that sums the
  * works (solver/explicit.c) finds the bond gone at the end of the step. Where families share energies, as in correspondence, a place that
- * loses bonds stores another energy with those that are left. */
+ * loses bonds stores another energy with those that are left; never more than before (docs/theory.md 4). */
 #include "base/team.h"
 #include "domain/domain.h"
 
@@ -50,7 +50,7 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
   if (d->type->bond_energy) {
     StoredEnergy energy;
     d->type->bond_energy(d->formulation, slice, slot, lane, moment->time_step, &energy);
-    d->fracture_energy += energy.stored - energy.half_work;
+    d->fracture_energy += energy.received;
   }
   if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
     d->out_of_memory = true;
@@ -97,30 +97,79 @@ static void break_suspects(Domain *d, const Moment *moment)
   }
 }
 
-/** What goes with the bonds that a place has lost. The law of its point goes from one strain to another as they go, and no force does that
- *  work; with less bonds than a strain needs, what it stored is lost. Where laws yield on that way, no more than was stored can go. */
-static double released(const StoredEnergy *before, const StoredEnergy *after, bool elastic)
+/** Half of the work that two stresses do together along a change of strain. */
+static double half_work(const double a[6], const double b[6], const double from[6], const double to[6])
 {
-  double sum = before->beside - after->beside - (before->half_work - after->half_work);
-  if (after->weight == 0) return sum + before->weight * before->density;
-  for (int k = 0; k < 6; ++k)
-    sum += before->weight * 0.5 * (before->stress[k] + after->stress[k]) * (before->strain[k] - after->strain[k]);
-  sum += (before->weight - after->weight) * after->density;
-  return elastic ? sum : fmin(sum, before->stored);
+  double sum = 0;
+  for (int k = 0; k < 6; ++k) sum += 0.5 * (a[k] + b[k]) * (to[k] - from[k]);
+  return sum;
 }
 
-/** Energies of torn places, each place by one thread. */
-static void find_energies(Domain *d, double time_step, bool after)
+static const double nothing[6];
+
+/** What places that will be torn have received so far, each place by one thread. */
+static void find_received(Domain *d)
 {
   TEAM_FOR (n, d->torn_count) {
     Torn *torn = &d->torn[n];
     StoredEnergy energy;
-    d->type->stored_energy(d->formulation, torn->place, time_step, &energy);
-    if (after)
-      torn->released = released(&torn->before, &energy, domain_is_elastic(d));
-    else
-      torn->before = energy;
+    d->type->stored_energy(d->formulation, torn->place, d->points.time_step, &energy);
+    for (int k = 0; k < 6; ++k) {
+      torn->strain[k] = d->points.strain[k][torn->place];
+      torn->stress[k] = d->points.stress[k][torn->place];
+    }
+    torn->elastic = points_elastic_energy(&d->points, torn->place);
+    torn->received = energy.received + energy.control +
+                     energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
+    torn->share = d->type->shares(d->formulation)[torn->place];
   }
+}
+
+/** What the same places would have received with the bonds that are left. The law of a point goes from its strain at the beginning of the step
+ *  with all bonds to that at its end without the broken ones: the work along that way, less what forces do of it in this step. */
+static void find_left(Domain *d)
+{
+  TEAM_FOR (n, d->torn_count) {
+    Torn *torn = &d->torn[n];
+    StoredEnergy energy;
+    double strain[6], stress[6];
+    d->type->stored_energy(d->formulation, torn->place, d->points.time_step, &energy);
+    for (int k = 0; k < 6; ++k) {
+      strain[k] = d->points.strain[k][torn->place];
+      stress[k] = d->points.stress[k][torn->place];
+    }
+    torn->control = energy.control;
+    torn->carried =
+        energy.received + energy.weight * (torn->elastic + half_work(torn->stress, stress, torn->strain, strain) -
+                                           half_work(stress, nothing, energy.was, energy.strain));
+  }
+}
+
+/** A family whose strain grows as it loses bonds would have received what nobody has put in: it carries less from here on. */
+static void carry_less(Domain *d, Torn *torn)
+{
+  if (torn->carried + torn->control <= torn->received || torn->carried <= 0) return;
+  const double factor = fmax(0, torn->received - torn->control) / torn->carried;
+  d->type->shares(d->formulation)[torn->place] *= factor;
+  d->type->renew(d->formulation, torn->place / SLICE);
+  d->is_torn[torn->place] = 2;
+  torn->carried *= factor;
+}
+
+void domain_settle(Domain *d)
+{
+  find_left(d);
+  TEAM_SINGLE
+  for (int64_t n = 0; n < d->torn_count; ++n) {
+    carry_less(d, &d->torn[n]);
+    d->fracture_energy += d->torn[n].received - d->torn[n].carried - d->torn[n].control;
+  }
+}
+
+static void forget_torn(Domain *d)
+{
+  for (int64_t n = 0; n < d->torn_count; ++n) d->is_torn[d->torn[n].place] = 0;
+  d->torn_count = 0;
 }
 
 void domain_break(Domain *d, const Moment *moment)
@@ -132,7 +181,6 @@ void domain_break(Domain *d, const Moment *moment)
     d->motion += moment->motion;
     d->points.time = moment->time;
     d->points.time_step = moment->time_step;
-    d->torn_count = 0;
   }
   if (d->contact.spec) {
     TEAM_SINGLE contact_follow(&d->contact, moment->motion);
@@ -152,24 +200,16 @@ void domain_break(Domain *d, const Moment *moment)
     if (d->any_suspect && !d->type->bond_energy) judge(d, moment, true);
   }
   if (!d->any_suspect) return;
-  find_energies(d, moment->time_step, false);
+  find_received(d);
   contact_remember(&d->contact);
   TEAM_SINGLE break_suspects(d, moment);
 }
 
-void domain_book(Domain *d, double time_step)
+void domain_accept(Domain *d)
 {
-  find_energies(d, time_step, true);
   TEAM_SINGLE
   {
-    double sum = 0;
-    for (int64_t n = 0; n < d->torn_count; ++n) {
-      sum += d->torn[n].released;
-      d->is_torn[d->torn[n].place] = 0;
-    }
-    d->torn_count = 0;
-    /* Laws that yield as their strains jump dissipate what they gain by it. */
-    d->fracture_energy += domain_is_elastic(d) ? sum : fmax(0, sum);
+    forget_torn(d);
     uint8_t *gave_up = d->gave_up;
     for (int64_t i = 0; gave_up && d->any_suspect && i < d->particles->places; ++i) gave_up[i] &= (uint8_t)~CONSUMED;
   }
@@ -177,8 +217,8 @@ void domain_book(Domain *d, double time_step)
 
 void domain_mend(Domain *d)
 {
-  for (int64_t n = 0; n < d->torn_count; ++n) d->is_torn[d->torn[n].place] = 0;
-  d->torn_count = 0;
+  for (int64_t n = 0; n < d->torn_count; ++n) d->type->shares(d->formulation)[d->torn[n].place] = d->torn[n].share;
+  forget_torn(d);
   for (int64_t n = d->broken_before; n < d->broken_count; ++n) {
     const int32_t a = d->particles->place_of[d->broken[n].a], b = d->particles->place_of[d->broken[n].b];
     family_mend(&d->family, a, b);

@@ -29,8 +29,10 @@ typedef struct Moment {
 /** A place whose family has lost bonds in the step under way. */
 typedef struct Torn {
   int32_t place;
-  StoredEnergy before; /* they broke */
-  double released;     /* by the place */
+  double share;                         /* of the formulation, before */
+  double strain[6], stress[6], elastic; /* of its point at the beginning of the step, and its energy by them */
+  double received;                      /* until the end of the step, with the bonds */
+  double carried, control;              /* the same without them: in proportion to the share, and not */
 } Torn;
 
 typedef struct Domain {
@@ -64,7 +66,7 @@ typedef struct Domain {
   double fracture_energy; /* that bonds had received, and neither gave back nor dissipated, when they broke */
   Torn *torn;
   int64_t torn_count, torn_capacity;
-  uint8_t *is_torn;      /* [places] */
+  uint8_t *is_torn;      /* [places] 1, or 2 where its family carries less from this step on */
   int64_t broken_before; /* bonds, at the beginning of the step under way */
   bool any_suspect;      /* in the step under way */
   bool out_of_memory;    /* while bonds broke */
@@ -112,8 +114,12 @@ void domain_follow(Domain *domain);
  *  the step under way, strains and stresses those at its beginning. */
 void domain_break(Domain *domain, const Moment *moment);
 
-/** After the forces of the step, by all threads: books what its broken bonds had received. */
-void domain_book(Domain *domain, double time_step);
+/** When laws have answered to families without their broken bonds, by all threads: what torn places had received and have no more is booked,
+ *  and families that would have gained carry less. */
+void domain_settle(Domain *domain);
+
+/** After the forces of a step that did not fail, by all threads. */
+void domain_accept(Domain *domain);
 
 /** Mends the bonds that domain_break broke in a step that failed; displacements are those of its beginning again. */
 void domain_mend(Domain *domain);

@@ -91,6 +91,15 @@ void domain_state(Domain *d, StateList *list)
   family_state(&d->family, list);
   state_add_number(list, "motion", "length", STATE_TRIED, &d->motion);
   state_add_number(list, "fracture energy", "energy", STATE_TRIED, &d->fracture_energy);
+  if (d->type->shares)
+    state_add(list,
+              &(StateRow){.unit = "1",
+                          .kind = STATE_NUMBERS,
+                          .entity = STATE_OF_PLACE,
+                          .role = STATE_COMMITTED,
+                          .count = d->particles->places,
+                          .values = d->type->shares(d->formulation)},
+              "share", NULL);
   state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &broken, .owner = d}, "broken bonds", NULL);
   contact_state(&d->contact, list);
 }

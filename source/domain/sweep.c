@@ -148,6 +148,16 @@ static void finish_block(Domain *d, const Group *group, int64_t b, const Purpose
   if (writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
 }
 
+/** Where bonds have broken: the same again for blocks whose families turn out to carry less, with the stresses that laws have given. */
+static void settle(Domain *d, const Group *group)
+{
+  domain_settle(d);
+  TEAM_FOR (b, d->block_count) {
+    const int64_t first = d->blocks[b].first * SLICE, places = d->blocks[b].last * SLICE - first;
+    if (memchr(d->is_torn + first, 2, (size_t)places)) run_group(d, group, b, &(Purpose){.no_law = true}, false);
+  }
+}
+
 static void run_all(Domain *d, const Purpose *purpose)
 {
   const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&d->points);
@@ -170,14 +180,16 @@ static void run_all(Domain *d, const Purpose *purpose)
     const bool in_two = group.close < group.to;
     if (in_two) before.to = group.close;
     const TeamShare share = team_share(d->block_count);
+    const bool torn = group.law >= 0 && d->torn_count && !purpose->at; /* forces wait for what families carry */
     TEAM_FOR (b, d->block_count) {
       run_group(d, &before, b, purpose, false);
-      if (in_two && d->lowest[b] >= share.first) finish_block(d, &after, b, purpose, writes);
+      if (in_two && !torn && d->lowest[b] >= share.first) finish_block(d, &after, b, purpose, writes);
       if (!in_two && writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
     }
+    if (torn) settle(d, &before);
     if (in_two) {
       TEAM_FOR (b, d->block_count) /* the rest, whose neighbours were another thread's */
-        if (d->lowest[b] < share.first) finish_block(d, &after, b, purpose, writes);
+        if (torn || d->lowest[b] < share.first) finish_block(d, &after, b, purpose, writes);
     }
   }
 }

@@ -130,9 +130,8 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   int64_t rows[2];
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
   const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch) : 1;
-  *energy =
-      (StoredEnergy){.stored = 0.5 * share * pull * length * (length - bond.length), .half_work = 0.5 * pull * along};
-  energy->beside = energy->stored;
+  const double stored = 0.5 * share * pull * length * (length - bond.length);
+  *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
 }
 
 /** Half of what the bonds of a place store; the other half is that of their other ends. */
@@ -148,7 +147,7 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
     StoredEnergy bond;
     bond_energy(formulation, slice, slot, lane, time, &bond);
     energy->stored += bond.stored / 2;
-    energy->half_work += bond.half_work / 2;
+    energy->received += bond.received / 2;
   }
 }
 

@@ -491,6 +491,7 @@ const FormulationType formulation_correspondence = {
     .half_state = correspondence_half_state,
     .point_count = correspondence_point_count,
     .point = correspondence_point,
+    .shares = correspondence_shares,
     .stored_energy = correspondence_stored_energy,
     .gradient = correspondence_gradient,
     .characteristic_length = correspondence_characteristic_length,

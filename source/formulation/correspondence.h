@@ -4,7 +4,8 @@
  *   G_i = (sum w eta (x) xi) K_i^-1,  E = (G + G^T + G^T G) / 2,  P = (I + G) S(E),
  * and the force on it per volume is sum w [P_i K_i^-1 + P_j K_j^-1] xi + sum w [C_i (eta - G_i xi) + C_j (eta - G_j xi)], the
  * second sum being the control of zero-energy modes: C = G_s c_b / (delta omega_mean) I (Silling 2017) or a factor times
- * C : K^-1 (Wan et al. 2019). All sums over bonds are arranged such that they are linear in what is read of the neighbour, and so can be
+ * C : K^-1 (Wan et al. 2019), of the family with all its bonds: a C that follows the family would give energy as bonds break
+ * (docs/theory.md 4). All sums over bonds are arranged such that they are linear in what is read of the neighbour, and so can be
  * made along whole lattice rows (family/lattice_rows.h). With the moments of the family m = sum w xi and w_sum = sum w, one state
  * Q = P K^-1 - C G per particle and the stretch e = sum w eta,
  *   sum w eta (x) xi = sum w u_j (x) xi - u_i (x) m,      e = sum w u_j - w_sum u_i,
@@ -80,6 +81,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error);
 void correspondence_destroy(void *formulation);
 void correspondence_renew(void *formulation, int64_t slice);
 void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
+double *correspondence_shares(void *formulation);
 size_t correspondence_bytes(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */

@@ -6,7 +6,7 @@ void correspondence_axial_spring(const Correspondence *c, double *const u[3], in
                                  double pull[3], double spring[6])
 {
   const Material *m = points_material(c->points, place);
-  const double stiffness = micromodulus(c->body, material_young(m), c->family->horizon) / 2;
+  const double stiffness = c->shapes.kept[place] * micromodulus(c->body, material_young(m), c->family->horizon) / 2;
   double y[3], square = 0;
   for (int k = 0; k < 3; ++k) {
     y[k] = bond->xi[k] + u[k][bond->neighbour] - u[k][place];
@@ -27,14 +27,15 @@ static void axial_state(const Correspondence *c, double *const *at, int64_t plac
 {
   double *const *u = c->particles->displacement;
   const double omega = bond->weight / c->particles->volume[bond->neighbour];
-  const double hold = c->control == CONTROL_TENSOR ? 0 : hold_component(c, place, XX);
   double pull[3], spring[6], eta[3];
   correspondence_axial_spring(c, at ? at : u, place, bond, pull, spring);
   for (int k = 0; k < 3; ++k) eta[k] = u[k][bond->neighbour] - u[k][place];
   for (int k = 0; k < 3; ++k) {
     t[k] = at ? 0 : pull[k];
-    for (int j = 0; at && j < 3; ++j) t[k] += spring[symmetric_place[3 * k + j]] * eta[j];
-    t[k] -= omega * hold * eta[k];
+    for (int j = 0; j < 3; ++j) {
+      const int kj = symmetric_place[3 * k + j];
+      t[k] += ((at ? spring[kj] : 0) - omega * hold_component(c, place, kj)) * eta[j];
+    }
   }
 }
 
@@ -157,10 +158,10 @@ static void sum_axial_energy(const Correspondence *c, int64_t place, double time
       force += pull[k] * y; /* times |y| */
       along += pull[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
     }
-    if (square > 0) energy->beside += 0.5 * volumes * force / sqrt(square) * (sqrt(square) - bond.length);
-    energy->half_work += 0.5 * volumes * along;
+    const double stored = square > 0 ? 0.5 * volumes * force / sqrt(square) * (sqrt(square) - bond.length) : 0;
+    energy->stored += stored;
+    energy->received += stored - 0.5 * volumes * along;
   }
-  energy->stored = energy->beside;
 }
 
 void correspondence_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
@@ -171,36 +172,14 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   *energy = (StoredEnergy){0};
   if (c->shapes.mode[place] == SHAPE_AXIAL) sum_axial_energy(c, place, time, energy);
   if (c->shapes.mode[place] == SHAPE_AXIAL || c->shapes.mode[place] == SHAPE_FREE) return;
-  const Material *m = points_material(points, place);
   const double volume = c->particles->volume[place];
-  const double share = shape_of_slice(&c->shapes, slice)->share[place % SLICE];
   Sums sums;
-  double g[9], g_before[9], strain_before[6], change[6], trace = 0, mean = 0, work = 0;
-  double *strain = energy->strain, *stress = energy->stress;
+  double g[9], g_before[9];
   sum_bonds(c, place, time, &sums);
-  strain_of(c, place, sums.now, g, strain);
-  strain_of(c, place, sums.before, g_before, strain_before);
-  if (points->plane_stress) strain[ZZ] = strain_before[ZZ] = points->strain[ZZ][place];
-  for (int k = 0; k < 6; ++k) /* a law that may yield is not asked: its stress is that of the beginning of the step */
-    change[k] = m->law->linear ? strain[k] - points->strain[k][place] : 0;
-  if (points->plane_stress) /* such that the stress zz stays */
-    change[ZZ] = -(m->bulk - 2 * m->shear / 3) / (m->bulk + 4 * m->shear / 3) * (change[XX] + change[YY]);
-  for (int k = 0; k < 3; ++k) trace += change[k];
-  for (int k = 0; k < 6; ++k) {
-    stress[k] = points->stress[k][place] + m->shear * change[k] * (k < 3 ? 2 : 1) +
-                (k < 3 ? (m->bulk - 2 * m->shear / 3) * trace : 0);
-    work += stress[k] * (strain[k] - strain_before[k]);
-  }
-  for (int k = 0; k < 3; ++k) mean += stress[k] / 3;
-  double density = mean * mean / (2 * m->bulk);
-  for (int k = 0; k < 6; ++k) {
-    const double deviator = k < 3 ? stress[k] - mean : stress[k];
-    density += deviator * deviator / (m->shear * (k < 3 ? 4 : 2));
-  }
-  const double now = held(c, place, sums.square, g, sums.now), across = held(c, place, sums.across, g, sums.before);
-  energy->weight = volume * share;
-  energy->density = density * points_softness(points, place);
-  energy->beside = volume * 0.5 * now;
-  energy->stored = energy->weight * energy->density + energy->beside;
-  energy->half_work = volume * 0.5 * (share * work + now - across);
+  strain_of(c, place, sums.now, g, energy->strain);
+  strain_of(c, place, sums.before, g_before, energy->was);
+  energy->weight = volume * shape_of_slice(&c->shapes, slice)->share[place % SLICE];
+  energy->stored = energy->weight * points_elastic_energy(points, place) * points_softness(points, place) +
+                   volume * 0.5 * held(c, place, sums.square, g, sums.now);
+  energy->control = volume * 0.5 * held(c, place, sums.across, g, sums.before);
 }

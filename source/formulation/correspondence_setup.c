@@ -54,6 +54,7 @@ static double eccentricity(const Correspondence *c, int64_t place)
   return trace * (shape->inverse[XX][lane] + shape->inverse[YY][lane] + shape->inverse[ZZ][lane]) / (d * d);
 }
 
+/** C of families with all their bonds, for good. */
 static void set_hold(void *context, int64_t slice)
 {
   const Correspondence *c = context;
@@ -69,12 +70,16 @@ static void set_hold(void *context, int64_t slice)
     if (c->control != CONTROL_TENSOR) continue;
     /* C : K^-1 grows without limit as a family becomes flat, and with it what the stable step would have to be. */
     const double most = 4, strength = c->strength * fmin(1, most / fmax(1, eccentricity(c, place)));
-    bool strained = c->shapes.mode[place] == SHAPE_REGULAR || c->shapes.mode[place] == SHAPE_REDUCED;
     double trace = shape->inverse[XX][lane] + shape->inverse[YY][lane] + shape->inverse[ZZ][lane];
     for (int k = 0; k < 6; ++k)
-      c->hold[k][place] =
-          strained ? strength * (2 * m->shear * shape->inverse[k][lane] + (k < 3 ? lambda * trace : 0)) : 0;
+      c->hold[k][place] = strength * (2 * m->shear * shape->inverse[k][lane] + (k < 3 ? lambda * trace : 0));
   }
+}
+
+double *correspondence_shares(void *formulation)
+{
+  Correspondence *c = formulation;
+  return c->shapes.kept;
 }
 
 void correspondence_renew(void *formulation, int64_t slice)
@@ -83,7 +88,6 @@ void correspondence_renew(void *formulation, int64_t slice)
   uint8_t before[SLICE];
   memcpy(before, c->shapes.mode + slice * SLICE, sizeof before);
   shape_table_renew(&c->shapes, c->family, slice);
-  set_hold(c, slice);
   for (int lane = 0; lane < SLICE; ++lane) {
     int32_t place = (int32_t)(slice * SLICE + lane);
     if (c->shapes.mode[place] != SHAPE_AXIAL || before[lane] == SHAPE_AXIAL) continue;
@@ -93,7 +97,7 @@ void correspondence_renew(void *formulation, int64_t slice)
   }
 }
 
-/** True if all particles have one and the same scalar C, and will keep it whatever breaks. */
+/** True if all particles have one and the same scalar C. */
 static bool is_uniform(const Correspondence *c)
 {
   const Particles *p = c->particles;
@@ -101,8 +105,6 @@ static bool is_uniform(const Correspondence *c)
   double first = c->hold[0][p->place_of[0]];
   for (int64_t n = 1; n < p->count; ++n)
     if (c->hold[0][p->place_of[n]] != first) return false;
-  for (int k = 0; k < c->family->pattern_count; ++k)
-    if (c->family->patterns[k].weight != c->family->patterns[0].weight) return false;
   return true;
 }
 

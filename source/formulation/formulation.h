@@ -49,15 +49,13 @@ typedef struct BondLength {
   double horizon;
 } BondLength;
 
-/** Energy of the deformation of a place or of a bond [energy]. */
+/** Energy of the deformation of a place or of a bond [energy]. What was received is what is stored less half of what the forces of the moment
+ *  did along the last step: what works summed by the trapezium rule have put in, if these forces end with the step. */
 typedef struct StoredEnergy {
-  double stored; /* what unloading would give back: weight x density + beside */
-  double
-      half_work; /* half of what the forces of the moment did along the last step: the trapezium rule's share of the step's end */
-  double beside;               /* stored by anything but the law of a point */
-  double weight;               /* volume for which the law of a point stands; 0 where laws act on bonds */
-  double density;              /* energy per volume that the point would give back */
-  double strain[6], stress[6]; /* of the point */
+  double stored;            /* what unloading would give back, in all */
+  double received, control; /* by bonds that act as springs; by the control of zero-energy modes */
+  double weight; /* volume for which the law of a point stands, by the share of its stress that is carried; 0: none */
+  double strain[6], was[6]; /* of that point at the end and at the beginning of the last step, with the present bonds */
 } StoredEnergy;
 
 /** What a sweep reads and writes of places. */
@@ -126,8 +124,10 @@ typedef struct FormulationType {
   int (*point)(const void *formulation, int64_t number, Operator *point, Error *error);
   /** Deformation gradient F at a place, row by row. */
   void (*gradient)(const void *formulation, int64_t place, double f[9]);
-  /** Energy of the deformation of a place, as it stands and with its present bonds. Stresses follow elastically from those that laws gave
-   *  last.
+  /** [places] shares of its stress that the family of a place carries, beyond what its bonds allow: 1 as long as nothing breaks. They
+   *  are state; after a change `renew` is called. NULL where bonds have energies of their own. */
+  double *(*shares)(void *formulation);
+  /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.
    *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
   void (*stored_energy)(const void *formulation, int64_t place, double time, StoredEnergy *energy);
   /** The same of one bond, if bonds have energies of their own and hand nothing on when one of them breaks; or NULL. */

@@ -38,8 +38,8 @@ static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t s
       table->roundness[place] = (float)shape.roundness;
       table->allowed[place] = (float)poverty(&shape);
       *whole = fmin(*whole, shape.alone * (shape.bonds + 1));
-    } else if (poverty(&shape) > (double)table->allowed[place])
-      shapes.share[lane] = (double)table->allowed[place] / poverty(&shape);
+    } else
+      shapes.share[lane] = table->kept[place] * fmin(1, (double)table->allowed[place] / poverty(&shape));
   }
   return shapes;
 }
@@ -115,14 +115,16 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
   table->shared = memory_zeroed(capacity, 1, "shape tensors", error);
   table->roundness = memory_zeroed((size_t)family->particles->places, sizeof *table->roundness, "shape tensors", error);
   table->allowed = memory_zeroed((size_t)family->particles->places, sizeof *table->allowed, "shape tensors", error);
+  table->kept = memory_zeroed((size_t)family->particles->places, sizeof *table->kept, "shape tensors", error);
   table->mode = memory_zeroed((size_t)family->particles->places, 1, "shape tensors", error);
   double *whole = memory_zeroed((size_t)slices, sizeof *whole, "shape tensors", error);
   SliceShape *shapes = memory_zeroed(BATCH, sizeof *shapes, "shape tensors", error);
   int32_t *slots = memory_zeroed(slots_count, sizeof *slots, "shape tensors", error);
   /* Not zeroed: pages that no entry ever needs are never touched, and so take no memory. */
   table->entries = aligned_alloc(64, (capacity * sizeof(SliceShape) + 63) / 64 * 64);
-  int failed = !table->entry_of || !table->shared || !table->roundness || !table->allowed || !table->mode || !whole ||
-               !shapes || !slots;
+  int failed = !table->entry_of || !table->shared || !table->roundness || !table->allowed || !table->kept ||
+               !table->mode || !whole || !shapes || !slots;
+  for (int64_t place = 0; table->kept && place < family->particles->places; ++place) table->kept[place] = 1;
   if (!table->entries) failed = error_add(error, BRECCIA_FAILURE, "out of memory: shape tensors");
   for (int64_t begin = 0; begin < slices && !failed; begin += BATCH) {
     int64_t end = begin + BATCH < slices ? begin + BATCH : slices;
@@ -145,6 +147,7 @@ void shape_table_destroy(ShapeTable *table)
   free(table->shared);
   free(table->roundness);
   free(table->allowed);
+  free(table->kept);
   free(table->mode);
   *table = (ShapeTable){0};
 }
@@ -159,5 +162,6 @@ size_t shape_table_bytes(const ShapeTable *table, const Family *family)
 {
   return (size_t)table->count * (sizeof *table->entries + 1) +
          (size_t)family->particles->slices * sizeof *table->entry_of +
-         (size_t)family->particles->places * (sizeof *table->roundness + sizeof *table->allowed + 1);
+         (size_t)family->particles->places *
+             (sizeof *table->roundness + sizeof *table->allowed + sizeof *table->kept + 1);
 }

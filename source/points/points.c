@@ -286,6 +286,18 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
   return stress;
 }
 
+double points_elastic_energy(const Points *points, int64_t row)
+{
+  const Material *m = points_material(points, row);
+  const double mean = (points->stress[XX][row] + points->stress[YY][row] + points->stress[ZZ][row]) / 3;
+  double density = mean * mean / (2 * m->bulk);
+  for (int k = 0; k < 6; ++k) {
+    const double deviator = points->stress[k][row] - (k < 3 ? mean : 0);
+    density += deviator * deviator / (m->shear * (k < 3 ? 4 : 2));
+  }
+  return density;
+}
+
 double points_softness(const Points *points, int64_t row)
 {
   const Material *m = points_material(points, row);

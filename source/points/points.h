@@ -82,6 +82,9 @@ void points_change(const Points *points, int64_t first, int count, double *const
  *  @param[out] tangent  its slope; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
 double points_try(const Points *points, int64_t row, double strain, double *tangent);
 
+/** Energy per volume that a point in space would give back if it unloaded with its first moduli. */
+double points_elastic_energy(const Points *points, int64_t row);
+
 /** Share of the elastic energy of its stress that a point in space would give back, over that of an undamaged one: 1 where it
  *  unloads with its first moduli, more where damage has made it softer. Laws in servers are taken to unload elastically. */
 double points_softness(const Points *points, int64_t row);

@@ -275,7 +275,7 @@ static void take_step(void *context)
   domain_break(d, &(Moment){s->clock->step + 1, end, s->clock->time_step, sqrt(3) * s->motion});
   domain_forces(d);
   if (!is_sound(s)) return;
-  domain_book(d, s->clock->time_step);
+  domain_accept(d);
   loading_apply(s->loading, d->particles, end);
   TEAM_FOR (b, d->block_count) kick(s, b);
   TEAM_SINGLE

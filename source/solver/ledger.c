@@ -8,7 +8,7 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
   /* Steps: when a load sets in, all energies are next to nothing, and what presses at first may come from faces that settle. */
   const int64_t lasting = d->contact.spec ? 100 : 3;
-  const double most_given = d->contact.spec ? 1 : domain_is_elastic(d) ? 0.1 : 0.5, most_unexplained = 1000;
+  const double most_given = d->contact.spec ? 1 : 0.1, most_unexplained = 1000;
   const double fracture = d->fracture_energy, internal = l->bond_work - fracture - d->contact.friction_work;
   l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
   const bool sound = fmin(internal, fracture) >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
