@@ -487,7 +487,8 @@ static void a_family_that_loses_a_bond_never_stores_more(void **state)
   assert_true(d->type->shares(d->formulation)[middle] == 1);
   compute_forces(m);
   d->type->stored_energy(d->formulation, middle, 0, &after);
-  assert_true(after.stored == before.stored && d->fracture_energy == 0);
+  assert_near(after.stored, before.stored, 1e-7 * before.stored); /* what shapes allow is kept in single precision */
+  assert_true(d->fracture_energy == 0);
   breccia_model_destroy(&m);
 }
 
