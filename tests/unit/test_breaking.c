@@ -482,13 +482,12 @@ static void a_family_that_loses_a_bond_never_stores_more(void **state)
   const double share = d->type->shares(d->formulation)[middle];
   assert_true(share < 0.999 && share > 0.8);
   assert_near(after.stored, before.stored, 1e-12 * before.stored);
-  assert_true(d->fracture_energy >= 0);
-  domain_mend(d); /* as after a step that failed */
+  assert_true(d->fracture_energy >= -1e-12 * before.stored); /* of other torn places, and roundings */
+  domain_mend(d);                                            /* as after a step that failed */
   assert_true(d->type->shares(d->formulation)[middle] == 1);
   compute_forces(m);
   d->type->stored_energy(d->formulation, middle, 0, &after);
   assert_near(after.stored, before.stored, 1e-7 * before.stored); /* what shapes allow is kept in single precision */
-  assert_true(d->fracture_energy == 0);
   breccia_model_destroy(&m);
 }
 
