@@ -213,3 +213,33 @@ const breccia_law law_of_glass = {.name = "glass",
                                   .prepare = glass_prepare,
                                   .moduli = glass_moduli,
                                   .update = glass_update};
+
+static int giver_values(const void *constants)
+{
+  (void)constants;
+  return 1;
+}
+static int giver_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    const double volumetric = 6e4 * (batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i]);
+    double square = 0;
+    for (int k = 0; k < 6; ++k) square += batch->strain[k][i] * batch->strain[k][i];
+    const double stiff = square < batch->committed[i] ? 2 : 1;
+    for (int k = 0; k < 6; ++k)
+      batch->stress[k][i] = stiff * ((k < 3 ? volumetric : 0) + (k < 3 ? 2 : 1) * 6e4 * batch->strain[k][i]);
+    batch->trial[i] = square;
+  }
+  return -1;
+}
+const breccia_law law_of_giver = {.name = "giver",
+                                  .about = "gives more than it got",
+                                  .source = "the tests",
+                                  .maturity = "experimental",
+                                  .constants_size = 1,
+                                  .components = 6,
+                                  .prepare = glass_prepare,
+                                  .moduli = glass_moduli,
+                                  .history_values = giver_values,
+                                  .update = giver_update};

@@ -26,6 +26,8 @@ double sample_cap_envelope(double pressure);
 
 /** "glass": elastic up to a strain xx of 1e-3, where it gives up. */
 extern const breccia_law law_of_glass;
+/** "giver": twice as stiff while it is unloaded as while it is loaded. */
+extern const breccia_law law_of_giver;
 
 /** First invariant, and length of the deviator. */
 void stress_invariants(const double stress[6], double *first, double *length);

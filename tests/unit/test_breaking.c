@@ -400,39 +400,10 @@ static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
 
 /* ---- laws that give energy ---- */
 
-static int giver_values(const void *constants)
-{
-  (void)constants;
-  return 1;
-}
-static int giver_update(const void *constants, const breccia_batch *batch)
-{
-  (void)constants;
-  for (int i = 0; i < batch->count; ++i) {
-    double square = 0, volumetric = 6e4 * (batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i]);
-    for (int k = 0; k < 6; ++k) square += batch->strain[k][i] * batch->strain[k][i];
-    const double stiff = square < batch->committed[i] ? 2 : 1;
-    for (int k = 0; k < 6; ++k)
-      batch->stress[k][i] = stiff * ((k < 3 ? volumetric : 0) + (k < 3 ? 2 : 1) * 6e4 * batch->strain[k][i]);
-    batch->trial[i] = square;
-  }
-  return -1;
-}
-/** Twice as stiff while it is unloaded as while it is loaded. */
-static const breccia_law giver = {.name = "giver",
-                                  .about = "gives more than it got",
-                                  .source = "this test",
-                                  .maturity = "experimental",
-                                  .constants_size = 1,
-                                  .prepare = vase_prepare,
-                                  .moduli = vase_moduli,
-                                  .history_values = giver_values,
-                                  .update = giver_update};
-
 static void a_law_that_gives_more_than_it_got_stops_the_run(void **state)
 {
   (void)state;
-  static const breccia_law *const laws[] = {&giver};
+  static const breccia_law *const laws[] = {&law_of_giver};
   const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1};
   breccia_error *error = breccia_error_create();
   breccia_model *m;
