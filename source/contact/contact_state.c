@@ -25,7 +25,8 @@ static void write_pair(const Contact *c, const ContactRow *row, int32_t n, doubl
   const Grip *held = &row->grips[2 * n + c->committed];
   out += SAVED_PAIR;
   memset(out, 0, SAVED_GRIP * sizeof *out);
-  if (!(out[0] = held->known)) return;
+  if (!held->known) return;
+  out[0] = 1;
   memcpy(out + 1, held->spring, sizeof held->spring);
   memcpy(out + 4, held->pull, sizeof held->pull);
   memcpy(out + 7, held->way, sizeof held->way);
