@@ -55,6 +55,9 @@ int model_make_schedule(breccia_model *model, bool again, Error *error);
 /** Rows of the whole state: of the domain, the solver and the largest values so far. */
 void model_state(breccia_model *model, StateList *list);
 
+/** Holds the names of fields, components, histories and columns that the deck asks for against what there is. */
+int model_check_results(breccia_model *model);
+
 /** Names of the fields that results are written of, without doubles: those of the deck, those of its pictures, and displacement.
  *  @param[out] names  its items are to be freed */
 int model_field_names(const breccia_model *model, TextList *names, Error *error);

@@ -1,12 +1,9 @@
-/* A whole run with its files: results, histories, checkpoints, pictures, summary. */
+/* A whole run with its files: results, histories, checkpoints; then pictures and summary. */
+#include "model/run.h"
+
 #include "base/clock.h"
 #include "base/tensor.h"
-#include "model/model.h"
 #include "results/checkpoint.h"
-#include "results/curve.h"
-#include "results/result_file.h"
-#include "solver/rest.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,27 +12,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-typedef struct Run {
-  breccia_model *model;
-  const breccia_run *wish;
-  ResultFile *results;
-  int64_t next_write; /* index in the schedule */
-  int64_t steps;      /* where to stop */
-  double started, last_checkpoint, last_progress;
-  double paused;   /* seconds since the last progress that went into writing */
-  int64_t told_at; /* step of the last progress */
-  TextList names;
-  Text files;
-} Run;
-
-static void note_file(Run *run, const char *path)
-{
-  text_add(&run->files, "  %s\n", path);
-}
-
 /* ---- pieces ---- */
 
-static int make_folder(const char *path, Error *error)
+int run_make_folder(const char *path, Error *error)
 {
   char *part = text_format("%s", path);
   if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: folder");
@@ -109,8 +88,7 @@ static int write_checkpoint(Run *run, Error *error)
   return status;
 }
 
-/** Writes a small file whole, or not at all. */
-static int write_file(Run *run, const char *name, const Text *words, Error *error)
+int run_write_file(Run *run, const char *name, const Text *words, Error *error)
 {
   char *path = text_format("%s/%s", run->wish->folder, name),
        *part = text_format("%s/%s.part", run->wish->folder, name);
@@ -140,7 +118,7 @@ static int write_deck(Run *run, Error *error)
            text_words(&model->deck));
   char *summary = run->wish->restart ? NULL : text_format("%s/summary.json", run->wish->folder);
   if (summary) unlink(summary);
-  const int status = write_file(run, "deck.yaml", &words, error);
+  const int status = run_write_file(run, "deck.yaml", &words, error);
   free(summary);
   text_free(&words);
   return status;
@@ -250,402 +228,6 @@ static int loop(Run *run, Error *error)
   return status;
 }
 
-/* ---- pictures ---- */
-
-static int nearest_write(const ResultView *view, double time)
-{
-  int best = view->steps - 1;
-  for (int k = 0; k < view->steps; ++k)
-    if (fabs(view->times[k] - time) < fabs(view->times[best] - time)) best = k;
-  return best;
-}
-
-/** A path in the folder of pictures that no other picture of this run has. To be freed. */
-static char *picture_path(const Run *run, const char *given, const char *name)
-{
-  char *path = NULL;
-  for (int number = 1; number < 1000; ++number) {
-    char words[256], safe[256], ending[16] = "";
-    if (number > 1) snprintf(ending, sizeof ending, "-%d", number);
-    snprintf(words, sizeof words, "%.200s%s", given ? given : name, ending);
-    text_file_name(words, safe, sizeof safe);
-    path = text_format("%s/pictures/%s.png", run->wish->folder, safe);
-    char *line = path ? text_format("  %s\n", path) : NULL;
-    const bool taken = line && run->files.characters && strstr(run->files.characters, line);
-    free(line);
-    if (!taken) break;
-    free(path);
-    path = NULL;
-  }
-  return path;
-}
-
-static PictureOptions picture_options(const PictureSpec *spec)
-{
-  return (PictureOptions){.field = spec->field,
-                          .component = spec->component,
-                          .title = spec->title,
-                          .x_label = spec->x_label,
-                          .y_label = spec->y_label,
-                          .deformed = spec->deformed,
-                          .azimuth = spec->view[0],
-                          .elevation = spec->view[1],
-                          .low = spec->range[0],
-                          .high = spec->range[1],
-                          .broken_bonds = spec->broken_bonds};
-}
-
-/** One field at the times of its entry, or at the last one written. */
-static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, Error *error)
-{
-  const PictureOptions o = picture_options(spec);
-  PictureSurvey survey;
-  int status = spec->same_range ? picture_survey(view, 0, view->steps - 1, false, &o, &survey, error) : BRECCIA_OK;
-  for (int t = 0; !status && t < (spec->times.count ? spec->times.count : 1); ++t) {
-    const double time = spec->times.count ? spec->times.values[t] : run->model->solver.clock.time;
-    if (time > run->model->solver.clock.time * (1 + 1e-9)) continue; /* the run did not come so far */
-    const int step = nearest_write(view, time);
-    char name[160];
-    picture_name(view, step, spec->field, spec->component, spec->times.count > 0, name, sizeof name);
-    char *path = picture_path(run, spec->times.count > 1 ? NULL : spec->name, name);
-    if (spec->name && spec->times.count > 1) { /* the times tell its pictures apart */
-      char whole[256];
-      picture_name(view, step, spec->name, NULL, true, whole, sizeof whole);
-      free(path);
-      path = picture_path(run, whole, NULL);
-    }
-    status = path ? picture_draw(view, step, &o, spec->same_range ? &survey : NULL, path, error) : BRECCIA_FAILURE;
-    if (!status) note_file(run, path);
-    free(path);
-  }
-  return status;
-}
-
-static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
-{
-  char name[160];
-  const char *folder = run->wish->folder;
-  char *curve = spec->energy ? curve_of_energies(folder, error) : text_format("%s", spec->curve);
-  if (!curve) return BRECCIA_FAILURE;
-  curve_name(curve, name, sizeof name);
-  char *path = picture_path(run, spec->name, name);
-  const CurveOptions o = {.title = spec->title ? spec->title : run->model->spec->title,
-                          .x_label = spec->x_label,
-                          .y_label = spec->y_label,
-                          .log_axes = spec->log_axes,
-                          .low = spec->range[0],
-                          .high = spec->range[1]};
-  int status = path ? curve_draw(&folder, 1, curve, &o, path, error) : BRECCIA_FAILURE;
-  if (!status) note_file(run, path);
-  free(path);
-  free(curve);
-  return status;
-}
-
-/** Pictures are made from the files, as `breccia plot` does. What cannot be drawn is a warning: the results are there. */
-static void draw_pictures(Run *run)
-{
-  breccia_model *model = run->model;
-  Error *error = breccia_error_create();
-  char *path = text_format("%s/results.vtkhdf", run->wish->folder),
-       *folder = text_format("%s/pictures", run->wish->folder);
-  ResultView view;
-  int status = path && folder ? make_folder(folder, error) : BRECCIA_FAILURE;
-  if (!status && !(status = result_view_open(&view, path, error))) {
-    static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
-    for (int k = 0; !model->spec->pictures.count && k < 3; ++k) {
-      bool written = false;
-      for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
-      const PictureSpec spec = {
-          .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
-      if (written) draw_field(run, &view, &spec, error);
-    }
-    for (int k = 0; k < model->spec->pictures.count; ++k) {
-      const PictureSpec *spec = model->spec->pictures.items[k];
-      if (spec->field)
-        draw_field(run, &view, spec, error);
-      else
-        draw_curve(run, spec, error);
-    }
-    result_view_close(&view);
-  }
-  if (error_count(error))
-    text_add(&model->warnings, "%swarning: %s", model->warnings.length ? "\n" : "", breccia_error_text(error));
-  breccia_error_destroy(&error);
-  free(path);
-  free(folder);
-}
-
-/* ---- summary ---- */
-
-static double load_peak(const Load *load, double time)
-{
-  enum { SAMPLES = 1000 };
-  double peak = 0;
-  for (int k = 0; k <= SAMPLES; ++k)
-    peak = fmax(peak, fabs(load_factor(load, load->begin + (time - load->begin) * k / SAMPLES)));
-  return peak * load_magnitude(load->spec);
-}
-
-static double nanoseconds_per_bond(const breccia_model *model)
-{
-  double work = (double)model->run_steps * (double)model->domain.family.bonds;
-  return work > 0 ? 1e9 * model->run_seconds / work : 0;
-}
-
-static void add_number(Text *text, const char *key, double value)
-{
-  if (isfinite(value))
-    text_add(text, "\"%s\": %.10g", key, value);
-  else
-    text_add(text, "\"%s\": null", key);
-}
-
-/** What the deck was made of: its file, settings from outside, its variables with their values. */
-static void add_origin(const breccia_model *model, Text *t)
-{
-  text_add(t, "  \"deck\": ");
-  text_add_json(t, model->document->name);
-  text_add(t, ",\n  \"settings\": [");
-  for (int k = 0; k < model->setting_count; ++k) {
-    text_add(t, "%s", k ? ", " : "");
-    text_add_json(t, model->settings[k]);
-  }
-  text_add(t, "],\n  \"variables\": {");
-  const Node *variables = node_get(model->document->root, "variables");
-  for (int k = 0; variables && k < variables->count; ++k) {
-    text_add(t, "%s", k ? ", " : "");
-    text_add_json(t, variables->items[k].key);
-    text_add(t, ": ");
-    text_add_json(t, variables->items[k].text);
-  }
-  text_add(t, "},\n");
-}
-
-/** The bond that broke first, and its middle; NULL if none did. */
-static const BrokenBond *first_broken(const Domain *d, double middle[3])
-{
-  if (!d->broken_count) return NULL;
-  const BrokenBond *bond = &d->broken[0];
-  const int32_t a = d->particles->place_of[bond->a], b = d->particles->place_of[bond->b];
-  for (int k = 0; k < 3; ++k) middle[k] = (d->particles->position[k][a] + d->particles->position[k][b]) / 2;
-  return bond;
-}
-
-/** The stages that have begun, where there are several. */
-static void add_stages(const Solver *s, Text *text)
-{
-  if (s->clock.stages == 1) return;
-  text_add(text, "  \"stages\": [");
-  for (int64_t k = 0; k <= s->clock.stage; ++k) {
-    const StageRecord *r = &s->records[k];
-    char name[64];
-    text_add(text, "%s{\"name\": ", k ? ", " : "");
-    text_add_json(text, solver_stage_name(s, k, name, sizeof name));
-    text_add(text, ", \"steps\": [%.0f, %.0f], ", r->first_step, r->last_step);
-    text_add(text, "\"times\": [%.10g, %.10g], \"at_rest\": %s}", r->begin, r->end,
-             r->came_to_rest > 0 ? "true" : "false");
-  }
-  text_add(text, "],\n");
-}
-
-static void tell_stages(const Solver *s, const char *time, Text *text)
-{
-  for (int64_t k = 0; s->clock.stages > 1 && k <= s->clock.stage; ++k) {
-    const StageRecord *r = &s->records[k];
-    char name[64];
-    text_add(text, "stage '%s': steps %.0f to %.0f, time %.6g to %.6g %s%s\n",
-             solver_stage_name(s, k, name, sizeof name), r->first_step, r->last_step, r->begin, r->end, time,
-             r->came_to_rest > 0 ? ", came to rest" : "");
-  }
-}
-
-static int write_summary(Run *run, int status, const char *problem, Error *error)
-{
-  breccia_model *model = run->model;
-  const Domain *d = &model->domain;
-  const Solver *s = &model->solver;
-  Energy e = solver_energy(s);
-  Text t = {0};
-  text_add(&t, "{\n  \"title\": ");
-  text_add_json(&t, model->spec->title);
-  text_add(&t, ",\n  \"version\": \"%s\",\n  \"completed\": %s,\n", BRECCIA_VERSION,
-           !status && solver_is_done(s) ? "true" : "false");
-  add_origin(model, &t);
-  if (problem && *problem) {
-    text_add(&t, "  \"problem\": ");
-    text_add_json(&t, problem);
-    text_add(&t, ",\n");
-  }
-  text_add(&t, "  \"particles\": %lld,\n  \"bonds\": %lld,\n  \"steps\": %lld,\n", (long long)d->particles->count,
-           (long long)d->family.bonds / 2, (long long)s->clock.step);
-  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->clock.time,
-           s->clock.time_step, s->clock.stable);
-  add_stages(s, &t);
-  text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
-           model->run_seconds, nanoseconds_per_bond(model), model->threads);
-  double x[3];
-  const BrokenBond *first = first_broken(d, x);
-  if (first)
-    text_add(
-        &t,
-        "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
-        "%.10g]},\n",
-        (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2]);
-  else
-    text_add(&t, "  \"first_broken_bond\": null,\n");
-  text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)d->broken_count);
-  const struct {
-    const char *key;
-    double value;
-  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal}, {"stored", e.stored},
-                  {"dissipated", e.dissipated}, {"external", e.external}, {"damping", e.damping},
-                  {"fracture", e.fracture},     {"friction", e.friction}, {"between", e.between},
-                  {"imbalance", e.imbalance}};
-  for (int k = 0; k < (int)(sizeof energies / sizeof *energies); ++k) {
-    if (k) text_add(&t, ", ");
-    add_number(&t, energies[k].key, energies[k].value);
-  }
-  text_add(&t, "},\n  \"peaks\": {");
-  const Peaks *p = &model->peaks;
-  const struct {
-    const char *key;
-    double value;
-  } peaks[] = {{"displacement", p->displacement},          {"velocity", p->velocity},
-               {"octahedral_shear_stress", p->octahedral}, {"mean_stress_lowest", p->mean_low},
-               {"mean_stress_highest", p->mean_high},      {"damage", p->damage}};
-  for (int k = 0; k < 6; ++k) {
-    if (k) text_add(&t, ", ");
-    add_number(&t, peaks[k].key, peaks[k].value);
-  }
-  text_add(&t, "},\n  \"loads\": [");
-  for (int k = 0; k < model->loading.count; ++k) {
-    const LoadSpec *l = model->loading.loads[k].spec;
-    const char *dimension, *kind = load_kind(l, &dimension);
-    char unit[64];
-    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    text_add(&t, "%s{\"name\": ", k ? ", " : "");
-    text_add_json(&t, l->name ? l->name : "");
-    text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
-    add_number(&t, "peak", load_peak(&model->loading.loads[k], s->clock.time));
-    text_add(&t, ", \"unit\": ");
-    text_add_json(&t, unit);
-    text_add(&t, "}");
-  }
-  text_add(&t, "],\n  \"units\": {");
-  static const char *const units[][2] = {{"times", "time"},
-                                         {"positions and displacements", "length"},
-                                         {"velocities", "velocity"},
-                                         {"stresses", "stress"},
-                                         {"energies", "energy"}}; /* shares have none */
-  for (size_t k = 0; k < sizeof units / sizeof *units; ++k) {
-    char unit[64];
-    units_name(model->units, dimension_find(units[k][1]), unit, sizeof unit);
-    text_add(&t, "%s\"%s\": ", k ? ", " : "", units[k][0]);
-    text_add_json(&t, unit);
-  }
-  text_add(&t, "}");
-  Text servers = {0};
-  points_report(&d->points, model->run_seconds, true, &servers);
-  if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", text_words(&servers));
-  text_free(&servers);
-  text_add(&t, "\n}\n");
-  const int status_written = write_file(run, "summary.json", &t, error);
-  if (!status_written) text_add(&run->files, "  %s/summary.json\n", run->wish->folder);
-  text_free(&t);
-  return status_written;
-}
-
-/** Says whether a body that was meant to come to rest has done so. */
-static void tell_rest(const Solver *s, Text *t)
-{
-  Rest rest;
-  if (rest_find(s, &rest, NULL) || !rest.meant) return;
-  if (rest.reached)
-    text_add(t, "at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",
-             rest.unbalanced, rest.kinetic);
-  else
-    text_add(
-        t,
-        "not at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (at rest both "
-        "are below %g): run longer, with local damping, or load more slowly; what slides or falls does not come to "
-        "rest\n",
-        rest.unbalanced, rest.kinetic, rest_limit);
-}
-
-static void tell_outcome(Run *run, int status)
-{
-  breccia_model *model = run->model;
-  const Domain *d = &model->domain;
-  const Solver *s = &model->solver;
-  Energy e = solver_energy(s);
-  Text *t = &model->outcome;
-  char time[64], length[64];
-  units_name(model->units, dimension_find("time"), time, sizeof time);
-  units_name(model->units, dimension_find("length"), length, sizeof length);
-  text_free(t);
-  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld steps, %.2f ns per directed bond and step\n",
-           status == BRECCIA_INTERRUPTED ? "stopped on request"
-           : status                      ? "stopped by a failure"
-                                         : "finished",
-           (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
-           (long long)model->run_steps, nanoseconds_per_bond(model));
-  tell_stages(s, time, t);
-  for (int k = 0; k < model->loading.count; ++k) {
-    const LoadSpec *l = model->loading.loads[k].spec;
-    const char *dimension, *kind = load_kind(l, &dimension);
-    char unit[64];
-    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    if (l->name)
-      text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(&model->loading.loads[k], s->clock.time),
-               unit);
-  }
-  double x[3];
-  const BrokenBond *first = first_broken(d, x);
-  if (first)
-    text_add(
-        t,
-        "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
-        (long long)first->step, first->time, time, x[0], x[1], x[2], length, (long long)d->broken_count,
-        (long long)d->family.bonds / 2);
-  else if (d->failure.criterion)
-    text_add(t, "no bond broke\n");
-  const struct {
-    const char *words;
-    double value;
-    bool told;
-  } energies[] = {{"energy: external ", e.external, true},
-                  {" = kinetic ", e.kinetic, true},
-                  {" + stored ", e.stored, true},
-                  {" + dissipated ", e.dissipated, true},
-                  {" + fracture ", e.fracture, true},
-                  {" + friction ", e.friction, e.friction != 0},
-                  {" + damping ", e.damping, e.damping != 0},
-                  {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
-                  {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->ledger.paid}};
-  for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
-    if (!energies[k].told) continue;
-    text_add(t, "%s", energies[k].words);
-    quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
-  }
-  text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
-  const Peaks *peaks = &model->peaks;
-  const double stress = units_in_si(model->units, dimension_find("stress"), 1);
-  text_add(t, "largest in the states written: displacement ");
-  quantity_describe(units_in_si(model->units, dimension_find("length"), peaks->displacement), "m", t);
-  text_add(t, ", octahedral shear stress ");
-  quantity_describe(stress * peaks->octahedral, "Pa", t);
-  text_add(t, ", mean stress ");
-  quantity_describe(stress * peaks->mean_low, "Pa", t);
-  text_add(t, " to ");
-  quantity_describe(stress * peaks->mean_high, "Pa", t);
-  text_add(t, ", damage %.3g\n", peaks->damage);
-  tell_rest(s, t);
-  points_report(&d->points, model->run_seconds, false, t);
-  text_add(t, "written:\n%s", text_words(&run->files));
-  if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
-}
-
 static int finish(Run *run, int status, Error *error)
 {
   breccia_model *model = run->model;
@@ -671,10 +253,10 @@ static int finish(Run *run, int status, Error *error)
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
   text_free(&run->files);
   run->files = own;
-  int bad = write_summary(run, status, problem, error);
+  int bad = run_write_summary(run, status, problem, error);
   if (bad && !status) status = bad;
-  draw_pictures(run);
-  tell_outcome(run, status);
+  run_draw_pictures(run);
+  run_tell_outcome(run, status);
   free(problem);
   return status;
 }
@@ -689,7 +271,7 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
     if (!given) breccia_error_destroy(&error);
     return BRECCIA_FAILURE;
   }
-  int status = make_folder(wish->folder, error);
+  int status = run_make_folder(wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
   if (!status && wish->progress) status = model_expect(model, error);
   if (!status && wish->restart) status = read_checkpoint(&run, error);

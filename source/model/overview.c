@@ -1,0 +1,147 @@
+/* What a run would do, and how long it will take. */
+#include "model/model.h"
+
+#include "base/clock.h"
+#include "base/cores.h"
+#include "model/plausibility.h"
+#include "results/result_file.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t states_written)
+{
+  const ResultsSpec *r = model->spec->results;
+  Task task = {.steps = last - first, .states_written = states_written, .checkpoint_seconds = r->checkpoint_seconds};
+  const Clock *s = &model->solver.clock;
+  const double time = last >= s->steps ? s->end_time : s->end_time * (double)last / (double)s->steps;
+  while (task.states < model->schedule_count && model->schedule[task.states] <= time) ++task.states;
+  task.states += model->states_before;
+  if (r->every <= 0) task.states += r->number * (s->stages - 1 - s->stage);
+  if (r->every > 0) task.states += last / r->every;
+  if (r->checkpoint_steps > 0) task.checkpoints = last / r->checkpoint_steps - first / r->checkpoint_steps;
+  for (int k = 0; k < model->spec->pictures.count; ++k) {
+    const PictureSpec *picture = model->spec->pictures.items[k];
+    task.pictures += picture->times.count ? picture->times.count : 1;
+  }
+  if (!model->spec->pictures.count) task.pictures = 3;
+  return task;
+}
+
+/** Mean seconds of one evaluation of the forces. On a quiet machine a tenth of a second is enough; where others use it too, two seconds,
+ *  in which they have had their turns. Never more than a tenth of what the whole run takes. */
+static double measure_evaluation(breccia_model *model)
+{
+  enum { FEWEST = 3 };
+  double fastest = INFINITY, before = 0;
+  bool quiet = true;
+  domain_evaluate(&model->domain); /* the first touches memory for the first time */
+  const double begin = clock_seconds();
+  for (int count = 1;; ++count) {
+    domain_evaluate(&model->domain);
+    const double seconds = clock_seconds() - begin, one = seconds / count;
+    fastest = fmin(fastest, seconds - before);
+    before = seconds;
+    quiet &= !cores_are_short();
+    const double whole = one * (double)model->solver.clock.steps;
+    const double enough = quiet && one < 1.1 * fastest ? fmin(0.1, whole / 30) : fmin(2, whole / 10);
+    if (count >= FEWEST && seconds > enough) return one;
+  }
+}
+
+int model_expect(breccia_model *model, Error *error)
+{
+  const Domain *d = &model->domain;
+  Team *before;
+  if (model->begun || model->outlook.state_bytes > 0) return BRECCIA_OK;
+  ResultNames names = {.single = !strcmp(model->spec->results->precision, "single")};
+  TextList list;
+  if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
+  const int status = model_field_names(model, &list, error);
+  if (!status) {
+    names.fields = list.items;
+    names.count = list.count;
+    /* What a step does beside the forces takes 2 to 40 % of them (docs/performance.md). */
+    outlook_expect(&model->outlook, 1.2 * measure_evaluation(model), result_file_state_bytes(d, &names),
+                   (double)(domain_particle_bytes(d)), d->particles->count);
+    free(list.items);
+  }
+  team_use(before);
+  return status;
+}
+
+static void add_duration(Text *text, double seconds)
+{
+  if (seconds < 100)
+    text_add(text, "%.*f s", seconds < 10 ? 1 : 0, seconds);
+  else if (seconds < 6000)
+    text_add(text, "%.0f min", seconds / 60);
+  else
+    text_add(text, "%.1f h", seconds / 3600);
+}
+
+/** A line for each stage: what changes with it, and how it may end. */
+static void describe_stages(const breccia_model *model, const char *time, Text *text)
+{
+  const Solver *s = &model->solver;
+  const int64_t begin = s->clock.step;
+  char name[64];
+  for (int64_t k = 0; k < s->clock.stages; ++k) {
+    const SolveSpec *stage = s->stages->items[k];
+    text_add(text, "stage '%s': ", solver_stage_name(s, k, name, sizeof name));
+    solver_describe_stage(s, k, time, text);
+    if (!strcmp(stage->laws, "elastic")) text_add(text, ", elastic");
+    if (!strcmp(stage->displacements, "zero")) text_add(text, ", displacements from zero");
+    if (stage->loads.count) text_add(text, ", %d new load%s", stage->loads.count, stage->loads.count > 1 ? "s" : "");
+    text_add(text, "\n");
+  }
+  text_add(text, "%lld steps at most, the first of %.4g %s (%.2f of the stable %.4g)",
+           (long long)(s->clock.steps - begin), s->clock.time_step, time, s->clock.time_step / s->clock.stable,
+           s->clock.stable);
+}
+
+const char *breccia_model_overview(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const Solver *s = &model->solver;
+  Text *text = &model->overview;
+  text_free(text);
+  int fewest = INT32_MAX, most = 0;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    int count = family_count(&d->family, d->particles->place_of[n]);
+    if (count < fewest) fewest = count;
+    if (count > most) most = count;
+  }
+  char length[64], time[64];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  units_name(model->units, dimension_find("time"), time, sizeof time);
+  text_add(text, "%s: %lld particles, %lld bonds, %d to %d per particle (mean %.1f), horizon %g %s\n",
+           model->spec->title, (long long)d->particles->count, (long long)d->family.bonds / 2, fewest, most,
+           (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
+  text_add(text, "%s;", d->type->name);
+  for (int k = 0; k < d->material_count; ++k)
+    text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law->name);
+  if (d->failure.criterion)
+    text_add(text, "; %s", d->failure.criterion->name);
+  else
+    text_add(text, "; bonds do not break");
+  for (int k = 0; d->failure.criterion && k < d->material_count; ++k)
+    if (isfinite(d->failure.limit[k]))
+      text_add(text, "%s %g", k ? "," : "", d->failure.limit[k]);
+    else
+      text_add(text, "%s none", k ? "," : "");
+  text_add(text, "\n");
+  if (d->type->describe) d->type->describe(d->formulation, text);
+  plausibility_in_short(model, text);
+  text_add(text, "\n");
+  if (s->clock.stages > 1)
+    describe_stages(model, time, text);
+  else
+    s->type->describe(s, time, text);
+  text_add(text, ", %.0f MB, about ", (double)domain_bytes(d) / 1e6);
+  model_expect(model, NULL);
+  const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
+  add_duration(text, outlook_left(&model->outlook, &task));
+  if (d->points.servers) text_add(text, " and what its material servers take");
+  return text_words(text);
+}

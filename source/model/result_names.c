@@ -1,0 +1,143 @@
+/* Names in a deck that say what is written and drawn: they are held against what there is. */
+#include "model/model.h"
+
+#include "base/memory.h"
+#include "deck/spelling.h"
+#include "results/curve_names.h"
+#include "results/fields.h"
+#include "results/result_file.h"
+#include <stdlib.h>
+#include <string.h>
+
+static int check_names(const breccia_model *model, const Domain *domain, const TextList *names, const Node *list)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < names->count; ++k) {
+    const Node *place = list->kind == NODE_LIST ? &list->items[k] : list;
+    bool known = output_field_find(names->items[k]) != NULL;
+    for (int m = 0; m < domain->material_count; ++m)
+      known |= history_field_index(&domain->materials[m], names->items[k]) >= 0;
+    if (known) continue;
+    const char *fields[64];
+    int count = 0;
+    while (count < 64 && output_field_at(count)) {
+      fields[count] = output_field_at(count)->name;
+      ++count;
+    }
+    Text advice = {0};
+    spelling_advice(&advice, names->items[k], fields, count, "the fields are");
+    status =
+        node_error(model->document, place, model->reader.error, "there is no field '%s'; %s%s", names->items[k],
+                   text_words(&advice),
+                   spelling_nearest(names->items[k], fields, count) ? "" : " and named histories of the materials");
+    text_free(&advice);
+  }
+  return status;
+}
+
+/** A picture shows one number of each particle: a component, or the length of a vector. */
+static int check_component(const breccia_model *model, const PictureSpec *picture)
+{
+  const OutputField *field = output_field_find(picture->field);
+  const int count = field && field->component_names ? field->components : 0;
+  for (int k = 0; picture->component && k < count; ++k)
+    if (!strcmp(field->component_names[k], picture->component)) return BRECCIA_OK;
+  if (!picture->component && count <= 3) return BRECCIA_OK;
+  Text advice = {0};
+  spelling_advice(&advice, picture->component ? picture->component : "", field ? field->component_names : NULL, count,
+                  "its components are");
+  const int status = node_error(
+      model->document, section_place(picture, picture->component ? "component" : "field"), model->reader.error,
+      picture->component ? "component: %s has no '%s'; %s" : "field: %s is drawn by 'component'%s; %s", picture->field,
+      picture->component ? picture->component : "",
+      count ? text_words(&advice) : "it is one number, leave 'component' out");
+  text_free(&advice);
+  return status;
+}
+
+/** A column that a curve draws is one that a history of the deck will write. */
+static int check_column(const breccia_model *model, const CurveNames *names, int which, const Node *place)
+{
+  Error *error = model->reader.error;
+  const char **words = memory_zeroed((size_t)watches_count(model->watches) + 64, sizeof(char *), "curves", error);
+  if (!words) return BRECCIA_FAILURE;
+  char columns[64][64], wanted[CURVE_NAME], file[CURVE_NAME];
+  int watch = -1, count = watches_count(model->watches);
+  text_file_name(names->watch[which], wanted, sizeof wanted);
+  for (int k = 0; k < count; ++k) {
+    words[k] = watches_name(model->watches, k);
+    text_file_name(words[k], file, sizeof file);
+    if (!strcmp(file, wanted)) watch = k;
+  }
+  bool known = watch >= 0 && watches_column(model->watches, watch, 2, columns[0], 64); /* it is wrong itself */
+  const char *given = watch < 0 ? names->watch[which] : names->column[which];
+  for (int c = 0; watch >= 0 && c < 64 && !watches_column(model->watches, watch, c, columns[c], 64); ++c) {
+    words[c] = columns[c];
+    known |= !strcmp(columns[c], given);
+    count = c + 1;
+  }
+  Text advice = {0};
+  spelling_advice(&advice, given, words, count, watch < 0 ? "the deck watches" : "its columns are");
+  if (!known)
+    node_error(model->document, place, error, "curve: %s%sthere is no %s '%s'; %s",
+               watch < 0 ? "" : names->watch[which], watch < 0 ? "" : ": ", watch < 0 ? "history" : "column", given,
+               text_words(&advice));
+  text_free(&advice);
+  free(words);
+  return known ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}
+
+static int check_curve(const breccia_model *model, const PictureSpec *picture)
+{
+  const Node *place = section_place(picture, "curve");
+  if (!model->watches) return BRECCIA_OK; /* the deck is refused for something else */
+  CurveNames names;
+  if (curve_names(picture->curve, &names))
+    return node_error(model->document, place, model->reader.error,
+                      "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or "
+                      "with a minus 'tip.y : -grip.y'",
+                      picture->curve);
+  int status = BRECCIA_OK;
+  for (int k = 0; k < names.count && !status; ++k) status = check_column(model, &names, k, place);
+  return status;
+}
+
+int model_check_results(breccia_model *model)
+{
+  DeckSpec *spec = (DeckSpec *)(void *)(uintptr_t)model->spec;
+  if (!spec->results) spec->results = section_standard(&model->reader, &results_section, spec->head.node);
+  if (!spec->results) return BRECCIA_FAILURE;
+  int status = check_names(model, &model->domain, &spec->results->fields, section_place(spec->results, "fields"));
+  for (int k = 0; k < spec->pictures.count; ++k) {
+    const PictureSpec *picture = spec->pictures.items[k];
+    if (picture->curve && check_curve(model, picture)) status = BRECCIA_USER_ERROR;
+    if (!picture->field) continue;
+    TextList one = {(const char *[]){picture->field}, 1};
+    int bad = check_names(model, &model->domain, &one, section_place(picture, "field"));
+    if (!bad) bad = check_component(model, picture);
+    if (bad) status = bad;
+  }
+  return status;
+}
+
+int model_field_names(const breccia_model *model, TextList *names, Error *error)
+{
+  const DeckSpec *spec = model->spec;
+  const TextList *asked = &spec->results->fields;
+  names->items = calloc((size_t)(asked->count + spec->pictures.count + 16), sizeof(char *));
+  names->count = 0;
+  if (!names->items) return error_add(error, BRECCIA_FAILURE, "out of memory: fields");
+  for (int pass = 0; pass < 3; ++pass) {
+    int count = pass == 0 ? asked->count : pass == 1 ? spec->pictures.count : 6;
+    for (int k = 0; k < count; ++k) {
+      const char *name = pass == 0      ? asked->items[k]
+                         : pass == 1    ? ((const PictureSpec *)spec->pictures.items[k])->field
+                         : asked->count ? "displacement"
+                                        : standard_fields[k];
+      int known = !name;
+      for (int n = 0; n < names->count; ++n) known |= name && !strcmp(names->items[n], name);
+      if (!known) names->items[names->count++] = name;
+    }
+  }
+  return BRECCIA_OK;
+}

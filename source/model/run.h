@@ -1,0 +1,34 @@
+/* A run under way: what the files of this room that write for it share. */
+#ifndef BRECCIA_MODEL_RUN_H
+#define BRECCIA_MODEL_RUN_H
+
+#include "model/model.h"
+#include "results/result_file.h"
+
+typedef struct Run {
+  breccia_model *model;
+  const breccia_run *wish;
+  ResultFile *results;
+  int64_t next_write; /* index in the schedule */
+  int64_t steps;      /* where to stop */
+  double started, last_checkpoint, last_progress;
+  double paused;   /* seconds since the last progress that went into writing */
+  int64_t told_at; /* step of the last progress */
+  TextList names;
+  Text files;
+} Run;
+
+/** Makes a folder and those above it. */
+int run_make_folder(const char *path, Error *error);
+/** Writes a small file whole, or not at all. */
+int run_write_file(Run *run, const char *name, const Text *words, Error *error);
+
+/** Pictures are made from the files, as `breccia plot` does. What cannot be drawn is a warning: the results are there. */
+void run_draw_pictures(Run *run);
+
+/** Writes summary.json. @param[in] problem  why the run ended early; may be empty */
+int run_write_summary(Run *run, int status, const char *problem, Error *error);
+/** Puts what the run did into words, for breccia_model_outcome. */
+void run_tell_outcome(Run *run, int status);
+
+#endif

@@ -1,0 +1,138 @@
+/* The pictures of a run. */
+#include "model/run.h"
+
+#include "results/curve.h"
+#include "results/result_view.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void note_file(Run *run, const char *path)
+{
+  text_add(&run->files, "  %s\n", path);
+}
+
+static int nearest_write(const ResultView *view, double time)
+{
+  int best = view->steps - 1;
+  for (int k = 0; k < view->steps; ++k)
+    if (fabs(view->times[k] - time) < fabs(view->times[best] - time)) best = k;
+  return best;
+}
+
+/** A path in the folder of pictures that no other picture of this run has. To be freed. */
+static char *picture_path(const Run *run, const char *given, const char *name)
+{
+  char *path = NULL;
+  for (int number = 1; number < 1000; ++number) {
+    char words[256], safe[256], ending[16] = "";
+    if (number > 1) snprintf(ending, sizeof ending, "-%d", number);
+    snprintf(words, sizeof words, "%.200s%s", given ? given : name, ending);
+    text_file_name(words, safe, sizeof safe);
+    path = text_format("%s/pictures/%s.png", run->wish->folder, safe);
+    char *line = path ? text_format("  %s\n", path) : NULL;
+    const bool taken = line && run->files.characters && strstr(run->files.characters, line);
+    free(line);
+    if (!taken) break;
+    free(path);
+    path = NULL;
+  }
+  return path;
+}
+
+static PictureOptions picture_options(const PictureSpec *spec)
+{
+  return (PictureOptions){.field = spec->field,
+                          .component = spec->component,
+                          .title = spec->title,
+                          .x_label = spec->x_label,
+                          .y_label = spec->y_label,
+                          .deformed = spec->deformed,
+                          .azimuth = spec->view[0],
+                          .elevation = spec->view[1],
+                          .low = spec->range[0],
+                          .high = spec->range[1],
+                          .broken_bonds = spec->broken_bonds};
+}
+
+/** One field at the times of its entry, or at the last one written. */
+static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, Error *error)
+{
+  const PictureOptions o = picture_options(spec);
+  PictureSurvey survey;
+  int status = spec->same_range ? picture_survey(view, 0, view->steps - 1, false, &o, &survey, error) : BRECCIA_OK;
+  for (int t = 0; !status && t < (spec->times.count ? spec->times.count : 1); ++t) {
+    const double time = spec->times.count ? spec->times.values[t] : run->model->solver.clock.time;
+    if (time > run->model->solver.clock.time * (1 + 1e-9)) continue; /* the run did not come so far */
+    const int step = nearest_write(view, time);
+    char name[160];
+    picture_name(view, step, spec->field, spec->component, spec->times.count > 0, name, sizeof name);
+    char *path = picture_path(run, spec->times.count > 1 ? NULL : spec->name, name);
+    if (spec->name && spec->times.count > 1) { /* the times tell its pictures apart */
+      char whole[256];
+      picture_name(view, step, spec->name, NULL, true, whole, sizeof whole);
+      free(path);
+      path = picture_path(run, whole, NULL);
+    }
+    status = path ? picture_draw(view, step, &o, spec->same_range ? &survey : NULL, path, error) : BRECCIA_FAILURE;
+    if (!status) note_file(run, path);
+    free(path);
+  }
+  return status;
+}
+
+static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
+{
+  char name[160];
+  const char *folder = run->wish->folder;
+  char *curve = spec->energy ? curve_of_energies(folder, error) : text_format("%s", spec->curve);
+  if (!curve) return BRECCIA_FAILURE;
+  curve_name(curve, name, sizeof name);
+  char *path = picture_path(run, spec->name, name);
+  const CurveOptions o = {.title = spec->title ? spec->title : run->model->spec->title,
+                          .x_label = spec->x_label,
+                          .y_label = spec->y_label,
+                          .log_axes = spec->log_axes,
+                          .low = spec->range[0],
+                          .high = spec->range[1]};
+  int status = path ? curve_draw(&folder, 1, curve, &o, path, error) : BRECCIA_FAILURE;
+  if (!status) note_file(run, path);
+  free(path);
+  free(curve);
+  return status;
+}
+
+/** Pictures are made from the files, as `breccia plot` does. What cannot be drawn is a warning: the results are there. */
+void run_draw_pictures(Run *run)
+{
+  breccia_model *model = run->model;
+  Error *error = breccia_error_create();
+  char *path = text_format("%s/results.vtkhdf", run->wish->folder),
+       *folder = text_format("%s/pictures", run->wish->folder);
+  ResultView view;
+  int status = path && folder ? run_make_folder(folder, error) : BRECCIA_FAILURE;
+  if (!status && !(status = result_view_open(&view, path, error))) {
+    static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
+    for (int k = 0; !model->spec->pictures.count && k < 3; ++k) {
+      bool written = false;
+      for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
+      const PictureSpec spec = {
+          .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
+      if (written) draw_field(run, &view, &spec, error);
+    }
+    for (int k = 0; k < model->spec->pictures.count; ++k) {
+      const PictureSpec *spec = model->spec->pictures.items[k];
+      if (spec->field)
+        draw_field(run, &view, spec, error);
+      else
+        draw_curve(run, spec, error);
+    }
+    result_view_close(&view);
+  }
+  if (error_count(error))
+    text_add(&model->warnings, "%swarning: %s", model->warnings.length ? "\n" : "", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  free(path);
+  free(folder);
+}

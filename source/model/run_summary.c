@@ -1,0 +1,274 @@
+/* What a run did: summary.json, and the same in words. */
+#include "model/run.h"
+
+#include "solver/rest.h"
+#include <math.h>
+#include <string.h>
+
+static double load_peak(const Load *load, double time)
+{
+  enum { SAMPLES = 1000 };
+  double peak = 0;
+  for (int k = 0; k <= SAMPLES; ++k)
+    peak = fmax(peak, fabs(load_factor(load, load->begin + (time - load->begin) * k / SAMPLES)));
+  return peak * load_magnitude(load->spec);
+}
+
+static double nanoseconds_per_bond(const breccia_model *model)
+{
+  double work = (double)model->run_steps * (double)model->domain.family.bonds;
+  return work > 0 ? 1e9 * model->run_seconds / work : 0;
+}
+
+static void add_number(Text *text, const char *key, double value)
+{
+  if (isfinite(value))
+    text_add(text, "\"%s\": %.10g", key, value);
+  else
+    text_add(text, "\"%s\": null", key);
+}
+
+/** What the deck was made of: its file, settings from outside, its variables with their values. */
+static void add_origin(const breccia_model *model, Text *t)
+{
+  text_add(t, "  \"deck\": ");
+  text_add_json(t, model->document->name);
+  text_add(t, ",\n  \"settings\": [");
+  for (int k = 0; k < model->setting_count; ++k) {
+    text_add(t, "%s", k ? ", " : "");
+    text_add_json(t, model->settings[k]);
+  }
+  text_add(t, "],\n  \"variables\": {");
+  const Node *variables = node_get(model->document->root, "variables");
+  for (int k = 0; variables && k < variables->count; ++k) {
+    text_add(t, "%s", k ? ", " : "");
+    text_add_json(t, variables->items[k].key);
+    text_add(t, ": ");
+    text_add_json(t, variables->items[k].text);
+  }
+  text_add(t, "},\n");
+}
+
+/** The bond that broke first, and its middle; NULL if none did. */
+static const BrokenBond *first_broken(const Domain *d, double middle[3])
+{
+  if (!d->broken_count) return NULL;
+  const BrokenBond *bond = &d->broken[0];
+  const int32_t a = d->particles->place_of[bond->a], b = d->particles->place_of[bond->b];
+  for (int k = 0; k < 3; ++k) middle[k] = (d->particles->position[k][a] + d->particles->position[k][b]) / 2;
+  return bond;
+}
+
+/** The stages that have begun, where there are several. */
+static void add_stages(const Solver *s, Text *text)
+{
+  if (s->clock.stages == 1) return;
+  text_add(text, "  \"stages\": [");
+  for (int64_t k = 0; k <= s->clock.stage; ++k) {
+    const StageRecord *r = &s->records[k];
+    char name[64];
+    text_add(text, "%s{\"name\": ", k ? ", " : "");
+    text_add_json(text, solver_stage_name(s, k, name, sizeof name));
+    text_add(text, ", \"steps\": [%.0f, %.0f], ", r->first_step, r->last_step);
+    text_add(text, "\"times\": [%.10g, %.10g], \"at_rest\": %s}", r->begin, r->end,
+             r->came_to_rest > 0 ? "true" : "false");
+  }
+  text_add(text, "],\n");
+}
+
+static void tell_stages(const Solver *s, const char *time, Text *text)
+{
+  for (int64_t k = 0; s->clock.stages > 1 && k <= s->clock.stage; ++k) {
+    const StageRecord *r = &s->records[k];
+    char name[64];
+    text_add(text, "stage '%s': steps %.0f to %.0f, time %.6g to %.6g %s%s\n",
+             solver_stage_name(s, k, name, sizeof name), r->first_step, r->last_step, r->begin, r->end, time,
+             r->came_to_rest > 0 ? ", came to rest" : "");
+  }
+}
+
+int run_write_summary(Run *run, int status, const char *problem, Error *error)
+{
+  breccia_model *model = run->model;
+  const Domain *d = &model->domain;
+  const Solver *s = &model->solver;
+  Energy e = solver_energy(s);
+  Text t = {0};
+  text_add(&t, "{\n  \"title\": ");
+  text_add_json(&t, model->spec->title);
+  text_add(&t, ",\n  \"version\": \"%s\",\n  \"completed\": %s,\n", BRECCIA_VERSION,
+           !status && solver_is_done(s) ? "true" : "false");
+  add_origin(model, &t);
+  if (problem && *problem) {
+    text_add(&t, "  \"problem\": ");
+    text_add_json(&t, problem);
+    text_add(&t, ",\n");
+  }
+  text_add(&t, "  \"particles\": %lld,\n  \"bonds\": %lld,\n  \"steps\": %lld,\n", (long long)d->particles->count,
+           (long long)d->family.bonds / 2, (long long)s->clock.step);
+  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->clock.time,
+           s->clock.time_step, s->clock.stable);
+  add_stages(s, &t);
+  text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
+           model->run_seconds, nanoseconds_per_bond(model), model->threads);
+  double x[3];
+  const BrokenBond *first = first_broken(d, x);
+  if (first)
+    text_add(
+        &t,
+        "  \"first_broken_bond\": {\"step\": %lld, \"time\": %.10g, \"particles\": [%d, %d], \"at\": [%.10g, %.10g, "
+        "%.10g]},\n",
+        (long long)first->step, first->time, first->a, first->b, x[0], x[1], x[2]);
+  else
+    text_add(&t, "  \"first_broken_bond\": null,\n");
+  text_add(&t, "  \"broken_bonds\": %lld,\n  \"energy\": {", (long long)d->broken_count);
+  const struct {
+    const char *key;
+    double value;
+  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal}, {"stored", e.stored},
+                  {"dissipated", e.dissipated}, {"external", e.external}, {"damping", e.damping},
+                  {"fracture", e.fracture},     {"friction", e.friction}, {"between", e.between},
+                  {"imbalance", e.imbalance}};
+  for (int k = 0; k < (int)(sizeof energies / sizeof *energies); ++k) {
+    if (k) text_add(&t, ", ");
+    add_number(&t, energies[k].key, energies[k].value);
+  }
+  text_add(&t, "},\n  \"peaks\": {");
+  const Peaks *p = &model->peaks;
+  const struct {
+    const char *key;
+    double value;
+  } peaks[] = {{"displacement", p->displacement},          {"velocity", p->velocity},
+               {"octahedral_shear_stress", p->octahedral}, {"mean_stress_lowest", p->mean_low},
+               {"mean_stress_highest", p->mean_high},      {"damage", p->damage}};
+  for (int k = 0; k < 6; ++k) {
+    if (k) text_add(&t, ", ");
+    add_number(&t, peaks[k].key, peaks[k].value);
+  }
+  text_add(&t, "},\n  \"loads\": [");
+  for (int k = 0; k < model->loading.count; ++k) {
+    const LoadSpec *l = model->loading.loads[k].spec;
+    const char *dimension, *kind = load_kind(l, &dimension);
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+    text_add(&t, "%s{\"name\": ", k ? ", " : "");
+    text_add_json(&t, l->name ? l->name : "");
+    text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
+    add_number(&t, "peak", load_peak(&model->loading.loads[k], s->clock.time));
+    text_add(&t, ", \"unit\": ");
+    text_add_json(&t, unit);
+    text_add(&t, "}");
+  }
+  text_add(&t, "],\n  \"units\": {");
+  static const char *const units[][2] = {{"times", "time"},
+                                         {"positions and displacements", "length"},
+                                         {"velocities", "velocity"},
+                                         {"stresses", "stress"},
+                                         {"energies", "energy"}}; /* shares have none */
+  for (size_t k = 0; k < sizeof units / sizeof *units; ++k) {
+    char unit[64];
+    units_name(model->units, dimension_find(units[k][1]), unit, sizeof unit);
+    text_add(&t, "%s\"%s\": ", k ? ", " : "", units[k][0]);
+    text_add_json(&t, unit);
+  }
+  text_add(&t, "}");
+  Text servers = {0};
+  points_report(&d->points, model->run_seconds, true, &servers);
+  if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", text_words(&servers));
+  text_free(&servers);
+  text_add(&t, "\n}\n");
+  const int status_written = run_write_file(run, "summary.json", &t, error);
+  if (!status_written) text_add(&run->files, "  %s/summary.json\n", run->wish->folder);
+  text_free(&t);
+  return status_written;
+}
+
+/** Says whether a body that was meant to come to rest has done so. */
+static void tell_rest(const Solver *s, Text *t)
+{
+  Rest rest;
+  if (rest_find(s, &rest, NULL) || !rest.meant) return;
+  if (rest.reached)
+    text_add(t, "at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",
+             rest.unbalanced, rest.kinetic);
+  else
+    text_add(
+        t,
+        "not at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (at rest both "
+        "are below %g): run longer, with local damping, or load more slowly; what slides or falls does not come to "
+        "rest\n",
+        rest.unbalanced, rest.kinetic, rest_limit);
+}
+
+void run_tell_outcome(Run *run, int status)
+{
+  breccia_model *model = run->model;
+  const Domain *d = &model->domain;
+  const Solver *s = &model->solver;
+  Energy e = solver_energy(s);
+  Text *t = &model->outcome;
+  char time[64], length[64];
+  units_name(model->units, dimension_find("time"), time, sizeof time);
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  text_free(t);
+  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld steps, %.2f ns per directed bond and step\n",
+           status == BRECCIA_INTERRUPTED ? "stopped on request"
+           : status                      ? "stopped by a failure"
+                                         : "finished",
+           (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
+           (long long)model->run_steps, nanoseconds_per_bond(model));
+  tell_stages(s, time, t);
+  for (int k = 0; k < model->loading.count; ++k) {
+    const LoadSpec *l = model->loading.loads[k].spec;
+    const char *dimension, *kind = load_kind(l, &dimension);
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+    if (l->name)
+      text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(&model->loading.loads[k], s->clock.time),
+               unit);
+  }
+  double x[3];
+  const BrokenBond *first = first_broken(d, x);
+  if (first)
+    text_add(
+        t,
+        "first broken bond at step %lld, time %.6g %s, near [%.4g, %.4g, %.4g] %s; %lld of %lld bonds broken in all\n",
+        (long long)first->step, first->time, time, x[0], x[1], x[2], length, (long long)d->broken_count,
+        (long long)d->family.bonds / 2);
+  else if (d->failure.criterion)
+    text_add(t, "no bond broke\n");
+  const struct {
+    const char *words;
+    double value;
+    bool told;
+  } energies[] = {{"energy: external ", e.external, true},
+                  {" = kinetic ", e.kinetic, true},
+                  {" + stored ", e.stored, true},
+                  {" + dissipated ", e.dissipated, true},
+                  {" + fracture ", e.fracture, true},
+                  {" + friction ", e.friction, e.friction != 0},
+                  {" + damping ", e.damping, e.damping != 0},
+                  {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
+                  {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->ledger.paid}};
+  for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
+    if (!energies[k].told) continue;
+    text_add(t, "%s", energies[k].words);
+    quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
+  }
+  text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
+  const Peaks *peaks = &model->peaks;
+  const double stress = units_in_si(model->units, dimension_find("stress"), 1);
+  text_add(t, "largest in the states written: displacement ");
+  quantity_describe(units_in_si(model->units, dimension_find("length"), peaks->displacement), "m", t);
+  text_add(t, ", octahedral shear stress ");
+  quantity_describe(stress * peaks->octahedral, "Pa", t);
+  text_add(t, ", mean stress ");
+  quantity_describe(stress * peaks->mean_low, "Pa", t);
+  text_add(t, " to ");
+  quantity_describe(stress * peaks->mean_high, "Pa", t);
+  text_add(t, ", damage %.3g\n", peaks->damage);
+  tell_rest(s, t);
+  points_report(&d->points, model->run_seconds, false, t);
+  text_add(t, "written:\n%s", text_words(&run->files));
+  if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
+}
