@@ -59,7 +59,7 @@ static void family_moments(const Contact *c, int block, bool whole, double *firs
 /** Constants of bonds that are as stiff across a face as a column of the body, whose sides are free: bonds calibrated in uniform expansion, less
  *  what their own movement sideways would take; and bounds of eigenvalues: of half a family of them
  *  across a face, and of faces that meet. */
-static void set_constants(Contact *c, Space space, bool whole, double bonds)
+static void set_constants(Contact *c, Space space, const ContactBlock *blocks)
 {
   const Body *body = c->body;
   const Particles *p = &body->particles;
@@ -68,8 +68,8 @@ static void set_constants(Contact *c, Space space, bool whole, double bonds)
                           1}; /* Young's modulus over that of bonds whose ends do not move sideways */
   for (int b = 0; b < body->block_count; ++b) {
     double first, inverse, density = INFINITY, across = 0;
-    family_moments(c, b, whole, &first, &inverse);
-    if (first > 0) c->constant[b] = bonds * share[space] * expansion[space] * c->young[b] / (first / 2);
+    family_moments(c, b, blocks[b].alike, &first, &inverse);
+    if (first > 0) c->constant[b] = blocks[b].bonds * share[space] * expansion[space] * c->young[b] / (first / 2);
     for (int64_t n = 0; n < p->count; ++n)
       if (p->block[p->place_of[n] / SLICE] == b) density = fmin(density, p->density[p->place_of[n]]);
     for (int o = 0; o < body->block_count; ++o) {
@@ -84,8 +84,8 @@ static void set_constants(Contact *c, Space space, bool whole, double bonds)
 
 static void add_cut_bonds(Contact *c);
 
-int contact_create(Contact *c, const ContactSpec *spec, const Body *body, const Family *family, Space space, bool whole,
-                   double bonds, const double *young, Error *error)
+int contact_create(Contact *c, const ContactSpec *spec, const Body *body, const Family *family, Space space,
+                   const ContactBlock *blocks, Error *error)
 {
   const int64_t places = body->particles.places;
   *c = (Contact){.spec = spec, .body = body, .family = family, .margin = 0.3 * body->largest_spacing};
@@ -97,9 +97,9 @@ int contact_create(Contact *c, const ContactSpec *spec, const Body *body, const 
   c->touched = memory_zeroed((size_t)places, 1, "contact", error);
   c->row_of = memory_zeroed((size_t)places, sizeof(int32_t), "contact", error);
   if (!c->young || !c->smoothed || !c->marked || !c->constant || !c->touched || !c->row_of) return BRECCIA_FAILURE;
-  memcpy(c->young, young, sizeof(double) * (size_t)body->block_count);
+  for (int b = 0; b < body->block_count; ++b) c->young[b] = blocks[b].young;
   for (int64_t i = 0; i < places; ++i) c->row_of[i] = -1;
-  set_constants(c, space, whole, bonds);
+  set_constants(c, space, blocks);
   if (body->crack_count) {
     memset(c->touched, 1, (size_t)places);
     add_cut_bonds(c);

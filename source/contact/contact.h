@@ -100,11 +100,16 @@ typedef struct Contact {
   bool failed; /* memory was out */
 } Contact;
 
-/** @param[in] whole  bonds are as stiff as in a whole family wherever they are
- *  @param[in] bonds  share of that which former bonds carry: of the formulation
- *  @param[in] young  [blocks] Young's modulus of each block; copied */
+/** What contact must know of a block of the body. */
+typedef struct ContactBlock {
+  double young; /* modulus */
+  double bonds; /* share of the stiffness of bonds calibrated in uniform expansion that former bonds carry */
+  bool alike;   /* bonds are as stiff as in a whole family wherever they are */
+} ContactBlock;
+
+/** @param[in] blocks  [blocks of the body] */
 int contact_create(Contact *contact, const ContactSpec *spec, const Body *body, const Family *family, Space space,
-                   bool whole, double bonds, const double *young, Error *error);
+                   const ContactBlock *blocks, Error *error);
 void contact_destroy(Contact *contact);
 
 /** By all threads, before bonds break at the displacements held: what pressing pairs have to keep. */

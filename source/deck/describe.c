@@ -17,8 +17,14 @@ static void collect(Walk *walk, const Section *section)
     if (walk->sections[k] == section) return;
   if (walk->count == MOST_SECTIONS) return;
   walk->sections[walk->count++] = section;
-  for (int f = 0; f < section->field_count; ++f)
-    if (section->fields[f].section) collect(walk, section->fields[f].section);
+  for (int f = 0; f < section->field_count; ++f) {
+    const Field *field = &section->fields[f];
+    if (field->kind != FIELD_CHOSEN) {
+      if (field->section) collect(walk, field->section);
+      continue;
+    }
+    for (int k = 0; field_choice(field)->word(k); ++k) collect(walk, field_choice(field)->chosen(k));
+  }
 }
 
 static const char *value_words(const Field *field)
@@ -48,6 +54,7 @@ static const char *value_words(const Field *field)
   case FIELD_NUMBER_OR_SECTION: return "a number, or";
   case FIELD_VALUES: return "map of names to values";
   case FIELD_FILES: return "name of a file, or list of names";
+  case FIELD_CHOSEN: break;
   }
   return "";
 }
@@ -95,6 +102,18 @@ static void add_group_lines(const Section *section, Text *text)
   }
 }
 
+/** Says where the keys stand that a word chooses. */
+static void add_choice_line(const Field *field, Text *text)
+{
+  text_add(text, "\nIn the same map stand the keys of what `%s` says:", field->key);
+  for (int k = 0; field_choice(field)->word(k); ++k) {
+    text_add(text, "%s [%s](#", k ? "," : "", field_choice(field)->word(k));
+    add_anchor(text, field_choice(field)->chosen(k)->name);
+    text_add(text, ")");
+  }
+  text_add(text, ".\n");
+}
+
 void describe_section(const Section *section, Text *text)
 {
   text_add(text, "\n## %s\n\n%s\n\n", section->name, section->about);
@@ -102,6 +121,7 @@ void describe_section(const Section *section, Text *text)
   text_add(text, "| key | value | default | range | meaning |\n|---|---|---|---|---|\n");
   for (int f = 0; f < section->field_count; ++f) {
     const Field *field = &section->fields[f];
+    if (field->kind == FIELD_CHOSEN) continue;
     text_add(text, "| `%s` | %s", field->key, value_words(field));
     if (field->section) {
       text_add(text, " [%s](#", field->section->name);
@@ -118,6 +138,8 @@ void describe_section(const Section *section, Text *text)
       add_default(text, field->standard);
     text_add(text, " | %s | %s |\n", field->range ? field->range : "", field->meaning);
   }
+  for (int f = 0; f < section->field_count; ++f)
+    if (section->fields[f].kind == FIELD_CHOSEN) add_choice_line(&section->fields[f], text);
 }
 
 void describe_markdown(const Section *root, const ParameterTable *tables, int table_count, Text *text)
@@ -289,6 +311,7 @@ static void add_value_schema(Text *text, const Field *field)
              "\"items\": {\"anyOf\": [{\"type\": \"string\"}, {\"$ref\": \"#/$defs/%s\"}]}}]",
              field->section->name, field->section->name);
     break;
+  case FIELD_CHOSEN: break;
   }
 }
 
@@ -302,12 +325,17 @@ static void add_meaning(Text *text, const char *meaning, const char *standard)
   }
 }
 
-static void add_properties(Text *text, const Section *section, const ParameterTable *table)
+/** @param[in,out] count  properties so far */
+static void add_field_properties(Text *text, const Section *section, const ParameterTable *table, int *count)
 {
-  text_add(text, "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {");
   for (int f = 0; f < section->field_count; ++f) {
     const Field *field = &section->fields[f];
-    text_add(text, "%s\n      ", f ? "," : "");
+    if (field->kind == FIELD_CHOSEN) {
+      for (int k = 0; field_choice(field)->word(k); ++k)
+        add_field_properties(text, field_choice(field)->chosen(k), NULL, count);
+      continue;
+    }
+    text_add(text, "%s\n      ", (*count)++ ? "," : "");
     text_add_json(text, field->key);
     text_add(text, ": {");
     if (table && !strcmp(field->key, section->chooser)) {
@@ -318,6 +346,13 @@ static void add_properties(Text *text, const Section *section, const ParameterTa
     add_meaning(text, field->meaning, field->standard);
     text_add(text, "}");
   }
+}
+
+static void add_properties(Text *text, const Section *section, const ParameterTable *table)
+{
+  int count = 0;
+  text_add(text, "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {");
+  add_field_properties(text, section, table, &count);
   for (int k = 0; table && k < table->count; ++k) {
     text_add(text, ",\n      ");
     text_add_json(text, table->parameters[k].name);

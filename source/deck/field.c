@@ -343,7 +343,8 @@ void field_read(const DeckReader *reader, const Node *node, const char *label, c
     break;
   }
   case FIELD_VALUES:
-  case FIELD_FILES: break;
+  case FIELD_FILES:
+  case FIELD_CHOSEN: break;
   case FIELD_REFERENCE: read_reference(reader, node, label, field, target); break;
   case FIELD_REFERENCES: read_references(reader, node, label, field, target); break;
   }

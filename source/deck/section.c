@@ -15,6 +15,39 @@ static Node node_standard(const Node *section, const char *words)
       .kind = NODE_SCALAR, .file = section->file, .line = section->line, .column = section->column, .text = words};
 }
 
+const Field *section_field(const Section *section, const char *key, size_t length)
+{
+  for (int f = 0; section && f < section->field_count; ++f) {
+    const Field *field = &section->fields[f], *found = NULL;
+    if (field->kind != FIELD_CHOSEN) {
+      if (strlen(field->key) == length && !strncmp(field->key, key, length)) return field;
+      continue;
+    }
+    for (int k = 0; !found && field_choice(field)->word(k); ++k)
+      found = section_field(field_choice(field)->chosen(k), key, length);
+    if (found) return found;
+  }
+  return NULL;
+}
+
+/** The field that brings the keys of a chosen section; NULL if there is none. */
+static const Field *choosing_field(const Section *section)
+{
+  for (int f = 0; f < section->field_count; ++f)
+    if (section->fields[f].kind == FIELD_CHOSEN) return &section->fields[f];
+  return NULL;
+}
+
+/** Which of its sections a map chooses: -1 if the word is none of them. */
+static int chosen_section(const Section *section, const Field *choosing, const Node *node)
+{
+  const Node *given = node_get(node, choosing->key);
+  const char *word = given ? given->text : section_field(section, choosing->key, strlen(choosing->key))->standard;
+  for (int k = 0; word && field_choice(choosing)->word(k); ++k)
+    if (!strcmp(field_choice(choosing)->word(k), word)) return k;
+  return -1;
+}
+
 /** The section below this one in which a key stands, to say so; NULL if there is none. */
 static const Field *field_with(const Section *section, const char *given, const char **key)
 {
@@ -31,14 +64,18 @@ static const Field *field_with(const Section *section, const char *given, const 
   return NULL;
 }
 
-static void say_unknown_key(const DeckReader *reader, const Node *item, const Section *section,
+/** @param[in] chosen  a section whose keys may stand here too, or NULL */
+static void say_unknown_key(const DeckReader *reader, const Node *item, const Section *section, const Section *chosen,
                             const breccia_parameter *parameters, int parameter_count)
 {
-  const int count = parameter_count + section->field_count;
-  const char **names = field_room(reader, sizeof(char *) * (size_t)(count + 1)), *key = NULL;
+  const int most = parameter_count + section->field_count + (chosen ? chosen->field_count : 0);
+  const char **names = field_room(reader, sizeof(char *) * (size_t)(most + 1)), *key = NULL;
+  int count = parameter_count;
   if (!names) return;
   for (int k = 0; k < parameter_count; ++k) names[k] = parameters[k].name;
-  for (int k = 0; k < section->field_count; ++k) names[parameter_count + k] = section->fields[k].key;
+  for (int k = 0; k < section->field_count; ++k)
+    if (section->fields[k].kind != FIELD_CHOSEN) names[count++] = section->fields[k].key;
+  for (int k = 0; chosen && k < chosen->field_count; ++k) names[count++] = chosen->fields[k].key;
   const Node place = node_of_key(item);
   Text advice = {0};
   const Field *above = field_with(section, item->key, &key);
@@ -54,6 +91,23 @@ static void say_unknown_key(const DeckReader *reader, const Node *item, const Se
   node_error(reader->document, &place, reader->error, "%s: unknown key '%s'; %s", section->name, item->key,
              text_words(&advice));
   text_free(&advice);
+}
+
+/** Refuses a key that belongs to another choice. @return whether it is such a key */
+static bool say_other_choice(const DeckReader *reader, const Node *item, const Field *choosing, int choice)
+{
+  Text words = {0};
+  const SectionChoice *c = field_choice(choosing);
+  for (int k = 0; c->word(k); ++k)
+    if (section_field(c->chosen(k), item->key, strlen(item->key)))
+      text_add(&words, "%s%s", words.length ? ", " : "", c->word(k));
+  const bool found = words.length > 0;
+  const Node place = node_of_key(item);
+  if (found)
+    node_error(reader->document, &place, reader->error, "%s: is for %s; %s does not have it: leave it out", item->key,
+               words.characters, c->word(choice));
+  text_free(&words);
+  return found;
 }
 
 /** True if the map holds an unknown key that was probably meant to be `key`: one message is enough. */
@@ -123,6 +177,27 @@ static bool stands_for(const Node *node, const Section *section)
   return false;
 }
 
+static void read_fields(const DeckReader *reader, const Node *node, const Section *section,
+                        const breccia_parameter *parameters, int parameter_count, char *target)
+{
+  for (int f = 0; f < section->field_count; ++f) {
+    const Field *field = &section->fields[f];
+    if (field->kind == FIELD_CHOSEN) continue;
+    const Node *item = node_get(node, field->key);
+    const Node standard = node_standard(node, field->standard);
+    field_set_absent(field, target + field->offset);
+    if (item) {
+      char label[160];
+      snprintf(label, sizeof label, "%s", field->key);
+      field_read(reader, item, label, field, target + field->offset);
+    } else if (field->standard && *field->standard)
+      field_read(reader, &standard, field->key, field, target + field->offset);
+    else if (!field->standard && !misspelt(node, section, parameters, parameter_count, field->key))
+      node_error(reader->document, node, reader->error, "%s: missing key '%s' (%s)", section->name, field->key,
+                 field->meaning);
+  }
+}
+
 void *section_read(const DeckReader *reader, const Node *node, const Section *section)
 {
   if (node->kind != NODE_MAP) {
@@ -158,16 +233,22 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
     *(double **)(void *)(target + section->parameters_offset) = values;
   }
 
+  const Field *choosing = choosing_field(section);
+  const int choice = choosing ? chosen_section(section, choosing, node) : -1;
+  const Section *more = choice < 0 ? NULL : field_choice(choosing)->chosen(choice);
+  chosen &= !choosing || more;
   const int before = error_count(reader->error);
   bool told = false;
   for (int k = 0; k < node->count; ++k) {
     const Node *item = &node->items[k];
     int known = 0;
     for (int f = 0; f < section->field_count; ++f) known |= !strcmp(section->fields[f].key, item->key);
+    for (int f = 0; more && f < more->field_count; ++f) known |= !strcmp(more->fields[f].key, item->key);
     for (int p = 0; p < parameter_count; ++p) known |= !strcmp(parameters[p].name, item->key);
     bool meant = false; /* for the chooser, when there is none */
-    if (!known && !chosen) meant = spelling_nearest(item->key, &section->chooser, 1) != NULL;
-    if (!known && (chosen || meant)) say_unknown_key(reader, item, section, parameters, parameter_count);
+    if (!known && !chosen && !choosing) meant = spelling_nearest(item->key, &section->chooser, 1) != NULL;
+    if (!known && (chosen || meant) && !(more && say_other_choice(reader, item, choosing, choice)))
+      say_unknown_key(reader, item, section, more, parameters, parameter_count);
     told |= !known && (chosen || meant);
     for (int other = 0; other < k; ++other)
       if (!strcmp(node->items[other].key, item->key)) {
@@ -177,20 +258,15 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
         break;
       }
   }
-  for (int f = 0; f < section->field_count; ++f) {
-    const Field *field = &section->fields[f];
-    const Node *item = node_get(node, field->key);
-    const Node standard = node_standard(node, field->standard);
-    field_set_absent(field, target + field->offset);
-    if (item) {
-      char label[160];
-      snprintf(label, sizeof label, "%s", field->key);
-      field_read(reader, item, label, field, target + field->offset);
-    } else if (field->standard && *field->standard)
-      field_read(reader, &standard, field->key, field, target + field->offset);
-    else if (!field->standard && !misspelt(node, section, parameters, parameter_count, field->key))
-      node_error(reader->document, node, reader->error, "%s: missing key '%s' (%s)", section->name, field->key,
-                 field->meaning);
+  read_fields(reader, node, section, parameters, parameter_count, target);
+  if (more) {
+    char *keys = field_room(reader, more->size);
+    if (!keys) return NULL;
+    ((SectionHead *)(void *)keys)->node = node;
+    read_fields(reader, node, more, NULL, 0, keys);
+    check_groups(reader, node, more, told);
+    if (more->check && error_count(reader->error) == before) more->check(reader, keys);
+    *(void **)(void *)(target + choosing->offset) = keys;
   }
   check_groups(reader, node, section, told);
   if (section->check && error_count(reader->error) == before) section->check(reader, target);

@@ -79,6 +79,8 @@ typedef enum FieldKind {
   FIELD_NUMBER_OR_SECTION, /* NumberOrSection */
   FIELD_VALUES,            /* names with values, and */
   FIELD_FILES,             /* names of files: both have had their effect when a section is read (deck/resolve) */
+  FIELD_CHOSEN, /* pointer to a struct of keys that stand in the same map: those of the section that the word under
+                              `key` chooses, of the SectionChoice `section` */
 } FieldKind;
 
 typedef struct Field {
@@ -115,6 +117,22 @@ struct Section {
   const char *chooser;
   size_t parameters_offset;
 };
+
+/** What the section of a FIELD_CHOSEN is. */
+typedef struct SectionChoice {
+  Section section; /* a name, and nothing else */
+  /** The section of the k-th word of the choice. */
+  const Section *(*chosen)(int k);
+  const char *(*word)(int k); /* the k-th word, NULL after the last */
+} SectionChoice;
+
+static inline const SectionChoice *field_choice(const Field *field)
+{
+  return (const SectionChoice *)(const void *)field->section;
+}
+
+/** The field of a key, also of those that a word chooses; NULL if there is none. */
+const Field *section_field(const Section *section, const char *key, size_t length);
 
 #define FIELDS(table) table, (int)(sizeof(table) / sizeof *(table))
 

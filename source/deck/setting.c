@@ -11,14 +11,6 @@ typedef struct Path {
   Error *error;
 } Path;
 
-static const Field *field_called(const Section *section, const char *key, size_t length)
-{
-  for (int f = 0; section && f < section->field_count; ++f)
-    if (strlen(section->fields[f].key) == length && !strncmp(section->fields[f].key, key, length))
-      return &section->fields[f];
-  return NULL;
-}
-
 /** The entry whose key the path begins with, the longest of them: keys may hold points. @param[out] length  of the key */
 static Node *entry_of(const Node *map, const char *path, size_t *length)
 {
@@ -60,7 +52,8 @@ static int refuse_key(const Path *path, const Node *map, const Section *section,
   int count = 0;
   for (int k = 0; k < map->count; ++k) names[count++] = map->items[k].key;
   for (int f = 0; section && f < section->field_count; ++f)
-    if (!node_get(map, section->fields[f].key)) names[count++] = section->fields[f].key;
+    if (section->fields[f].kind != FIELD_CHOSEN && !node_get(map, section->fields[f].key))
+      names[count++] = section->fields[f].key;
   Text advice = {0};
   if (count)
     spelling_advice(&advice, given, names, count, "the keys here are");
@@ -127,7 +120,7 @@ static int step_into(const Path *path, Place *place, const char **key)
 {
   size_t length;
   Node *map = place->node, *item = entry_of(map, *key, &length);
-  const Field *field = field_called(place->section, *key, length);
+  const Field *field = section_field(place->section, *key, length);
   const bool last = !(*key)[length];
   /* Keys that depend on another, like the parameters of a material, are judged when the deck is read. */
   const bool judged_later = last && place->section && place->section->parameters;

@@ -56,7 +56,7 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
 static int check_space(const Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Space space = peridynamics_space(spec->peridynamics);
-  const int status = d->type->check ? d->type->check(spec->peridynamics, &d->body, reader) : BRECCIA_OK;
+  const int status = d->type->check ? d->type->check(spec->peridynamics->keys, &d->body, reader) : BRECCIA_OK;
   if (status) return status;
   if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
@@ -89,8 +89,8 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
                       "failure: give 'critical stretch' or 'fracture energy', not both");
   if (spec && !isnan(spec->fracture_energy) && !d->type->stretch_from_energy)
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
-                      "fracture energy: only bond-based peridynamics has a critical stretch that follows from it; give "
-                      "'critical stretch'");
+                      "fracture energy: no critical stretch follows from it in %s; give 'critical stretch'",
+                      d->type->name);
   d->failure.limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
   d->failure.material = d->material;
   if (!d->failure.limit) return BRECCIA_FAILURE;
@@ -172,14 +172,14 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
 
 static int create_contact(Domain *d, const DomainSpec *spec, Space space, Error *error)
 {
-  double *young = memory_zeroed((size_t)d->body.block_count, sizeof(double), "contact", error);
-  if (!young) return BRECCIA_FAILURE;
+  ContactBlock *blocks = memory_zeroed((size_t)d->body.block_count, sizeof *blocks, "contact", error);
+  if (!blocks) return BRECCIA_FAILURE;
+  const FormerBonds bonds = d->type->former_bonds(d->formulation);
   for (int64_t s = 0; s < d->particles->slices; ++s)
-    young[d->particles->block[s]] = material_young(&d->materials[d->material[s]]);
-  const bool whole = d->type->components == 1 && !strcmp(spec->peridynamics->surface_correction, "none");
-  int status = contact_create(&d->contact, spec->contact, &d->body, &d->family, space, whole,
-                              d->type->components == 1 ? 1 : 0.8, young, error);
-  free(young);
+    blocks[d->particles->block[s]] =
+        (ContactBlock){material_young(&d->materials[d->material[s]]), bonds.share, bonds.alike};
+  const int status = contact_create(&d->contact, spec->contact, &d->body, &d->family, space, blocks, error);
+  free(blocks);
   return status;
 }
 
@@ -317,7 +317,9 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 
   const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
   if ((status = create_points(d, space, may_give_up, length, error)) || (status = share_out(d, error))) return status;
-  const FormulationParts parts = {.spec = pd,
+  const FormulationParts parts = {.keys = pd->keys,
+                                  .space = space,
+                                  .influence = influence,
                                   .body = &d->body,
                                   .particles = d->particles,
                                   .family = &d->family,

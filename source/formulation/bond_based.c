@@ -9,13 +9,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int check(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader)
+typedef struct BondBasedSpec {
+  SectionHead head;
+  const char *calibration, *surface_correction;
+} BondBasedSpec;
+
+static const char *const calibrations[] = {"continuum", "uniform-expansion", "uniaxial", NULL};
+static const char *calibration_word(int k)
 {
-  (void)body;
-  if (!spec->control) return BRECCIA_OK;
-  return node_error(reader->document, section_place(spec, "zero-energy control"), reader->error,
-                    "zero-energy control: is for correspondence; bond-based has no modes without energy: leave it out");
+  return calibrations[k];
 }
+
+static const char *surface_word(int k)
+{
+  static const char *const words[] = {"none", "energy", NULL};
+  return words[k];
+}
+
+static const Field bond_based_fields[] = {
+    {"calibration", FIELD_CHOICE, offsetof(BondBasedSpec, calibration), NULL, "uniform-expansion", NULL,
+     "which field shall have the energy of the continuum on this lattice, or whether the continuum's integrals are "
+     "taken",
+     NULL, calibration_word, 0},
+    {"surface correction", FIELD_CHOICE, offsetof(BondBasedSpec, surface_correction), NULL, "none", NULL,
+     "stiffens bonds of particles near surfaces, whose families are not whole, such that stretching along each axis "
+     "costs them as much energy as inside",
+     NULL, surface_word, 0},
+};
+static const Section bond_based_section = {"bond-based",
+                                           "Keys of `peridynamics` with `formulation: bond-based`.",
+                                           sizeof(BondBasedSpec),
+                                           FIELDS(bond_based_fields),
+                                           NULL,
+                                           NULL,
+                                           NULL,
+                                           0};
 
 static void destroy(void *formulation)
 {
@@ -56,10 +84,11 @@ static void *create(const FormulationParts *parts, Error *error)
                    .bonds = parts->bonds,
                    .materials = parts->materials,
                    .material = parts->material,
-                   .space = peridynamics_space(parts->spec),
-                   .influence = influence_find(parts->spec->influence)};
+                   .space = parts->space,
+                   .influence = parts->influence};
+  const BondBasedSpec *spec = parts->keys;
   int calibration = 0;
-  while (strcmp(calibration_word(calibration), parts->spec->calibration)) ++calibration;
+  while (strcmp(calibrations[calibration], spec->calibration)) ++calibration;
   const Family *f = b->family;
   b->stiffness = memory_zeroed((size_t)b->body->block_count, sizeof(double), "bond constants", error);
   b->range = memory_zeroed((size_t)b->particles->slices, 1, "bond constants", error);
@@ -90,7 +119,7 @@ static void *create(const FormulationParts *parts, Error *error)
     b->per_stress[block] = factor;
     b->stiffness[block] = factor * material_young(bond_material(b, block));
   }
-  if (!strcmp(parts->spec->surface_correction, "energy") && bond_correct_surface(b, error)) {
+  if (!strcmp(spec->surface_correction, "energy") && bond_correct_surface(b, error)) {
     destroy(b);
     return NULL;
   }
@@ -219,6 +248,12 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   return -1;
 }
 
+static FormerBonds former_bonds(const void *formulation)
+{
+  const BondBased *b = formulation;
+  return (FormerBonds){.share = 1, .alike = !b->surface};
+}
+
 static size_t bytes(const void *formulation)
 {
   const BondBased *b = formulation;
@@ -235,7 +270,7 @@ const FormulationType formulation_bond_based = {
     .components = 1,
     .bond_lengths = true,
     .stretch_from_energy = true,
-    .check = check,
+    .section = &bond_based_section,
     .create = create,
     .destroy = destroy,
     .renew = renew,
@@ -253,5 +288,6 @@ const FormulationType formulation_bond_based = {
     .stress = stress,
     .characteristic_length = bond_characteristic_length,
     .describe = bond_describe,
+    .former_bonds = former_bonds,
     .bytes = bytes,
 };

@@ -5,6 +5,9 @@
 
 #include "formulation/formulation.h"
 
+/** How the constant of bonds follows from Young's modulus. */
+typedef enum Calibration { CALIBRATION_CONTINUUM, CALIBRATION_EXPANSION, CALIBRATION_UNIAXIAL } Calibration;
+
 enum { SPRING_TERMS = 6 };
 
 /** Where the numbers of a pattern stand: its vector, and what its length and weight make of d (bond_springs.c). */

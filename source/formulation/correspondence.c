@@ -477,6 +477,7 @@ const FormulationType formulation_correspondence = {
     .components = 6,
     .row_sums = true,
     .may_stiffen = true,
+    .section = &correspondence_section,
     .check = correspondence_check,
     .create = correspondence_create,
     .destroy = correspondence_destroy,
@@ -495,5 +496,6 @@ const FormulationType formulation_correspondence = {
     .stored_energy = correspondence_stored_energy,
     .gradient = correspondence_gradient,
     .characteristic_length = correspondence_characteristic_length,
+    .former_bonds = correspondence_former_bonds,
     .bytes = correspondence_bytes,
 };

@@ -76,13 +76,15 @@ static inline int state_length(Control control)
 }
 
 /* Making, and what follows from the shapes of families (correspondence_setup.c). */
-int correspondence_check(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader);
+extern const Section correspondence_section;
+int correspondence_check(const void *keys, const Body *body, const DeckReader *reader);
 void *correspondence_create(const FormulationParts *parts, Error *error);
 void correspondence_destroy(void *formulation);
 void correspondence_renew(void *formulation, int64_t slice);
 void correspondence_gradient(const void *formulation, int64_t place, double f[9]);
 double *correspondence_shares(void *formulation);
 size_t correspondence_bytes(const void *formulation);
+FormerBonds correspondence_former_bonds(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */
 int64_t correspondence_finish(void *formulation, const Sweep *sweep);

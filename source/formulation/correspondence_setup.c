@@ -5,14 +5,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-int correspondence_check(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader)
+typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
+  SectionHead head;
+  double silling, wan;
+  bool none;
+} ControlSpec;
+
+typedef struct CorrespondenceSpec {
+  SectionHead head;
+  const char *strain;
+  ControlSpec *control;
+} CorrespondenceSpec;
+
+static const char *strain_word(int k)
 {
-  if (strcmp(spec->surface_correction, "none"))
-    return node_error(
-        reader->document, section_place(spec, "surface correction"), reader->error,
-        "surface correction: is for bond-based peridynamics; the strains of correspondence are exact at surfaces");
+  static const char *const words[] = {"green-lagrange", "small", NULL};
+  return words[k];
+}
+
+static const Field control_fields[] = {
+    {"silling", FIELD_NUMBER, offsetof(ControlSpec, silling), "1", "", "[0, inf)",
+     "strength G_s of Silling's (2017) control; 0.1 is just enough in 3-D, 0.2 in the plane; more stiffens crack tips",
+     NULL, NULL, 'A'},
+    {"wan", FIELD_NUMBER, offsetof(ControlSpec, wan), "1", "", "[0, inf)",
+     "factor on the control of Wan et al. (2019), C : K^-1; 0.1 is a good start", NULL, NULL, 'A'},
+    {"none", FIELD_FLAG, offsetof(ControlSpec, none), NULL, "", NULL, "no control: zero-energy modes are free to grow",
+     NULL, NULL, 'A'},
+};
+static const Section control_section = {"zero-energy control",
+                                        "What keeps particles from moving in patterns that their strain does not see.",
+                                        sizeof(ControlSpec),
+                                        FIELDS(control_fields),
+                                        NULL,
+                                        NULL,
+                                        NULL,
+                                        0};
+
+static const Field correspondence_fields[] = {
+    {"strain", FIELD_CHOICE, offsetof(CorrespondenceSpec, strain), NULL, "green-lagrange", NULL,
+     "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations", NULL, strain_word, 0},
+    {"zero-energy control", FIELD_SECTION, offsetof(CorrespondenceSpec, control), NULL, "", NULL,
+     "silling 0.1 in 3-D and 0.2 in the plane when absent", &control_section, NULL, 0},
+};
+const Section correspondence_section = {"correspondence",
+                                        "Keys of `peridynamics` with `formulation: correspondence`.",
+                                        sizeof(CorrespondenceSpec),
+                                        FIELDS(correspondence_fields),
+                                        NULL,
+                                        NULL,
+                                        NULL,
+                                        0};
+
+int correspondence_check(const void *keys, const Body *body, const DeckReader *reader)
+{
   if (body->dimensions == 1)
-    return node_error(reader->document, section_place(spec, "formulation"), reader->error,
+    return node_error(reader->document, section_place(keys, "formulation"), reader->error,
                       "formulation: correspondence has no strain along a line; bars take bond-based");
   return BRECCIA_OK;
 }
@@ -138,8 +185,9 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   c->points = parts->points;
   c->body = parts->body;
   c->plane = parts->body->dimensions == 2;
-  c->finite = !strcmp(parts->spec->strain, "green-lagrange");
-  const ControlSpec *control = parts->spec->control;
+  const CorrespondenceSpec *spec = parts->keys;
+  const ControlSpec *control = spec->control;
+  c->finite = !strcmp(spec->strain, "green-lagrange");
   c->control = CONTROL_SCALAR;
   c->strength = c->plane ? 0.2 : 0.1;
   if (control && !isnan(control->silling)) c->strength = control->silling;
@@ -200,6 +248,13 @@ size_t correspondence_bytes(const void *formulation)
   numbers += (size_t)(c->family->rows.kinds * (6 + c->pulls) + (c->row ? state_length(c->control) + 8 : 0));
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
          (size_t)c->particles->count * sizeof(int32_t);
+}
+
+/** Only the bonds of contact itself cross the face (docs/theory.md 2, pairs that a cut parts). */
+FormerBonds correspondence_former_bonds(const void *formulation)
+{
+  (void)formulation;
+  return (FormerBonds){.share = 0.8, .alike = false};
 }
 
 double correspondence_characteristic_length(const BondLength *of)

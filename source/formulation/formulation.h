@@ -7,32 +7,24 @@
 #include "formulation/operator.h"
 #include "points/points.h"
 
-typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
-  SectionHead head;
-  double silling, wan;
-  bool none;
-} ControlSpec;
-
 typedef struct PeridynamicsSpec {
   SectionHead head;
-  const char *formulation, *space, *strain, *influence, *volume_correction, *calibration, *surface_correction;
+  const char *formulation, *space, *influence, *volume_correction;
   Length horizon;
-  ControlSpec *control;
+  void *keys; /* the struct of the formulation's own section */
 } PeridynamicsSpec;
 
 extern const Section peridynamics_section;
 
 Space peridynamics_space(const PeridynamicsSpec *spec);
 
-/** How the constant of bonds follows from Young's modulus. */
-typedef enum Calibration { CALIBRATION_CONTINUUM, CALIBRATION_EXPANSION, CALIBRATION_UNIAXIAL } Calibration;
-const char *calibration_word(int k);
-
 enum { CARRY = 9 };
 
 /** What a formulation works on; borrowed. */
 typedef struct FormulationParts {
-  const PeridynamicsSpec *spec;
+  const void *keys; /* of its own section */
+  Space space;
+  const Influence *influence;
   const Body *body;
   const Particles *particles;
   const Family *family;
@@ -57,6 +49,12 @@ typedef struct StoredEnergy {
   double weight; /* volume for which the law of a point stands, by the share of its stress that is carried; 0: none */
   double strain[6], was[6]; /* of that point at the end and at the beginning of the last step, with the present bonds */
 } StoredEnergy;
+
+/** What bonds that broke leave to contact. */
+typedef struct FormerBonds {
+  double share; /* of the stiffness of bonds calibrated in uniform expansion that they had */
+  bool alike;   /* they are as stiff where a family is not whole */
+} FormerBonds;
 
 /** What a sweep reads and writes of places. */
 typedef enum Quantity {
@@ -102,9 +100,10 @@ typedef struct FormulationType {
   bool bond_lengths; /* lengths of stored bonds are read in sweeps */
   bool
       stretch_from_energy; /* a critical stretch of bonds follows from a fracture energy: sqrt(2 G / (E characteristic length)) */
-  bool may_stiffen; /* the largest eigenvalue of stiffness over mass may grow as bonds break */
-  /** Refuses what the deck asks for and the formulation has not: keys that are others', spaces. NULL: takes all. */
-  int (*check)(const PeridynamicsSpec *spec, const Body *body, const DeckReader *reader);
+  bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
+  const Section *section; /* its keys, which stand among those of peridynamics */
+  /** Refuses bodies and spaces that the formulation does not take. NULL: takes all. */
+  int (*check)(const void *keys, const Body *body, const DeckReader *reader);
   /** Makes a formulation for a body. Says where families are too poor for it. */
   void *(*create)(const FormulationParts *parts, Error *error);
   void (*destroy)(void *formulation);
@@ -137,6 +136,7 @@ typedef struct FormulationType {
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */
   double (*characteristic_length)(const BondLength *of);
+  FormerBonds (*former_bonds)(const void *formulation);
   /** Adds what a user should know before a run, as one line; NULL: nothing. */
   void (*describe)(const void *formulation, Text *text);
   /** Bytes beyond particles, families and points. */

@@ -209,10 +209,13 @@ refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: e
 refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: elastic-1d, density: 7.85, Young modulus: 210 GPa/' \
   5:18 "'elastic-1d' is a law of one strain; correspondence takes elastic, j2"
 refuse 's/critical stretch: 0.05/critical stretch: 0.05, fracture energy: 100 N\/m/' 16:52 "give 'critical stretch' or 'fracture energy', not both"
-refuse 's/critical stretch: 0.05/fracture energy: 100 N\/m/' 16:28 'only bond-based peridynamics has a critical stretch that follows from it'
+refuse 's/critical stretch: 0.05/fracture energy: 100 N\/m/' 16:28 'no critical stretch follows from it in correspondence'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, zero-energy control: {none: yes}}/" 15:41 'zero-energy control: is for correspondence'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: elastic}/" 15:54 "calibration: 'elastic' is not known; choose from continuum, uniform-expansion, uniaxial"
-refuse 's/^peri.*/peridynamics: {surface correction: energy}/' 15:36 'surface correction: is for bond-based peridynamics; the strains of correspondence are exact at surfaces'
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, strain: small}/" 15:41 'strain: is for correspondence; bond-based does not have it: leave it out'
+refuse 's/^peri.*/peridynamics: {strian: small}/' 15:16 "unknown key 'strian'; did you mean 'strain'?"
+refuse 's/^peri.*/peridynamics: {formulation: bonds, strian: small}/' 15:29 "formulation: 'bonds' is not known"
+refuse 's/^peri.*/peridynamics: {surface correction: energy}/' 15:16 'surface correction: is for bond-based; correspondence does not have it: leave it out'
 refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: elastic-brittle, density: 7.85, Young modulus: 210 GPa, fracture energy: 1 N\/m/' \
   5:18 "'elastic-brittle' is a law of one strain; correspondence takes elastic, j2"
 refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3/model: j2, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 0.3, yield stress: 400 MPa, largest strain: 0.1/' \
