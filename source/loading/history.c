@@ -1,23 +1,38 @@
 #include "loading/history.h"
 
+#include "base/memory.h"
 #include <math.h>
+#include <stdlib.h>
 
-static const Field sine_fields[] = {
-    {"frequency", FIELD_NUMBER, offsetof(SineSpec, frequency), "frequency", NULL, "(0, inf)", "cycles per time", NULL,
-     NULL, 0},
-    {"phase", FIELD_NUMBER, offsetof(SineSpec, phase), "angle", "0", NULL, "angle at time 0", NULL, NULL, 0},
+#define HISTORY(name, key, kind, dimension, range, meaning) extern const HistoryType name##_history;
+#define HISTORY_SECTION(name, key, meaning)                                                                            \
+  extern const HistoryType name##_history;                                                                             \
+  extern const Section name##_history_section;
+#include "loading/history/histories.h"
+
+static const HistoryType *const types[] = {
+#define HISTORY(name, key, kind, dimension, range, meaning) &name##_history,
+#include "loading/history/histories.h"
 };
-static const Section sine_section = {
-    "sine", "sin(2 pi frequency time + phase).", sizeof(SineSpec), FIELDS(sine_fields), NULL, NULL, NULL, 0};
 
 static const Field history_fields[] = {
-    {"ramp to", FIELD_NUMBER, offsetof(HistorySpec, ramp), "time", "", "(0, inf)",
-     "from 0 to the full value at this time, then constant", NULL, NULL, 'A'},
-    {"constant", FIELD_FLAG, offsetof(HistorySpec, constant), NULL, "", NULL, "the full value from the beginning", NULL,
-     NULL, 'A'},
-    {"table", FIELD_PAIRS, offsetof(HistorySpec, table), "1", "", NULL,
-     "factors at times, straight lines between them, constant before and after", NULL, NULL, 'A'},
-    {"sine", FIELD_SECTION, offsetof(HistorySpec, sine), NULL, "", NULL, "harmonic", &sine_section, NULL, 'A'},
+#define HISTORY(name, key, kind, dimension, range, meaning)                                                            \
+  {key, kind, offsetof(HistorySpec, of[HISTORY_##name]), dimension, "", range, meaning, NULL, NULL, 'A'},
+#define HISTORY_SECTION(name, key, meaning)                                                                            \
+  {key,                                                                                                                \
+   FIELD_SECTION,                                                                                                      \
+   offsetof(HistorySpec, of[HISTORY_##name]),                                                                          \
+   NULL,                                                                                                               \
+   "",                                                                                                                 \
+   NULL,                                                                                                               \
+   meaning,                                                                                                            \
+   &name##_history_section,                                                                                            \
+   NULL,                                                                                                               \
+   'A'},
+#define HISTORY_LIST(name, key, meaning)                                                                               \
+  {key, FIELD_SECTIONS, offsetof(HistorySpec, of[HISTORY_##name]), NULL, "", NULL, meaning, &history_section, NULL,    \
+   'A'},
+#include "loading/history/histories.h"
 };
 const Section history_section = {"history",
                                  "How a load varies in time: a factor on its value.",
@@ -28,22 +43,93 @@ const Section history_section = {"history",
                                  NULL,
                                  0};
 
-double history_factor(const HistorySpec *spec, double time)
+int history_create(History *history, const HistorySpec *spec, const DeckReader *reader)
 {
-  if (!spec || spec->constant) return 1;
-  if (!isnan(spec->ramp)) return fmax(0, fmin(1, time / spec->ramp));
-  if (spec->sine) {
-    const double pi = acos(-1);
-    return sin(2 * pi * spec->sine->frequency * time + spec->sine->phase * pi / 180);
+  *history = (History){0};
+  if (!spec) return BRECCIA_OK;
+  int k = 0;
+  while (!node_get(spec->head.node, history_fields[k].key)) ++k;
+  history->type = types[k];
+  history->value = &spec->of[k];
+  history->value_node = node_get(spec->head.node, history_fields[k].key);
+  return types[k]->create ? types[k]->create(history, reader) : BRECCIA_OK;
+}
+
+void history_destroy(History *history)
+{
+  for (int k = 0; k < history->part_count; ++k) history_destroy(&history->parts[k]);
+  free(history->parts);
+  free(history->line.sums);
+  free(history->rows);
+  free(history->panels);
+  *history = (History){0};
+}
+
+double history_factor(const History *history, double time)
+{
+  return history->type ? history->type->factor(history, time) : 1;
+}
+
+double history_rise(const History *history)
+{
+  return history->type ? history->type->rise(history) : 0;
+}
+
+/* ---- integrals by Gauss' quadrature, five points between two corners: exact for polynomials of degree nine ---- */
+
+static Panel next_panel(const History *h, const Panel *from, double to)
+{
+  enum { POINTS = 5 };
+  static const double at[POINTS] = {-0.90617984593866399, -0.53846931010568309, 0, 0.53846931010568309,
+                                    0.90617984593866399},
+                      weight[POINTS] = {0.23692688505618909, 0.47862867049936647, 0.56888888888888889,
+                                        0.47862867049936647, 0.23692688505618909};
+  const double half = (to - from->time) / 2, middle = (to + from->time) / 2;
+  double once = 0, twice = 0;
+  for (int k = 0; k < POINTS; ++k) {
+    const double time = middle + half * at[k], part = half * weight[k] * history_factor(h, time);
+    once += part;
+    twice += part * (to - time);
   }
-  const double *row = spec->table.values;
-  int count = spec->table.count;
-  if (!count) return 1;
-  if (time <= row[0]) return row[1];
-  for (int k = 1; k < count; ++k)
-    if (time <= row[2 * k]) {
-      double share = (time - row[2 * k - 2]) / (row[2 * k] - row[2 * k - 2]);
-      return row[2 * k - 1] + share * (row[2 * k + 1] - row[2 * k - 1]);
-    }
-  return row[2 * count - 1];
+  return (Panel){to, from->once + once, from->twice + from->once * 2 * half + twice};
+}
+
+static void keep(History *h, const Panel *panel)
+{
+  if (h->panel_count == h->panel_capacity) {
+    const int64_t more = h->panel_capacity ? 2 * h->panel_capacity : 64;
+    Panel *grown = realloc(h->panels, sizeof(Panel) * (size_t)more);
+    if (!grown) return; /* it is found again the next time */
+    h->panels = grown;
+    h->panel_capacity = more;
+  }
+  h->panels[h->panel_count++] = *panel;
+}
+
+/** Integrals up to a time, from the last corner before it that is known. */
+static Panel panel_at(History *h, double time)
+{
+  int64_t low = 0, high = h->panel_count; /* panels before `low` end no later than the time */
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (h->panels[middle].time <= time)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  Panel panel = low ? h->panels[low - 1] : (Panel){0};
+  for (double corner; (corner = h->type->corner(h, panel.time)) < time; ++low) {
+    panel = next_panel(h, &panel, corner);
+    if (low == h->panel_count) keep(h, &panel);
+  }
+  return next_panel(h, &panel, time);
+}
+
+double history_integral(History *h, int order, double scale, double time)
+{
+  if (!h->type) return order == 1 ? scale * time : scale * time * time / 2;
+  const double known = order == 1 && h->type->integral ? h->type->integral(h, scale, time) : NAN;
+  if (!isnan(known)) return known;
+  const Panel panel = panel_at(h, time);
+  return scale * (order == 1 ? panel.once : panel.twice);
 }

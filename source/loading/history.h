@@ -1,25 +1,87 @@
-/* How a load varies in time: a factor on its value. */
+/* How a load varies in time: a factor on its value. Histories are table entries (history/histories.h); what a motion by its velocity or
+ * acceleration needs, integrals over time, follows from the factor alone where an entry does not know better. */
 #ifndef BRECCIA_LOADING_HISTORY_H
 #define BRECCIA_LOADING_HISTORY_H
 
 #include "deck/section.h"
 
-typedef struct SineSpec {
-  SectionHead head;
-  double frequency, phase;
-} SineSpec;
+/** What stands under the key of a history. */
+typedef union HistoryValue {
+  double number;
+  bool flag;
+  NumberList rows;
+  SectionList list; /* of HistorySpec */
+  void *section;
+} HistoryValue;
+
+enum {
+#define HISTORY(name, key, kind, dimension, range, meaning) HISTORY_##name,
+#include "loading/history/histories.h"
+  HISTORIES
+};
 
 typedef struct HistorySpec { /* exactly one is given */
   SectionHead head;
-  double ramp;
-  bool constant;
-  NumberList table;
-  SineSpec *sine;
+  HistoryValue of[HISTORIES];
 } HistorySpec;
 
 extern const Section history_section;
 
-/** Factor at a time; `spec` NULL is constant 1. */
-double history_factor(const HistorySpec *spec, double time);
+typedef struct HistoryType HistoryType;
+
+/** Straight lines between points. */
+typedef struct Polyline {
+  const double *rows; /* [count] time, value: times ascend */
+  double *sums;       /* [count] integral from time 0 to each of them; owned */
+  int count;
+  bool ends; /* 0 before and after; else the first and last value hold there */
+} Polyline;
+
+typedef struct Panel { /* integrals up to a time, kept so that they need not be found again */
+  double time, once, twice;
+} Panel;
+
+typedef struct History {
+  const HistoryType *type; /* NULL: constant 1 */
+  const HistoryValue *value;
+  const Node *value_node; /* where it stands */
+  Polyline line;          /* of tables and files */
+  double *rows;           /* of files; owned */
+  struct History *parts;  /* [part_count] of products and sums */
+  int part_count;
+  Panel *panels;
+  int64_t panel_count, panel_capacity;
+} History;
+
+struct HistoryType {
+  /** Makes ready; says what is wrong with the value. May be NULL. */
+  int (*create)(History *history, const DeckReader *reader);
+  double (*factor)(const History *history, double time);
+  /** `scale` times the integral of the factor from 0 on; NaN: it knows none. May be NULL. */
+  double (*integral)(const History *history, double scale, double time);
+  /** The next time after this one up to which the factor is smooth: a polynomial of low degree, or as good as one. */
+  double (*corner)(const History *history, double time);
+  /** Time in which it reaches its largest value, 0: at once. */
+  double (*rise)(const History *history);
+};
+
+/** @param[in] spec  NULL: constant 1 */
+int history_create(History *history, const HistorySpec *spec, const DeckReader *reader);
+void history_destroy(History *history);
+
+double history_factor(const History *history, double time);
+
+/** `scale` times the integral of the factor from 0 to a time, or with order 2 that of this integral. By one thread: what was found is kept. */
+double history_integral(History *history, int order, double scale, double time);
+
+/** Time that it takes to its largest value; 0: it is there at once. */
+double history_rise(const History *history);
+
+/** Sums for the points given; `rows` and `count` are set. */
+int polyline_prepare(Polyline *line, Error *error);
+double polyline_value(const Polyline *line, double time);
+double polyline_integral(const Polyline *line, double time);
+double polyline_corner(const Polyline *line, double time);
+double polyline_rise(const Polyline *line);
 
 #endif

@@ -1,40 +1,53 @@
-/* Loads: forces on particles, and motions prescribed to them. */
+/* Loads: forces on particles, and motions prescribed to them. Each kind of load is a table entry (load/loads.h). */
 #ifndef BRECCIA_LOADING_LOAD_H
 #define BRECCIA_LOADING_LOAD_H
 
 #include "body/selection.h"
 #include "loading/history.h"
 
-typedef struct AlongSpec { /* a motion prescribed in one direction; the others stay free */
-  SectionHead head;
-  double direction[3], displacement, velocity;
-} AlongSpec;
+/** What stands under the key of a load. */
+typedef union LoadValue {
+  double number;
+  double point[3];
+  void *section;
+} LoadValue;
+
+enum {
+#define LOAD(name, key, kind, dimension, meaning) LOAD_##name,
+#include "loading/load/loads.h"
+  LOADS
+};
 
 typedef struct LoadSpec {
   SectionHead head;
   const char *name;
   Reference on;
-  double body_force[3], force[3], gravity[3], displacement[3], velocity[3];
-  AlongSpec *along;
+  LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
 } LoadSpec;
 
 extern const Section load_section;
 
+typedef struct LoadType LoadType;
+
 typedef struct Load {
+  const LoadType *type;
   const LoadSpec *spec;
+  const LoadValue *value;
+  const Node *place; /* of the value in the deck */
   Selection selection;
   double volume;         /* of the selected particles */
   int64_t first, behind; /* acts in the stages first .. behind - 1 */
   double begin;          /* time of the run from which its history counts */
+  History history;
 } Load;
 
-/** A motion prescribed to the particles of a load in one direction. */
+/** Motions prescribed to the particles of a load: rows u . direction = from + value times the history, or its integral. */
 typedef struct Constraint {
-  const Load *load;
+  Load *load;
   double direction[3]; /* unit vector */
   double value;
-  bool is_velocity;
+  int order;    /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */
   double *from; /* [particles of the load] displacement in that direction when the load began; NULL: 0 */
 } Constraint;
 
@@ -52,6 +65,32 @@ typedef struct Loading {
   Constraint *constraints;
   int constraint_count;
 } Loading;
+
+/** What the making of loads needs. */
+typedef struct LoadMaking {
+  Loading *loading;
+  const Body *body;
+  const DeckReader *reader;
+  const SectionList *selections;
+} LoadMaking;
+
+struct LoadType {
+  bool everywhere; /* on the whole body where the deck does not say on what */
+  /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
+  int (*create)(Load *load, const LoadMaking *making);
+  /** What must not point out of the space that the body has; NaN where nothing is prescribed. May be NULL. */
+  const double *(*vector)(const LoadValue *value);
+  /** Adds its forces per volume to the external ones, at displacements and velocities as held, by all threads. NULL: it is no force. */
+  void (*force)(const Load *load, Particles *particles, double factor);
+  /** What it prescribes at factor 1: the length of a vector. */
+  double (*magnitude)(const LoadValue *value);
+  /** What it is, where its key and the dimension in the list do not tell. May be NULL. */
+  const char *(*kind)(const LoadValue *value, const char **dimension);
+};
+
+/** One load of a deck. `load` has its stages; destroy it in any case. */
+int load_create(Load *load, const LoadSpec *spec, const LoadMaking *making);
+void load_destroy(Load *load);
 
 /** Resolves the loads of a deck on a body; says where a selection is empty or motions of one stage contradict each other.
  *  @param[in] loads  those of the deck, from the first stage on */
@@ -86,8 +125,5 @@ const char *load_kind(const LoadSpec *load, const char **dimension);
 
 /** Length of the vector that a load prescribes at factor 1. */
 double load_magnitude(const LoadSpec *load);
-
-/** Displacement along its direction that a constraint prescribes at a time of the run, from where its load began. */
-double constraint_displacement(const Constraint *constraint, double time);
 
 #endif

@@ -303,31 +303,16 @@ static bool has_kind(const LoadSpec *l, const char *kind)
   return !strcmp(load_kind(l, &dimension), kind);
 }
 
-/** Time at which a load reaches its largest value, in the deck's units; 0: at once. */
-static double rise_time(const HistorySpec *history)
+static void describe_load(const breccia_model *model, const Load *load, const Extent *e, Text *text)
 {
-  if (!history || history->constant) return 0;
-  if (!isnan(history->ramp)) return history->ramp;
-  if (history->sine) return 0.25 / history->sine->frequency;
-  /* Of a table: what the whole would take at its steepest pace. */
-  const double *row = history->table.values;
-  double largest = 0, steepest = 0;
-  for (int k = 0; k < history->table.count; ++k) {
-    largest = fmax(largest, fabs(row[2 * k + 1]));
-    if (k) steepest = fmax(steepest, fabs(row[2 * k + 1] - row[2 * k - 1]) / (row[2 * k] - row[2 * k - 2]));
-  }
-  return history->table.count && fabs(row[1]) < largest ? largest / steepest : 0;
-}
-
-static void describe_load(const breccia_model *model, const LoadSpec *l, const Extent *e, Text *text)
-{
+  const LoadSpec *l = load->spec;
   const double magnitude = load_magnitude(l);
   if (magnitude == 0) return; /* a support */
   if (l->name)
     text_add(text, "  load '%s': ", l->name);
   else
     text_add(text, "  load in line %d: ", l->head.node->line);
-  const double rise = in_si(model, "time", rise_time(l->history));
+  const double rise = in_si(model, "time", history_rise(&load->history));
   if (rise > 0) {
     text_add(text, "grows over ");
     quantity_describe(rise, "s", text);
@@ -349,13 +334,14 @@ static void describe_load(const breccia_model *model, const LoadSpec *l, const E
 }
 
 /** A prescribed displacement that is there at once gives its particles a speed of one displacement per step. */
-static void check_jump(breccia_model *model, const LoadSpec *l)
+static void check_jump(breccia_model *model, const Load *load)
 {
-  const double start = load_magnitude(l) * fabs(history_factor(l->history, 0));
+  const LoadSpec *l = load->spec;
+  const double start = load_magnitude(l) * fabs(history_factor(&load->history, 0));
   if (!has_kind(l, "displacement") || start == 0) return;
   char length[32];
   units_name(model->units, dimension_find("length"), length, sizeof length);
-  warn(model, section_place(l, l->along ? "along" : "displacement"),
+  warn(model, load->place,
        "displacement: the particles jump by %.4g %s in the first step; let it grow, like 'history: {ramp to: ...}'",
        start, length);
 }
@@ -384,7 +370,7 @@ static void check_grips(breccia_model *model)
 void plausibility_warn(breccia_model *model)
 {
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
-  for (int k = 0; k < model->loading.count; ++k) check_jump(model, model->loading.loads[k].spec);
+  for (int k = 0; k < model->loading.count; ++k) check_jump(model, &model->loading.loads[k]);
   check_grips(model);
 }
 
@@ -394,7 +380,7 @@ void plausibility_describe(const breccia_model *model, Text *text)
   text_add(text, "in SI units:\n");
   for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
   describe_frequencies(model, &e, text);
-  for (int k = 0; k < model->loading.count; ++k) describe_load(model, model->loading.loads[k].spec, &e, text);
+  for (int k = 0; k < model->loading.count; ++k) describe_load(model, &model->loading.loads[k], &e, text);
   const double time = in_si(model, "time", (double)model->solver.clock.steps * model->solver.clock.time_step);
   text_add(text, "  the run: ");
   quantity_describe(time, "s", text);

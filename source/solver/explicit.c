@@ -86,7 +86,8 @@ static int create(Solver *run, Error *error)
     if (explicit_parts_of(&run->loading->constraints[n]) > parts)
       parts = explicit_parts_of(&run->loading->constraints[n]);
   s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", error);
-  if (failed || !s->sums || !s->parts) return BRECCIA_FAILURE;
+  s->motions = memory_zeroed((size_t)run->loading->constraint_count, sizeof *s->motions, "motions", error);
+  if (failed || !s->sums || !s->parts || !s->motions) return BRECCIA_FAILURE;
   StateList list = {0};
   domain_state(d, &list);
   solver_state(run, &list);
@@ -101,6 +102,7 @@ static void destroy(Solver *run)
   for (int k = 0; k < 3; ++k) places_free(&s->acceleration[k]);
   free(s->sums);
   free(s->parts);
+  free(s->motions);
   state_copy_destroy(&s->before);
   free(s);
   run->own = NULL;
@@ -292,6 +294,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   Explicit *s = run->own;
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
+  explicit_foresee_motions(s);
   state_note_others(&s->before);
   team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);

@@ -32,6 +32,11 @@ typedef struct Explicit {
   double fixed; /* the step that the deck says, or the program's where the deck counts steps; NaN: free to follow */
   int64_t broken_at_estimate, step_at_estimate; /* when the stable step was found */
   StateCopy before;                             /* what the step under way has tried, as it was */
+  struct Motion {                               /* of each constraint in the step under way */
+    double target;                              /* displacement at its end */
+    double moved;                               /* in the step */
+    double rate;                                /* velocity at its end */
+  } * motions;
   double motion;         /* largest component of any displacement increment in the step under way */
   double (*sums)[SUMS];  /* [blocks] */
   double (*parts)[SUMS]; /* the same for parts of prescribed selections */
@@ -53,6 +58,8 @@ void explicit_foresee(const void *spec, const Clock *clock, double *steps, doubl
 /** Parts into which the particles of a constraint are shared out among threads. */
 int64_t explicit_parts_of(const Constraint *constraint);
 void explicit_add_to_ledger(Explicit *solver, const double *sums);
+/** What constraints prescribe in the step to come. By one thread. */
+void explicit_foresee_motions(Explicit *solver);
 /** After the drift: displacements at the end of the step, velocities in its middle. By all threads. */
 void explicit_prescribe_displacements(Explicit *solver);
 /** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. By all threads. */

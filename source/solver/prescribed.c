@@ -3,6 +3,7 @@
  * taken back here. Particles are shared out in parts whose sums are added in order; held faces are large enough for one thread
  * alone to hold up all others. */
 #include "base/team.h"
+#include "loading/constraint.h"
 #include "solver/explicit.h"
 
 #include <math.h>
@@ -74,6 +75,19 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
   sums[MOTION] = largest;
 }
 
+void explicit_foresee_motions(Explicit *s)
+{
+  const double dt = s->clock->time_step, end = explicit_time_after_step(s);
+  for (int n = 0; n < s->loading->constraint_count; ++n) {
+    const Constraint *constraint = &s->loading->constraints[n];
+    if (!load_acts(s->loading, constraint->load)) continue;
+    const double before = constraint_displacement(constraint, end - dt);
+    s->motions[n] = (struct Motion){.target = constraint_displacement(constraint, s->clock->time + dt),
+                                    .moved = constraint_displacement(constraint, end) - before,
+                                    .rate = (constraint_displacement(constraint, end + dt) - before) / (2 * dt)};
+  }
+}
+
 void explicit_prescribe_displacements(Explicit *s)
 {
   TEAM_SINGLE
@@ -84,8 +98,7 @@ void explicit_prescribe_displacements(Explicit *s)
   for (int n = 0; n < s->loading->constraint_count; ++n) { /* one after the other: they may share particles */
     const Constraint *constraint = &s->loading->constraints[n];
     if (!load_acts(s->loading, constraint->load)) continue;
-    double target = constraint_displacement(constraint, s->clock->time + s->clock->time_step);
-    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, target, part);
+    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, s->motions[n].target, part);
     TEAM_SINGLE add_parts(s, constraint);
   }
 }
@@ -118,14 +131,11 @@ static void speed_part(Explicit *s, const Constraint *constraint, double moved, 
 
 void explicit_prescribe_velocities(Explicit *s)
 {
-  double dt = s->clock->time_step;
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *constraint = &s->loading->constraints[n];
     if (!load_acts(s->loading, constraint->load)) continue;
-    double before = constraint_displacement(constraint, s->clock->time - dt);
-    double moved = constraint_displacement(constraint, s->clock->time) - before;
-    double rate = (constraint_displacement(constraint, s->clock->time + dt) - before) / (2 * dt);
-    TEAM_FOR (part, explicit_parts_of(constraint)) speed_part(s, constraint, moved, rate, part);
+    const struct Motion *motion = &s->motions[n];
+    TEAM_FOR (part, explicit_parts_of(constraint)) speed_part(s, constraint, motion->moved, motion->rate, part);
     TEAM_SINGLE add_parts(s, constraint);
   }
 }

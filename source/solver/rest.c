@@ -20,7 +20,7 @@ static bool is_meant(const Solver *s)
     if (load_acts(s->loading, &s->loading->loads[k]) && !is_steady(&s->loading->loads[k], s->clock.time)) return false;
   for (int n = 0; n < s->loading->constraint_count; ++n) {
     const Constraint *c = &s->loading->constraints[n];
-    if (load_acts(s->loading, c->load) && c->is_velocity && c->value != 0 && load_factor(c->load, s->clock.time) != 0)
+    if (load_acts(s->loading, c->load) && c->order && c->value != 0 && load_factor(c->load, s->clock.time) != 0)
       return false;
   }
   return true;

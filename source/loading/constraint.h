@@ -1,0 +1,13 @@
+/* Motions prescribed to particles (loading/load.h has the rows). */
+#ifndef BRECCIA_LOADING_CONSTRAINT_H
+#define BRECCIA_LOADING_CONSTRAINT_H
+
+#include "loading/load.h"
+
+/** Two motions of one particle must be at right angles, or they contradict each other. */
+int constraints_check(const Loading *loading, const Particles *particles, const DeckReader *reader);
+
+/** Displacement along its direction that a constraint prescribes at a time of the run, from where its load began. By one thread. */
+double constraint_displacement(const Constraint *constraint, double time);
+
+#endif

@@ -1,0 +1,20 @@
+/* What kinds of loads share. */
+#ifndef BRECCIA_LOADING_LOAD_PARTS_H
+#define BRECCIA_LOADING_LOAD_PARTS_H
+
+#include "loading/load.h"
+
+/** The vector of a value that is one. */
+const double *load_point(const LoadValue *value);
+/** Its length, without components that are free. */
+double load_length(const LoadValue *value);
+
+/** Adds uniform + density x per_density to the external forces per volume of its particles, by all threads. */
+void load_push(const Load *load, Particles *particles, const double uniform[3], const double per_density[3]);
+
+/** Prescribes a motion along a direction of any length. @param[in] order  0 displacement, 1 velocity, 2 acceleration */
+void load_constrain(Load *load, const LoadMaking *making, const double direction[3], double value, int order);
+/** Prescribes the components of its vector that are not free. */
+void load_constrain_axes(Load *load, const LoadMaking *making, int order);
+
+#endif

@@ -1,0 +1,148 @@
+/* All loads of a run: those of its stages as they begin, act and end. */
+#include "loading/load.h"
+
+#include "base/team.h"
+#include "loading/constraint.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** Ends the loads of a name that began before a stage. @return how many */
+static int end_loads(Loading *loading, const char *name, int64_t stage)
+{
+  int ended = 0;
+  for (int k = 0; k < loading->count; ++k) {
+    Load *load = &loading->loads[k];
+    if (!load->spec->name || strcmp(load->spec->name, name) || load->first >= stage || load->behind <= stage) continue;
+    load->behind = stage;
+    ++ended;
+  }
+  return ended;
+}
+
+static int end_named(Loading *loading, const DeckReader *reader, const LoadStage *stage, int64_t number)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < stage->without->count; ++k)
+    if (!end_loads(loading, stage->without->items[k], number))
+      status = node_error(reader->document, section_place(stage->section, "without"), reader->error,
+                          "without: no load that acts before this stage has the name '%s'; give it one with 'name:'",
+                          stage->without->items[k]);
+  return status;
+}
+
+/** Adds the loads of a list, from a stage on. */
+static int add_loads(const LoadMaking *making, const SectionList *specs, int64_t stage)
+{
+  Loading *loading = making->loading;
+  int status = BRECCIA_OK;
+  for (int k = 0; k < specs->count; ++k) {
+    const LoadSpec *spec = specs->items[k];
+    if (spec->name) end_loads(loading, spec->name, stage);
+    Load *load = &loading->loads[loading->count++];
+    *load = (Load){.first = stage, .behind = INT64_MAX};
+    const int before = loading->constraint_count;
+    const int bad = load_create(load, spec, making);
+    if (bad) status = bad;
+    for (int c = before; stage > 0 && c < loading->constraint_count; ++c)
+      if (!(loading->constraints[c].from = memory_zeroed((size_t)load->selection.count, sizeof(double),
+                                                         "prescribed motions", making->reader->error)))
+        return BRECCIA_FAILURE;
+  }
+  return status;
+}
+
+int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
+                   const LoadStage *stages, int stage_count, const SectionList *selections)
+{
+  *loading = (Loading){0};
+  size_t most = (size_t)loads->count;
+  for (int s = 0; s < stage_count; ++s) most += (size_t)stages[s].loads->count;
+  loading->loads = memory_zeroed(most, sizeof(Load), "loads", reader->error);
+  loading->constraints = memory_zeroed(3 * most, sizeof(Constraint), "loads", reader->error);
+  if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
+  const LoadMaking making = {loading, body, reader, selections};
+  int status = add_loads(&making, loads, 0);
+  for (int s = 0; s < stage_count; ++s) {
+    int bad = end_named(loading, reader, &stages[s], s);
+    if (bad) status = bad;
+    bad = add_loads(&making, stages[s].loads, s);
+    if (bad) status = bad;
+  }
+  return status ? status : constraints_check(loading, &body->particles, reader);
+}
+
+void loading_destroy(Loading *loading)
+{
+  for (int k = 0; k < loading->count; ++k) load_destroy(&loading->loads[k]);
+  for (int c = 0; c < loading->constraint_count; ++c) free(loading->constraints[c].from);
+  free(loading->loads);
+  free(loading->constraints);
+  *loading = (Loading){0};
+}
+
+void loading_enter(Loading *loading, int64_t stage)
+{
+  loading->stage = stage;
+}
+
+void loading_begin(Loading *loading, Particles *p, double time)
+{
+  for (int k = 0; k < loading->count; ++k)
+    if (loading->loads[k].first == loading->stage) loading->loads[k].begin = time;
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    const Selection *selection = &constraint->load->selection;
+    if (constraint->load->first != loading->stage || !constraint->from) continue;
+    for (int64_t n = 0; n < selection->count; ++n) {
+      constraint->from[n] = 0;
+      for (int k = 0; k < 3; ++k)
+        constraint->from[n] += p->displacement[k][selection->places[n]] * constraint->direction[k];
+    }
+  }
+  for (int k = 0; k < 3; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
+}
+
+void loading_state(Loading *loading, StateList *list)
+{
+  char name[40];
+  for (int k = 0; k < loading->count; ++k) {
+    if (!loading->loads[k].first) continue;
+    snprintf(name, sizeof name, "load %d begins", k);
+    state_add_number(list, name, "time", STATE_COMMITTED, &loading->loads[k].begin);
+  }
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (!constraint->from) continue;
+    snprintf(name, sizeof name, "motion %d begins", c);
+    state_add(list,
+              &(StateRow){.unit = "length",
+                          .kind = STATE_NUMBERS,
+                          .role = STATE_COMMITTED,
+                          .count = constraint->load->selection.count,
+                          .values = constraint->from},
+              name, NULL);
+  }
+}
+
+void loading_apply(const Loading *loading, Particles *p, double time)
+{
+  for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
+    const Load *load = &loading->loads[l];
+    if (!load->type->force || !load_acts(loading, load)) continue;
+    TEAM_FOR (n, load->selection.count)
+      for (int k = 0; k < 3; ++k) p->external[k][load->selection.places[n]] = 0;
+  }
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (load->type->force && load_acts(loading, load)) load->type->force(load, p, load_factor(load, time));
+  }
+}
+
+void loading_mark_held(const Loading *loading, uint8_t *held)
+{
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Selection *selection = &loading->constraints[c].load->selection;
+    for (int64_t n = 0; n < selection->count; ++n) held[selection->places[n]] = 1;
+  }
+}
