@@ -61,6 +61,20 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
   d->suspects[neighbour / SLICE] = 1; /* so that its family is renewed */
 }
 
+/** True if a bond was squeezed at the beginning of the step. It has then done more work in this step than it had received, and would
+ *  give it if it broke now; it waits for the next step. */
+static bool was_squeezed(const Domain *d, const Moment *moment, const Bond *bond, int32_t place)
+{
+  const Particles *p = d->particles;
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double moved = moment->time_step * (p->velocity[k][bond->neighbour] - p->velocity[k][place]);
+    const double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place] - moved;
+    square += y * y;
+  }
+  return square < (1 - 1e-9) * bond->length * bond->length;
+}
+
 /** Goes through the bonds of the suspect slices in order, and notes the ends of those that break, or breaks them. */
 static void judge(Domain *d, const Moment *moment, bool only_note)
 {
@@ -74,7 +88,8 @@ static void judge(Domain *d, const Moment *moment, bool only_note)
         const Bond bond = family_bond(f, s, slot, lane);
         const int32_t place = (int32_t)(s * SLICE + lane);
         if (!(gave_up && gave_up[place]) &&
-            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane)))
+            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane) &&
+              !was_squeezed(d, moment, &bond, place)))
           continue;
         if (only_note) {
           note_torn(d, place);

@@ -173,14 +173,13 @@ int stable_step(Domain *d, double *step, Error *error)
   }
   d->points.elastic_stage = elastic;
   domain_show_states(d); /* bonds that break next are judged by what particles show */
-  if (!isfinite(largest) || largest <= 0)
+  if (!isfinite(largest) || largest < 0)
     failed = error_add(error, BRECCIA_FAILURE,
                        "the stable time step could not be found: the internal forces are not those "
                        "of a stiff body (largest eigenvalue %g)",
                        largest);
-  else
-    *step = 2 / sqrt(largest * 1.005 +
-                     contact_eigenvalue(&d->contact)); /* what Lanczos' method may still lack after its stopping test */
+  else /* with what Lanczos' method may still lack after its stopping test */
+    *step = 2 / sqrt(largest * 1.005 + contact_eigenvalue(&d->contact));
 done:
   for (int k = 0; k < 3; ++k) {
     places_free(&trial.displacement[k]);

@@ -16,15 +16,22 @@ static double longest_step(const Explicit *s)
 static int find_damped(Domain *domain, const ExplicitSpec *spec, double *stable, Error *error)
 {
   const int status = stable_step(domain, stable, error);
-  if (status) return status;
+  if (status || !isfinite(*stable)) return status;
   *stable /= sqrt(1 + spec->local_damping);
   if (spec->damping > 0) *stable = fmin(*stable, 1 / spec->damping);
   return BRECCIA_OK;
 }
 
+/** A body that has lost its last bond keeps the step that it had. */
 static int find_stable_step(Explicit *s, Error *error)
 {
-  const int status = find_damped(s->domain, s->spec, &s->clock->stable, error);
+  double stable;
+  int status = find_damped(s->domain, s->spec, &stable, error);
+  if (!status && isfinite(stable)) s->clock->stable = stable;
+  if (!status && !isfinite(s->clock->stable))
+    status = error_add(error, BRECCIA_FAILURE,
+                       "the stable time step could not be found: no bond joins any particles; choose a longer "
+                       "'horizon'");
   s->broken_at_estimate = s->domain->broken_count;
   s->step_at_estimate = s->clock->step;
   return status;
@@ -74,9 +81,12 @@ static void plan_steps(Explicit *s, const Solver *run)
 int explicit_follow(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
-  enum { SOON = 100, LATE = 1000, SHARE = 100 }; /* steps; one bond in so many */
+  /* Steps; one bond in so many. No more than MANY measurements can come at once in a run, whatever breaks. */
+  enum { SOON = 100, LATE = 1000, SHARE = 100, MANY = 20 };
   const int64_t broken = s->domain->broken_count - s->broken_at_estimate, since = s->clock->step - s->step_at_estimate;
-  if (s->domain->type->may_stiffen && broken && since >= (2 * broken * SHARE > s->domain->family.bonds ? SOON : LATE)) {
+  const int64_t bonds = s->domain->family.bonds / 2;
+  const int64_t patience = broken * MANY > bonds ? 1 : broken * SHARE > bonds ? SOON : LATE;
+  if (s->domain->type->may_stiffen && broken && since >= patience) {
     const int status = find_stable_step(s, error);
     if (status) return status;
     if (is_too_long(s, s->clock->time_step)) {
