@@ -129,11 +129,12 @@ static void find_received(Domain *d)
     Torn *torn = &d->torn[n];
     StoredEnergy energy;
     d->type->stored_energy(d->formulation, torn->place, d->points.time_step, &energy);
-    for (int k = 0; k < 6; ++k) {
+    const bool points = d->points.components == 6;
+    for (int k = 0; k < 6 && points; ++k) {
       torn->strain[k] = d->points.strain[k][torn->place];
       torn->stress[k] = d->points.stress[k][torn->place];
     }
-    torn->elastic = points_elastic_energy(&d->points, torn->place);
+    torn->elastic = points ? points_elastic_energy(&d->points, torn->place) : 0;
     torn->received = energy.received + energy.control +
                      energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
     torn->share = d->type->shares(d->formulation)[torn->place];
@@ -147,9 +148,9 @@ static void find_left(Domain *d)
   TEAM_FOR (n, d->torn_count) {
     Torn *torn = &d->torn[n];
     StoredEnergy energy;
-    double strain[6], stress[6];
+    double strain[6] = {0}, stress[6] = {0};
     d->type->stored_energy(d->formulation, torn->place, d->points.time_step, &energy);
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < 6 && d->points.components == 6; ++k) {
       strain[k] = d->points.strain[k][torn->place];
       stress[k] = d->points.stress[k][torn->place];
     }

@@ -7,23 +7,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Laws take one strain or six; formulations offer one or the other. */
+static bool takes(const FormulationType *type, const breccia_law *law)
+{
+  return law->components == type->components && (!type->takes || type->takes(law));
+}
+
+/** Laws take one strain or six; formulations offer one or the other, and some take few laws only. */
 static int check_law(const Domain *d, const DeckReader *reader, const MaterialSpec *spec, const breccia_law *made)
 {
   const LawList *laws = reader->context;
   const breccia_law *law = spec->model ? law_find(laws, spec->model) : made;
-  if (law->components == d->type->components) return BRECCIA_OK;
+  if (takes(d->type, law)) return BRECCIA_OK;
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
-    if (law_at(laws, k)->components == d->type->components)
-      text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
-  node_error(reader->document,
-             section_place(spec, spec->model      ? "model"
-                                 : spec->opensees ? "opensees"
-                                                  : "remote"),
-             reader->error, "material '%s': '%s' is a law of %s; %s takes %s", spec->head.name,
-             spec->model ? law->name : law->source, law->components == 1 ? "one strain" : "strain in space",
-             d->type->name, text_words(&words));
+    if (takes(d->type, law_at(laws, k))) text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
+  const Node *place = section_place(spec, spec->model ? "model" : spec->opensees ? "opensees" : "remote");
+  const char *name = spec->model ? law->name : law->source;
+  if (law->components == d->type->components)
+    node_error(reader->document, place, reader->error,
+               "material '%s': '%s' needs a strain, which %s does not have; it takes %s", spec->head.name, name,
+               d->type->name, text_words(&words));
+  else
+    node_error(reader->document, place, reader->error, "material '%s': '%s' is a law of %s; %s takes %s",
+               spec->head.name, name, law->components == 1 ? "one strain" : "strain in space", d->type->name,
+               text_words(&words));
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
@@ -82,12 +89,12 @@ static bool row_goes_on(const Domain *d, int64_t slice)
 }
 
 /** Limit of each material: the smallest of what the deck says for all and what its law says. */
-static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, double length)
+static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *of)
 {
   if (spec && !isnan(spec->critical_stretch) && !isnan(spec->fracture_energy))
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
-  if (spec && !isnan(spec->fracture_energy) && !d->type->stretch_from_energy)
+  if (spec && !isnan(spec->fracture_energy) && !d->type->critical_stretch)
     return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
                       "fracture energy: no critical stretch follows from it in %s; give 'critical stretch'",
                       d->type->name);
@@ -97,7 +104,7 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
     double limit = material_failure_strain(m), of_deck = spec ? spec->critical_stretch : NAN;
-    if (spec && !isnan(spec->fracture_energy)) of_deck = sqrt(2 * spec->fracture_energy / (material_young(m) * length));
+    if (spec && !isnan(spec->fracture_energy)) of_deck = d->type->critical_stretch(of, m, spec->fracture_energy);
     d->failure.limit[k] = fmin(limit, of_deck); /* of a number and NaN: the number */
     if (isfinite(d->failure.limit[k])) d->failure.criterion = &criterion_critical_stretch;
   }
@@ -232,8 +239,9 @@ static int create_points(Domain *d, Space space, bool may_give_up, double length
                      .material_count = d->material_count,
                      .may_give_up = may_give_up,
                      .length = length};
-  bool linear = d->type->components == 1;
-  for (int k = 0; k < d->material_count; ++k) linear = linear && d->materials[k].law->linear;
+  bool linear = d->type->components == 1 || d->type->keeps_no_points;
+  for (int k = 0; k < d->material_count; ++k)
+    linear = linear && (d->materials[k].law->linear || d->type->keeps_no_points);
   if (linear) spec.components = 0;
   if (spec.components == 1 && bond_list_create(&d->bonds, &d->family, d->material, error)) return BRECCIA_FAILURE;
   Runs runs = {0};
@@ -286,8 +294,8 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks);
   if (!status) status = check_space(d, reader, spec);
   double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
-  double length =
-      d->type->characteristic_length ? d->type->characteristic_length(&(BondLength){space, influence, horizon}) : NAN;
+  const BondLength of = {space, influence, horizon};
+  double length = d->type->characteristic_length ? d->type->characteristic_length(&of) : NAN;
   int bad = create_materials(d, reader, spec, length);
   if (bad) status = bad;
   if (status) return status;
@@ -329,7 +337,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                                   .material = d->material};
   d->formulation = d->type->create(&parts, error);
   if (!d->formulation) return BRECCIA_USER_ERROR;
-  status = create_failure(d, reader, spec->failure, length);
+  status = create_failure(d, reader, spec->failure, &of);
   return status ? status : create_contact(d, spec, space, error);
 }
 

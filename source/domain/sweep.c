@@ -63,7 +63,7 @@ static void run_places(Domain *d, const Group *group, int64_t block, const Purpo
   const int count = (int)(span->last * SLICE - first);
   Sweep sweep = {.first = span->first, .last = span->last, .carry = carry, .at = purpose->at};
   if (purpose->at && d->points.plane_stress) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < 6 && d->points.components == 6; ++k) {
     sweep.strain[k] = purpose->at ? change + k * BLOCK : d->points.strain[k] + first;
     sweep.stress[k] = purpose->at ? change + (6 + k) * BLOCK : d->points.stress[k] + first;
   }

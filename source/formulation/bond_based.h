@@ -4,11 +4,10 @@
 #define BRECCIA_FORMULATION_BOND_BASED_H
 
 #include "formulation/formulation.h"
+#include "formulation/stretch.h"
 
 /** How the constant of bonds follows from Young's modulus. */
 typedef enum Calibration { CALIBRATION_CONTINUUM, CALIBRATION_EXPANSION, CALIBRATION_UNIAXIAL } Calibration;
-
-enum { SPRING_TERMS = 6 };
 
 /** Where the numbers of a pattern stand: its vector, and what its length and weight make of d (bond_springs.c). */
 typedef struct SpringRow {
@@ -37,21 +36,6 @@ typedef struct BondBased {
   uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
 } BondBased;
 
-/* g / d = sum of these times (-d)^n: Taylor's series, whose next term 429 / 2048 (-d)^6 is replaced by lower ones (Chebyshev), so that the
- * error stays below 5e-17 up to |d| = 2^-8. */
-static const double bond_terms[SPRING_TERMS] = {0.5 + 429.0 / 2048 * 0x1p-48 / 32,          3.0 / 8,
-                                                5.0 / 16 - 429.0 / 2048 * 0x1p-32 * 0.5625, 35.0 / 128,
-                                                63.0 / 256 + 429.0 / 2048 * 0x1p-16 * 1.5,  231.0 / 1024};
-
-/** g(d) = 1 - (1 + d)^-1/2 for |d| up to this. */
-#define BOND_SERIES_LIMIT 0x1p-8
-LANES_INLINE Lanes bond_series(Lanes d)
-{
-  Lanes sum = lanes_set(bond_terms[SPRING_TERMS - 1]);
-  for (int n = SPRING_TERMS - 2; n >= 0; --n) sum = lanes_set(bond_terms[n]) - d * sum;
-  return d * sum;
-}
-
 /** Material of a block. */
 const Material *bond_material(const BondBased *b, int block);
 
@@ -73,38 +57,13 @@ LANES_INLINE Lanes bond_surface(const BondBased *b, int64_t slot, int half)
 /** Makes the tables of linear bonds. */
 int bond_springs_create(BondBased *b, Error *error);
 
-/* What stored slots read of a neighbour lies together: x, y, z, V, u, v, w, and c (or c / E where bonds have points). */
-enum { BOND_SHOWN = 8 };
+/* The last of the numbers that stored slots read of a neighbour is its c (or c / E where bonds have points). */
+enum { BOND_SHOWN = STRETCH_SHOWN };
 
-/** Half a stored slot: y, d, weight / |xi| (0 where there is no intact bond), and the mean of both ends' constants. */
-typedef struct BondEnds {
-  Lanes y[3], d, weight_by_length, constant;
-} BondEnds;
-
-/** @param[in] own  displacements of the half slice */
-LANES_INLINE BondEnds bond_gather(const BondBased *b, int64_t slice, int64_t slot, int half, const Lanes own[3])
+/** Mean of both ends' constants, of half a stored slot. */
+LANES_INLINE Lanes bond_constant(const BondBased *b, int64_t slice, const StretchEnds *ends)
 {
-  const Family *f = b->family;
-  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
-  Lanes x[LANES], u[LANES], square = {0};
-  BondEnds ends = {.d = {0}};
-  lanes_gather_rows(b->shown, BOND_SHOWN, f->neighbour + at, x);
-  lanes_gather_rows(b->shown + LANES, BOND_SHOWN, f->neighbour + at, u);
-  for (int k = 0; k < 3; ++k) {
-    Lanes xi = x[k] - lanes_load(b->particles->position[k] + here), eta = u[k] - own[k];
-    ends.y[k] = xi + eta;
-    ends.d += eta * (xi + ends.y[k]);
-    square += xi * xi;
-  }
-  /* 1 / |xi| from its value to single precision by one step of third order */
-  Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(f->inverse_length + at));
-  Lanes off = lanes_set(1) - square * r * r;
-  r += r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
-  ends.d *= r * r;
-  ends.weight_by_length = x[3] * r;
-  if (f->scale) ends.weight_by_length *= lanes_load(f->scale + at);
-  ends.constant = lanes_set(0.5) * (lanes_set(b->shown[BOND_SHOWN * here + 7]) + u[3]);
-  return ends;
+  return lanes_set(0.5) * (lanes_set(b->shown[BOND_SHOWN * slice * SLICE + 7]) + ends->last);
 }
 
 /** Forces on slices first .. last - 1 from linear bonds. */
@@ -137,6 +96,7 @@ double bond_calibration(const BondBased *b, int block, Calibration calibration);
 
 /** As FormulationType describes them. */
 double bond_characteristic_length(const BondLength *of);
+double bond_critical_stretch(const BondLength *of, const Material *material, double energy);
 void bond_describe(const void *formulation, Text *text);
 
 #endif

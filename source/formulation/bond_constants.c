@@ -152,6 +152,11 @@ double bond_characteristic_length(const BondLength *of)
                                : 2 * c * pow(of->horizon, 4) * influence_moment(of, 3);
 }
 
+double bond_critical_stretch(const BondLength *of, const Material *material, double energy)
+{
+  return sqrt(2 * energy / (material_young(material) * bond_characteristic_length(of)));
+}
+
 /** Says which moduli a lattice shows whose axes are not alike: along each, and the least and largest over all directions. */
 static void describe_directions(const BondBased *b, int block, double unit, Text *text)
 {

@@ -26,8 +26,8 @@ LANES_INLINE Lanes stretch_of(Lanes d, bool series, Lanes *shortened, LaneMask *
     *shortened = lanes_set(1) / ratio;
     return d / (lanes_set(1) + ratio);
   }
-  const Lanes g = bond_series(d);
-  *beyond |= (LaneMask)(lanes_absolute(d) > lanes_set(BOND_SERIES_LIMIT));
+  const Lanes g = shortening_series(d);
+  *beyond |= (LaneMask)(lanes_absolute(d) > lanes_set(range_limit[RANGE_SERIES]));
   *shortened = lanes_set(1) - g;
   return d * *shortened - g;
 }

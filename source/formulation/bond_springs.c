@@ -5,17 +5,11 @@
 
 #include <math.h>
 
-/* Ways to g(d), each good to double precision relative to g and each cheaper than the next: its series, for stretches up to 0.2 %; a
- * reciprocal root by Newton's steps from a short series, for stretches from -13 to 11 %; root and quotients. Of a slice all bonds go the
- * same way, the first that is good for all of them. */
-typedef enum Range { RANGE_SERIES, RANGE_NEWTON, RANGE_ANY } Range;
-static const double range_limit[] = {BOND_SERIES_LIMIT, 0.25}; /* largest |d| */
-
 /* The table of lattice bonds. Components of reference vectors are few, and so are lengths with weights: each number stands there as often
  * as a vector has lanes, so that arithmetic takes it from memory (a tenth faster than spreading one). What is read of a length: */
 enum {
   LENGTH_PULL = 0,
-  LENGTH_LIMIT = SPRING_TERMS * LANES,
+  LENGTH_LIMIT = STRETCH_TERMS * LANES,
   LENGTH_KEY = LENGTH_LIMIT + LANES,
   LENGTH_SIZE = LENGTH_KEY + LANES
 };
@@ -29,7 +23,7 @@ static void put_length(BondBased *b, int64_t at, const Pattern *pattern)
 {
   const double square = pattern->length * pattern->length;
   double scale = -pattern->weight_by_length / 2; /* series in -d, and halved because vectors are doubled */
-  for (int n = 0; n < SPRING_TERMS; ++n) put(b, at + LENGTH_PULL + LANES * n, (scale /= square) * bond_terms[n]);
+  for (int n = 0; n < STRETCH_TERMS; ++n) put(b, at + LENGTH_PULL + LANES * n, (scale /= square) * shortening_terms[n]);
   put(b, at + LENGTH_LIMIT, range_limit[RANGE_SERIES] * square);
   b->numbers[at + LENGTH_KEY] = pattern->length;
   b->numbers[at + LENGTH_KEY + 1] = pattern->weight;
@@ -64,25 +58,6 @@ int bond_springs_create(BondBased *b, Error *error)
   return BRECCIA_OK;
 }
 
-LANES_INLINE Lanes shortening(Lanes d, Range range)
-{
-  if (range == RANGE_SERIES) {
-    return bond_series(d);
-  }
-  if (range == RANGE_NEWTON) {
-    Lanes r = lanes_set(35.0 / 128), x = lanes_set(0.5) + lanes_set(0.5) * d;
-    r = lanes_set(-5.0 / 16) + d * r;
-    r = lanes_set(3.0 / 8) + d * r;
-    r = lanes_set(-0.5) + d * r;
-    r = lanes_set(1) + d * r;
-    for (int step = 0; step < 3; ++step) r *= lanes_set(1.5) - x * (r * r);
-    Lanes g = lanes_set(1) - r; /* has lost digits where d is small; (1 - g)^2 (1 + d) = 1 gives them back */
-    return lanes_set(0.5) * (d * (r * r) + g * g);
-  }
-  Lanes r = lanes_set(1) / lanes_root(lanes_set(1) + d);
-  return d * r * r / (lanes_set(1) + r);
-}
-
 typedef struct Sum {
   Lanes force[3], own[3]; /* own: displacements */
   Lanes largest;          /* |d|, beyond the series */
@@ -90,7 +65,7 @@ typedef struct Sum {
 } Sum;
 
 /** Half a slot between lattice neighbours; back is -eta, and middle 2 xi + eta. Polynomial by pairs: its chain is shorter so. */
-LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool gaps, bool corrected, Range range,
+LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool gaps, bool corrected, StretchRange range,
                               Sum *sum)
 {
   const Family *f = b->family;
@@ -107,8 +82,8 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool g
   }
   if (gaps) d = lanes_where(lanes_half(f->intact[slot], half), d);
   if (range == RANGE_SERIES) {
-    Lanes square = d * d, pair[SPRING_TERMS / 2];
-    for (int n = 0; n < SPRING_TERMS; n += 2)
+    Lanes square = d * d, pair[STRETCH_TERMS / 2];
+    for (int n = 0; n < STRETCH_TERMS; n += 2)
       pair[n / 2] = lanes_load(length + LANES * n) + d * lanes_load(length + LANES * (n + 1));
     pull = d * (pair[0] + square * (pair[1] + square * pair[2]));
     sum->beyond |= (LaneMask)(lanes_absolute(d) > lanes_load(length + LENGTH_LIMIT));
@@ -122,17 +97,17 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool g
 }
 
 /** Half a stored slot; its forces have their constants in them. */
-LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, Range range, Sum *sum)
+LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, StretchRange range, Sum *sum)
 {
-  BondEnds ends = bond_gather(b, slice, slot, half, sum->own);
+  StretchEnds ends = stretch_ends(b->family, b->shown, slice, slot, half, sum->own);
   sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
-  Lanes pull = ends.constant * ends.weight_by_length * shortening(ends.d, range);
+  Lanes pull = bond_constant(b, slice, &ends) * (ends.weight * ends.by_length) * shortening(ends.d, range);
   if (b->surface) pull *= bond_surface(b, slot, half);
   for (int k = 0; k < 3; ++k) sum->force[k] += pull * ends.y[k];
 }
 
 /** Forces on a slice, all bonds by one way. @return the way that they should go */
-LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, bool corrected, Range range)
+LANES_INLINE StretchRange resist_slice(const BondBased *b, int64_t slice, bool gaps, bool corrected, StretchRange range)
 {
   const Family *f = b->family;
   const Particles *p = b->particles;
@@ -155,12 +130,10 @@ LANES_INLINE Range resist_slice(const BondBased *b, int64_t slice, bool gaps, bo
   double most = beyond[0] | beyond[1] | beyond[2] | beyond[3] ? INFINITY : 0;
   for (int k = 0; k < LANES; ++k) most = largest[k] > most ? largest[k] : most;
   if (range == RANGE_SERIES && most > range_limit[RANGE_SERIES]) return RANGE_NEWTON;
-  return most <= range_limit[RANGE_SERIES]   ? RANGE_SERIES
-         : most <= range_limit[RANGE_NEWTON] ? RANGE_NEWTON
-                                             : RANGE_ANY;
+  return stretch_range(most);
 }
 
-LANES_INLINE Range resist_way(const BondBased *b, int64_t slice, bool gaps, bool corrected, Range range)
+LANES_INLINE StretchRange resist_way(const BondBased *b, int64_t slice, bool gaps, bool corrected, StretchRange range)
 {
   if (range == RANGE_SERIES) return resist_slice(b, slice, gaps, corrected, RANGE_SERIES);
   if (range == RANGE_NEWTON) return resist_slice(b, slice, gaps, corrected, RANGE_NEWTON);
@@ -173,7 +146,7 @@ static void resist_springs(const BondBased *b, int64_t first, int64_t last)
   const BondBased local = *b; /* so that stores are seen not to change it */
   for (int64_t slice = first; slice < last; ++slice) {
     /* Begins with the way of the last time, and ends with the first way that is good: what came before does not show in the bits. */
-    Range range = (Range)local.range[slice], next = range;
+    StretchRange range = (StretchRange)local.range[slice], next = range;
     for (int turn = 0; turn < 3; ++turn) {
       range = next;
       next = local.surface       ? resist_way(&local, slice, true, true, range)

@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-extern const FormulationType formulation_correspondence, formulation_bond_based;
+extern const FormulationType formulation_correspondence, formulation_bond_based, formulation_ordinary;
 
-static const FormulationType *const formulations[] = {&formulation_correspondence, &formulation_bond_based};
+static const FormulationType *const formulations[] = {&formulation_correspondence, &formulation_bond_based,
+                                                      &formulation_ordinary};
 enum { COUNT = sizeof formulations / sizeof *formulations };
 
 const FormulationType *formulation_at(int k)

@@ -95,13 +95,14 @@ enum { MOST_PHASES = 8 };
 
 typedef struct FormulationType {
   const char *name, *about, *source, *maturity;
-  int components;    /* of laws: 6, at points in space on particles, or 1, on bonds */
-  bool row_sums;     /* neighbours read sums along lattice rows */
-  bool bond_lengths; /* lengths of stored bonds are read in sweeps */
-  bool
-      stretch_from_energy; /* a critical stretch of bonds follows from a fracture energy: sqrt(2 G / (E characteristic length)) */
+  int components;         /* of laws: 6, at points in space on particles, or 1, on bonds */
+  bool row_sums;          /* neighbours read sums along lattice rows */
+  bool bond_lengths;      /* lengths of stored bonds are read in sweeps */
+  bool keeps_no_points;   /* what laws say of themselves is all that the formulation needs of them */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
+  /** Whether it takes a law of its components. NULL: takes all. */
+  bool (*takes)(const breccia_law *law);
   /** Refuses bodies and spaces that the formulation does not take. NULL: takes all. */
   int (*check)(const void *keys, const Body *body, const DeckReader *reader);
   /** Makes a formulation for a body. Says where families are too poor for it. */
@@ -136,6 +137,8 @@ typedef struct FormulationType {
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */
   double (*characteristic_length)(const BondLength *of);
+  /** Critical stretch of bonds with which a plane crack takes a fracture energy. NULL: none follows from it. */
+  double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
   /** Adds what a user should know before a run, as one line; NULL: nothing. */
   void (*describe)(const void *formulation, Text *text);

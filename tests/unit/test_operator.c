@@ -51,6 +51,13 @@ static const Setting bonds[] = {
     {"1-D", "calibration: continuum"},
 };
 
+static const Setting ordinary[] = {
+    {"3-D", "lattice weights: isotropic"},
+    {"3-D", "lattice weights: plain, influence: conical, volume correction: partial"},
+    {"plane strain", "influence: inverse"},
+    {"plane stress", "volume correction: partial-beyond"},
+};
+
 /** Two blocks that do not fit each other, with a cut. */
 static breccia_model *body(const char *formulation, const Law *law, const Setting *setting)
 {
@@ -297,11 +304,11 @@ static void check_model(breccia_model *model, const Law *law, const char *name)
   team_use(before);
 }
 
-static void check_all(const char *formulation, const Law *laws, const Setting *settings, size_t count)
+static void check_all(const char *formulation, const Law *laws, int law_count, const Setting *settings, size_t count)
 {
   char name[256];
   for (size_t s = 0; s < count; ++s)
-    for (int n = 0; n < LAWS; ++n) {
+    for (int n = 0; n < law_count; ++n) {
       breccia_model *model = body(formulation, &laws[n], &settings[s]);
       snprintf(name, sizeof name, "%s of %s, %s, %s", laws[n].name, formulation, settings[s].space, settings[s].words);
       check_model(model, &laws[n], name);
@@ -312,13 +319,19 @@ static void check_all(const char *formulation, const Law *laws, const Setting *s
 static void correspondence_is_the_sum_of_its_points(void **state)
 {
   (void)state;
-  check_all("correspondence", solid, correspondence, sizeof correspondence / sizeof *correspondence);
+  check_all("correspondence", solid, LAWS, correspondence, sizeof correspondence / sizeof *correspondence);
 }
 
 static void bonds_are_the_sum_of_their_points(void **state)
 {
   (void)state;
-  check_all("bond-based", fibre, bonds, sizeof bonds / sizeof *bonds);
+  check_all("bond-based", fibre, LAWS, bonds, sizeof bonds / sizeof *bonds);
+}
+
+static void ordinary_is_the_sum_of_its_families(void **state)
+{
+  (void)state;
+  check_all("ordinary", solid, 1, ordinary, sizeof ordinary / sizeof *ordinary);
 }
 
 int main(void)
@@ -326,6 +339,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(correspondence_is_the_sum_of_its_points),
       cmocka_unit_test(bonds_are_the_sum_of_their_points),
+      cmocka_unit_test(ordinary_is_the_sum_of_its_families),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

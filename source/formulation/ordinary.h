@@ -1,0 +1,114 @@
+/* Ordinary state-based peridynamics (the linear peridynamic solid, Silling et al. 2007; docs/theory.md 3), in space and in the plane in one form.
+ *
+ * With w = omega beta V_j, the elongation e = |y| - |xi| of a bond and d dimensions, a family has the weighted volume m = sum w |xi|^2 and the
+ * dilatation theta = (d / m) sum w |xi| e, and gives each bond
+ *   t = omega (a |xi| + b e) y / |y|,   a = theta (d K_d - b m / d) / m,   b m = 15 G in space, 8 G in the plane,
+ * where K_d is the modulus against dilatation: K, in plane strain K + G / 3, in plane stress E / (2 (1 - nu)). The force on a particle per volume
+ * is sum w [(a_i + a_j) |xi| + (b_i + b_j) e] y / |y|, and t follows from the energy per volume
+ *   W = (K_d - b m / d^2) theta^2 / 2 + (b / 2) sum w e^2,
+ * which is never negative, whatever bonds are broken: m is that of the family as it began, so that a break takes what a bond carries and leaves the
+ * others as they are.
+ *
+ * Along a lattice, weights are multiplied such that its shear modulus is the same in all directions (ordinary_weights.c). */
+#ifndef BRECCIA_FORMULATION_ORDINARY_H
+#define BRECCIA_FORMULATION_ORDINARY_H
+
+#include "formulation/formulation.h"
+#include "formulation/stretch.h"
+
+/** Where the numbers of a pattern stand: its vector, and what its length and weight make of d (ordinary_setup.c). */
+typedef struct OrdinaryRow {
+  int32_t xi[3], length;
+} OrdinaryRow;
+
+/* Of a length: the series of w |xi|^2 stretch and of w g / 2, their limit, w / 2, w |xi|^2 and 1 / |xi|^2. */
+enum {
+  ORDINARY_STRETCH = 0,
+  ORDINARY_SHORTENING = STRETCH_TERMS * LANES,
+  ORDINARY_LIMIT = 2 * STRETCH_TERMS * LANES,
+  ORDINARY_WEIGHT = ORDINARY_LIMIT + LANES,
+  ORDINARY_MOMENT = ORDINARY_WEIGHT + LANES,
+  ORDINARY_BY_SQUARE = ORDINARY_MOMENT + LANES,
+  ORDINARY_SIZE = ORDINARY_BY_SQUARE + LANES
+};
+
+typedef struct Ordinary {
+  const Particles *particles;
+  const Family *family;
+  const Body *body;
+  const Points *points;
+  const Material *materials;
+  const int32_t *material; /* [slices] */
+  Space space;
+  int dimensions;
+  double *factor;             /* [patterns] on the weights of bonds along lattices */
+  OrdinaryRow *rows;          /* [patterns] */
+  double *numbers;            /* of these rows */
+  double *inverse;            /* [places] d / m; 0 where there is no bond */
+  double *volumetric, *shear; /* [places] a / theta and b, times the share */
+  double *share;              /* [places] */
+  double *dilatation;         /* [places] theta */
+  double *base, *slope;       /* [places] a and b - a */
+  double *change;             /* [places] of theta in a linearised step, then of a; NULL before */
+  double *shown;              /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  uint8_t *range;             /* [slices] how large stretches were at the last evaluation */
+  uint8_t *gaps;              /* [slices] 1: a bond of a lattice slot is missing */
+} Ordinary;
+
+/** A bond with its weight. */
+static inline Bond ordinary_bond(const Ordinary *o, int64_t slice, int64_t slot, int lane)
+{
+  Bond bond = family_bond(o->family, slice, slot, lane);
+  if (slot < o->family->stored[slice]) bond.weight *= o->factor[o->family->pattern[slot]];
+  return bond;
+}
+
+/** A bond as it is deformed. */
+typedef struct OrdinaryStretch {
+  double eta[3], y[3], length, elongation;
+} OrdinaryStretch;
+
+/** @param[in] u  displacements */
+OrdinaryStretch ordinary_stretch(double *const u[3], int64_t place, const Bond *bond);
+
+static inline const Material *ordinary_material(const Ordinary *o, int64_t place)
+{
+  return &o->materials[o->material[place / SLICE]];
+}
+
+/** K_d: in-plane or volumetric stress over dilatation. */
+double ordinary_bulk(Space space, const Material *material);
+/** b m. */
+double ordinary_shear(Space space, const Material *material);
+
+/** Adds to the factors of the patterns of a block what makes its lattice isotropic; leaves them where that would all but take bonds away
+ *  (ordinary_weights.c). */
+void ordinary_balance(const Ordinary *o, int block);
+/** Shear modulus that a lattice shows in a deviatoric strain (shear components as of a tensor), over the wanted one. */
+double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
+
+/** As FormulationType describes them (ordinary_setup.c, ordinary_bonds.c, ordinary_linear.c). */
+extern const Section ordinary_section;
+int ordinary_check(const void *keys, const Body *body, const DeckReader *reader);
+bool ordinary_takes(const breccia_law *law);
+void *ordinary_create(const FormulationParts *parts, Error *error);
+void ordinary_destroy(void *formulation);
+void ordinary_renew(void *formulation, int64_t slice);
+void ordinary_describe(const void *formulation, Text *text);
+double ordinary_critical_stretch(const BondLength *of, const Material *material, double energy);
+size_t ordinary_bytes(const void *formulation);
+FormerBonds ordinary_former_bonds(const void *formulation);
+double *ordinary_shares(void *formulation);
+
+void ordinary_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3]);
+void ordinary_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
+void ordinary_gradient(const void *formulation, int64_t place, double f[9]);
+void ordinary_stress(const void *formulation, int64_t place, double stress[6]);
+
+int ordinary_linearise(void *formulation, Error *error);
+int64_t ordinary_point_count(const void *formulation);
+int ordinary_point(const void *formulation, int64_t place, Operator *point, Error *error);
+int64_t ordinary_change_dilatation(const Ordinary *o, const Sweep *sweep);
+int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep);
+
+#endif

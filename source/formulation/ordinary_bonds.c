@@ -1,0 +1,102 @@
+/* Bonds and places of ordinary peridynamics one by one. */
+#include "formulation/ordinary.h"
+
+#include "base/tensor.h"
+#include "formulation/shape_tensor.h"
+
+#include <math.h>
+
+OrdinaryStretch ordinary_stretch(double *const u[3], int64_t place, const Bond *bond)
+{
+  OrdinaryStretch s;
+  double square = 0, d = 0;
+  for (int k = 0; k < 3; ++k) {
+    s.eta[k] = u[k][bond->neighbour] - u[k][place];
+    s.y[k] = bond->xi[k] + s.eta[k];
+    square += s.y[k] * s.y[k];
+    d += s.eta[k] * (bond->xi[k] + s.y[k]);
+  }
+  s.length = sqrt(square);
+  s.elongation = d / (s.length + bond->length);
+  return s;
+}
+
+/** Scalar force state over influence: a |xi| + b e. */
+static double tension(const Ordinary *o, int64_t place, const Bond *bond, const OrdinaryStretch *s)
+{
+  return o->base[place] * bond->length + (o->base[place] + o->slope[place]) * s->elongation;
+}
+
+void ordinary_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
+{
+  const Ordinary *o = formulation;
+  const int64_t place = slice * SLICE + lane;
+  const Bond bond = ordinary_bond(o, slice, slot, lane);
+  const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+  const double omega = bond.weight / o->particles->volume[bond.neighbour];
+  for (int k = 0; k < 3; ++k) state[k] = omega * tension(o, place, &bond, &s) * s.y[k] / s.length;
+}
+
+/** Of the displacements held and the bonds as they are, not of what was evaluated last: bonds may have broken since. */
+void ordinary_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
+{
+  const Ordinary *o = formulation;
+  const Particles *p = o->particles;
+  const Family *f = o->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  double volume = 0, square = 0, volume_moved = 0, square_moved = 0; /* sums of w |xi| e and w e^2; of their changes */
+  *energy = (StoredEnergy){0};
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, lane);
+    const OrdinaryStretch s = ordinary_stretch(p->displacement, place, &bond);
+    double grown = 0;
+    for (int k = 0; k < 3; ++k)
+      grown += time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]) * s.y[k] / s.length;
+    volume += bond.weight * bond.length * s.elongation;
+    square += bond.weight * s.elongation * s.elongation;
+    volume_moved += bond.weight * bond.length * grown;
+    square_moved += bond.weight * s.elongation * grown;
+  }
+  const double inverse = o->inverse[place], own = p->volume[place];
+  const double base = o->volumetric[place] * inverse, shear = o->shear[place];
+  energy->stored = 0.5 * own * (base * volume * volume + shear * square);
+  energy->received = energy->stored - 0.5 * own * (base * volume * volume_moved + shear * square_moved);
+}
+
+/** What the strain across the plane is to the sum of those in it, in plane stress: -nu / (1 - nu). */
+static double across(const Material *m)
+{
+  return -(3 * m->bulk - 2 * m->shear) / (3 * m->bulk + 4 * m->shear);
+}
+
+void ordinary_gradient(const void *formulation, int64_t place, double f[9])
+{
+  const Ordinary *o = formulation;
+  const ShapeTensor shape = shape_tensor(o->family, (int32_t)place, o->dimensions, 0);
+  shape_gradient(o->family, (int32_t)place, shape.inverse, f);
+  if (o->space != SPACE_PLANE_STRESS) return;
+  const double sum = f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4] - 2; /* 2 (E_xx + E_yy) */
+  f[8] = sqrt(fmax(0, 1 + across(ordinary_material(o, place)) * sum));
+}
+
+/** Stress of the family's own force state: sum t y (x) y / |y| V. Across the plane, in plane strain, lambda theta. */
+void ordinary_stress(const void *formulation, int64_t place, double stress[6])
+{
+  const Ordinary *o = formulation;
+  const Family *f = o->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  for (int k = 0; k < 6; ++k) stress[k] = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, lane);
+    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const double pull = bond.weight * tension(o, place, &bond, &s) / s.length;
+    for (int k = 0; k < 6; ++k) stress[k] += pull * s.y[symmetric_row[k]] * s.y[symmetric_column[k]];
+  }
+  const Material *m = ordinary_material(o, place);
+  if (o->space == SPACE_PLANE_STRAIN)
+    stress[ZZ] = o->share[place] * (m->bulk - 2 * m->shear / 3) * o->dilatation[place];
+}

@@ -1,0 +1,276 @@
+#include "formulation/ordinary.h"
+
+#include "base/team.h"
+#include "base/tensor.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct OrdinarySpec {
+  SectionHead head;
+  const char *weights;
+} OrdinarySpec;
+
+static const char *weights_word(int k)
+{
+  static const char *const words[] = {"isotropic", "plain", NULL};
+  return words[k];
+}
+
+static const Field ordinary_fields[] = {
+    {"lattice weights", FIELD_CHOICE, offsetof(OrdinarySpec, weights), NULL, "isotropic", NULL,
+     "isotropic: bonds along a lattice count more or less by their direction, such that it shows its shear modulus in "
+     "all directions; plain: as in most codes, 16 % off along the axes of a cubic lattice at 3.015 spacings",
+     NULL, weights_word, 0},
+};
+const Section ordinary_section = {"ordinary",
+                                  "Keys of `peridynamics` with `formulation: ordinary`.",
+                                  sizeof(OrdinarySpec),
+                                  FIELDS(ordinary_fields),
+                                  NULL,
+                                  NULL,
+                                  NULL,
+                                  0};
+
+int ordinary_check(const void *keys, const Body *body, const DeckReader *reader)
+{
+  if (body->dimensions > 1) return BRECCIA_OK;
+  return node_error(reader->document, section_place(keys, "formulation"), reader->error,
+                    "formulation: ordinary has no deviator along a line; bars take bond-based");
+}
+
+bool ordinary_takes(const breccia_law *law)
+{
+  return law->linear;
+}
+
+/* ---- constants ---- */
+
+double ordinary_bulk(Space space, const Material *m)
+{
+  if (space == SPACE_PLANE_STRESS) return 9 * m->bulk * m->shear / (3 * m->bulk + 4 * m->shear);
+  return space == SPACE_3D ? m->bulk : m->bulk + m->shear / 3;
+}
+
+double ordinary_shear(Space space, const Material *m)
+{
+  return (space == SPACE_3D ? 15 : 8) * m->shear;
+}
+
+static void put(Ordinary *o, int64_t at, double number)
+{
+  for (int k = 0; k < LANES; ++k) o->numbers[at + k] = number;
+}
+
+static void put_length(Ordinary *o, int64_t at, double length, double weight)
+{
+  const double square = length * length;
+  double stretch = -weight * square, shortened = -weight / 2; /* series in -d; halved because vectors are doubled */
+  for (int n = 0; n < STRETCH_TERMS; ++n) {
+    put(o, at + ORDINARY_STRETCH + LANES * n, (stretch /= square) * stretch_terms[n]);
+    put(o, at + ORDINARY_SHORTENING + LANES * n, (shortened /= square) * shortening_terms[n]);
+  }
+  put(o, at + ORDINARY_LIMIT, range_limit[RANGE_SERIES] * square);
+  put(o, at + ORDINARY_WEIGHT, weight / 2);
+  put(o, at + ORDINARY_MOMENT, weight * square);
+  put(o, at + ORDINARY_BY_SQUARE, 1 / square);
+}
+
+/** Numbers that lattice bonds are made of, each as often as a vector has lanes (formulation/bond_springs.c); alike ones once. */
+static int create_rows(Ordinary *o, Error *error)
+{
+  const Family *f = o->family;
+  o->rows = memory_zeroed((size_t)f->pattern_count, sizeof *o->rows, "bond constants", error);
+  o->numbers = places_array((int64_t)f->pattern_count * (3 * LANES + ORDINARY_SIZE), "bond constants", error);
+  if (!o->rows || !o->numbers) return BRECCIA_FAILURE;
+  int32_t end = 0;
+  for (int p = 0; p < f->pattern_count; ++p)
+    for (int k = 0; k < 3; ++k) {
+      int32_t at = 0;
+      while (at < end && o->numbers[at] != 2 * f->patterns[p].xi[k]) at += LANES;
+      if (at == end) put(o, at, 2 * f->patterns[p].xi[k]);
+      if (at == end) end += LANES;
+      o->rows[p].xi[k] = at;
+    }
+  const int32_t lengths = end;
+  for (int p = 0; p < f->pattern_count; ++p) {
+    const double length = f->patterns[p].length, weight = f->patterns[p].weight * o->factor[p];
+    int32_t at = lengths;
+    while (at < end && (o->numbers[at + ORDINARY_LIMIT] != range_limit[RANGE_SERIES] * length * length ||
+                        o->numbers[at + ORDINARY_WEIGHT] != weight / 2))
+      at += ORDINARY_SIZE;
+    if (at == end) put_length(o, at, length, weight);
+    if (at == end) end += ORDINARY_SIZE;
+    o->rows[p].length = at;
+  }
+  return BRECCIA_OK;
+}
+
+/** What follows from the family of a place as it began. */
+static void weigh(void *context, int64_t place)
+{
+  Ordinary *o = context;
+  const Family *f = o->family;
+  const int64_t slice = place / SLICE;
+  double moment = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, (int)(place % SLICE));
+    moment += bond.weight * bond.length * bond.length;
+  }
+  o->inverse[place] = moment > 0 ? o->dimensions / moment : 0;
+  o->share[place] = 1;
+}
+
+void ordinary_renew(void *formulation, int64_t slice)
+{
+  Ordinary *o = formulation;
+  const Family *f = o->family;
+  const Material *m = ordinary_material(o, slice * SLICE);
+  const double shear = ordinary_shear(o->space, m),
+               volumetric = o->dimensions * ordinary_bulk(o->space, m) - shear / o->dimensions;
+  for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; ++place) {
+    const double by_moment = o->share[place] * o->inverse[place] / o->dimensions;
+    o->volumetric[place] = volumetric * by_moment;
+    o->shear[place] = shear * by_moment;
+  }
+  o->gaps[slice] = 0;
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) o->gaps[slice] |= f->intact[slot] != UINT8_MAX;
+}
+
+/* ---- making ---- */
+
+void ordinary_destroy(void *formulation)
+{
+  Ordinary *o = formulation;
+  if (!o) return;
+  free(o->factor);
+  free(o->rows);
+  places_free(&o->numbers);
+  double **const arrays[] = {&o->inverse, &o->volumetric, &o->shear,  &o->share, &o->dilatation,
+                             &o->base,    &o->slope,      &o->change, &o->shown};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
+  free(o->range);
+  free(o->gaps);
+  free(o);
+}
+
+static int allocate(Ordinary *o, Error *error)
+{
+  const int64_t places = o->particles->places;
+  double **const arrays[] = {&o->inverse, &o->volumetric, &o->shear, &o->share, &o->dilatation, &o->base, &o->slope};
+  int failed = 0;
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
+    failed |= !(*arrays[k] = places_array(places, "force states", error));
+  if (o->family->stored_slots) failed |= !(o->shown = places_array(STRETCH_SHOWN * places, "force states", error));
+  failed |= !(o->range = memory_zeroed((size_t)o->particles->slices, 1, "bond constants", error));
+  failed |= !(o->gaps = memory_zeroed((size_t)o->particles->slices, 1, "bond constants", error));
+  failed |= !(o->factor = memory_zeroed((size_t)o->family->pattern_count, sizeof(double), "bond constants", error));
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+void *ordinary_create(const FormulationParts *parts, Error *error)
+{
+  const OrdinarySpec *spec = parts->keys;
+  Ordinary *o = calloc(1, sizeof *o);
+  if (!o) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: ordinary");
+    return NULL;
+  }
+  *o = (Ordinary){.particles = parts->particles,
+                  .family = parts->family,
+                  .body = parts->body,
+                  .points = parts->points,
+                  .materials = parts->materials,
+                  .material = parts->material,
+                  .space = parts->space,
+                  .dimensions = parts->body->dimensions};
+  if (allocate(o, error)) {
+    ordinary_destroy(o);
+    return NULL;
+  }
+  for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
+  for (int block = 0; block < o->body->block_count && !strcmp(spec->weights, "isotropic"); ++block)
+    ordinary_balance(o, block);
+  if (create_rows(o, error)) {
+    ordinary_destroy(o);
+    return NULL;
+  }
+  team_each(o->particles->places, weigh, o);
+  for (int64_t slice = 0; slice < o->particles->slices; ++slice) ordinary_renew(o, slice);
+  return o;
+}
+
+/* ---- what others ask ---- */
+
+double *ordinary_shares(void *formulation)
+{
+  return ((Ordinary *)formulation)->share;
+}
+
+FormerBonds ordinary_former_bonds(const void *formulation)
+{
+  (void)formulation;
+  return (FormerBonds){.share = 1, .alike = false};
+}
+
+void ordinary_describe(const void *formulation, Text *text)
+{
+  const Ordinary *o = formulation;
+  static const double strains[6][6] = {{1, -1, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {0, 1, -1, 0, 0, 0},
+                                       {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}};
+  for (int block = 0; block < o->body->block_count; ++block) {
+    if (!o->body->lattices[block].chunks) continue;
+    double least = INFINITY, largest = 0, light = INFINITY, heavy = 0;
+    for (int k = 0; k < (o->dimensions == 2 ? 2 : 6); ++k) {
+      const double shear = ordinary_lattice_shear(o, block, strains[k]);
+      least = fmin(least, shear);
+      largest = fmax(largest, shear);
+    }
+    for (int p = o->family->pattern_begin[block]; p < o->family->pattern_begin[block + 1]; ++p) {
+      light = fmin(light, o->factor[p]);
+      heavy = fmax(heavy, o->factor[p]);
+    }
+    text_add(text, "%s: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted shear modulus",
+             o->body->blocks[block]->head.name, least, largest);
+    if (heavy > 1 + 1e-9) text_add(text, "; bonds count by factors of %.2f to %.2f for that", light, heavy);
+    text_add(text, "\n");
+  }
+}
+
+/** Integral of omega |xi|^2 over the part of a ball (of a disc in the plane) beyond a plane at a distance from its middle; all in horizons. */
+static double beyond_plane(const BondLength *of, double distance)
+{
+  enum { INTERVALS = 200 };
+  const double pi = acos(-1), step = (1 - distance) / INTERVALS;
+  double sum = 0;
+  for (int k = 0; k < INTERVALS; ++k) { /* in the middle of each, as arcs end like a root */
+    const double q = distance + (k + 0.5) * step, value = of->influence->value(q, q * of->horizon) * q * q;
+    sum += step * value * (of->space == SPACE_3D ? 2 * pi * q * q * (1 - distance / q) : 2 * q * acos(distance / q));
+  }
+  return sum;
+}
+
+/** All bonds across a plane stretched alike, and nothing else: a family at the distance z has theta = d s r(z), r its part beyond the plane in m, and
+ *  the energy s^2 [(d^2 K_d - b m) r^2 + b m r] / 2 (docs/theory.md 3). */
+double ordinary_critical_stretch(const BondLength *of, const Material *material, double energy)
+{
+  enum { PLANES = 200 };
+  const int d = of->space == SPACE_3D ? 3 : 2;
+  const double shear = ordinary_shear(of->space, material), whole = 2 * beyond_plane(of, 0);
+  double once = 0, twice = 0;
+  for (int k = 0; k < PLANES; ++k) {
+    const double part = beyond_plane(of, (k + 0.5) / PLANES) / whole;
+    once += part / PLANES;
+    twice += part * part / PLANES;
+  }
+  return sqrt(energy / (of->horizon * ((d * d * ordinary_bulk(of->space, material) - shear) * twice + shear * once)));
+}
+
+size_t ordinary_bytes(const void *formulation)
+{
+  const Ordinary *o = formulation;
+  return (size_t)o->particles->places * sizeof(double) * (size_t)(7 + (o->shown ? STRETCH_SHOWN : 0)) +
+         2 * (size_t)o->particles->slices;
+}

@@ -1,0 +1,97 @@
+/* Stretches of bonds without a root and a quotient for each. As |y|^2 = |xi|^2 (1 + d) with y = xi + eta and d = eta . (xi + y) / |xi|^2, a bond
+ * needs g(d) = 1 - (1 + d)^-1/2 only: 1 - |xi| / |y| = g, and the stretch is d (1 - g) - g. d has no cancellation however small it is. */
+#ifndef BRECCIA_FORMULATION_STRETCH_H
+#define BRECCIA_FORMULATION_STRETCH_H
+
+#include "family/family.h"
+
+/* Ways to g(d), each good to double precision relative to g and each cheaper than the next: its series, for stretches up to 0.2 %; a
+ * reciprocal root by Newton's steps from a short series, for stretches from -13 to 11 %; root and quotients. Of a slice all bonds go the
+ * same way, the first that is good for all of them. */
+typedef enum StretchRange { RANGE_SERIES, RANGE_NEWTON, RANGE_ANY } StretchRange;
+static const double range_limit[] = {0x1p-8, 0.25}; /* largest |d| */
+
+/** The first way that is good for d up to `largest`. */
+static inline StretchRange stretch_range(double largest)
+{
+  return largest <= range_limit[RANGE_SERIES]   ? RANGE_SERIES
+         : largest <= range_limit[RANGE_NEWTON] ? RANGE_NEWTON
+                                                : RANGE_ANY;
+}
+
+enum { STRETCH_TERMS = 6 };
+
+/* g / d = sum of these times (-d)^n: Taylor's series, whose next term 429 / 2048 (-d)^6 is replaced by lower ones (Chebyshev), so that the
+ * error stays below 5e-17 up to |d| = 2^-8. */
+static const double shortening_terms[STRETCH_TERMS] = {0.5 + 429.0 / 2048 * 0x1p-48 / 32,          3.0 / 8,
+                                                       5.0 / 16 - 429.0 / 2048 * 0x1p-32 * 0.5625, 35.0 / 128,
+                                                       63.0 / 256 + 429.0 / 2048 * 0x1p-16 * 1.5,  231.0 / 1024};
+
+/* The same of the stretch: ((1 + d)^1/2 - 1) / d, whose next term 33 / 2048 (-d)^6 is replaced. */
+static const double stretch_terms[STRETCH_TERMS] = {0.5 + 33.0 / 2048 * 0x1p-48 / 32,          1.0 / 8,
+                                                    1.0 / 16 - 33.0 / 2048 * 0x1p-32 * 0.5625, 5.0 / 128,
+                                                    7.0 / 256 + 33.0 / 2048 * 0x1p-16 * 1.5,   21.0 / 1024};
+
+/** g(d) by its series. */
+LANES_INLINE Lanes shortening_series(Lanes d)
+{
+  Lanes sum = lanes_set(shortening_terms[STRETCH_TERMS - 1]);
+  for (int n = STRETCH_TERMS - 2; n >= 0; --n) sum = lanes_set(shortening_terms[n]) - d * sum;
+  return d * sum;
+}
+
+/** g(d) by one of the ways. */
+LANES_INLINE Lanes shortening(Lanes d, StretchRange range)
+{
+  if (range == RANGE_SERIES) return shortening_series(d);
+  if (range == RANGE_NEWTON) {
+    Lanes r = lanes_set(35.0 / 128), x = lanes_set(0.5) + lanes_set(0.5) * d;
+    r = lanes_set(-5.0 / 16) + d * r;
+    r = lanes_set(3.0 / 8) + d * r;
+    r = lanes_set(-0.5) + d * r;
+    r = lanes_set(1) + d * r;
+    for (int step = 0; step < 3; ++step) r *= lanes_set(1.5) - x * (r * r);
+    Lanes g = lanes_set(1) - r; /* has lost digits where d is small; (1 - g)^2 (1 + d) = 1 gives them back */
+    return lanes_set(0.5) * (d * (r * r) + g * g);
+  }
+  Lanes r = lanes_set(1) / lanes_root(lanes_set(1) + d);
+  return d * r * r / (lanes_set(1) + r);
+}
+
+/* What stored slots read of a neighbour lies together: x, y, z, V, u, v, w, and one number of the formulation's. */
+enum { STRETCH_SHOWN = 8 };
+
+/** Half a stored slot: y, d, 1 / |xi| (0 where there is no intact bond), influence x correction x V, and the neighbours' last number. */
+typedef struct StretchEnds {
+  Lanes y[3], d, by_length, weight, last;
+} StretchEnds;
+
+/** @param[in] shown  [places][STRETCH_SHOWN]
+ *  @param[in] own    displacements of the half slice */
+LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int64_t slice, int64_t slot, int half,
+                                      const Lanes own[3])
+{
+  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
+  Lanes x[LANES], u[LANES], square = {0};
+  StretchEnds ends = {.d = {0}};
+  lanes_gather_rows(shown, STRETCH_SHOWN, f->neighbour + at, x);
+  lanes_gather_rows(shown + LANES, STRETCH_SHOWN, f->neighbour + at, u);
+  for (int k = 0; k < 3; ++k) {
+    Lanes xi = x[k] - lanes_load(f->particles->position[k] + here), eta = u[k] - own[k];
+    ends.y[k] = xi + eta;
+    ends.d += eta * (xi + ends.y[k]);
+    square += xi * xi;
+  }
+  /* 1 / |xi| from its value to single precision by one step of third order */
+  Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(f->inverse_length + at));
+  Lanes off = lanes_set(1) - square * r * r;
+  r += r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
+  ends.d *= r * r;
+  ends.by_length = r;
+  ends.weight = x[3];
+  if (f->scale) ends.weight *= lanes_load(f->scale + at);
+  ends.last = u[3];
+  return ends;
+}
+
+#endif
