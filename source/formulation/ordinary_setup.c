@@ -232,10 +232,16 @@ void ordinary_describe(const void *formulation, Text *text)
       light = fmin(light, o->factor[p]);
       heavy = fmax(heavy, o->factor[p]);
     }
-    text_add(text, "%s: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted shear modulus",
-             o->body->blocks[block]->head.name, least, largest);
-    if (heavy > 1 + 1e-9) text_add(text, "; bonds count by factors of %.2f to %.2f for that", light, heavy);
-    text_add(text, "\n");
+    const char *name = o->body->blocks[block]->head.name;
+    if (heavy > 1 + 1e-9)
+      text_add(
+          text,
+          "%s: the lattice shows the wanted moduli in all directions, for which its bonds count by factors of %.2f "
+          "to %.2f\n",
+          name, light, heavy);
+    else
+      text_add(text, "%s: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted shear modulus\n",
+               name, least, largest);
   }
 }
 

@@ -320,6 +320,96 @@ static void the_stable_step_does_not_fall_as_bonds_break(void **state)
     }
 }
 
+static void the_critical_stretch_spends_the_fracture_energy(void **state)
+{
+  (void)state;
+  /* At the Poisson ratio of bonds that of theory 2; otherwise what a lattice of 12 spacings to the horizon sums up, halves drawn apart. */
+  const double pi = acos(-1), energy = 80, horizon = 0.3;
+  const Space spaces[] = {SPACE_3D, SPACE_PLANE_STRESS, SPACE_PLANE_STRAIN};
+  const double known[] = {5. / 6, 4 * pi / 9, 5 * pi / 12}, ratio[] = {0.25, 1. / 3, 0.25};
+  for (int k = 0; k < 3; ++k) {
+    const Material like_bonds = {.bulk = 150 / (3 - 6 * ratio[k]), .shear = 150 / (2 + 2 * ratio[k])};
+    const BondLength of = {spaces[k], influence_find("inverse"), horizon};
+    const double wanted = sqrt(known[k] * energy / (150 * horizon));
+    assert_near(ordinary_critical_stretch(&of, &like_bonds, energy), wanted, 1e-4 * wanted);
+
+    enum { REACH = 12 };
+    const BondLength constant = {spaces[k], influence_find("constant"), horizon};
+    const Material other = {.bulk = 200, .shear = 60};
+    const int depth = k ? 0 : REACH, d = k ? 2 : 3;
+    const double limit = ordinary_critical_stretch(&constant, &other, energy);
+    double whole = 0, spent = 0, part[REACH] = {0};
+    for (int x = -REACH; x <= REACH; ++x)
+      for (int y = -REACH; y <= REACH; ++y)
+        for (int z = -depth; z <= depth; ++z) {
+          const int square = x * x + y * y + z * z;
+          if (!square || square > REACH * REACH) continue;
+          whole += square;
+          for (int layer = 0; layer < x; ++layer) part[layer] += square;
+        }
+    for (int layer = 0; layer < REACH; ++layer) {
+      const double r = part[layer] / whole, shear = ordinary_shear(spaces[k], &other);
+      spent +=
+          horizon / REACH * limit * limit * ((d * d * ordinary_bulk(spaces[k], &other) - shear) * r * r + shear * r);
+    }
+    assert_near(spent, energy, 0.02 * energy); /* the lattice's own error */
+  }
+}
+
+/** Kalthoff and Winkler's plate, coarser, struck between its notches. */
+static breccia_model *struck_plate(const char *space, double ratio)
+{
+  return model_of("units: {length: m, force: N, time: s}\n"
+                  "materials: {s: {model: elastic, density: 8000, Young modulus: 190 GPa, Poisson ratio: %g}}\n"
+                  "body: {p: {material: s, lattice: square, spacing: 0.0025, thickness: 0.009, shape: {box: {from: [0, "
+                  "0], to: [0.1, 0.2]}}}}\n"
+                  "cracks: [{cut: {line: [[-1, 0.075], [0.05, 0.075]]}}, {cut: {line: [[-1, 0.125], [0.05, 0.125]]}}]\n"
+                  "peridynamics: {formulation: ordinary, space: %s}\nfailure: {fracture energy: 22170}\n"
+                  "loads: [{on: {inside: {box: {from: [-1, 0.0755], to: [0.002, 0.1245]}}}, velocity: [16.5, free]}]\n"
+                  "solve: {explicit: {end time: 80e-6}}\n",
+                  ratio, space);
+}
+
+static void the_books_of_a_struck_plate_balance(void **state)
+{
+  (void)state;
+  const struct {
+    const char *space;
+    double ratio;
+  } plates[] = {{"plane strain", 0.3}, {"plane strain", 0.1}, {"plane stress", 0.3}, {"plane stress", 0.45}};
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *m = struck_plate(plates[k].space, plates[k].ratio);
+    breccia_error *error = breccia_error_create();
+    if (breccia_model_step(m, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
+    const Energy e = solver_energy(&m->solver);
+    print_message("%s, %g: %lld bonds, fracture %.1f J, imbalance %.1e\n", plates[k].space, plates[k].ratio,
+                  (long long)m->domain.broken_count, e.fracture, e.imbalance);
+    assert_true(m->domain.broken_count > 300);
+    assert_true(e.imbalance < 1e-3);
+    assert_true(e.stored > 0 && e.fracture > 0 && e.kinetic + e.stored + e.fracture < 1.02 * e.external);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void any_number_of_threads_gives_the_same_bits(void **state)
+{
+  (void)state;
+  breccia_model *m[2];
+  for (int k = 0; k < 2; ++k) {
+    m[k] = struck_plate("plane strain", 0.3);
+    m[k]->threads = k ? 3 : 1;
+    assert_int_equal(breccia_model_step(m[k], 150, NULL), 0);
+  }
+  assert_true(m[0]->domain.broken_count > 20);
+  assert_int_equal(m[0]->domain.broken_count, m[1]->domain.broken_count);
+  assert_true(m[0]->domain.fracture_energy == m[1]->domain.fracture_energy);
+  for (int k = 0; k < 3; ++k)
+    assert_memory_equal(m[0]->domain.particles->velocity[k], m[1]->domain.particles->velocity[k],
+                        sizeof(double) * (size_t)m[0]->domain.particles->places);
+  for (int k = 0; k < 2; ++k) breccia_model_destroy(&m[k]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -329,6 +419,9 @@ int main(void)
       cmocka_unit_test(uniform_strain_gives_hookes_stress_and_no_force_inside),
       cmocka_unit_test(plain_weights_show_the_moduli_of_the_theory),
       cmocka_unit_test(rigid_rotation_makes_no_force_and_momenta_are_kept),
+      cmocka_unit_test(the_critical_stretch_spends_the_fracture_energy),
+      cmocka_unit_test(the_books_of_a_struck_plate_balance),
+      cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
       cmocka_unit_test(the_stable_step_does_not_fall_as_bonds_break),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,6 +92,15 @@ static void a_state_given_back_leads_to_the_same_steps(void **state)
       "solve: {explicit: {time step: 1e-4, steps: 5000}}\n";
   assert_returns(model_of(deck, "cubic", "", ", 2", ""), 80, true);
   assert_returns(model_of(deck, "square", "thickness: 1, ", "", "peridynamics: {space: plane stress}\n"), 80, true);
+  /* Families that keep what they show, and may carry less. */
+  assert_returns(model_of("units: {length: m, force: kN, time: s}\n"
+                          "materials: {rock: {model: elastic, density: 2.6, Young modulus: 3e7, Poisson ratio: 0.2}}\n"
+                          "body: {plate: {material: rock, spacing: 0.1, shape: {box: {particles: [24, 16, 2]}}}}\n"
+                          "cracks: [{cut: {line: [[1.2, -1], [1.2, 0.4]]}}]\n"
+                          "peridynamics: {formulation: ordinary}\nfailure: {critical stretch: 0.001}\n"
+                          "loads: [{on: {face: x-, layers: 3}, velocity: [-5, 0, 0]}, {on: {face: x+, layers: 3}, "
+                          "velocity: [5, 0, 0]}]\nsolve: {explicit: {steps: 5000}}\n"),
+                 80, true);
 }
 
 static void so_it_does_where_bonds_remember_and_bodies_meet(void **state)
