@@ -115,8 +115,10 @@ static double step(Batch *b, double yield, int number)
   const ptrdiff_t values = b->material.history_values;
   const double start = clock_seconds();
   for (int first = 0; first < b->count; first += BLOCK) {
-    breccia_batch batch = {
-        .count = BLOCK, .committed = b->committed + values * first, .trial = b->trial + values * first};
+    breccia_batch batch = {.size = sizeof(breccia_batch),
+                           .count = BLOCK,
+                           .committed = b->committed + values * first,
+                           .trial = b->trial + values * first};
     for (int k = 0; k < b->components; ++k) {
       batch.strain[k] = b->strain[k] + first;
       batch.stress[k] = b->stress[k] + first;

@@ -80,7 +80,7 @@ static breccia_model *ours(const char *folder, int n)
   char *name = text_format("%s/deck", folder);
   breccia_model *model = NULL;
   breccia_error *error = breccia_error_create();
-  breccia_options options = {.threads = 1};
+  breccia_options options = {.size = sizeof(breccia_options), .threads = 1};
   if (breccia_model_load_string(deck, name, &options, &model, error))
     fprintf(stderr, "%s\n", breccia_error_text(error));
   breccia_error_destroy(&error);

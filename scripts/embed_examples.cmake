@@ -22,5 +22,5 @@ foreach(deck IN LISTS DECKS)
   string(REGEX REPLACE "^examples/(.*)\\.yaml$" "\\1" known "${deck}")
   string(APPEND rows "    {\"${known}\", {${files}{0}}},\n")
 endforeach()
-file(WRITE ${OUTPUT} "/* Made by scripts/embed_examples.cmake from the folder examples. */\n#include \"cli/examples.h\"\n\n"
+file(WRITE ${OUTPUT} "/* Made by scripts/embed_examples.cmake from the folder examples. */\n#include \"examples.h\"\n\n"
      "${arrays}\nconst Example examples[] = {\n${rows}    {0},\n};\n")

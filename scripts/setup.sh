@@ -10,7 +10,7 @@ build="gcc:C_compiler cmake:build ninja-build:build pkg-config:build libc6-dev:C
 libudunits2-dev:units libhdf5-dev:result_files libcairo2-dev:pictures fonts-dejavu-core:words_in_pictures
 gnuplot-nox:curves zlib1g-dev:checksums"
 test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing clang-format:layout_of_the_code gcovr:coverage
-python3:external_tests python3-venv:external_tests"
+python3:external_tests python3-venv:external_tests locales:a_country_with_decimal_commas"
 
 peers="lammps:its_PERI_package"
 opensees="python3:OpenSees python3-venv:OpenSees python3-tk:OpenSees libblas3:OpenSees libmimalloc-dev:speed_of_OpenSees"

@@ -47,6 +47,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 static const breccia_law bimodular = {
+    .size = sizeof(breccia_law),
     .name = "bimodular",
     .about = "stiffer in tension than in compression",
     .source = "this example",
@@ -73,7 +74,7 @@ int main(void)
 {
   breccia_error *error = breccia_error_create();
   const breccia_law *laws[] = {&bimodular};
-  const breccia_options options = {.laws = laws, .law_count = 1};
+  const breccia_options options = {.size = sizeof(breccia_options), .laws = laws, .law_count = 1};
   breccia_model *model = NULL;
   int status = breccia_model_load_string(deck, "hanging bar", &options, &model, error);
   if (!status) status = breccia_model_step(model, 4000, error);

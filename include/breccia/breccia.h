@@ -2,7 +2,13 @@
  *
  * A model is loaded from a deck (YAML), stepped, looked at and written. Nothing here keeps state outside the objects
  * that it hands out: two models may exist in one process, each used by one thread at a time.
- * Functions return a status and put the words into the error that they are given (one line per problem). */
+ * Functions return a status and put the words into the error that they are given (one line per problem).
+ *
+ * A struct of this header begins with its size, which whoever makes it sets: `breccia_run run = {.size = sizeof run, ...}`. So a
+ * program and a library of different versions understand each other: what the older one does not know of is zero.
+ *
+ * The process that embeds the library stays as it is: threads of the library take no signals, no handler is set, and the locale of
+ * the calling thread and what HDF5 does with errors are given back at the end of each call. */
 #ifndef BRECCIA_H
 #define BRECCIA_H
 
@@ -32,21 +38,25 @@ BRECCIA_API breccia_error *breccia_error_create(void);
 BRECCIA_API const char *breccia_error_text(const breccia_error *error);
 BRECCIA_API void breccia_error_destroy(breccia_error **error);
 
+/** Gives back text that was handed out for the caller to keep; NULL: nothing. */
+BRECCIA_API void breccia_text_free(char *text);
+
 /* ---- constitutive laws ---- */
 
 /** One parameter of a law: the reader, the messages, the help and the documentation are made from this. An optional one that is
  *  called "length" is the length over which a fracture energy is spread; where a deck leaves it out it is the formulation's. */
-typedef struct breccia_parameter {
-  const char *name;      /* key in the deck, lower case words */
-  const char *dimension; /* "1", "stress", "density", "length", ... (docs/deck.md lists them) */
-  const char *standard;  /* default as it would stand in a deck; NULL: required; "": optional, read as NaN */
-  const char *range;     /* admissible interval in the deck's units, like "(0, inf)" or "[0, 1)"; NULL: any */
+typedef struct breccia_parameter { /* a row of a table, and therefore without a size: it stays as it is */
+  const char *name;                /* key in the deck, lower case words */
+  const char *dimension;           /* "1", "stress", "density", "length", ... (docs/deck.md lists them) */
+  const char *standard;            /* default as it would stand in a deck; NULL: required; "": optional, read as NaN */
+  const char *range;               /* admissible interval in the deck's units, like "(0, inf)" or "[0, 1)"; NULL: any */
   const char *meaning;
 } breccia_parameter;
 
 /** Points handed to a law at once. Component order xx yy zz xy yz zx, engineering shear strains, tension positive. A
  *  law of one component has strain[0], stress[0], and one number of tangent per point. */
 typedef struct breccia_batch {
+  size_t size;
   int count;
   const double *strain[6]; /* total strain, [count] each */
   double *stress[6];       /* out, [count] each */
@@ -63,6 +73,7 @@ typedef struct breccia_batch {
 
 /** A constitutive law: strain to stress for many points. */
 typedef struct breccia_law {
+  size_t size;
   const char *name, *about, *source; /* deck name; one line; paper and equations */
   const char *maturity;              /* "verified against ...", "validated against ..." or "experimental" */
   const char *equations;             /* for the page of models, lines of Markdown; may be NULL */
@@ -90,11 +101,15 @@ typedef struct breccia_law {
   int (*update)(const void *constants, const breccia_batch *batch);
 } breccia_law;
 
+/** @return the k-th law of the library, or NULL after the last */
+BRECCIA_API const breccia_law *breccia_law_at(int k);
+
 /* ---- models ---- */
 
 typedef struct breccia_model breccia_model;
 
 typedef struct breccia_options {
+  size_t size;
   const breccia_law *const
       *laws; /* laws of one's own, `law_count` of them, borrowed for the model's life; may be NULL */
   int law_count;
@@ -117,6 +132,7 @@ BRECCIA_API void breccia_model_destroy(breccia_model **model);
 BRECCIA_API int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error);
 
 typedef struct breccia_run {
+  size_t size;
   const char *folder; /* for all files; made if need be */
   int restart;        /* 1: go on from the checkpoint in the folder */
   int64_t steps;      /* stop after so many steps in all; 0: as the deck says */
@@ -157,12 +173,213 @@ BRECCIA_API double breccia_model_stable_time_step(const breccia_model *model);
 BRECCIA_API int64_t breccia_model_places(const breccia_model *model);
 /** Global number of the particle in each place, or -1, [places]. Numbers run along x first, then y, then z, block by block. */
 BRECCIA_API const int32_t *breccia_model_numbers(const breccia_model *model);
-/** The model's own array, [places]; read it, write to it between steps. Names: "position x", "displacement x",
- *  "velocity x" (and y, z), "volume", "density"; read-only in meaning: "force x" (internal, per volume), "external force x",
- *  "acceleration x", "strain xx", "stress xx" ... (with bonds: as of this call), "displacement at zero x": what results subtract from the
- *  displacement after a stage with `displacements: zero`
- *  @return NULL if there is no such array */
+
+typedef struct breccia_array {
+  size_t size;
+  const char *name; /* "displacement" */
+  const char *about;
+  char unit[32];                  /* in the deck's units: "m"; "" for numbers without */
+  int components;                 /* 1, 3 or 6 */
+  int writable;                   /* 1: what is written to it between steps takes effect; others are for reading */
+  const char *component_names[6]; /* "x", "xx"; NULL for one */
+  double *values[6]; /* the model's own arrays, [places] each; they stay where they are until the next step */
+} breccia_array;
+
+/** What the model has of each particle: its arrays, one after another. Strains and stresses are as of this call.
+ *  @param[in] k       from 0
+ *  @param[out] array  its size is set by the caller
+ *  @return 1; 0 after the last */
+BRECCIA_API int breccia_model_array_at(breccia_model *model, int k, breccia_array *array);
+/** One component of an array by its whole name, like "displacement x", "stress xx" or "volume".
+ *  @return [places], or NULL if there is no such array */
 BRECCIA_API double *breccia_model_array(breccia_model *model, const char *name);
+
+/* ---- pages that the library makes of its own tables ---- */
+
+enum {
+  BRECCIA_PAGE_DECK,   /* every key of a deck, in Markdown */
+  BRECCIA_PAGE_SCHEMA, /* the same as JSON Schema, for editors */
+  BRECCIA_PAGE_LAWS,   /* the constitutive laws, in Markdown */
+};
+/** @return the page, for breccia_text_free; NULL when memory is out */
+BRECCIA_API char *breccia_page(int page);
+/** A law and its parameters in some lines, for people; `law` NULL: all laws, and the formulations.
+ *  @return text for breccia_text_free; NULL after a message */
+BRECCIA_API char *breccia_describe_law(const char *law, breccia_error *error);
+/** The laws that the installed OpenSees offers to a deck, laid out for people.
+ *  @param[out] text  for breccia_text_free; NULL after a failure */
+BRECCIA_API int breccia_describe_opensees(char **text, breccia_error *error);
+/** The title of a deck or of a laboratory test, for breccia_text_free; "" if it has none.
+ *  @param[out] is_test  1 for a laboratory test; may be NULL */
+BRECCIA_API char *breccia_deck_title(const char *deck, int *is_test);
+/** The one among some words that was probably meant by another; NULL if none is near. */
+BRECCIA_API const char *breccia_nearest_word(const char *given, const char *const *words, int count);
+/** How many threads a model gets that asks for none. */
+BRECCIA_API int breccia_threads(void);
+
+/* ---- pictures of results ---- */
+
+enum { BRECCIA_STATE_LAST, BRECCIA_STATE_ALL, BRECCIA_STATE_OF_STEP, BRECCIA_STATE_NEAR_TIME };
+
+typedef struct breccia_plot {
+  size_t size;
+  const char *title, *x_label, *y_label; /* NULL: the deck's title; what the axes show */
+  const char *
+      path; /* .png, .svg or .pdf; NULL: in the folder of pictures beside the results; with several states a number goes before
+                     * the ending */
+  void (*drawn)(void *context, const char *path); /* told of each file; may be NULL */
+  void *context;
+  double low, high; /* ends of the colours, or of the horizontal axis of a curve; NaN: from the data */
+  /* of fields */
+  const char *field, *component; /* component NULL: the only one, or the length of a vector */
+  int state;                     /* BRECCIA_STATE_... */
+  int64_t step;
+  double time, deformed;     /* scale of displacements */
+  double azimuth, elevation; /* degrees; NaN: chosen from the body's shape */
+  int each_range;            /* 1: every picture has colours of its own range */
+  int broken_bonds;          /* 1: they are drawn */
+  double pixels;             /* largest width of the body; 0: 640, of bodies in space 460 */
+  double rate;               /* of movies: states a second; 0: so that it lasts about ten seconds */
+  /* of curves */
+  const char
+      *curve; /* "watch.column : watch.column", further vertical ones behind commas; NULL: all energies over time */
+  const char *overlay, *log_axes; /* CSV file whose first two columns are drawn as points; "x", "y" or "xy" */
+} breccia_plot;
+
+/** Fills in what a picture is like if nobody asks for something else: the last state, undistorted colours, no scale of displacements but 1. */
+BRECCIA_API void breccia_plot_begin(breccia_plot *plot, size_t size);
+/** Draws a field of some written states. @param[in] result  a folder of results, or a file of them */
+BRECCIA_API int breccia_plot_field(const char *result, const breccia_plot *plot, breccia_error *error);
+/** All written states as a movie to `path`, an .mp4 file; needs ffmpeg. */
+BRECCIA_API int breccia_plot_movie(const char *result, const breccia_plot *plot, breccia_error *error);
+/** Columns of histories against each other; several folders give a line each. */
+BRECCIA_API int breccia_plot_curve(const char *const *folders, int count, const breccia_plot *plot,
+                                   breccia_error *error);
+/** @return 1 if pictures can be drawn to files with this ending */
+BRECCIA_API int breccia_can_draw(const char *path);
+
+/* ---- the laboratory: one material point ---- */
+
+typedef struct breccia_test breccia_test;
+
+/** A test in words, as on a command line. NULL and 0 are what the words of the command `material` say of them. */
+typedef struct breccia_test_words {
+  size_t size;
+  const char *law, *units;             /* units: of length, force and time, like "m, kN, s" */
+  const char *const *parameters;       /* "key=value" each */
+  int parameter_count, cycles;         /* cycles: 0: once to the strain */
+  const char *path;                    /* CSV file of total strains, or a test: */
+  const char *kind, *to, *back;        /* its kind, the strain that it goes to, and the other end of its cycles */
+  const char *confining, *strain_zero; /* pressure before anything else; where strain is zero */
+  int64_t steps, elastic_rows;         /* from end to end; of a path: so many rows are answered elastically */
+} breccia_test_words;
+
+/** Reads a test from its file (docs/laboratory.md), or makes one from words. */
+BRECCIA_API int breccia_test_load(const char *path, breccia_test **test, breccia_error *error);
+BRECCIA_API int breccia_test_make(const breccia_test_words *words, breccia_test **test, breccia_error *error);
+BRECCIA_API void breccia_test_destroy(breccia_test **test);
+
+/** Runs the test. What came before a failure is kept.
+ *  @param[in] tangents  1: columns of the tangent too */
+BRECCIA_API int breccia_test_run(breccia_test *test, int tangents, breccia_error *error);
+/** What somebody should look at, one line each; of what was done so far. Valid until the test is next used. */
+BRECCIA_API const char *breccia_test_doubts(const breccia_test *test);
+
+/** Columns of the states that the point went through: "strain xx", "stress xx (kPa)" ... @return NULL after the last */
+BRECCIA_API const char *breccia_test_heading(const breccia_test *test, int column);
+BRECCIA_API const double *breccia_test_column(const breccia_test *test, int column); /* [rows] */
+BRECCIA_API int breccia_test_rows(const breccia_test *test);
+
+typedef struct breccia_comparison {
+  size_t size;
+  int points;                           /* measured ones; 0: there are none */
+  double mean, most;                    /* distance from the curve in parts of their range: root mean square, largest */
+  const char *x_label, *y_label, *unit; /* of the curve; unit: of y */
+} breccia_comparison;
+
+/** Holds measured points against the curve of the test that was run.
+ *  @param[in] path  a CSV file; NULL: the one that the test's file names, if it does */
+BRECCIA_API int breccia_test_compare(breccia_test *test, const char *path, breccia_comparison *comparison,
+                                     breccia_error *error);
+/** Draws the curve with the points that it was compared with or fitted to. */
+BRECCIA_API int breccia_test_draw(const breccia_test *test, const char *path, breccia_error *error);
+
+typedef struct breccia_fit {
+  size_t size;
+  int points, starts, agreeing,
+      runs;                   /* descents, those that ended as near to the points as the best; runs of the test */
+  double before, after, most; /* mean distance with the file's values and with the fitted ones; the largest after */
+  double next;                /* mean distance of the best of the starts that did not agree; infinite: none */
+} breccia_fit;
+
+typedef struct breccia_fitted {
+  size_t size;
+  const char *name, *unit, *judgement; /* judgement: how well the points tell it, in words */
+  double value, from, to;
+  double deviation,
+      margin; /* standard deviation; change that moves the curve by a thousandth; infinite: the points do not tell */
+} breccia_fitted;
+
+/** Chooses the parameters under `fit` in the test's file such that measured points lie nearest to the curve, and leaves the material with them.
+ *  @param[in] path  as for breccia_test_compare */
+BRECCIA_API int breccia_test_fit(breccia_test *test, const char *path, breccia_fit *fit, breccia_error *error);
+/** @return 1; 0 after the last of the fitted parameters */
+BRECCIA_API int breccia_test_fitted_at(breccia_test *test, int k, breccia_fitted *parameter);
+
+/* ---- studies: one deck with several values of some of its keys ---- */
+
+typedef struct breccia_study breccia_study;
+
+typedef struct breccia_study_plan { /* borrowed for the study's life */
+  size_t size;
+  const char *deck, *folder;   /* the deck's file; where the cases go */
+  const char *const *varied;   /* "key.path=from:to:n" or "key.path=a, b, c" */
+  const char *const *settings; /* of all cases */
+  const char *const *results;  /* of the table; none: peaks, broken bonds and what the deck's curves show */
+  const char *const *curves;   /* drawn for all cases in one picture; none: those of the deck */
+  int varied_count, setting_count, result_count, curve_count;
+  int together; /* 1: the first values of all varied keys, then the second ...; 0: all combinations */
+} breccia_study_plan;
+
+enum {
+  BRECCIA_CASE_NEW,     /* nothing of it is there, or of another deck */
+  BRECCIA_CASE_STOPPED, /* its run ended early and can go on from its checkpoint */
+  BRECCIA_CASE_FAILED,  /* its run ended early, and from where it ended it would do so again */
+  BRECCIA_CASE_DONE,
+};
+
+typedef struct breccia_case {
+  size_t size;
+  const char *name, *folder;   /* "spacing-5-mm" */
+  const char *const *settings; /* for breccia_options */
+  int setting_count, state;    /* BRECCIA_CASE_..., as its folder says at this call */
+} breccia_case;
+
+/** Makes the cases and reads the deck of each as far as that goes without a body. Running them is up to the caller. */
+BRECCIA_API int breccia_study_create(const breccia_study_plan *plan, breccia_study **study, breccia_error *error);
+BRECCIA_API void breccia_study_destroy(breccia_study **study);
+/** @return 1; 0 after the last */
+BRECCIA_API int breccia_study_case_at(const breccia_study *study, int k, breccia_case *one);
+/** What the cases gave, from their folders: table.csv, table.txt and pictures in the study's folder. */
+BRECCIA_API int breccia_study_report(breccia_study *study, breccia_error *error);
+/** Of the last report: the readable table; names of the files written, a line each. */
+BRECCIA_API const char *breccia_study_table(const breccia_study *study);
+BRECCIA_API const char *breccia_study_files(const breccia_study *study);
+
+/* ---- the library's own laws for other programs ---- */
+
+typedef struct breccia_service {
+  size_t size;
+  const char *address;     /* tcp://127.0.0.1:PORT, unix:/PATH or udp://127.0.0.1:PORT */
+  const char *secret_file; /* clients must know the words in it; NULL: none, and only this machine is listened to */
+  int once;                /* 1: end when the first client has gone */
+  int zeros;               /* 1: answer with zeros instead of stresses: what the protocol itself costs */
+  const volatile int *interrupted;        /* non-zero ends it; may be NULL */
+  void (*listening)(const char *address); /* told once it does; may be NULL */
+} breccia_service;
+
+/** Serves until it is told to end, one client at a time (docs/material-server.md). */
+BRECCIA_API int breccia_serve(const breccia_service *service, breccia_error *error);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/cores.h"
 #include "base/memory.h"
+#include "base/plain_locale.h"
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -109,6 +110,7 @@ static void *serve(void *given)
 {
   const struct Place *place = given;
   Team *team = place->team;
+  locale_plain();
   own.team = team;
   own.inside = true;
   own.rank = place->rank;

@@ -1,4 +1,4 @@
-#include "cli/verbs.h"
+#include "verbs.h"
 
 #include <stdlib.h>
 
@@ -21,8 +21,10 @@ static int run(int argc, char **argv, const Verb *verb)
     return first == -2 ? 0 : 2;
   }
   breccia_error *error = breccia_error_create();
-  const breccia_options wishes = {
-      .force = values[FORCE] != NULL, .settings = settings.items, .setting_count = settings.count};
+  const breccia_options wishes = {.size = sizeof wishes,
+                                  .force = values[FORCE] != NULL,
+                                  .settings = settings.items,
+                                  .setting_count = settings.count};
   breccia_model *model;
   int status = breccia_model_load_file(argv[first], &wishes, &model, error);
   if (!status) {

@@ -1,6 +1,6 @@
 /* Completion for bash, and for zsh through its bash emulation; and the manual page: both made from the table of verbs. */
-#include "cli/examples.h"
-#include "cli/verbs.h"
+#include "examples.h"
+#include "verbs.h"
 
 static const Option options[] = {{"man", NULL, "print the manual page instead"}, {0}};
 

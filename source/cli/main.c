@@ -1,10 +1,11 @@
 /* breccia: peridynamics for concrete, soil and rock. A thin client of the library. */
-#include "cli/verbs.h"
+#include "verbs.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -12,7 +13,7 @@
 const Verb *const verbs[] = {&verb_run,      &verb_study,     &verb_check, &verb_new,    &verb_plot,       &verb_models,
                              &verb_material, &verb_calibrate, &verb_serve, &verb_schema, &verb_completion, NULL};
 
-enum { MOST_OPTIONS = 32 };
+enum { MOST_VERBS = sizeof verbs / sizeof *verbs, MOST_OPTIONS = 32 };
 
 int fail(breccia_error *error, int status)
 {
@@ -22,21 +23,35 @@ int fail(breccia_error *error, int status)
   return status;
 }
 
-void warn(breccia_error *doubts)
+void warn(const char *lines)
 {
-  for (const char *line = breccia_error_text(doubts); *line;) {
-    const int length = (int)strcspn(line, "\n");
-    fprintf(stderr, "warning: %.*s\n", length, line);
-    line += length + (line[length] != 0);
+  while (*lines) {
+    const int length = (int)strcspn(lines, "\n");
+    fprintf(stderr, "warning: %.*s\n", length, lines);
+    lines += length + (lines[length] != 0);
   }
-  breccia_error_destroy(&doubts);
+}
+
+char *words_of(const char *format, ...)
+{
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  const int length = vsnprintf(NULL, 0, format, arguments);
+  char *words = length < 0 ? NULL : malloc((size_t)length + 1);
+  if (words) vsnprintf(words, (size_t)length + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  if (words) return words;
+  fprintf(stderr, "breccia: out of memory: words\n");
+  exit(BRECCIA_FAILURE);
 }
 
 char *result_folder(const char *deck)
 {
   const char *slash = strrchr(deck, '/'), *dot = strrchr(deck, '.');
-  if (!dot || dot == deck || (slash && dot <= slash + 1)) return text_format("%s.results", deck);
-  return text_format("%.*s", (int)(dot - deck), deck);
+  if (!dot || dot == deck || (slash && dot <= slash + 1)) return words_of("%s.results", deck);
+  return words_of("%.*s", (int)(dot - deck), deck);
 }
 
 int read_whole(const char *words, const char *option, long long least, long long *value)
@@ -138,17 +153,14 @@ static int obey(int argc, char **argv)
     printf("breccia %s\n", BRECCIA_VERSION);
     return 0;
   }
-  const char *nearest = NULL;
-  int best = 1000;
-  for (int k = 0; verbs[k]; ++k) {
-    if (!strcmp(verbs[k]->name, word)) return verbs[k]->run(argc - 1, argv + 1, verbs[k]);
-    int distance = text_distance(word, verbs[k]->name);
-    if (distance < best) {
-      best = distance;
-      nearest = verbs[k]->name;
-    }
+  const char *names[MOST_VERBS];
+  int count = 0;
+  for (; verbs[count]; ++count) {
+    if (!strcmp(verbs[count]->name, word)) return verbs[count]->run(argc - 1, argv + 1, verbs[count]);
+    names[count] = verbs[count]->name;
   }
-  if (nearest && text_resembles(word, nearest, best))
+  const char *nearest = breccia_nearest_word(word, names, count);
+  if (nearest)
     fprintf(stderr, "breccia: there is no verb '%s'; did you mean '%s'?\n", word, nearest);
   else {
     const char *ending = strrchr(word, '.');

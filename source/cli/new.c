@@ -1,6 +1,5 @@
-#include "cli/examples.h"
-#include "cli/verbs.h"
-#include "deck/document.h"
+#include "examples.h"
+#include "verbs.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -71,11 +70,20 @@ static int write_new(const char *path, const void *bytes, size_t length)
 /** Whether a file holds these bytes and no others. */
 static bool holds(const char *path, const ExampleFile *file)
 {
-  size_t length;
-  char *content = text_read_file(path, &length);
-  const bool same = content && length == file->length && !memcmp(content, file->bytes, length);
+  char *content = malloc(file->length + 1);
+  FILE *there = fopen(path, "rb");
+  const bool same = content && there && fread(content, 1, file->length + 1, there) == file->length &&
+                    !memcmp(content, file->bytes, file->length);
+  if (there) fclose(there);
   free(content);
   return same;
+}
+
+/** Path of a file in the folder of another. To be freed. */
+static char *beside(const char *path, const char *file)
+{
+  const char *slash = strrchr(path, '/');
+  return slash ? words_of("%.*s/%s", (int)(slash - path), path, file) : words_of("%s", file);
 }
 
 static const char *short_name(const Example *example)
@@ -83,27 +91,19 @@ static const char *short_name(const Example *example)
   return strrchr(example->name, '/') + 1;
 }
 
-/** What a deck says of itself; `is_test`: it is a laboratory test, for 'breccia material'. To be freed. */
-static char *title_of(const Example *example, bool *is_test)
+static bool is_test(const Example *example)
 {
-  Error *error = breccia_error_create();
-  const ExampleFile *deck = example->files;
-  Document *document = document_parse((const char *)deck->bytes, deck->length, deck->name, error);
-  const Node *title = document ? node_get(document->root, "title") : NULL;
-  *is_test = document && !node_get(document->root, "body");
-  char *words = text_format("%s", title && title->kind == NODE_SCALAR ? title->text : "");
-  document_destroy(&document);
-  breccia_error_destroy(&error);
-  return words;
+  int test;
+  breccia_text_free(breccia_deck_title((const char *)example->files[0].bytes, &test));
+  return test;
 }
 
 static void list_examples(bool tests)
 {
   for (const Example *e = examples; e->name; ++e) {
-    bool is_test;
-    char *title = title_of(e, &is_test);
-    if (is_test == tests) printf("  %-41s %s\n", e->name, title ? title : "");
-    free(title);
+    char *title = breccia_deck_title((const char *)e->files[0].bytes, NULL);
+    if (is_test(e) == tests) printf("  %-41s %s\n", e->name, title ? title : "");
+    breccia_text_free(title);
   }
 }
 
@@ -120,19 +120,21 @@ static const Example *find_example(const char *name)
     }
   }
   if (count == 1) return found;
-  Text near = {0};
+  char *near = words_of("%s", "");
   for (const Example *e = examples; e->name; ++e) {
     const char *place = strchr(name, '/') ? e->name : short_name(e);
-    if (count ? !strcmp(place, name) : strstr(e->name, name) || text_resembles(name, place, text_distance(name, place)))
-      text_add(&near, "%s'%s'", near.length ? ", " : "", e->name);
+    if (count ? strcmp(place, name) : !strstr(e->name, name) && !breccia_nearest_word(name, &place, 1)) continue;
+    char *more = words_of("%s%s'%s'", near, *near ? ", " : "", e->name);
+    free(near);
+    near = more;
   }
   if (count > 1)
-    fprintf(stderr, "breccia new: several examples are called '%s': give one of %s\n", name, near.characters);
-  else if (near.length)
-    fprintf(stderr, "breccia new: there is no example '%s'; the nearest names are %s\n", name, near.characters);
+    fprintf(stderr, "breccia new: several examples are called '%s': give one of %s\n", name, near);
+  else if (*near)
+    fprintf(stderr, "breccia new: there is no example '%s'; the nearest names are %s\n", name, near);
   else
     fprintf(stderr, "breccia new: there is no example '%s'; 'breccia new --example' lists them\n", name);
-  text_free(&near);
+  free(near);
   return NULL;
 }
 
@@ -141,24 +143,22 @@ static int write_example(const Example *example, const char *path)
   char *written[MOST_EXAMPLE_FILES] = {0};
   int count = 0, status = 0;
   for (const ExampleFile *f = example->files + 1; f->name && !status; ++f) {
-    char *beside = text_beside(path, f->name);
-    if (beside && holds(beside, f)) {
-      free(beside);
+    char *companion = beside(path, f->name);
+    if (holds(companion, f)) {
+      free(companion);
       continue;
     }
-    status = beside ? write_new(beside, f->bytes, f->length) : 1;
+    status = write_new(companion, f->bytes, f->length);
     if (status)
-      free(beside);
+      free(companion);
     else
-      written[count++] = beside;
+      written[count++] = companion;
   }
   if (!status) status = write_new(path, example->files[0].bytes, example->files[0].length);
   if (!status) {
-    bool is_test;
-    free(title_of(example, &is_test));
     printf("%s is written", path);
     for (int k = 0; k < count; ++k) printf("%s %s", k ? "," : ", and", written[k]);
-    printf("; 'breccia %s %s' runs it\n", is_test ? "material" : "run", path);
+    printf("; 'breccia %s %s' runs it\n", is_test(example) ? "material" : "run", path);
   }
   for (int k = 0; k < count; ++k) {
     if (status) remove(written[k]);

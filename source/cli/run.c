@@ -1,4 +1,4 @@
-#include "cli/verbs.h"
+#include "verbs.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -62,7 +62,8 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   breccia_error *error = breccia_error_create();
-  const breccia_options wishes = {.threads = (int)(threads > 4096 ? 4096 : threads),
+  const breccia_options wishes = {.size = sizeof wishes,
+                                  .threads = (int)(threads > 4096 ? 4096 : threads),
                                   .force = values[FORCE] != NULL,
                                   .settings = settings->items,
                                   .setting_count = settings->count};
@@ -76,8 +77,9 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
     fflush(stdout);
   }
   size_t told = strlen(breccia_model_warnings(model));
-  char *folder = values[OUTPUT] ? text_format("%s", values[OUTPUT]) : result_folder(deck);
-  const breccia_run wish = {.folder = folder,
+  char *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : result_folder(deck);
+  const breccia_run wish = {.size = sizeof wish,
+                            .folder = folder,
                             .restart = values[RESTART] != NULL,
                             .steps = steps,
                             .interrupted = &interrupted,

@@ -1,9 +1,6 @@
-#include "cli/verbs.h"
-#include "constitutive/remote/server.h"
+#include "verbs.h"
 
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { LISTEN, SECRET, ONCE, ZEROS };
 static const Option options[] = {
@@ -36,28 +33,18 @@ static int serve_verb(int argc, char **argv, const Verb *verb)
     fprintf(stderr, "usage: breccia serve %s\n", verb->arguments);
     return 2;
   }
-  Error *error = breccia_error_create();
-  char *secret = NULL;
-  if (values[SECRET]) {
-    size_t length;
-    secret = text_read_file(values[SECRET], &length);
-    if (secret) secret[strcspn(secret, "\r\n")] = 0;
-    if (!secret || !*secret) {
-      free(secret);
-      return fail(error, error_add(error, BRECCIA_USER_ERROR, "%s: no secret can be read there", values[SECRET]));
-    }
-  }
   const struct sigaction action = {.sa_handler = interrupt};
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
-  const ServeSpec spec = {.address = values[LISTEN],
-                          .secret = secret,
-                          .once = values[ONCE] != NULL,
-                          .zeros = values[ZEROS] != NULL,
-                          .interrupted = &interrupted,
-                          .listening = tell};
-  const int status = serve_materials(&spec, error);
-  free(secret);
+  const breccia_service service = {.size = sizeof service,
+                                   .address = values[LISTEN],
+                                   .secret_file = values[SECRET],
+                                   .once = values[ONCE] != NULL,
+                                   .zeros = values[ZEROS] != NULL,
+                                   .interrupted = &interrupted,
+                                   .listening = tell};
+  breccia_error *error = breccia_error_create();
+  const int status = breccia_serve(&service, error);
   return fail(error, status);
 }
 

@@ -1,7 +1,5 @@
 /* Cases of a study run in processes of their own: one that fails takes no other with it, and gives back all its memory. */
-#include "model/study.h"
-#include "base/cores.h"
-#include "cli/verbs.h"
+#include "verbs.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -49,17 +47,17 @@ typedef struct Job {
 } Job;
 
 typedef struct Work {
-  const Study *study;
-  const StudyWish *wish;
+  breccia_study *study;
+  const char *deck;
   Job *jobs;
-  int job_count, threads, failures;
+  int count, job_count, threads, failures;
   bool again, quiet;
 } Work;
 
 /** Runs a case to its end. What `breccia run` would print goes into a file beside its results. @return exit status */
-static int run_case(const Work *work, const StudyCase *one, bool restart)
+static int run_case(const Work *work, const breccia_case *one, bool restart)
 {
-  char *path = text_format("%s/log.txt", one->folder);
+  char *path = words_of("%s/log.txt", one->folder);
   FILE *log = path && (!mkdir(one->folder, 0777) || errno == EEXIST) ? fopen(path, restart ? "a" : "w") : NULL;
   if (!log) {
     fprintf(stderr, "%s: cannot be written: %s\n", path ? path : one->folder, strerror(errno));
@@ -67,13 +65,14 @@ static int run_case(const Work *work, const StudyCase *one, bool restart)
   }
   breccia_error *error = breccia_error_create();
   const breccia_options wishes = {
-      .threads = work->threads, .settings = one->settings, .setting_count = work->study->setting_count};
+      .size = sizeof wishes, .threads = work->threads, .settings = one->settings, .setting_count = one->setting_count};
   breccia_model *model;
-  int status = breccia_model_load_file(work->wish->deck, &wishes, &model, error);
+  int status = breccia_model_load_file(work->deck, &wishes, &model, error);
   if (!status) {
     fprintf(log, "%s\n", breccia_model_overview(model));
     fflush(log);
-    const breccia_run wish = {.folder = one->folder, .restart = restart, .interrupted = &interrupted};
+    const breccia_run wish = {
+        .size = sizeof wish, .folder = one->folder, .restart = restart, .interrupted = &interrupted};
     status = breccia_model_run(model, &wish, error);
     fprintf(log, "%s\n%s\n", breccia_model_warnings(model), breccia_model_outcome(model));
     breccia_model_destroy(&model);
@@ -86,19 +85,25 @@ static int run_case(const Work *work, const StudyCase *one, bool restart)
   return status == BRECCIA_INTERRUPTED ? 130 : status;
 }
 
+static breccia_case case_of(const Work *work, int k)
+{
+  breccia_case one = {.size = sizeof one};
+  breccia_study_case_at(work->study, k, &one);
+  return one;
+}
+
 static int begin_case(Work *work, Job *job, int k, bool restart)
 {
-  const StudyCase *one = &work->study->cases[k];
+  const breccia_case one = case_of(work, k);
   fflush(NULL);
   const pid_t process = fork();
   if (process < 0) {
-    fprintf(stderr, "breccia study: %s: no process can be started: %s\n", one->name, strerror(errno));
+    fprintf(stderr, "breccia study: %s: no process can be started: %s\n", one.name, strerror(errno));
     return 1;
   }
-  if (!process) _exit(run_case(work, one, restart));
+  if (!process) _exit(run_case(work, &one, restart));
   *job = (Job){process, k, time(NULL)};
-  if (!work->quiet)
-    printf("%d of %d: %s%s\n", k + 1, work->study->count, one->name, restart ? ", from its checkpoint" : "");
+  if (!work->quiet) printf("%d of %d: %s%s\n", k + 1, work->count, one.name, restart ? ", from its checkpoint" : "");
   fflush(stdout);
   return 0;
 }
@@ -114,12 +119,12 @@ static void end_case(Work *work)
   for (int j = 0; j < work->job_count; ++j) {
     Job *job = &work->jobs[j];
     if (process < 0 || job->process != process) continue;
-    const StudyCase *one = &work->study->cases[job->which];
+    const breccia_case one = case_of(work, job->which);
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-    if (WIFSIGNALED(status)) fprintf(stderr, "%s: ended by signal %d\n", one->name, WTERMSIG(status));
+    if (WIFSIGNALED(status)) fprintf(stderr, "%s: ended by signal %d\n", one.name, WTERMSIG(status));
     work->failures += code && code != 130;
     if (!work->quiet)
-      printf("%d of %d: %s: %s, %ld s\n", job->which + 1, work->study->count, one->name,
+      printf("%d of %d: %s: %s, %ld s\n", job->which + 1, work->count, one.name,
              code == 130 ? "stopped"
              : code      ? "failed"
                          : "done",
@@ -138,10 +143,11 @@ static bool is_running(const Work *work)
 
 static void run_cases(Work *work)
 {
-  for (int k = 0; k < work->study->count && !interrupted; ++k) {
-    const CaseState state = work->again ? CASE_NEW : study_state(&work->study->cases[k]);
-    if (state == CASE_DONE) {
-      if (!work->quiet) printf("%d of %d: %s: was done\n", k + 1, work->study->count, work->study->cases[k].name);
+  for (int k = 0; k < work->count && !interrupted; ++k) {
+    const breccia_case one = case_of(work, k);
+    const int state = work->again ? BRECCIA_CASE_NEW : one.state;
+    if (state == BRECCIA_CASE_DONE) {
+      if (!work->quiet) printf("%d of %d: %s: was done\n", k + 1, work->count, one.name);
       continue;
     }
     Job *free_job = NULL;
@@ -150,7 +156,7 @@ static void run_cases(Work *work)
         if (!work->jobs[j].process) free_job = &work->jobs[j];
       if (!free_job) end_case(work);
     }
-    if (!interrupted && begin_case(work, free_job, k, state == CASE_STOPPED)) ++work->failures;
+    if (!interrupted && begin_case(work, free_job, k, state == BRECCIA_CASE_STOPPED)) ++work->failures;
   }
   while (is_running(work)) end_case(work);
 }
@@ -166,60 +172,58 @@ static void note(void *context, int option, const char *value)
   lists->items[option][lists->count[option]++] = value;
 }
 
-static void list_cases(const Study *study)
+static void list_cases(const Work *work)
 {
-  static const char *const words[] = {[CASE_NEW] = "to be run",
-                                      [CASE_STOPPED] = "to go on",
-                                      [CASE_FAILED] = "failed, to be run again",
-                                      [CASE_DONE] = "done"};
-  for (int k = 0; k < study->count; ++k)
-    printf("%d of %d: %s: %s\n", k + 1, study->count, study->cases[k].name, words[study_state(&study->cases[k])]);
+  static const char *const words[] = {[BRECCIA_CASE_NEW] = "to be run",
+                                      [BRECCIA_CASE_STOPPED] = "to go on",
+                                      [BRECCIA_CASE_FAILED] = "failed, to be run again",
+                                      [BRECCIA_CASE_DONE] = "done"};
+  for (int k = 0; k < work->count; ++k) {
+    const breccia_case one = case_of(work, k);
+    printf("%d of %d: %s: %s\n", k + 1, work->count, one.name, words[one.state]);
+  }
 }
 
-static int study_deck(const StudyWish *wish, const char **values, breccia_error *error)
+/** Runs the cases and tells what they gave. */
+static int run_study(Work *work, const char *folder, breccia_error *error)
+{
+  if (mkdir(folder, 0777) && errno != EEXIST) {
+    fprintf(stderr, "%s: the folder cannot be made: %s\n", folder, strerror(errno));
+    return BRECCIA_USER_ERROR;
+  }
+  run_cases(work);
+  int status = breccia_study_report(work->study, error);
+  const char *table = breccia_study_table(work->study), *files = breccia_study_files(work->study);
+  printf("%s%s", work->quiet || !*table ? "" : "\n", table);
+  if (!work->quiet && *files) printf("\nwritten:\n%s", files);
+  if (interrupted) printf("'breccia study' with the same arguments goes on from here\n");
+  if (!status && work->failures) status = BRECCIA_FAILURE;
+  return interrupted ? 130 : status;
+}
+
+static int study_deck(const breccia_study_plan *plan, const char **values, breccia_error *error)
 {
   long long jobs = 1, threads = 0;
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &jobs)) return BRECCIA_USER_ERROR;
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return BRECCIA_USER_ERROR;
-  Study study;
-  int status = study_plan(&study, wish, error);
-  if (!status && values[CHECK]) {
-    list_cases(&study);
-    study_destroy(&study);
-    return BRECCIA_OK;
-  }
-  if (jobs > study.count) jobs = study.count;
-  Text ignored = {0};
-  const int all = threads_by_default(&ignored);
-  text_free(&ignored);
-  Work work = {.study = &study,
-               .wish = wish,
-               .jobs = calloc((size_t)jobs + 1, sizeof(Job)),
-               .job_count = (int)jobs,
-               .threads = threads      ? (int)(threads > 4096 ? 4096 : threads)
-                          : jobs > all ? 1
-                                       : (int)(all / (jobs ? jobs : 1)),
-               .again = values[AGAIN] != NULL,
-               .quiet = values[QUIET] != NULL};
-  if (!status && !work.jobs) status = BRECCIA_FAILURE;
-  if (!status && mkdir(wish->folder, 0777) && errno != EEXIST) {
-    fprintf(stderr, "%s: the folder cannot be made: %s\n", wish->folder, strerror(errno));
-    status = BRECCIA_USER_ERROR;
-  }
-  Text table = {0}, files = {0};
-  if (!status) {
-    run_cases(&work);
-    status = study_report(&study, wish, &table, &files, error);
-    printf("%s%s", work.quiet || !table.length ? "" : "\n", text_words(&table));
-    if (!work.quiet && files.length) printf("\nwritten:\n%s", text_words(&files));
-    if (interrupted) printf("'breccia study' with the same arguments goes on from here\n");
-    if (!status && work.failures) status = BRECCIA_FAILURE;
-    if (interrupted) status = 130;
-  }
-  text_free(&table);
-  text_free(&files);
+  Work work = {.deck = plan->deck, .again = values[AGAIN] != NULL, .quiet = values[QUIET] != NULL};
+  int status = breccia_study_create(plan, &work.study, error);
+  if (status) return status;
+  breccia_case one = {.size = sizeof one};
+  while (breccia_study_case_at(work.study, work.count, &one)) ++work.count;
+  const int all = breccia_threads();
+  if (jobs > work.count) jobs = work.count;
+  work.job_count = (int)jobs;
+  work.threads = threads ? (int)(threads > 4096 ? 4096 : threads) : jobs > all ? 1 : (int)(all / jobs);
+  work.jobs = calloc((size_t)jobs, sizeof(Job));
+  if (values[CHECK])
+    list_cases(&work);
+  else if (work.jobs)
+    status = run_study(&work, plan->folder, error);
+  else
+    status = BRECCIA_FAILURE;
   free(work.jobs);
-  study_destroy(&study);
+  breccia_study_destroy(&work.study);
   return status;
 }
 
@@ -230,7 +234,8 @@ static int run(int argc, char **argv, const Verb *verb)
   bool full = false;
   for (int k = 0; k < COUNT; ++k) full |= !(lists.items[k] = calloc((size_t)argc + 1, sizeof(char *)));
   breccia_error *error = breccia_error_create();
-  int status = full ? error_add(error, BRECCIA_FAILURE, "out of memory: options") : BRECCIA_OK;
+  int status = full ? BRECCIA_FAILURE : BRECCIA_OK;
+  if (full) fprintf(stderr, "breccia: out of memory: options\n");
   const int first = status ? -1 : read_options(argc, argv, verb, values, note, &lists);
   if (!status && first < 0)
     status = first == -2 ? 0 : 2;
@@ -242,19 +247,20 @@ static int run(int argc, char **argv, const Verb *verb)
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     char *beside = result_folder(argv[first]),
-         *folder = values[OUTPUT] ? text_format("%s", values[OUTPUT]) : text_format("%s-study", beside);
-    const StudyWish wish = {.deck = argv[first],
-                            .folder = folder,
-                            .varied = lists.items[VARY],
-                            .varied_count = lists.count[VARY],
-                            .settings = lists.items[SET],
-                            .setting_count = lists.count[SET],
-                            .results = lists.items[RESULT],
-                            .result_count = lists.count[RESULT],
-                            .curves = lists.items[CURVE],
-                            .curve_count = lists.count[CURVE],
-                            .together = values[TOGETHER] != NULL};
-    status = study_deck(&wish, values, error);
+         *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : words_of("%s-study", beside);
+    const breccia_study_plan plan = {.size = sizeof plan,
+                                     .deck = argv[first],
+                                     .folder = folder,
+                                     .varied = lists.items[VARY],
+                                     .varied_count = lists.count[VARY],
+                                     .settings = lists.items[SET],
+                                     .setting_count = lists.count[SET],
+                                     .results = lists.items[RESULT],
+                                     .result_count = lists.count[RESULT],
+                                     .curves = lists.items[CURVE],
+                                     .curve_count = lists.count[CURVE],
+                                     .together = values[TOGETHER] != NULL};
+    status = study_deck(&plan, values, error);
     free(folder);
     free(beside);
   }

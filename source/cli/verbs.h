@@ -2,9 +2,9 @@
 #ifndef BRECCIA_CLI_VERBS_H
 #define BRECCIA_CLI_VERBS_H
 
-#include "base/text.h"
-#include "breccia/breccia.h"
+#include <breccia/breccia.h>
 #include <getopt.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 typedef struct Option {
@@ -55,8 +55,11 @@ void print_verb_help(const Verb *verb, FILE *out);
 /** Prints an error's lines and returns the status. */
 int fail(breccia_error *error, int status);
 
-/** Prints what somebody should look at, each line as a warning, and destroys it. */
-void warn(breccia_error *doubts);
+/** Prints what somebody should look at, each line as a warning. */
+void warn(const char *lines);
+
+/** Formatted text, to be freed; ends the command when memory is out. */
+char *words_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /** Folder for a deck's results: beside it, named after it. To be freed. */
 char *result_folder(const char *deck);

@@ -42,8 +42,12 @@ void driver_destroy(Driver *d)
 
 bool driver_try(Driver *d, const double *strain)
 {
-  breccia_batch batch = {
-      .count = 1, .committed = d->committed, .trial = d->trial, .tangent = d->tangent, .elastic_stage = d->elastic};
+  breccia_batch batch = {.size = sizeof(breccia_batch),
+                         .count = 1,
+                         .committed = d->committed,
+                         .trial = d->trial,
+                         .tangent = d->tangent,
+                         .elastic_stage = d->elastic};
   if (strain != d->strain) memcpy(d->strain, strain, sizeof(double) * (size_t)d->components);
   for (int k = 0; k < d->components; ++k) {
     batch.strain[k] = &d->strain[k];

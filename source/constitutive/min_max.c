@@ -68,7 +68,8 @@ static int update(const void *constants, const breccia_batch *batch)
       if (batch->tangent) batch->tangent[i] = 0;
       continue;
     }
-    const breccia_batch one = {.count = 1,
+    const breccia_batch one = {.size = sizeof(breccia_batch),
+                               .count = 1,
                                .strain = {batch->strain[0] + i},
                                .stress = {batch->stress[0] + i},
                                .committed = old,
@@ -84,6 +85,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_min_max = {
+    .size = sizeof(breccia_law),
     .name = "min-max",
     .about = "another law of one strain, whose points fail for good outside a range of strains",
     .source = "MinMax of OpenSees",

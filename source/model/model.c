@@ -4,17 +4,25 @@
 #include "base/memory.h"
 #include "deck/resolve.h"
 #include "model/plausibility.h"
+#include "model/sized.h"
 #include <stdlib.h>
 #include <string.h>
 
-int model_enter(breccia_model *model, Team **before, Error *error)
+int model_enter(breccia_model *model, Entry *entry, Error *error)
 {
   if (team_threads(model->team) != model->threads) {
     team_destroy(&model->team);
     if (!(model->team = team_create(model->threads, error))) return BRECCIA_FAILURE;
   }
-  *before = team_use(model->team);
+  entry->host = host_enter();
+  entry->team = team_use(model->team);
   return BRECCIA_OK;
+}
+
+void model_leave(const Entry *entry)
+{
+  team_use(entry->team);
+  host_leave(&entry->host);
 }
 
 /* ---- loading ---- */
@@ -118,22 +126,34 @@ static int build(breccia_model *model, bool force, Error *error)
   return status;
 }
 
-int breccia_model_load_string(const char *deck, const char *name, const breccia_options *options, breccia_model **out,
-                              breccia_error *given)
+/** Takes over the laws of the program, whatever version of the header it was made with. */
+static int take_laws(breccia_model *model, const breccia_options *options, Error *error)
 {
-  *out = NULL;
-  Error *error = given ? given : breccia_error_create();
-  breccia_model *model = calloc(1, sizeof *model);
-  int status = BRECCIA_FAILURE;
-  Team *before;
-  static const breccia_options standard = {0};
-  if (!options) options = &standard;
+  const int count = options->law_count;
+  model->own_laws = memory_zeroed((size_t)count + 1, sizeof *model->own_laws, "laws", error);
+  model->own_law_list = memory_zeroed((size_t)count + 1, sizeof *model->own_law_list, "laws", error);
+  if (!model->own_laws || !model->own_law_list) return BRECCIA_FAILURE;
+  for (int k = 0; k < count; ++k) {
+    breccia_law *law = &model->own_laws[k];
+    if (sized_take(law, sizeof *law, options->laws[k], "breccia_law", error)) return BRECCIA_USER_ERROR;
+    if (!law->name || !law->about || !law->source || !law->maturity || !law->prepare || !law->moduli || !law->update ||
+        (law->components != 1 && law->components != 6))
+      return error_add(error, BRECCIA_USER_ERROR,
+                       "law '%s' needs name, about, source, maturity, components (1 or 6), prepare, moduli and update",
+                       law->name ? law->name : "");
+    model->own_law_list[k] = law;
+  }
+  model->laws = (LawList){model->own_law_list, count};
+  return BRECCIA_OK;
+}
+
+static int load(breccia_model *model, const char *deck, const char *name, const breccia_options *options, Error *error)
+{
   Text ignored = {0};
-  if (model) model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
-  if (!model || !error) {
-    error_add(error, BRECCIA_FAILURE, "out of memory: model");
-  } else if (!model_enter(model, &before, error)) {
-    model->laws = (LawList){options->laws, options->law_count};
+  Entry entry;
+  model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
+  int status = take_laws(model, options, error);
+  if (!status && !(status = model_enter(model, &entry, error))) {
     model->settings = options->settings;
     model->setting_count = options->setting_count;
     const DeckText words = {deck, name, options->settings, options->setting_count};
@@ -141,9 +161,21 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
     if (!status) status = build(model, options->force, error);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
     if (ignored.length) text_add(&model->warnings, "%s%s", model->warnings.length ? "\n" : "", ignored.characters);
-    team_use(before);
+    model_leave(&entry);
   }
   text_free(&ignored);
+  return status;
+}
+
+int breccia_model_load_string(const char *deck, const char *name, const breccia_options *given_options,
+                              breccia_model **out, breccia_error *given)
+{
+  breccia_options options;
+  Error *error = given ? given : breccia_error_create();
+  breccia_model *model = calloc(1, sizeof *model);
+  int status = sized_take(&options, sizeof options, given_options, "breccia_options", error);
+  if (!status && (!model || !error)) status = error_add(error, BRECCIA_FAILURE, "out of memory: model");
+  if (!status) status = load(model, deck, name, &options, error);
   if (status)
     breccia_model_destroy(&model);
   else
@@ -183,6 +215,8 @@ void breccia_model_destroy(breccia_model **out)
   text_free(&model->stage);
   free(model->schedule);
   free(model->stops);
+  free(model->own_laws);
+  free(model->own_law_list);
   text_free(&model->deck);
   free(model);
   *out = NULL;
@@ -213,12 +247,12 @@ int model_advance(breccia_model *model, Error *error)
 
 int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error)
 {
-  Team *before;
-  if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
+  Entry entry;
+  if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   int status = model_begin(model, error);
   for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
     status = model_advance(model, error);
-  team_use(before);
+  model_leave(&entry);
   return status;
 }
 
@@ -273,8 +307,10 @@ const int32_t *breccia_model_numbers(const breccia_model *model)
 
 const char *breccia_model_plausibility(breccia_model *model)
 {
+  const Host host = host_enter();
   text_free(&model->plausibility);
   plausibility_describe(model, &model->plausibility);
+  host_leave(&host);
   return text_words(&model->plausibility);
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/team.h"
 #include "model/deck_layout.h"
+#include "model/host.h"
 #include "model/outlook.h"
 #include "solver/solver.h"
 
@@ -15,6 +16,8 @@ struct breccia_model {
   Text deck;                   /* as it is run: nothing in it is left to work out */
   const char *const *settings; /* with which it was loaded */
   int setting_count;
+  breccia_law *own_laws; /* those that the program brought along, as this version of the header has them */
+  const breccia_law **own_law_list;
   Document *document;
   Units *units;
   LawList laws;
@@ -38,8 +41,14 @@ struct breccia_model {
   int64_t run_steps;
 };
 
-/** Lets team_run of this thread use the model's threads. Afterwards: team_use(before). */
-int model_enter(breccia_model *model, Team **before, Error *error);
+typedef struct Entry { /* what a public function that computes gives back at its end */
+  Host host;
+  Team *team;
+} Entry;
+
+/** Lets team_run of this thread use the model's threads. @return BRECCIA_OK, and then model_leave is due */
+int model_enter(breccia_model *model, Entry *entry, Error *error);
+void model_leave(const Entry *entry);
 
 /** Prepares forces and accelerations of the first state, once. */
 int model_begin(breccia_model *model, Error *error);

@@ -52,11 +52,11 @@ static double measure_evaluation(breccia_model *model)
 int model_expect(breccia_model *model, Error *error)
 {
   const Domain *d = &model->domain;
-  Team *before;
+  Entry entry;
   if (model->begun || model->outlook.state_bytes > 0) return BRECCIA_OK;
   ResultNames names = {.single = !strcmp(model->spec->results->precision, "single")};
   TextList list;
-  if (model_enter(model, &before, error)) return BRECCIA_FAILURE;
+  if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   const int status = model_field_names(model, &list, error);
   if (!status) {
     names.fields = list.items;
@@ -66,7 +66,7 @@ int model_expect(breccia_model *model, Error *error)
                    (double)(domain_particle_bytes(d)), d->particles->count);
     free(list.items);
   }
-  team_use(before);
+  model_leave(&entry);
   return status;
 }
 
@@ -104,6 +104,7 @@ const char *breccia_model_overview(breccia_model *model)
 {
   const Domain *d = &model->domain;
   const Solver *s = &model->solver;
+  const Host host = host_enter();
   Text *text = &model->overview;
   text_free(text);
   int fewest = INT32_MAX, most = 0;
@@ -143,5 +144,6 @@ const char *breccia_model_overview(breccia_model *model)
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (d->points.servers) text_add(text, " and what its material servers take");
+  host_leave(&host);
   return text_words(text);
 }

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/tensor.h"
+#include "model/sized.h"
 #include "results/checkpoint.h"
 #include <errno.h>
 #include <math.h>
@@ -261,17 +262,14 @@ static int finish(Run *run, int status, Error *error)
   return status;
 }
 
-int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_error *given)
+static int run_whole(breccia_model *model, const breccia_run *wish, Error *error)
 {
-  Error *error = given ? given : breccia_error_create();
   Run run = {.model = model, .wish = wish};
+  Entry entry;
   model->run_steps = 0;
-  Team *before;
-  if (model_enter(model, &before, error)) {
-    if (!given) breccia_error_destroy(&error);
-    return BRECCIA_FAILURE;
-  }
-  int status = run_make_folder(wish->folder, error);
+  int status = model_enter(model, &entry, error);
+  if (status) return status;
+  status = run_make_folder(wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
   if (!status && wish->progress) status = model_expect(model, error);
   if (!status && wish->restart) status = read_checkpoint(&run, error);
@@ -286,7 +284,17 @@ int breccia_model_run(breccia_model *model, const breccia_run *wish, breccia_err
   result_file_destroy(&run.results);
   free(run.names.items);
   text_free(&run.files);
-  team_use(before);
+  model_leave(&entry);
+  return status;
+}
+
+int breccia_model_run(breccia_model *model, const breccia_run *given_wish, breccia_error *given)
+{
+  Error *error = given ? given : breccia_error_create();
+  breccia_run wish;
+  int status = sized_take(&wish, sizeof wish, given_wish, "breccia_run", error);
+  if (!status && !wish.folder) status = error_add(error, BRECCIA_USER_ERROR, "a run needs a folder");
+  if (!status) status = run_whole(model, &wish, error);
   if (!given) breccia_error_destroy(&error);
   return status;
 }

@@ -2,6 +2,8 @@
 
 #include "deck/resolve.h"
 #include "model/deck_layout.h"
+#include "model/host.h"
+#include "model/sized.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -136,23 +138,24 @@ static int name_case(const Study *study, StudyCase *one, const char *folder, Err
   return BRECCIA_OK;
 }
 
-static int make_case(Study *study, StudyCase *one, int number, const StudyWish *wish, Error *error)
+static int make_case(Study *study, StudyCase *one, int number, Error *error)
 {
+  const breccia_study_plan *plan = &study->plan;
   one->which = calloc((size_t)study->varied_count + 1, sizeof(int));
   one->own = calloc((size_t)study->varied_count + 1, sizeof(char *));
   one->settings = calloc((size_t)study->setting_count + 1, sizeof(char *));
   if (!one->which || !one->own || !one->settings) return error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int v = study->varied_count - 1, rest = number; v >= 0; --v) { /* the last key changes fastest */
-    one->which[v] = wish->together ? number : rest % study->varied[v].count;
+    one->which[v] = plan->together ? number : rest % study->varied[v].count;
     rest /= study->varied[v].count;
   }
-  for (int k = 0; k < wish->setting_count; ++k) one->settings[k] = wish->settings[k];
+  for (int k = 0; k < plan->setting_count; ++k) one->settings[k] = plan->settings[k];
   for (int v = 0; v < study->varied_count; ++v) {
     one->own[v] = text_format("%s=%s", study->varied[v].key, study->varied[v].values[one->which[v]]);
     if (!one->own[v]) return error_add(error, BRECCIA_FAILURE, "out of memory: study");
-    one->settings[wish->setting_count + v] = one->own[v];
+    one->settings[plan->setting_count + v] = one->own[v];
   }
-  return name_case(study, one, wish->folder, error);
+  return name_case(study, one, plan->folder, error);
 }
 
 /** Reads the deck of a case as far as that goes without building its body. */
@@ -190,34 +193,52 @@ static int count_cases(const Study *study, bool together, int *count, Error *err
   return BRECCIA_OK;
 }
 
-int study_plan(Study *study, const StudyWish *wish, Error *error)
+static int make_cases(Study *study, Error *error)
 {
-  *study = (Study){.setting_count = wish->setting_count + wish->varied_count};
-  study->varied = calloc((size_t)wish->varied_count + 1, sizeof *study->varied);
+  const breccia_study_plan *plan = &study->plan;
+  study->setting_count = plan->setting_count + plan->varied_count;
+  study->varied = calloc((size_t)plan->varied_count + 1, sizeof *study->varied);
   if (!study->varied) return error_add(error, BRECCIA_FAILURE, "out of memory: study");
-  if (!wish->varied_count)
+  if (!plan->varied_count)
     return error_add(error, BRECCIA_USER_ERROR, "give what is varied, like --vary 'body.beam.spacing=2 mm:8 mm:4'");
   int status = BRECCIA_OK, count = 0;
-  for (int v = 0; v < wish->varied_count && !status; ++v, ++study->varied_count)
-    status = read_varied(&study->varied[v], wish->varied[v], error);
-  if (!status) status = count_cases(study, wish->together, &count, error);
+  for (int v = 0; v < plan->varied_count && !status; ++v, ++study->varied_count)
+    status = read_varied(&study->varied[v], plan->varied[v], error);
+  if (!status) status = count_cases(study, plan->together != 0, &count, error);
   if (status) return status;
   size_t length;
-  char *text = document_text(wish->deck, &length, error);
+  char *text = document_text(plan->deck, &length, error);
   if (!text) return BRECCIA_USER_ERROR;
   study->cases = calloc((size_t)count, sizeof *study->cases);
   if (!study->cases) status = error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int k = 0; study->cases && k < count; ++k, ++study->count) {
-    int bad = make_case(study, &study->cases[k], k, wish, error);
-    if (!bad) bad = read_deck(&study->cases[k], study->setting_count, text, wish->deck, error);
+    int bad = make_case(study, &study->cases[k], k, error);
+    if (!bad) bad = read_deck(&study->cases[k], study->setting_count, text, plan->deck, error);
     if (bad) status = bad;
   }
   free(text);
   return status;
 }
 
-void study_destroy(Study *study)
+int breccia_study_create(const breccia_study_plan *plan, breccia_study **out, breccia_error *error)
 {
+  const Host host = host_enter();
+  Study *study = calloc(1, sizeof *study);
+  int status = study ? sized_take(&study->plan, sizeof study->plan, plan, "breccia_study_plan", error)
+                     : error_add(error, BRECCIA_FAILURE, "out of memory: study");
+  if (!status && (!study->plan.deck || !study->plan.folder))
+    status = error_add(error, BRECCIA_USER_ERROR, "a study needs a deck and a folder");
+  if (!status) status = make_cases(study, error);
+  if (status) breccia_study_destroy(&study);
+  *out = study;
+  host_leave(&host);
+  return status;
+}
+
+void breccia_study_destroy(breccia_study **out)
+{
+  if (!out || !*out) return;
+  Study *study = *out;
   for (int k = 0; study->cases && k < study->count; ++k) {
     StudyCase *one = &study->cases[k];
     for (int v = 0; one->own && v < study->varied_count; ++v) free(one->own[v]);
@@ -234,7 +255,10 @@ void study_destroy(Study *study)
   }
   free(study->cases);
   free(study->varied);
-  *study = (Study){0};
+  text_free(&study->table);
+  text_free(&study->files);
+  free(study);
+  *out = NULL;
 }
 
 /* ---- what is there ---- */
@@ -246,24 +270,46 @@ static char *file_of(const StudyCase *one, const char *name)
   return text;
 }
 
-CaseState study_state(const StudyCase *one)
+int study_state(const StudyCase *one)
 {
   char *deck = file_of(one, "deck.yaml"), *summary = file_of(one, "summary.json"), *words = deck;
   while (words && *words == '#' && strchr(words, '\n')) words = strchr(words, '\n') + 1; /* where it came from */
-  CaseState state = CASE_NEW;
+  int state = BRECCIA_CASE_NEW;
   if (words && one->deck && !strcmp(words, one->deck)) {
     char *checkpoint = text_format("%s/checkpoint.h5", one->folder);
     const bool whole = summary && strstr(summary, "\"completed\": true"),
                problem = summary && strstr(summary, "\"problem\": ");
     if (whole)
-      state = CASE_DONE;
+      state = BRECCIA_CASE_DONE;
     else if (problem)
-      state = CASE_FAILED;
+      state = BRECCIA_CASE_FAILED;
     else if (checkpoint && !access(checkpoint, R_OK))
-      state = CASE_STOPPED;
+      state = BRECCIA_CASE_STOPPED;
     free(checkpoint);
   }
   free(deck);
   free(summary);
   return state;
+}
+
+int breccia_study_case_at(const breccia_study *study, int k, breccia_case *given)
+{
+  if (k < 0 || k >= study->count) return 0;
+  const StudyCase *one = &study->cases[k];
+  const breccia_case found = {.name = one->name,
+                              .folder = one->folder,
+                              .settings = one->settings,
+                              .setting_count = study->setting_count,
+                              .state = study_state(one)};
+  return sized_give(given, &found, sizeof found);
+}
+
+const char *breccia_study_table(const breccia_study *study)
+{
+  return text_words(&study->table);
+}
+
+const char *breccia_study_files(const breccia_study *study)
+{
+  return text_words(&study->files);
 }

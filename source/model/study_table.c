@@ -1,6 +1,7 @@
 /* What the cases of a study gave, side by side. */
 #include "base/csv.h"
 #include "deck/document.h"
+#include "model/host.h"
 #include "model/study.h"
 #include "results/curve.h"
 #include "results/curve_names.h"
@@ -62,12 +63,12 @@ typedef struct Result { /* a column of the table */
 
 typedef struct Report {
   const Study *study;
-  const StudyWish *wish;
+  const breccia_study_plan *plan;
   Result results[MOST_RESULTS];
   int result_count;
   char *curves[MOST_RESULTS];
   int curve_count;
-  CaseState *states;
+  int *states;
   Text *files;
 } Report;
 
@@ -122,12 +123,12 @@ static int add_curves_of_deck(Report *report, Error *error)
 
 static int choose_results(Report *report, Error *error)
 {
-  const StudyWish *wish = report->wish;
+  const breccia_study_plan *plan = report->plan;
   int status = BRECCIA_OK;
-  for (int k = 0; k < wish->curve_count && !status; ++k) status = add_curve(report, wish->curves[k], error);
-  if (!wish->curve_count && !status) status = add_curves_of_deck(report, error);
-  for (int k = 0; k < wish->result_count && !status; ++k) status = add_result(report, wish->results[k], error);
-  if (wish->result_count || status) return status;
+  for (int k = 0; k < plan->curve_count && !status; ++k) status = add_curve(report, plan->curves[k], error);
+  if (!plan->curve_count && !status) status = add_curves_of_deck(report, error);
+  for (int k = 0; k < plan->result_count && !status; ++k) status = add_result(report, plan->results[k], error);
+  if (plan->result_count || status) return status;
   static const char *const usual[] = {"peaks.displacement", "broken_bonds", "energy.imbalance"};
   for (size_t k = 0; k < sizeof usual / sizeof *usual && !status; ++k) status = add_result(report, usual[k], error);
   for (int k = 0; k < report->curve_count && !status; ++k) {
@@ -221,7 +222,7 @@ static int read_values(Report *report, Error *error)
   int status = BRECCIA_OK;
   for (int k = 0; k < report->study->count && !status; ++k) {
     const StudyCase *one = &report->study->cases[k];
-    const bool there = (report->states[k] = study_state(one)) == CASE_DONE;
+    const bool there = (report->states[k] = study_state(one)) == BRECCIA_CASE_DONE;
     if (there) status = read_summary_figures(report, k, error);
     for (int r = 0; r < report->result_count && !status; ++r) {
       Result *result = &report->results[r];
@@ -246,7 +247,7 @@ static int read_values(Report *report, Error *error)
 
 static int write_text(Report *report, const char *name, const Text *words, Error *error)
 {
-  char *path = text_format("%s/%s", report->wish->folder, name);
+  char *path = text_format("%s/%s", report->plan->folder, name);
   FILE *file = path ? fopen(path, "w") : NULL;
   int bad = !file || fwrite(text_words(words), 1, words->length, file) != words->length;
   if (file && fclose(file)) bad = 1;
@@ -268,10 +269,12 @@ static void add_cell(Text *text, const char *words)
     text_add(text, "%s", words);
 }
 
-static const char *state_words(CaseState state)
+static const char *state_words(int state)
 {
-  static const char *const words[] = {
-      [CASE_NEW] = "not run", [CASE_STOPPED] = "stopped", [CASE_FAILED] = "failed", [CASE_DONE] = "done"};
+  static const char *const words[] = {[BRECCIA_CASE_NEW] = "not run",
+                                      [BRECCIA_CASE_STOPPED] = "stopped",
+                                      [BRECCIA_CASE_FAILED] = "failed",
+                                      [BRECCIA_CASE_DONE] = "done"};
   return words[state];
 }
 
@@ -355,11 +358,11 @@ static int draw_curves(Report *report, Error *error)
   const char **folders = calloc((size_t)report->study->count + 1, sizeof *folders);
   int done = 0, status = folders ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int k = 0; folders && k < report->study->count; ++k)
-    if (report->states[k] == CASE_DONE) folders[done++] = report->study->cases[k].folder;
+    if (report->states[k] == BRECCIA_CASE_DONE) folders[done++] = report->study->cases[k].folder;
   for (int c = 0; c < report->curve_count && done && !status; ++c) {
     char name[160];
     curve_name(report->curves[c], name, sizeof name);
-    char *path = text_format("%s/%s.png", report->wish->folder, name);
+    char *path = text_format("%s/%s.png", report->plan->folder, name);
     const CurveOptions o = {.title = "", .low = NAN, .high = NAN};
     status = path ? curve_draw(folders, done, report->curves[c], &o, path, error) : BRECCIA_FAILURE;
     if (!status) text_add(report->files, "  %s\n", path);
@@ -408,16 +411,16 @@ static int draw_result(Report *report, const Result *result, const char *unit, E
   for (int first = 0; first < study->count && !status; ++first) {
     const StudyCase *one = &study->cases[first];
     bool known = false;
-    for (int k = 0; k < first; ++k) known |= same_line(study, one, &study->cases[k], report->wish->together);
+    for (int k = 0; k < first; ++k) known |= same_line(study, one, &study->cases[k], report->plan->together);
     if (known) continue;
     Text title = {0};
-    for (int v = 1; v < study->varied_count && !report->wish->together; ++v)
+    for (int v = 1; v < study->varied_count && !report->plan->together; ++v)
       text_add(&title, "%s%s %s", v > 1 ? ", " : "", study_key(study, v), study->varied[v].values[one->which[v]]);
     titles[count] = title.characters;
     lines[count] = (PlotLine){titles[count] ? titles[count] : "", x + used, y + used, 0, false, count, 0};
     for (int k = first; k < study->count; ++k) {
       const char *ignored;
-      if (!same_line(study, one, &study->cases[k], report->wish->together)) continue;
+      if (!same_line(study, one, &study->cases[k], report->plan->together)) continue;
       number_of(study->varied[0].values[study->cases[k].which[0]], &x[used], &ignored);
       y[used++] = result->values[k];
       ++lines[count].count;
@@ -426,7 +429,7 @@ static int draw_result(Report *report, const Result *result, const char *unit, E
   }
   char name[WORDS];
   text_file_name(result->words, name, sizeof name);
-  char *path = text_format("%s/%s.png", report->wish->folder, name);
+  char *path = text_format("%s/%s.png", report->plan->folder, name);
   const PlotOptions o = {.title = "",
                          .x = {study_key(study, 0), unit, NULL, false},
                          .y = {result->words, result->unit, NULL, false},
@@ -455,19 +458,29 @@ static int draw_results(Report *report, Error *error)
   return status;
 }
 
-int study_report(const Study *study, const StudyWish *wish, Text *table, Text *files, Error *error)
+static int make_report(Study *study, Error *error)
 {
-  Report report = {.study = study, .wish = wish, .files = files};
+  Report report = {.study = study, .plan = &study->plan, .files = &study->files};
   report.states = calloc((size_t)study->count + 1, sizeof *report.states);
   int status =
       report.states ? choose_results(&report, error) : error_add(error, BRECCIA_FAILURE, "out of memory: study");
   if (!status) status = read_values(&report, error);
   if (!status) status = write_csv(&report, error);
-  if (!status) status = write_table(&report, table, error);
+  if (!status) status = write_table(&report, &study->table, error);
   if (!status) status = draw_curves(&report, error);
   if (!status) status = draw_results(&report, error);
   for (int r = 0; r < report.result_count; ++r) free(report.results[r].values);
   for (int c = 0; c < report.curve_count; ++c) free(report.curves[c]);
   free(report.states);
+  return status;
+}
+
+int breccia_study_report(breccia_study *study, breccia_error *error)
+{
+  const Host host = host_enter();
+  text_free(&study->table);
+  text_free(&study->files);
+  const int status = make_report(study, error);
+  host_leave(&host);
   return status;
 }

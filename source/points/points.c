@@ -172,6 +172,7 @@ static void make_batch(breccia_batch *batch, const Points *points, int64_t first
 {
   const int64_t row = history_at(points, first);
   const int components = points->components;
+  batch->size = sizeof *batch;
   batch->count = count;
   batch->committed = points->committed + row;
   batch->trial = points->trial + row;

@@ -48,7 +48,7 @@ mkdir -p "$work/tree/examples/dam"
 printf 'x,y,z,volume\n0,0,0,"1"\n\\' > "$work/tree/examples/dam/points.csv"
 printf 'body: {dam: {file: points.csv}} # other.csv is not there\n' > "$work/tree/examples/dam/dam.yaml"
 cat > "$work/print.c" << 'END'
-#include "cli/examples.h"
+#include "examples.h"
 #include <stdio.h>
 int main(void)
 {
@@ -60,7 +60,7 @@ int main(void)
 }
 END
 cmake "-DSOURCE=$work/tree" -DDECKS=examples/dam/dam.yaml "-DOUTPUT=$work/embedded.c" -P "$source/scripts/embed_examples.cmake" &&
-  cc "-I$source/source" -o "$work/print" "$work/print.c" "$work/embedded.c" || fail "an example with a CSV file cannot be embedded"
+  cc "-I$source/source/cli" -o "$work/print" "$work/print.c" "$work/embedded.c" || fail "an example with a CSV file cannot be embedded"
 equal "embedded example" "$("$work/print")" "dam/dam/dam.yaml:$(cat "$work/tree/examples/dam/dam.yaml")
 dam/dam/points.csv:$(cat "$work/tree/examples/dam/points.csv")"
 

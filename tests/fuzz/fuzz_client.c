@@ -100,7 +100,8 @@ static void use(Remote *r, Error *error)
   double *committed = calloc((size_t)row * POINTS, sizeof(double)),
          *trial = calloc((size_t)row * POINTS, sizeof(double));
   if (!committed || !trial || remote_state_values(r) > MOST_STATE) abort();
-  breccia_batch batch = {.count = POINTS, .committed = committed, .trial = trial, .tangent = tangent};
+  breccia_batch batch = {
+      .size = sizeof(breccia_batch), .count = POINTS, .committed = committed, .trial = trial, .tangent = tangent};
   for (int k = 0; k < 6; ++k) {
     batch.strain[k] = strain[k];
     batch.stress[k] = stress[k];

@@ -21,8 +21,12 @@ void point_stop(Point *p)
 
 bool point_may_try(Point *p, const double *strain, double *stress, double *tangent, int elastic)
 {
-  breccia_batch batch = {
-      .count = 1, .committed = p->committed, .trial = p->trial, .tangent = tangent, .elastic_stage = elastic};
+  breccia_batch batch = {.size = sizeof(breccia_batch),
+                         .count = 1,
+                         .committed = p->committed,
+                         .trial = p->trial,
+                         .tangent = tangent,
+                         .elastic_stage = elastic};
   for (int k = 0; k < (p->m->law->components); ++k) {
     batch.strain[k] = strain + k;
     batch.stress[k] = stress + k;

@@ -204,7 +204,8 @@ static int glass_update(const void *constants, const breccia_batch *batch)
   }
   return -1;
 }
-const breccia_law law_of_glass = {.name = "glass",
+const breccia_law law_of_glass = {.size = sizeof(breccia_law),
+                                  .name = "glass",
                                   .about = "gives up",
                                   .source = "the tests",
                                   .maturity = "experimental",
@@ -233,7 +234,8 @@ static int giver_update(const void *constants, const breccia_batch *batch)
   }
   return -1;
 }
-const breccia_law law_of_giver = {.name = "giver",
+const breccia_law law_of_giver = {.size = sizeof(breccia_law),
+                                  .name = "giver",
                                   .about = "gives more than it got",
                                   .source = "the tests",
                                   .maturity = "experimental",

@@ -371,7 +371,7 @@ static void a_chosen_step_ends_with_the_end_time_by_a_shorter_last_one(void **st
 static breccia_model *pulled_vase(const char *failure)
 {
   static const breccia_law *const laws[] = {&law_of_glass};
-  const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1};
+  const breccia_options options = {.size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1};
   breccia_model *m = NULL;
   char deck[1024];
   snprintf(deck, sizeof deck,
@@ -458,7 +458,7 @@ static void marks_of_laws_that_gave_up_outlive_a_restart(void **state)
   assert_true(marked);
   char folder[] = "/tmp/breccia-XXXXXX";
   assert_non_null(mkdtemp(folder));
-  breccia_run run = {.folder = folder, .steps = whole->solver.clock.step};
+  breccia_run run = {.size = sizeof(breccia_run), .folder = folder, .steps = whole->solver.clock.step};
   breccia_model *first = pulled_vase("failed laws: break"), *second = pulled_vase("failed laws: break");
   assert_int_equal(breccia_model_run(first, &run, NULL), 0);
   breccia_model_step(whole, 40, NULL);
@@ -484,7 +484,7 @@ static void a_law_that_gives_more_than_it_got_stops_the_run(void **state)
 {
   (void)state;
   static const breccia_law *const laws[] = {&law_of_giver};
-  const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1};
+  const breccia_options options = {.size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1};
   breccia_error *error = breccia_error_create();
   breccia_model *m;
   const char *deck = "materials: {g: {model: giver, density: 2}}\n"
@@ -599,7 +599,7 @@ static void families_that_carry_less_restart_to_the_same_bits(void **state)
   breccia_model *second = struck_coarse_plate(words, "model: elastic");
   char folder[] = "/tmp/breccia-XXXXXX", command[64];
   assert_non_null(mkdtemp(folder));
-  breccia_run run = {.folder = folder, .steps = 12};
+  breccia_run run = {.size = sizeof(breccia_run), .folder = folder, .steps = 12};
   assert_int_equal(breccia_model_run(first, &run, NULL), 0);
   run.restart = 1;
   run.steps = 24;

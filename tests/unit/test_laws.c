@@ -315,7 +315,7 @@ static void points_of_a_batch_do_not_know_of_each_other(void **state)
       memcpy(trial + values * (size_t)i, alone[i].committed, sizeof(double) * values);
     }
     for (int step = 0; step < STEPS; ++step) {
-      breccia_batch batch = {.count = POINTS, .committed = committed, .trial = trial};
+      breccia_batch batch = {.size = sizeof(breccia_batch), .count = POINTS, .committed = committed, .trial = trial};
       for (int i = 0; i < POINTS; ++i) {
         double e[6];
         for (int k = 0; k < 6; ++k) e[k] = strain[k][i];

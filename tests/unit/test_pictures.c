@@ -176,7 +176,7 @@ static int run_bar(void **state)
       "solve: {explicit: {steps: 90, time step: 0.1}}\nresults: {number: 3, fields: [displacement, stress]}\n"
       "pictures: [{field: stress, component: xx, deformed: 3}]\n");
   Error *error = breccia_error_create();
-  const breccia_run run = {.folder = folder};
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = folder};
   const int bad = breccia_model_run(model, &run, error);
   if (bad) print_error("%s\n", breccia_error_text(error));
   breccia_error_destroy(&error);

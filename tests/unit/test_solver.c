@@ -334,7 +334,7 @@ static void energy_from_nothing_stops_the_run(void **state)
   (void)state;
   breccia_error *error = breccia_error_create();
   breccia_model *m;
-  const breccia_options force = {.force = 1};
+  const breccia_options force = {.size = sizeof(breccia_options), .force = 1};
   const char *deck = "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
                      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
                      "loads: [{on: {face: x+}, body force: [1, 0, 0]}]\n"
@@ -401,7 +401,8 @@ static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **stat
   (void)state;
   const breccia_law *const laws[] = {&law_of_glass};
   for (int breaks = 0; breaks < 2; ++breaks) {
-    const breccia_options options = {.laws = laws, .law_count = 1, .threads = 1 + breaks};
+    const breccia_options options = {
+        .size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1 + breaks};
     breccia_error *error = breccia_error_create();
     breccia_model *model = NULL;
     char deck[1024];

@@ -174,7 +174,8 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
       const StageRecord *r = &whole->solver.records[stage];
       assert_non_null(mkdtemp(folder));
       Error *error = breccia_error_create();
-      breccia_run run = {.folder = folder,
+      breccia_run run = {.size = sizeof(breccia_run),
+                         .folder = folder,
                          .steps = (int64_t)(at_end ? r->last_step : (r->first_step + r->last_step) / 2)};
       breccia_model *first = struck_plate(), *second = struck_plate();
       if (breccia_model_run(first, &run, error)) fail_msg("%s", breccia_error_text(error));

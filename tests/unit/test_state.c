@@ -221,10 +221,10 @@ static int tired_update_bond(const void *constants, const breccia_batch *batch)
 static const breccia_parameter tired_parameters[] = {{"limit", "1", NULL, "(0, inf)", "strain at which it gives up"}};
 #define TIRED(word, one_strain, function)                                                                              \
   {                                                                                                                    \
-    .name = word, .about = "softens and gives up", .source = "this test", .maturity = "experimental",                  \
-    .parameters = tired_parameters, .parameter_count = 1, .constants_size = sizeof(double),                            \
-    .components = (one_strain) ? 1 : 6, .prepare = tired_prepare, .moduli = tired_moduli,                              \
-    .history_values = tired_values, .update = function                                                                 \
+    .size = sizeof(breccia_law), .name = word, .about = "softens and gives up", .source = "this test",                 \
+    .maturity = "experimental", .parameters = tired_parameters, .parameter_count = 1,                                  \
+    .constants_size = sizeof(double), .components = (one_strain) ? 1 : 6, .prepare = tired_prepare,                    \
+    .moduli = tired_moduli, .history_values = tired_values, .update = function                                         \
   }
 static const breccia_law tired = TIRED("tired", 0, tired_update), tired_bond = TIRED("tired-1d", 1, tired_update_bond);
 
@@ -232,7 +232,7 @@ static breccia_model *pulled_body(const char *law, double limit, const char *lat
                                   double stretch)
 {
   static const breccia_law *const laws[] = {&tired, &tired_bond};
-  const breccia_options options = {.laws = laws, .law_count = 2};
+  const breccia_options options = {.size = sizeof(breccia_options), .laws = laws, .law_count = 2};
   breccia_model *model = NULL;
   Error *error = breccia_error_create();
   char deck[1024];

@@ -18,7 +18,8 @@ static Fibre fibre(Material material)
 static double stress_at(Fibre *f, double strain, double *tangent, int elastic)
 {
   double stress;
-  breccia_batch batch = {.count = 1,
+  breccia_batch batch = {.size = sizeof(breccia_batch),
+                         .count = 1,
                          .strain = {&strain},
                          .stress = {&stress},
                          .committed = f->committed,

@@ -132,7 +132,8 @@ static int law_update(const void *constants, const breccia_batch *batch)
 
 void remote_make_law(Remote *r)
 {
-  r->law = (breccia_law){.name = r->name,
+  r->law = (breccia_law){.size = sizeof(breccia_law),
+                         .name = r->name,
                          .about = "runs in a material server",
                          .source = r->command,
                          .maturity = "experimental",

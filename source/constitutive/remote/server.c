@@ -233,7 +233,8 @@ static int64_t evaluate(Session *h, int64_t first, int64_t count, const uint8_t 
   double e[6][CHUNK], s[6][CHUNK], row[6], tangent[36 * CHUNK];
   for (int64_t from = 0; from < count; from += CHUNK) {
     const int n = count - from < CHUNK ? (int)(count - from) : CHUNK;
-    breccia_batch batch = {.count = n,
+    breccia_batch batch = {.size = sizeof(breccia_batch),
+                           .count = n,
                            .committed = h->committed + values * (first + from),
                            .trial = h->trial + values * (first + from),
                            .tangent = tangents ? tangent : NULL,

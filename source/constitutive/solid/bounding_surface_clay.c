@@ -235,6 +235,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_bounding_surface_clay = {
+    .size = sizeof(breccia_law),
     .name = "bounding-surface-clay",
     .about = "clay under cycles: stiffness falls from the last reversal towards a bounding surface, without an elastic "
              "range",

@@ -270,6 +270,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_cap = {
+    .size = sizeof(breccia_law),
     .name = "cap",
     .about = "concrete and soil: failure envelope, tension cut-off and a cap that compaction moves",
     .source = "DiMaggio and Sandler 1971; Hofstetter, Simo and Taylor 1993",

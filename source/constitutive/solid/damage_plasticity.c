@@ -271,6 +271,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_damage_plasticity = {
+    .size = sizeof(breccia_law),
     .name = "damage-plasticity",
     .about = "concrete: plasticity with damage of its own in tension and compression; cracks close; energies hold for "
              "any spacing",

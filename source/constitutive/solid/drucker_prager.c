@@ -153,6 +153,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_drucker_prager = {
+    .size = sizeof(breccia_law),
     .name = "drucker-prager",
     .about = "soil and rock: a cone with tension cut-off, associated or not, with isotropic hardening",
     .source = "Drucker and Prager 1952",

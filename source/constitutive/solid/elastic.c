@@ -32,6 +32,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_elastic = {
+    .size = sizeof(breccia_law),
     .name = "elastic",
     .about = "linear isotropic elasticity",
     .linear = 1,

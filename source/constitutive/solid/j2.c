@@ -104,6 +104,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_j2 = {
+    .size = sizeof(breccia_law),
     .name = "j2",
     .about = "metal-like plasticity (von Mises) with linear and saturating isotropic and linear kinematic hardening",
     .source = "Simo and Hughes 1998, ch. 3",

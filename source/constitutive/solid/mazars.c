@@ -151,6 +151,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_mazars = {
+    .size = sizeof(breccia_law),
     .name = "mazars",
     .about = "concrete: isotropic damage, quick in tension and slow in compression; the fracture energy holds for any "
              "spacing",

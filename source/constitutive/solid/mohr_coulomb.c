@@ -202,6 +202,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_mohr_coulomb = {
+    .size = sizeof(breccia_law),
     .name = "mohr-coulomb",
     .about = "soil and rock: the hexagonal pyramid with a tension cut-off, associated or not, perfectly plastic",
     .source = "de Souza Neto, Peric and Owen 2008, ch. 8",

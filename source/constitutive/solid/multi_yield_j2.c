@@ -103,6 +103,7 @@ static void begin(const void *constants, double *history)
 }
 
 const breccia_law law_multi_yield_j2 = {
+    .size = sizeof(breccia_law),
     .name = "multi-yield-j2",
     .about = "clay: nested yield surfaces on a hyperbolic backbone, kinematic hardening by Mroz' rule",
     .source = "Iwan 1967, Mroz 1967, Prevost 1977; scheme of OpenSees PressureIndependMultiYield",

@@ -32,6 +32,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_bilinear_softening = {
+    .size = sizeof(breccia_law),
     .name = "bilinear-softening",
     .about = "a straight line up to the strength and a straight one down to nothing; elastic in compression",
     .source = "docs/theory.md 2 (linear softening of bonds)",

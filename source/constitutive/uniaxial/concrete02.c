@@ -100,6 +100,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_concrete02 = {
+    .size = sizeof(breccia_law),
     .name = "concrete02",
     .about = "concrete in compression as kent-scott-park, with linear softening in tension and stiffness that degrades",
     .source = "Yassin 1994; Kent and Park 1971",

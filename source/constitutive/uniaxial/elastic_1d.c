@@ -31,6 +31,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_elastic_1d = {
+    .size = sizeof(breccia_law),
     .name = "elastic-1d",
     .about = "linear elasticity along one direction",
     .source = "Hooke's law",

@@ -72,6 +72,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_elastic_brittle = {
+    .size = sizeof(breccia_law),
     .name = "elastic-brittle",
     .about = "linear until it breaks for good, by strength or fracture energy; a broken point carries nothing",
     .source = "Silling and Askari 2005",

@@ -61,6 +61,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_elastic_perfectly_plastic = {
+    .size = sizeof(breccia_law),
     .name = "elastic-perfectly-plastic",
     .about = "elastic up to a yield stress in tension and another in compression (ElasticPP)",
     .source = "Prandtl 1928",

@@ -50,6 +50,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_exponential_softening = {
+    .size = sizeof(breccia_law),
     .name = "exponential-softening",
     .about = "a straight line up to the strength, then an exponential fall with a long straight tail; elastic in "
              "compression",

@@ -48,6 +48,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_kent_scott_park = {
+    .size = sizeof(breccia_law),
     .name = "kent-scott-park",
     .about =
         "concrete in compression: parabola, line and residual strength, unloading along lines; no tension (Concrete01)",

@@ -81,6 +81,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_mander = {
+    .size = sizeof(breccia_law),
     .name = "mander",
     .about = "confined concrete in compression, unloading along lines; no tension",
     .source = "Mander, Priestley and Park 1988; Karsan and Jirsa 1969",

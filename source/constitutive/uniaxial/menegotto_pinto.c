@@ -111,6 +111,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_menegotto_pinto = {
+    .size = sizeof(breccia_law),
     .name = "menegotto-pinto",
     .about = "steel with rounded cycles, kinematic and optional isotropic hardening (Steel02)",
     .source = "Menegotto and Pinto 1973; Filippou, Popov and Bertero 1983",

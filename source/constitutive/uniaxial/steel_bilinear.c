@@ -65,6 +65,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_steel_bilinear = {
+    .size = sizeof(breccia_law),
     .name = "steel-bilinear",
     .about = "steel with two straight lines, kinematic hardening and optional isotropic hardening (Steel01)",
     .source = "Filippou, Popov and Bertero 1983 (isotropic hardening)",

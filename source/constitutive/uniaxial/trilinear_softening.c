@@ -52,6 +52,7 @@ static int update(const void *constants, const breccia_batch *batch)
 }
 
 const breccia_law law_trilinear_softening = {
+    .size = sizeof(breccia_law),
     .name = "trilinear-softening",
     .about = "a straight line up to the strength and two down, the first steeper; elastic in compression",
     .source = "Petersson 1981",
