@@ -4,6 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void *out_of_memory(size_t count, size_t size, const char *label, Error *error)
+{
+  error_add(error, BRECCIA_FAILURE, "out of memory: %s needs %.1f MB", label, (double)count * (double)size / 1e6);
+  return NULL;
+}
+
 void *memory_zeroed(size_t count, size_t size, const char *label, Error *error)
 {
   enum { ALIGNMENT = 64 };
@@ -11,11 +17,13 @@ void *memory_zeroed(size_t count, size_t size, const char *label, Error *error)
   void *memory = NULL;
   if (!__builtin_mul_overflow(count, size, &bytes) && bytes < SIZE_MAX - ALIGNMENT)
     memory = aligned_alloc(ALIGNMENT, bytes ? (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT : ALIGNMENT);
-  if (!memory) {
-    error_add(error, BRECCIA_FAILURE, "out of memory: %s needs %.1f MB", label, (double)count * (double)size / 1e6);
-    return NULL;
-  }
-  return memset(memory, 0, bytes);
+  return memory ? memset(memory, 0, bytes) : out_of_memory(count, size, label, error);
+}
+
+void *memory_reserved(size_t count, size_t size, const char *label, Error *error)
+{
+  void *memory = calloc(count ? count : 1, size);
+  return memory ? memory : out_of_memory(count, size, label, error);
 }
 
 typedef struct Chunk {

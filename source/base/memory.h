@@ -10,6 +10,9 @@
  *  @return NULL after adding a line to `error`; never NULL for count 0; freed with free() */
 void *memory_zeroed(size_t count, size_t size, const char *label, Error *error);
 
+/** The same without the alignment, and memory is taken only where something is written: for arrays of which large parts may stay zero. */
+void *memory_reserved(size_t count, size_t size, const char *label, Error *error);
+
 typedef struct Arena Arena;
 
 Arena *arena_create(void);

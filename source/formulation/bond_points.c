@@ -32,26 +32,34 @@ LANES_INLINE Lanes stretch_of(Lanes d, bool series, Lanes *shortened, LaneMask *
   return d * *shortened - g;
 }
 
-LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_t slot, int half, int at, bool gaps,
-                                  bool series, LaneMask *beyond)
+/** A lattice slot, both halves side by side. */
+LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_t slot, int at, bool gaps, bool series,
+                                  LaneMask *beyond)
 {
   const Family *f = b->family;
-  const Pattern *row = &f->patterns[f->pattern[slot]];
-  const int64_t there = f->base[slot] + LANES * half, here = chunk->slice * SLICE + LANES * half;
-  Lanes d = {0}, shortened, lever = lanes_set(row->weight_by_length) * lanes_set(chunk->per_stress);
-  for (int k = 0; k < 3; ++k) {
-    const Lanes eta = lanes_load(chunk->u[k] + there) - lanes_load(chunk->u[k] + here);
-    d += eta * (lanes_set(2 * row->xi[k]) + eta);
+  const int pattern = f->pattern[slot];
+  const Pattern *row = &f->patterns[pattern];
+  const int64_t there = f->base[slot], here = chunk->slice * SLICE;
+  const Lanes twice[3] = {lanes_load(b->numbers + b->rows[pattern].xi[0]),
+                          lanes_load(b->numbers + b->rows[pattern].xi[1]),
+                          lanes_load(b->numbers + b->rows[pattern].xi[2])};
+  const Lanes by_square = lanes_set(row->by_square), pull = lanes_set(row->weight_by_length * chunk->per_stress);
+  for (int half = 0; half < 2; ++half) {
+    Lanes d = {0}, shortened, lever = pull;
+    for (int k = 0; k < 3; ++k) {
+      const Lanes eta = lanes_load(chunk->u[k] + there + LANES * half) - lanes_load(chunk->u[k] + here + LANES * half);
+      d += eta * (twice[k] + eta);
+    }
+    if (gaps) {
+      const LaneMask intact = lanes_half(f->intact[slot], half);
+      d = lanes_where(intact, d);
+      lever = lanes_where(intact, lever);
+    }
+    d *= by_square;
+    if (b->surface) lever *= bond_surface(b, slot, half);
+    lanes_store(chunk->strain + at + LANES * half, stretch_of(d, series, &shortened, beyond));
+    lanes_store(chunk->lever + at + LANES * half, lever * shortened);
   }
-  if (gaps) {
-    const LaneMask intact = lanes_half(f->intact[slot], half);
-    d = lanes_where(intact, d);
-    lever = lanes_where(intact, lever);
-  }
-  d *= lanes_set(row->by_square);
-  if (b->surface) lever *= bond_surface(b, slot, half);
-  lanes_store(chunk->strain + at, stretch_of(d, series, &shortened, beyond));
-  lanes_store(chunk->lever + at, lever * shortened);
 }
 
 /** Four stored bonds, each of one row. */
@@ -101,8 +109,7 @@ LANES_INLINE bool stretch_rows(const BondBased *b, const Chunk *chunk, bool gaps
   int at = 0;
   for (; at < chunk->count && from + at < lattice; at += SLICE) {
     const int64_t slot = b->family->first[slice] + l->owned[l->owned_first[slice] + (from + at) / SLICE];
-    for (int half = 0; half < 2; ++half)
-      stretch_lattice(b, chunk, slot, half, at + LANES * half, gaps, series, &beyond);
+    stretch_lattice(b, chunk, slot, at, gaps, series, &beyond);
   }
   for (; at < chunk->count; at += LANES) stretch_singles(b, chunk, at, series, &beyond);
   return !(beyond[0] | beyond[1] | beyond[2] | beyond[3]);
@@ -150,20 +157,22 @@ int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep)
   return -1;
 }
 
-LANES_INLINE void resist_lattice(const BondBased *b, const double *const u[3], int64_t slice, int64_t slot, int half,
-                                 bool gaps, Lanes force[3], const Lanes own[3])
+LANES_INLINE void resist_lattice(const BondBased *b, const double *const u[3], int64_t slice, int64_t slot, bool gaps,
+                                 Lanes force[2][3], const Lanes own[2][3])
 {
   const Family *f = b->family;
   const Pattern *row = &f->patterns[f->pattern[slot]];
-  const int64_t there = f->base[slot] + LANES * half;
-  Lanes pull = bond_list_load(b->bonds, f, b->pull, slice, slot, half);
-  if (!half) { /* pulls of bonds that others own lie far apart: without this most of the time is waiting for them */
-    const int32_t *ahead = b->bonds->slot_row[slot + AHEAD];
-    __builtin_prefetch(b->pull + ahead[0]);
-    __builtin_prefetch(b->pull + ahead[1]);
+  /* Pulls of bonds that others own lie far apart: without this most of the time is waiting for them. */
+  const int32_t *ahead = b->bonds->slot_row[slot + AHEAD];
+  __builtin_prefetch(b->pull + ahead[0]);
+  __builtin_prefetch(b->pull + ahead[1]);
+  for (int half = 0; half < 2; ++half) {
+    const int64_t there = f->base[slot] + LANES * half;
+    Lanes pull = bond_list_load(b->bonds, f, b->pull, slice, slot, half);
+    if (gaps) pull = lanes_where(lanes_half(f->intact[slot], half), pull);
+    for (int k = 0; k < 3; ++k)
+      force[half][k] += pull * (lanes_set(row->xi[k]) + (lanes_load(u[k] + there) - own[half][k]));
   }
-  if (gaps) pull = lanes_where(lanes_half(f->intact[slot], half), pull);
-  for (int k = 0; k < 3; ++k) force[k] += pull * (lanes_set(row->xi[k]) + (lanes_load(u[k] + there) - own[k]));
 }
 
 LANES_INLINE void resist_stored(const BondBased *b, int64_t slice, int64_t slot, int half, Lanes force[3],
@@ -185,14 +194,14 @@ LANES_INLINE void resist_slice(const BondBased *b, int64_t slice, bool gaps)
   const int64_t stored = f->stored[slice], last = f->first[slice + 1];
   double *const *all = b->particles->displacement;
   const double *const u[3] = {all[0], all[1], all[2]};
-  for (int half = 0; half < 2; ++half) {
-    Lanes force[3] = {{0}}, own[3];
-    for (int k = 0; k < 3; ++k) own[k] = lanes_load(u[k] + slice * SLICE + LANES * half);
-    for (int64_t slot = f->first[slice]; slot < stored; ++slot)
-      resist_lattice(b, u, slice, slot, half, gaps, force, own);
-    for (int64_t slot = stored; slot < last; ++slot) resist_stored(b, slice, slot, half, force, own);
-    for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[k]);
-  }
+  Lanes force[2][3] = {{{0}}}, own[2][3];
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(u[k] + slice * SLICE + LANES * half);
+  for (int64_t slot = f->first[slice]; slot < stored; ++slot) resist_lattice(b, u, slice, slot, gaps, force, own);
+  for (int64_t slot = stored; slot < last; ++slot)
+    for (int half = 0; half < 2; ++half) resist_stored(b, slice, slot, half, force[half], own[half]);
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) lanes_store(b->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }
 
 BRECCIA_CLONES

@@ -14,8 +14,11 @@ static void begin_run(void *context, int64_t n)
   const Points *points = context;
   const PointsRun *run = &points->runs[n];
   const Material *m = &points->materials[run->material];
-  for (int64_t i = 0; i < run->count && m->law->begin; ++i)
-    m->law->begin(m->constants, points->committed + points->history_first[n] + i * m->history_values);
+  for (int64_t i = 0; i < run->count && m->law->begin; ++i) {
+    const int64_t at = points->history_first[n] + i * m->history_values;
+    m->law->begin(m->constants, points->committed + at);
+    m->law->begin(m->constants, points->trial + at);
+  }
 }
 
 static int create_runs(Points *points, const PointsSpec *spec, Error *error)
@@ -45,16 +48,15 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
   if (create_runs(points, spec, error)) return BRECCIA_FAILURE;
   if (spec->may_give_up && !(points->gave_up = memory_zeroed((size_t)points->count, 1, "failed laws", error)))
     return BRECCIA_FAILURE;
-  points->committed = memory_zeroed(points->history_size, sizeof(double), "histories", error);
-  points->trial = memory_zeroed(points->history_size, sizeof(double), "histories", error);
-  if (!points->committed || !points->trial) return BRECCIA_FAILURE;
+  points->committed = memory_reserved(points->history_size, sizeof(double), "histories", error);
+  points->trial = memory_reserved(points->history_size, sizeof(double), "histories", error);
+  if (!points->committed || !points->trial || untouched_create(points, error)) return BRECCIA_FAILURE;
   for (int k = 0; k < 6 && points->components == 6; ++k) {
     points->strain[k] = places_array(points->count, "strains", error);
     points->stress[k] = places_array(points->count, "stresses", error);
     if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
   }
   team_each(points->run_count, begin_run, points);
-  points_take_up(points);
   return point_servers_create(points, spec->present, error);
 }
 
@@ -69,6 +71,7 @@ void points_destroy(Points *points)
   free(points->runs);
   free(points->history_first);
   free(points->gave_up);
+  untouched_destroy(points);
   free(points->tangent);
   point_servers_destroy(points);
   *points = (Points){0};
@@ -108,6 +111,7 @@ const double *points_history(const Points *points, int64_t row)
 void points_take_up(Points *points)
 {
   if (points->history_size) memcpy(points->trial, points->committed, sizeof(double) * points->history_size);
+  untouched_find(points);
 }
 
 void points_commit(Points *points)
@@ -223,9 +227,19 @@ static void fetch_ahead(const Points *points, const breccia_batch *batch, int va
 
 int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
 {
-  const Material *m = points_material(points, first);
+  const int material = points->runs[points_run(points, first)].material;
+  const Material *m = &points->materials[material];
+  _Alignas(64) double trial[UNTOUCHED_NUMBERS];
   breccia_batch batch;
   make_batch(&batch, points, first, count, strain, stress);
+  double *own = batch.trial;
+  if (untouched_batch(points, material, first, count, &batch, trial)) {
+    if (update_batch(points, m, &batch, strain) < 0) {
+      untouched_keep(points, material, first, count, trial, own);
+      return -1;
+    }
+    make_batch(&batch, points, first, count, strain, stress);
+  }
   if (points->components == 1 && m->history_values <= 2) fetch_ahead(points, &batch, m->history_values);
   if (m->remote && points_ask_ahead(points)) return point_servers_answer(points, m, &batch, first);
   const int bad = update_batch(points, m, &batch, strain);

@@ -19,6 +19,7 @@ typedef struct PointsRun {
 } PointsRun;
 
 typedef struct PointServers PointServers; /* laws in other processes (points/servers.c) */
+typedef struct Untouched Untouched;       /* rows that remember nothing yet (points/untouched.c) */
 
 typedef struct Points {
   int components; /* 6 or 1; 0: there are no points, because all laws are linear */
@@ -27,7 +28,8 @@ typedef struct Points {
   double *strain[6], *stress[6]; /* [count] of points of six components */
   double *committed, *trial;
   size_t history_size; /* numbers in each of them */
-  PointsRun *runs;     /* [run_count], in order; they cover all rows */
+  Untouched *untouched;
+  PointsRun *runs; /* [run_count], in order; they cover all rows */
   int64_t run_count;
   int64_t *history_first; /* [run_count] */
   const Material *materials;

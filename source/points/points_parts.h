@@ -1,4 +1,5 @@
-/* What stands behind the door of points: plane stress (plane_stress.c), and laws in other processes (servers.c). */
+/* What stands behind the door of points: plane stress (plane_stress.c), laws in other processes (servers.c), and histories that nothing has
+ * happened to (untouched.c). */
 #ifndef BRECCIA_POINTS_PARTS_H
 #define BRECCIA_POINTS_PARTS_H
 
@@ -10,6 +11,20 @@ breccia_batch batch_part(const breccia_batch *whole, const Material *m, int comp
 /** Update in plane stress: finds the strains zz.
  *  @return -1, or the index of a point whose law could not be integrated */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz);
+
+enum { UNTOUCHED_NUMBERS = 4 * BLOCK }; /* of the histories of a batch of untouched rows, at most */
+
+int untouched_create(Points *points, Error *error);
+void untouched_destroy(Points *points);
+/** Finds again which rows are untouched: the committed histories were put in place from outside. */
+void untouched_find(Points *points);
+/** Gives a batch whose rows are all untouched the history that its law begins with, and a trial one of its own.
+ *  @param[out] trial  [UNTOUCHED_NUMBERS]
+ *  @return whether they are */
+bool untouched_batch(const Points *points, int material, int64_t first, int count, breccia_batch *batch, double *trial);
+/** Takes up what a law has written into the trial histories of an untouched batch, if it remembers anything.
+ *  @param[out] own  where the trial histories of these rows stand */
+void untouched_keep(Points *points, int material, int64_t first, int count, const double *trial, double *own);
 
 /** Numbers the points and divides them among the servers. */
 int point_servers_create(Points *points, const uint8_t *present, Error *error);

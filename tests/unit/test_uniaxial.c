@@ -2,6 +2,7 @@
 #include "point.h"
 
 #include "base/random.h"
+#include "points/points.h"
 
 typedef struct Fibre {
   Material material;
@@ -389,6 +390,74 @@ static void steel_fails_for_good_outside_its_range_of_strains(void **state)
   assert_non_null(strstr(reason, "must be a number above 0"));
 }
 
+/* ---- rows of points ---- */
+
+enum { ROWS = 300, TAKEN = 12 }; /* rows are taken by so many, so that groups of them overlap */
+
+/** Updates all rows and compares each with its fibre, to the bit. */
+static void update_and_compare(Points *points, Fibre *fibres, const double *strains, bool commit)
+{
+  double strain[TAKEN], stress[TAKEN], *at[6] = {strain}, *to[6] = {stress};
+  for (int64_t n = 0; n < points->run_count; ++n) {
+    const PointsRun *run = &points->runs[n];
+    for (int64_t first = run->first; first < run->first + run->count; first += TAKEN) {
+      const int64_t left = run->first + run->count - first;
+      const int count = left < TAKEN ? (int)left : TAKEN;
+      memcpy(strain, strains + first, sizeof *strain * (size_t)count);
+      assert_int_equal(points_update(points, first, count, at, to), -1);
+      for (int i = 0; i < count; ++i)
+        assert_true(stress[i] == stress_at(&fibres[first + i], strains[first + i], NULL, 0));
+    }
+  }
+  if (!commit) return;
+  points_commit(points);
+  for (int i = 0; i < ROWS; ++i) {
+    Fibre *f = &fibres[i];
+    memcpy(f->committed, f->trial, sizeof f->committed);
+    assert_memory_equal(points_history(points, i), f->committed, sizeof(double) * (size_t)f->material.history_values);
+  }
+}
+
+/* Few points are strained so far that their law remembers it, at some time; others are never; steps are tried and given up; and the state is
+ * taken up once by new points. Histories that begin as zeros, and ones that do not. */
+static void rows_of_points_remember_what_their_laws_do(void **state)
+{
+  (void)state;
+  Material materials[2] = {softening(0), material_of("elastic-perfectly-plastic", "Young modulus=2e8",
+                                                     "yield stress=4e5", "initial strain=1e-4", NULL)};
+  const PointsRun runs[2] = {{0, 0, ROWS / 2}, {1, ROWS / 2, ROWS / 2}};
+  const PointsSpec spec = {
+      .components = 1, .runs = runs, .run_count = 2, .materials = materials, .material_count = 2, .length = NAN};
+  Points points;
+  assert_int_equal(points_create(&points, &spec, NULL), 0);
+  Fibre fibres[ROWS];
+  for (int i = 0; i < ROWS; ++i) {
+    fibres[i] = fibre(materials[2 * i / ROWS]);
+    memcpy(fibres[i].committed, points_history(&points, i), sizeof(double) * (size_t)fibres[i].material.history_values);
+  }
+  const double range[2] = {1e-3, 1e-2}; /* strength at 1e-4, yield at 2e-3 */
+  double strains[ROWS];
+  uint64_t random = 7;
+  for (int step = 0; step < 40; ++step) {
+    for (int i = 0; i < ROWS; ++i) {
+      const bool far = i % 37 == step / 2; /* one row or none of what is taken at once */
+      strains[i] = (far ? 1 : 0.05) * range[2 * i / ROWS] * (2 * random_uniform(&random) - 1);
+    }
+    update_and_compare(&points, fibres, strains, step % 3 != 1);
+    if (step != 30) continue;
+    points_destroy(&points); /* a restart */
+    assert_int_equal(points_create(&points, &spec, NULL), 0);
+    double *rows = points.committed;
+    for (int i = 0; i < ROWS; ++i) {
+      memcpy(rows, fibres[i].committed, sizeof(double) * (size_t)fibres[i].material.history_values);
+      rows += fibres[i].material.history_values;
+    }
+    points_take_up(&points);
+  }
+  points_destroy(&points);
+  for (int k = 0; k < 2; ++k) material_destroy(&materials[k]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -406,6 +475,7 @@ int main(void)
       cmocka_unit_test(trilinear_softening_goes_through_its_kink),
       cmocka_unit_test(inadmissible_concrete_is_refused),
       cmocka_unit_test(steel_fails_for_good_outside_its_range_of_strains),
+      cmocka_unit_test(rows_of_points_remember_what_their_laws_do),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
