@@ -59,7 +59,7 @@ static void family_moments(const Contact *c, int block, bool whole, double *firs
 /** Constants of bonds that are as stiff across a face as a column of the body, whose sides are free: bonds calibrated in uniform expansion, less
  *  what their own movement sideways would take; and bounds of eigenvalues: of half a family of them
  *  across a face, and of faces that meet. */
-static void set_constants(Contact *c, Space space, const ContactBlock *blocks)
+static void set_constants(Contact *c, Space space, const ForcesBlock *blocks)
 {
   const Body *body = c->body;
   const Particles *p = &body->particles;
@@ -85,7 +85,7 @@ static void set_constants(Contact *c, Space space, const ContactBlock *blocks)
 static void add_cut_bonds(Contact *c);
 
 int contact_create(Contact *c, const ContactSpec *spec, const Body *body, const Family *family, Space space,
-                   const ContactBlock *blocks, Error *error)
+                   const ForcesBlock *blocks, Error *error)
 {
   const int64_t places = body->particles.places;
   *c = (Contact){.spec = spec, .body = body, .family = family, .margin = 0.3 * body->largest_spacing};

@@ -9,8 +9,7 @@
 #ifndef BRECCIA_CONTACT_CONTACT_H
 #define BRECCIA_CONTACT_CONTACT_H
 
-#include "constitutive/material.h"
-#include "family/family.h"
+#include "forces/forces.h"
 
 typedef struct ContactSpec {
   SectionHead head;
@@ -100,16 +99,9 @@ typedef struct Contact {
   bool failed; /* memory was out */
 } Contact;
 
-/** What contact must know of a block of the body. */
-typedef struct ContactBlock {
-  double young; /* modulus */
-  double bonds; /* share of the stiffness of bonds calibrated in uniform expansion that former bonds carry */
-  bool alike;   /* bonds are as stiff as in a whole family wherever they are */
-} ContactBlock;
-
 /** @param[in] blocks  [blocks of the body] */
 int contact_create(Contact *contact, const ContactSpec *spec, const Body *body, const Family *family, Space space,
-                   const ContactBlock *blocks, Error *error);
+                   const ForcesBlock *blocks, Error *error);
 void contact_destroy(Contact *contact);
 
 /** By all threads, before bonds break at the displacements held: what pressing pairs have to keep. */

@@ -57,7 +57,7 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
     return;
   }
   family_break(&d->family, place, neighbour);
-  contact_bond_broke(&d->contact, place, neighbour);
+  forces_bond_broke(&d->forces, place, neighbour);
   d->suspects[neighbour / SLICE] = 1; /* so that its family is renewed */
 }
 
@@ -198,8 +198,8 @@ void domain_break(Domain *d, const Moment *moment)
     d->points.time = moment->time;
     d->points.time_step = moment->time_step;
   }
-  if (d->contact.spec) {
-    TEAM_SINGLE contact_follow(&d->contact, moment->motion);
+  if (d->forces.count) {
+    TEAM_SINGLE forces_follow(&d->forces, moment->motion);
   }
   if (!judges) return;
   TEAM_FOR (b, d->block_count)
@@ -217,7 +217,7 @@ void domain_break(Domain *d, const Moment *moment)
   }
   if (!d->any_suspect) return;
   find_received(d);
-  contact_remember(&d->contact);
+  forces_remember(&d->forces);
   TEAM_SINGLE break_suspects(d, moment);
 }
 
@@ -238,11 +238,11 @@ void domain_mend(Domain *d)
   for (int64_t n = d->broken_before; n < d->broken_count; ++n) {
     const int32_t a = d->particles->place_of[d->broken[n].a], b = d->particles->place_of[d->broken[n].b];
     family_mend(&d->family, a, b);
-    contact_bond_mended(&d->contact, a, b);
+    forces_bond_mended(&d->forces, a, b);
     for (int end = 0; end < 2 && d->type->renew; ++end) d->type->renew(d->formulation, (end ? b : a) / SLICE);
   }
   d->broken_count = d->broken_before;
   d->out_of_memory = false;
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
-  contact_undo(&d->contact);
+  forces_undo(&d->forces);
 }

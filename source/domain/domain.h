@@ -4,8 +4,8 @@
 #ifndef BRECCIA_DOMAIN_DOMAIN_H
 #define BRECCIA_DOMAIN_DOMAIN_H
 
-#include "contact/contact.h"
 #include "failure/failure.h"
+#include "forces/forces.h"
 #include "formulation/formulation.h"
 
 typedef struct Span { /* slices first .. last - 1, of one material, at most BLOCK places */
@@ -52,7 +52,7 @@ typedef struct Domain {
   const FormulationType *type;
   void *formulation;
   Failure failure;
-  Contact contact;
+  Forces forces;
   Span *blocks;
   int64_t block_count;
   int64_t *lowest;       /* [blocks] first block that holds a neighbour of a particle of the block */
@@ -80,7 +80,7 @@ typedef struct DomainSpec {
   const SectionList *materials, *blocks, *cracks;
   const PeridynamicsSpec *peridynamics;
   const FailureSpec *failure; /* or NULL */
-  const ContactSpec *contact; /* or NULL */
+  void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
 } DomainSpec;
 
 /** Builds everything that a step needs. `domain` must be zero; destroy it in any case. */
@@ -104,7 +104,7 @@ int domain_linearise(Domain *domain, Error *error);
  *  @param[out] change  arrays of places_array */
 void domain_linear_step(Domain *domain, double *const v[3], double *const change[3]);
 
-/** Rows of particles, points, bonds and contact. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
+/** Rows of particles, points, bonds and forces. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
  *  deformations and force states follow to the same bits. */
 void domain_state(Domain *domain, StateList *list);
 /** Forces, strains and stresses of the state that a step began with, after all rows that it had tried have come back. */

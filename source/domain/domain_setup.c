@@ -177,15 +177,16 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   return BRECCIA_OK;
 }
 
-static int create_contact(Domain *d, const DomainSpec *spec, Space space, Error *error)
+static int create_forces(Domain *d, const DomainSpec *spec, Space space, Error *error)
 {
-  ContactBlock *blocks = memory_zeroed((size_t)d->body.block_count, sizeof *blocks, "contact", error);
+  ForcesBlock *blocks = memory_zeroed((size_t)d->body.block_count, sizeof *blocks, "forces", error);
   if (!blocks) return BRECCIA_FAILURE;
   const FormerBonds bonds = d->type->former_bonds(d->formulation);
   for (int64_t s = 0; s < d->particles->slices; ++s)
     blocks[d->particles->block[s]] =
-        (ContactBlock){material_young(&d->materials[d->material[s]]), bonds.share, bonds.alike};
-  const int status = contact_create(&d->contact, spec->contact, &d->body, &d->family, space, blocks, error);
+        (ForcesBlock){material_young(&d->materials[d->material[s]]), bonds.share, bonds.alike};
+  const ForcesParts parts = {&d->body, &d->family, space, blocks};
+  const int status = forces_create(&d->forces, spec->forces, &parts, error);
   free(blocks);
   return status;
 }
@@ -338,7 +339,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   d->formulation = d->type->create(&parts, error);
   if (!d->formulation) return BRECCIA_USER_ERROR;
   status = create_failure(d, reader, spec->failure, &of);
-  return status ? status : create_contact(d, spec, space, error);
+  return status ? status : create_forces(d, spec, space, error);
 }
 
 int domain_hold_grips(Domain *d, const uint8_t *held, Error *error)
@@ -359,7 +360,7 @@ int domain_hold_grips(Domain *d, const uint8_t *held, Error *error)
 void domain_destroy(Domain *d)
 {
   if (d->formulation) d->type->destroy(d->formulation);
-  contact_destroy(&d->contact);
+  forces_destroy(&d->forces);
   if (d->points.components != 6) {
     for (int k = 0; k < 6; ++k) {
       places_free(&d->strain[k]);

@@ -39,7 +39,7 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   const double particles = (double)d->particles->count;
   if (count % NUMBERS_PER_BOND) return STATE_MISFIT;
   for (int64_t n = 0; n < d->broken_count; ++n) {
-    contact_bond_mended(&d->contact, d->particles->place_of[d->broken[n].a], d->particles->place_of[d->broken[n].b]);
+    forces_bond_mended(&d->forces, d->particles->place_of[d->broken[n].a], d->particles->place_of[d->broken[n].b]);
     renew_ends(d, &d->broken[n]);
   }
   d->broken_count = 0;
@@ -47,12 +47,12 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
     if (!(row[2] >= 0 && row[2] < particles && row[3] >= 0 && row[3] < particles)) return STATE_MISFIT;
     const BrokenBond bond = {(int64_t)row[0], row[1], (int32_t)row[2], (int32_t)row[3]};
     if (domain_record(d, &bond)) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
-    contact_bond_broke(&d->contact, d->particles->place_of[bond.a], d->particles->place_of[bond.b]);
+    forces_bond_broke(&d->forces, d->particles->place_of[bond.a], d->particles->place_of[bond.b]);
     renew_ends(d, &bond);
   }
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
   domain_show_states(d);
-  if (d->contact.spec) contact_search(&d->contact);
+  forces_find_again(&d->forces);
   return BRECCIA_OK;
 }
 
@@ -101,5 +101,5 @@ void domain_state(Domain *d, StateList *list)
                           .values = d->type->shares(d->formulation)},
               "share", NULL);
   state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &broken, .owner = d}, "broken bonds", NULL);
-  contact_state(&d->contact, list);
+  forces_state(&d->forces, list);
 }

@@ -197,7 +197,7 @@ static void run_all(Domain *d, const Purpose *purpose)
 void domain_forces(Domain *d)
 {
   run_all(d, &(Purpose){0});
-  contact_resist(&d->contact);
+  forces_resist(&d->forces);
   TEAM_SINGLE
   {
     d->force_sum = 0;
@@ -233,7 +233,7 @@ static void remake_forces(void *context)
 {
   Domain *d = context;
   run_all(d, &(Purpose){.no_law = true});
-  contact_resist(&d->contact);
+  forces_resist(&d->forces);
 }
 
 void domain_follow(Domain *d)

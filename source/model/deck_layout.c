@@ -20,6 +20,10 @@ const Section units_section = {"units",
                                NULL,
                                0};
 
+#define FORCES(name, about) extern const Section name##_section;
+#include "forces/kinds.h"
+#undef FORCES
+
 static const Field deck_fields[] = {
     {"include", FIELD_FILES, 0, NULL, "", NULL, "files beside this one whose keys are taken in", NULL, NULL, 0},
     {"variables", FIELD_VALUES, 0, NULL, "", NULL, "values by name, for expressions like `${width/2}`", NULL, NULL, 0},
@@ -38,8 +42,10 @@ static const Field deck_fields[] = {
      &peridynamics_section, NULL, 0},
     {"failure", FIELD_SECTION, offsetof(DeckSpec, failure), NULL, "", NULL, "when bonds break; never when absent",
      &failure_section, NULL, 0},
-    {"contact", FIELD_SECTION, offsetof(DeckSpec, contact), NULL, "", NULL,
-     "what keeps particles off each other that no bond joins; nothing when absent", &contact_section, NULL, 0},
+#define FORCES(name, about)                                                                                            \
+  {#name, FIELD_SECTION, offsetof(DeckSpec, forces[FORCES_##name]), NULL, "", NULL, about, &name##_section, NULL, 0},
+#include "forces/kinds.h"
+#undef FORCES
     {"loads", FIELD_SECTIONS, offsetof(DeckSpec, loads), NULL, "", NULL, "forces and prescribed motions", &load_section,
      NULL, 0},
     {"solve", FIELD_ONE_OR_SECTIONS, offsetof(DeckSpec, solve), NULL, NULL, NULL,

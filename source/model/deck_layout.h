@@ -21,7 +21,7 @@ typedef struct DeckSpec {
   SectionList materials, body, selections, cracks, loads, solve, watches, pictures; /* solve: stages of SolveSpec */
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;
-  ContactSpec *contact;
+  void *forces[FORCES_KINDS];
   ResultsSpec *results;
 } DeckSpec;
 

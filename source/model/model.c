@@ -94,7 +94,7 @@ static int build(breccia_model *model, bool force, Error *error)
   if (!spec->peridynamics)
     spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
   if (!spec->peridynamics) return BRECCIA_FAILURE;
-  DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure, spec->contact};
+  DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure, spec->forces};
   int status = domain_create(&model->domain, &model->reader, &parts), bad;
   /* What follows needs the body or the materials only: its mistakes are told together with those of the rest. */
   const bool stands = model->domain.particles && model->domain.particles->count;

@@ -261,7 +261,7 @@ static int begin(Solver *run, Error *error)
 static bool is_sound(const Explicit *s)
 {
   const Domain *d = s->domain;
-  return isfinite(d->force_sum) && d->failed_place < 0 && !d->contact.failed && !d->out_of_memory;
+  return isfinite(d->force_sum) && d->failed_place < 0 && !forces_failed(&d->forces) && !d->out_of_memory;
 }
 
 static void take_step(void *context)
@@ -299,7 +299,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);
   points_commit(&s->domain->points);
-  contact_commit(&s->domain->contact);
+  forces_commit(&s->domain->forces);
   return look_for_rest(run, warning, error);
 }
 

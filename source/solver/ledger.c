@@ -7,9 +7,9 @@
 int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
   /* Steps: when a load sets in, all energies are next to nothing, and what presses at first may come from faces that settle. */
-  const int64_t lasting = d->contact.spec ? 100 : 3;
-  const double most_given = d->contact.spec ? 1 : 0.1, most_unexplained = 1000;
-  const double fracture = d->fracture_energy, internal = l->bond_work - fracture - d->contact.friction_work;
+  const int64_t lasting = forces_settle(&d->forces) ? 100 : 3;
+  const double most_given = forces_settle(&d->forces) ? 1 : 0.1, most_unexplained = 1000;
+  const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_dissipated(&d->forces);
   l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
   const bool sound = fmin(internal, fracture) >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;
@@ -26,14 +26,14 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 Energy ledger_energy(const Ledger *l, Domain *d)
 {
   Energy e = {.kinetic = fmax(0, l->kinetic), /* what prescribed motions take back may leave a rounding */
-              .internal = l->bond_work - d->fracture_energy - d->contact.friction_work,
+              .internal = l->bond_work - d->fracture_energy - forces_dissipated(&d->forces),
               .external = l->external_work,
               .damping = l->damped ? l->damping_work : 0, /* else roundings */
               .fracture = d->fracture_energy,
-              .friction = d->contact.friction_work,
+              .friction = forces_dissipated(&d->forces),
               .between = l->between};
   const bool elastic = domain_is_elastic(d);
-  e.stored = domain_stored_energy(d) + contact_energy(&d->contact);
+  e.stored = domain_stored_energy(d) + forces_energy(&d->forces);
   if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
   const double error = l->external_work + l->kinetic_at_start + l->between - l->kinetic - l->damping_work - e.stored -
                        e.dissipated - e.fracture - e.friction;

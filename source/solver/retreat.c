@@ -44,9 +44,9 @@ int explicit_retreat(Explicit *s, Error *error)
     cause = describe_failed_law(d, failed, words, sizeof words);
   else if (left < 4)
     cause = "it has lost nearly all its bonds";
-  if (d->out_of_memory || d->contact.failed)
+  if (d->out_of_memory || forces_failed(&d->forces))
     error_add(error, BRECCIA_FAILURE, "step %lld (time %g): out of memory: %s", (long long)s->clock->step + 1,
-              s->clock->time + dt, d->out_of_memory ? "broken bonds" : "contact");
+              s->clock->time + dt, d->out_of_memory ? "broken bonds" : forces_failed(&d->forces));
   else if (*points_problem(&d->points))
     error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->clock->step + 1, s->clock->time + dt,
               points_problem(&d->points));

@@ -179,7 +179,7 @@ int stable_step(Domain *d, double *step, Error *error)
                        "of a stiff body (largest eigenvalue %g)",
                        largest);
   else /* with what Lanczos' method may still lack after its stopping test */
-    *step = 2 / sqrt(largest * 1.005 + contact_eigenvalue(&d->contact));
+    *step = 2 / sqrt(largest * 1.005 + forces_eigenvalue(&d->forces));
 done:
   for (int k = 0; k < 3; ++k) {
     places_free(&trial.displacement[k]);

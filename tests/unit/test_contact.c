@@ -1,6 +1,13 @@
 /* Particles that no bond joins keep each other off. */
 #include "support.h"
 
+#include "contact/contact.h"
+
+static Contact *contact_of(const Domain *d)
+{
+  return d->forces.own[FORCES_contact];
+}
+
 /** Two blocks that fly at each other with 15 m/s each, a little beside each other. They meet within a step or two, all particles of
  *  a face at once: of that a step of 0.8 of the stable one makes an error of up to 2 % of the energy, of either sign. */
 static breccia_model *blocks_at(double safety, const char *formulation, const char *law, const char *contact)
@@ -140,7 +147,7 @@ static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void *
     Domain *d = &model->domain;
     const Particles *p = d->particles;
     const int32_t a = p->place_of[13], b = p->place_of[14];
-    contact_bond_mended(&d->contact, a, b); /* without a row, as where memory was out when it broke */
+    contact_bond_mended(contact_of(d), a, b); /* without a row, as where memory was out when it broke */
     assert_true(family_break(&d->family, a, b));
     d->type->renew(d->formulation, a / SLICE);
     d->type->renew(d->formulation, b / SLICE);
@@ -148,25 +155,25 @@ static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void *
     compute_forces(model);
     const double without = p->internal[0][a];
     if (!pressed) p->displacement[0][b] = 0;
-    contact_bond_broke(&d->contact, a, b);
+    contact_bond_broke(contact_of(d), a, b);
     p->displacement[0][b] = pressed ? -0.0041 : -0.004;
     compute_forces(model);
     /* Bonds calibrated in uniform expansion: sum c L V / 2 = 6 E, here over 26 neighbours, of which a column with free sides shows 5/6. */
     const double moment = (6 + 12 * sqrt(2) + 8 * sqrt(3)) * 0.01 * 1e-6, c = 5.0 / 6 * 6 * 3e6 / (moment / 2);
     if (!pressed) assert_near(p->internal[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
     const double before = p->internal[0][a];
-    contact_search(&d->contact); /* found again, it is the same */
+    contact_search(contact_of(d)); /* found again, it is the same */
     compute_forces(model);
     assert_true(p->internal[0][a] == before);
     if (pressed) {
       p->displacement[0][b] = -0.004;
       compute_forces(model);
       assert_near(p->internal[0][a], without, 1e-9 * c * 1e-6); /* nothing happens where it broke */
-      contact_bond_mended(&d->contact, a, b);
+      contact_bond_mended(contact_of(d), a, b);
       p->displacement[0][b] = -0.006;
       compute_forces(model);
       const double mended = p->internal[0][a];
-      contact_bond_broke(&d->contact, a, b);
+      contact_bond_broke(contact_of(d), a, b);
       p->displacement[0][b] = -0.007;
       compute_forces(model);
       assert_true(p->internal[0][a] < mended - c * 0.05 * 1e-6);
@@ -183,10 +190,10 @@ static double *contact_forces(breccia_model *model)
   double *force = malloc(3 * sizeof *force * (size_t)p->places);
   compute_forces(model);
   for (int k = 0; k < 3; ++k) memcpy(force + k * p->places, p->internal[k], sizeof *force * (size_t)p->places);
-  const ContactSpec *spec = d->contact.spec;
-  d->contact.spec = NULL;
+  const Forces forces = d->forces;
+  d->forces.count = 0;
   compute_forces(model);
-  d->contact.spec = spec;
+  d->forces = forces;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       force[k * p->places + i] = (force[k * p->places + i] - p->internal[k][i]) * p->volume[i];
@@ -222,7 +229,7 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
       double energy[2];
       for (int side = 0; side < 2; ++side) {
         p->displacement[k][i] = here + (side ? h : -h);
-        energy[side] = contact_energy(&d->contact);
+        energy[side] = contact_energy(contact_of(d));
       }
       p->displacement[k][i] = here;
       worst = fmax(worst, fabs((energy[1] - energy[0]) / (2 * h) + force[k * p->places + i]));
@@ -290,7 +297,7 @@ static void forces_are_the_derivative_of_the_energy(void **state)
     wave(model, 0.06, 0.01);
     check_derivative(model, 0.01, "pressed");
     for (int64_t i = 0; i < p->places; ++i) p->displacement[0][i] += p->position[across][i] > level ? 0.0137 : 0;
-    contact_search(&model->domain.contact);
+    contact_search(contact_of(&model->domain));
     check_derivative(model, 0.01, "slid");
     rotate(model);
     check_derivative(model, 0.01, "turned");
@@ -311,13 +318,13 @@ static void forces_are_the_derivative_of_the_energy(void **state)
     for (int n = 0; n < 4 && broken; ++n) { /* of the upper face of the lower body */
       const int32_t a = p->place_of[6 * 5 * 2 + 8 + 6 * (n / 2)], b = a - 1 + 2 * (n % 2);
       assert_true(family_break(&d->family, a, b));
-      contact_bond_broke(&d->contact, a, b);
+      contact_bond_broke(contact_of(d), a, b);
       d->type->renew(d->formulation, a / SLICE);
       d->type->renew(d->formulation, b / SLICE);
     }
     for (int64_t i = 0; i < p->places; ++i)
       if (p->block[i / SLICE]) p->displacement[2][i] = -0.0199;
-    contact_search(&d->contact); /* nearly touching: it chooses its faces */
+    contact_search(contact_of(d)); /* nearly touching: it chooses its faces */
     compute_forces(model);
     wave(model, 0.06, 0.004);
     for (int64_t i = 0; i < p->places; ++i)
@@ -409,7 +416,7 @@ static void a_block_that_slides_on_a_cut_gains_nothing(void **state)
       const double given = model->solver.ledger.kinetic_at_start + e.external;
       assert_near(e.kinetic + e.stored, given, 0.01 * model->solver.ledger.kinetic_at_start);
       assert_true(e.imbalance < 5e-3);
-      most = fmax(most, contact_energy(&model->domain.contact));
+      most = fmax(most, contact_energy(contact_of(&model->domain)));
     }
     assert_true(mean_motion(model, 0, 0.04, 1) - mean_motion(model, 0, 0.04, -1) > 0.019);
     assert_true(most > 1e-4 * model->solver.ledger.kinetic_at_start); /* it was pressed */
@@ -464,8 +471,8 @@ static void faces_of_a_cut_slide_freely_or_with_coulombs_friction(void **state)
         p->displacement[2][i] = upper ? -1e-5 : 0;
       }
       compute_forces(model);
-      contact_commit(&model->domain.contact);
-      contact_follow(&model->domain.contact, 1e-4);
+      contact_commit(contact_of(&model->domain));
+      contact_follow(contact_of(&model->domain), 1e-4);
       force_above(model, 0.09, force);
       force_above(model, -1, all);
       for (int k = 0; k < 3; ++k) assert_near(all[k], 0, 1e-12 * force[2]);
@@ -502,7 +509,7 @@ static breccia_model *sliding_block(double spacing, double friction, double alon
     p->displacement[2][i] = -0.1 - 1.2e-6; /* nearly as deep as its weight presses it */
     p->velocity[0][i] = speed;
   }
-  contact_search(&model->domain.contact);
+  contact_search(contact_of(&model->domain));
   return model;
 }
 

@@ -1,0 +1,105 @@
+/* Contact as a kind of forces: its table entry. */
+#include "contact/contact.h"
+
+#include <stdlib.h>
+
+static void destroy(void *forces)
+{
+  contact_destroy(forces);
+  free(forces);
+}
+
+static void *create(const void *spec, const ForcesParts *parts, Error *error)
+{
+  Contact *c = malloc(sizeof *c);
+  if (!c) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: contact");
+    return NULL;
+  }
+  if (!contact_create(c, spec, parts->body, parts->family, parts->space, parts->blocks, error)) return c;
+  destroy(c);
+  return NULL;
+}
+
+static void follow(void *forces, double motion)
+{
+  contact_follow(forces, motion);
+}
+
+static void remember(void *forces)
+{
+  contact_remember(forces);
+}
+
+static void bond_broke(void *forces, int32_t a, int32_t b)
+{
+  contact_bond_broke(forces, a, b);
+}
+
+static void bond_mended(void *forces, int32_t a, int32_t b)
+{
+  contact_bond_mended(forces, a, b);
+}
+
+static void undo(void *forces)
+{
+  contact_undo(forces);
+}
+
+static void find_again(void *forces)
+{
+  contact_search(forces);
+}
+
+static void resist(void *forces)
+{
+  contact_resist(forces);
+}
+
+static void commit(void *forces)
+{
+  contact_commit(forces);
+}
+
+static double energy(void *forces)
+{
+  return contact_energy(forces);
+}
+
+static double dissipated(const void *forces)
+{
+  return ((const Contact *)forces)->friction_work;
+}
+
+static double eigenvalue(const void *forces)
+{
+  return contact_eigenvalue(forces);
+}
+
+static bool failed(const void *forces)
+{
+  return ((const Contact *)forces)->failed;
+}
+
+static void state(void *forces, StateList *list)
+{
+  contact_state(forces, list);
+}
+
+const ForcesType contact_forces = {.name = "contact",
+                                   .settle = true,
+                                   .create = create,
+                                   .destroy = destroy,
+                                   .follow = follow,
+                                   .remember = remember,
+                                   .bond_broke = bond_broke,
+                                   .bond_mended = bond_mended,
+                                   .undo = undo,
+                                   .find_again = find_again,
+                                   .resist = resist,
+                                   .commit = commit,
+                                   .energy = energy,
+                                   .dissipated = dissipated,
+                                   .eigenvalue = eigenvalue,
+                                   .failed = failed,
+                                   .state = state};

@@ -1,0 +1,123 @@
+#include "forces/forces.h"
+
+#include <stddef.h>
+
+#define FORCES(name, about) extern const ForcesType name##_forces;
+#include "forces/kinds.h"
+#undef FORCES
+
+static const ForcesType *const kinds[FORCES_KINDS] = {
+#define FORCES(name, about) &name##_forces,
+#include "forces/kinds.h"
+#undef FORCES
+};
+
+int forces_create(Forces *f, void *const *specs, const ForcesParts *parts, Error *error)
+{
+  *f = (Forces){.count = 0};
+  for (int k = 0; k < FORCES_KINDS; ++k) {
+    if (!specs[k]) continue;
+    f->type[f->count] = kinds[k];
+    if (!(f->own[f->count] = kinds[k]->create(specs[k], parts, error))) return BRECCIA_FAILURE;
+    ++f->count;
+  }
+  return BRECCIA_OK;
+}
+
+void forces_destroy(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k) f->type[k]->destroy(f->own[k]);
+  *f = (Forces){.count = 0};
+}
+
+void forces_follow(Forces *f, double motion)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->follow) f->type[k]->follow(f->own[k], motion);
+}
+
+void forces_remember(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->remember) f->type[k]->remember(f->own[k]);
+}
+
+void forces_bond_broke(Forces *f, int32_t a, int32_t b)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->bond_broke) f->type[k]->bond_broke(f->own[k], a, b);
+}
+
+void forces_bond_mended(Forces *f, int32_t a, int32_t b)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->bond_mended) f->type[k]->bond_mended(f->own[k], a, b);
+}
+
+void forces_undo(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->undo) f->type[k]->undo(f->own[k]);
+}
+
+void forces_find_again(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->find_again) f->type[k]->find_again(f->own[k]);
+}
+
+void forces_resist(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->resist) f->type[k]->resist(f->own[k]);
+}
+
+void forces_commit(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->commit) f->type[k]->commit(f->own[k]);
+}
+
+double forces_energy(const Forces *f)
+{
+  double sum = 0;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->energy) sum += f->type[k]->energy(f->own[k]);
+  return sum;
+}
+
+double forces_dissipated(const Forces *f)
+{
+  double sum = 0;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->dissipated) sum += f->type[k]->dissipated(f->own[k]);
+  return sum;
+}
+
+double forces_eigenvalue(const Forces *f)
+{
+  double sum = 0;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->eigenvalue) sum += f->type[k]->eigenvalue(f->own[k]);
+  return sum;
+}
+
+bool forces_settle(const Forces *f)
+{
+  bool settle = false;
+  for (int k = 0; k < f->count; ++k) settle |= f->type[k]->settle;
+  return settle;
+}
+
+const char *forces_failed(const Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->failed && f->type[k]->failed(f->own[k])) return f->type[k]->name;
+  return NULL;
+}
+
+void forces_state(Forces *f, StateList *list)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->state) f->type[k]->state(f->own[k], list);
+}

@@ -1,0 +1,91 @@
+/* Forces between particles beside those of formulations. A kind is a table entry; nobody above this room knows which ones there are. Bodies
+ * have the kinds whose section the deck has, and all of them are gone through in the order of the list. */
+#ifndef BRECCIA_FORCES_FORCES_H
+#define BRECCIA_FORCES_FORCES_H
+
+#include "constitutive/material.h"
+#include "family/family.h"
+
+/** What they must know of a block of the body. */
+typedef struct ForcesBlock {
+  double young; /* modulus */
+  double bonds; /* share of the stiffness of bonds calibrated in uniform expansion that bonds had before they broke */
+  bool alike;   /* bonds are as stiff as in a whole family wherever they are */
+} ForcesBlock;
+
+/** What they are made for; borrowed. */
+typedef struct ForcesParts {
+  const Body *body;
+  const Family *family;
+  Space space;
+  const ForcesBlock *blocks; /* [blocks of the body], only while they are made */
+} ForcesParts;
+
+/** Each function may be NULL where there is nothing to do. */
+typedef struct ForcesType {
+  const char *name;
+  bool settle; /* they may give some energy as they set in, from faces that are still being chosen */
+  void *(*create)(const void *spec, const ForcesParts *parts, Error *error);
+  void (*destroy)(void *forces);
+  /** Before the forces of a step: no particle has moved by more than `motion`. By one thread. */
+  void (*follow)(void *forces, double motion);
+  /** Before bonds break at the displacements held, by all threads. */
+  void (*remember)(void *forces);
+  /** The bond between two places is gone; or there again, as if it had never broken. */
+  void (*bond_broke)(void *forces, int32_t a, int32_t b);
+  void (*bond_mended)(void *forces, int32_t a, int32_t b);
+  /** Takes back what a step that failed has changed, when its bonds are mended. */
+  void (*undo)(void *forces);
+  /** Displacements and bonds are others than they were. */
+  void (*find_again)(void *forces);
+  /** Adds the forces per volume on particles, by all threads; trial state only. */
+  void (*resist)(void *forces);
+  /** Makes what the last evaluation found the committed state. By one thread. */
+  void (*commit)(void *forces);
+  /** Energy held at the displacements held, as committed; and what was dissipated up to the last commit. */
+  double (*energy)(void *forces);
+  double (*dissipated)(const void *forces);
+  /** The most that they add to the largest eigenvalue of stiffness over mass. */
+  double (*eigenvalue)(const void *forces);
+  /** Whether memory was out. */
+  bool (*failed)(const void *forces);
+  /** Rows of what they remember; bonds and displacements stand before them. */
+  void (*state)(void *forces, StateList *list);
+} ForcesType;
+
+enum {
+#define FORCES(name, about) FORCES_##name,
+#include "forces/kinds.h"
+#undef FORCES
+  FORCES_KINDS
+};
+
+/** Those of one body. */
+typedef struct Forces {
+  const ForcesType *type[FORCES_KINDS];
+  void *own[FORCES_KINDS];
+  int count;
+} Forces;
+
+/** @param[in] specs  [FORCES_KINDS] their sections, or NULL: not these */
+int forces_create(Forces *forces, void *const *specs, const ForcesParts *parts, Error *error);
+void forces_destroy(Forces *forces);
+
+/* Each calls what ForcesType describes, of all kinds. */
+void forces_follow(Forces *forces, double motion);
+void forces_remember(Forces *forces);
+void forces_bond_broke(Forces *forces, int32_t a, int32_t b);
+void forces_bond_mended(Forces *forces, int32_t a, int32_t b);
+void forces_undo(Forces *forces);
+void forces_find_again(Forces *forces);
+void forces_resist(Forces *forces);
+void forces_commit(Forces *forces);
+double forces_energy(const Forces *forces);
+double forces_dissipated(const Forces *forces);
+double forces_eigenvalue(const Forces *forces);
+bool forces_settle(const Forces *forces);
+/** @return the name of a kind for which memory was out, or NULL */
+const char *forces_failed(const Forces *forces);
+void forces_state(Forces *forces, StateList *list);
+
+#endif
