@@ -224,7 +224,7 @@ static int find(const Resolving *within, const Reference *reference, uint8_t *he
   const Body *body = within->body;
   const DeckReader *reader = within->reader;
   const char *name = reference->name;
-  const SelectionSpec *spec = name ? section_find(within->named, name) : reference->section;
+  const SelectionSpec *spec = selection_spec(within->named, reference);
   const int group = name ? group_index(body, name) : -1;
   if (!spec && !name) return BRECCIA_USER_ERROR; /* was said when it was read */
   if (!spec && group < 0) return say_unknown(within, reference->node, name);
@@ -237,6 +237,11 @@ static int find(const Resolving *within, const Reference *reference, uint8_t *he
     if (r->spec == spec)
       return node_error(reader->document, reference->node, reader->error, "the selection '%s' is made of itself", name);
   return find_spec(&(Resolving){body, reader, within->named, spec, reference, within}, held);
+}
+
+const SelectionSpec *selection_spec(const SectionList *named, const Reference *reference)
+{
+  return reference->name ? section_find(named, reference->name) : reference->section;
 }
 
 int selection_create(Selection *selection, const Body *body, const DeckReader *reader, const SectionList *named,

@@ -17,6 +17,9 @@ typedef struct SelectionSpec {
 
 extern const Section selection_section;
 
+/** What a reference says: the named selection, or the one given on the spot; NULL where the name is that of a group. */
+const SelectionSpec *selection_spec(const SectionList *named, const Reference *reference);
+
 typedef struct Selection {
   int32_t *places; /* in order of the particles' numbers; owned */
   int64_t count;

@@ -21,7 +21,9 @@ static const Dimension dimensions[] = {
     {"damping rate", 0, 0, -1, "1/s"},
     {"velocity", 1, 0, -1, "m/s"},
     {"acceleration", 1, 0, -2, "m/s2"},
+    {"angular velocity", 0, 0, -1, "rad/s"},
     {"force", 0, 1, 0, "kN"},
+    {"force per length", -1, 1, 0, "kN/m"},
     {"force per volume", -3, 1, 0, "kN/m3"},
     {"stress", -2, 1, 0, "kPa"},
     {"per stress", 2, -1, 0, "1/kPa"},
@@ -361,6 +363,10 @@ int units_read(const Units *units, const Dimension *dimension, const char *words
   if (!*end) {
     *value = number;
     return 0;
+  }
+  if (!strcmp(dimension->name, "angular velocity") && units_count_cycles(end)) {
+    text_add(reason, "'%s' counts turns, but an angular velocity is asked, like '30 rad/s': 2 pi times as much", words);
+    return 1;
   }
   if (!strcmp(dimension->name, "damping rate") && units_count_cycles(end)) {
     text_add(reason,

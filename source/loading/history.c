@@ -70,6 +70,17 @@ double history_factor(const History *history, double time)
   return history->type ? history->type->factor(history, time) : 1;
 }
 
+double history_peak(const History *h, double time)
+{
+  enum { SAMPLES = 1000, MOST_CORNERS = 1000000 };
+  if (!h->type) return 1;
+  double peak = 0, corner = 0;
+  for (int k = 0; k <= SAMPLES; ++k) peak = fmax(peak, fabs(history_factor(h, time * k / SAMPLES)));
+  for (int k = 0; k < MOST_CORNERS && (corner = h->type->corner(h, corner)) < time; ++k)
+    peak = fmax(peak, fabs(history_factor(h, corner)));
+  return peak;
+}
+
 double history_rise(const History *history)
 {
   return history->type ? history->type->rise(history) : 0;

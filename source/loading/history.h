@@ -74,6 +74,9 @@ double history_factor(const History *history, double time);
 /** `scale` times the integral of the factor from 0 to a time, or with order 2 that of this integral. By one thread: what was found is kept. */
 double history_integral(History *history, int order, double scale, double time);
 
+/** The largest size of the factor from time 0 up to a time. */
+double history_peak(const History *history, double time);
+
 /** Time that it takes to its largest value; 0: it is there at once. */
 double history_rise(const History *history);
 

@@ -13,14 +13,19 @@ static const LoadType *const types[] = {
 #include "loading/load/loads.h"
 };
 
-enum { OTHERS = 3 }; /* keys that all loads have */
+enum { OTHERS = 4 }; /* keys that all loads have */
 
 static const Field load_fields[] = {
     {"name", FIELD_TEXT, offsetof(LoadSpec, name), NULL, "", NULL, "name, for watching what it applies", NULL, NULL, 0},
     {"on", FIELD_REFERENCE, offsetof(LoadSpec, on), NULL, "", NULL,
-     "name of a selection, or a selection; gravity acts on the whole body when absent", &selection_section, NULL, 0},
+     "name of a selection, or a selection; gravity, base acceleration and initial velocity are of the whole body when "
+     "absent",
+     &selection_section, NULL, 0},
     {"history", FIELD_SECTION, offsetof(LoadSpec, history), NULL, "", NULL, "constant when absent", &history_section,
      NULL, 0},
+    {"area", FIELD_NUMBER, offsetof(LoadSpec, area), "area", "", "(0, inf)",
+     "of a traction: the area that all its particles have together, where they are no face of a lattice", NULL, NULL,
+     0},
 #define LOAD(name, key, kind, dimension, meaning)                                                                      \
   {key, kind, offsetof(LoadSpec, of[LOAD_##name]), dimension, "", NULL, meaning, NULL, NULL, 'A'},
 #define LOAD_SECTION(name, key, meaning)                                                                               \
@@ -39,12 +44,18 @@ static int index_of(const LoadSpec *spec)
 static void check_load(const DeckReader *reader, void *section)
 {
   const LoadSpec *load = section;
-  if (!load->on.node && !types[index_of(load)]->everywhere)
+  const int k = index_of(load);
+  if (!load->on.node && !types[k]->everywhere)
     node_error(reader->document, load->head.node, reader->error, "load: missing key 'on': which particles are loaded");
+  if (load->history && types[k]->timeless)
+    node_error(reader->document, section_place(load, "history"), reader->error,
+               "history: '%s' does not vary in time; leave it out", load_fields[OTHERS + k].key);
+  if (!isnan(load->area) && k != LOAD_traction)
+    node_error(reader->document, section_place(load, "area"), reader->error, "area: only a 'traction' has one");
 }
 
 const Section load_section = {"load",
-                              "A force on some particles, or a motion prescribed to them.",
+                              "A force on some particles, a motion prescribed to them, or what they hang on.",
                               sizeof(LoadSpec),
                               FIELDS(load_fields),
                               check_load,
@@ -85,7 +96,9 @@ int load_create(Load *load, const LoadSpec *spec, const LoadMaking *making)
 
 void load_destroy(Load *load)
 {
+  if (load->own && load->type->destroy) load->type->destroy(load);
   selection_destroy(&load->selection);
+  selection_destroy(&load->other);
   history_destroy(&load->history);
 }
 

@@ -24,6 +24,7 @@ typedef struct LoadSpec {
   Reference on;
   LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
+  double area;
 } LoadSpec;
 
 extern const Section load_section;
@@ -34,12 +35,13 @@ typedef struct Load {
   const LoadType *type;
   const LoadSpec *spec;
   const LoadValue *value;
-  const Node *place; /* of the value in the deck */
-  Selection selection;
-  double volume;         /* of the selected particles */
-  int64_t first, behind; /* acts in the stages first .. behind - 1 */
-  double begin;          /* time of the run from which its history counts */
+  const Node *place;          /* of the value in the deck */
+  Selection selection, other; /* `other`: what it joins these to, if anything */
+  double volume;              /* of the selected particles */
+  int64_t first, behind;      /* acts in the stages first .. behind - 1 */
+  double begin;               /* time of the run from which its history counts */
   History history;
+  void *own; /* what the type keeps */
 } Load;
 
 /** Motions prescribed to the particles of a load: rows u . direction = from + value times the history, or its integral. */
@@ -50,6 +52,13 @@ typedef struct Constraint {
   int order;    /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */
   double *from; /* [particles of the load] displacement in that direction when the load began; NULL: 0 */
 } Constraint;
+
+/** Particles whose motions along an axis are one. */
+typedef struct TieGroups {
+  int64_t count;
+  int64_t *first;  /* [count + 1] group g is places first[g] .. first[g + 1] - 1 */
+  int32_t *places; /* ascending within each group */
+} TieGroups;
 
 /** What a stage of the run changes in the loads. */
 typedef struct LoadStage {
@@ -64,7 +73,16 @@ typedef struct Loading {
   Load *loads;
   Constraint *constraints;
   int constraint_count;
+  TieGroups ties[3]; /* of the stage under way, along each axis */
+  bool speeds_set;   /* loads that began with it have changed velocities */
 } Loading;
+
+/** What a load comes to on a body: words with a quantity behind them. */
+typedef struct LoadWords {
+  const char *words;            /* NULL: nothing to tell */
+  double value;                 /* in the deck's units */
+  const char *dimension, *unit; /* and that unit of the SI to show it in */
+} LoadWords;
 
 /** What the making of loads needs. */
 typedef struct LoadMaking {
@@ -76,12 +94,24 @@ typedef struct LoadMaking {
 
 struct LoadType {
   bool everywhere; /* on the whole body where the deck does not say on what */
+  bool timeless;   /* it has no history */
   /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
   int (*create)(Load *load, const LoadMaking *making);
+  void (*destroy)(Load *load);
   /** What must not point out of the space that the body has; NaN where nothing is prescribed. May be NULL. */
   const double *(*vector)(const LoadValue *value);
   /** Adds its forces per volume to the external ones, at displacements and velocities as held, by all threads. NULL: it is no force. */
   void (*force)(const Load *load, Particles *particles, double factor);
+  /** When it begins. @return whether it has changed velocities. May be NULL. */
+  bool (*begin)(Load *load, Particles *particles);
+  /** Energy that it holds and gives back. May be NULL. */
+  double (*energy)(const Load *load, const Particles *particles);
+  /** The most that it adds to an eigenvalue of stiffness over mass. May be NULL. */
+  double (*eigenvalue)(const Load *load, const Particles *particles);
+  /** Rows of what it remembers; `name` tells it from other loads. May be NULL. */
+  void (*state)(Load *load, const char *name, StateList *list);
+  /** What it comes to on this body, for people. May be NULL. */
+  LoadWords (*tell)(const Load *load, const Particles *particles);
   /** What it prescribes at factor 1: the length of a vector. */
   double (*magnitude)(const LoadValue *value);
   /** What it is, where its key and the dimension in the list do not tell. May be NULL. */
@@ -99,9 +129,9 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
 void loading_destroy(Loading *loading);
 
 /** Lets the loads of a stage act, those of other stages not. */
-void loading_enter(Loading *loading, int64_t stage);
+int loading_enter(Loading *loading, const Particles *particles, int64_t stage, Error *error);
 /** Begins with the loads that are new in the stage under way: their histories count from this time, their motions from where the particles
- *  are. Forces of loads that have ended are taken off. */
+ *  are. Particles that are tied from now on take their common velocity, by which no momentum is lost. Forces of loads that have ended are taken off. */
 void loading_begin(Loading *loading, Particles *particles, double time);
 /** Rows of when and where loads began that are not there from the start. */
 void loading_state(Loading *loading, StateList *list);
@@ -114,8 +144,16 @@ static inline bool load_acts(const Loading *loading, const Load *load)
 /** Factor of a load at a time of the run. */
 double load_factor(const Load *load, double time);
 
-/** Sets the external force per volume of all particles to what the loads say at a time. */
+/** Sets the external force per volume of all particles to what the loads say at a time, by all threads; with ties, at the internal forces held. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
+
+/** By all threads: gives tied particles one velocity and acceleration, where roundings or prescribed motions part them. */
+void loading_keep_ties(const Loading *loading, Particles *particles, double *const acceleration[3]);
+
+/** Energy that springs hold. */
+double loading_energy(const Loading *loading, const Particles *particles);
+/** The most that loads of the stage under way add to the largest eigenvalue of stiffness over mass. */
+double loading_eigenvalue(const Loading *loading, const Particles *particles);
 
 /** Marks the particles whose motion is prescribed. @param[out] held  [places], zeros before */
 void loading_mark_held(const Loading *loading, uint8_t *held);

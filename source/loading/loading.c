@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "loading/tie.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,7 +70,8 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
     bad = add_loads(&making, stages[s].loads, s);
     if (bad) status = bad;
   }
-  return status ? status : constraints_check(loading, &body->particles, reader);
+  if (!status) status = constraints_check(loading, &body->particles, reader);
+  return status ? status : ties_check(loading, &body->particles, reader);
 }
 
 void loading_destroy(Loading *loading)
@@ -78,18 +80,36 @@ void loading_destroy(Loading *loading)
   for (int c = 0; c < loading->constraint_count; ++c) free(loading->constraints[c].from);
   free(loading->loads);
   free(loading->constraints);
+  tie_groups_destroy(loading->ties);
   *loading = (Loading){0};
 }
 
-void loading_enter(Loading *loading, int64_t stage)
+int loading_enter(Loading *loading, const Particles *p, int64_t stage, Error *error)
 {
   loading->stage = stage;
+  return tie_groups_make(loading, p, error);
+}
+
+static bool tied(const Loading *loading)
+{
+  return loading->ties[0].count || loading->ties[1].count || loading->ties[2].count;
 }
 
 void loading_begin(Loading *loading, Particles *p, double time)
 {
-  for (int k = 0; k < loading->count; ++k)
-    if (loading->loads[k].first == loading->stage) loading->loads[k].begin = time;
+  loading->speeds_set = false;
+  bool ties = false;
+  for (int k = 0; k < loading->count; ++k) {
+    Load *load = &loading->loads[k];
+    if (load->first != loading->stage) continue;
+    load->begin = time;
+    if (load->type->begin && load->type->begin(load, p)) loading->speeds_set = true;
+    ties |= load->type == &tie_load;
+  }
+  if (ties || (loading->speeds_set && tied(loading))) {
+    tie_groups_join(loading->ties, p);
+    loading->speeds_set = true;
+  }
   for (int c = 0; c < loading->constraint_count; ++c) {
     const Constraint *constraint = &loading->constraints[c];
     const Selection *selection = &constraint->load->selection;
@@ -107,6 +127,9 @@ void loading_state(Loading *loading, StateList *list)
 {
   char name[40];
   for (int k = 0; k < loading->count; ++k) {
+    Load *load = &loading->loads[k];
+    snprintf(name, sizeof name, "load %d from", k);
+    if (load->type->state) load->type->state(load, name, list);
     if (!loading->loads[k].first) continue;
     snprintf(name, sizeof name, "load %d begins", k);
     state_add_number(list, name, "time", STATE_COMMITTED, &loading->loads[k].begin);
@@ -125,18 +148,50 @@ void loading_state(Loading *loading, StateList *list)
   }
 }
 
+static void clear(const Selection *selection, Particles *p)
+{
+  TEAM_FOR (n, selection->count)
+    for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
+}
+
 void loading_apply(const Loading *loading, Particles *p, double time)
 {
   for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
     const Load *load = &loading->loads[l];
-    if (!load->type->force || !load_acts(loading, load)) continue;
-    TEAM_FOR (n, load->selection.count)
-      for (int k = 0; k < 3; ++k) p->external[k][load->selection.places[n]] = 0;
+    if ((!load->type->force && load->type != &tie_load) || !load_acts(loading, load)) continue;
+    clear(&load->selection, p);
+    clear(&load->other, p);
   }
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     if (load->type->force && load_acts(loading, load)) load->type->force(load, p, load_factor(load, time));
   }
+  tie_groups_push(loading->ties, p);
+}
+
+void loading_keep_ties(const Loading *loading, Particles *p, double *const acceleration[3])
+{
+  tie_groups_keep(loading->ties, p, acceleration);
+}
+
+double loading_energy(const Loading *loading, const Particles *p)
+{
+  double sum = 0;
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (load->type->energy && load_acts(loading, load)) sum += load->type->energy(load, p);
+  }
+  return sum;
+}
+
+double loading_eigenvalue(const Loading *loading, const Particles *p)
+{
+  double sum = 0;
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (load->type->eigenvalue && load_acts(loading, load)) sum += load->type->eigenvalue(load, p);
+  }
+  return sum;
 }
 
 void loading_mark_held(const Loading *loading, uint8_t *held)

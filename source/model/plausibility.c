@@ -307,11 +307,19 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
 {
   const LoadSpec *l = load->spec;
   const double magnitude = load_magnitude(l);
-  if (magnitude == 0) return; /* a support */
+  const LoadWords told =
+      load->type->tell ? load->type->tell(load, model->domain.particles) : (LoadWords){.words = NULL};
+  if (!told.words && (magnitude == 0 || load->type->timeless)) return; /* a support */
   if (l->name)
     text_add(text, "  load '%s': ", l->name);
   else
     text_add(text, "  load in line %d: ", l->head.node->line);
+  if (told.words) {
+    text_add(text, "%s ", told.words);
+    quantity_describe(in_si(model, told.dimension, told.value), told.unit, text);
+    text_add(text, "%s", load->type->timeless ? "\n" : "; ");
+    if (load->type->timeless) return;
+  }
   const double rise = in_si(model, "time", history_rise(&load->history));
   if (rise > 0) {
     text_add(text, "grows over ");
@@ -346,6 +354,20 @@ static void check_jump(breccia_model *model, const Load *load)
        start, length);
 }
 
+/** Earthquakes stay below 3 g; a record in g acts on a load of 1 g, one in cm/s2 on one of 1 cm/s2. */
+static void check_shaking(breccia_model *model, const Load *load)
+{
+  static const double most = 30, gravity = 9.81; /* m/s2 */
+  if (!has_kind(load->spec, "base acceleration") && !has_kind(load->spec, "acceleration")) return;
+  const double peak = in_si(model, "acceleration", load_magnitude(load->spec)) *
+                      history_peak(&load->history, model->solver.clock.end_time - load->begin);
+  if (peak > most)
+    warn(model, load->place,
+         "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
+         "load's value is what 1 in it means",
+         load->place->key, peak, peak / gravity);
+}
+
 /** Bonds near particles that are moved carry most, and break there first. */
 static void check_grips(breccia_model *model)
 {
@@ -354,7 +376,9 @@ static void check_grips(breccia_model *model)
   if (!failure || failure->near_grips || (isnan(failure->critical_stretch) && isnan(failure->fracture_energy))) return;
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;
-    if (!(has_kind(l, "displacement") || has_kind(l, "velocity")) || load_magnitude(l) == 0) continue;
+    if (!(has_kind(l, "displacement") || has_kind(l, "velocity") || has_kind(l, "acceleration")) ||
+        load_magnitude(l) == 0)
+      continue;
     const Selection *held = &model->loading.loads[k].selection;
     bool breaks = false;
     for (int64_t n = 0; n < held->count; ++n)
@@ -370,7 +394,10 @@ static void check_grips(breccia_model *model)
 void plausibility_warn(breccia_model *model)
 {
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
-  for (int k = 0; k < model->loading.count; ++k) check_jump(model, &model->loading.loads[k]);
+  for (int k = 0; k < model->loading.count; ++k) {
+    check_jump(model, &model->loading.loads[k]);
+    check_shaking(model, &model->loading.loads[k]);
+  }
   check_grips(model);
 }
 

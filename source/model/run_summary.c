@@ -7,11 +7,7 @@
 
 static double load_peak(const Load *load, double time)
 {
-  enum { SAMPLES = 1000 };
-  double peak = 0;
-  for (int k = 0; k <= SAMPLES; ++k)
-    peak = fmax(peak, fabs(load_factor(load, load->begin + (time - load->begin) * k / SAMPLES)));
-  return peak * load_magnitude(load->spec);
+  return history_peak(&load->history, time - load->begin) * load_magnitude(load->spec);
 }
 
 static double nanoseconds_per_bond(const breccia_model *model)

@@ -245,8 +245,8 @@ static int begin(Solver *run, Error *error)
   (void)error;
   Explicit *s = run->own;
   Domain *d = s->domain;
-  loading_apply(s->loading, d->particles, s->clock->time);
   domain_evaluate(d);
+  loading_apply(s->loading, d->particles, s->clock->time);
   const Particles *p = d->particles;
   s->ledger->kinetic = 0;
   for (int k = 0; k < 3; ++k)
@@ -287,6 +287,7 @@ static void take_step(void *context)
     ++s->clock->step;
   }
   explicit_prescribe_velocities(s);
+  loading_keep_ties(s->loading, d->particles, s->acceleration);
 }
 
 static int advance(Solver *run, Text *warning, Error *error)

@@ -120,8 +120,8 @@ int solver_enter(Solver *s, int64_t stage, Error *error)
   s->stops = NULL;
   s->stop_count = 0;
   s->domain->points.elastic_stage = !strcmp(s->stage->laws, "elastic");
-  loading_enter(s->loading, stage);
-  return s->type->create(s, error);
+  const int status = loading_enter(s->loading, s->domain->particles, stage, error);
+  return status ? status : s->type->create(s, error);
 }
 
 int solver_create(Solver *s, Text *warning, Error *error)
@@ -186,10 +186,15 @@ void solver_stop_at(Solver *s, const double *times, int64_t count, bool again)
 
 int solver_begin(Solver *s, Error *error)
 {
+  if (s->clock.stage == 0) loading_begin(s->loading, s->domain->particles, s->clock.time);
+  const double kinetic = s->ledger.kinetic;
   s->ledger.damped |= s->type->damps(s);
   s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
   const int status = s->type->begin(s, error);
-  if (s->clock.stage == 0) s->ledger.paid = s->ledger.kinetic_at_start = s->ledger.kinetic;
+  if (s->clock.stage == 0)
+    s->ledger.paid = s->ledger.kinetic_at_start = s->ledger.kinetic;
+  else if (s->loading->speeds_set) /* a blow from outside, or a loss where particles are tied that moved apart */
+    s->ledger.external_work += s->ledger.kinetic - kinetic;
   return status;
 }
 
@@ -205,7 +210,11 @@ int solver_advance(Solver *s, Text *warning, Error *error)
 
 Energy solver_energy(const Solver *s)
 {
-  return ledger_energy(&s->ledger, s->domain);
+  Energy e = ledger_energy(&s->ledger, s->domain);
+  const double springs = loading_energy(s->loading, s->domain->particles); /* their work is among that of loads */
+  e.stored += springs;
+  e.external += springs;
+  return e;
 }
 
 void solver_state(Solver *s, StateList *list)

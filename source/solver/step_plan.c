@@ -13,10 +13,13 @@ static double longest_step(const Explicit *s)
 
 /** Damping shortens the stable step: local damping by 1 / sqrt(1 + its share), as its force changes sign with the velocity;
  *  mass-proportional damping leaves it, but is followed only by steps of up to its own time (docs/theory.md 7). */
-static int find_damped(Domain *domain, const ExplicitSpec *spec, double *stable, Error *error)
+static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpec *spec, double *stable, Error *error)
 {
   const int status = stable_step(domain, stable, error);
-  if (status || !isfinite(*stable)) return status;
+  if (status) return status;
+  const double springs = loading_eigenvalue(loading, domain->particles);
+  if (springs > 0) *stable = 2 / sqrt(4 / (*stable * *stable) + springs);
+  if (!isfinite(*stable)) return BRECCIA_OK;
   *stable /= sqrt(1 + spec->local_damping);
   if (spec->damping > 0) *stable = fmin(*stable, 1 / spec->damping);
   return BRECCIA_OK;
@@ -26,7 +29,7 @@ static int find_damped(Domain *domain, const ExplicitSpec *spec, double *stable,
 static int find_stable_step(Explicit *s, Error *error)
 {
   double stable;
-  int status = find_damped(s->domain, s->spec, &stable, error);
+  int status = find_damped(s->domain, s->loading, s->spec, &stable, error);
   if (!status && isfinite(stable)) s->clock->stable = stable;
   if (!status && !isfinite(s->clock->stable))
     status = error_add(error, BRECCIA_FAILURE,
@@ -173,7 +176,7 @@ int explicit_check(Solver *run, const void *spec, Error *error)
 {
   double stable;
   if (isnan(((const ExplicitSpec *)spec)->time_step)) return BRECCIA_OK;
-  const int status = find_damped(run->domain, spec, &stable, error);
+  const int status = find_damped(run->domain, run->loading, spec, &stable, error);
   return status ? status : check_time_step(run, spec, stable, NULL, error);
 }
 

@@ -97,6 +97,41 @@ static void histories_and_motions_count_from_the_beginning_of_their_stage(void *
   breccia_model_destroy(&m);
 }
 
+static void springs_blows_and_ties_begin_with_their_stage(void **state)
+{
+  (void)state;
+  /* 80 particles, 2 t/m3 x 0.04 m3 = 80 kg, thrown at 2 m/s in the second stage, with a spring from where it is then. */
+  breccia_model *m = model_of(BAR "loads: [{gravity: [3, 0]}]\nsolve:\n"
+                                  "  - explicit: {end time: 0.1}\n"
+                                  "  - loads: [{initial velocity: {translation: [2, 0]}}, {on: {all: yes}, spring: "
+                                  "{stiffness: 8}}]\n"
+                                  "    explicit: {end time: 0.1}\n"
+                                  "  - loads: [{on: {all: yes}, tie: {}}, {on: {face: x+, layers: 40}, initial "
+                                  "velocity: {translation: [-2, 0]}}]\n"
+                                  "    explicit: {end time: 0.1}\n");
+  const double mass = 0.08, w = sqrt(8 / mass), still = 3 / (w * w);
+  while (!m->solver.clock.ended) assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+  assert_near(shown_at(m, true), 3 * 0.01 / 2, 1e-9);
+  assert_near(solver_energy(&m->solver).external, mass * 3 * 0.015, 1e-9);
+  assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+  while (!m->solver.clock.ended) assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+  const double moved = still + 2 / w * sin(0.1 * w) - still * cos(0.1 * w),
+               speed = 2 * cos(0.1 * w) + still * w * sin(0.1 * w);
+  assert_near(shown_at(m, true), 0.015 + moved, 1e-5);
+  Energy e = solver_energy(&m->solver);
+  assert_near(e.stored, 8 * moved * moved / 2, 1e-4);
+  const double blow = mass * (4 - 0.09) / 2; /* from 0.3 to 2 m/s */
+  assert_near(e.external, mass * 3 * (0.015 + moved) + blow, 1e-4);
+  assert_true(e.imbalance < 1e-4);
+  /* Half of it is thrown back and tied to the rest at once: the common speed is the mean. */
+  assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+  const Particles *p = m->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n) assert_near(p->velocity[0][p->place_of[n]], (speed - 2) / 2, 2e-3);
+  run_all(m);
+  assert_true(solver_energy(&m->solver).imbalance < 1e-3);
+  breccia_model_destroy(&m);
+}
+
 static void in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break(void **state)
 {
   (void)state;
@@ -256,6 +291,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gravity_then_a_load_give_what_each_gives_alone),
       cmocka_unit_test(histories_and_motions_count_from_the_beginning_of_their_stage),
+      cmocka_unit_test(springs_blows_and_ties_begin_with_their_stage),
       cmocka_unit_test(in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break),
       cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),

@@ -4,7 +4,7 @@
 
 typedef struct AlongSpec { /* a motion prescribed in one direction; the others stay free */
   SectionHead head;
-  double direction[3], displacement, velocity;
+  double direction[3], displacement, velocity, acceleration;
 } AlongSpec;
 
 static void check_along(const DeckReader *reader, void *section)
@@ -20,6 +20,8 @@ static const Field along_fields[] = {
      NULL, 'A'},
     {"velocity", FIELD_NUMBER, offsetof(AlongSpec, velocity), "velocity", "", NULL, "in that direction", NULL, NULL,
      'A'},
+    {"acceleration", FIELD_NUMBER, offsetof(AlongSpec, acceleration), "acceleration", "", NULL,
+     "in that direction, from rest", NULL, NULL, 'A'},
 };
 const Section along_load_section = {"along",
                                     "A motion in one direction; the particles stay free across it.",
@@ -33,8 +35,8 @@ const Section along_load_section = {"along",
 /** How often what is given must be integrated over time for a displacement. */
 static int order_of(const AlongSpec *along, double *value)
 {
-  const double given[] = {along->displacement, along->velocity};
-  const int order = !isnan(along->displacement) ? 0 : 1;
+  const double given[] = {along->displacement, along->velocity, along->acceleration};
+  const int order = !isnan(given[0]) ? 0 : !isnan(given[1]) ? 1 : 2;
   *value = given[order];
   return order;
 }
@@ -62,7 +64,9 @@ static double magnitude(const LoadValue *value)
 
 static const char *kind(const LoadValue *value, const char **dimension)
 {
-  static const char *const kinds[] = {"displacement", "velocity"}, *const dimensions[] = {"length", "velocity"};
+  static const char *const kinds[] = {"displacement", "velocity", "acceleration"}, *const dimensions[] = {
+                                                                                       "length", "velocity",
+                                                                                       "acceleration"};
   double given;
   const int order = order_of(value->section, &given);
   *dimension = dimensions[order];

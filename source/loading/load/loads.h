@@ -7,8 +7,22 @@
 LOAD(body_force, "body force", FIELD_POINT, "force per volume", "force per volume")
 LOAD(force, "force", FIELD_POINT, "force", "total force, shared among the particles by volume")
 LOAD(gravity, "gravity", FIELD_POINT, "acceleration", "acceleration, times the density")
+LOAD(base_acceleration, "base acceleration", FIELD_POINT, "acceleration",
+     "of the ground under the body, which is seen from there: each particle feels the opposite acceleration, and all "
+     "motions are relative to the ground")
+LOAD(pressure, "pressure", FIELD_NUMBER, "stress",
+     "on the face that 'on' selects, inwards, spread over its layers; its direction stays as the body turns")
+LOAD(traction, "traction", FIELD_POINT, "stress",
+     "force per area of the face that 'on' selects, spread over its layers; or of 'area'")
+LOAD_SECTION(spring, "spring", "springs to the ground or to other particles")
 LOAD(displacement, "displacement", FIELD_FREE_POINT, "length", "prescribed displacement")
 LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")
+LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",
+     "prescribed acceleration, from rest; its history is integrated over time")
 LOAD_SECTION(along, "along", "motion prescribed in one direction only")
+LOAD(roller, "roller", FIELD_POINT, "1", "held in this direction, of any length; free across it, without friction")
+LOAD_SECTION(tie, "tie", "particles that move together")
+LOAD_SECTION(initial_velocity, "initial velocity",
+             "velocity that the particles have when the load begins; free after that")
 #undef LOAD_SECTION
 #undef LOAD

@@ -1,0 +1,9 @@
+#include "loading/load/load_parts.h"
+
+static int create(Load *load, const LoadMaking *making)
+{
+  load_constrain_axes(load, making, 2);
+  return BRECCIA_OK;
+}
+
+const LoadType acceleration_load = {.create = create, .vector = load_point, .magnitude = load_length};

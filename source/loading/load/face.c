@@ -1,0 +1,65 @@
+#include "loading/load/face.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <stdlib.h>
+
+/** Depth of the layers of a face, of which a particle's volume is that times its share of the face; NaN where there is no lattice. */
+static double depth_of(const Lattice *lattice, const BlockSpec *block, int axis, int64_t layers)
+{
+  return block->file ? NAN : lattice->unit.size[axis] * lattice->filled[axis] * (double)layers;
+}
+
+int face_create(Face *face, const Load *load, const LoadMaking *making)
+{
+  const Body *body = making->body;
+  const Particles *p = &body->particles;
+  const DeckReader *reader = making->reader;
+  const SelectionSpec *on = selection_spec(making->selections, &load->spec->on);
+  const double area = load->spec->area;
+  *face = (Face){0};
+  if ((!on || !on->face) && isnan(area))
+    return node_error(reader->document, load->place, reader->error,
+                      "%s: acts on a face: 'on' must say which, like {face: x+}%s", load->place->key,
+                      load->place->key[0] == 't' ? ", or 'area' how large it is" : "");
+  face->axis = on && on->face ? on->face[0] - 'x' : 0;
+  face->outwards = on && on->face && on->face[1] == '-' ? -1 : 1;
+  face->per_depth = memory_zeroed((size_t)p->slices, sizeof(double), "face", reader->error);
+  if (!face->per_depth) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int64_t slice = load->selection.places[n] / SLICE;
+    const int b = p->block[slice];
+    face->per_depth[slice] =
+        !isnan(area) ? area / load->volume : 1 / depth_of(&body->lattices[b], body->blocks[b], face->axis, on->layers);
+    if (isnan(face->per_depth[slice]))
+      return node_error(reader->document, load->place, reader->error,
+                        "%s: the particles of block '%s' come from a file, so that the area of its face is not known; "
+                        "take 'traction' with 'area'",
+                        load->place->key, body->blocks[b]->head.name);
+  }
+  return BRECCIA_OK;
+}
+
+void face_destroy(Face *face)
+{
+  free(face->per_depth);
+  *face = (Face){0};
+}
+
+double face_area(const Face *face, const Load *load, const Particles *p)
+{
+  double sum = 0;
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int32_t place = load->selection.places[n];
+    sum += p->volume[place] * face->per_depth[place / SLICE];
+  }
+  return sum;
+}
+
+void face_push(const Face *face, const Load *load, Particles *p, const double traction[3])
+{
+  TEAM_FOR (n, load->selection.count) {
+    const int32_t place = load->selection.places[n];
+    for (int k = 0; k < 3; ++k) p->external[k][place] += traction[k] * face->per_depth[place / SLICE];
+  }
+}

@@ -1,0 +1,93 @@
+#include "loading/load.h"
+
+#include <math.h>
+
+typedef struct InitialVelocitySpec {
+  SectionHead head;
+  double translation[3], rotation[3], about[3];
+} InitialVelocitySpec;
+
+static void check_initial_velocity(const DeckReader *reader, void *section)
+{
+  const InitialVelocitySpec *s = section;
+  if (isnan(s->translation[0]) && isnan(s->rotation[0]))
+    node_error(reader->document, s->head.node, reader->error,
+               "initial velocity: say how: 'translation', 'rotation' or both");
+}
+
+static const Field initial_velocity_fields[] = {
+    {"translation", FIELD_POINT, offsetof(InitialVelocitySpec, translation), "velocity", "", NULL,
+     "of all these particles", NULL, NULL, 0},
+    {"rotation", FIELD_POINT, offsetof(InitialVelocitySpec, rotation), "angular velocity", "", NULL,
+     "angular velocity about the three axes, anticlockwise; in the plane [0, 0, w]", NULL, NULL, 0},
+    {"about", FIELD_POINT, offsetof(InitialVelocitySpec, about), "length", "", NULL,
+     "a point that the axis goes through; when absent the centre of mass of these particles", NULL, NULL, 0},
+};
+const Section initial_velocity_load_section = {"initial velocity",
+                                               "The motion of a rigid body, which particles have at first. It takes "
+                                               "the place of what they had.",
+                                               sizeof(InitialVelocitySpec),
+                                               FIELDS(initial_velocity_fields),
+                                               check_initial_velocity,
+                                               NULL,
+                                               NULL,
+                                               0};
+
+static double or_none(double value)
+{
+  return isnan(value) ? 0 : value;
+}
+
+static int create(Load *load, const LoadMaking *making)
+{
+  const InitialVelocitySpec *s = load->value->section;
+  const int dimensions = making->body->dimensions;
+  for (int k = 0; k < 3; ++k)
+    if ((dimensions < 3 && k >= dimensions && or_none(s->translation[k]) != 0) ||
+        (dimensions < 3 && (k < 2 || dimensions == 1) && or_none(s->rotation[k]) != 0))
+      return node_error(making->reader->document, load->place, making->reader->error,
+                        "initial velocity: the body is %s, this motion leads out of it",
+                        dimensions == 2 ? "plane and turns about z only" : "a bar along x");
+  return BRECCIA_OK;
+}
+
+static bool begin(Load *load, Particles *p)
+{
+  const InitialVelocitySpec *s = load->value->section;
+  double centre[3] = {0}, mass = 0, w[3];
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int32_t i = load->selection.places[n];
+    for (int k = 0; k < 3; ++k) centre[k] += p->density[i] * p->volume[i] * (p->position[k][i] + p->displacement[k][i]);
+    mass += p->density[i] * p->volume[i];
+  }
+  for (int k = 0; k < 3; ++k) {
+    centre[k] = isnan(s->about[0]) ? centre[k] / mass : s->about[k];
+    w[k] = or_none(s->rotation[k]);
+  }
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int32_t i = load->selection.places[n];
+    double arm[3];
+    for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement[k][i] - centre[k];
+    for (int k = 0; k < 3; ++k)
+      p->velocity[k][i] =
+          or_none(s->translation[k]) + w[(k + 1) % 3] * arm[(k + 2) % 3] - w[(k + 2) % 3] * arm[(k + 1) % 3];
+  }
+  return true;
+}
+
+static const char *kind(const LoadValue *value, const char **dimension)
+{
+  const InitialVelocitySpec *s = value->section;
+  *dimension = isnan(s->translation[0]) ? "angular velocity" : "velocity";
+  return "initial velocity";
+}
+
+static double magnitude(const LoadValue *value)
+{
+  const InitialVelocitySpec *s = value->section;
+  const double *given = isnan(s->translation[0]) ? s->rotation : s->translation;
+  return sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2]);
+}
+
+const LoadType initial_velocity_load = {
+    .everywhere = true, .timeless = true, .create = create, .begin = begin, .kind = kind, .magnitude = magnitude};

@@ -1,0 +1,37 @@
+#include "loading/load/face.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int create(Load *load, const LoadMaking *making)
+{
+  load->own = memory_zeroed(1, sizeof(Face), "face", making->reader->error);
+  return load->own ? face_create(load->own, load, making) : BRECCIA_FAILURE;
+}
+
+static void destroy(Load *load)
+{
+  face_destroy(load->own);
+  free(load->own);
+}
+
+static void force(const Load *load, Particles *p, double factor)
+{
+  const Face *face = load->own;
+  double traction[3] = {0};
+  traction[face->axis] = -face->outwards * factor * load->value->number;
+  face_push(face, load, p, traction);
+}
+
+static double magnitude(const LoadValue *value)
+{
+  return fabs(value->number);
+}
+
+static LoadWords tell(const Load *load, const Particles *p)
+{
+  return (LoadWords){"a force in all of", magnitude(load->value) * face_area(load->own, load, p), "force", "N"};
+}
+
+const LoadType pressure_load = {
+    .create = create, .destroy = destroy, .force = force, .tell = tell, .magnitude = magnitude};

@@ -1,0 +1,260 @@
+/* Elastic springs: from each particle to the ground, the stiffness shared by volume; or one between the mean displacements of two sets of
+ * particles, on which it pulls like a force that is shared by volume. */
+#include "loading/load/load_parts.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct SpringSpec {
+  SectionHead head;
+  double stiffness, direction[3];
+  Reference to;
+} SpringSpec;
+
+static void check_spring(const DeckReader *reader, void *section)
+{
+  const SpringSpec *s = section;
+  if (s->direction[0] == 0 && s->direction[1] == 0 && s->direction[2] == 0)
+    node_error(reader->document, section_place(section, "direction"), reader->error, "direction: must not be zero");
+}
+
+static const Field spring_fields[] = {
+    {"stiffness", FIELD_NUMBER, offsetof(SpringSpec, stiffness), "force per length", NULL, "(0, inf)",
+     "of all these particles together, shared by volume", NULL, NULL, 0},
+    {"direction", FIELD_POINT, offsetof(SpringSpec, direction), "1", "", NULL,
+     "in which it acts, of any length. When absent: in all directions alike to the ground; to other particles along "
+     "the line between the two centres",
+     NULL, NULL, 0},
+    {"to", FIELD_REFERENCE, offsetof(SpringSpec, to), NULL, "", NULL,
+     "particles at the other end, which move as their mean; the ground when absent", &selection_section, NULL, 0},
+};
+const Section spring_load_section = {"spring",
+                                     "Springs without force when the load begins; force = stiffness times change of "
+                                     "displacement.",
+                                     sizeof(SpringSpec),
+                                     FIELDS(spring_fields),
+                                     check_spring,
+                                     NULL,
+                                     NULL,
+                                     0};
+
+typedef struct Spring {
+  double stiffness, direction[3];
+  bool directed;
+  double other_volume; /* of the other end */
+  double *from[3]; /* to the ground: [particles] displacements when it began; between two ends: [1] their difference */
+  double pull[3];  /* between two ends: the force on the first, as of the last step */
+} Spring;
+
+static bool joins(const Load *load)
+{
+  return load->other.count > 0;
+}
+
+/** Mean of a vector over particles, by volume. */
+static double mean(const Particles *p, const Selection *selection, double volume, double *const vector)
+{
+  double sum = 0;
+  for (int64_t n = 0; n < selection->count; ++n) sum += p->volume[selection->places[n]] * vector[selection->places[n]];
+  return sum / volume;
+}
+
+static int aim(Spring *spring, const Load *load, const LoadMaking *making)
+{
+  const SpringSpec *spec = load->value->section;
+  const Particles *p = &making->body->particles;
+  double *d = spring->direction;
+  spring->directed = !isnan(spec->direction[0]) || joins(load);
+  for (int k = 0; k < 3 && spring->directed; ++k)
+    d[k] = !isnan(spec->direction[0]) ? spec->direction[k]
+                                      : mean(p, &load->other, spring->other_volume, p->position[k]) -
+                                            mean(p, &load->selection, load->volume, p->position[k]);
+  const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  if (spring->directed && length < 1e-9 * making->body->largest_spacing)
+    return node_error(making->reader->document, load->place, making->reader->error,
+                      "spring: its ends have one centre; say its 'direction'");
+  for (int k = 0; k < 3 && spring->directed; ++k) d[k] /= length;
+  return BRECCIA_OK;
+}
+
+static int create(Load *load, const LoadMaking *making)
+{
+  const SpringSpec *spec = load->value->section;
+  Error *error = making->reader->error;
+  Spring *spring = load->own = memory_zeroed(1, sizeof *spring, "spring", error);
+  if (!spring) return BRECCIA_FAILURE;
+  spring->stiffness = spec->stiffness;
+  if (spec->to.node) {
+    const int status = selection_create(&load->other, making->body, making->reader, making->selections, &spec->to);
+    if (status) return status;
+  }
+  for (int64_t n = 0; n < load->other.count; ++n)
+    spring->other_volume += making->body->particles.volume[load->other.places[n]];
+  const size_t count = joins(load) ? 1 : (size_t)load->selection.count;
+  for (int k = 0; k < 3; ++k)
+    if (!(spring->from[k] = memory_zeroed(count, sizeof(double), "spring", error))) return BRECCIA_FAILURE;
+  return aim(spring, load, making);
+}
+
+static void destroy(Load *load)
+{
+  Spring *spring = load->own;
+  for (int k = 0; k < 3; ++k) free(spring->from[k]);
+  free(spring);
+}
+
+/** What is left of a change of displacements in the spring's direction. */
+static void project(const Spring *spring, double change[3])
+{
+  if (!spring->directed) return;
+  double along = 0;
+  for (int k = 0; k < 3; ++k) along += change[k] * spring->direction[k];
+  for (int k = 0; k < 3; ++k) change[k] = along * spring->direction[k];
+}
+
+static void change_between(const Load *load, const Particles *p, double change[3])
+{
+  const Spring *spring = load->own;
+  for (int k = 0; k < 3; ++k)
+    change[k] = mean(p, &load->selection, load->volume, p->displacement[k]) -
+                mean(p, &load->other, spring->other_volume, p->displacement[k]) - spring->from[k][0];
+  project(spring, change);
+}
+
+static void change_at(const Load *load, const Particles *p, int64_t n, double change[3])
+{
+  const Spring *spring = load->own;
+  for (int k = 0; k < 3; ++k) change[k] = p->displacement[k][load->selection.places[n]] - spring->from[k][n];
+  project(spring, change);
+}
+
+static void push_evenly(const Selection *selection, Particles *p, const double force[3], double volume)
+{
+  TEAM_FOR (n, selection->count)
+    for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] += force[k] / volume;
+}
+
+static void force(const Load *load, Particles *p, double factor)
+{
+  (void)factor;
+  Spring *spring = load->own;
+  if (joins(load)) {
+    TEAM_SINGLE
+    {
+      change_between(load, p, spring->pull);
+      for (int k = 0; k < 3; ++k) spring->pull[k] *= -spring->stiffness;
+    }
+    push_evenly(&load->selection, p, spring->pull, load->volume);
+    push_evenly(&load->other, p, spring->pull, -spring->other_volume);
+    return;
+  }
+  TEAM_FOR (n, load->selection.count) {
+    double change[3];
+    change_at(load, p, n, change);
+    for (int k = 0; k < 3; ++k)
+      p->external[k][load->selection.places[n]] -= spring->stiffness / load->volume * change[k];
+  }
+}
+
+static bool begin(Load *load, Particles *p)
+{
+  Spring *spring = load->own;
+  for (int k = 0; k < 3; ++k) {
+    if (joins(load))
+      spring->from[k][0] = mean(p, &load->selection, load->volume, p->displacement[k]) -
+                           mean(p, &load->other, spring->other_volume, p->displacement[k]);
+    for (int64_t n = 0; !joins(load) && n < load->selection.count; ++n)
+      spring->from[k][n] = p->displacement[k][load->selection.places[n]];
+  }
+  return false;
+}
+
+static double energy(const Load *load, const Particles *p)
+{
+  const Spring *spring = load->own;
+  double sum = 0, change[3];
+  if (joins(load)) {
+    change_between(load, p, change);
+    return spring->stiffness * (change[0] * change[0] + change[1] * change[1] + change[2] * change[2]) / 2;
+  }
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    change_at(load, p, n, change);
+    sum +=
+        p->volume[load->selection.places[n]] * (change[0] * change[0] + change[1] * change[1] + change[2] * change[2]);
+  }
+  return spring->stiffness / load->volume * sum / 2;
+}
+
+static double lightest(const Particles *p, const Selection *selection)
+{
+  double least = INFINITY;
+  for (int64_t n = 0; n < selection->count; ++n) least = fmin(least, p->density[selection->places[n]]);
+  return least;
+}
+
+static double eigenvalue(const Load *load, const Particles *p)
+{
+  const Spring *spring = load->own;
+  double sum = spring->stiffness / (load->volume * lightest(p, &load->selection));
+  if (joins(load)) sum += spring->stiffness / (spring->other_volume * lightest(p, &load->other));
+  return sum;
+}
+
+static void state(Load *load, const char *name, StateList *list)
+{
+  Spring *spring = load->own;
+  const StateRow row = {.unit = "length",
+                        .kind = STATE_NUMBERS,
+                        .role = STATE_COMMITTED,
+                        .count = joins(load) ? 1 : load->selection.count};
+  static const char *const parts[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    StateRow one = row;
+    one.values = spring->from[k];
+    state_add(list, &one, name, parts[k]);
+  }
+}
+
+static LoadWords tell(const Load *load, const Particles *p)
+{
+  const Spring *spring = load->own;
+  double mass[2] = {0};
+  for (int64_t n = 0; n < load->selection.count; ++n)
+    mass[0] += p->density[load->selection.places[n]] * p->volume[load->selection.places[n]];
+  for (int64_t n = 0; n < load->other.count; ++n)
+    mass[1] += p->density[load->other.places[n]] * p->volume[load->other.places[n]];
+  const double swings = joins(load) ? mass[0] * mass[1] / (mass[0] + mass[1]) : mass[0];
+  return (LoadWords){"its particles alone on it swing with a period of",
+                     2 * acos(-1) * sqrt(swings / spring->stiffness), "time", "s"};
+}
+
+static const double *vector(const LoadValue *value)
+{
+  return ((const SpringSpec *)value->section)->direction;
+}
+
+static const char *kind(const LoadValue *value, const char **dimension)
+{
+  (void)value;
+  *dimension = "force per length";
+  return "spring";
+}
+
+static double magnitude(const LoadValue *value)
+{
+  return ((const SpringSpec *)value->section)->stiffness;
+}
+
+const LoadType spring_load = {.timeless = true,
+                              .create = create,
+                              .destroy = destroy,
+                              .vector = vector,
+                              .force = force,
+                              .begin = begin,
+                              .energy = energy,
+                              .tell = tell,
+                              .eigenvalue = eigenvalue,
+                              .state = state,
+                              .kind = kind,
+                              .magnitude = magnitude};

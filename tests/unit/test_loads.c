@@ -1,0 +1,416 @@
+/* Loads against closed forms: what each of them does, and its work in the ledger. */
+#include "support.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define SOFT UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e3, Poisson ratio: 0.25}}\n"
+#define CUBE SOFT "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+
+static void run_all(breccia_model *model)
+{
+  Error *error = breccia_error_create();
+  if (breccia_model_step(model, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+}
+
+typedef struct Sums { /* over all particles */
+  double mass, volume, momentum[3], turn[3], external[3], moved[3];
+} Sums;
+
+static Sums sums_of(const breccia_model *m)
+{
+  const Particles *p = m->domain.particles;
+  Sums s = {0};
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double mass = p->density[i] * p->volume[i];
+    s.mass += mass;
+    s.volume += p->volume[i];
+    for (int k = 0; k < 3; ++k) {
+      const int a = (k + 1) % 3, b = (k + 2) % 3;
+      s.momentum[k] += mass * p->velocity[k][i];
+      s.external[k] += p->volume[i] * p->external[k][i];
+      s.moved[k] += p->volume[i] * p->displacement[k][i];
+      s.turn[k] += mass * ((p->position[a][i] + p->displacement[a][i]) * p->velocity[b][i] -
+                           (p->position[b][i] + p->displacement[b][i]) * p->velocity[a][i]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) s.moved[k] /= s.volume;
+  return s;
+}
+
+static void assert_balanced(const breccia_model *m, double tolerance)
+{
+  const Energy e = solver_energy(&m->solver);
+  if (!(e.imbalance < tolerance)) fail_msg("imbalance %g", e.imbalance);
+}
+
+static void a_mass_on_a_spring_swings_with_its_period(void **state)
+{
+  (void)state;
+  /* 128 kg on 5 kN/m and, across, on none: sqrt(k / m) = 6.25 1/s. */
+  const char *const springs[] = {"stiffness: 5 kN/m", "stiffness: 5 kN/m, direction: [3, 0, 0]"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(CUBE "loads:\n  - {on: {all: yes}, spring: {%s}}\n"
+                                     "  - {initial velocity: {translation: [0.5, 0.2, 0]}}\n"
+                                     "solve: {explicit: {end time: 1.3, time step: 1e-3}}\n",
+                                springs[k]);
+    double most = 0;
+    while (m->solver.clock.time < 1.25) {
+      assert_int_equal(breccia_model_step(m, 25, NULL), 0);
+      const double t = breccia_model_time(m), w = 6.25;
+      const Sums s = sums_of(m);
+      assert_near(s.moved[0], 0.5 / w * sin(w * t), 2e-5 * 0.5);
+      assert_near(s.moved[1], k ? 0.2 * t : 0.2 / w * sin(w * t), 2e-5 * 0.5);
+      const Energy e = solver_energy(&m->solver);
+      assert_near(e.kinetic + e.stored, 0.128 * (0.25 + 0.04) / 2, 1e-4 * 0.0186);
+      assert_near(e.external, 0, 1e-12);
+      most = fmax(most, e.stored);
+    }
+    assert_true(most > 0.99 * 0.128 * (k ? 0.25 : 0.29) / 2);
+    assert_balanced(m, 1e-10);
+    breccia_model_destroy(&m);
+  }
+}
+
+#define PAIR                                                                                                           \
+  SOFT "body: {a: {material: m, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [0.3, 0.3, 0.3]}}},\n"                \
+       "       b: {material: m, spacing: 0.1, shape: {box: {from: [1, 0, 0], to: [1.6, 0.3, 0.3]}}}}\n"
+
+static double mean_along(const breccia_model *m, int block, double *const vector)
+{
+  const Particles *p = m->domain.particles;
+  double sum = 0, count = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    if (p->block[i / SLICE] != block) continue;
+    sum += vector[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+static void two_bodies_on_one_spring_swing_about_their_centre_of_mass(void **state)
+{
+  (void)state;
+  /* Masses 54 and 108 kg, reduced mass 36 kg, 9 kN/m: 15.81 1/s. */
+  breccia_model *m = model_of(PAIR "loads:\n  - {on: {block: a}, spring: {to: {block: b}, stiffness: 9}}\n"
+                                   "  - {on: {block: a}, initial velocity: {translation: [0.3, 0, 0]}}\n"
+                                   "solve: {explicit: {end time: 1, time step: 5e-4}}\n");
+  const Particles *p = m->domain.particles;
+  const double w = sqrt(9 / 0.036);
+  while (m->solver.clock.time < 0.9) {
+    assert_int_equal(breccia_model_step(m, 40, NULL), 0);
+    const double t = breccia_model_time(m);
+    const double apart = mean_along(m, 0, p->displacement[0]) - mean_along(m, 1, p->displacement[0]);
+    assert_near(apart, 0.3 / w * sin(w * t), 2e-4 * 0.3 / w);
+    assert_near(sums_of(m).momentum[0], 0.054 * 0.3, 1e-12);
+  }
+  assert_balanced(m, 1e-9);
+  breccia_model_destroy(&m);
+}
+
+static void springs_shorten_the_stable_step_as_they_must(void **state)
+{
+  (void)state;
+  /* Of a body that is next to nothing beside its springs: 2 sqrt(m / k), and 2 sqrt of the reduced mass / k. */
+  breccia_model *ground = model_of(CUBE "loads: [{on: {all: yes}, spring: {stiffness: 2e9}}]\n"
+                                        "solve: {explicit: {steps: 1}}\n"),
+                *pair = model_of(PAIR "loads: [{on: {block: a}, spring: {to: {block: b}, stiffness: 9e9}}]\n"
+                                      "solve: {explicit: {steps: 1}}\n");
+  assert_near(ground->solver.clock.stable, 2 * sqrt(0.128 / 2e9), 1e-3 * 2 * sqrt(0.128 / 2e9));
+  assert_near(pair->solver.clock.stable, 2 * sqrt(0.036 / 9e9), 1e-3 * 2 * sqrt(0.036 / 9e9));
+  breccia_model_destroy(&ground);
+  breccia_model_destroy(&pair);
+}
+
+static void pressure_and_traction_have_the_resultant_of_their_face(void **state)
+{
+  (void)state;
+  const struct {
+    const char *lattice, *to, *more;
+    double size[3]; /* without blocks that do not fill it: the box */
+  } bodies[] = {{"cubic", "[0.6, 0.8, 1]", "", {0.6, 0.8, 1}},
+                {"face-centred cubic", "[0.6, 0.8, 1]", "", {0.6, 0.8, 1}},
+                {"square", "[0.6, 0.8]", ", thickness: 0.3", {0.6, 0.8, 0.3}},
+                {"hexagonal", "[0.6, 0.8]", ", thickness: 0.3", {0.6, 0.8, 0.3}}};
+  const char *const faces[] = {"x+", "x-", "y+", "y-", "z+", "z-"};
+  for (int b = 0; b < 4; ++b)
+    for (int f = 0; f < (b < 2 ? 6 : 4); ++f)
+      for (int layers = 1; layers < 4; layers += 2) {
+        breccia_model *m = model_of(
+            SOFT "body: {b: {material: m, lattice: %s, spacing: 0.1, shape: {box: {from: [0, 0%s], to: %s}}%s}}\n"
+                 "loads: [{on: {face: %s, layers: %d}, pressure: 7}, {on: {face: %s}, traction: [2, -3%s]}]\n"
+                 "peridynamics: {space: %s}\nsolve: {explicit: {steps: 1}}\n",
+            bodies[b].lattice, b < 2 ? ", 0" : "", bodies[b].to, bodies[b].more, faces[f], layers, faces[f],
+            b < 2 ? ", 5" : "", b < 2 ? "3-D" : "plane strain");
+        assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+        const int axis = f / 2;
+        const double area = bodies[b].size[(axis + 1) % 3] * bodies[b].size[(axis + 2) % 3];
+        const double traction[] = {2, -3, b < 2 ? 5 : 0};
+        const Sums s = sums_of(m);
+        for (int k = 0; k < 3; ++k)
+          assert_near(s.external[k], area * (traction[k] + (k == axis ? f % 2 ? 7 : -7 : 0)), 1e-12 * area * 7);
+        breccia_model_destroy(&m);
+      }
+  /* A sphere has no face of known area: half of it, with the area that the deck says. */
+  breccia_model *m =
+      model_of(SOFT "body: {b: {material: m, spacing: 0.1, shape: {sphere: {centre: [0, 0, 0], radius: 0.5}}}}\n"
+                    "loads: [{on: {inside: {box: {from: [0.2, -1, -1], to: [1, 1, 1]}}}, area: 0.4, "
+                    "traction: [3, 0, -1], history: {ramp to: 2}}]\n"
+                    "solve: {explicit: {steps: 10, time step: 1e-2}}\n");
+  assert_int_equal(breccia_model_step(m, 10, NULL), 0);
+  assert_near(sums_of(m).external[0], 0.05 * 0.4 * 3, 1e-14);
+  assert_near(sums_of(m).external[2], -0.05 * 0.4, 1e-14);
+  breccia_model_destroy(&m);
+}
+
+static void pressure_from_both_ends_stresses_a_bar_by_itself(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(SOFT "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [24, 5, 5]}}}}\n"
+                    "loads: [{on: {face: x-, layers: 3}, pressure: 0.5}, {on: {face: x+, layers: 3}, "
+                    "pressure: 0.5}]\n"
+                    "solve: {explicit: {end time: 6, damping: 10, rest: 1e-4}}\n"
+                    "watch: {s: {stress and strain of: {inside: {box: {from: [1, 0, 0], to: [1.4, 1, 1]}}}}}\n");
+  run_all(m);
+  assert_true(m->solver.records[0].came_to_rest == 1);
+  double mean = 0;
+  int count = 0;
+  for (int64_t n = 0; n < m->domain.particles->count; ++n) {
+    const int32_t i = m->domain.particles->place_of[n];
+    if (fabs(m->domain.particles->position[0][i] - 1.2) > 0.11) continue;
+    mean += m->domain.stress[0][i];
+    ++count;
+  }
+  assert_near(mean / count, -0.5, 0.01 * 0.5);
+  assert_balanced(m, 1e-3);
+  breccia_model_destroy(&m);
+}
+
+static void the_ground_moves_as_seen_from_itself(void **state)
+{
+  (void)state;
+  const char *history = "history: {sine: {frequency: 3, until: 1}}";
+  breccia_model *frame = model_of(CUBE "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]},\n"
+                                       "        {base acceleration: [2, 0, -1], %s}]\n"
+                                       "solve: {explicit: {steps: 600, time step: 1e-3}}\n",
+                                  history),
+                *ground = model_of(CUBE "loads: [{on: {face: x-, layers: 1}, acceleration: [2, 0, -1], %s}]\n"
+                                        "solve: {explicit: {steps: 600, time step: 1e-3}}\n",
+                                   history);
+  const Particles *p = frame->domain.particles, *q = ground->domain.particles;
+  const int32_t held = p->place_of[0];
+  double largest = 0;
+  for (int round = 0; round < 12; ++round) {
+    assert_int_equal(breccia_model_step(frame, 50, NULL), 0);
+    assert_int_equal(breccia_model_step(ground, 50, NULL), 0);
+    const double t = breccia_model_time(frame), w = 6 * acos(-1);
+    const Sums s = sums_of(frame);
+    assert_near(s.external[0], -s.mass * 2 * sin(w * t), 1e-12); /* against the acceleration */
+    assert_near(s.external[2], s.mass * 1 * sin(w * t), 1e-12);
+    assert_near(q->displacement[0][held], 2 * (t / w - sin(w * t) / (w * w)), 1e-12); /* the integral of the integral */
+    for (int64_t n = 0; n < p->count; ++n)
+      for (int k = 0; k < 3; k += 2) {
+        const int32_t i = p->place_of[n];
+        const double relative = q->displacement[k][i] - q->displacement[k][held];
+        largest = fmax(largest, fabs(relative));
+        assert_near(relative, p->displacement[k][i], 2e-6);
+      }
+  }
+  assert_true(largest > 1e-3);
+  assert_balanced(frame, 1e-3);
+  assert_balanced(ground, 1e-3);
+  breccia_model_destroy(&frame);
+  breccia_model_destroy(&ground);
+}
+
+static void on_inclined_rollers_a_body_slides_without_friction(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(CUBE "loads: [{gravity: [0, 0, -10]}, {on: {all: yes}, roller: [3, 0, 4]}]\n"
+                                   "solve: {explicit: {end time: 0.5}}\n");
+  run_all(m);
+  /* Down the slope, (4, 0, -3) / 5, by g sin a = 6. */
+  const double moved = 6 * 0.25 / 2;
+  const Sums s = sums_of(m);
+  assert_near(s.moved[0], 0.8 * moved, 1e-9);
+  assert_near(s.moved[2], -0.6 * moved, 1e-9);
+  assert_near(solver_energy(&m->solver).kinetic, s.mass * 9 / 2, 1e-9);
+  assert_near(solver_energy(&m->solver).external, s.mass * 10 * 0.6 * moved, 1e-9);
+  breccia_model_destroy(&m);
+}
+
+static void a_body_is_thrown_and_spins_as_said(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(SOFT "body: {b: {material: m, spacing: 0.1, shape: {box: {from: [1, 1, 0], to: [1.6, 1.4, 0.2]}}}}\n"
+                    "loads: [{initial velocity: {translation: [1, 0, 2], rotation: [0, 0, 3 rad/s]}}]\n"
+                    "solve: {explicit: {steps: 40}}\n");
+  assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+  const Sums first = sums_of(m);
+  const double mass = 2 * 0.6 * 0.4 * 0.2;
+  /* The inertia of the particles' centres; of the whole box it would be m (a^2 + b^2) / 12. */
+  const double inertia = mass * (0.36 - 0.01 + 0.16 - 0.01) / 12, about_origin = mass * (1.3 * 0 - 1.2 * 1);
+  const double kinetic = mass * 5 / 2 + inertia * 9 / 2;
+  assert_near(m->solver.ledger.kinetic_at_start, kinetic, 1e-12);
+  assert_near(first.momentum[0], mass, 1e-12);
+  assert_near(first.momentum[2], 2 * mass, 1e-12);
+  assert_near(first.turn[2], inertia * 3 + about_origin, 1e-3 * mass);
+  run_all(m);
+  const Sums last = sums_of(m);
+  for (int k = 0; k < 3; ++k) {
+    assert_near(last.momentum[k], first.momentum[k], 1e-12);
+    assert_near(last.turn[k], first.turn[k], 1e-9);
+  }
+  assert_balanced(m, 1e-3);
+  breccia_model_destroy(&m);
+  breccia_model *about = model_of(CUBE "loads: [{initial velocity: {rotation: [2, 0, 0], about: [0, 1, 0]}}]\n"
+                                       "solve: {explicit: {steps: 1, time step: 1e-6}}\n");
+  assert_int_equal(breccia_model_step(about, 1, NULL), 0);
+  const Particles *p = about->domain.particles;
+  const int32_t i = particles_nearest(p, (double[]){0.35, 0.25, 0.15});
+  assert_near(p->velocity[1][i], -2 * p->position[2][i], 1e-4);
+  assert_near(p->velocity[2][i], 2 * (p->position[1][i] - 1), 1e-4);
+  breccia_model_destroy(&about);
+}
+
+static void tied_bodies_move_as_one_and_keep_their_momentum(void **state)
+{
+  (void)state;
+  for (int local = 0; local < 2; ++local) {
+    breccia_model *m = model_of(PAIR "loads:\n  - {on: {block: a, face: x+}, tie: {to: {block: b, face: x-}}}\n"
+                                     "  - {on: {block: a}, initial velocity: {translation: [0.3, 0, 0.1]}}\n"
+                                     "solve: {explicit: {steps: 400%s}}\n",
+                                local ? ", local damping: 0.3" : "");
+    const Particles *p = m->domain.particles;
+    const double given[] = {0.054 * 0.3, 0, 0.054 * 0.1};
+    for (int round = 0; round < 8; ++round) {
+      assert_int_equal(breccia_model_step(m, 50, NULL), 0);
+      for (double y = 0.05; y < 0.3; y += 0.1)
+        for (double z = 0.05; z < 0.3; z += 0.1) {
+          const int32_t a = particles_nearest(p, (double[]){0.25, y, z}),
+                        b = particles_nearest(p, (double[]){1.05, y, z});
+          for (int k = 0; k < 3; ++k) assert_true(p->displacement[k][a] == p->displacement[k][b]);
+        }
+      for (int k = 0; k < 3 && !local; ++k) assert_near(sums_of(m).momentum[k], given[k], 1e-12);
+    }
+    assert_true(mean_along(m, 1, p->displacement[0]) > 1e-3); /* b goes along */
+    assert_balanced(m, 2e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_tie_in_one_direction_leaves_the_others(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(CUBE "loads:\n  - {on: {face: z+}, tie: {directions: z}}\n"
+                                   "  - {on: {nearest: [0, 0, 0.4]}, force: [0.01, 0, 0.01]}\n"
+                                   "  - {on: {face: z-, layers: 1}, displacement: [0, 0, 0]}\n"
+                                   "solve: {explicit: {steps: 300, damping: 5}}\n");
+  run_all(m);
+  const Particles *p = m->domain.particles;
+  const int32_t a = particles_nearest(p, (double[]){0, 0, 0.4}), b = particles_nearest(p, (double[]){0.4, 0.4, 0.4});
+  assert_true(p->displacement[2][a] == p->displacement[2][b] && p->displacement[2][a] > 0);
+  assert_true(fabs(p->displacement[0][a] - p->displacement[0][b]) > 1e-3 * fabs(p->displacement[0][a]));
+  assert_balanced(m, 2e-3);
+  breccia_model_destroy(&m);
+}
+
+/* A shear column whose sides are tied is one of infinite width: with a = g sin a along it, rest is at u(z) = rho a (H z - z^2 / 2) / G. */
+static void a_column_with_tied_sides_shears_as_if_it_had_none(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {model: elastic, density: 2, Young modulus: 250, Poisson ratio: 0.25}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [6, 20]}}}}\n"
+      "peridynamics: {space: plane strain}\n"
+      "loads:\n"
+      "  - {on: {face: y-, layers: 3}, displacement: [0, 0]}\n"
+      "  - {on: {face: x-, layers: 3}, tie: {to: {face: x+, layers: 1}}}\n"
+      "  - {on: {all of: [{face: x+, layers: 3}], except: {face: x+, layers: 1}}, tie: {to: {face: x+, layers: 1}}}\n"
+      "  - {gravity: [1, 0]}\n"
+      "solve: {explicit: {end time: 12, damping: 3, rest: 1e-5}}\n");
+  run_all(m);
+  const Particles *p = m->domain.particles;
+  const double height = 2 - 0.25, shear = 100; /* from the middle of the held layers */
+  const int32_t top = particles_nearest(p, (double[]){0.25, 1.95, 0}),
+                side = particles_nearest(p, (double[]){0.05, 1.95, 0});
+  const double z = 1.95 - 0.25, expected = 2 * 1 * (height * z - z * z / 2) / shear;
+  assert_near(p->displacement[0][top], expected, 0.05 * expected);
+  assert_near(p->displacement[0][side], p->displacement[0][top], 0.02 * expected);
+  breccia_model_destroy(&m);
+}
+
+static void a_prescribed_acceleration_does_the_work_that_it_must(void **state)
+{
+  (void)state;
+  /* All of the body by a constant acceleration: a rigid motion, 1/2 m v^2 of work. */
+  breccia_model *m = model_of(CUBE "loads: [{on: {all: yes}, along: {direction: [0, 1, 0], acceleration: 4}}]\n"
+                                   "solve: {explicit: {end time: 0.5}}\n");
+  run_all(m);
+  const Sums s = sums_of(m);
+  assert_near(s.moved[1], 0.5, 1e-12);
+  assert_near(s.momentum[1], s.mass * 2, 1e-12);
+  assert_near(solver_energy(&m->solver).external, s.mass * 4 / 2, 1e-10);
+  breccia_model_destroy(&m);
+}
+
+static void what_does_not_fit_is_said(void **state)
+{
+  (void)state;
+  const struct {
+    const char *load, *words;
+  } wrong[] = {
+      {"{on: {all: yes}, pressure: 3}", "pressure: acts on a face: 'on' must say which, like {face: x+}"},
+      {"{on: {all: yes}, traction: [1, 0, 0]}", "or 'area' how large it is"},
+      {"{on: {face: x+}, pressure: 3, area: 2}", "area: only a 'traction' has one"},
+      {"{on: {face: x+}, roller: [0, 0, 0]}", "roller: must not be zero"},
+      {"{on: {face: x+}, roller: [1, 0, 0], history: {ramp to: 1}}", "history: 'roller' does not vary in time"},
+      {"{on: {face: x+}, spring: {stiffness: -1}}", "stiffness: -1 is out of range"},
+      {"{on: {face: x+}, spring: {stiffness: 1, to: {face: x+}}}", "spring: its ends have one centre"},
+      {"{on: {face: x+}, spring: {stiffness: 5 kN}}", "stiffness"},
+      {"{on: {face: x+}, tie: {to: {all: yes}}}", "is among 'on' and among 'to'"},
+      {"{initial velocity: {about: [0, 0, 0]}}", "initial velocity: say how: 'translation', 'rotation' or both"},
+      {"{initial velocity: {rotation: [0, 0, 3 Hz]}}", "counts turns"},
+      {"{on: {face: x+}, displacement: [0, free, free]}, {on: {face: x+}, tie: {to: {face: x-}}}",
+       "is moved or held by the load in line 4, and the one it is tied to is not"},
+      {"{on: {face: x+}, displacement: [0, free, free]}, {on: {face: x+}, roller: [1, 1, 0]}", "not at right angles"},
+  };
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck, CUBE "loads: [%s]\nsolve: {explicit: {steps: 1}}\n", wrong[k].load);
+    char *words = refusal_of(deck);
+    if (!strstr(words, wrong[k].words)) fail_msg("expected '%s', found '%s'", wrong[k].words, words);
+    assert_non_null(strstr(words, "deck:"));
+    free(words);
+  }
+  char *words = refusal_of(SOFT "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: "
+                                "{particles: [6, 20]}}}}\n"
+                                "peridynamics: {space: plane strain}\n"
+                                "loads: [{initial velocity: {rotation: [1, 0, 0]}}]\nsolve: {explicit: {steps: 1}}\n");
+  assert_non_null(strstr(words, "plane and turns about z only"));
+  free(words);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_mass_on_a_spring_swings_with_its_period),
+      cmocka_unit_test(two_bodies_on_one_spring_swing_about_their_centre_of_mass),
+      cmocka_unit_test(springs_shorten_the_stable_step_as_they_must),
+      cmocka_unit_test(pressure_and_traction_have_the_resultant_of_their_face),
+      cmocka_unit_test(pressure_from_both_ends_stresses_a_bar_by_itself),
+      cmocka_unit_test(the_ground_moves_as_seen_from_itself),
+      cmocka_unit_test(on_inclined_rollers_a_body_slides_without_friction),
+      cmocka_unit_test(a_body_is_thrown_and_spins_as_said),
+      cmocka_unit_test(tied_bodies_move_as_one_and_keep_their_momentum),
+      cmocka_unit_test(a_tie_in_one_direction_leaves_the_others),
+      cmocka_unit_test(a_column_with_tied_sides_shears_as_if_it_had_none),
+      cmocka_unit_test(a_prescribed_acceleration_does_the_work_that_it_must),
+      cmocka_unit_test(what_does_not_fit_is_said),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
