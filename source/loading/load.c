@@ -55,7 +55,7 @@ static void check_load(const DeckReader *reader, void *section)
 }
 
 const Section load_section = {"load",
-                              "A force on some particles, a motion prescribed to them, or what they hang on.",
+                              "A force on some particles, a motion prescribed to them, or what joins them to others.",
                               sizeof(LoadSpec),
                               FIELDS(load_fields),
                               check_load,
