@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /** Spreads the lowest 21 bits so that two others fit between each two of them. */
 static uint64_t spread(uint64_t x)
@@ -71,33 +72,42 @@ static int check_rows(const Cloud *cloud, const DeckReader *reader, const Node *
   return BRECCIA_OK;
 }
 
+#define READER(name) extern const BodyReader name##_reader;
+#include "body/readers.h"
+#undef READER
+
+static const BodyReader *const readers[] = {
+#define READER(name) &name##_reader,
+#include "body/readers.h"
+#undef READER
+};
+
+const BodyReader *body_reader_at(int k)
+{
+  return k < (int)(sizeof readers / sizeof *readers) ? readers[k] : NULL;
+}
+
+/** The kind of a file by its ending, in any case of letters; files with another ending are tables, as they were before there was a choice. */
+static const BodyReader *reader_of(const char *file)
+{
+  const char *ending = strrchr(file, '.');
+  for (int k = 0; ending && body_reader_at(k); ++k)
+    if (!strcasecmp(ending, body_reader_at(k)->ending)) return body_reader_at(k);
+  return &csv_reader;
+}
+
 int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, int dimensions)
 {
-  static const char *const names[] = {"x", "y", "z", "volume"};
   *cloud = (Cloud){0};
   char *path = text_beside(node_file(reader->document, node), file);
-  if (!path) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
-  int status = BRECCIA_OK;
-  for (int k = 0; k < 4 && !status; ++k) {
-    if (k < 3 && k >= dimensions) continue;
-    Error *words = breccia_error_create();
-    int count;
-    double *column = csv_column(path, names[k], CSV_FINISHED, &count, NULL, words);
-    if (!column)
-      status = node_error(reader->document, node, reader->error,
-                          "file: %s; expected a CSV file with the columns %s, in the deck's units",
-                          breccia_error_text(words),
-                          dimensions == 3   ? "x, y, z, volume"
-                          : dimensions == 2 ? "x, y, volume"
-                                            : "x, volume");
-    *(k == 3 ? &cloud->volume : &cloud->position[k]) = column;
-    cloud->count = count;
-    breccia_error_destroy(&words);
-  }
-  if (!status && csv_words(&cloud->groups, path, "group", reader->error)) status = BRECCIA_FAILURE;
+  Error *reason = breccia_error_create();
+  int status = path ? reader_of(file)->read(cloud, path, dimensions, reason) : BRECCIA_FAILURE;
+  if (!path) error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
+  if (path && status)
+    status = node_error(reader->document, node, reader->error, "file: %s", breccia_error_text(reason));
+  breccia_error_destroy(&reason);
   free(path);
-  if (!status) status = check_rows(cloud, reader, node, file);
-  return status;
+  return status ? status : check_rows(cloud, reader, node, file);
 }
 
 void cloud_destroy(Cloud *cloud)

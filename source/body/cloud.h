@@ -14,7 +14,22 @@ typedef struct Cloud {
   int32_t *order;  /* [count] along a curve that fills space, so that neighbours come near each other */
 } Cloud;
 
-/** Reads a CSV file with columns x, y, z (as many as the body has dimensions) and volume, in the deck's units, and, if it is there, group; its place is relative to the deck.
+/** A kind of files of particles. */
+typedef struct BodyReader {
+  const char *ending; /* of their names, with the point */
+  const char *about;
+  /** Reads positions, as many coordinates as the body has dimensions, volumes and, where the file tells them, groups; in the deck's units.
+   *  @param[in]  path    of the file
+   *  @param[out] cloud   zeros before; destroyed by the caller in any case
+   *  @param[out] reason  what is wrong, in words that follow the file's place in the deck
+   *  @return status */
+  int (*read)(Cloud *cloud, const char *path, int dimensions, Error *reason);
+} BodyReader;
+
+/** @return the k-th kind, or NULL after the last */
+const BodyReader *body_reader_at(int k);
+
+/** Reads a file of particles of the kind that its ending says; its place is relative to the deck.
  *  @param[in] node  where the deck names the file */
 int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const char *file, int dimensions);
 void cloud_destroy(Cloud *cloud);

@@ -4,17 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#define ROOT_HALF 0.70710678118654752440
-#define ROOT_THREE_QUARTERS 0.86602540378443864676
-
-/* Rows of the face-centred cubic lattice run along its nearest neighbours, not along the edges of its cubes: they are half as many again as full,
- * and the faces of a box across z are flat. Its layers are squares turned by 45 degrees to those cubes. */
 static const LatticeType types[] = {
-    {"cubic", 3, 3, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-    {"face-centred cubic", 3, 2, {{1, 0, 0}, {0, 1, 0}, {0.5, 0.5, ROOT_HALF}}},
-    {"square", 2, 2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-    {"hexagonal", 2, 1, {{1, 0, 0}, {0.5, ROOT_THREE_QUARTERS, 0}, {0, 0, 1}}},
-    {"line", 1, 1, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+#define LATTICE(name, dimensions, turns, ...) {name, dimensions, turns, {__VA_ARGS__}},
+#include "body/lattices.h"
+#undef LATTICE
 };
 
 const char *lattice_word(int k)

@@ -88,27 +88,17 @@ static bool row_goes_on(const Domain *d, int64_t slice)
   return true;
 }
 
-/** Limit of each material: the smallest of what the deck says for all and what its law says. */
-static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *of)
+static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *lengths)
 {
-  if (spec && !isnan(spec->critical_stretch) && !isnan(spec->fracture_energy))
-    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
-                      "failure: give 'critical stretch' or 'fracture energy', not both");
-  if (spec && !isnan(spec->fracture_energy) && !d->type->critical_stretch)
-    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
-                      "fracture energy: no critical stretch follows from it in %s; give 'critical stretch'",
-                      d->type->name);
+  const Criterion *criterion = criterion_of(spec);
   d->failure.limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
   d->failure.material = d->material;
   if (!d->failure.limit) return BRECCIA_FAILURE;
-  for (int k = 0; k < d->material_count; ++k) {
-    const Material *m = &d->materials[k];
-    double limit = material_failure_strain(m), of_deck = spec ? spec->critical_stretch : NAN;
-    if (spec && !isnan(spec->fracture_energy)) of_deck = d->type->critical_stretch(of, m, spec->fracture_energy);
-    d->failure.limit[k] = fmin(limit, of_deck); /* of a number and NaN: the number */
-    if (isfinite(d->failure.limit[k])) d->failure.criterion = &criterion_critical_stretch;
-  }
-  return BRECCIA_OK;
+  const LimitsOf of = {reader, d->type, lengths, d->materials, d->material_count};
+  const int status = criterion->limits(spec, &of, d->failure.limit);
+  for (int k = 0; k < d->material_count && !status; ++k)
+    if (isfinite(d->failure.limit[k])) d->failure.criterion = criterion;
+  return status;
 }
 
 static int find_lowest(Domain *d, Error *error)

@@ -1,7 +1,45 @@
 /* A bond breaks when its stretch (|Y| - |xi|) / |xi| exceeds a limit (Silling 2000; docs/theory.md 2). */
-#include "failure/failure.h"
+#include "failure/critical_stretch.h"
 
 #include <math.h>
+
+static const Field fields[] = {
+    {"critical stretch", FIELD_NUMBER, offsetof(CriticalStretchSpec, stretch), "1", "", "(0, inf)",
+     "a bond that is stretched by more than this share of its length breaks for good", NULL, NULL, 0},
+    {"fracture energy", FIELD_NUMBER, offsetof(CriticalStretchSpec, fracture_energy), "fracture energy", "", "(0, inf)",
+     "G_F, from which the critical stretch follows where the formulation knows how", NULL, NULL, 0},
+};
+static const Section section = {.name = "critical stretch",
+                                .about = "Keys of `failure` with `criterion: critical stretch`.",
+                                .size = sizeof(CriticalStretchSpec),
+                                FIELDS(fields)};
+
+const CriticalStretchSpec *critical_stretch_spec(const FailureSpec *failure)
+{
+  return failure && criterion_of(failure)->section == &section ? failure->keys : NULL;
+}
+
+/** Limit of each material: the smaller of what the deck says for all and what its law says. */
+static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
+{
+  const CriticalStretchSpec *spec = critical_stretch_spec(failure);
+  const DeckReader *reader = of->reader;
+  if (spec && !isnan(spec->stretch) && !isnan(spec->fracture_energy))
+    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
+                      "failure: give 'critical stretch' or 'fracture energy', not both");
+  if (spec && !isnan(spec->fracture_energy) && !of->type->critical_stretch)
+    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
+                      "fracture energy: no critical stretch follows from it in %s; give 'critical stretch'",
+                      of->type->name);
+  for (int k = 0; k < of->material_count; ++k) {
+    const Material *m = &of->materials[k];
+    double stretch = spec ? spec->stretch : NAN;
+    if (spec && !isnan(spec->fracture_energy))
+      stretch = of->type->critical_stretch(of->lengths, m, spec->fracture_energy);
+    limit[k] = fmin(material_failure_strain(m), stretch); /* of a number and NaN: the number */
+  }
+  return BRECCIA_OK;
+}
 
 /** Length that each of four bonds may still grow by; large where there is no intact bond. */
 LANES_INLINE Lanes reserve(const Failure *failure, const Family *f, int64_t slot, int64_t place, int half, bool lattice)
@@ -61,6 +99,8 @@ const Criterion criterion_critical_stretch = {
     .name = "critical stretch",
     .about = "a bond breaks when it is stretched by more than a share of its length",
     .source = "Silling 2000",
+    .section = &section,
+    .limits = limits,
     .suspect = suspect,
     .exceeds = exceeds,
 };

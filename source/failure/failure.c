@@ -1,5 +1,41 @@
 #include "failure/failure.h"
 
+#include <string.h>
+
+#define CRITERION(name) extern const Criterion criterion_##name;
+#include "failure/criteria.h"
+#undef CRITERION
+
+static const Criterion *const criteria[] = {
+#define CRITERION(name) &criterion_##name,
+#include "failure/criteria.h"
+#undef CRITERION
+};
+enum { COUNT = sizeof criteria / sizeof *criteria };
+
+const Criterion *criterion_at(int k)
+{
+  return k < COUNT ? criteria[k] : NULL;
+}
+
+const Criterion *criterion_of(const FailureSpec *spec)
+{
+  for (int k = 0; spec && k < COUNT; ++k)
+    if (!strcmp(criteria[k]->name, spec->criterion)) return criteria[k];
+  return criteria[0];
+}
+
+static const char *criterion_word(int k)
+{
+  return k < COUNT ? criteria[k]->name : NULL;
+}
+static const Section *criterion_keys(int k)
+{
+  return criteria[k]->section;
+}
+static const SectionChoice criterion_choice = {
+    .section = {.name = "criterion"}, .chosen = criterion_keys, .word = criterion_word};
+
 static const char *failed_laws_word(int k)
 {
   static const char *const words[] = {"stop", "break", NULL};
@@ -13,10 +49,10 @@ static const char *near_grips_word(int k)
 }
 
 static const Field failure_fields[] = {
-    {"critical stretch", FIELD_NUMBER, offsetof(FailureSpec, critical_stretch), "1", "", "(0, inf)",
-     "a bond that is stretched by more than this share of its length breaks for good", NULL, NULL, 0},
-    {"fracture energy", FIELD_NUMBER, offsetof(FailureSpec, fracture_energy), "fracture energy", "", "(0, inf)",
-     "G_F, from which the critical stretch of bond-based peridynamics follows", NULL, NULL, 0},
+    {"criterion", FIELD_CHOICE, offsetof(FailureSpec, criterion), NULL, "critical stretch", NULL, "when a bond breaks",
+     NULL, criterion_word, 0},
+    {"criterion", FIELD_CHOSEN, offsetof(FailureSpec, keys), NULL, "", NULL, "keys of the criterion",
+     &criterion_choice.section, NULL, 0},
     {"failed laws", FIELD_CHOICE, offsetof(FailureSpec, failed_laws), NULL, "stop", NULL,
      "what happens to a particle whose law cannot be integrated: the run stops there, or all its bonds break", NULL,
      failed_laws_word, 0},

@@ -4,21 +4,35 @@
 #define BRECCIA_FAILURE_FAILURE_H
 
 #include "deck/section.h"
-#include "family/family.h"
+#include "formulation/formulation.h"
 
 typedef struct FailureSpec {
   SectionHead head;
-  double critical_stretch, fracture_energy; /* NaN: not given */
-  const char *failed_laws;                  /* "stop" or "break" */
-  const char *near_grips;                   /* "break" or "hold"; NULL: not said, they break */
+  const char *criterion;
+  void *keys;              /* the struct of the criterion's own section */
+  const char *failed_laws; /* "stop" or "break" */
+  const char *near_grips;  /* "break" or "hold"; NULL: not said, they break */
 } FailureSpec;
 
 extern const Section failure_section;
 
 typedef struct Failure Failure;
 
+/** What the limits of bonds may depend on. */
+typedef struct LimitsOf {
+  const DeckReader *reader;
+  const FormulationType *type;
+  const BondLength *lengths;
+  const Material *materials;
+  int material_count;
+} LimitsOf;
+
 typedef struct Criterion {
   const char *name, *about, *source;
+  const Section *section; /* its keys, which stand among those of failure */
+  /** Finds the limit of the bonds of each material, infinite where they never break.
+   *  @param[in] spec  NULL: the deck says nothing of failure */
+  int (*limits)(const FailureSpec *spec, const LimitsOf *of, double *limit);
   /** Marks a slice if some bond of it may exceed its limit.
    *  @return how far every particle may move before the slice has to be looked at again; 0: look at every step */
   double (*suspect)(const Failure *failure, const Family *family, int64_t slice, uint8_t *suspect);
@@ -26,7 +40,10 @@ typedef struct Criterion {
   bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, const Bond *bond, int lane);
 } Criterion;
 
-extern const Criterion criterion_critical_stretch;
+/** @return the k-th criterion, or NULL after the last */
+const Criterion *criterion_at(int k);
+/** The criterion of a deck; `spec` may be NULL. */
+const Criterion *criterion_of(const FailureSpec *spec);
 
 struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */

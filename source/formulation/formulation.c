@@ -3,10 +3,15 @@
 #include <math.h>
 #include <string.h>
 
-extern const FormulationType formulation_correspondence, formulation_bond_based, formulation_ordinary;
+#define FORMULATION(name) extern const FormulationType formulation_##name;
+#include "formulation/formulations.h"
+#undef FORMULATION
 
-static const FormulationType *const formulations[] = {&formulation_correspondence, &formulation_bond_based,
-                                                      &formulation_ordinary};
+static const FormulationType *const formulations[] = {
+#define FORMULATION(name) &formulation_##name,
+#include "formulation/formulations.h"
+#undef FORMULATION
+};
 enum { COUNT = sizeof formulations / sizeof *formulations };
 
 const FormulationType *formulation_at(int k)

@@ -1,5 +1,6 @@
 #include "model/plausibility.h"
 
+#include "failure/critical_stretch.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -155,7 +156,7 @@ static void check_material(breccia_model *model, int k)
     warn(model, section_place(spec, "tensile strength"),
          "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
          strength / material_young(m), 100 * strength / material_young(m));
-  const FailureSpec *failure = model->spec->failure;
+  const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
   check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_place(spec, "fracture energy"));
   if (failure && !isnan(failure->fracture_energy))
     check_fracture_energy(model, m, failure->fracture_energy, section_place(failure, "fracture energy"));
@@ -373,7 +374,9 @@ static void check_grips(breccia_model *model)
 {
   const Domain *d = &model->domain;
   const FailureSpec *failure = model->spec->failure; /* laws that soften are not held by it */
-  if (!failure || failure->near_grips || (isnan(failure->critical_stretch) && isnan(failure->fracture_energy))) return;
+  const CriticalStretchSpec *stretch = critical_stretch_spec(failure);
+  if (!failure || failure->near_grips || (stretch && isnan(stretch->stretch) && isnan(stretch->fracture_energy)))
+    return;
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;
     if (!(has_kind(l, "displacement") || has_kind(l, "velocity") || has_kind(l, "acceleration")) ||

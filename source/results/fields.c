@@ -3,6 +3,10 @@
 #include "base/tensor.h"
 #include <string.h>
 
+#define OUTPUT_FIELD(name) extern const OutputField field_##name;
+#include "results/field_list.h"
+#undef OUTPUT_FIELD
+
 static void vector_at(double *const from[3], int32_t place, double *value)
 {
   for (int k = 0; k < 3; ++k) value[k] = from[k][place];
@@ -72,38 +76,93 @@ static void block(const Domain *d, int32_t place, double *value)
 static const char *const xyz[] = {"x", "y", "z"}, *const voigt[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
 static const char *const full[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
 
-static const OutputField fields[] = {
-    {"displacement", "length", "displacement from the reference position", 3, xyz, displacement, false},
-    {"velocity", "velocity", "velocity", 3, xyz, velocity, false},
-    {"stress", "stress",
-     "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain); of bonds: virial stress", 6,
-     voigt, stress, false},
-    {"strain", "1",
-     "strain as the law takes it, engineering shear; with bonds: Green-Lagrange of the family, zz in plane stress by "
-     "nu = 1/3",
-     6, voigt, strain, false},
-    {"deformation gradient", "1", "F, row by row", 9, full, gradient, false},
-    {"octahedral shear stress", "stress", "sqrt(2 J2 / 3)", 1, NULL, octahedral, false},
-    {"octahedral shear strain", "1", "twice the octahedral measure of the strain deviator: 2 / sqrt(3) |e|", 1, NULL,
-     octahedral_strain, false},
-    {"von Mises stress", "stress", "sqrt(3 J2)", 1, NULL, von_mises, false},
-    {"deviator norm", "stress", "|s| = sqrt(2 J2)", 1, NULL, deviator_norm, false},
-    {"mean stress", "stress", "a third of the trace, tension positive", 1, NULL, mean_stress, true},
-    {"damage", "1", "broken share of the family, 0 to 1", 1, NULL, damage, false},
-    {"internal force", "force per volume", "force per volume from bonds", 3, xyz, internal_force, false},
-    {"block", "1", "which block of the deck, from 0", 1, NULL, block, false},
+const OutputField field_displacement = {.name = "displacement",
+                                        .dimension = "length",
+                                        .about = "displacement from the reference position",
+                                        .components = 3,
+                                        .component_names = xyz,
+                                        .value = displacement};
+const OutputField field_velocity = {.name = "velocity",
+                                    .dimension = "velocity",
+                                    .about = "velocity",
+                                    .components = 3,
+                                    .component_names = xyz,
+                                    .value = velocity};
+const OutputField field_stress = {
+    .name = "stress",
+    .dimension = "stress",
+    .about = "stress as the law gives it (second Piola-Kirchhoff with green-lagrange strain); of bonds: virial stress",
+    .components = 6,
+    .component_names = voigt,
+    .value = stress};
+const OutputField field_strain = {.name = "strain",
+                                  .dimension = "1",
+                                  .about = "strain as the law takes it, engineering shear; with bonds: Green-Lagrange "
+                                           "of the family, zz in plane stress by "
+                                           "nu = 1/3",
+                                  .components = 6,
+                                  .component_names = voigt,
+                                  .value = strain};
+const OutputField field_gradient = {.name = "deformation gradient",
+                                    .dimension = "1",
+                                    .about = "F, row by row",
+                                    .components = 9,
+                                    .component_names = full,
+                                    .value = gradient};
+const OutputField field_octahedral = {.name = "octahedral shear stress",
+                                      .dimension = "stress",
+                                      .about = "sqrt(2 J2 / 3)",
+                                      .components = 1,
+                                      .value = octahedral};
+const OutputField field_octahedral_strain = {.name = "octahedral shear strain",
+                                             .dimension = "1",
+                                             .about =
+                                                 "twice the octahedral measure of the strain deviator: 2 / sqrt(3) |e|",
+                                             .components = 1,
+                                             .value = octahedral_strain};
+const OutputField field_von_mises = {
+    .name = "von Mises stress", .dimension = "stress", .about = "sqrt(3 J2)", .components = 1, .value = von_mises};
+const OutputField field_deviator_norm = {.name = "deviator norm",
+                                         .dimension = "stress",
+                                         .about = "|s| = sqrt(2 J2)",
+                                         .components = 1,
+                                         .value = deviator_norm};
+const OutputField field_mean_stress = {.name = "mean stress",
+                                       .dimension = "stress",
+                                       .about = "a third of the trace, tension positive",
+                                       .components = 1,
+                                       .value = mean_stress,
+                                       .has_sign = true};
+const OutputField field_damage = {.name = "damage",
+                                  .dimension = "1",
+                                  .about = "broken share of the family, 0 to 1",
+                                  .components = 1,
+                                  .value = damage};
+const OutputField field_internal_force = {.name = "internal force",
+                                          .dimension = "force per volume",
+                                          .about = "force per volume from bonds",
+                                          .components = 3,
+                                          .component_names = xyz,
+                                          .value = internal_force};
+const OutputField field_block = {
+    .name = "block", .dimension = "1", .about = "which block of the deck, from 0", .components = 1, .value = block};
+
+static const OutputField *const fields[] = {
+#define OUTPUT_FIELD(name) &field_##name,
+#include "results/field_list.h"
+#undef OUTPUT_FIELD
 };
 enum { COUNT = sizeof fields / sizeof *fields };
 
 const OutputField *output_field_at(int k)
 {
-  return k < COUNT ? &fields[k] : NULL;
+  return k < COUNT ? fields[k] : NULL;
 }
 
 const OutputField *output_field_find(const char *name)
 {
   for (int k = 0; k < COUNT; ++k)
-    if (!strcmp(fields[k].name, name)) return &fields[k];
+    if (!strcmp(fields[k]->name, name)) return fields[k];
   return NULL;
 }
 

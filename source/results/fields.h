@@ -1,4 +1,4 @@
-/* What can be written and drawn of each particle. A new field is one function and one line in the table of fields.c. */
+/* What can be written and drawn of each particle. A new field is one file and one line in field_list.h. */
 #ifndef BRECCIA_RESULTS_FIELDS_H
 #define BRECCIA_RESULTS_FIELDS_H
 

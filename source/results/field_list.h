@@ -1,0 +1,15 @@
+/* What can be written and drawn of each particle, as OUTPUT_FIELD(name). A new one is a file and a line here: the file has `field_NAME`, its
+ * table entry. */
+OUTPUT_FIELD(displacement)
+OUTPUT_FIELD(velocity)
+OUTPUT_FIELD(stress)
+OUTPUT_FIELD(strain)
+OUTPUT_FIELD(gradient)
+OUTPUT_FIELD(octahedral)
+OUTPUT_FIELD(octahedral_strain)
+OUTPUT_FIELD(von_mises)
+OUTPUT_FIELD(deviator_norm)
+OUTPUT_FIELD(mean_stress)
+OUTPUT_FIELD(damage)
+OUTPUT_FIELD(internal_force)
+OUTPUT_FIELD(block)

@@ -1,0 +1,10 @@
+/* A constraint as somebody would add one. */
+#include "loading/load/load_parts.h"
+
+static int create(Load *load, const LoadMaking *making)
+{
+  load_constrain_axes(load, making, 0);
+  return BRECCIA_OK;
+}
+
+const LoadType promised_hold_load = {.create = create, .vector = load_point, .magnitude = load_length};
