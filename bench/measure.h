@@ -27,6 +27,8 @@ Plain *plain_create(const Domain *domain);
 void plain_destroy(Plain *plain);
 /** Correspondence: elastic, small strain, constant influence, no control. */
 void plain_correspondence(Plain *plain);
+/** Ordinary: elastic, constant influence. */
+void plain_ordinary(Plain *plain);
 /** Bond-based: prototype microelastic, reference vectors from positions. */
 void plain_bonds(Plain *plain);
 

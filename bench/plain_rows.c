@@ -35,7 +35,7 @@ static Rows rows_of(const Domain *d)
 struct Plain {
   size_t count;
   Rows rows;
-  double *x, *u, *force, *state, *inverse, *volume;
+  double *x, *u, *force, *state, *inverse, *volume, *moment; /* moment: sum of V |xi|^2 */
 };
 
 Plain *plain_create(const Domain *d)
@@ -44,8 +44,15 @@ Plain *plain_create(const Domain *d)
   size_t n = (size_t)p->count;
   Plain *plain = malloc(sizeof *plain);
   if (!plain) abort();
-  *plain = (Plain){
-      n, rows_of(d), malloc(24 * n), malloc(24 * n), malloc(24 * n), malloc(72 * n), malloc(48 * n), malloc(8 * n)};
+  *plain = (Plain){n,
+                   rows_of(d),
+                   malloc(24 * n),
+                   malloc(24 * n),
+                   malloc(24 * n),
+                   malloc(72 * n),
+                   malloc(48 * n),
+                   malloc(8 * n),
+                   malloc(8 * n)};
   for (size_t i = 0; i < n; ++i) {
     double k[6] = {0};
     int32_t here = p->place_of[i];
@@ -60,6 +67,7 @@ Plain *plain_create(const Domain *d)
         k[c] += p->volume[j] * (p->position[symmetric_row[c]][j] - p->position[symmetric_row[c]][here]) *
                 (p->position[symmetric_column[c]][j] - p->position[symmetric_column[c]][here]);
       }
+    plain->moment[i] = k[XX] + k[YY] + k[ZZ];
     if (k[ZZ] == 0) k[ZZ] = 1; /* a body of the plane */
     tensor_inverse(k, plain->inverse + 6 * i);
   }
@@ -76,6 +84,7 @@ void plain_destroy(Plain *plain)
   free(plain->state);
   free(plain->inverse);
   free(plain->volume);
+  free(plain->moment);
   free(plain);
 }
 
@@ -97,6 +106,50 @@ PLAIN void plain_bonds(Plain *plain)
       reference = sqrt(reference);
       length = sqrt(length);
       double pull = constant * volume[j] * (length - reference) / (reference * length);
+      for (int c = 0; c < 3; ++c) force[c] += pull * y[c];
+    }
+    for (int c = 0; c < 3; ++c) plain->force[3 * i + (size_t)c] = force[c];
+  }
+}
+
+/** Reference and deformed vector of a bond. */
+static inline double plain_elongation(const Plain *plain, size_t i, size_t j, double y[3], double *reference)
+{
+  const double *x = plain->x, *u = plain->u;
+  double square = 0, length = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const double xi = x[3 * j + c] - x[3 * i + c];
+    y[c] = xi + u[3 * j + c] - u[3 * i + c];
+    square += xi * xi;
+    length += y[c] * y[c];
+  }
+  *reference = sqrt(square);
+  return sqrt(length) - *reference;
+}
+
+PLAIN void plain_ordinary(Plain *plain)
+{
+  const double *volume = plain->volume, bulk = 100000, shear = 60000;
+  const Rows *rows = &plain->rows;
+  double *base = plain->state, reference, y[3];
+  for (size_t i = 0; i < plain->count; ++i) {
+    double sum = 0;
+    for (int64_t b = rows->first[i]; b < rows->first[i + 1]; ++b) {
+      const size_t j = (size_t)rows->neighbour[b];
+      const double elongation = plain_elongation(plain, i, j, y, &reference);
+      sum += volume[j] * reference * elongation;
+    }
+    base[i] = 3 * sum * (3 * bulk - 5 * shear) / (plain->moment[i] * plain->moment[i]);
+  }
+  for (size_t i = 0; i < plain->count; ++i) {
+    double force[3] = {0};
+    for (int64_t b = rows->first[i]; b < rows->first[i + 1]; ++b) {
+      const size_t j = (size_t)rows->neighbour[b];
+      const double elongation = plain_elongation(plain, i, j, y, &reference);
+      const double pull =
+          volume[j] *
+          ((base[i] + base[j]) * reference + 15 * shear * (1 / plain->moment[i] + 1 / plain->moment[j]) * elongation) /
+          (reference + elongation);
       for (int c = 0; c < 3; ++c) force[c] += pull * y[c];
     }
     for (int c = 0; c < 3; ++c) plain->force[3 * i + (size_t)c] = force[c];

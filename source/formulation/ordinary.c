@@ -18,26 +18,25 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 }
 
 /** Half a slot between lattice neighbours: -|xi|^2 d, and 2 y. */
-LANES_INLINE Lanes lattice_stretch(const Ordinary *o, int64_t slot, int half, const Lanes own[3], Lanes twice[3])
+LANES_INLINE Lanes lattice_stretch(const Ordinary *o, const double *doubled, int64_t slot, int half, const Lanes own[3],
+                                   Lanes twice[3])
 {
   const int64_t there = o->family->base[slot] + LANES * half;
-  const OrdinaryRow *row = &o->rows[o->family->pattern[slot]];
   Lanes d = {0};
   for (int k = 0; k < 3; ++k) {
     const Lanes back = own[k] - lanes_load(o->particles->displacement[k] + there);
-    const Lanes middle = lanes_load(o->numbers + row->xi[k]) - back;
+    const Lanes middle = lanes_set(doubled[k]) - back;
     twice[k] = middle - back;
     d += back * middle;
   }
   return d;
 }
 
-/** A series of a length in -|xi|^2 d. By pairs: its chain is shorter so. */
-LANES_INLINE Lanes series_of(const double *length, Lanes d)
+/** A series in -|xi|^2 d. By pairs: its chain is shorter so. */
+LANES_INLINE Lanes series_of(const double terms[STRETCH_TERMS], Lanes d, Lanes square)
 {
-  Lanes square = d * d, pair[STRETCH_TERMS / 2];
-  for (int n = 0; n < STRETCH_TERMS; n += 2)
-    pair[n / 2] = lanes_load(length + LANES * n) + d * lanes_load(length + LANES * (n + 1));
+  Lanes pair[STRETCH_TERMS / 2];
+  for (int n = 0; n < STRETCH_TERMS; n += 2) pair[n / 2] = lanes_set(terms[n]) + d * lanes_set(terms[n + 1]);
   return d * (pair[0] + square * (pair[1] + square * pair[2]));
 }
 
@@ -58,17 +57,20 @@ LANES_INLINE Lanes stretch_of(Lanes d, StretchRange range)
 LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
                                  const Lanes own[3], Dilated *sum)
 {
-  const double *length = o->numbers + o->rows[o->family->pattern[slot]].length;
-  Lanes twice[3], d = lattice_stretch(o, slot, half, own, twice);
+  const int pattern = o->family->pattern[slot];
+  const OrdinaryDilating *row = &o->dilating[pattern];
+  Lanes twice[3], d = lattice_stretch(o, row->twice, slot, half, own, twice);
   if (gaps) d = lanes_where(lanes_half(o->family->intact[slot], half), d);
   if (range == RANGE_SERIES) {
-    sum->sum += series_of(length + ORDINARY_STRETCH, d);
-    sum->beyond |= (LaneMask)(lanes_absolute(d) > lanes_load(length + ORDINARY_LIMIT));
+    const Lanes square = d * d;
+    sum->sum += series_of(row->series, d, square);
+    sum->beyond |= (LaneMask)(square > lanes_set(row->limit));
     return;
   }
-  d *= -lanes_load(length + ORDINARY_BY_SQUARE);
+  const Pattern *bond = &o->family->patterns[pattern];
+  d *= -lanes_set(bond->by_square);
   sum->largest = lanes_greatest(sum->largest, lanes_absolute(d));
-  sum->sum += lanes_load(length + ORDINARY_MOMENT) * stretch_of(d, range);
+  sum->sum += lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range);
 }
 
 LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int64_t slice, int half, StretchRange range,
@@ -85,16 +87,16 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
 {
   const Family *f = o->family;
   Dilated sum[2] = {{.beyond = {0}}, {.beyond = {0}}};
-  for (int half = 0; half < 2; ++half) {
-    const int64_t here = slice * SLICE + LANES * half;
-    Lanes own[3];
-    for (int k = 0; k < 3; ++k) own[k] = lanes_load(o->particles->displacement[k] + here);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-      dilate_lattice(o, slot, half, gaps, range, own, &sum[half]);
-    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      dilate_stored(o, slot, slice, half, range, own, &sum[half]);
-    lanes_store(o->dilatation + here, lanes_load(o->inverse + here) * sum[half].sum);
-  }
+  const int64_t here = slice * SLICE;
+  Lanes own[2][3];
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(o->particles->displacement[k] + here + LANES * half);
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
+    for (int half = 0; half < 2; ++half) dilate_lattice(o, slot, half, gaps, range, own[half], &sum[half]);
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int half = 0; half < 2; ++half) dilate_stored(o, slot, slice, half, range, own[half], &sum[half]);
+  for (int half = 0; half < 2; ++half)
+    lanes_store(o->dilatation + here + LANES * half, lanes_load(o->inverse + here + LANES * half) * sum[half].sum);
   const Lanes largest = lanes_greatest(sum[0].largest, sum[1].largest);
   const LaneMask beyond = sum[0].beyond | sum[1].beyond;
   double most = beyond[0] | beyond[1] | beyond[2] | beyond[3] ? INFINITY : 0;
@@ -153,16 +155,17 @@ static int64_t respond(void *formulation, const Sweep *sweep)
 LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
                                  const Lanes own[3], Lanes base, Lanes slope, Lanes force[3])
 {
-  const double *length = o->numbers + o->rows[o->family->pattern[slot]].length;
+  const int pattern = o->family->pattern[slot];
+  const OrdinaryResisting *row = &o->resisting[pattern];
   const int64_t there = o->family->base[slot] + LANES * half;
-  Lanes twice[3], d = lattice_stretch(o, slot, half, own, twice), g;
-  const Lanes weight = lanes_load(length + ORDINARY_WEIGHT);
+  Lanes twice[3], d = lattice_stretch(o, row->twice, slot, half, own, twice), g;
+  const Lanes weight = lanes_set(row->weight);
   base += lanes_load(o->base + there);
   slope += lanes_load(o->slope + there);
   if (range == RANGE_SERIES)
-    g = series_of(length + ORDINARY_SHORTENING, d);
+    g = series_of(row->series, d, d * d);
   else
-    g = weight * shortening(-lanes_load(length + ORDINARY_BY_SQUARE) * d, range);
+    g = weight * shortening(-lanes_set(o->family->patterns[pattern].by_square) * d, range);
   Lanes pull = weight * base + slope * g;
   if (gaps) pull = lanes_where(lanes_half(o->family->intact[slot], half), pull);
   for (int k = 0; k < 3; ++k) force[k] += pull * twice[k];
@@ -183,17 +186,21 @@ LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int64_t slice, 
 LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
 {
   const Family *f = o->family;
+  Lanes own[2][3], force[2][3] = {{{0}}}, base[2], slope[2];
   for (int half = 0; half < 2; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
-    const Lanes base = lanes_load(o->base + here), slope = lanes_load(o->slope + here);
-    Lanes own[3], force[3] = {{0}};
-    for (int k = 0; k < 3; ++k) own[k] = lanes_load(o->particles->displacement[k] + here);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-      resist_lattice(o, slot, half, gaps, range, own, base, slope, force);
-    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-      resist_stored(o, slot, slice, half, range, own, base, slope, force);
-    for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + here, force[k]);
+    base[half] = lanes_load(o->base + here);
+    slope[half] = lanes_load(o->slope + here);
+    for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(o->particles->displacement[k] + here);
   }
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
+    for (int half = 0; half < 2; ++half)
+      resist_lattice(o, slot, half, gaps, range, own[half], base[half], slope[half], force[half]);
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int half = 0; half < 2; ++half)
+      resist_stored(o, slot, slice, half, range, own[half], base[half], slope[half], force[half]);
+  for (int half = 0; half < 2; ++half)
+    for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }
 
 LANES_INLINE void resist_way(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)

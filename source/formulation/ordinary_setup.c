@@ -58,51 +58,25 @@ double ordinary_shear(Space space, const Material *m)
   return (space == SPACE_3D ? 15 : 8) * m->shear;
 }
 
-static void put(Ordinary *o, int64_t at, double number)
-{
-  for (int k = 0; k < LANES; ++k) o->numbers[at + k] = number;
-}
-
-static void put_length(Ordinary *o, int64_t at, double length, double weight)
-{
-  const double square = length * length;
-  double stretch = -weight * square, shortened = -weight / 2; /* series in -d; halved because vectors are doubled */
-  for (int n = 0; n < STRETCH_TERMS; ++n) {
-    put(o, at + ORDINARY_STRETCH + LANES * n, (stretch /= square) * stretch_terms[n]);
-    put(o, at + ORDINARY_SHORTENING + LANES * n, (shortened /= square) * shortening_terms[n]);
-  }
-  put(o, at + ORDINARY_LIMIT, range_limit[RANGE_SERIES] * square);
-  put(o, at + ORDINARY_WEIGHT, weight / 2);
-  put(o, at + ORDINARY_MOMENT, weight * square);
-  put(o, at + ORDINARY_BY_SQUARE, 1 / square);
-}
-
-/** Numbers that lattice bonds are made of, each as often as a vector has lanes (formulation/bond_springs.c); alike ones once. */
 static int create_rows(Ordinary *o, Error *error)
 {
   const Family *f = o->family;
-  o->rows = memory_zeroed((size_t)f->pattern_count, sizeof *o->rows, "bond constants", error);
-  o->numbers = places_array((int64_t)f->pattern_count * (3 * LANES + ORDINARY_SIZE), "bond constants", error);
-  if (!o->rows || !o->numbers) return BRECCIA_FAILURE;
-  int32_t end = 0;
-  for (int p = 0; p < f->pattern_count; ++p)
-    for (int k = 0; k < 3; ++k) {
-      int32_t at = 0;
-      while (at < end && o->numbers[at] != 2 * f->patterns[p].xi[k]) at += LANES;
-      if (at == end) put(o, at, 2 * f->patterns[p].xi[k]);
-      if (at == end) end += LANES;
-      o->rows[p].xi[k] = at;
-    }
-  const int32_t lengths = end;
+  o->dilating = memory_zeroed((size_t)f->pattern_count, sizeof *o->dilating, "bond constants", error);
+  o->resisting = memory_zeroed((size_t)f->pattern_count, sizeof *o->resisting, "bond constants", error);
+  if (!o->dilating || !o->resisting) return BRECCIA_FAILURE;
   for (int p = 0; p < f->pattern_count; ++p) {
-    const double length = f->patterns[p].length, weight = f->patterns[p].weight * o->factor[p];
-    int32_t at = lengths;
-    while (at < end && (o->numbers[at + ORDINARY_LIMIT] != range_limit[RANGE_SERIES] * length * length ||
-                        o->numbers[at + ORDINARY_WEIGHT] != weight / 2))
-      at += ORDINARY_SIZE;
-    if (at == end) put_length(o, at, length, weight);
-    if (at == end) end += ORDINARY_SIZE;
-    o->rows[p].length = at;
+    const Pattern *pattern = &f->patterns[p];
+    const double square = pattern->length * pattern->length, weight = pattern->weight * o->factor[p];
+    OrdinaryDilating *dilating = &o->dilating[p];
+    OrdinaryResisting *resisting = &o->resisting[p];
+    double stretch = -weight * square, shortened = -weight / 2; /* halved because vectors are doubled */
+    for (int k = 0; k < 3; ++k) dilating->twice[k] = resisting->twice[k] = 2 * pattern->xi[k];
+    for (int n = 0; n < STRETCH_TERMS; ++n) {
+      dilating->series[n] = (stretch /= square) * stretch_terms[n];
+      resisting->series[n] = (shortened /= square) * shortening_terms[n];
+    }
+    dilating->limit = pow(range_limit[RANGE_SERIES] * square, 2);
+    resisting->weight = weight / 2;
   }
   return BRECCIA_OK;
 }
@@ -146,8 +120,8 @@ void ordinary_destroy(void *formulation)
   Ordinary *o = formulation;
   if (!o) return;
   free(o->factor);
-  free(o->rows);
-  places_free(&o->numbers);
+  free(o->dilating);
+  free(o->resisting);
   double **const arrays[] = {&o->inverse, &o->volumetric, &o->shear,  &o->share, &o->dilatation,
                              &o->base,    &o->slope,      &o->change, &o->shown};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
