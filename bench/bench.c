@@ -94,16 +94,16 @@ static double force_seconds(Domain *d, int threads)
 /** Stresses of all points on particles once more; of points on bonds the law is part of the forces. */
 static double law_seconds(Domain *d)
 {
-  if (d->points.components != 6) return 0;
+  if (d->regions[0].points.components != 6) return 0;
   double start = clock_seconds();
   for (int64_t b = 0; b < d->block_count; ++b) {
     const int64_t first = d->blocks[b].first * SLICE;
     double *strain[6], *stress[6];
     for (int k = 0; k < 6; ++k) {
-      strain[k] = d->points.strain[k] + first;
-      stress[k] = d->points.stress[k] + first;
+      strain[k] = d->regions[0].points.strain[k] + first;
+      stress[k] = d->regions[0].points.stress[k] + first;
     }
-    points_update(&d->points, first, (int)(d->blocks[b].last * SLICE - first), strain, stress);
+    points_update(&d->regions[0].points, first, (int)(d->blocks[b].last * SLICE - first), strain, stress);
   }
   return clock_seconds() - start;
 }
@@ -112,8 +112,8 @@ static double search_seconds(const Domain *d)
 {
   Family family;
   use_threads(1);
-  FamilySpec spec = {d->family.horizon, influence_find("constant"), VOLUME_WHOLE, d->type->row_sums,
-                     d->type->bond_lengths};
+  FamilySpec spec = {d->family.horizon, influence_find("constant"), VOLUME_WHOLE, d->regions[0].type->row_sums,
+                     d->regions[0].type->bond_lengths};
   double start = clock_seconds();
   family_create(&family, &d->body, &spec, NULL);
   double seconds = clock_seconds() - start;

@@ -32,9 +32,10 @@ int domain_record(Domain *d, const BrokenBond *bond)
   return BRECCIA_OK;
 }
 
+/** Of places whose bonds share energies. */
 static void note_torn(Domain *d, int32_t place)
 {
-  if (d->is_torn[place]) return;
+  if (d->is_torn[place] || domain_region(d, place)->type->bond_energy) return;
   if (!make_room((void **)&d->torn, sizeof *d->torn, d->torn_count, &d->torn_capacity)) {
     d->out_of_memory = true;
     return;
@@ -47,9 +48,15 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
 {
   const int32_t place = (int32_t)(slice * SLICE + lane), *number = d->particles->number;
   const int32_t a = number[place], b = number[neighbour];
-  if (d->type->bond_energy) {
-    StoredEnergy energy;
-    d->type->bond_energy(d->formulation, slice, slot, lane, moment->time_step, &energy);
+  const Region *own = domain_region(d, place), *their = domain_region(d, neighbour);
+  StoredEnergy energy;
+  if (own->type->bond_energy) {
+    own->type->bond_energy(own->formulation, slice, slot, lane, moment->time_step, &energy);
+    d->fracture_energy += energy.received;
+  }
+  if (their != own && their->type->bond_energy) {
+    their->type->bond_energy(their->formulation, neighbour / SLICE, family_slot(&d->family, neighbour, place),
+                             neighbour % SLICE, moment->time_step, &energy);
     d->fracture_energy += energy.received;
   }
   if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
@@ -106,7 +113,8 @@ static void break_suspects(Domain *d, const Moment *moment)
   uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
-    if (d->broken_count > d->broken_before && d->type->renew) d->type->renew(d->formulation, s);
+    const Region *region = domain_region(d, s * SLICE);
+    if (d->broken_count > d->broken_before && region->type->renew) region->type->renew(region->formulation, s);
     for (int lane = 0; gave_up && lane < SLICE; ++lane)
       if (gave_up[s * SLICE + lane]) gave_up[s * SLICE + lane] = CONSUMED;
   }
@@ -127,32 +135,35 @@ static void find_received(Domain *d)
 {
   TEAM_FOR (n, d->torn_count) {
     Torn *torn = &d->torn[n];
+    const Region *region = domain_region(d, torn->place);
+    const Points *points = &region->points;
     StoredEnergy energy;
-    d->type->stored_energy(d->formulation, torn->place, d->points.time_step, &energy);
-    const bool points = d->points.components == 6;
-    for (int k = 0; k < 6 && points; ++k) {
-      torn->strain[k] = d->points.strain[k][torn->place];
-      torn->stress[k] = d->points.stress[k][torn->place];
+    region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
+    for (int k = 0; k < 6 && points->components == 6; ++k) {
+      torn->strain[k] = points->strain[k][torn->place];
+      torn->stress[k] = points->stress[k][torn->place];
     }
-    torn->elastic = points ? points_elastic_energy(&d->points, torn->place) : 0;
+    torn->elastic = points->components == 6 ? points_elastic_energy(points, torn->place) : 0;
     torn->received = energy.received + energy.control +
                      energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
-    torn->share = d->type->shares(d->formulation)[torn->place];
+    torn->share = region->type->shares(region->formulation)[torn->place];
   }
 }
 
 /** What the same places would have received with the bonds that are left. The law of a point goes from its strain at the beginning of the step
  *  with all bonds to that at its end without the broken ones: the work along that way, less what forces do of it in this step. */
-static void find_left(Domain *d)
+static void find_left(Domain *d, const Region *region)
 {
+  const Points *points = &region->points;
   TEAM_FOR (n, d->torn_count) {
     Torn *torn = &d->torn[n];
+    if (domain_region(d, torn->place) != region) continue;
     StoredEnergy energy;
     double strain[6] = {0}, stress[6] = {0};
-    d->type->stored_energy(d->formulation, torn->place, d->points.time_step, &energy);
-    for (int k = 0; k < 6 && d->points.components == 6; ++k) {
-      strain[k] = d->points.strain[k][torn->place];
-      stress[k] = d->points.stress[k][torn->place];
+    region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
+    for (int k = 0; k < 6 && points->components == 6; ++k) {
+      strain[k] = points->strain[k][torn->place];
+      stress[k] = points->stress[k][torn->place];
     }
     torn->control = energy.control;
     torn->carried =
@@ -166,17 +177,19 @@ static void carry_less(Domain *d, Torn *torn)
 {
   if (torn->carried + torn->control <= torn->received || torn->carried <= 0) return;
   const double factor = fmax(0, torn->received - torn->control) / torn->carried;
-  d->type->shares(d->formulation)[torn->place] *= factor;
-  d->type->renew(d->formulation, torn->place / SLICE);
+  const Region *region = domain_region(d, torn->place);
+  region->type->shares(region->formulation)[torn->place] *= factor;
+  region->type->renew(region->formulation, torn->place / SLICE);
   d->is_torn[torn->place] = 2;
   torn->carried *= factor;
 }
 
-void domain_settle(Domain *d)
+void domain_settle(Domain *d, const Region *region)
 {
-  find_left(d);
+  find_left(d, region);
   TEAM_SINGLE
   for (int64_t n = 0; n < d->torn_count; ++n) {
+    if (domain_region(d, d->torn[n].place) != region) continue;
     carry_less(d, &d->torn[n]);
     d->fracture_energy += d->torn[n].received - d->torn[n].carried - d->torn[n].control;
   }
@@ -190,13 +203,15 @@ static void forget_torn(Domain *d)
 
 void domain_break(Domain *d, const Moment *moment)
 {
-  const bool judges = (d->failure.criterion || d->gave_up) && !d->points.elastic_stage;
+  const bool judges = (d->failure.criterion || d->gave_up) && !domain_in_elastic_stage(d);
   TEAM_SINGLE
   {
     d->broken_before = d->broken_count;
     d->motion += moment->motion;
-    d->points.time = moment->time;
-    d->points.time_step = moment->time_step;
+    for (int r = 0; r < d->region_count; ++r) {
+      d->regions[r].points.time = moment->time;
+      d->regions[r].points.time_step = moment->time_step;
+    }
   }
   if (d->forces.count) {
     TEAM_SINGLE forces_follow(&d->forces, moment->motion);
@@ -213,7 +228,9 @@ void domain_break(Domain *d, const Moment *moment)
   TEAM_SINGLE
   {
     d->any_suspect = memchr(d->suspects, 1, (size_t)d->particles->slices) != NULL;
-    if (d->any_suspect && !d->type->bond_energy) judge(d, moment, true);
+    bool shared = false; /* energies of bonds */
+    for (int r = 0; r < d->region_count; ++r) shared |= !d->regions[r].type->bond_energy;
+    if (d->any_suspect && shared) judge(d, moment, true);
   }
   if (!d->any_suspect) return;
   find_received(d);
@@ -233,13 +250,19 @@ void domain_accept(Domain *d)
 
 void domain_mend(Domain *d)
 {
-  for (int64_t n = 0; n < d->torn_count; ++n) d->type->shares(d->formulation)[d->torn[n].place] = d->torn[n].share;
+  for (int64_t n = 0; n < d->torn_count; ++n) {
+    const Region *region = domain_region(d, d->torn[n].place);
+    region->type->shares(region->formulation)[d->torn[n].place] = d->torn[n].share;
+  }
   forget_torn(d);
   for (int64_t n = d->broken_before; n < d->broken_count; ++n) {
     const int32_t a = d->particles->place_of[d->broken[n].a], b = d->particles->place_of[d->broken[n].b];
     family_mend(&d->family, a, b);
     forces_bond_mended(&d->forces, a, b);
-    for (int end = 0; end < 2 && d->type->renew; ++end) d->type->renew(d->formulation, (end ? b : a) / SLICE);
+    for (int end = 0; end < 2; ++end) {
+      const Region *region = domain_region(d, end ? b : a);
+      if (region->type->renew) region->type->renew(region->formulation, (end ? b : a) / SLICE);
+    }
   }
   d->broken_count = d->broken_before;
   d->out_of_memory = false;

@@ -8,8 +8,9 @@
 
 double domain_history(const Domain *d, int64_t place, int k)
 {
-  if (!d->points.components) return 0;
-  if (d->points.components == 6) return points_history(&d->points, place)[k];
+  const Region *region = domain_region(d, place);
+  if (!region->points.components) return 0;
+  if (region->points.components == 6) return points_history(&region->points, place)[k];
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
   double sum = 0;
@@ -17,8 +18,8 @@ double domain_history(const Domain *d, int64_t place, int k)
   for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot)
     if (d->family.intact[slot] >> lane & 1) {
       int64_t rows[2];
-      bond_list_rows(&d->bonds, &d->family, slice, slot, lane, rows);
-      sum += points_history(&d->points, rows[0])[k];
+      bond_list_rows(&region->bonds, &d->family, slice, slot, lane, rows);
+      sum += points_history(&region->points, rows[0])[k];
       ++count;
     }
   return count ? sum / count : 0;
@@ -26,16 +27,17 @@ double domain_history(const Domain *d, int64_t place, int k)
 
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
 {
-  if (d->points.components == 6) {
+  const Region *region = domain_region(d, place);
+  if (region->points.components == 6) {
     for (int k = 0; k < 6; ++k) {
-      strain[k] = d->points.strain[k][place];
-      stress[k] = d->points.stress[k][place];
+      strain[k] = region->points.strain[k][place];
+      stress[k] = region->points.stress[k][place];
     }
     return;
   }
   double f[9];
-  d->type->stress(d->formulation, place, stress);
-  d->type->gradient(d->formulation, place, f);
+  region->type->stress(region->formulation, place, stress);
+  region->type->gradient(region->formulation, place, f);
   for (int k = 0; k < 6; ++k) {
     int r = symmetric_row[k], s = symmetric_column[k];
     double green = f[r] * f[s] + f[3 + r] * f[3 + s] + f[6 + r] * f[6 + s] - (r == s);
@@ -48,6 +50,7 @@ static void observe(void *context, int64_t n)
   Domain *d = context;
   int32_t place = d->particles->place_of[n];
   double strain[6], stress[6];
+  if (domain_region(d, place)->points.components == 6) return;
   domain_look(d, place, strain, stress);
   for (int k = 0; k < 6; ++k) {
     d->strain[k][place] = strain[k];
@@ -57,7 +60,7 @@ static void observe(void *context, int64_t n)
 
 int domain_observe(Domain *d, Error *error)
 {
-  if (d->points.components == 6) return BRECCIA_OK;
+  if (d->region_count == 1 && d->regions[0].points.components == 6) return BRECCIA_OK;
   for (int k = 0; k < 6; ++k) {
     if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
     if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
@@ -69,7 +72,52 @@ int domain_observe(Domain *d, Error *error)
 
 bool domain_is_elastic(const Domain *d)
 {
-  return points_are_linear(&d->points);
+  bool elastic = true;
+  for (int r = 0; r < d->region_count; ++r) elastic &= d->regions[r].is_linear;
+  return elastic;
+}
+
+bool domain_laws_in_forces(const Domain *d)
+{
+  bool laws = false;
+  for (int r = 0; r < d->region_count; ++r) laws |= d->regions[r].points.components != 6 && !d->regions[r].is_linear;
+  return laws;
+}
+
+bool domain_in_elastic_stage(const Domain *d)
+{
+  return d->regions[0].points.elastic_stage;
+}
+
+void domain_set_elastic_stage(Domain *d, bool elastic)
+{
+  for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;
+}
+
+void domain_commit_points(Domain *d)
+{
+  for (int r = 0; r < d->region_count; ++r) points_commit(&d->regions[r].points);
+}
+
+const char *domain_server_problem(const Domain *d)
+{
+  for (int r = 0; r < d->region_count; ++r)
+    if (*points_problem(&d->regions[r].points)) return points_problem(&d->regions[r].points);
+  return "";
+}
+
+bool domain_may_stiffen(const Domain *d)
+{
+  bool may = false;
+  for (int r = 0; r < d->region_count; ++r) may |= d->regions[r].type->may_stiffen;
+  return may;
+}
+
+bool domain_has_servers(const Domain *d)
+{
+  bool servers = false;
+  for (int r = 0; r < d->region_count; ++r) servers |= d->regions[r].points.servers != NULL;
+  return servers;
 }
 
 static void store_block(void *context, int64_t b)
@@ -79,7 +127,8 @@ static void store_block(void *context, int64_t b)
   for (int64_t place = d->blocks[b].first * SLICE; place < d->blocks[b].last * SLICE; ++place) {
     StoredEnergy energy;
     if (d->particles->number[place] < 0) continue;
-    d->type->stored_energy(d->formulation, place, 0, &energy);
+    const Region *region = domain_region(d, place);
+    region->type->stored_energy(region->formulation, place, 0, &energy);
     d->block_sum[b] += energy.stored;
   }
 }
@@ -102,12 +151,18 @@ double domain_damage(const Domain *d, int32_t place)
 size_t domain_particle_bytes(const Domain *d)
 {
   size_t places = (size_t)d->particles->places;
-  size_t arrays = 15 + 2 + 1 + (d->points.components == 6 ? 12 : 0);
-  return places * sizeof(double) * arrays + places * sizeof(int32_t) * 2 + 2 * d->points.history_size * sizeof(double);
+  size_t history = 0, tensors = 0;
+  for (int r = 0; r < d->region_count; ++r) {
+    history += d->regions[r].points.history_size;
+    if (d->regions[r].points.components == 6) tensors = 12;
+  }
+  return places * sizeof(double) * (15 + 2 + 1 + tensors) + places * sizeof(int32_t) * 2 + 2 * history * sizeof(double);
 }
 
 size_t domain_bytes(const Domain *d)
 {
-  return domain_particle_bytes(d) + family_bytes(&d->family) + bond_list_bytes(&d->bonds, &d->family) +
-         d->type->bytes(d->formulation);
+  size_t bytes = domain_particle_bytes(d) + family_bytes(&d->family);
+  for (int r = 0; r < d->region_count; ++r)
+    bytes += bond_list_bytes(&d->regions[r].bonds, &d->family) + d->regions[r].type->bytes(d->regions[r].formulation);
+  return bytes;
 }

@@ -1,4 +1,4 @@
-/* The part of the body that one process owns: particles, bonds, material points, the formulation that joins them, and the blocks
+/* The part of the body that one process owns: particles, bonds, regions with the formulations that join them, and the blocks
  * that its threads work on. Functions marked "by all threads" contain loops that are shared out (base/team.h): call them from
  * every thread of a team_run, or from none. Whatever is summed over particles is summed block by block in a fixed order. */
 #ifndef BRECCIA_DOMAIN_DOMAIN_H
@@ -8,9 +8,34 @@
 #include "forces/forces.h"
 #include "formulation/formulation.h"
 
-typedef struct Span { /* slices first .. last - 1, of one material, at most BLOCK places */
+typedef struct Span { /* slices first .. last - 1, of one region and material, at most BLOCK places */
   int64_t first, last;
 } Span;
+
+/** Blocks of the body with one formulation. */
+typedef struct Region {
+  const char *name;  /* of the deck; NULL: what no region names */
+  const Node *place; /* of its keys, for messages */
+  const FormulationType *type;
+  const void *keys;
+  void *formulation;
+  Points points;
+  BondList bonds;                                /* where points are on bonds; empty otherwise */
+  int64_t particles;                             /* of them */
+  bool is_linear;                                /* no law of it dissipates or remembers */
+  uint8_t *foreign;                              /* [slices] 1: of other regions; NULL: there are none */
+  int64_t *border;                               /* [border_count] slices of others that have bonds with it */
+  int64_t border_count, first_block, last_block; /* its blocks: the last is not one of them */
+} Region;
+
+/** Bonds between regions, place by place (joint.c). */
+typedef struct JointBond JointBond;
+typedef struct Joint {
+  int64_t places, bond_count; /* each bond from both its ends */
+  int32_t *place;             /* [places] */
+  int64_t *first;             /* [places + 1] */
+  JointBond *bonds;
+} Joint;
 
 typedef struct BrokenBond {
   int64_t step;
@@ -42,15 +67,15 @@ typedef struct Domain {
   Material *materials;
   int material_count;
   int32_t *material; /* [slices] */
-  BondList bonds;    /* where points are on bonds; empty otherwise */
-  Points points;
   double *strain[6],
       *stress
           [6]; /* [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   uint8_t *
       gave_up; /* [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
-  const FormulationType *type;
-  void *formulation;
+  Region *regions;
+  int region_count;
+  int32_t *region; /* [slices] */
+  Joint joint;
   Failure failure;
   Forces forces;
   Span *blocks;
@@ -82,6 +107,11 @@ typedef struct DomainSpec {
   const FailureSpec *failure; /* or NULL */
   void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
 } DomainSpec;
+
+static inline Region *domain_region(const Domain *domain, int64_t place)
+{
+  return &domain->regions[domain->region[place / SLICE]];
+}
 
 /** Builds everything that a step needs. `domain` must be zero; destroy it in any case. */
 int domain_create(Domain *domain, const DeckReader *reader, const DomainSpec *spec);
@@ -115,8 +145,8 @@ void domain_follow(Domain *domain);
 void domain_break(Domain *domain, const Moment *moment);
 
 /** When laws have answered to families without their broken bonds, by all threads: what torn places had received and have no more is booked,
- *  and families that would have gained carry less. */
-void domain_settle(Domain *domain);
+ *  and families that would have gained carry less. Of the places of one region. */
+void domain_settle(Domain *domain, const Region *region);
 
 /** After the forces of a step that did not fail, by all threads. */
 void domain_accept(Domain *domain);
@@ -130,8 +160,25 @@ int domain_hold_grips(Domain *domain, const uint8_t *held, Error *error);
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
 
+/** Force per volume squared that the neighbour exerts on the particle through one bond, t_ij - t_ji. */
+void domain_bond_force(const Domain *domain, int64_t slice, int64_t slot, int lane, double force[3]);
+
+/** Whether laws respond elastically; and makes them do so. */
+bool domain_in_elastic_stage(const Domain *domain);
+void domain_set_elastic_stage(Domain *domain, bool elastic);
+/** Makes the trial state of all points the committed one. By one thread. */
+void domain_commit_points(Domain *domain);
+/** What went wrong in a material server, one line; "" if nothing did. */
+const char *domain_server_problem(const Domain *domain);
+bool domain_has_servers(const Domain *domain);
+/** Whether the stable step may fall as bonds break. */
+bool domain_may_stiffen(const Domain *domain);
+
 /** Energy that unloading would give back, of all particles [energy]. */
 double domain_stored_energy(Domain *domain);
+
+/** True if forces show what laws on bonds remember, so that they are state. */
+bool domain_laws_in_forces(const Domain *domain);
 
 /** True if no law dissipates, so that bonds give back what they do not lose by breaking. */
 bool domain_is_elastic(const Domain *domain);

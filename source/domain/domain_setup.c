@@ -1,5 +1,5 @@
 /* Everything that a step needs, built from the deck. */
-#include "domain/domain.h"
+#include "domain/regions.h"
 
 #include "base/team.h"
 #include "base/tensor.h"
@@ -13,44 +13,82 @@ static bool takes(const FormulationType *type, const breccia_law *law)
 }
 
 /** Laws take one strain or six; formulations offer one or the other, and some take few laws only. */
-static int check_law(const Domain *d, const DeckReader *reader, const MaterialSpec *spec, const breccia_law *made)
+static int check_law(const FormulationType *type, const DeckReader *reader, const MaterialSpec *spec,
+                     const breccia_law *made)
 {
   const LawList *laws = reader->context;
   const breccia_law *law = spec->model ? law_find(laws, spec->model) : made;
-  if (takes(d->type, law)) return BRECCIA_OK;
+  if (takes(type, law)) return BRECCIA_OK;
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
-    if (takes(d->type, law_at(laws, k))) text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
+    if (takes(type, law_at(laws, k))) text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
   const Node *place = section_place(spec, spec->model ? "model" : spec->opensees ? "opensees" : "remote");
   const char *name = spec->model ? law->name : law->source;
-  if (law->components == d->type->components)
+  if (law->components == type->components)
     node_error(reader->document, place, reader->error,
                "material '%s': '%s' needs a strain, which %s does not have; it takes %s", spec->head.name, name,
-               d->type->name, text_words(&words));
+               type->name, text_words(&words));
   else
     node_error(reader->document, place, reader->error, "material '%s': '%s' is a law of %s; %s takes %s",
-               spec->head.name, name, law->components == 1 ? "one strain" : "strain in space", d->type->name,
+               spec->head.name, name, law->components == 1 ? "one strain" : "strain in space", type->name,
                text_words(&words));
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
 
-/** @param[in] length  over which laws spread a fracture energy, or NaN */
-static int create_materials(Domain *d, const DeckReader *reader, const DomainSpec *spec, double length)
+static double length_of(const FormulationType *type, const BondLength *of)
+{
+  return type->characteristic_length ? type->characteristic_length(of) : NAN;
+}
+
+static bool same_length(double a, double b)
+{
+  return a == b || (isnan(a) && isnan(b));
+}
+
+/** A material for the regions whose blocks are made of it. */
+static int create_material(Domain *d, const DeckReader *reader, const MaterialSpec *spec, const BondLength *of)
+{
+  Material *new = &d->materials[d->material_count];
+  const FormulationType *type = NULL;
+  double length = NAN;
+  int bad = BRECCIA_OK;
+  for (int r = 0; r < d->region_count && !bad; ++r) {
+    const Region *region = &d->regions[r];
+    if (!region_has_material(d, region, spec->head.name)) continue;
+    if (spec->model)
+      bad = check_law(region->type, reader, spec, NULL); /* what its parameters lack may follow from that */
+    const bool linear = spec->model && law_find(reader->context, spec->model)->linear;
+    if (type && !bad && !linear && !same_length(length, length_of(region->type, of)))
+      return node_error(reader->document, spec->head.node, reader->error,
+                        "material '%s' is in regions of %s and %s, which spread a fracture energy over different "
+                        "lengths; give each a material of its own",
+                        spec->head.name, type->name, region->type->name);
+    type = region->type;
+    length = length_of(type, of);
+  }
+  if (!type) length = length_of((type = d->regions[0].type), of);
+  if (!bad && (bad = material_create(new, reader, spec, length)))
+    material_destroy(new);
+  else if (!bad)
+    ++d->material_count;
+  if (!bad && new->remote) {
+    bad = check_law(type, reader, spec, new->law);
+    if (!bad && d->region_count > 1)
+      bad = node_error(reader->document, spec->head.node, reader->error,
+                       "material '%s': laws in material servers need a body of one formulation; leave 'regions' out",
+                       spec->head.name);
+  }
+  return bad;
+}
+
+static int create_materials(Domain *d, const DeckReader *reader, const DomainSpec *spec, const BondLength *of)
 {
   d->materials = memory_zeroed((size_t)spec->materials->count, sizeof(Material), "materials", reader->error);
   if (!d->materials) return BRECCIA_FAILURE;
   int status = BRECCIA_OK;
   for (int k = 0; k < spec->materials->count; ++k) {
-    const MaterialSpec *material = spec->materials->items[k];
-    Material *new = &d->materials[d->material_count];
-    int bad =
-        material->model ? check_law(d, reader, material, NULL) : 0; /* what its parameters lack may follow from that */
-    if (!bad && (bad = material_create(new, reader, material, length)))
-      material_destroy(new);
-    else if (!bad)
-      ++d->material_count;
-    if (!bad && new->remote) bad = check_law(d, reader, material, new->law);
+    const int bad = create_material(d, reader, spec->materials->items[k], of);
     if (bad) status = bad;
   }
   for (int b = 0; b < spec->blocks->count; ++b) {
@@ -63,7 +101,9 @@ static int create_materials(Domain *d, const DeckReader *reader, const DomainSpe
 static int check_space(const Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Space space = peridynamics_space(spec->peridynamics);
-  const int status = d->type->check ? d->type->check(spec->peridynamics->keys, &d->body, reader) : BRECCIA_OK;
+  int status = BRECCIA_OK;
+  for (int r = 0; r < d->region_count && !status; ++r)
+    if (d->regions[r].type->check) status = d->regions[r].type->check(d->regions[r].keys, &d->body, reader);
   if (status) return status;
   if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
   return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
@@ -91,13 +131,21 @@ static bool row_goes_on(const Domain *d, int64_t slice)
 static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *lengths)
 {
   const Criterion *criterion = criterion_of(spec);
+  double *limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
   d->failure.limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
   d->failure.material = d->material;
-  if (!d->failure.limit) return BRECCIA_FAILURE;
-  const LimitsOf of = {reader, d->type, lengths, d->materials, d->material_count};
-  const int status = criterion->limits(spec, &of, d->failure.limit);
+  int status = limit && d->failure.limit ? BRECCIA_OK : BRECCIA_FAILURE;
+  for (int k = 0; k < d->material_count && !status; ++k) d->failure.limit[k] = INFINITY;
+  for (int r = 0; r < d->region_count && !status; ++r) {
+    const LimitsOf of = {reader, d->regions[r].type, lengths, d->materials, d->material_count};
+    status = criterion->limits(spec, &of, limit);
+    for (int k = 0; k < d->material_count && !status; ++k)
+      if (region_has_material(d, &d->regions[r], d->materials[k].name))
+        d->failure.limit[k] = fmin(d->failure.limit[k], limit[k]);
+  }
   for (int k = 0; k < d->material_count && !status; ++k)
     if (isfinite(d->failure.limit[k])) d->failure.criterion = criterion;
+  free(limit);
   return status;
 }
 
@@ -120,6 +168,7 @@ static int find_lowest(Domain *d, Error *error)
           if (!(f->intact[slot] >> lane & 1)) continue;
           const int32_t there =
               slot < f->stored[s] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+          if (d->region[there / SLICE] != d->region[s]) continue;
           if (block_of[there / SLICE] < d->lowest[b]) d->lowest[b] = block_of[there / SLICE];
         }
   }
@@ -134,14 +183,23 @@ static int share_out(Domain *d, Error *error)
   int64_t slices = d->particles->slices;
   d->blocks = memory_zeroed((size_t)slices, sizeof(Span), "blocks", error);
   if (!d->blocks) return BRECCIA_FAILURE;
-  for (int64_t s = 0; s < slices;) {
-    int64_t end = s + 1, row_end = row_goes_on(d, s) ? s : end;
-    for (; end < slices && end - s < BLOCK / SLICE && d->material[end] == d->material[s]; ++end)
-      if (!row_goes_on(d, end)) row_end = end + 1;
-    if (row_end > s) end = row_end;
-    d->rows_cut |= row_goes_on(d, end - 1);
-    d->blocks[d->block_count++] = (Span){s, end};
-    s = end;
+  for (int r = 0; r < d->region_count; ++r) {
+    d->regions[r].first_block = d->block_count;
+    for (int64_t s = 0; s < slices;) {
+      int64_t end = s + 1, row_end = row_goes_on(d, s) ? s : end;
+      if (d->region[s] != r) {
+        s = end;
+        continue;
+      }
+      for (; end < slices && end - s < BLOCK / SLICE && d->region[end] == r && d->material[end] == d->material[s];
+           ++end)
+        if (!row_goes_on(d, end)) row_end = end + 1;
+      if (row_end > s) end = row_end;
+      d->rows_cut |= row_goes_on(d, end - 1);
+      d->blocks[d->block_count++] = (Span){s, end};
+      s = end;
+    }
+    d->regions[r].last_block = d->block_count;
   }
   d->block_sum = memory_zeroed((size_t)d->block_count, sizeof(double), "block sums", error);
   d->block_failed = memory_zeroed((size_t)d->block_count, sizeof(int64_t), "block sums", error);
@@ -171,10 +229,12 @@ static int create_forces(Domain *d, const DomainSpec *spec, Space space, Error *
 {
   ForcesBlock *blocks = memory_zeroed((size_t)d->body.block_count, sizeof *blocks, "forces", error);
   if (!blocks) return BRECCIA_FAILURE;
-  const FormerBonds bonds = d->type->former_bonds(d->formulation);
-  for (int64_t s = 0; s < d->particles->slices; ++s)
+  for (int64_t s = 0; s < d->particles->slices; ++s) {
+    const Region *region = domain_region(d, s * SLICE);
+    const FormerBonds bonds = region->type->former_bonds(region->formulation);
     blocks[d->particles->block[s]] =
         (ForcesBlock){material_young(&d->materials[d->material[s]]), bonds.share, bonds.alike};
+  }
   const ForcesParts parts = {&d->body, &d->family, space, blocks};
   const int status = forces_create(&d->forces, spec->forces, &parts, error);
   free(blocks);
@@ -190,7 +250,8 @@ typedef struct Runs {
 static int add_rows(Runs *r, int material, int64_t rows, Error *error)
 {
   if (!rows) return BRECCIA_OK;
-  if (!r->count || r->runs[r->count - 1].material != material) {
+  const PointsRun *last = r->count ? &r->runs[r->count - 1] : NULL;
+  if (!last || last->material != material || last->first + last->count != r->rows) {
     if (r->count == r->capacity) {
       r->capacity = 2 * r->capacity + 16;
       PointsRun *grown = realloc(r->runs, sizeof *grown * (size_t)r->capacity);
@@ -205,9 +266,8 @@ static int add_rows(Runs *r, int material, int64_t rows, Error *error)
 }
 
 /** Rows of the bonds of a slice: its own material's, then those of the materials at other ends. */
-static int add_bonds(const Domain *d, int64_t slice, Runs *r, Error *error)
+static int add_bonds(const Domain *d, const BondList *l, int64_t slice, Runs *r, Error *error)
 {
-  const BondList *l = &d->bonds;
   int64_t own = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]), n = l->single_first[slice];
   for (; n < l->single_first[slice + 1] && l->single[n] >= 0; ++n) ++own;
   int status = add_rows(r, d->material[slice], own, error);
@@ -220,41 +280,71 @@ static int add_bonds(const Domain *d, int64_t slice, Runs *r, Error *error)
   return status;
 }
 
+/** Whether no law of a region dissipates or remembers. */
+static bool is_linear(const Domain *d, const Region *region)
+{
+  bool linear = true;
+  for (int k = 0; k < d->material_count; ++k)
+    if (region_has_material(d, region, d->materials[k].name)) linear &= d->materials[k].law->linear != 0;
+  return linear;
+}
+
+/** Strains and stresses of all places, where several regions share them. */
+static int create_tensors(Domain *d, Error *error)
+{
+  for (int k = 0; k < 6; ++k) {
+    if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
+    if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
+    if (!d->strain[k] || !d->stress[k]) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
 /** Points on particles where laws take six strains; on bonds where they take one, unless all are linear. */
-static int create_points(Domain *d, Space space, bool may_give_up, double length, Error *error)
+static int create_points(Domain *d, Region *region, Space space, bool may_give_up, const BondLength *of, Error *error)
 {
   const Particles *p = d->particles;
-  PointsSpec spec = {.components = d->type->components,
+  PointsSpec spec = {.components = region->type->components,
                      .plane_stress = space == SPACE_PLANE_STRESS,
                      .materials = d->materials,
                      .material_count = d->material_count,
                      .may_give_up = may_give_up,
-                     .length = length};
-  bool linear = d->type->components == 1 || d->type->keeps_no_points;
-  for (int k = 0; k < d->material_count; ++k)
-    linear = linear && (d->materials[k].law->linear || d->type->keeps_no_points);
-  if (linear) spec.components = 0;
-  if (spec.components == 1 && bond_list_create(&d->bonds, &d->family, d->material, error)) return BRECCIA_FAILURE;
+                     .length = length_of(region->type, of)};
+  region->is_linear = is_linear(d, region);
+  if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear)) spec.components = 0;
+  if (spec.components == 1 && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
+    return BRECCIA_FAILURE;
+  if (spec.components == 6 && d->region_count > 1) {
+    if (create_tensors(d, error)) return BRECCIA_FAILURE;
+    spec.strain = d->strain;
+    spec.stress = d->stress;
+  }
   Runs runs = {0};
   int status = BRECCIA_OK;
-  for (int64_t s = 0; s < p->slices && !status && spec.components; ++s)
-    status = spec.components == 6 ? add_rows(&runs, d->material[s], SLICE, error) : add_bonds(d, s, &runs, error);
+  for (int64_t s = 0; s < p->slices && !status && spec.components; ++s) {
+    if (is_foreign(region->foreign, s * SLICE)) continue;
+    if (spec.components == 6) runs.rows = s * SLICE;
+    status = spec.components == 6 ? add_rows(&runs, d->material[s], SLICE, error)
+                                  : add_bonds(d, &region->bonds, s, &runs, error);
+  }
   uint8_t *present = status ? NULL : memory_zeroed((size_t)runs.rows, 1, "points", error);
   if (!present) status = BRECCIA_FAILURE;
-  for (int64_t i = 0; i < runs.rows && !status && spec.components == 6; ++i) present[i] = p->number[i] >= 0;
-  if (spec.components == 1 && !status) bond_list_mark(&d->bonds, &d->family, present);
+  for (int64_t i = 0; i < runs.rows && !status && spec.components == 6; ++i)
+    present[i] = p->number[i] >= 0 && !is_foreign(region->foreign, i);
+  if (spec.components == 1 && !status) bond_list_mark(&region->bonds, &d->family, present);
   spec.runs = runs.runs;
   spec.run_count = runs.count;
   spec.present = present;
-  if (!status) status = points_create(&d->points, &spec, error);
+  if (!status) status = points_create(&region->points, &spec, error);
   for (int k = 0; k < 6 && spec.components == 6; ++k) {
-    d->strain[k] = d->points.strain[k];
-    d->stress[k] = d->points.stress[k];
+    d->strain[k] = region->points.strain[k];
+    d->stress[k] = region->points.stress[k];
   }
   free(runs.runs);
   free(present);
   if (status || !may_give_up) return status;
-  d->gave_up = spec.components == 6 ? d->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
+  d->gave_up =
+      spec.components == 6 ? region->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
   return d->gave_up ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
@@ -281,13 +371,13 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   const Influence *influence = influence_find(pd->influence);
   const Space space = peridynamics_space(pd);
   d->failed_place = -1;
-  d->type = formulation_find(pd->formulation);
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks);
-  if (!status) status = check_space(d, reader, spec);
+  if (!status) status = regions_create(d, reader, pd);
+  if (status) return status;
+  status = check_space(d, reader, spec);
   double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
   const BondLength of = {space, influence, horizon};
-  double length = d->type->characteristic_length ? d->type->characteristic_length(&of) : NAN;
-  int bad = create_materials(d, reader, spec, length);
+  int bad = create_materials(d, reader, spec, &of);
   if (bad) status = bad;
   if (status) return status;
   d->particles = &d->body.particles;
@@ -309,25 +399,39 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  const FamilySpec family = {horizon, influence, (VolumeCorrection)correction, d->type->row_sums,
-                             d->type->bond_lengths};
+  FamilySpec family = {horizon, influence, (VolumeCorrection)correction, false, false};
+  for (int r = 0; r < d->region_count; ++r) {
+    family.row_sums |= d->regions[r].type->row_sums;
+    family.bond_lengths |= d->regions[r].type->bond_lengths;
+  }
   if ((status = family_create(&d->family, &d->body, &family, error))) return status;
   team_each(d->particles->places, weigh_family, d);
 
   const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
-  if ((status = create_points(d, space, may_give_up, length, error)) || (status = share_out(d, error))) return status;
-  const FormulationParts parts = {.keys = pd->keys,
-                                  .space = space,
-                                  .influence = influence,
-                                  .body = &d->body,
-                                  .particles = d->particles,
-                                  .family = &d->family,
-                                  .points = &d->points,
-                                  .bonds = d->points.components == 1 ? &d->bonds : NULL,
-                                  .materials = d->materials,
-                                  .material = d->material};
-  d->formulation = d->type->create(&parts, error);
-  if (!d->formulation) return BRECCIA_USER_ERROR;
+  if (may_give_up && d->region_count > 1)
+    return node_error(reader->document, section_place(spec->failure, "failed laws"), error,
+                      "failed laws: 'break' needs a body of one formulation; leave 'regions' out, or let the run stop");
+  for (int r = 0; r < d->region_count && !status; ++r)
+    status = create_points(d, &d->regions[r], space, may_give_up, &of, error);
+  if (!status) status = share_out(d, error);
+  if (!status) status = regions_find_borders(d, error);
+  if (!status) status = joint_create(&d->joint, d, error);
+  if (status) return status;
+  for (int r = 0; r < d->region_count; ++r) {
+    Region *region = &d->regions[r];
+    const FormulationParts parts = {.keys = region->keys,
+                                    .space = space,
+                                    .influence = influence,
+                                    .body = &d->body,
+                                    .particles = d->particles,
+                                    .family = &d->family,
+                                    .points = &region->points,
+                                    .bonds = region->points.components == 1 ? &region->bonds : NULL,
+                                    .materials = d->materials,
+                                    .material = d->material,
+                                    .foreign = region->foreign};
+    if (!(region->formulation = region->type->create(&parts, error))) return BRECCIA_USER_ERROR;
+  }
   status = create_failure(d, reader, spec->failure, &of);
   return status ? status : create_forces(d, spec, space, error);
 }
@@ -349,17 +453,16 @@ int domain_hold_grips(Domain *d, const uint8_t *held, Error *error)
 
 void domain_destroy(Domain *d)
 {
-  if (d->formulation) d->type->destroy(d->formulation);
   forces_destroy(&d->forces);
-  if (d->points.components != 6) {
+  if (d->region_count > 1 || (d->region_count && d->regions[0].points.components != 6)) {
     for (int k = 0; k < 6; ++k) {
       places_free(&d->strain[k]);
       places_free(&d->stress[k]);
     }
     free(d->gave_up);
   }
-  points_destroy(&d->points);
-  bond_list_destroy(&d->bonds);
+  joint_destroy(&d->joint);
+  regions_destroy(d);
   family_destroy(&d->family);
   body_destroy(&d->body);
   for (int k = 0; k < d->material_count; ++k) material_destroy(&d->materials[k]);

@@ -3,6 +3,7 @@
 
 #include "base/tensor.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,8 @@ static void renew_ends(Domain *d, const BrokenBond *bond)
   for (int end = 0; end < 2; ++end) {
     const int64_t slice = d->particles->place_of[end ? bond->b : bond->a] / SLICE;
     lattice_rows_mark(&d->family, slice);
-    if (d->type->renew) d->type->renew(d->formulation, slice);
+    const Region *region = domain_region(d, slice * SLICE);
+    if (region->type->renew) region->type->renew(region->formulation, slice);
   }
 }
 
@@ -56,10 +58,13 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   return BRECCIA_OK;
 }
 
-/** What people see of points on bonds. */
+/** What people see of points on bonds; of several regions also strains and stresses of points on particles. */
 static void show_strains(Domain *d, StateList *list)
 {
-  StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .role = STATE_SHOWN, .count = d->particles->places};
+  StateRow row = {.kind = STATE_NUMBERS,
+                  .entity = STATE_OF_PLACE,
+                  .role = d->region_count > 1 ? STATE_TRIED : STATE_SHOWN,
+                  .count = d->particles->places};
   for (int k = 0; k < 6; ++k) {
     row.unit = "1";
     row.values = d->strain[k];
@@ -70,14 +75,21 @@ static void show_strains(Domain *d, StateList *list)
   }
 }
 
+/** What is put behind the names of rows that each region has. */
+static const char *region_part(int number, char *part, size_t size)
+{
+  snprintf(part, size, "%d", number + 1);
+  return number ? part : NULL;
+}
+
 void domain_state(Domain *d, StateList *list)
 {
   static const StateCare broken = {.save = save_broken, .resume = resume_broken};
-  const bool laws_in_forces = d->points.components != 6 && !domain_is_elastic(d);
+  const bool laws_in_forces = domain_laws_in_forces(d);
   particles_state(d->particles, list);
   state_add_vector(list, "force", "force per volume", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
                    d->particles->internal, d->particles->places);
-  if (d->points.components != 6 && d->strain[0]) show_strains(d, list);
+  if ((d->region_count > 1 || d->regions[0].points.components != 6) && d->strain[0]) show_strains(d, list);
   if (d->gave_up)
     state_add(list,
               &(StateRow){.unit = "1",
@@ -87,19 +99,24 @@ void domain_state(Domain *d, StateList *list)
                           .count = d->particles->places,
                           .values = d->gave_up},
               "failed laws", NULL);
-  points_state(&d->points, list);
+  char part[16];
+  for (int r = 0; r < d->region_count; ++r)
+    points_state(&d->regions[r].points, region_part(r, part, sizeof part), list);
   family_state(&d->family, list);
   state_add_number(list, "motion", "length", STATE_TRIED, &d->motion);
   state_add_number(list, "fracture energy", "energy", STATE_TRIED, &d->fracture_energy);
-  if (d->type->shares)
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
+    if (!region->type->shares) continue;
     state_add(list,
               &(StateRow){.unit = "1",
                           .kind = STATE_NUMBERS,
                           .entity = STATE_OF_PLACE,
                           .role = STATE_COMMITTED,
                           .count = d->particles->places,
-                          .values = d->type->shares(d->formulation)},
-              "share", NULL);
+                          .values = region->type->shares(region->formulation)},
+              "share", region_part(r, part, sizeof part));
+  }
   state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &broken, .owner = d}, "broken bonds", NULL);
   forces_state(&d->forces, list);
 }

@@ -1,8 +1,8 @@
-/* Phases of a formulation, and laws between them, over the blocks of a body. Phases follow each other within a block, while its numbers are
+/* Phases of formulations, and laws between them, over the blocks of a body, region by region. Phases follow each other within a block, while its numbers are
  * in the cache, as far as none reads of its neighbours what another one of them writes: there all blocks wait for each other. */
 #include "base/team.h"
 #include "base/tensor.h"
-#include "domain/domain.h"
+#include "domain/regions.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,9 +32,9 @@ typedef struct Group {
 } Group;
 
 /** The group that begins with a phase. */
-static Group group_from(const Domain *d, int from)
+static Group group_from(const Domain *d, const Region *region, int from)
 {
-  const Phase *phases = d->type->phases;
+  const Phase *phases = region->type->phases;
   unsigned written = 0;
   Group group = {from, -1, MOST_PHASES, from};
   for (int p = from; p < MOST_PHASES && phases[p].run; group.to = ++p) {
@@ -47,151 +47,179 @@ static Group group_from(const Domain *d, int from)
   return group;
 }
 
-static void run_phases(Domain *d, int from, int to, const Sweep *sweep, const Purpose *purpose)
+static void run_phases(const Region *region, int from, int to, const Sweep *sweep, const Purpose *purpose)
 {
   for (int p = from; p < to; ++p)
-    if (!(d->type->phases[p].writes & purpose->without)) d->type->phases[p].run(d->formulation, sweep);
+    if (!(region->type->phases[p].writes & purpose->without)) region->type->phases[p].run(region->formulation, sweep);
 }
 
 /** A block of points on particles, or of none.
  *  @param[in] send  only up to the law: strains are sent to servers */
-static void run_places(Domain *d, const Group *group, int64_t block, const Purpose *purpose, bool send)
+static void run_places(Domain *d, Region *region, const Group *group, int64_t block, const Purpose *purpose, bool send)
 {
   _Alignas(64) double carry[CARRY * BLOCK], change[12 * BLOCK];
   const Span *span = &d->blocks[block];
+  Points *points = &region->points;
   const int64_t first = span->first * SLICE;
   const int count = (int)(span->last * SLICE - first);
   Sweep sweep = {.first = span->first, .last = span->last, .carry = carry, .at = purpose->at};
-  if (purpose->at && d->points.plane_stress) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
-  for (int k = 0; k < 6 && d->points.components == 6; ++k) {
-    sweep.strain[k] = purpose->at ? change + k * BLOCK : d->points.strain[k] + first;
-    sweep.stress[k] = purpose->at ? change + (6 + k) * BLOCK : d->points.stress[k] + first;
+  if (purpose->at && points->plane_stress) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
+  for (int k = 0; k < 6 && points->components == 6; ++k) {
+    sweep.strain[k] = purpose->at ? change + k * BLOCK : points->strain[k] + first;
+    sweep.stress[k] = purpose->at ? change + (6 + k) * BLOCK : points->stress[k] + first;
   }
-  run_phases(d, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
+  run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
   if (group->law < 0) return;
   if (send) {
-    points_send(&d->points, first, count, sweep.strain);
+    points_send(points, first, count, sweep.strain);
     return;
   }
-  if (d->points.components == 6) {
+  if (points->components == 6) {
     if (purpose->at)
-      points_change(&d->points, first, count, sweep.strain, sweep.stress);
+      points_change(points, first, count, sweep.strain, sweep.stress);
     else if (!purpose->no_law)
-      d->block_failed[block] = points_update(&d->points, first, count, sweep.strain, sweep.stress);
+      d->block_failed[block] = points_update(points, first, count, sweep.strain, sweep.stress);
   }
-  run_phases(d, group->law, group->to, &sweep, purpose);
+  run_phases(region, group->law, group->to, &sweep, purpose);
 }
 
 /** Both ends of bonds whose laws could not be integrated are marked; several threads may mark one end. */
-static void mark_ends(Domain *d, int64_t slice, int64_t row, int count)
+static void mark_ends(Domain *d, const Region *region, int64_t slice, int64_t row, int count)
 {
   for (int64_t r = row; r < row + count; ++r) {
     int64_t slot;
     int lane;
-    if (!d->points.gave_up[r]) continue;
-    d->points.gave_up[r] = 0;
-    bond_list_bond(&d->bonds, &d->family, slice, r, &slot, &lane);
+    if (!region->points.gave_up[r]) continue;
+    region->points.gave_up[r] = 0;
+    bond_list_bond(&region->bonds, &d->family, slice, r, &slot, &lane);
     __atomic_fetch_or(&d->gave_up[slice * SLICE + lane], 1, __ATOMIC_RELAXED);
     __atomic_fetch_or(&d->gave_up[family_bond(&d->family, slice, slot, lane).neighbour], 1, __ATOMIC_RELAXED);
   }
 }
 
 /** Place of the owner of a bond's row. */
-static int64_t owner_of(const Domain *d, int64_t slice, int64_t row)
+static int64_t owner_of(const Domain *d, const Region *region, int64_t slice, int64_t row)
 {
   int64_t slot;
   int lane;
-  bond_list_bond(&d->bonds, &d->family, slice, row, &slot, &lane);
+  bond_list_bond(&region->bonds, &d->family, slice, row, &slot, &lane);
   return slice * SLICE + lane;
 }
 
 /** A block of points on bonds, chunk by chunk of rows of one slice and material. */
-static void run_bonds(Domain *d, const Group *group, int64_t block, const Purpose *purpose, bool send)
+static void run_bonds(Domain *d, Region *region, const Group *group, int64_t block, const Purpose *purpose, bool send)
 {
   _Alignas(64) double carry[CARRY * BLOCK], strain[BLOCK], stress[BLOCK];
   Sweep sweep = {.carry = carry, .strain = {strain}, .stress = {stress}};
+  Points *points = &region->points;
+  const BondList *bonds = &region->bonds;
   int64_t failed = -1;
   for (int64_t slice = d->blocks[block].first; slice < d->blocks[block].last; ++slice) {
-    const int64_t end = d->bonds.first[slice + 1];
-    for (sweep.row = d->bonds.first[slice]; sweep.row < end; sweep.row += sweep.rows) {
-      const PointsRun *run = &d->points.runs[points_run(&d->points, sweep.row)];
+    const int64_t end = bonds->first[slice + 1];
+    for (sweep.row = bonds->first[slice]; sweep.row < end; sweep.row += sweep.rows) {
+      const PointsRun *run = &points->runs[points_run(points, sweep.row)];
       const int64_t left = (run->first + run->count < end ? run->first + run->count : end) - sweep.row;
       sweep.rows = left < BLOCK ? (int)left : BLOCK;
       sweep.first = slice;
       sweep.last = slice + 1;
-      run_phases(d, group->from, group->law, &sweep, purpose);
+      run_phases(region, group->from, group->law, &sweep, purpose);
       if (send) {
-        points_send(&d->points, sweep.row, sweep.rows, sweep.strain);
+        points_send(points, sweep.row, sweep.rows, sweep.strain);
         continue;
       }
-      const int64_t bad = points_update(&d->points, sweep.row, sweep.rows, sweep.strain, sweep.stress);
-      if (bad >= 0 && failed < 0) failed = owner_of(d, slice, bad);
-      if (d->points.gave_up) mark_ends(d, slice, sweep.row, sweep.rows);
-      run_phases(d, group->law, group->to, &sweep, purpose);
+      const int64_t bad = points_update(points, sweep.row, sweep.rows, sweep.strain, sweep.stress);
+      if (bad >= 0 && failed < 0) failed = owner_of(d, region, slice, bad);
+      if (points->gave_up) mark_ends(d, region, slice, sweep.row, sweep.rows);
+      run_phases(region, group->law, group->to, &sweep, purpose);
     }
   }
   d->block_failed[block] = failed;
 }
 
-static void run_group(Domain *d, const Group *group, int64_t block, const Purpose *purpose, bool send)
+static void run_group(Domain *d, Region *region, const Group *group, int64_t block, const Purpose *purpose, bool send)
 {
-  if (group->law < 0 || d->points.components != 1)
-    run_places(d, group, block, purpose, send);
+  if (group->law < 0 || region->points.components != 1)
+    run_places(d, region, group, block, purpose, send);
   else if (!purpose->at && !purpose->no_law)
-    run_bonds(d, group, block, purpose, send);
+    run_bonds(d, region, group, block, purpose, send);
 }
 
 /** Phases of a block that have waited for lower blocks. */
-static void finish_block(Domain *d, const Group *group, int64_t b, const Purpose *purpose, unsigned writes)
+static void finish_block(Domain *d, Region *region, const Group *group, int64_t b, const Purpose *purpose,
+                         unsigned writes)
 {
-  run_group(d, group, b, purpose, false);
+  run_group(d, region, group, b, purpose, false);
   if (writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
 }
 
 /** Where bonds have broken: the same again for blocks whose families turn out to carry less, with the stresses that laws have given. */
-static void settle(Domain *d, const Group *group)
+static void settle(Domain *d, Region *region, const Group *group)
 {
-  domain_settle(d);
-  TEAM_FOR (b, d->block_count) {
-    const int64_t first = d->blocks[b].first * SLICE, places = d->blocks[b].last * SLICE - first;
-    if (memchr(d->is_torn + first, 2, (size_t)places)) run_group(d, group, b, &(Purpose){.no_law = true}, false);
+  domain_settle(d, region);
+  TEAM_FOR (n, region->last_block - region->first_block) {
+    const int64_t b = region->first_block + n, first = d->blocks[b].first * SLICE,
+                  places = d->blocks[b].last * SLICE - first;
+    if (memchr(d->is_torn + first, 2, (size_t)places))
+      run_group(d, region, group, b, &(Purpose){.no_law = true}, false);
+  }
+}
+
+/** What particles of other regions show those of this one. */
+static void show_border(const Region *region, const Group *group, const Purpose *purpose)
+{
+  TEAM_FOR (n, region->border_count) {
+    const Sweep sweep = {.first = region->border[n], .last = region->border[n] + 1, .at = purpose->at};
+    for (int p = group->from; p < group->to; ++p)
+      if (region->type->phases[p].writes == OF_SHOWN) run_phases(region, p, p + 1, &sweep, purpose);
+  }
+}
+
+static void run_region(Domain *d, Region *region, const Purpose *purpose)
+{
+  const Phase *phases = region->type->phases;
+  const int64_t from = region->first_block, count = region->last_block - from;
+  const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
+  for (int p = 0; p < MOST_PHASES && phases[p].run;) {
+    const Group group = group_from(d, region, p);
+    p = group.to;
+    unsigned writes = 0;
+    for (int n = group.from; n < group.to; ++n) writes |= phases[n].writes & ~purpose->without;
+    if (!writes) continue;
+    if (phases[group.from].by_one) {
+      TEAM_SINGLE
+      phases[group.from].run(region->formulation, &(Sweep){.last = d->particles->slices, .at = purpose->at});
+      continue;
+    }
+    if (ahead && group.law >= 0) { /* servers work while strains of further points are found */
+      TEAM_FOR (n, count) run_group(d, region, &group, from + n, purpose, true);
+      TEAM_SINGLE points_await(&region->points);
+    }
+    if (writes & OF_SHOWN && region->border_count) show_border(region, &group, purpose);
+    Group before = group, after = {group.close, -1, MOST_PHASES, group.to};
+    const bool in_two = group.close < group.to;
+    if (in_two) before.to = group.close;
+    const TeamShare share = team_share(count);
+    const bool torn = group.law >= 0 && d->torn_count && !purpose->at && !region->type->bond_energy;
+    TEAM_FOR (n, count) {
+      const int64_t b = from + n;
+      run_group(d, region, &before, b, purpose, false);
+      /* Where bonds have broken, forces wait for what families carry. */
+      if (in_two && !torn && d->lowest[b] >= from + share.first) finish_block(d, region, &after, b, purpose, writes);
+      if (!in_two && writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
+    }
+    if (torn) settle(d, region, &before);
+    if (in_two) {
+      TEAM_FOR (n, count) /* the rest, whose neighbours were another thread's */
+        if (torn || d->lowest[from + n] < from + share.first)
+          finish_block(d, region, &after, from + n, purpose, writes);
+    }
   }
 }
 
 static void run_all(Domain *d, const Purpose *purpose)
 {
-  const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&d->points);
-  for (int p = 0; p < MOST_PHASES && d->type->phases[p].run;) {
-    const Group group = group_from(d, p);
-    p = group.to;
-    unsigned writes = 0;
-    for (int n = group.from; n < group.to; ++n) writes |= d->type->phases[n].writes & ~purpose->without;
-    if (!writes) continue;
-    if (d->type->phases[group.from].by_one) {
-      TEAM_SINGLE
-      d->type->phases[group.from].run(d->formulation, &(Sweep){.last = d->particles->slices, .at = purpose->at});
-      continue;
-    }
-    if (ahead && group.law >= 0) { /* servers work while strains of further points are found */
-      TEAM_FOR (b, d->block_count) run_group(d, &group, b, purpose, true);
-      TEAM_SINGLE points_await(&d->points);
-    }
-    Group before = group, after = {group.close, -1, MOST_PHASES, group.to};
-    const bool in_two = group.close < group.to;
-    if (in_two) before.to = group.close;
-    const TeamShare share = team_share(d->block_count);
-    const bool torn = group.law >= 0 && d->torn_count && !purpose->at; /* forces wait for what families carry */
-    TEAM_FOR (b, d->block_count) {
-      run_group(d, &before, b, purpose, false);
-      if (in_two && !torn && d->lowest[b] >= share.first) finish_block(d, &after, b, purpose, writes);
-      if (!in_two && writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
-    }
-    if (torn) settle(d, &before);
-    if (in_two) {
-      TEAM_FOR (b, d->block_count) /* the rest, whose neighbours were another thread's */
-        if (torn || d->lowest[b] < share.first) finish_block(d, &after, b, purpose, writes);
-    }
-  }
+  for (int r = 0; r < d->region_count; ++r) run_region(d, &d->regions[r], purpose);
+  if (d->region_count > 1 && !(purpose->without & OF_FORCES)) joint_resist(d, purpose->at);
 }
 
 void domain_forces(Domain *d)
@@ -240,20 +268,25 @@ void domain_follow(Domain *d)
 {
   if (domain_is_elastic(d))
     domain_evaluate(d);
-  else if (d->points.components == 6)
-    team_run(remake_forces, d);
-  else
+  else if (domain_laws_in_forces(d))
     domain_show_states(d);
+  else
+    team_run(remake_forces, d);
 }
 
 /* ---- linearised steps ---- */
 
 int domain_linearise(Domain *d, Error *error)
 {
-  if (points_keep_tangents(&d->points, true, error)) return BRECCIA_FAILURE;
+  for (int r = 0; r < d->region_count; ++r)
+    if (points_keep_tangents(&d->regions[r].points, true, error)) return BRECCIA_FAILURE;
   domain_evaluate(d);
-  points_keep_tangents(&d->points, false, error);
-  return d->type->linearise(d->formulation, error);
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
+    points_keep_tangents(&d->regions[r].points, false, error);
+    if (region->type->linearise(region->formulation, error)) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
 }
 
 /** Puts other arrays in the place of displacements and internal forces, or takes them away again. */

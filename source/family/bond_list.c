@@ -7,6 +7,7 @@ typedef struct Build {
   BondList *list;
   const Family *family;
   const int32_t *material;
+  const uint8_t *foreign;
 } Build;
 
 static int32_t stored_neighbour(const Family *f, int64_t slot, int lane)
@@ -14,10 +15,25 @@ static int32_t stored_neighbour(const Family *f, int64_t slot, int lane)
   return f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
 }
 
-/** Whether a lane of a stored slot owns a bond. */
-static bool owns_stored(const Family *f, int64_t slice, int64_t slot, int lane)
+static bool is_foreign(const Build *b, int64_t place)
 {
-  return f->intact[slot] >> lane & 1 && stored_neighbour(f, slot, lane) > slice * SLICE + lane;
+  return b->foreign && b->foreign[place / SLICE];
+}
+
+/** Whether a lane of a stored slot owns a bond. */
+static bool owns_stored(const Build *b, int64_t slice, int64_t slot, int lane)
+{
+  const Family *f = b->family;
+  if (!(f->intact[slot] >> lane & 1) || is_foreign(b, slice * SLICE)) return false;
+  const int32_t there = stored_neighbour(f, slot, lane);
+  return there > slice * SLICE + lane || is_foreign(b, there);
+}
+
+/** Material of the second row of a stored bond, or that of the slice: there is none. */
+static int32_t other_material(const Build *b, int64_t slice, int64_t slot, int lane)
+{
+  const int32_t there = stored_neighbour(b->family, slot, lane);
+  return b->material[is_foreign(b, there) ? slice : there / SLICE];
 }
 
 /** Second rows of a slice, of the materials above `after` in their order. @return the least of these materials, or -1 */
@@ -27,8 +43,8 @@ static int32_t next_material(const Build *b, int64_t slice, int32_t after)
   int32_t next = -1;
   for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
-      if (!owns_stored(f, slice, slot, lane)) continue;
-      const int32_t there = b->material[stored_neighbour(f, slot, lane) / SLICE];
+      if (!owns_stored(b, slice, slot, lane)) continue;
+      const int32_t there = other_material(b, slice, slot, lane);
       if (there != b->material[slice] && there > after && (next < 0 || there < next)) next = there;
     }
   return next;
@@ -39,11 +55,12 @@ static void count_slice(void *context, int64_t slice)
   const Build *b = context;
   const Family *f = b->family;
   int64_t owned = 0, single = 0;
+  if (is_foreign(b, slice * SLICE)) return;
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) owned += bond_list_owns(f, slice, slot);
   for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane)
-      if (owns_stored(f, slice, slot, lane))
-        single += b->material[stored_neighbour(f, slot, lane) / SLICE] == b->material[slice] ? 1 : 2;
+      if (owns_stored(b, slice, slot, lane))
+        single += other_material(b, slice, slot, lane) == b->material[slice] ? 1 : 2;
   b->list->owned_first[slice + 1] = owned;
   b->list->single_first[slice + 1] = single;
 }
@@ -55,6 +72,7 @@ static void fill_slice(void *context, int64_t slice)
   const Family *f = b->family;
   BondList *l = b->list;
   int64_t owned = l->owned_first[slice], single = l->single_first[slice], row = l->first[slice];
+  if (is_foreign(b, slice * SLICE)) return;
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
     if (!bond_list_owns(f, slice, slot)) continue;
     l->owned[owned++] = (uint16_t)(slot - f->first[slice]);
@@ -66,8 +84,8 @@ static void fill_slice(void *context, int64_t slice)
       for (int lane = 0; lane < SLICE; ++lane) {
         const int64_t at = (int64_t)f->base[slot] * SLICE + lane;
         const int32_t code = (int32_t)(SLICE * (slot - f->first[slice])) + lane;
-        if (!owns_stored(f, slice, slot, lane)) continue;
-        if (!first && b->material[f->neighbour[at] / SLICE] != material) continue;
+        if (!owns_stored(b, slice, slot, lane)) continue;
+        if (!first && other_material(b, slice, slot, lane) != material) continue;
         (first ? l->stored_row : l->partner_row)[at] = (int32_t)row++;
         l->single[single++] = first ? code : -1 - code;
       }
@@ -92,6 +110,7 @@ static void mate_slice(void *context, int64_t slice)
   const Build *b = context;
   const Family *f = b->family;
   BondList *l = b->list;
+  if (is_foreign(b, slice * SLICE)) return;
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
     if (bond_list_owns(f, slice, slot)) continue;
     const int32_t shift = f->base[slot] & (SLICE - 1),
@@ -104,7 +123,7 @@ static void mate_slice(void *context, int64_t slice)
   for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       const int32_t place = (int32_t)(slice * SLICE + lane), owner = stored_neighbour(f, slot, lane);
-      if (!(f->intact[slot] >> lane & 1) || owner > place) continue;
+      if (!(f->intact[slot] >> lane & 1) || owner > place || is_foreign(b, owner)) continue;
       const int64_t there = family_slot(f, owner, place), at = (int64_t)f->base[slot] * SLICE + lane,
                     seen = (int64_t)f->base[there] * SLICE + owner % SLICE;
       l->stored_row[at] = l->stored_row[seen];
@@ -112,11 +131,16 @@ static void mate_slice(void *context, int64_t slice)
     }
 }
 
-int bond_list_create(BondList *l, const Family *f, const int32_t *material, Error *error)
+int bond_list_create(BondList *l, const Family *f, const int32_t *material, const uint8_t *foreign, Error *error)
 {
   const int64_t slices = f->particles->slices;
   bool several = false;
-  for (int64_t s = 0; s < slices; ++s) several |= material[s] != material[0];
+  int32_t first = -1;
+  for (int64_t s = 0; s < slices; ++s) {
+    if (foreign && foreign[s]) continue;
+    if (first < 0) first = material[s];
+    several |= material[s] != first;
+  }
   *l = (BondList){
       .first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
       .owned_first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
@@ -128,7 +152,7 @@ int bond_list_create(BondList *l, const Family *f, const int32_t *material, Erro
       (several && !l->partner_row))
     return BRECCIA_FAILURE;
   for (int64_t n = 0; several && n < f->stored_slots * SLICE; ++n) l->partner_row[n] = -1;
-  Build build = {l, f, material};
+  Build build = {l, f, material, foreign};
   team_each(slices, count_slice, &build);
   for (int64_t s = 0; s < slices; ++s) {
     l->owned_first[s + 1] += l->owned_first[s];

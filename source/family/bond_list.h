@@ -27,8 +27,11 @@ typedef struct BondList {
   int32_t *partner_row;   /* [stored_slots][8] of the other end's, or -1; NULL: there is one material */
 } BondList;
 
-/** @param[in] material  [slices] */
-int bond_list_create(BondList *list, const Family *family, const int32_t *material, Error *error);
+/** @param[in] material  [slices]
+ *  @param[in] foreign  [slices] 1: not of those to whom the list belongs. Of bonds with a foreign end the other one is the owner, and
+ *                      they have one row. NULL: there are none */
+int bond_list_create(BondList *list, const Family *family, const int32_t *material, const uint8_t *foreign,
+                     Error *error);
 void bond_list_destroy(BondList *list);
 
 /** Rows of the bond of a lane: of the law of this end and of that at the other end, the same one if they are of one material. */

@@ -84,6 +84,7 @@ static void *create(const FormulationParts *parts, Error *error)
                    .bonds = parts->bonds,
                    .materials = parts->materials,
                    .material = parts->material,
+                   .foreign = parts->foreign,
                    .space = parts->space,
                    .influence = parts->influence};
   const BondBasedSpec *spec = parts->keys;
@@ -100,6 +101,7 @@ static void *create(const FormulationParts *parts, Error *error)
   }
   for (int64_t slice = 0; slice < b->particles->slices; ++slice) bond_note_gaps(b, slice);
   for (int block = 0; block < b->body->block_count; ++block) {
+    if (block_is_foreign(b->foreign, b->particles, block)) continue;
     double factor = bond_calibration(b, block, (Calibration)calibration) * bond_continuum_constant(b, 1);
     if (!(factor > 0) || !isfinite(factor)) {
       if (!b->body->lattices[block].chunks)
@@ -134,12 +136,20 @@ static void *create(const FormulationParts *parts, Error *error)
 /* ---- single bonds and places ---- */
 
 /** Both ends give a bond half of its force. */
-static void half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
+static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                       double state[3])
 {
   const BondBased *b = formulation;
-  Bond bond = family_bond(b->family, slice, slot, lane);
-  double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y);
-  for (int k = 0; k < 3; ++k) state[k] = 0.5 * pull * bond.weight / b->particles->volume[bond.neighbour] * y[k];
+  const Bond bond = family_bond(b->family, slice, slot, lane);
+  const double factor = bond_own_share(b, &bond) * bond.weight / b->particles->volume[bond.neighbour];
+  double y[3];
+  if (at) {
+    bond_change(b, at, slice, slot, lane, &bond, y);
+  } else {
+    const double pull = bond_pull(b, slice, slot, lane, &bond, y);
+    for (int k = 0; k < 3; ++k) y[k] *= pull;
+  }
+  for (int k = 0; k < 3; ++k) state[k] = factor * y[k];
 }
 
 static void bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
@@ -175,8 +185,9 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
     if (!(f->intact[slot] >> lane & 1)) continue;
     StoredEnergy bond;
     bond_energy(formulation, slice, slot, lane, time, &bond);
-    energy->stored += bond.stored / 2;
-    energy->received += bond.received / 2;
+    const Bond held = family_bond(f, slice, slot, lane);
+    energy->stored += bond_own_share(b, &held) * bond.stored;
+    energy->received += bond_own_share(b, &held) * bond.received;
   }
 }
 
@@ -208,7 +219,7 @@ static void stress(const void *formulation, int64_t place, double s[6])
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     Bond bond = family_bond(f, slice, slot, lane);
-    double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y) * 0.5 * bond.weight;
+    double y[3], pull = bond_pull(b, slice, slot, lane, &bond, y) * bond_own_share(b, &bond) * bond.weight;
     for (int k = 0; k < 6; ++k) s[k] += pull * y[symmetric_row[k]] * y[symmetric_column[k]];
   }
   if (b->space == SPACE_PLANE_STRAIN) s[ZZ] = (s[XX] + s[YY]) / 4;
@@ -269,6 +280,7 @@ const FormulationType formulation_bond_based = {
     .maturity = "verified against closed forms on lattices",
     .components = 1,
     .bond_lengths = true,
+    .joins = true,
     .section = &bond_based_section,
     .create = create,
     .destroy = destroy,

@@ -22,9 +22,11 @@ typedef struct BondBased {
   const BondList *bonds; /* NULL: bonds need no points */
   const Material *materials;
   const int32_t *material; /* [slices] */
+  const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   const Influence *influence;
-  double *stiffness;       /* [blocks] c; a bond between two has the mean. Also in the records of stored slots */
+  double *
+      stiffness; /* [blocks] c, 0 of foreign ones; a bond between two has the mean. Also in the records of stored slots */
   double *per_stress;      /* [blocks] c / E */
   SpringRow *rows;         /* [patterns] */
   double *numbers;         /* of these rows */
@@ -84,6 +86,16 @@ int bond_point(const void *formulation, int64_t number, Operator *point, Error *
  *  @param[out] y  from the place to its neighbour, as deformed */
 void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3],
                   double *tension, double *slope);
+
+/** Change of the force of a bond in a linearised step, per volume and weight. */
+void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int lane, const Bond *bond,
+                 double change[3]);
+
+/** Share of the force of a bond that its own end gives: foreign ends give the other half themselves. */
+static inline double bond_own_share(const BondBased *b, const Bond *bond)
+{
+  return is_foreign(b->foreign, bond->neighbour) ? 1 : 0.5;
+}
 
 /** Tension over |y|, times the surface correction: force per volume, weight and length of y. */
 double bond_pull(const BondBased *b, int64_t slice, int64_t slot, int lane, const Bond *bond, double y[3]);

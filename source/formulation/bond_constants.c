@@ -186,7 +186,7 @@ void bond_describe(const void *formulation, Text *text)
   const double axis[3] = {1, 0, 0}, plane[3] = {sqrt(0.5), sqrt(0.5), 0},
                space[3] = {sqrt(1. / 3), sqrt(1. / 3), sqrt(1. / 3)};
   for (int block = 0; block < b->body->block_count; ++block) {
-    if (!b->body->lattices[block].chunks) continue;
+    if (!b->body->lattices[block].chunks || block_is_foreign(b->foreign, b->particles, block)) continue;
     double c = b->stiffness[block], wanted = material_young(bond_material(b, block)) * continuum_young(b);
     if (isnan(lattice_young(b, block, axis))) {
       text_add(text, "%s: the bonds within the horizon resist no shear; give a longer one\n",

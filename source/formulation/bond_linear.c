@@ -121,6 +121,34 @@ void bond_tension(const BondBased *b, int64_t slice, int64_t slot, int lane, con
   *slope = own * tangent[0] + there * tangent[1];
 }
 
+void bond_change(const BondBased *b, double *const at[3], int64_t slice, int64_t slot, int lane, const Bond *bond,
+                 double change[3])
+{
+  const int64_t place = slice * SLICE + lane;
+  double y[3], d = 0, square = 0, along = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double eta = at[k][bond->neighbour] - at[k][place];
+    change[k] = b->particles->displacement[k][bond->neighbour] - b->particles->displacement[k][place];
+    y[k] = bond->xi[k] + eta;
+    d += eta * (bond->xi[k] + y[k]);
+    square += y[k] * y[k];
+    along += y[k] * change[k];
+  }
+  const double length = sqrt(square), correction = b->surface ? (double)b->surface[slot * SLICE + lane] : 1;
+  const int32_t *block = b->particles->block;
+  double slope = (b->stiffness[block[slice]] + b->stiffness[block[bond->neighbour / SLICE]]) / 2,
+         tension = slope * d / (bond->length * (length + bond->length));
+  if (b->tension) {
+    int64_t rows[2];
+    bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
+    const bool owner = rows[1] == rows[0] || bond->neighbour > place; /* sums stand in the first row */
+    tension = b->tension[rows[!owner]];
+    slope = b->slope[rows[!owner]];
+  }
+  const double across = tension / length, turned = (slope / bond->length - across) * along / square;
+  for (int k = 0; k < 3; ++k) change[k] = correction * (turned * y[k] + across * change[k]);
+}
+
 static void linearise_slice(void *context, int64_t slice)
 {
   const BondBased *b = context;
@@ -176,7 +204,8 @@ int bond_point(const void *formulation, int64_t number, Operator *point, Error *
   operator_clear(point);
   if (!(b->family->intact[slot] >> lane & 1)) return BRECCIA_OK;
   const Bond bond = family_bond(b->family, slice, slot, lane);
-  if (bond.neighbour < place) return BRECCIA_OK;
+  if (is_foreign(b->foreign, place)) return BRECCIA_OK;
+  if (bond.neighbour < place && !is_foreign(b->foreign, bond.neighbour)) return BRECCIA_OK;
   if (!operator_add(point, place, error)) return BRECCIA_FAILURE;
   OperatorPlace *p = operator_add(point, bond.neighbour, error);
   if (!p) return BRECCIA_FAILURE;

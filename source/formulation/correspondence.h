@@ -28,6 +28,7 @@ typedef struct Correspondence {
   const Family *family;
   const Points *points;
   const Body *body;
+  const uint8_t *foreign; /* [slices], or NULL */
   bool plane, finite;
   Control control;
   double strength;
@@ -88,7 +89,8 @@ FormerBonds correspondence_former_bonds(const void *formulation);
 
 /* Single bonds and points, and particles with too few bonds (correspondence_bonds.c). */
 int64_t correspondence_finish(void *formulation, const Sweep *sweep);
-void correspondence_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3]);
+void correspondence_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                               double state[3]);
 int64_t correspondence_point_count(const void *formulation);
 int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
 int correspondence_linearise(void *formulation, Error *error);

@@ -54,14 +54,16 @@ int64_t correspondence_finish(void *formulation, const Sweep *sweep)
       axial_state(c, sweep->at, place, &bond, t);
       for (int k = 0; k < 3; ++k) {
         c->particles->internal[k][place] += t[k] * c->particles->volume[bond.neighbour];
-        c->particles->internal[k][bond.neighbour] -= t[k] * c->particles->volume[place];
+        if (!is_foreign(c->foreign, bond.neighbour))
+          c->particles->internal[k][bond.neighbour] -= t[k] * c->particles->volume[place];
       }
     }
   }
   return -1;
 }
 
-void correspondence_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
+void correspondence_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                               double state[3])
 {
   const Correspondence *c = formulation;
   const Bond bond = family_bond(c->family, slice, slot, lane);
@@ -77,7 +79,7 @@ void correspondence_half_state(const void *formulation, int64_t slice, int64_t s
   }
   if (c->shapes.mode[place] != SHAPE_AXIAL) return;
   double t[3];
-  axial_state(c, NULL, place, &bond, t);
+  axial_state(c, at, place, &bond, t);
   for (int k = 0; k < 3; ++k) state[k] += t[k];
 }
 

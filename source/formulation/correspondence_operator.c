@@ -51,7 +51,8 @@ int correspondence_point(const void *formulation, int64_t place, Operator *point
   const int lane = (int)(place % SLICE);
   const double share = shape_of_slice(&c->shapes, slice)->share[lane];
   operator_clear(point);
-  if (c->particles->number[place] < 0 || c->shapes.mode[place] == SHAPE_FREE) return BRECCIA_OK;
+  if (c->particles->number[place] < 0 || is_foreign(c->foreign, place) || c->shapes.mode[place] == SHAPE_FREE)
+    return BRECCIA_OK;
   if (!operator_add(point, place, error)) return BRECCIA_FAILURE;
   const bool axial = c->shapes.mode[place] == SHAPE_AXIAL;
   point->components = axial ? 0 : 6;

@@ -105,6 +105,7 @@ static double eccentricity(const Correspondence *c, int64_t place)
 static void set_hold(void *context, int64_t slice)
 {
   const Correspondence *c = context;
+  if (is_foreign(c->foreign, slice * SLICE)) return;
   const SliceShape *shape = shape_of_slice(&c->shapes, slice);
   const Material *m = points_material(c->points, slice * SLICE);
   double scale = c->strength * micromodulus(c->body, material_young(m), c->family->horizon) / c->family->horizon;
@@ -148,7 +149,7 @@ void correspondence_renew(void *formulation, int64_t slice)
 static bool is_uniform(const Correspondence *c)
 {
   const Particles *p = c->particles;
-  if (c->control != CONTROL_SCALAR) return false;
+  if (c->control != CONTROL_SCALAR || c->foreign) return false;
   double first = c->hold[0][p->place_of[0]];
   for (int64_t n = 1; n < p->count; ++n)
     if (c->hold[0][p->place_of[n]] != first) return false;
@@ -161,6 +162,7 @@ static int check_shapes(const Correspondence *c, Error *error)
   const Particles *p = c->particles;
   for (int32_t n = 0; n < p->count; ++n) {
     int32_t place = p->place_of[n];
+    if (is_foreign(c->foreign, place)) continue;
     if (c->shapes.mode[place] == SHAPE_REGULAR && c->shapes.roundness[place] >= 1e-6F) continue;
     return error_add(
         error, BRECCIA_USER_ERROR,
@@ -184,6 +186,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   c->family = parts->family;
   c->points = parts->points;
   c->body = parts->body;
+  c->foreign = parts->foreign;
   c->plane = parts->body->dimensions == 2;
   const CorrespondenceSpec *spec = parts->keys;
   const ControlSpec *control = spec->control;

@@ -43,6 +43,24 @@ static const Section *formulation_keys(int k)
 static const SectionChoice formulation_choice = {
     .section = {.name = "formulation"}, .chosen = formulation_keys, .word = formulation_word};
 
+static const Field region_fields[] = {
+    {"blocks", FIELD_TEXTS, offsetof(RegionSpec, blocks), NULL, NULL, NULL, "names of its blocks", NULL, NULL, 0},
+    {"formulation", FIELD_CHOICE, offsetof(RegionSpec, formulation), NULL, NULL, NULL,
+     "how displacements become strain and stress becomes force", NULL, formulation_word, 0},
+    {"formulation", FIELD_CHOSEN, offsetof(RegionSpec, keys), NULL, "", NULL, "keys of the formulation",
+     &formulation_choice.section, NULL, 0},
+};
+static const Section region_section = {
+    "region",
+    "Blocks of the body with a formulation of their own. Bonds between regions are shared: each end gives its half of "
+    "the force by its own formulation. Horizon, influence and volume correction are those of the whole body.",
+    sizeof(RegionSpec),
+    FIELDS(region_fields),
+    NULL,
+    NULL,
+    NULL,
+    0};
+
 static const Field peridynamics_fields[] = {
     {"formulation", FIELD_CHOICE, offsetof(PeridynamicsSpec, formulation), NULL, "correspondence", NULL,
      "how displacements become strain and stress becomes force", NULL, formulation_word, 0},
@@ -56,6 +74,9 @@ static const Field peridynamics_fields[] = {
      "share of a neighbour's volume near the horizon: whole, partial inside it, or partial half a spacing beyond it "
      "too",
      NULL, volume_correction_word, 0},
+    {"regions", FIELD_NAMED, offsetof(PeridynamicsSpec, regions), NULL, "", NULL,
+     "blocks with another formulation, or the same with other keys; all others have this one", &region_section, NULL,
+     0},
     {"formulation", FIELD_CHOSEN, offsetof(PeridynamicsSpec, keys), NULL, "", NULL, "keys of the formulation",
      &formulation_choice.section, NULL, 0},
 };
@@ -73,16 +94,6 @@ Space peridynamics_space(const PeridynamicsSpec *spec)
   int k = 0;
   while (strcmp(spaces[k], spec->space)) ++k;
   return (Space)k;
-}
-
-void formulation_bond_force(const FormulationType *type, const void *formulation, const Family *family, int64_t slice,
-                            int64_t slot, int lane, double force[3])
-{
-  const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(family, slice, slot, lane).neighbour;
-  double back[3];
-  type->half_state(formulation, slice, slot, lane, force);
-  type->half_state(formulation, other / SLICE, family_slot(family, other, place), other % SLICE, back);
-  for (int k = 0; k < 3; ++k) force[k] -= back[k];
 }
 
 double micromodulus(const Body *body, double young, double horizon)

@@ -11,8 +11,17 @@ typedef struct PeridynamicsSpec {
   SectionHead head;
   const char *formulation, *space, *influence, *volume_correction;
   Length horizon;
-  void *keys; /* the struct of the formulation's own section */
+  void *keys;          /* the struct of the formulation's own section */
+  SectionList regions; /* of RegionSpec */
 } PeridynamicsSpec;
+
+/** Blocks with a formulation of their own. */
+typedef struct RegionSpec {
+  SectionHead head;
+  TextList blocks;
+  const char *formulation;
+  void *keys;
+} RegionSpec;
 
 extern const Section peridynamics_section;
 
@@ -32,7 +41,23 @@ typedef struct FormulationParts {
   const BondList *bonds; /* of points on bonds; NULL if there are none */
   const Material *materials;
   const int32_t *material; /* [slices] which of the materials */
+  /** [slices] 1: of another formulation; NULL: none is. Only displacements are seen of such places, at most next to own ones: what a
+   *  formulation gives own places is their own force state for all their bonds, less those of own neighbours. */
+  const uint8_t *foreign;
 } FormulationParts;
+
+static inline bool is_foreign(const uint8_t *foreign, int64_t place)
+{
+  return foreign && foreign[place / SLICE];
+}
+
+/** Whether a block of the body belongs to others. */
+static inline bool block_is_foreign(const uint8_t *foreign, const Particles *particles, int block)
+{
+  int64_t slice = 0;
+  while (particles->block[slice] != block) ++slice;
+  return foreign && foreign[slice];
+}
 
 /** What the length of bonds that cross a crack depends on. */
 typedef struct BondLength {
@@ -99,6 +124,7 @@ typedef struct FormulationType {
   bool row_sums;          /* neighbours read sums along lattice rows */
   bool bond_lengths;      /* lengths of stored bonds are read in sweeps */
   bool keeps_no_points;   /* what laws say of themselves is all that the formulation needs of them */
+  bool joins;             /* it minds which places are foreign, so that a body may have others beside it */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */
@@ -115,8 +141,10 @@ typedef struct FormulationType {
   /** Keeps what a linearised step needs of the state that was evaluated last, tangents of the points among it. */
   int (*linearise)(void *formulation, Error *error);
   /** Force per volume squared t that a particle's own formulation gives one of its bonds: the force on it per volume is the sum of
-   *  (t_ij - t_ji) V_j. Of the state that was evaluated last. */
-  void (*half_state)(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3]);
+   *  (t_ij - t_ji) V_j. Of the state that was evaluated last; in a linearised step its change.
+   *  @param[in] at  as in Sweep */
+  void (*half_state)(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                     double state[3]);
   /** Material points, numbered for `point`: some of the numbers may have none. */
   int64_t (*point_count)(const void *formulation);
   /** How displacements make the strain of a point and its stress forces, and what springs beside it do. Slow and plain: what sweeps are
@@ -149,10 +177,6 @@ typedef struct FormulationType {
 /** @return the k-th formulation, or NULL after the last */
 const FormulationType *formulation_at(int k);
 const FormulationType *formulation_find(const char *name);
-
-/** Force per volume squared that the neighbour exerts on the particle through one bond, t_ij - t_ji. */
-void formulation_bond_force(const FormulationType *type, const void *formulation, const Family *family, int64_t slice,
-                            int64_t slot, int lane, double force[3]);
 
 /** Micromodulus c of a bond-based solid with this Young's modulus and constant influence: 12E/(pi delta^4), in the plane
  *  9E/(pi t delta^3), of a bar 2E/(A delta^2) (docs/theory.md 2). It sets the scale of zero-energy control and of lone axial bonds. */

@@ -237,6 +237,7 @@ const FormulationType formulation_ordinary = {
     .keeps_no_points = true,
     .takes = ordinary_takes,
     .bond_lengths = true,
+    .joins = true,
     .section = &ordinary_section,
     .check = ordinary_check,
     .create = ordinary_create,

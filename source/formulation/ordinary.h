@@ -34,6 +34,7 @@ typedef struct Ordinary {
   const Points *points;
   const Material *materials;
   const int32_t *material; /* [slices] */
+  const uint8_t *foreign;  /* [slices], or NULL */
   Space space;
   int dimensions;
   double *factor;               /* [patterns] on the weights of bonds along lattices */
@@ -95,7 +96,8 @@ size_t ordinary_bytes(const void *formulation);
 FormerBonds ordinary_former_bonds(const void *formulation);
 double *ordinary_shares(void *formulation);
 
-void ordinary_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3]);
+void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                         double state[3]);
 void ordinary_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 void ordinary_gradient(const void *formulation, int64_t place, double f[9]);
 void ordinary_stress(const void *formulation, int64_t place, double stress[6]);

@@ -27,14 +27,26 @@ static double tension(const Ordinary *o, int64_t place, const Bond *bond, const 
   return o->base[place] * bond->length + (o->base[place] + o->slope[place]) * s->elongation;
 }
 
-void ordinary_half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
+void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                         double state[3])
 {
   const Ordinary *o = formulation;
   const int64_t place = slice * SLICE + lane;
   const Bond bond = ordinary_bond(o, slice, slot, lane);
-  const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-  const double omega = bond.weight / o->particles->volume[bond.neighbour];
-  for (int k = 0; k < 3; ++k) state[k] = omega * tension(o, place, &bond, &s) * s.y[k] / s.length;
+  const OrdinaryStretch s = ordinary_stretch(at ? at : o->particles->displacement, place, &bond);
+  const double omega = bond.weight / o->particles->volume[bond.neighbour],
+               across = tension(o, place, &bond, &s) / s.length;
+  double change[3], along = 0;
+  for (int k = 0; k < 3; ++k) {
+    state[k] = omega * across * s.y[k];
+    if (!at) continue;
+    change[k] = o->particles->displacement[k][bond.neighbour] - o->particles->displacement[k][place];
+    along += change[k] * s.y[k] / s.length;
+  }
+  const double stiffness = o->base[place] + o->slope[place];
+  for (int k = 0; k < 3 && at; ++k)
+    state[k] = omega * ((o->change[place] * bond.length + (stiffness - across) * along) * s.y[k] / s.length +
+                        across * change[k]);
 }
 
 /** Of the displacements held and the bonds as they are, not of what was evaluated last: bonds may have broken since. */

@@ -110,7 +110,7 @@ int ordinary_point(const void *formulation, int64_t place, Operator *point, Erro
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
   operator_clear(point);
-  if (o->particles->number[place] < 0 || o->inverse[place] == 0) return BRECCIA_OK;
+  if (o->particles->number[place] < 0 || is_foreign(o->foreign, place) || o->inverse[place] == 0) return BRECCIA_OK;
   if (!operator_add(point, place, error)) return BRECCIA_FAILURE;
   point->components = 1;
   point->volume = o->particles->volume[place];

@@ -87,6 +87,7 @@ static void weigh(void *context, int64_t place)
   Ordinary *o = context;
   const Family *f = o->family;
   const int64_t slice = place / SLICE;
+  if (is_foreign(o->foreign, place)) return;
   double moment = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
@@ -158,6 +159,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
                   .points = parts->points,
                   .materials = parts->materials,
                   .material = parts->material,
+                  .foreign = parts->foreign,
                   .space = parts->space,
                   .dimensions = parts->body->dimensions};
   if (allocate(o, error)) {
@@ -172,7 +174,8 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
     return NULL;
   }
   team_each(o->particles->places, weigh, o);
-  for (int64_t slice = 0; slice < o->particles->slices; ++slice) ordinary_renew(o, slice);
+  for (int64_t slice = 0; slice < o->particles->slices; ++slice)
+    if (!is_foreign(o->foreign, slice * SLICE)) ordinary_renew(o, slice);
   return o;
 }
 
@@ -195,7 +198,7 @@ void ordinary_describe(const void *formulation, Text *text)
   static const double strains[6][6] = {{1, -1, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {0, 1, -1, 0, 0, 0},
                                        {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}};
   for (int block = 0; block < o->body->block_count; ++block) {
-    if (!o->body->lattices[block].chunks) continue;
+    if (!o->body->lattices[block].chunks || block_is_foreign(o->foreign, o->particles, block)) continue;
     double least = INFINITY, largest = 0, light = INFINITY, heavy = 0;
     for (int k = 0; k < (o->dimensions == 2 ? 2 : 6); ++k) {
       const double shear = ordinary_lattice_shear(o, block, strains[k]);

@@ -100,6 +100,19 @@ static void describe_stages(const breccia_model *model, const char *time, Text *
            s->clock.stable);
 }
 
+/** Each with its particles, where there are several. */
+static void describe_regions(const Domain *d, Text *text)
+{
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
+    text_add(text, "%s%s", r ? ", " : "", region->type->name);
+    if (region->name) text_add(text, " in %s", region->name);
+    if (d->region_count > 1) text_add(text, " (%lld particles)", (long long)region->particles);
+  }
+  if (d->region_count > 1) text_add(text, ", joined by %lld bonds", (long long)d->joint.bond_count / 2);
+  text_add(text, ";");
+}
+
 const char *breccia_model_overview(breccia_model *model)
 {
   const Domain *d = &model->domain;
@@ -119,7 +132,7 @@ const char *breccia_model_overview(breccia_model *model)
   text_add(text, "%s: %lld particles, %lld bonds, %d to %d per particle (mean %.1f), horizon %g %s\n",
            model->spec->title, (long long)d->particles->count, (long long)d->family.bonds / 2, fewest, most,
            (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
-  text_add(text, "%s;", d->type->name);
+  describe_regions(d, text);
   for (int k = 0; k < d->material_count; ++k)
     text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law->name);
   if (d->failure.criterion)
@@ -132,7 +145,8 @@ const char *breccia_model_overview(breccia_model *model)
     else
       text_add(text, "%s none", k ? "," : "");
   text_add(text, "\n");
-  if (d->type->describe) d->type->describe(d->formulation, text);
+  for (int r = 0; r < d->region_count; ++r)
+    if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, text);
   plausibility_in_short(model, text);
   text_add(text, "\n");
   if (s->clock.stages > 1)
@@ -143,7 +157,7 @@ const char *breccia_model_overview(breccia_model *model)
   model_expect(model, NULL);
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
-  if (d->points.servers) text_add(text, " and what its material servers take");
+  if (domain_has_servers(d)) text_add(text, " and what its material servers take");
   host_leave(&host);
   return text_words(text);
 }

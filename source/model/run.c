@@ -76,8 +76,9 @@ static int write_checkpoint(Run *run, Error *error)
   breccia_model *model = run->model;
   if (result_file_show(run->results, error)) return BRECCIA_FAILURE; /* a restart takes them up from there */
   run->last_checkpoint = clock_seconds();
-  if (!points_can_save(&model->domain.points))
-    return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
+  for (int r = 0; r < model->domain.region_count; ++r)
+    if (!points_can_save(&model->domain.regions[r].points))
+      return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
   StateList state = {0};
   model_state(model, &state);
   const CheckpointOf of = {text_words(&model->deck), model->domain.particles->count};

@@ -169,7 +169,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   }
   text_add(&t, "}");
   Text servers = {0};
-  points_report(&d->points, model->run_seconds, true, &servers);
+  for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, true, &servers);
   if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", text_words(&servers));
   text_free(&servers);
   text_add(&t, "\n}\n");
@@ -264,7 +264,7 @@ void run_tell_outcome(Run *run, int status)
   quantity_describe(stress * peaks->mean_high, "Pa", t);
   text_add(t, ", damage %.3g\n", peaks->damage);
   tell_rest(s, t);
-  points_report(&d->points, model->run_seconds, false, t);
+  for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
 }

@@ -30,7 +30,7 @@ static int create_runs(Points *points, const PointsSpec *spec, Error *error)
   for (int64_t n = 0; n < spec->run_count; ++n) {
     points->runs[n] = spec->runs[n];
     points->history_first[n] = total;
-    points->count += spec->runs[n].count;
+    points->count = spec->runs[n].first + spec->runs[n].count;
     total += spec->runs[n].count * spec->materials[spec->runs[n].material].history_values;
   }
   points->history_size = (size_t)total;
@@ -51,7 +51,12 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
   points->committed = memory_reserved(points->history_size, sizeof(double), "histories", error);
   points->trial = memory_reserved(points->history_size, sizeof(double), "histories", error);
   if (!points->committed || !points->trial || untouched_create(points, error)) return BRECCIA_FAILURE;
-  for (int k = 0; k < 6 && points->components == 6; ++k) {
+  points->shares = spec->strain != NULL;
+  for (int k = 0; k < 6 && points->shares; ++k) {
+    points->strain[k] = spec->strain[k];
+    points->stress[k] = spec->stress[k];
+  }
+  for (int k = 0; k < 6 && points->components == 6 && !points->shares; ++k) {
     points->strain[k] = places_array(points->count, "strains", error);
     points->stress[k] = places_array(points->count, "stresses", error);
     if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
@@ -62,7 +67,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
 
 void points_destroy(Points *points)
 {
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < 6 && !points->shares; ++k) {
     places_free(&points->strain[k]);
     places_free(&points->stress[k]);
   }
@@ -141,11 +146,11 @@ static int histories_resume(void *owner, const double *numbers, int64_t count, E
   return points_resume(owner, error);
 }
 
-void points_state(Points *points, StateList *list)
+void points_state(Points *points, const char *of, StateList *list)
 {
   static const StateCare histories = {.ready = histories_ready, .resume = histories_resume};
   StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .count = points->count};
-  for (int k = 0; k < 6 && points->strain[0]; ++k) {
+  for (int k = 0; k < 6 && points->strain[0] && !points->shares; ++k) {
     row.unit = "1";
     row.values = points->strain[k];
     /* Across the plane of plane stress the law finds it, from where it was. */
@@ -159,13 +164,13 @@ void points_state(Points *points, StateList *list)
   row = (StateRow){.unit = "1", .kind = STATE_NUMBERS, .role = STATE_COMMITTED};
   row.count = (int64_t)points->identity_size;
   row.values = points->identity;
-  if (points->identity_size) state_add(list, &row, "servers", NULL);
+  if (points->identity_size) state_add(list, &row, "servers", of);
   row.entity = STATE_OF_POINT;
   row.count = (int64_t)points->history_size;
   row.values = points->committed;
   row.care = &histories;
   row.owner = points;
-  state_add(list, &row, "history", NULL);
+  state_add(list, &row, "history", of);
 }
 
 /* ---- the door to laws ---- */

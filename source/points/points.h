@@ -26,10 +26,11 @@ typedef struct Points {
   bool plane_stress;
   int64_t count;
   double *strain[6], *stress[6]; /* [count] of points of six components */
+  bool shares;                   /* these arrays, with other points */
   double *committed, *trial;
   size_t history_size; /* numbers in each of them */
   Untouched *untouched;
-  PointsRun *runs; /* [run_count], in order; they cover all rows */
+  PointsRun *runs; /* [run_count], in order; rows between them are of no use */
   int64_t run_count;
   int64_t *history_first; /* [run_count] */
   const Material *materials;
@@ -53,8 +54,9 @@ typedef struct PointsSpec {
   int64_t run_count;
   const Material *materials; /* borrowed for good */
   int material_count;
-  const uint8_t *present; /* [rows] 0 where a row has no point; NULL: all have one */
-  bool may_give_up;       /* points that cannot be integrated are marked and carry nothing */
+  double *const *strain, *const *stress; /* [6] arrays to share with other points, of six components; NULL: their own */
+  const uint8_t *present;                /* [rows] 0 where a row has no point; NULL: all have one */
+  bool may_give_up;                      /* points that cannot be integrated are marked and carry nothing */
   double length;
 } PointsSpec;
 
@@ -97,8 +99,8 @@ double points_elastic_share(const Points *points, int64_t row, double strain);
 /** True if no law dissipates or remembers: stresses are those of the strains, to the bit. */
 bool points_are_linear(const Points *points);
 
-/** Rows of strains, stresses, histories, and of what servers hold. */
-void points_state(Points *points, StateList *list);
+/** Rows of strains, stresses, histories, and of what servers hold. @param[in] of  put behind their names, or NULL */
+void points_state(Points *points, const char *of, StateList *list);
 
 /** Makes the trial state the committed one. */
 void points_commit(Points *points);

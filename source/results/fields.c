@@ -33,7 +33,8 @@ static void strain(const Domain *d, int32_t place, double *value)
 }
 static void gradient(const Domain *d, int32_t place, double *value)
 {
-  d->type->gradient(d->formulation, place, value);
+  const Region *region = domain_region(d, place);
+  region->type->gradient(region->formulation, place, value);
 }
 static void octahedral(const Domain *d, int32_t place, double *value)
 {

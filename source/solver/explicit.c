@@ -299,7 +299,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   state_note_others(&s->before);
   team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);
-  points_commit(&s->domain->points);
+  domain_commit_points(s->domain);
   forces_commit(&s->domain->forces);
   return look_for_rest(run, warning, error);
 }

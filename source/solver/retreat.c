@@ -16,7 +16,7 @@ static int32_t first_bad_particle(const Particles *p)
 static const char *describe_failed_law(const Domain *d, int64_t place, char *words, size_t size)
 {
   const Material *m = &d->materials[d->material[place / SLICE]];
-  if (d->points.components != 6) {
+  if (domain_region(d, place)->points.components != 6) {
     snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law->name,
              m->name);
     return words;
@@ -47,9 +47,9 @@ int explicit_retreat(Explicit *s, Error *error)
   if (d->out_of_memory || forces_failed(&d->forces))
     error_add(error, BRECCIA_FAILURE, "step %lld (time %g): out of memory: %s", (long long)s->clock->step + 1,
               s->clock->time + dt, d->out_of_memory ? "broken bonds" : forces_failed(&d->forces));
-  else if (*points_problem(&d->points))
+  else if (*domain_server_problem(d))
     error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->clock->step + 1, s->clock->time + dt,
-              points_problem(&d->points));
+              domain_server_problem(d));
   else
     error_add(
         error, BRECCIA_FAILURE,

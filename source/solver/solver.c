@@ -119,7 +119,7 @@ int solver_enter(Solver *s, int64_t stage, Error *error)
   s->spec = s->stage->of[type_of(s->stage)];
   s->stops = NULL;
   s->stop_count = 0;
-  s->domain->points.elastic_stage = !strcmp(s->stage->laws, "elastic");
+  domain_set_elastic_stage(s->domain, !strcmp(s->stage->laws, "elastic"));
   const int status = loading_enter(s->loading, s->domain->particles, stage, error);
   return status ? status : s->type->create(s, error);
 }

@@ -26,8 +26,17 @@ static void exchange(Domain *d, Trial *t)
     swap(&d->particles->internal[k], &t->internal[k]);
   }
   for (int k = 0; k < 6; ++k) {
-    swap(&d->points.strain[k], &t->strain[k]);
-    swap(&d->points.stress[k], &t->stress[k]);
+    double *strain = NULL, *stress = NULL; /* regions with points on particles share theirs */
+    for (int r = 0; r < d->region_count; ++r) {
+      Points *points = &d->regions[r].points;
+      if (points->components != 6) continue;
+      strain = points->strain[k];
+      stress = points->stress[k];
+      points->strain[k] = t->strain[k];
+      points->stress[k] = t->stress[k];
+    }
+    t->strain[k] = strain;
+    t->stress[k] = stress;
   }
 }
 
@@ -127,15 +136,17 @@ int stable_step(Domain *d, double *step, Error *error)
     failed |= !(base_f[k] = places_array(places, "stable step", error));
     for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_array(places, "stable step", error));
   }
-  for (int k = 0; k < 6 && d->points.components == 6; ++k) {
+  bool tensors = false;
+  for (int r = 0; r < d->region_count; ++r) tensors |= d->regions[r].points.components == 6;
+  for (int k = 0; k < 6 && tensors; ++k) {
     failed |= !(trial.strain[k] = places_array(places, "stable step", error));
     failed |= !(trial.stress[k] = places_array(places, "stable step", error));
   }
   if (failed) goto done;
 
   double *const *u = d->particles->displacement;
-  int elastic = d->points.elastic_stage;
-  d->points.elastic_stage = 1;
+  const bool elastic = domain_in_elastic_stage(d);
+  domain_set_elastic_stage(d, true);
   Iteration it = {
       .domain = d, .trial = &trial, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1], .next = v[2]};
   for (int k = 0; k < 3; ++k) memcpy(trial.displacement[k], u[k], sizeof(double) * (size_t)places);
@@ -171,7 +182,7 @@ int stable_step(Domain *d, double *step, Error *error)
     it.current = it.next;
     it.next = spare;
   }
-  d->points.elastic_stage = elastic;
+  domain_set_elastic_stage(d, elastic);
   domain_show_states(d); /* bonds that break next are judged by what particles show */
   if (!isfinite(largest) || largest < 0)
     failed = error_add(error, BRECCIA_FAILURE,

@@ -89,7 +89,7 @@ int explicit_follow(Solver *run, Text *warning, Error *error)
   const int64_t broken = s->domain->broken_count - s->broken_at_estimate, since = s->clock->step - s->step_at_estimate;
   const int64_t bonds = s->domain->family.bonds / 2;
   const int64_t patience = broken * MANY > bonds ? 1 : broken * SHARE > bonds ? SOON : LATE;
-  if (s->domain->type->may_stiffen && broken && since >= patience) {
+  if (domain_may_stiffen(s->domain) && broken && since >= patience) {
     const int status = find_stable_step(s, error);
     if (status) return status;
     if (is_too_long(s, s->clock->time_step)) {

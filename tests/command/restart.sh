@@ -93,6 +93,33 @@ for file in results.vtkhdf checkpoint.h5; do
   checks=$((checks + 1))
 done
 
+# halves of two formulations, which part where they are joined
+cat > halves.yaml <<'Y'
+title: Halves
+units: {length: m, force: kN, time: s}
+materials:
+  c: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m}
+  s: {model: j2, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.25, yield stress: 2 MPa, hardening modulus: 1 GPa}
+body:
+  left: {material: c, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {from: [0, 0], to: [0.2, 0.1]}}}
+  right: {material: s, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {from: [0.2, 0], to: [0.4, 0.1]}}}
+peridynamics: {space: plane strain, regions: {fibres: {blocks: [left], formulation: bond-based}}}
+failure: {critical stretch: 3e-4}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, free]}
+  - {on: {face: x+, layers: 3}, velocity: [0.5, free]}
+solve: {explicit: {steps: 300}}
+results: {number: 5, checkpoint steps: 37, precision: double, fields: [displacement, damage, stress]}
+Y
+"$breccia" run halves.yaml --output whole-halves > out 2>&1 || fail "halves: $(cat out)"
+[ "$(json whole-halves/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks, the test is too tame"
+"$breccia" run halves.yaml --output part-halves --steps 231 --threads 1 > out 2>&1
+"$breccia" run halves.yaml --output part-halves --restart > out 2>&1 || fail "restart: $(cat out)"
+for file in results.vtkhdf checkpoint.h5; do
+  "$build/tests/compare_results" whole-halves/$file part-halves/$file || fail "halves: $file differs"
+  checks=$((checks + 1))
+done
+
 # interrupted and killed at random moments
 RANDOM=7
 for signal in INT TERM KILL KILL KILL; do

@@ -249,7 +249,7 @@ static void forces_are_sums_over_single_bonds_and_balance(void **state)
       double force[3] = {0}, each[3], magnitude = 0, y[3];
       for (int64_t slot = f->first[i / SLICE]; slot < f->first[i / SLICE + 1]; ++slot) {
         if (!(f->intact[slot] >> (i % SLICE) & 1)) continue;
-        formulation_bond_force(d->type, d->formulation, &d->family, i / SLICE, slot, i % SLICE, each);
+        domain_bond_force(d, i / SLICE, slot, i % SLICE, each);
         double volume = p->volume[family_bond(f, i / SLICE, slot, i % SLICE).neighbour];
         for (int k = 0; k < 3; ++k) {
           force[k] += each[k] * volume;

@@ -71,7 +71,7 @@ static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
   for (int step = 1; step <= 3; ++step) {
     shake(model, step * 6e-6);
     compute_forces(model);
-    points_commit(&d->points);
+    points_commit(&d->regions[0].points);
     double total[3] = {0}, size = 0;
     for (int64_t i = 0; i < d->particles->places; ++i)
       for (int k = 0; k < 3; ++k) {
@@ -93,22 +93,21 @@ static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
                family_bond(f, bond.neighbour / SLICE, back, bond.neighbour % SLICE).neighbour != slice * SLICE + lane)
           ++back;
         double there[3], here[3];
-        formulation_bond_force(d->type, d->formulation, &d->family, slice, slot, lane, here);
-        formulation_bond_force(d->type, d->formulation, &d->family, bond.neighbour / SLICE, back,
-                               bond.neighbour % SLICE, there);
+        domain_bond_force(d, slice, slot, lane, here);
+        domain_bond_force(d, bond.neighbour / SLICE, back, bond.neighbour % SLICE, there);
         for (int k = 0; k < 3; ++k) assert_near(here[k], -there[k], 1e-15 * fabs(here[k]));
         int64_t rows[2], back_rows[2];
-        bond_list_rows(&d->bonds, f, slice, slot, lane, rows);
-        bond_list_rows(&d->bonds, f, bond.neighbour / SLICE, back, bond.neighbour % SLICE, back_rows);
+        bond_list_rows(&d->regions[0].bonds, f, slice, slot, lane, rows);
+        bond_list_rows(&d->regions[0].bonds, f, bond.neighbour / SLICE, back, bond.neighbour % SLICE, back_rows);
         assert_true(rows[0] == back_rows[1] && rows[1] == back_rows[0]);
-        damaged += points_try(&d->points, rows[0], 1e-6, NULL) < 0.999 * 30e6 * 1e-6;
+        damaged += points_try(&d->regions[0].points, rows[0], 1e-6, NULL) < 0.999 * 30e6 * 1e-6;
         mixed += d->material[slice] != d->material[bond.neighbour / SLICE];
       }
   assert_true(damaged > 1000 && mixed > 1000);
-  uint8_t *present = calloc((size_t)d->bonds.count, 1);
+  uint8_t *present = calloc((size_t)d->regions[0].bonds.count, 1);
   int64_t rows = 0;
-  bond_list_mark(&d->bonds, f, present);
-  for (int64_t n = 0; n < d->bonds.count; ++n) rows += present[n];
+  bond_list_mark(&d->regions[0].bonds, f, present);
+  for (int64_t n = 0; n < d->regions[0].bonds.count; ++n) rows += present[n];
   assert_int_equal(rows, f->bonds / 2 + mixed / 2); /* each bond once, and once more for its other material */
   free(present);
   breccia_model_destroy(&model);
@@ -146,7 +145,7 @@ static void parting_a_body_spends_its_fracture_energy(void **state)
         for (int32_t n = 0; n < p->count; ++n)
           p->displacement[0][p->place_of[n]] = p->position[0][p->place_of[n]] > 0.004 ? next : 0;
         compute_forces(model);
-        points_commit(&d->points);
+        points_commit(&d->regions[0].points);
         for (int32_t n = 0; n < p->count; ++n) {
           int32_t i = p->place_of[n];
           bool inside =
@@ -213,7 +212,7 @@ static void each_material_has_its_own_limit_and_a_joint_the_smaller_one(void **s
       bodies("model: elastic-brittle, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa",
              "model: elastic-brittle, density: 1, Young modulus: 10 GPa, tensile strength: 2 MPa", "");
   const Failure *failure = &model->domain.failure;
-  assert_int_equal(model->domain.points.components, 0);
+  assert_int_equal(model->domain.regions[0].points.components, 0);
   assert_near(failure->limit[0], 1e-4, 1e-18);
   assert_near(failure->limit[1], 2e-4, 1e-18);
   const Particles *p = model->domain.particles;

@@ -23,7 +23,7 @@ static void break_some(Domain *d, double share, uint64_t *seed)
       if (bond.neighbour > place && random_uniform(seed) < share) family_break(&d->family, place, bond.neighbour);
     }
   }
-  for (int64_t slice = 0; slice < p->slices; ++slice) d->type->renew(d->formulation, slice);
+  for (int64_t slice = 0; slice < p->slices; ++slice) d->regions[0].type->renew(d->regions[0].formulation, slice);
 }
 
 static void the_stable_step_hardly_falls_whatever_bonds_break(void **state)
@@ -523,21 +523,21 @@ static void a_family_that_loses_a_bond_never_stores_more(void **state)
   p->displacement[0][right] += 0.0032; /* stretches the bond between them by 0.022, shorter ones to its right less */
   compute_forces(m);
   StoredEnergy before, after;
-  d->type->stored_energy(d->formulation, middle, 0, &before);
+  d->regions[0].type->stored_energy(d->regions[0].formulation, middle, 0, &before);
   Team *team = team_use(m->team);
   domain_break(d, &(Moment){1, 0.1, 0, 1});
   team_use(team);
   assert_int_equal(d->broken_count, 1);
   compute_forces(m); /* laws answer to what is left */
-  d->type->stored_energy(d->formulation, middle, 0, &after);
-  const double share = d->type->shares(d->formulation)[middle];
+  d->regions[0].type->stored_energy(d->regions[0].formulation, middle, 0, &after);
+  const double share = d->regions[0].type->shares(d->regions[0].formulation)[middle];
   assert_true(share < 0.999 && share > 0.8);
   assert_near(after.stored, before.stored, 1e-12 * before.stored);
   assert_true(d->fracture_energy >= -1e-12 * before.stored); /* of other torn places, and roundings */
   domain_mend(d);                                            /* as after a step that failed */
-  assert_true(d->type->shares(d->formulation)[middle] == 1);
+  assert_true(d->regions[0].type->shares(d->regions[0].formulation)[middle] == 1);
   compute_forces(m);
-  d->type->stored_energy(d->formulation, middle, 0, &after);
+  d->regions[0].type->stored_energy(d->regions[0].formulation, middle, 0, &after);
   assert_near(after.stored, before.stored, 1e-7 * before.stored); /* what shapes allow is kept in single precision */
   breccia_model_destroy(&m);
 }
@@ -607,11 +607,11 @@ static void families_that_carry_less_restart_to_the_same_bits(void **state)
   breccia_model_step(whole, 24, NULL);
   const Domain *d = &whole->domain;
   const size_t bytes = sizeof(double) * (size_t)d->particles->places;
-  const double *shares = d->type->shares(d->formulation);
+  const double *shares = d->regions[0].type->shares(d->regions[0].formulation);
   double least = 1;
   for (int64_t n = 0; n < d->particles->count; ++n) least = fmin(least, shares[d->particles->place_of[n]]);
   assert_true(least < 0.9);
-  assert_memory_equal(second->domain.type->shares(second->domain.formulation), shares, bytes);
+  assert_memory_equal(second->domain.regions[0].type->shares(second->domain.regions[0].formulation), shares, bytes);
   for (int k = 0; k < 3; ++k)
     assert_memory_equal(second->domain.particles->displacement[k], d->particles->displacement[k], bytes);
   breccia_model_destroy(&whole);

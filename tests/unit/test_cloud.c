@@ -55,8 +55,8 @@ static void break_some(breccia_model *model, const int32_t *number_of)
   for (int32_t n = 3; n < 60; n += 4) {
     int32_t a = place_of[number_of ? number_of[n] : n], b = place_of[number_of ? number_of[n + 1] : n + 1];
     if (!family_break(&d->family, a, b)) continue;
-    d->type->renew(d->formulation, a / SLICE);
-    d->type->renew(d->formulation, b / SLICE);
+    d->regions[0].type->renew(d->regions[0].formulation, a / SLICE);
+    d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
   }
 }
 
@@ -167,7 +167,7 @@ static void scattered_particles_have_exact_gradients_and_balance(void **state)
     for (int32_t n = 0; n < p->count; ++n) {
       int32_t i = p->place_of[n];
       double found[9];
-      model->domain.type->gradient(model->domain.formulation, i, found);
+      model->domain.regions[0].type->gradient(model->domain.regions[0].formulation, i, found);
       for (int k = 0; k < 9; ++k) assert_near(found[k], f[k], 1e-12);
       for (int k = 0; k < 3; ++k) {
         total[k] += p->internal[k][i] * p->volume[i];

@@ -149,8 +149,8 @@ static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void *
     const int32_t a = p->place_of[13], b = p->place_of[14];
     contact_bond_mended(contact_of(d), a, b); /* without a row, as where memory was out when it broke */
     assert_true(family_break(&d->family, a, b));
-    d->type->renew(d->formulation, a / SLICE);
-    d->type->renew(d->formulation, b / SLICE);
+    d->regions[0].type->renew(d->regions[0].formulation, a / SLICE);
+    d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
     p->displacement[0][b] = -0.004;
     compute_forces(model);
     const double without = p->internal[0][a];
@@ -319,8 +319,8 @@ static void forces_are_the_derivative_of_the_energy(void **state)
       const int32_t a = p->place_of[6 * 5 * 2 + 8 + 6 * (n / 2)], b = a - 1 + 2 * (n % 2);
       assert_true(family_break(&d->family, a, b));
       contact_bond_broke(contact_of(d), a, b);
-      d->type->renew(d->formulation, a / SLICE);
-      d->type->renew(d->formulation, b / SLICE);
+      d->regions[0].type->renew(d->regions[0].formulation, a / SLICE);
+      d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
     }
     for (int64_t i = 0; i < p->places; ++i)
       if (p->block[i / SLICE]) p->displacement[2][i] = -0.0199;

@@ -56,7 +56,7 @@ static void deformation_gradient_of_a_linear_field_is_exact_everywhere(void **st
     const Domain *d = &model->domain;
     for (int64_t n = 0; n < d->particles->count; ++n) {
       double found[9];
-      d->type->gradient(d->formulation, d->particles->place_of[n], found);
+      d->regions[0].type->gradient(d->regions[0].formulation, d->particles->place_of[n], found);
       for (int k = 0; k < 9; ++k) assert_near(found[k], f[k], 1e-12);
       for (int k = 0; k < 6; ++k) {
         int r = symmetric_row[k], s = symmetric_column[k];
@@ -147,8 +147,8 @@ static void internal_forces_balance(void **state)
     shake(model, 0.02);
     for (int32_t n = 0; n < 40; ++n)
       if (family_break(&model->domain.family, p->place_of[n], p->place_of[n + 1])) {
-        model->domain.type->renew(model->domain.formulation, p->place_of[n] / SLICE);
-        model->domain.type->renew(model->domain.formulation, p->place_of[n + 1] / SLICE);
+        model->domain.regions[0].type->renew(model->domain.regions[0].formulation, p->place_of[n] / SLICE);
+        model->domain.regions[0].type->renew(model->domain.regions[0].formulation, p->place_of[n + 1] / SLICE);
       }
     compute_forces(model);
     double force[3] = {0}, moment[3] = {0}, size = 0;
@@ -214,8 +214,8 @@ static void sums_along_lattice_rows_give_the_forces_of_single_bonds(void **state
       for (int64_t n = 0; n < 20; ++n) {
         int32_t first = p->place_of[n * p->count / 20], second = p->place_of[n * p->count / 20 + 1];
         if (!family_break(f, first, second)) continue;
-        d->type->renew(d->formulation, first / SLICE);
-        d->type->renew(d->formulation, second / SLICE);
+        d->regions[0].type->renew(d->regions[0].formulation, first / SLICE);
+        d->regions[0].type->renew(d->regions[0].formulation, second / SLICE);
       }
       int64_t whole = 0, ragged = 0;
       for (int64_t s = 0; s < p->slices; ++s) {
@@ -391,8 +391,8 @@ static void lone_particles_and_torn_families_give_finite_forces(void **state)
     int32_t a = p->place_of[(int)(random_uniform(&seed) * (double)p->count)];
     int32_t b = p->place_of[(int)(random_uniform(&seed) * (double)p->count)];
     if (!family_break(&model->domain.family, a, b)) continue;
-    model->domain.type->renew(model->domain.formulation, a / SLICE);
-    model->domain.type->renew(model->domain.formulation, b / SLICE);
+    model->domain.regions[0].type->renew(model->domain.regions[0].formulation, a / SLICE);
+    model->domain.regions[0].type->renew(model->domain.regions[0].formulation, b / SLICE);
     compute_forces(model);
     double sum[3] = {0}, size = 0;
     for (int64_t n = 0; n < p->count; ++n)

@@ -418,8 +418,8 @@ static void uniform_strain_leaves_the_inside_without_force_in_all_formulations(v
       bool deep = true;
       for (int k = 0; k < d->body.dimensions; ++k)
         deep &= fmin(p->position[k][i] - low[k], high[k] - p->position[k][i]) > 6.1;
-      if (d->type->gradient) {
-        d->type->gradient(d->formulation, i, gradient);
+      if (d->regions[0].type->gradient) {
+        d->regions[0].type->gradient(d->regions[0].formulation, i, gradient);
         for (int k = 0; k < 9; ++k)
           if (k < 8 || d->body.dimensions == 3) assert_near(gradient[k], f[k], 1e-12); /* at surfaces too */
       }

@@ -58,40 +58,82 @@ static const Setting ordinary[] = {
     {"plane stress", "volume correction: partial-beyond"},
 };
 
+#define CUT "cracks: [{cut: {line: [[3.05, -9], [3.05, 2.1]]}}]\n"
+
 /** Two blocks that do not fit each other, with a cut. */
+static const char *const space_blocks[] = {"spacing: 1, shape: {box: {particles: [6, 5, 4]}}",
+                                           "spacing: 0.8, shape: {box: {from: [0, 0, 4], to: [2.4, 4, 6.4]}}"};
+static const char *const plane_blocks[] = {
+    "spacing: 1, lattice: square, thickness: 0.7, shape: {box: {particles: [9, 6]}}",
+    "spacing: 0.8, lattice: square, thickness: 0.7, shape: {box: {from: [0, 6], to: [2.4, 9.2]}}"};
+
 static breccia_model *body(const char *formulation, const Law *law, const Setting *setting)
 {
-  const char *shapes = "a: {material: m, spacing: 1, shape: {box: {particles: [6, 5, 4]}}}, b: {material: m, spacing: "
-                       "0.8, shape: {box: {from: [0, 0, 4], to: [2.4, 4, 6.4]}}}",
-             *cut = "cracks: [{cut: {line: [[3.05, -9], [3.05, 2.1]]}}]\n";
+  char shapes[400];
+  const char *cut = CUT, *const *blocks = *setting->space == 'p' ? plane_blocks : space_blocks;
+  snprintf(shapes, sizeof shapes, "a: {material: m, %s}, b: {material: m, %s}", blocks[0], blocks[1]);
   if (!strcmp(setting->space, "1-D")) {
-    shapes = "a: {material: m, lattice: line, area: 0.5, spacing: 1, shape: {box: {particles: [13, 1]}}}";
+    snprintf(shapes, sizeof shapes,
+             "a: {material: m, lattice: line, area: 0.5, spacing: 1, shape: {box: {particles: [13, 1]}}}");
     cut = "";
-  } else if (*setting->space == 'p')
-    shapes =
-        "a: {material: m, spacing: 1, lattice: square, thickness: 0.7, shape: {box: {particles: [9, 6]}}}, b: "
-        "{material: m, spacing: 0.8, lattice: square, thickness: 0.7, shape: {box: {from: [0, 6], to: [2.4, 9.2]}}}";
+  }
   return model_of(
       "materials: {m: {model: %s, density: 1, %s}}\nperidynamics: {formulation: %s, space: %s, horizon: 2.5, "
       "%s}\nbody: {%s}\n%ssolve: {explicit: {steps: 1, time step: 1e-6}}\n",
       law->name, law->words, formulation, setting->space, setting->words, shapes, cut);
 }
 
+/** One formulation and law in each of the two blocks. */
+typedef struct Couple {
+  const char *space, *words;
+  struct {
+    const char *formulation;
+    const Law *law;
+  } of[2];
+} Couple;
+
+static const Couple couples[] = {
+    {"3-D", "", {{"bond-based", &fibre[0]}, {"correspondence", &solid[0]}}},
+    {"3-D", "", {{"correspondence, zero-energy control: {wan: 0.1}", &solid[1]}, {"bond-based", &fibre[2]}}},
+    {"3-D",
+     "influence: conical, volume correction: partial,",
+     {{"bond-based, surface correction: energy", &fibre[2]}, {"correspondence, strain: small", &solid[3]}}},
+    {"3-D", "", {{"correspondence, zero-energy control: {none: yes}", &solid[0]}, {"correspondence", &solid[0]}}},
+    {"3-D", "", {{"ordinary", &solid[0]}, {"correspondence", &solid[1]}}},
+    {"3-D", "", {{"bond-based", &fibre[0]}, {"ordinary", &solid[0]}}},
+    {"3-D", "", {{"bond-based", &fibre[2]}, {"bond-based, calibration: continuum", &fibre[3]}}},
+    {"plane strain", "influence: conical,", {{"correspondence", &solid[2]}, {"bond-based", &fibre[3]}}},
+    {"plane stress", "", {{"bond-based", &fibre[1]}, {"correspondence", &solid[0]}}},
+    {"plane stress", "", {{"correspondence", &solid[0]}, {"ordinary", &solid[0]}}},
+};
+
+static breccia_model *coupled_body(const Couple *c)
+{
+  const char *const *blocks = *c->space == 'p' ? plane_blocks : space_blocks;
+  return model_of("materials: {m: {model: %s, density: 1, %s}, n: {model: %s, density: 1, %s}}\nperidynamics: {space: "
+                  "%s, horizon: 2.5, %s formulation: %s, regions: {more: {blocks: [b], formulation: %s}}}\nbody: {a: "
+                  "{material: m, %s}, b: {material: n, %s}}\n" CUT "solve: {explicit: {steps: 1, time step: 1e-6}}\n",
+                  c->of[0].law->name, c->of[0].law->words, c->of[1].law->name, c->of[1].law->words, c->space, c->words,
+                  c->of[0].formulation, c->of[1].formulation, blocks[0], blocks[1]);
+}
+
 static void sever(breccia_model *model, int32_t a, int32_t b)
 {
   Domain *d = &model->domain;
   assert_true(family_break(&d->family, a, b));
-  for (int end = 0; end < 2; ++end)
-    if (d->type->renew) d->type->renew(d->formulation, (end ? b : a) / SLICE);
+  for (int end = 0; end < 2; ++end) {
+    const Region *region = domain_region(d, end ? b : a);
+    if (region->type->renew) region->type->renew(region->formulation, (end ? b : a) / SLICE);
+  }
 }
 
-/** Breaks every fifth bond of one particle, and all bonds of another but two or three, which leaves it without a strain. */
-static void sever_some(breccia_model *model)
+/** Breaks every fifth bond of one particle, and all bonds of particle `poor` but two or three, which leaves it without a strain. */
+static void sever_some(breccia_model *model, int32_t poor)
 {
   Domain *d = &model->domain;
   const Particles *p = d->particles;
   for (int turn = 0; turn < 2; ++turn) {
-    const int32_t place = p->place_of[turn ? 0 : p->count / 2];
+    const int32_t place = p->place_of[turn ? poor : p->count / 2];
     const int64_t slice = place / SLICE;
     int left = family_count(&d->family, place), number = 0;
     for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot) {
@@ -169,7 +211,8 @@ static double energy(Domain *d)
   double sum = 0;
   for (int32_t n = 0; n < d->particles->count; ++n) {
     StoredEnergy at;
-    d->type->stored_energy(d->formulation, d->particles->place_of[n], 0, &at);
+    const Region *region = domain_region(d, d->particles->place_of[n]);
+    region->type->stored_energy(region->formulation, d->particles->place_of[n], 0, &at);
     sum += at.stored;
   }
   return sum;
@@ -190,10 +233,11 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
   const Particles *p = d->particles;
   Vectors sum = vectors(p), halves = vectors(p);
   Operator point = {0};
-  for (int64_t n = 0; n < d->type->point_count(d->formulation); ++n) {
-    assert_int_equal(d->type->point(d->formulation, n, &point, NULL), 0);
-    operator_add_forces(&point, p->displacement, sum.of);
-  }
+  for (const Region *region = d->regions; region < d->regions + d->region_count; ++region)
+    for (int64_t n = 0; n < region->type->point_count(region->formulation); ++n) {
+      assert_int_equal(region->type->point(region->formulation, n, &point, NULL), 0);
+      operator_add_forces(&point, p->displacement, sum.of);
+    }
   operator_destroy(&point);
   assert_alike(p, f->of, sum.of, 1e-11, name);
   for (int64_t slice = 0; slice < p->slices; ++slice)
@@ -202,7 +246,7 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
         if (!(d->family.intact[slot] >> lane & 1)) continue;
         double force[3];
         const double volume = p->volume[family_bond(&d->family, slice, slot, lane).neighbour];
-        formulation_bond_force(d->type, d->formulation, &d->family, slice, slot, lane, force);
+        domain_bond_force(d, slice, slot, lane, force);
         for (int k = 0; k < 3; ++k)
           halves.of[k][slice * SLICE + lane] += force[k] * volume * p->volume[slice * SLICE + lane];
       }
@@ -218,14 +262,16 @@ static Vectors assembled(const Domain *d, const Vectors *v)
   Vectors sum = vectors(p);
   Operator point = {0};
   double k[9];
-  for (int64_t n = 0; n < d->type->point_count(d->formulation); ++n) {
-    assert_int_equal(d->type->point(d->formulation, n, &point, NULL), 0);
-    for (int a = 0; a < point.count; ++a)
-      for (int b = 0; b < point.count; ++b) {
-        operator_stiffness(&point, p->displacement, a, b, k);
-        for (int c = 0; c < 9; ++c) sum.of[c / 3][point.places[a].place] += k[c] * v->of[c % 3][point.places[b].place];
-      }
-  }
+  for (const Region *region = d->regions; region < d->regions + d->region_count; ++region)
+    for (int64_t n = 0; n < region->type->point_count(region->formulation); ++n) {
+      assert_int_equal(region->type->point(region->formulation, n, &point, NULL), 0);
+      for (int a = 0; a < point.count; ++a)
+        for (int b = 0; b < point.count; ++b) {
+          operator_stiffness(&point, p->displacement, a, b, k);
+          for (int c = 0; c < 9; ++c)
+            sum.of[c / 3][point.places[a].place] += k[c] * v->of[c % 3][point.places[b].place];
+        }
+    }
   operator_destroy(&point);
   return sum;
 }
@@ -244,10 +290,12 @@ static void check_strains(Domain *d, const Vectors *v, double h)
   Operator point = {0};
   for (int64_t i = 0; i < p->places; ++i) {
     double change[6];
-    assert_int_equal(d->type->point(d->formulation, i, &point, NULL), 0);
+    const Region *region = domain_region(d, i);
+    if (region->points.components != 6) continue;
+    assert_int_equal(region->type->point(region->formulation, i, &point, NULL), 0);
     operator_strain(&point, p->displacement, v->of, change);
     for (int k = 0; k < 6 && point.components; ++k)
-      if (k != ZZ || !d->points.plane_stress)
+      if (k != ZZ || !region->points.plane_stress)
         assert_near(change[k], (strain[1][6 * i + k] - strain[0][6 * i + k]) / (2 * h), 1e-8);
   }
   operator_destroy(&point);
@@ -255,15 +303,15 @@ static void check_strains(Domain *d, const Vectors *v, double h)
   free(strain[1]);
 }
 
-static void check_model(breccia_model *model, const Law *law, const char *name)
+static void check_model(breccia_model *model, const Law *law, int32_t poor, const char *name)
 {
   Domain *d = &model->domain;
   const Particles *p = d->particles;
   Team *before = team_use(model->team);
-  sever_some(model);
+  sever_some(model, poor);
   displace(d, law->strain, 3);
   domain_evaluate(d);
-  points_commit(&d->points);
+  domain_commit_points(d);
   displace(d, 1.3 * law->strain, 3);
   assert_int_equal(domain_linearise(d, NULL), 0);
   Vectors f = forces(d);
@@ -295,7 +343,7 @@ static void check_model(breccia_model *model, const Law *law, const char *name)
     }
   if (law->elastic) assert_near(work, -(energies[1] - energies[0]) / (2 * h), 1e-6 * size);
   move(d, &v, -h);
-  if (d->points.components == 6) check_strains(d, &v, h);
+  if (d->strain[0]) check_strains(d, &v, h);
   forget(&f);
   forget(&v);
   forget(&step);
@@ -311,7 +359,7 @@ static void check_all(const char *formulation, const Law *laws, int law_count, c
     for (int n = 0; n < law_count; ++n) {
       breccia_model *model = body(formulation, &laws[n], &settings[s]);
       snprintf(name, sizeof name, "%s of %s, %s, %s", laws[n].name, formulation, settings[s].space, settings[s].words);
-      check_model(model, &laws[n], name);
+      check_model(model, &laws[n], 0, name);
       breccia_model_destroy(&model);
     }
 }
@@ -334,12 +382,33 @@ static void ordinary_is_the_sum_of_its_families(void **state)
   check_all("ordinary", solid, 1, ordinary, sizeof ordinary / sizeof *ordinary);
 }
 
+/** Also a particle beside the joint that has lost all bonds but two or three of those that cross it. */
+static void bodies_of_several_formulations_are_the_sum_of_all_their_points(void **state)
+{
+  (void)state;
+  char name[256];
+  for (size_t k = 0; k < sizeof couples / sizeof *couples; ++k) {
+    const Couple *c = &couples[k];
+    const Law *first = c->of[0].law, *second = c->of[1].law;
+    const Law both = {.elastic = first->elastic && second->elastic,
+                      .strain = fmin(first->strain, second->strain),
+                      .slack = fmax(first->slack, second->slack)};
+    breccia_model *model = coupled_body(c);
+    snprintf(name, sizeof name, "%s, %s of %s and %s of %s", c->space, first->name, c->of[0].formulation, second->name,
+             c->of[1].formulation);
+    assert_int_equal(model->domain.region_count, 2);
+    check_model(model, &both, *c->space == 'p' ? 45 : 90, name);
+    breccia_model_destroy(&model);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(correspondence_is_the_sum_of_its_points),
       cmocka_unit_test(bonds_are_the_sum_of_their_points),
       cmocka_unit_test(ordinary_is_the_sum_of_its_families),
+      cmocka_unit_test(bodies_of_several_formulations_are_the_sum_of_all_their_points),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

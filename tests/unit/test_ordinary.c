@@ -16,7 +16,7 @@ static breccia_model *body_of(const char *material, const char *peridynamics, co
 
 static const Ordinary *ordinary_of(const breccia_model *m)
 {
-  return m->domain.formulation;
+  return m->domain.regions[0].formulation;
 }
 
 static double weighted_volume(const breccia_model *m, int32_t place)
@@ -211,7 +211,7 @@ static void uniform_strain_gives_hookes_stress_and_no_force_inside(void **state)
       StoredEnergy stored;
       if (!is_inside(p, cases[c].size, place, reach)) continue;
       domain_look(d, place, strain, stress);
-      d->type->stored_energy(d->formulation, place, 0, &stored);
+      d->regions[0].type->stored_energy(d->regions[0].formulation, place, 0, &stored);
       for (int k = 0; k < 6; ++k) {
         assert_near(strain[k], e[k], 2e-6 * h);
         assert_near(stress[k], wanted[k], 3e-6 * 150 * h);
@@ -292,7 +292,7 @@ static void break_some(Domain *d, double share, uint64_t *seed)
         const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(f, slice, slot, lane).neighbour;
         if (other > place && random_uniform(seed) < share) family_break(&d->family, place, other);
       }
-  for (int64_t slice = 0; slice < p->slices; ++slice) d->type->renew(d->formulation, slice);
+  for (int64_t slice = 0; slice < p->slices; ++slice) d->regions[0].type->renew(d->regions[0].formulation, slice);
 }
 
 static void the_stable_step_does_not_fall_as_bonds_break(void **state)

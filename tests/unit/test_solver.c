@@ -188,7 +188,7 @@ static double bond_forces(const Domain *d)
     for (int64_t slot = d->family.first[s]; slot < d->family.first[s + 1]; ++slot)
       for (int lane = 0; lane < SLICE; ++lane) {
         if (!(d->family.intact[slot] >> lane & 1)) continue;
-        formulation_bond_force(d->type, d->formulation, &d->family, s, slot, lane, force);
+        domain_bond_force(d, s, slot, lane, force);
         for (int k = 0; k < 3; ++k) sum += force[k] * random_uniform(&seed);
       }
   return sum;

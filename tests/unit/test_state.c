@@ -306,7 +306,7 @@ static void rows_have_names_of_their_own_and_known_units(void **state)
     assert_true(list.rows[k].values || (list.rows[k].care && list.rows[k].care->save));
   }
   assert_ptr_equal(breccia_model_array(m, "force y"), m->domain.particles->internal[1]);
-  assert_ptr_equal(breccia_model_array(m, "stress zx"), m->domain.points.stress[5]);
+  assert_ptr_equal(breccia_model_array(m, "stress zx"), m->domain.regions[0].points.stress[5]);
   assert_null(breccia_model_array(m, "history"));
   assert_null(breccia_model_array(m, "force"));
   state_list_destroy(&list);

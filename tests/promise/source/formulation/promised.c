@@ -49,8 +49,10 @@ static double stretch_of(const Promised *p, int64_t place, const Bond *bond, dou
   return sqrt(square) / bond->length - 1;
 }
 
-static void half_state(const void *formulation, int64_t slice, int64_t slot, int lane, double state[3])
+static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                       double state[3])
 {
+  (void)at;
   const Promised *p = formulation;
   const Bond bond = family_bond(p->parts.family, slice, slot, lane);
   const double pull = p->modulus * stretch_of(p, slice * SLICE + lane, &bond, state) / 2;
@@ -68,7 +70,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
     const int lane = (int)(place % SLICE);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       if (!(f->intact[slot] >> lane & 1)) continue;
-      half_state(p, slice, slot, lane, half);
+      half_state(p, NULL, slice, slot, lane, half);
       for (int k = 0; k < 3; ++k) force[k] += 2 * half[k] * family_bond(f, slice, slot, lane).weight;
     }
     for (int k = 0; k < 3; ++k) internal[k][place] = force[k];
