@@ -31,23 +31,31 @@ static void check_cut(const DeckReader *reader, void *section)
 }
 
 static const Field cut_fields[] = {
-    {"line", FIELD_POINTS, offsetof(CutSpec, line), "length", "", NULL,
-     "points [x, y] of a line; in space the cut runs through the whole height along z", NULL, NULL, 'A'},
-    {"polygon", FIELD_POINTS, offsetof(CutSpec, polygon), "length", "", NULL, "corners [x, y, z] of a flat polygon",
-     NULL, NULL, 'A'},
+    {.key = "line",
+     .kind = FIELD_POINTS,
+     .offset = offsetof(CutSpec, line),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "points [x, y] of a line; in space the cut runs through the whole height along z",
+     .group = 'A'},
+    {.key = "polygon",
+     .kind = FIELD_POINTS,
+     .offset = offsetof(CutSpec, polygon),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "corners [x, y, z] of a flat polygon",
+     .group = 'A'},
 };
 static const Section cut_section = {
-    "cut",
-    "A surface without thickness that no bond crosses. A bond that only touches its end or edge is left whole, unless "
-    "the cut leaves the body there (at or beyond the outermost particles) or another begins. A "
-    "particle on it belongs to the side at the left of a line, or where a polygon's corners "
-    "run anticlockwise.",
-    sizeof(CutSpec),
+    .name = "cut",
+    .about = "A surface without thickness that no bond crosses. A bond that only touches its end or edge is left "
+             "whole, unless "
+             "the cut leaves the body there (at or beyond the outermost particles) or another begins. A "
+             "particle on it belongs to the side at the left of a line, or where a polygon's corners "
+             "run anticlockwise.",
+    .size = sizeof(CutSpec),
     FIELDS(cut_fields),
-    check_cut,
-    NULL,
-    NULL,
-    0};
+    .check = check_cut};
 
 static void check_crack(const DeckReader *reader, void *section)
 {
@@ -60,25 +68,36 @@ static void check_crack(const DeckReader *reader, void *section)
 }
 
 static const Field crack_fields[] = {
-    {"remove", FIELD_SECTION, offsetof(CrackSpec, remove), NULL, "", NULL, "particles inside this shape are taken out",
-     &shape_section, NULL, 'A'},
-    {"cut", FIELD_SECTION, offsetof(CrackSpec, cut), NULL, "", NULL, "bonds across this surface are cut", &cut_section,
-     NULL, 'A'},
-    {"cut faces", FIELD_FLAG, offsetof(CrackSpec, cut_faces), NULL, "no", NULL,
-     "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are cut too, so "
-     "that "
-     "its faces do not hold together; bonds that only touch the end of the plane are not, unless particles were taken "
-     "out there",
-     NULL, NULL, 0},
+    {.key = "remove",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(CrackSpec, remove),
+     .standard = "",
+     .meaning = "particles inside this shape are taken out",
+     .section = &shape_section,
+     .group = 'A'},
+    {.key = "cut",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(CrackSpec, cut),
+     .standard = "",
+     .meaning = "bonds across this surface are cut",
+     .section = &cut_section,
+     .group = 'A'},
+    {.key = "cut faces",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(CrackSpec, cut_faces),
+     .standard = "no",
+     .meaning = "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are "
+                "cut too, so "
+                "that "
+                "its faces do not hold together; bonds that only touch the end of the plane are not, unless particles "
+                "were taken "
+                "out there"},
 };
-const Section crack_section = {"crack",
-                               "A notch or crack that is there from the beginning.",
-                               sizeof(CrackSpec),
+const Section crack_section = {.name = "crack",
+                               .about = "A notch or crack that is there from the beginning.",
+                               .size = sizeof(CrackSpec),
                                FIELDS(crack_fields),
-                               check_crack,
-                               NULL,
-                               NULL,
-                               0};
+                               .check = check_crack};
 
 /* A particle that lies on a cut belongs to its positive side, so that a cut through a row of particles parts the body beside
  * the row instead of cutting the row off from both sides. A bond that only touches the end of a cut does not cross it: ends that

@@ -16,21 +16,53 @@ static void check_box(const DeckReader *reader, void *section)
 }
 
 static const Field box_fields[] = {
-    {"from", FIELD_POINT, offsetof(Box, from), "length", "", NULL, "lowest corner", NULL, NULL, 0},
-    {"to", FIELD_POINT, offsetof(Box, to), "length", "", NULL, "highest corner", NULL, NULL, 0},
-    {"particles", FIELD_COUNTS, offsetof(Box, particles), NULL, "", "[1, 1e7]",
-     "size as numbers of particles along x, y, z, instead of corners (of rows and layers where these stand nearer than "
-     "the spacing)",
-     NULL, NULL, 0},
-    {"first particle", FIELD_POINT, offsetof(Box, first), "length", "", NULL,
-     "centre of the first particle, with 'particles' (the low corner is at the origin when absent)", NULL, NULL, 0},
+    {.key = "from",
+     .kind = FIELD_POINT,
+     .offset = offsetof(Box, from),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "lowest corner"},
+    {.key = "to",
+     .kind = FIELD_POINT,
+     .offset = offsetof(Box, to),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "highest corner"},
+    {.key = "particles",
+     .kind = FIELD_COUNTS,
+     .offset = offsetof(Box, particles),
+     .standard = "",
+     .range = "[1, 1e7]",
+     .meaning = "size as numbers of particles along x, y, z, instead of corners (of rows and layers where these stand "
+                "nearer than "
+                "the spacing)"},
+    {.key = "first particle",
+     .kind = FIELD_POINT,
+     .offset = offsetof(Box, first),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "centre of the first particle, with 'particles' (the low corner is at the origin when absent)"},
 };
-const Section box_section = {"box", "A box along the axes.", sizeof(Box), FIELDS(box_fields), check_box, NULL, NULL, 0};
+const Section box_section = {
+    .name = "box", .about = "A box along the axes.", .size = sizeof(Box), FIELDS(box_fields), .check = check_box};
 
 static const Field cylinder_fields[] = {
-    {"from", FIELD_POINT, offsetof(Cylinder, from), "length", NULL, NULL, "centre of one end", NULL, NULL, 0},
-    {"to", FIELD_POINT, offsetof(Cylinder, to), "length", NULL, NULL, "centre of the other end", NULL, NULL, 0},
-    {"radius", FIELD_NUMBER, offsetof(Cylinder, radius), "length", NULL, "(0, inf)", "radius", NULL, NULL, 0},
+    {.key = "from",
+     .kind = FIELD_POINT,
+     .offset = offsetof(Cylinder, from),
+     .dimension = "length",
+     .meaning = "centre of one end"},
+    {.key = "to",
+     .kind = FIELD_POINT,
+     .offset = offsetof(Cylinder, to),
+     .dimension = "length",
+     .meaning = "centre of the other end"},
+    {.key = "radius",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(Cylinder, radius),
+     .dimension = "length",
+     .range = "(0, inf)",
+     .meaning = "radius"},
 };
 static void check_cylinder(const DeckReader *reader, void *section)
 {
@@ -38,21 +70,27 @@ static void check_cylinder(const DeckReader *reader, void *section)
   if (c->from[0] == c->to[0] && c->from[1] == c->to[1] && c->from[2] == c->to[2])
     node_error(reader->document, c->head.node, reader->error, "cylinder: 'from' and 'to' are the same point");
 }
-static const Section cylinder_section = {"cylinder",
-                                         "A round bar between two points (in the plane: a strip).",
-                                         sizeof(Cylinder),
+static const Section cylinder_section = {.name = "cylinder",
+                                         .about = "A round bar between two points (in the plane: a strip).",
+                                         .size = sizeof(Cylinder),
                                          FIELDS(cylinder_fields),
-                                         check_cylinder,
-                                         NULL,
-                                         NULL,
-                                         0};
+                                         .check = check_cylinder};
 
 static const Field sphere_fields[] = {
-    {"centre", FIELD_POINT, offsetof(Sphere, centre), "length", NULL, NULL, "centre", NULL, NULL, 0},
-    {"radius", FIELD_NUMBER, offsetof(Sphere, radius), "length", NULL, "(0, inf)", "radius", NULL, NULL, 0},
+    {.key = "centre",
+     .kind = FIELD_POINT,
+     .offset = offsetof(Sphere, centre),
+     .dimension = "length",
+     .meaning = "centre"},
+    {.key = "radius",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(Sphere, radius),
+     .dimension = "length",
+     .range = "(0, inf)",
+     .meaning = "radius"},
 };
 static const Section sphere_section = {
-    "sphere", "A ball (in the plane: a disc).", sizeof(Sphere), FIELDS(sphere_fields), NULL, NULL, NULL, 0};
+    .name = "sphere", .about = "A ball (in the plane: a disc).", .size = sizeof(Sphere), FIELDS(sphere_fields)};
 
 static void check_polygon(const DeckReader *reader, void *section)
 {
@@ -63,21 +101,29 @@ static void check_polygon(const DeckReader *reader, void *section)
     node_error(reader->document, polygon->head.node, reader->error, "polygon: 'top' must be above 'bottom'");
 }
 static const Field polygon_fields[] = {
-    {"corners", FIELD_POINTS, offsetof(Polygon, corners), "length", NULL, NULL, "corners [x, y] in order", NULL, NULL,
-     0},
-    {"bottom", FIELD_NUMBER, offsetof(Polygon, bottom), "length", "0", NULL, "where the extrusion along z begins", NULL,
-     NULL, 0},
-    {"top", FIELD_NUMBER, offsetof(Polygon, top), "length", "1", NULL, "where it ends (no meaning in the plane)", NULL,
-     NULL, 0},
+    {.key = "corners",
+     .kind = FIELD_POINTS,
+     .offset = offsetof(Polygon, corners),
+     .dimension = "length",
+     .meaning = "corners [x, y] in order"},
+    {.key = "bottom",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(Polygon, bottom),
+     .dimension = "length",
+     .standard = "0",
+     .meaning = "where the extrusion along z begins"},
+    {.key = "top",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(Polygon, top),
+     .dimension = "length",
+     .standard = "1",
+     .meaning = "where it ends (no meaning in the plane)"},
 };
-static const Section polygon_section = {"polygon",
-                                        "A polygon in the x-y plane, extruded along z.",
-                                        sizeof(Polygon),
+static const Section polygon_section = {.name = "polygon",
+                                        .about = "A polygon in the x-y plane, extruded along z.",
+                                        .size = sizeof(Polygon),
                                         FIELDS(polygon_fields),
-                                        check_polygon,
-                                        NULL,
-                                        NULL,
-                                        0};
+                                        .check = check_polygon};
 
 static void check_shape(const DeckReader *reader, void *section)
 {
@@ -88,20 +134,54 @@ static void check_shape(const DeckReader *reader, void *section)
                "difference: needs at least two shapes, the first minus the others");
 }
 static const Field shape_fields[] = {
-    {"box", FIELD_SECTION, offsetof(Shape, box), NULL, "", NULL, "a box", &box_section, NULL, 'A'},
-    {"cylinder", FIELD_SECTION, offsetof(Shape, cylinder), NULL, "", NULL, "a round bar", &cylinder_section, NULL, 'A'},
-    {"sphere", FIELD_SECTION, offsetof(Shape, sphere), NULL, "", NULL, "a ball", &sphere_section, NULL, 'A'},
-    {"polygon", FIELD_SECTION, offsetof(Shape, polygon), NULL, "", NULL, "an extruded polygon", &polygon_section, NULL,
-     'A'},
-    {"union", FIELD_SECTIONS, offsetof(Shape, together), NULL, "", NULL, "all of several shapes", &shape_section, NULL,
-     'A'},
-    {"difference", FIELD_SECTIONS, offsetof(Shape, difference), NULL, "", NULL, "the first shape minus the others",
-     &shape_section, NULL, 'A'},
+    {.key = "box",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(Shape, box),
+     .standard = "",
+     .meaning = "a box",
+     .section = &box_section,
+     .group = 'A'},
+    {.key = "cylinder",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(Shape, cylinder),
+     .standard = "",
+     .meaning = "a round bar",
+     .section = &cylinder_section,
+     .group = 'A'},
+    {.key = "sphere",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(Shape, sphere),
+     .standard = "",
+     .meaning = "a ball",
+     .section = &sphere_section,
+     .group = 'A'},
+    {.key = "polygon",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(Shape, polygon),
+     .standard = "",
+     .meaning = "an extruded polygon",
+     .section = &polygon_section,
+     .group = 'A'},
+    {.key = "union",
+     .kind = FIELD_SECTIONS,
+     .offset = offsetof(Shape, together),
+     .standard = "",
+     .meaning = "all of several shapes",
+     .section = &shape_section,
+     .group = 'A'},
+    {.key = "difference",
+     .kind = FIELD_SECTIONS,
+     .offset = offsetof(Shape, difference),
+     .standard = "",
+     .meaning = "the first shape minus the others",
+     .section = &shape_section,
+     .group = 'A'},
 };
-const Section shape_section = {"shape",       "What a block fills. Shapes nest: a union may hold differences.",
-                               sizeof(Shape), FIELDS(shape_fields),
-                               check_shape,   NULL,
-                               NULL,          0};
+const Section shape_section = {.name = "shape",
+                               .about = "What a block fills. Shapes nest: a union may hold differences.",
+                               .size = sizeof(Shape),
+                               FIELDS(shape_fields),
+                               .check = check_shape};
 
 void box_corners(const Box *box, const UnitCell *unit, double low[3], double high[3])
 {

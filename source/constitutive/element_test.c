@@ -31,12 +31,20 @@ static const Field stage_fields[] = {
     STRESS_FIELD("xy", XY),
     STRESS_FIELD("yz", YZ),
     STRESS_FIELD("zx", ZX),
-    {"consolidation", FIELD_FLAG, offsetof(StageSpec, consolidation), NULL, "no", NULL,
-     "this stage prepares the specimen: strain is zero at its end, later strains count from there, and the curve "
-     "begins "
-     "there",
-     NULL, NULL, 0},
-    {"steps", FIELD_COUNT, offsetof(StageSpec, steps), NULL, "100", "[1, 1e7]", "equal parts", NULL, NULL, 0},
+    {.key = "consolidation",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(StageSpec, consolidation),
+     .standard = "no",
+     .meaning =
+         "this stage prepares the specimen: strain is zero at its end, later strains count from there, and the curve "
+         "begins "
+         "there"},
+    {.key = "steps",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(StageSpec, steps),
+     .standard = "100",
+     .range = "[1, 1e7]",
+     .meaning = "equal parts"},
 };
 
 static void check_stage(const DeckReader *reader, void *section)
@@ -48,14 +56,11 @@ static void check_stage(const DeckReader *reader, void *section)
                  component_names[k], component_names[k]);
 }
 
-const Section stage_section = {"stage",
-                               "A straight part of a path. Components that are not given keep their strain.",
-                               sizeof(StageSpec),
+const Section stage_section = {.name = "stage",
+                               .about = "A straight part of a path. Components that are not given keep their strain.",
+                               .size = sizeof(StageSpec),
                                FIELDS(stage_fields),
-                               check_stage,
-                               NULL,
-                               NULL,
-                               0};
+                               .check = check_stage};
 
 enum { UNIAXIAL, TRIAXIAL, UNDRAINED_TRIAXIAL, OEDOMETER, BIAXIAL, ISOTROPIC, SIMPLE_SHEAR, UNDRAINED_SHEAR, KINDS };
 static const char *const kinds[KINDS + 1] = {"uniaxial",  "triaxial",     "undrained triaxial", "oedometer", "biaxial",
@@ -75,30 +80,58 @@ const char *test_zero_word(int k)
 }
 
 static const Field test_fields[] = {
-    {"kind", FIELD_CHOICE, offsetof(TestSpec, kind), NULL, NULL, NULL,
-     "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral strain 0; "
-     "biaxial: zz strain "
-     "0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
-     NULL, test_kind_word, 0},
-    {"strain", FIELD_NUMBER, offsetof(TestSpec, strain), "1", NULL, NULL,
-     "reached from the end of the consolidation: axial (xx), of each axis (isotropic) or shear (xy); tension is "
-     "positive",
-     NULL, NULL, 0},
-    {"return strain", FIELD_NUMBER, offsetof(TestSpec, back), "1", "", NULL,
-     "other end of cycles; minus the strain when absent", NULL, NULL, 0},
-    {"confining pressure", FIELD_NUMBER, offsetof(TestSpec, confining), "stress", "0", "[0, inf)",
-     "isotropic, drained, before anything else: the consolidation", NULL, NULL, 0},
-    {"strain zero", FIELD_CHOICE, offsetof(TestSpec, zero), NULL, "after consolidation", NULL,
-     "where all strains count from, the volumetric one too, and where the curve begins; 'before consolidation' gives "
-     "total "
-     "strains",
-     NULL, test_zero_word, 0},
-    {"cycles", FIELD_COUNT, offsetof(TestSpec, cycles), NULL, "0", "[0, 10000]",
-     "to the strain and the return strain; 0: once to the strain", NULL, NULL, 0},
-    {"steps", FIELD_COUNT, offsetof(TestSpec, steps), NULL, "200", "[1, 1e6]", "from end to end", NULL, NULL, 0},
+    {.key = "kind",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(TestSpec, kind),
+     .meaning = "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral "
+                "strain 0; "
+                "biaxial: zz strain "
+                "0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
+     .choice = test_kind_word},
+    {.key = "strain",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(TestSpec, strain),
+     .dimension = "1",
+     .meaning =
+         "reached from the end of the consolidation: axial (xx), of each axis (isotropic) or shear (xy); tension is "
+         "positive"},
+    {.key = "return strain",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(TestSpec, back),
+     .dimension = "1",
+     .standard = "",
+     .meaning = "other end of cycles; minus the strain when absent"},
+    {.key = "confining pressure",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(TestSpec, confining),
+     .dimension = "stress",
+     .standard = "0",
+     .range = "[0, inf)",
+     .meaning = "isotropic, drained, before anything else: the consolidation"},
+    {.key = "strain zero",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(TestSpec, zero),
+     .standard = "after consolidation",
+     .meaning = "where all strains count from, the volumetric one too, and where the curve begins; 'before "
+                "consolidation' gives "
+                "total "
+                "strains",
+     .choice = test_zero_word},
+    {.key = "cycles",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(TestSpec, cycles),
+     .standard = "0",
+     .range = "[0, 10000]",
+     .meaning = "to the strain and the return strain; 0: once to the strain"},
+    {.key = "steps",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(TestSpec, steps),
+     .standard = "200",
+     .range = "[1, 1e6]",
+     .meaning = "from end to end"},
 };
 const Section test_section = {
-    "test", "A laboratory test on one material point.", sizeof(TestSpec), FIELDS(test_fields), NULL, NULL, NULL, 0};
+    .name = "test", .about = "A laboratory test on one material point.", .size = sizeof(TestSpec), FIELDS(test_fields)};
 
 static void label_curve(ElementTest *t, int kind)
 {

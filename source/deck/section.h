@@ -134,7 +134,7 @@ static inline const SectionChoice *field_choice(const Field *field)
 /** The field of a key, also of those that a word chooses; NULL if there is none. */
 const Field *section_field(const Section *section, const char *key, size_t length);
 
-#define FIELDS(table) table, (int)(sizeof(table) / sizeof *(table))
+#define FIELDS(table) .fields = (table), .field_count = (int)(sizeof(table) / sizeof *(table))
 
 /** Reads a map into a section's struct, adding every problem to the reader's error.
  *  @return the struct (in the document's arena), or NULL when the node is no map */

@@ -7,6 +7,7 @@
 #include "base/team.h"
 #include "domain/domain.h"
 
+#include "base/check.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -235,7 +236,11 @@ void domain_break(Domain *d, const Moment *moment)
   if (!d->any_suspect) return;
   find_received(d);
   forces_remember(&d->forces);
-  TEAM_SINGLE break_suspects(d, moment);
+  TEAM_SINGLE
+  {
+    break_suspects(d, moment);
+    CHECK(family_is_valid(&d->family));
+  }
 }
 
 void domain_accept(Domain *d)

@@ -1,6 +1,7 @@
 /* Everything that a step needs, built from the deck. */
 #include "domain/regions.h"
 
+#include "base/check.h"
 #include "base/team.h"
 #include "base/tensor.h"
 #include <math.h>
@@ -405,6 +406,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     family.bond_lengths |= d->regions[r].type->bond_lengths;
   }
   if ((status = family_create(&d->family, &d->body, &family, error))) return status;
+  CHECK(family_is_valid(&d->family));
   team_each(d->particles->places, weigh_family, d);
 
   const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
@@ -419,6 +421,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if (status) return status;
   for (int r = 0; r < d->region_count; ++r) {
     Region *region = &d->regions[r];
+    CHECK(points_is_valid(&region->points));
     const FormulationParts parts = {.keys = region->keys,
                                     .space = space,
                                     .influence = influence,

@@ -1,6 +1,7 @@
 /* The state of a domain: its rows, and how what follows from them is made again. */
 #include "domain/domain.h"
 
+#include "base/check.h"
 #include "base/tensor.h"
 
 #include <stdio.h>
@@ -52,6 +53,8 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
     forces_bond_broke(&d->forces, d->particles->place_of[bond.a], d->particles->place_of[bond.b]);
     renew_ends(d, &bond);
   }
+  CHECK(family_is_valid(&d->family));
+  for (int r = 0; r < d->region_count; ++r) CHECK(points_is_valid(&d->regions[r].points));
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
   domain_show_states(d);
   forces_find_again(&d->forces);

@@ -4,10 +4,20 @@
 #include <math.h>
 
 static const Field fields[] = {
-    {"critical stretch", FIELD_NUMBER, offsetof(CriticalStretchSpec, stretch), "1", "", "(0, inf)",
-     "a bond that is stretched by more than this share of its length breaks for good", NULL, NULL, 0},
-    {"fracture energy", FIELD_NUMBER, offsetof(CriticalStretchSpec, fracture_energy), "fracture energy", "", "(0, inf)",
-     "G_F, from which the critical stretch follows where the formulation knows how", NULL, NULL, 0},
+    {.key = "critical stretch",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(CriticalStretchSpec, stretch),
+     .dimension = "1",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "a bond that is stretched by more than this share of its length breaks for good"},
+    {.key = "fracture energy",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(CriticalStretchSpec, fracture_energy),
+     .dimension = "fracture energy",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "G_F, from which the critical stretch follows where the formulation knows how"},
 };
 static const Section section = {.name = "critical stretch",
                                 .about = "Keys of `failure` with `criterion: critical stretch`.",

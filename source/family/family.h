@@ -116,6 +116,9 @@ double family_volume(const Family *family, int32_t place);
 /** The row of intact bits. What follows from them (lattice rows) is marked again by who gives them back. */
 void family_state(Family *family, StateList *list);
 
+/** Whether what must always hold of a family does: order of slots, ends and lengths of bonds, and that they come in pairs. */
+bool family_is_valid(const Family *family);
+
 /** Bytes that bonds take. */
 size_t family_bytes(const Family *family);
 

@@ -5,39 +5,67 @@
 #include <string.h>
 
 static const Field fit_fields[] = {
-    {"from", FIELD_QUANTITY, offsetof(FitSpec, from), NULL, NULL, NULL, "smallest value; without a unit in the file's",
-     NULL, NULL, 0},
-    {"to", FIELD_QUANTITY, offsetof(FitSpec, to), NULL, NULL, NULL, "largest value; without a unit in the file's", NULL,
-     NULL, 0},
+    {.key = "from",
+     .kind = FIELD_QUANTITY,
+     .offset = offsetof(FitSpec, from),
+     .meaning = "smallest value; without a unit in the file's"},
+    {.key = "to",
+     .kind = FIELD_QUANTITY,
+     .offset = offsetof(FitSpec, to),
+     .meaning = "largest value; without a unit in the file's"},
 };
-const Section fit_section = {"fit",
-                             "The range in which `breccia calibrate` may choose a parameter.",
-                             sizeof(FitSpec),
-                             FIELDS(fit_fields),
-                             NULL,
-                             NULL,
-                             NULL,
-                             0};
+const Section fit_section = {.name = "fit",
+                             .about = "The range in which `breccia calibrate` may choose a parameter.",
+                             .size = sizeof(FitSpec),
+                             FIELDS(fit_fields)};
 
 static const Field element_fields[] = {
-    {"include", FIELD_FILES, 0, NULL, "", NULL, "files beside this one whose keys are taken in", NULL, NULL, 0},
-    {"variables", FIELD_VALUES, 0, NULL, "", NULL, "values by name, for expressions like `${cohesion/2}`", NULL, NULL,
-     0},
-    {"title", FIELD_TEXT, offsetof(ElementDeckSpec, title), NULL, "", NULL, "stands over the picture", NULL, NULL, 0},
-    {"units", FIELD_SECTION, offsetof(ElementDeckSpec, units), NULL, "", NULL, UNITS_WORDS " when absent",
-     &units_section, NULL, 0},
-    {"material", FIELD_SECTION, offsetof(ElementDeckSpec, material), NULL, NULL, NULL, "as in a deck",
-     &material_section, NULL, 0},
-    {"test", FIELD_SECTION, offsetof(ElementDeckSpec, test), NULL, "", NULL, "a laboratory test, or give stages",
-     &test_section, NULL, 0},
-    {"stages", FIELD_SECTIONS, offsetof(ElementDeckSpec, stages), NULL, "", NULL, "a path of one's own", &stage_section,
-     NULL, 0},
-    {"against", FIELD_TEXT, offsetof(ElementDeckSpec, against), NULL, "", NULL,
-     "CSV file of measured points, beside this file: strain and stress of the curve in the first two columns; units in "
-     "parentheses in its heading are obeyed",
-     NULL, NULL, 0},
-    {"fit", FIELD_NAMED, offsetof(ElementDeckSpec, fit), NULL, "", NULL,
-     "parameters that `breccia calibrate` chooses, by name", &fit_section, NULL, 0},
+    {.key = "include", .kind = FIELD_FILES, .standard = "", .meaning = "files beside this one whose keys are taken in"},
+    {.key = "variables",
+     .kind = FIELD_VALUES,
+     .standard = "",
+     .meaning = "values by name, for expressions like `${cohesion/2}`"},
+    {.key = "title",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(ElementDeckSpec, title),
+     .standard = "",
+     .meaning = "stands over the picture"},
+    {.key = "units",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(ElementDeckSpec, units),
+     .standard = "",
+     .meaning = UNITS_WORDS " when absent",
+     .section = &units_section},
+    {.key = "material",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(ElementDeckSpec, material),
+     .meaning = "as in a deck",
+     .section = &material_section},
+    {.key = "test",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(ElementDeckSpec, test),
+     .standard = "",
+     .meaning = "a laboratory test, or give stages",
+     .section = &test_section},
+    {.key = "stages",
+     .kind = FIELD_SECTIONS,
+     .offset = offsetof(ElementDeckSpec, stages),
+     .standard = "",
+     .meaning = "a path of one's own",
+     .section = &stage_section},
+    {.key = "against",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(ElementDeckSpec, against),
+     .standard = "",
+     .meaning = "CSV file of measured points, beside this file: strain and stress of the curve in the first two "
+                "columns; units in "
+                "parentheses in its heading are obeyed"},
+    {.key = "fit",
+     .kind = FIELD_NAMED,
+     .offset = offsetof(ElementDeckSpec, fit),
+     .standard = "",
+     .meaning = "parameters that `breccia calibrate` chooses, by name",
+     .section = &fit_section},
 };
 
 static void check_element(const DeckReader *reader, void *section)
@@ -47,14 +75,12 @@ static void check_element(const DeckReader *reader, void *section)
     node_error(reader->document, spec->head.node, reader->error, "give either 'test' or 'stages'");
 }
 
-const Section element_deck_section = {"element test",
-                                      "A test on one material point, for `breccia material` and `breccia calibrate`.",
-                                      sizeof(ElementDeckSpec),
-                                      FIELDS(element_fields),
-                                      check_element,
-                                      NULL,
-                                      NULL,
-                                      0};
+const Section element_deck_section = {
+    .name = "element test",
+    .about = "A test on one material point, for `breccia material` and `breccia calibrate`.",
+    .size = sizeof(ElementDeckSpec),
+    FIELDS(element_fields),
+    .check = check_element};
 
 int element_deck_load(ElementDeck *deck, const char *path, Error *error)
 {

@@ -63,6 +63,9 @@ typedef struct PointsSpec {
 int points_create(Points *points, const PointsSpec *spec, Error *error);
 void points_destroy(Points *points);
 
+/** Whether what must always hold of points does: runs in order that cover all rows, histories behind each other. */
+bool points_is_valid(const Points *points);
+
 /** The run of a row. */
 int64_t points_run(const Points *points, int64_t row);
 const Material *points_material(const Points *points, int64_t row);

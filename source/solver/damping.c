@@ -8,19 +8,23 @@ typedef struct DampingSpec {
 } DampingSpec;
 
 static const Field damping_fields[] = {
-    {"ratio", FIELD_NUMBER, offsetof(DampingSpec, ratio), "1", NULL, "[0, inf)",
-     "share of critical damping; 1 comes to rest soonest", NULL, NULL, 0},
-    {"at", FIELD_NUMBER, offsetof(DampingSpec, at), "frequency", NULL, "(0, inf)",
-     "frequency of the vibration that has this ratio; slower ones are damped more, faster ones less", NULL, NULL, 0},
+    {.key = "ratio",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(DampingSpec, ratio),
+     .dimension = "1",
+     .range = "[0, inf)",
+     .meaning = "share of critical damping; 1 comes to rest soonest"},
+    {.key = "at",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(DampingSpec, at),
+     .dimension = "frequency",
+     .range = "(0, inf)",
+     .meaning = "frequency of the vibration that has this ratio; slower ones are damped more, faster ones less"},
 };
-const Section damping_section = {"damping",
-                                 "Mass-proportional damping by its ratio: c = 4 pi ratio frequency.",
-                                 sizeof(DampingSpec),
-                                 FIELDS(damping_fields),
-                                 NULL,
-                                 NULL,
-                                 NULL,
-                                 0};
+const Section damping_section = {.name = "damping",
+                                 .about = "Mass-proportional damping by its ratio: c = 4 pi ratio frequency.",
+                                 .size = sizeof(DampingSpec),
+                                 FIELDS(damping_fields)};
 
 double damping_rate(const NumberOrSection *given)
 {

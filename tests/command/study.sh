@@ -48,7 +48,7 @@ equal "with another deck" "$("$breccia" study bar.yaml "${arguments[@]}" --check
 equal "again" "$("$breccia" study bar.yaml "${arguments[@]}" --again | grep -c ': done')" 2
 
 # A stopped case goes on from its checkpoint, to the same end.
-sed 's/end time: 2 ms/end time: 60 ms/' bar.yaml > long.yaml
+sed 's/end time: 2 ms/end time: 20 ms/' bar.yaml > long.yaml
 "$breccia" study long.yaml --vary 'variables.E=20 GPa, 30 GPa' > out 2>&1 &
 study=$!
 started() { [ -s long-study/E-20-GPa/end.csv ] && [ "$(wc -l < long-study/E-20-GPa/end.csv)" -gt 3 ]; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The promise of docs/design.md 3: a law, a formulation, a criterion, a lattice, a reader of files, a load, a constraint, a history, a solver
+# The promise of docs/design.md 3: a law, a formulation, a criterion, a lattice, a reader of files, a force, a load, a constraint, a history, a solver
 # and an output field are each one new file (a lattice: none) and one line in a list. In a copy of the sources one of each is added so; the program
 # is built, and runs a deck with all of them.
 set -eu
@@ -39,7 +39,7 @@ grep -q '"first_broken_bond": {' deck/summary.json || fail "the criterion broke 
 build/breccia plot deck --field "promised field" --output field.png > out 2>&1 || fail "the field cannot be drawn: $(cat out)"
 build/breccia models promised > /dev/null || fail "the law is not listed"
 build/breccia schema --markdown > page
-for word in "promised elongation" "promised share" "promised push" "promised hold" "promised lattice" "promised field" "comes near 1"; do
+for word in "promised elongation" "promised share" "promised push" "promised hold" "promised lattice" "promised field" "promised stiffness" "comes near 1"; do
   grep -q "$word" page || fail "the deck reference does not know '$word'"
 done
 echo "promise: $files files and $lines lines, built and run"

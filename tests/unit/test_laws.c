@@ -501,9 +501,24 @@ static void the_elastic_stage_is_elastic(void **state)
   }
 }
 
+static void every_law_in_space_is_among_the_samples(void **state)
+{
+  (void)state;
+  for (int k = 0; breccia_law_at(k); ++k) {
+    bool sampled = breccia_law_at(k)->components != 6;
+    for (int n = 0; n < SAMPLES && !sampled; ++n) {
+      Material m = samples[n].make();
+      sampled = m.law == breccia_law_at(k);
+      material_destroy(&m);
+    }
+    if (!sampled) fail_msg("law '%s' is not in sample_laws.c, so that nobody tests it", breccia_law_at(k)->name);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_law_in_space_is_among_the_samples),
       cmocka_unit_test(tangents_are_derivatives_of_steps),
       cmocka_unit_test(the_walk_of_tangents_visits_every_region_of_the_cap),
       cmocka_unit_test(the_walk_of_tangents_visits_the_planes_edges_and_corners_of_mohr_and_coulomb),

@@ -195,6 +195,20 @@ static Material any(int k)
 }
 enum { LAWS = 12 };
 
+static void every_law_that_remembers_is_among_these(void **state)
+{
+  (void)state;
+  for (int k = 0; breccia_law_at(k); ++k) {
+    bool known = breccia_law_at(k)->components != 1 || breccia_law_at(k)->linear;
+    for (int n = 0; n < LAWS && !known; ++n) {
+      Material m = any(n);
+      known = m.law == breccia_law_at(k);
+      material_destroy(&m);
+    }
+    if (!known) fail_msg("law '%s' is not in the list of this file, so that nobody tests it", breccia_law_at(k)->name);
+  }
+}
+
 static void a_million_steps_of_any_size_stay_finite(void **state)
 {
   (void)state;
@@ -461,6 +475,7 @@ static void rows_of_points_remember_what_their_laws_do(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_law_that_remembers_is_among_these),
       cmocka_unit_test(pulling_apart_spends_the_fracture_energy_over_the_length),
       cmocka_unit_test(softening_curves_go_through_their_points),
       cmocka_unit_test(softened_fibres_unload_to_the_origin_and_close_stiff),

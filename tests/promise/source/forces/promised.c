@@ -1,0 +1,57 @@
+/* Forces beside those of bonds as somebody would add them: each particle is held by a soft spring. */
+#include "base/team.h"
+#include "forces/forces.h"
+
+#include <stdlib.h>
+
+typedef struct PromisedSpec {
+  SectionHead head;
+  double stiffness;
+} PromisedSpec;
+
+static const Field fields[] = {{.key = "promised stiffness",
+                                .kind = FIELD_NUMBER,
+                                .offset = offsetof(PromisedSpec, stiffness),
+                                .dimension = "1",
+                                .range = "[0, inf)",
+                                .meaning = "force per volume and displacement, in the deck's units"}};
+const Section promised_springs_section = {
+    .name = "promised_springs", .about = "Forces.", .size = sizeof(PromisedSpec), FIELDS(fields)};
+
+typedef struct Promised {
+  Particles *particles;
+  double stiffness;
+} Promised;
+
+static void *create(const void *spec, const ForcesParts *parts, Error *error)
+{
+  Promised *p = calloc(1, sizeof *p);
+  if (!p) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: forces");
+    return NULL;
+  }
+  p->particles = (Particles *)(uintptr_t)parts->family->particles;
+  p->stiffness = ((const PromisedSpec *)spec)->stiffness;
+  return p;
+}
+
+static void resist(void *forces)
+{
+  const Promised *p = forces;
+  TEAM_FOR (place, p->particles->places)
+    for (int k = 0; k < 3; ++k) p->particles->internal[k][place] -= p->stiffness * p->particles->displacement[k][place];
+}
+
+static double energy(void *forces)
+{
+  const Promised *p = forces;
+  double sum = 0;
+  for (int64_t place = 0; place < p->particles->places; ++place)
+    for (int k = 0; k < 3; ++k)
+      sum += p->stiffness * p->particles->volume[place] * p->particles->displacement[k][place] *
+             p->particles->displacement[k][place] / 2;
+  return sum;
+}
+
+const ForcesType promised_springs_forces = {
+    .name = "promised_springs", .create = create, .destroy = free, .resist = resist, .energy = energy};
