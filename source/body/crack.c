@@ -48,11 +48,10 @@ static const Field cut_fields[] = {
 };
 static const Section cut_section = {
     .name = "cut",
-    .about = "A surface without thickness that no bond crosses. A bond that only touches its end or edge is left "
-             "whole, unless "
-             "the cut leaves the body there (at or beyond the outermost particles) or another begins. A "
-             "particle on it belongs to the side at the left of a line, or where a polygon's corners "
-             "run anticlockwise.",
+    .about =
+        "A surface without thickness that no bond crosses. A bond that only touches its end or edge is left whole, "
+        "unless the cut leaves the body there (at or beyond the outermost particles) or another begins. A particle on "
+        "it belongs to the side at the left of a line, or where a polygon's corners run anticlockwise.",
     .size = sizeof(CutSpec),
     FIELDS(cut_fields),
     .check = check_cut};
@@ -87,11 +86,8 @@ static const Field crack_fields[] = {
      .offset = offsetof(CrackSpec, cut_faces),
      .standard = "no",
      .meaning = "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are "
-                "cut too, so "
-                "that "
-                "its faces do not hold together; bonds that only touch the end of the plane are not, unless particles "
-                "were taken "
-                "out there"},
+                "cut too, so that its faces do not hold together; bonds that only touch the end of the plane are not, "
+                "unless particles were taken out there"},
 };
 const Section crack_section = {.name = "crack",
                                .about = "A notch or crack that is there from the beginning.",

@@ -34,8 +34,7 @@ static const Field box_fields[] = {
      .standard = "",
      .range = "[1, 1e7]",
      .meaning = "size as numbers of particles along x, y, z, instead of corners (of rows and layers where these stand "
-                "nearer than "
-                "the spacing)"},
+                "nearer than the spacing)"},
     {.key = "first particle",
      .kind = FIELD_POINT,
      .offset = offsetof(Box, first),

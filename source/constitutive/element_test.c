@@ -84,9 +84,7 @@ static const Field test_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(TestSpec, kind),
      .meaning = "uniaxial: lateral stress 0; triaxial: lateral stress kept; undrained: volume kept; oedometer: lateral "
-                "strain 0; "
-                "biaxial: zz strain "
-                "0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
+                "strain 0; biaxial: zz strain 0, yy stress kept; simple shear: yy stress kept, xx and zz strain 0",
      .choice = test_kind_word},
     {.key = "strain",
      .kind = FIELD_NUMBER,
@@ -113,9 +111,7 @@ static const Field test_fields[] = {
      .offset = offsetof(TestSpec, zero),
      .standard = "after consolidation",
      .meaning = "where all strains count from, the volumetric one too, and where the curve begins; 'before "
-                "consolidation' gives "
-                "total "
-                "strains",
+                "consolidation' gives total strains",
      .choice = test_zero_word},
     {.key = "cycles",
      .kind = FIELD_COUNT,

@@ -27,23 +27,26 @@ static const char *surface_word(int k)
 }
 
 static const Field bond_based_fields[] = {
-    {"calibration", FIELD_CHOICE, offsetof(BondBasedSpec, calibration), NULL, "uniform-expansion", NULL,
-     "which field shall have the energy of the continuum on this lattice, or whether the continuum's integrals are "
-     "taken",
-     NULL, calibration_word, 0},
-    {"surface correction", FIELD_CHOICE, offsetof(BondBasedSpec, surface_correction), NULL, "none", NULL,
-     "stiffens bonds of particles near surfaces, whose families are not whole, such that stretching along each axis "
-     "costs them as much energy as inside",
-     NULL, surface_word, 0},
+    {.key = "calibration",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(BondBasedSpec, calibration),
+     .standard = "uniform-expansion",
+     .meaning =
+         "which field shall have the energy of the continuum on this lattice, or whether the continuum's integrals are "
+         "taken",
+     .choice = calibration_word},
+    {.key = "surface correction",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(BondBasedSpec, surface_correction),
+     .standard = "none",
+     .meaning = "stiffens bonds of particles near surfaces, whose families are not whole, such that stretching along "
+                "each axis costs them as much energy as inside",
+     .choice = surface_word},
 };
-static const Section bond_based_section = {"bond-based",
-                                           "Keys of `peridynamics` with `formulation: bond-based`.",
-                                           sizeof(BondBasedSpec),
-                                           FIELDS(bond_based_fields),
-                                           NULL,
-                                           NULL,
-                                           NULL,
-                                           0};
+static const Section bond_based_section = {.name = "bond-based",
+                                           .about = "Keys of `peridynamics` with `formulation: bond-based`.",
+                                           .size = sizeof(BondBasedSpec),
+                                           FIELDS(bond_based_fields)};
 
 static void destroy(void *formulation)
 {

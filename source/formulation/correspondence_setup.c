@@ -24,37 +24,54 @@ static const char *strain_word(int k)
 }
 
 static const Field control_fields[] = {
-    {"silling", FIELD_NUMBER, offsetof(ControlSpec, silling), "1", "", "[0, inf)",
-     "strength G_s of Silling's (2017) control; 0.1 is just enough in 3-D, 0.2 in the plane; more stiffens crack tips",
-     NULL, NULL, 'A'},
-    {"wan", FIELD_NUMBER, offsetof(ControlSpec, wan), "1", "", "[0, inf)",
-     "factor on the control of Wan et al. (2019), C : K^-1; 0.1 is a good start", NULL, NULL, 'A'},
-    {"none", FIELD_FLAG, offsetof(ControlSpec, none), NULL, "", NULL, "no control: zero-energy modes are free to grow",
-     NULL, NULL, 'A'},
+    {.key = "silling",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(ControlSpec, silling),
+     .dimension = "1",
+     .standard = "",
+     .range = "[0, inf)",
+     .meaning = "strength G_s of Silling's (2017) control; 0.1 is just enough in 3-D, 0.2 in the plane; more stiffens "
+                "crack tips",
+     .group = 'A'},
+    {.key = "wan",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(ControlSpec, wan),
+     .dimension = "1",
+     .standard = "",
+     .range = "[0, inf)",
+     .meaning = "factor on the control of Wan et al. (2019), C : K^-1; 0.1 is a good start",
+     .group = 'A'},
+    {.key = "none",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(ControlSpec, none),
+     .standard = "",
+     .meaning = "no control: zero-energy modes are free to grow",
+     .group = 'A'},
 };
-static const Section control_section = {"zero-energy control",
-                                        "What keeps particles from moving in patterns that their strain does not see.",
-                                        sizeof(ControlSpec),
-                                        FIELDS(control_fields),
-                                        NULL,
-                                        NULL,
-                                        NULL,
-                                        0};
+static const Section control_section = {
+    .name = "zero-energy control",
+    .about = "What keeps particles from moving in patterns that their strain does not see.",
+    .size = sizeof(ControlSpec),
+    FIELDS(control_fields)};
 
 static const Field correspondence_fields[] = {
-    {"strain", FIELD_CHOICE, offsetof(CorrespondenceSpec, strain), NULL, "green-lagrange", NULL,
-     "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations", NULL, strain_word, 0},
-    {"zero-energy control", FIELD_SECTION, offsetof(CorrespondenceSpec, control), NULL, "", NULL,
-     "silling 0.1 in 3-D and 0.2 in the plane when absent", &control_section, NULL, 0},
+    {.key = "strain",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(CorrespondenceSpec, strain),
+     .standard = "green-lagrange",
+     .meaning = "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations",
+     .choice = strain_word},
+    {.key = "zero-energy control",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(CorrespondenceSpec, control),
+     .standard = "",
+     .meaning = "silling 0.1 in 3-D and 0.2 in the plane when absent",
+     .section = &control_section},
 };
-const Section correspondence_section = {"correspondence",
-                                        "Keys of `peridynamics` with `formulation: correspondence`.",
-                                        sizeof(CorrespondenceSpec),
-                                        FIELDS(correspondence_fields),
-                                        NULL,
-                                        NULL,
-                                        NULL,
-                                        0};
+const Section correspondence_section = {.name = "correspondence",
+                                        .about = "Keys of `peridynamics` with `formulation: correspondence`.",
+                                        .size = sizeof(CorrespondenceSpec),
+                                        FIELDS(correspondence_fields)};
 
 int correspondence_check(const void *keys, const Body *body, const DeckReader *reader)
 {

@@ -19,19 +19,19 @@ static const char *weights_word(int k)
 }
 
 static const Field ordinary_fields[] = {
-    {"lattice weights", FIELD_CHOICE, offsetof(OrdinarySpec, weights), NULL, "isotropic", NULL,
-     "isotropic: bonds along a lattice count more or less by their direction, such that it shows its shear modulus in "
-     "all directions; plain: as in most codes, 16 % off along the axes of a cubic lattice at 3.015 spacings",
-     NULL, weights_word, 0},
+    {.key = "lattice weights",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(OrdinarySpec, weights),
+     .standard = "isotropic",
+     .meaning =
+         "isotropic: bonds along a lattice count more or less by their direction, such that it shows its shear modulus "
+         "in all directions; plain: as in most codes, 16 % off along the axes of a cubic lattice at 3.015 spacings",
+     .choice = weights_word},
 };
-const Section ordinary_section = {"ordinary",
-                                  "Keys of `peridynamics` with `formulation: ordinary`.",
-                                  sizeof(OrdinarySpec),
-                                  FIELDS(ordinary_fields),
-                                  NULL,
-                                  NULL,
-                                  NULL,
-                                  0};
+const Section ordinary_section = {.name = "ordinary",
+                                  .about = "Keys of `peridynamics` with `formulation: ordinary`.",
+                                  .size = sizeof(OrdinarySpec),
+                                  FIELDS(ordinary_fields)};
 
 int ordinary_check(const void *keys, const Body *body, const DeckReader *reader)
 {

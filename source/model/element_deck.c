@@ -58,8 +58,7 @@ static const Field element_fields[] = {
      .offset = offsetof(ElementDeckSpec, against),
      .standard = "",
      .meaning = "CSV file of measured points, beside this file: strain and stress of the curve in the first two "
-                "columns; units in "
-                "parentheses in its heading are obeyed"},
+                "columns; units in parentheses in its heading are obeyed"},
     {.key = "fit",
      .kind = FIELD_NAMED,
      .offset = offsetof(ElementDeckSpec, fit),

@@ -99,8 +99,7 @@ const OutputField field_stress = {
 const OutputField field_strain = {.name = "strain",
                                   .dimension = "1",
                                   .about = "strain as the law takes it, engineering shear; with bonds: Green-Lagrange "
-                                           "of the family, zz in plane stress by "
-                                           "nu = 1/3",
+                                           "of the family, zz in plane stress by nu = 1/3",
                                   .components = 6,
                                   .component_names = voigt,
                                   .value = strain};

@@ -28,8 +28,7 @@ static const Field picture_fields[] = {
      .offset = offsetof(PictureSpec, curve),
      .standard = "",
      .meaning = "columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis; several "
-                "for the "
-                "vertical one have commas between them; a minus before a name turns the sign",
+                "for the vertical one have commas between them; a minus before a name turns the sign",
      .group = 'A'},
     {.key = "energy",
      .kind = FIELD_FLAG,

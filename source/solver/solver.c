@@ -34,29 +34,43 @@ static const Field solve_fields[] = {
   {#name, FIELD_SECTION, offsetof(SolveSpec, of[SOLVER_##name]), NULL, "", NULL, about, &name##_section, NULL, 'S'},
 #include "solver/solvers.h"
 #undef SOLVER
-    {"name", FIELD_TEXT, offsetof(SolveSpec, name), NULL, "", NULL, "of the stage, for messages and the summary", NULL,
-     NULL, 0},
-    {"laws", FIELD_CHOICE, offsetof(SolveSpec, laws), NULL, "as given", NULL,
-     "elastic: while this stage lasts, all laws answer elastically and no bond breaks", NULL, laws_word, 0},
-    {"displacements", FIELD_CHOICE, offsetof(SolveSpec, displacements), NULL, "keep", NULL,
-     "zero: displacements that are written, drawn and watched count from the beginning of this stage; stresses, "
-     "strains and what laws remember stay",
-     NULL, displacements_word, 0},
-    {"loads", FIELD_SECTIONS, offsetof(SolveSpec, loads), NULL, "", NULL,
-     "loads that begin with this stage; histories count from its beginning, prescribed motions from where the "
-     "particles are then. Earlier loads go on; one of the same name is replaced",
-     &load_section, NULL, 0},
-    {"without", FIELD_TEXTS, offsetof(SolveSpec, without), NULL, "", NULL, "names of earlier loads that end", NULL,
-     NULL, 0},
+    {.key = "name",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(SolveSpec, name),
+     .standard = "",
+     .meaning = "of the stage, for messages and the summary"},
+    {.key = "laws",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(SolveSpec, laws),
+     .standard = "as given",
+     .meaning = "elastic: while this stage lasts, all laws answer elastically and no bond breaks",
+     .choice = laws_word},
+    {.key = "displacements",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(SolveSpec, displacements),
+     .standard = "keep",
+     .meaning =
+         "zero: displacements that are written, drawn and watched count from the beginning of this stage; stresses, "
+         "strains and what laws remember stay",
+     .choice = displacements_word},
+    {.key = "loads",
+     .kind = FIELD_SECTIONS,
+     .offset = offsetof(SolveSpec, loads),
+     .standard = "",
+     .meaning =
+         "loads that begin with this stage; histories count from its beginning, prescribed motions from where the "
+         "particles are then. Earlier loads go on; one of the same name is replaced",
+     .section = &load_section},
+    {.key = "without",
+     .kind = FIELD_TEXTS,
+     .offset = offsetof(SolveSpec, without),
+     .standard = "",
+     .meaning = "names of earlier loads that end"},
 };
-const Section solve_section = {"solve",
-                               "How the equations are solved, or a stage of that.",
-                               sizeof(SolveSpec),
-                               FIELDS(solve_fields),
-                               NULL,
-                               NULL,
-                               NULL,
-                               0};
+const Section solve_section = {.name = "solve",
+                               .about = "How the equations are solved, or a stage of that.",
+                               .size = sizeof(SolveSpec),
+                               FIELDS(solve_fields)};
 
 static const SolveSpec *stage_of(const Solver *s, int64_t stage)
 {
