@@ -112,8 +112,33 @@ static int fit_box(Lattice *lattice, const DeckReader *reader, const Box *box, i
   return BRECCIA_OK;
 }
 
-static int place_lattice(Lattice *lattice, const DeckReader *reader, const BlockSpec *block)
+/** Adds the cells of margins to those that a shape fills. */
+static void add_margins(Body *body, int b)
 {
+  Lattice *lattice = &body->lattices[b];
+  for (int m = 0; m < body->margins.count; ++m) {
+    const Margin *margin = &body->margins.items[m];
+    if (margin->block != b) continue;
+    lattice->margin[margin->axis][margin->high] = margin->layers;
+    lattice->cells[margin->axis] += margin->layers;
+    if (!margin->high) lattice->origin[margin->axis] -= (double)margin->layers * lattice->unit.size[margin->axis];
+  }
+}
+
+/** Where along an axis a cell lies: -1 before the shape, 1 behind it. @param[in,out] cell  mirrored into the shape's part of the lattice */
+static int mirror(const Lattice *lattice, int axis, int64_t *cell)
+{
+  const int64_t first = lattice->margin[axis][0], behind = lattice->cells[axis] - lattice->margin[axis][1];
+  const int side = *cell < first ? -1 : *cell >= behind;
+  if (side < 0) *cell = 2 * first - 1 - *cell;
+  if (side > 0) *cell = 2 * behind - 1 - *cell;
+  return side;
+}
+
+static int place_lattice(Body *body, int b, const DeckReader *reader)
+{
+  Lattice *lattice = &body->lattices[b];
+  const BlockSpec *block = body->blocks[b];
   double low[3], high[3];
   lattice_measure(lattice, lattice_find(block->lattice), block->spacing);
   if (block->file) return BRECCIA_OK;
@@ -140,6 +165,7 @@ static int place_lattice(Lattice *lattice, const DeckReader *reader, const Block
     return node_error(reader->document, section_place(block, "spacing"), reader->error,
                       "block: %.3g lattice cells are more than the 2e9 that can be numbered; is the spacing right?",
                       total);
+  add_margins(body, b);
   lattice_lay_rows(lattice);
   lattice->volume = 1;
   for (int k = 0; k < lattice->dimensions; ++k) lattice->volume *= lattice->unit.size[k] * lattice->filled[k];
@@ -157,11 +183,16 @@ static bool removed(const Body *body, const Lattice *lattice, const double point
   return false;
 }
 
-static bool cell_present(const Body *body, const BlockSpec *block, const Lattice *lattice, const int64_t cell[3])
+static bool cell_present(const Body *body, const BlockSpec *block, const Lattice *lattice, const int64_t given[3])
 {
   double point[3], tolerance = 1e-6 * lattice->spacing;
-  for (int k = 0; k < 3; ++k)
-    if (cell[k] >= lattice->cells[k]) return false;
+  int64_t cell[3];
+  for (int k = 0; k < 3; ++k) {
+    if (given[k] >= lattice->cells[k]) return false;
+    cell[k] = given[k];
+    mirror(lattice, k, &cell[k]);
+    if (cell[k] < lattice->margin[k][0] || cell[k] >= lattice->cells[k] - lattice->margin[k][1]) return false;
+  }
   lattice_point(lattice, cell, point);
   return shape_contains(block->shape, &lattice->unit, lattice->dimensions, point, tolerance) &&
          !removed(body, lattice, point);
@@ -283,6 +314,64 @@ static void fill_lattice(Body *body, int b, const uint8_t *present, int32_t *num
       }
 }
 
+static int32_t number_of_cell(const Body *body, const Lattice *lattice, const int64_t cell[3])
+{
+  const int64_t at = lattice_row(lattice, cell) * lattice->chunks + cell[lattice->axis] / SLICE;
+  return body->particles.number[lattice->slice[at] * SLICE + cell[lattice->axis] % SLICE];
+}
+
+/** Tells the margins' particles, and their images across the faces. Beyond two or three faces of a block a particle belongs to the margin that was
+ *  asked for last, and is the image of one in another margin. */
+static void mark_margins(Body *body, int b)
+{
+  const Lattice *lattice = &body->lattices[b];
+  const int64_t rows = lattice_row_count(lattice);
+  for (int64_t n = 0; n < rows * lattice->chunks * SLICE; ++n) {
+    const int64_t slice = n / SLICE;
+    int64_t cell[3];
+    if (lattice->slice[slice] < 0) continue;
+    lattice_cell(lattice, slice / lattice->chunks, slice % lattice->chunks, (int)(n % SLICE), cell);
+    const int32_t number = body->particles.number[lattice->slice[slice] * SLICE + n % SLICE];
+    for (int m = 0; number >= 0 && m < body->margins.count; ++m) {
+      const Margin *margin = &body->margins.items[m];
+      int64_t image[3] = {cell[0], cell[1], cell[2]};
+      if (margin->block != b || mirror(lattice, margin->axis, &image[margin->axis]) != (margin->high ? 1 : -1))
+        continue;
+      body->margin_of[number] = m;
+      body->image_of[number] = number_of_cell(body, lattice, image);
+    }
+  }
+}
+
+static int keep_margins(Body *body, Error *error)
+{
+  const int64_t count = body->particles.count;
+  body->margin_of = memory_zeroed((size_t)count, sizeof *body->margin_of, "supports", error);
+  body->image_of = memory_zeroed((size_t)count, sizeof *body->image_of, "supports", error);
+  if (!body->margin_of || !body->image_of) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < count; ++n) body->margin_of[n] = body->image_of[n] = -1;
+  for (int b = 0; b < body->block_count; ++b)
+    if (!body->blocks[b]->file) mark_margins(body, b);
+  return BRECCIA_OK;
+}
+
+int32_t body_nearest(const Body *body, const double point[3])
+{
+  const Particles *p = &body->particles;
+  if (!body->margin_of) return particles_nearest(p, point);
+  double least = INFINITY;
+  int32_t found = -1;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += (p->position[k][i] - point[k]) * (p->position[k][i] - point[k]);
+    if (square >= least || body_outside(body, n)) continue;
+    least = square;
+    found = i;
+  }
+  return found;
+}
+
 /** Number of a group; a new one is added. @return -1 without memory */
 static int32_t group_number(Body *body, const char *name)
 {
@@ -334,11 +423,13 @@ static int fill(Body *body, const DeckReader *reader, Filling *fillings)
       cloud_fill(&fillings[b].cloud, &body->particles, begin[b], b, &number);
     } else
       fill_lattice(body, b, fillings[b].present, &number);
+  if (!status && body->margins.count) status = keep_margins(body, reader->error);
   free(begin);
   return status;
 }
 
-int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks)
+int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks,
+                const MarginList *margins)
 {
   Error *error = reader->error;
   *body = (Body){.block_count = blocks->count, .crack_count = cracks->count};
@@ -346,15 +437,17 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
   body->lattices = memory_zeroed((size_t)blocks->count, sizeof *body->lattices, "lattices", error);
   body->cracks = memory_zeroed((size_t)cracks->count, sizeof *body->cracks, "cracks", error);
   Filling *fillings = memory_zeroed((size_t)blocks->count, sizeof *fillings, "lattice cells", error);
-  if (!body->blocks || !body->lattices || !body->cracks || !fillings) {
+  body->margins.items = memory_zeroed((size_t)margins->count, sizeof(Margin), "supports", error);
+  if (!body->blocks || !body->lattices || !body->cracks || !fillings || !body->margins.items) {
     free(fillings);
     return BRECCIA_FAILURE;
   }
+  for (int m = 0; m < margins->count; ++m) body->margins.items[body->margins.count++] = margins->items[m];
   for (int c = 0; c < cracks->count; ++c) body->cracks[c] = cracks->items[c];
   int status = BRECCIA_OK;
   for (int b = 0; b < blocks->count; ++b) {
     body->blocks[b] = blocks->items[b];
-    int bad = place_lattice(&body->lattices[b], reader, body->blocks[b]);
+    int bad = place_lattice(body, b, reader);
     if (bad) status = bad;
     if (body->blocks[b]->spacing > body->largest_spacing) {
       body->largest_spacing = body->blocks[b]->spacing;
@@ -382,6 +475,9 @@ void body_destroy(Body *body)
   for (int g = 0; g < body->group_count; ++g) free(body->groups[g]);
   free(body->groups);
   free(body->group_of);
+  free(body->margins.items);
+  free(body->margin_of);
+  free(body->image_of);
   free(body->lattices);
   free(body->blocks);
   free(body->cracks);

@@ -3,6 +3,7 @@
 #define BRECCIA_BODY_BODY_H
 
 #include "body/lattice.h"
+#include "body/margin.h"
 #include "body/particles.h"
 
 typedef enum Space { SPACE_3D, SPACE_PLANE_STRAIN, SPACE_PLANE_STRESS, SPACE_BAR } Space;
@@ -45,10 +46,23 @@ typedef struct Body {
   int group_count;         /* groups that files name */
   char **groups;           /* [group_count] their names */
   int32_t *group_of;       /* [particles] by number; -1: in none. NULL if no file names any */
+  MarginList margins;      /* owned */
+  int32_t *margin_of;      /* [particles] by number: which margin it belongs to, -1: none. NULL if there are none */
+  int32_t *image_of;       /* [particles] by number: of a margin the particle whose mirror image it is */
 } Body;
 
+/** The particle nearest to a point, those in margins left out. @return its place */
+int32_t body_nearest(const Body *body, const double point[3]);
+
+/** Whether the particle of a number stands in a margin. */
+static inline bool body_outside(const Body *body, int64_t number)
+{
+  return body->margin_of && body->margin_of[number] >= 0;
+}
+
 /** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */
-int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks);
+int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks,
+                const MarginList *margins);
 void body_destroy(Body *body);
 
 /** True if the segment between two points crosses one of the body's cuts; alike from both ends. */

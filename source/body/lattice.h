@@ -26,7 +26,8 @@ typedef struct Lattice {
   double plane[3];  /* distance of the planes of particles across x, y, z */
   double origin[3]; /* particle of cell (0, 0, 0) */
   int64_t cells[3];
-  int axis, across[2]; /* axis of the rows, and the two others in ascending order */
+  int64_t margin[3][2]; /* how many of them lie outside the shape along each axis: before the others, behind them */
+  int axis, across[2];  /* axis of the rows, and the two others in ascending order */
   double shift
       [3]; /* in cells: along `axis` for each row along across[0], across[1]; along across[0] for each along across[1] */
   int64_t chunks;   /* slices that a full row would have */

@@ -14,8 +14,8 @@ static const char *face_word(int k)
 static void check_selection(const DeckReader *reader, void *section)
 {
   const SelectionSpec *s = section;
-  if (!s->block && !s->group && !s->face && !s->inside && isnan(s->nearest[0]) && !s->all && !s->any_of.count &&
-      !s->all_of.count && !s->except.count)
+  if (!s->block && !s->group && !s->face && !s->inside && isnan(s->nearest[0]) && !s->all && !s->outside &&
+      !s->any_of.count && !s->all_of.count && !s->except.count)
     node_error(reader->document, s->head.node, reader->error,
                "selection: say what is selected: block, group, face, inside, nearest, any of, all of, except or 'all: "
                "yes'");
@@ -36,6 +36,8 @@ static const Field selection_fields[] = {
     {"nearest", FIELD_POINT, offsetof(SelectionSpec, nearest), "length", "", NULL,
      "the one particle nearest to this point", NULL, NULL, 0},
     {"all", FIELD_FLAG, offsetof(SelectionSpec, all), NULL, "no", NULL, "the whole body", NULL, NULL, 0},
+    {"outside", FIELD_FLAG, offsetof(SelectionSpec, outside), NULL, "no", NULL,
+     "yes: of the layers that supports put outside the body, instead of the body's own particles", NULL, NULL, 0},
     {"any of", FIELD_REFERENCES, offsetof(SelectionSpec, any_of), NULL, "", NULL,
      "particles of at least one of these selections, like [jack, {face: x-}]", &selection_section, NULL, 0},
     {"all of", FIELD_REFERENCES, offsetof(SelectionSpec, all_of), NULL, "", NULL, "particles that are in each of these",
@@ -98,7 +100,7 @@ static void add_whereabouts(const Resolving *r, Text *words)
   shape_bounds(r->spec->inside, &r->body->coarsest->unit, from, to);
   double middle[3] = {0};
   for (int k = 0; k < dimensions; ++k) middle[k] = (from[k] + to[k]) / 2;
-  const int32_t near = particles_nearest(particles, middle);
+  const int32_t near = body_nearest(r->body, middle);
   text_add(words, "; the one nearest to the middle of the shape is at [");
   for (int k = 0; k < dimensions; ++k) text_add(words, "%s%g", k ? ", " : "", particles->position[k][near]);
   text_add(words, "]");
@@ -160,7 +162,7 @@ static void keep_near(const Resolving *r, uint8_t *held)
 {
   const Particles *p = &r->body->particles;
   const SelectionSpec *spec = r->spec;
-  const int32_t nearest = isnan(spec->nearest[0]) ? -1 : particles_nearest(p, spec->nearest);
+  const int32_t nearest = isnan(spec->nearest[0]) ? -1 : body_nearest(r->body, spec->nearest);
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t place = p->place_of[n];
     const Lattice *lattice = &r->body->lattices[p->block[place / SLICE]];
@@ -202,7 +204,8 @@ static int find_spec(const Resolving *r, uint8_t *held)
     return node_error(r->reader->document, section_place(spec, "face"), r->reader->error,
                       "face: the body has no face %s; it %s", spec->face,
                       r->body->dimensions == 2 ? "is plane: x-, x+, y- or y+" : "is a bar along x: x- or x+");
-  for (int64_t n = 0; n < p->count; ++n) held[n] = block < 0 || p->block[p->place_of[n] / SLICE] == block;
+  for (int64_t n = 0; n < p->count; ++n)
+    held[n] = (block < 0 || p->block[p->place_of[n] / SLICE] == block) && body_outside(r->body, n) == spec->outside;
   int status = BRECCIA_OK;
   if (spec->group) {
     Reference group = {.name = spec->group, .node = section_place(spec, "group")};

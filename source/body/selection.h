@@ -11,7 +11,7 @@ typedef struct SelectionSpec {
   int64_t layers;
   Shape *inside;
   double nearest[3];
-  bool all;
+  bool all, outside;
   ReferenceList any_of, all_of, except;
 } SelectionSpec;
 

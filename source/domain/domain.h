@@ -103,6 +103,7 @@ typedef struct Domain {
 
 typedef struct DomainSpec {
   const SectionList *materials, *blocks, *cracks;
+  const MarginList *margins;
   const PeridynamicsSpec *peridynamics;
   const FailureSpec *failure; /* or NULL */
   void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
@@ -157,6 +158,9 @@ void domain_mend(Domain *domain);
 /** Lets no bond break between particles that are marked or have an intact bond to one that is.
  *  @param[in] held  [places] 1 where a load moves the particle */
 int domain_hold_grips(Domain *domain, const uint8_t *held, Error *error);
+/** Lets no bond break between particles that are marked or stand within a distance of one that is.
+ *  @param[in] marked  [places] */
+int domain_keep_within(Domain *domain, const uint8_t *marked, double distance, Error *error);
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
 

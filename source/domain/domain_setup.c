@@ -372,7 +372,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   const Influence *influence = influence_find(pd->influence);
   const Space space = peridynamics_space(pd);
   d->failed_place = -1;
-  int status = body_create(&d->body, reader, spec->blocks, spec->cracks);
+  int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
   status = check_space(d, reader, spec);
@@ -439,21 +439,6 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   return status ? status : create_forces(d, spec, space, error);
 }
 
-int domain_hold_grips(Domain *d, const uint8_t *held, Error *error)
-{
-  const Particles *p = d->particles;
-  const Family *f = &d->family;
-  uint8_t *near = d->failure.near_grips = memory_zeroed((size_t)p->places, 1, "grips", error);
-  if (!near) return BRECCIA_FAILURE;
-  for (int64_t slice = 0; slice < p->slices; ++slice)
-    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-      for (int lane = 0; lane < SLICE; ++lane)
-        if (held[slice * SLICE + lane] && (f->intact[slot] >> lane & 1))
-          near[family_bond(f, slice, slot, lane).neighbour] = 1;
-  for (int64_t place = 0; place < p->places; ++place) near[place] |= held[place];
-  return BRECCIA_OK;
-}
-
 void domain_destroy(Domain *d)
 {
   forces_destroy(&d->forces);
@@ -479,7 +464,7 @@ void domain_destroy(Domain *d)
   free(d->suspects);
   free(d->look_again);
   free(d->failure.limit);
-  free(d->failure.near_grips);
+  free(d->failure.kept);
   free(d->broken);
   free(d->torn);
   free(d->is_torn);

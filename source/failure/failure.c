@@ -48,6 +48,22 @@ static const char *near_grips_word(int k)
   return words[k];
 }
 
+static const Field no_failure_fields[] = {
+    {"of", FIELD_REFERENCE, offsetof(NoFailureSpec, of), NULL, "", NULL,
+     "these particles; when absent those whose motion loads prescribe", &selection_section, NULL, 0},
+    {"distance", FIELD_LENGTH, offsetof(NoFailureSpec, distance), "length", "0", "[0, inf)",
+     "and all particles that stood no further from one of them", NULL, NULL, 0},
+};
+static const Section no_failure_section = {"no failure within",
+                                           "Particles among which no bond breaks, whatever its stretch. Laws that "
+                                           "soften still do.",
+                                           sizeof(NoFailureSpec),
+                                           FIELDS(no_failure_fields),
+                                           NULL,
+                                           NULL,
+                                           NULL,
+                                           0};
+
 static const Field failure_fields[] = {
     {"criterion", FIELD_CHOICE, offsetof(FailureSpec, criterion), NULL, "critical stretch", NULL, "when a bond breaks",
      NULL, criterion_word, 0},
@@ -61,6 +77,8 @@ static const Field failure_fields[] = {
      "hold "
      "whatever their stretch; when absent they break, and `breccia check` warns",
      NULL, near_grips_word, 0},
+    {"no failure within", FIELD_ONE_OR_SECTIONS, offsetof(FailureSpec, nowhere), NULL, "", NULL,
+     "particles among which no bond breaks", &no_failure_section, NULL, 0},
 };
 const Section failure_section = {"failure",
                                  "When bonds break. Without this section, or with nothing in it, they never do.",

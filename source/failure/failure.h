@@ -3,7 +3,7 @@
 #ifndef BRECCIA_FAILURE_FAILURE_H
 #define BRECCIA_FAILURE_FAILURE_H
 
-#include "deck/section.h"
+#include "body/selection.h"
 #include "formulation/formulation.h"
 
 typedef struct FailureSpec {
@@ -12,7 +12,14 @@ typedef struct FailureSpec {
   void *keys;              /* the struct of the criterion's own section */
   const char *failed_laws; /* "stop" or "break" */
   const char *near_grips;  /* "break" or "hold"; NULL: not said, they break */
+  SectionList nowhere;     /* of NoFailureSpec: where no bond breaks */
 } FailureSpec;
+
+typedef struct NoFailureSpec {
+  SectionHead head;
+  Reference of; /* NULL node: the particles that loads move */
+  Length distance;
+} NoFailureSpec;
 
 extern const Section failure_section;
 
@@ -49,13 +56,16 @@ struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */
   double *limit;              /* [materials] infinite: never; a bond between two has the smaller one */
   const int32_t *material;    /* [slices] */
-  uint8_t *near_grips;        /* [places] bonds between two such do not break; NULL: all may */
+  uint8_t *
+      kept; /* [places] sets that a place belongs to, a bit each: bonds between two of one set do not break; NULL: all may */
 };
+
+enum { KEPT_GRIPS = 1, KEPT_WITHIN = 2 }; /* sets of places: near grips; the deck names them */
 
 /** Limit of a bond between two places. */
 static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
 {
-  if (failure->near_grips && failure->near_grips[a] && failure->near_grips[b]) return __builtin_inf();
+  if (failure->kept && (failure->kept[a] & failure->kept[b])) return __builtin_inf();
   double one = failure->limit[failure->material[a / SLICE]], other = failure->limit[failure->material[b / SLICE]];
   return one < other ? one : other;
 }

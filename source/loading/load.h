@@ -44,13 +44,17 @@ typedef struct Load {
   void *own; /* what the type keeps */
 } Load;
 
-/** Motions prescribed to the particles of a load: rows u . direction = from + value times the history, or its integral. */
+/** Motions prescribed to the particles of a load: rows u . direction = from + value times the history, or its integral, + share of that of
+ *  another particle. */
 typedef struct Constraint {
   Load *load;
   double direction[3]; /* unit vector */
   double value;
-  int order;    /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */
-  double *from; /* [particles of the load] displacement in that direction when the load began; NULL: 0 */
+  int order;             /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */
+  double *from;          /* [particles of the load] what stood there when the load began; NULL: 0 */
+  const int32_t *images; /* [particles of the load] places of the others, which take no force from it; NULL: none */
+  double share;          /* 1 or -1 */
+  double *moved;         /* [particles of the load] in the step under way; with images only. Owned */
 } Constraint;
 
 /** Particles whose motions along an axis are one. */

@@ -77,7 +77,10 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
 void loading_destroy(Loading *loading)
 {
   for (int k = 0; k < loading->count; ++k) load_destroy(&loading->loads[k]);
-  for (int c = 0; c < loading->constraint_count; ++c) free(loading->constraints[c].from);
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    free(loading->constraints[c].from);
+    free(loading->constraints[c].moved);
+  }
   free(loading->loads);
   free(loading->constraints);
   tie_groups_destroy(loading->ties);
@@ -117,7 +120,10 @@ void loading_begin(Loading *loading, Particles *p, double time)
     for (int64_t n = 0; n < selection->count; ++n) {
       constraint->from[n] = 0;
       for (int k = 0; k < 3; ++k)
-        constraint->from[n] += p->displacement[k][selection->places[n]] * constraint->direction[k];
+        constraint->from[n] +=
+            (p->displacement[k][selection->places[n]] -
+             (constraint->images ? constraint->share * p->displacement[k][constraint->images[n]] : 0)) *
+            constraint->direction[k];
     }
   }
   for (int k = 0; k < 3; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);

@@ -3,6 +3,7 @@
 #include "base/cores.h"
 #include "base/memory.h"
 #include "deck/resolve.h"
+#include "loading/support.h"
 #include "model/plausibility.h"
 #include "model/sized.h"
 #include <stdlib.h>
@@ -53,15 +54,52 @@ static bool looks_like_test(const Node *root)
   return node_get(root, "material") && (node_get(root, "test") || node_get(root, "stages")) && !node_get(root, "body");
 }
 
-static int hold_grips(breccia_model *model, Error *error)
+/** Where no bond breaks, by one item of the deck. @param[out] marked  [places] room, zeros */
+static int keep_within(breccia_model *model, const NoFailureSpec *spec, uint8_t *marked, Error *error)
+{
+  Domain *d = &model->domain;
+  Selection selection = {0};
+  int status = BRECCIA_OK;
+  if (spec->of.node)
+    status = selection_create(&selection, &d->body, &model->reader, &model->spec->selections, &spec->of);
+  else
+    loading_mark_held(&model->loading, marked);
+  for (int64_t n = 0; n < selection.count; ++n) marked[selection.places[n]] = 1;
+  selection_destroy(&selection);
+  const double unit = spec->distance.in_spacings ? d->body.largest_spacing : 1;
+  return status ? status : domain_keep_within(d, marked, spec->distance.value * unit, error);
+}
+
+static int keep_bonds(breccia_model *model, Error *error)
 {
   const FailureSpec *failure = model->spec->failure;
-  if (!failure || !failure->near_grips || strcmp(failure->near_grips, "hold")) return BRECCIA_OK;
-  uint8_t *held = memory_zeroed((size_t)model->domain.particles->places, 1, "grips", error);
-  if (!held) return BRECCIA_FAILURE;
-  loading_mark_held(&model->loading, held);
-  const int status = domain_hold_grips(&model->domain, held, error);
-  free(held);
+  const size_t places = (size_t)model->domain.particles->places;
+  if (!failure) return BRECCIA_OK;
+  uint8_t *marked = memory_zeroed(places, 1, "kept bonds", error);
+  int status = marked ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (!status && failure->near_grips && !strcmp(failure->near_grips, "hold")) {
+    loading_mark_held(&model->loading, marked);
+    status = domain_hold_grips(&model->domain, marked, error);
+  }
+  for (int k = 0; !status && k < failure->nowhere.count; ++k) {
+    memset(marked, 0, places);
+    status = keep_within(model, failure->nowhere.items[k], marked, error);
+  }
+  free(marked);
+  return status;
+}
+
+/** Layers outside the body that supports of any stage ask for. */
+static int find_margins(const breccia_model *model, MarginList *margins)
+{
+  const DeckSpec *spec = model->spec;
+  const Length *horizon = &spec->peridynamics->horizon;
+  int status = support_margins(margins, &spec->loads, &spec->selections, &spec->body, horizon, &model->reader);
+  for (int k = 0; k < spec->solve.count; ++k) {
+    const SolveSpec *stage = spec->solve.items[k];
+    const int bad = support_margins(margins, &stage->loads, &spec->selections, &spec->body, horizon, &model->reader);
+    if (bad) status = bad;
+  }
   return status;
 }
 
@@ -94,8 +132,17 @@ static int build(breccia_model *model, bool force, Error *error)
   if (!spec->peridynamics)
     spec->peridynamics = section_standard(&model->reader, &peridynamics_section, spec->head.node);
   if (!spec->peridynamics) return BRECCIA_FAILURE;
-  DomainSpec parts = {&spec->materials, &spec->body, &spec->cracks, spec->peridynamics, spec->failure, spec->forces};
-  int status = domain_create(&model->domain, &model->reader, &parts), bad;
+  MarginList margins = {0};
+  int bad, status = find_margins(model, &margins);
+  DomainSpec parts = {.materials = &spec->materials,
+                      .blocks = &spec->body,
+                      .cracks = &spec->cracks,
+                      .margins = &margins,
+                      .peridynamics = spec->peridynamics,
+                      .failure = spec->failure,
+                      .forces = spec->forces};
+  if ((bad = domain_create(&model->domain, &model->reader, &parts))) status = bad;
+  free(margins.items);
   /* What follows needs the body or the materials only: its mistakes are told together with those of the rest. */
   const bool stands = model->domain.particles && model->domain.particles->count;
   if (stands) {
@@ -109,7 +156,7 @@ static int build(breccia_model *model, bool force, Error *error)
   }
   if (model->domain.material_count == spec->materials.count && (bad = model_check_results(model))) status = bad;
   if (!status && unknown) status = BRECCIA_USER_ERROR;
-  if (!status) status = stands ? hold_grips(model, error) : BRECCIA_USER_ERROR;
+  if (!status) status = stands ? keep_bonds(model, error) : BRECCIA_USER_ERROR;
   if (status) return status;
   model->solver = (Solver){.domain = &model->domain,
                            .loading = &model->loading,

@@ -347,7 +347,7 @@ static void check_jump(breccia_model *model, const Load *load)
 {
   const LoadSpec *l = load->spec;
   const double start = load_magnitude(l) * fabs(history_factor(&load->history, 0));
-  if (!has_kind(l, "displacement") || start == 0) return;
+  if ((!has_kind(l, "displacement") && !has_kind(l, "support")) || start == 0) return;
   char length[32];
   units_name(model->units, dimension_find("length"), length, sizeof length);
   warn(model, load->place,
@@ -375,7 +375,8 @@ static void check_grips(breccia_model *model)
   const Domain *d = &model->domain;
   const FailureSpec *failure = model->spec->failure; /* laws that soften are not held by it */
   const CriticalStretchSpec *stretch = critical_stretch_spec(failure);
-  if (!failure || failure->near_grips || (stretch && isnan(stretch->stretch) && isnan(stretch->fracture_energy)))
+  if (!failure || failure->near_grips || failure->nowhere.count ||
+      (stretch && isnan(stretch->stretch) && isnan(stretch->fracture_energy)))
     return;
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;

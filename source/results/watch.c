@@ -210,7 +210,7 @@ static int resolve_ends(Watch *w, const Body *body, const Family *family, const 
 {
   const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;
   const char *key = w->spec->opening.count ? "opening between" : "bond between";
-  for (int e = 0; e < 2; ++e) w->ends[e] = particles_nearest(&body->particles, points->values + 3 * e);
+  for (int e = 0; e < 2; ++e) w->ends[e] = body_nearest(body, points->values + 3 * e);
   if (w->ends[0] == w->ends[1])
     return node_error(reader->document, section_place(w->spec, key), reader->error,
                       "%s: the same particle is nearest to both points", key);

@@ -55,7 +55,9 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
     double fi = along(p->internal, d, i), fe = along(p->external, d, i);
     double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
            off = (constraint->from ? constraint->from[k] + target : target) - along(p->displacement, d, i);
+    if (constraint->images) off += constraint->share * along(p->displacement, d, constraint->images[k]);
     largest = fmax(largest, fabs(drifted + off));
+    if (constraint->images) constraint->moved[k] = drifted + off;
     double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
     bond -= fi * (work - free_work);
     damping -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
@@ -88,6 +90,12 @@ void explicit_foresee_motions(Explicit *s)
   }
 }
 
+/** Particles that follow others move after those. */
+static bool is_turn(const Explicit *s, const Constraint *constraint, bool second)
+{
+  return load_acts(s->loading, constraint->load) && (constraint->images != NULL) == second;
+}
+
 void explicit_prescribe_displacements(Explicit *s)
 {
   TEAM_SINGLE
@@ -95,15 +103,16 @@ void explicit_prescribe_displacements(Explicit *s)
     s->motion = 0;
     for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
   }
-  for (int n = 0; n < s->loading->constraint_count; ++n) { /* one after the other: they may share particles */
-    const Constraint *constraint = &s->loading->constraints[n];
-    if (!load_acts(s->loading, constraint->load)) continue;
-    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, s->motions[n].target, part);
+  const int count = s->loading->constraint_count; /* one after the other: they may share particles */
+  for (int n = 0; n < 2 * count; ++n) {
+    const Constraint *constraint = &s->loading->constraints[n % count];
+    if (!is_turn(s, constraint, n >= count)) continue;
+    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, s->motions[n % count].target, part);
     TEAM_SINGLE add_parts(s, constraint);
   }
 }
 
-static void speed_part(Explicit *s, const Constraint *constraint, double moved, double rate, int64_t part)
+static void speed_part(Explicit *s, const Constraint *constraint, const struct Motion *motion, int64_t part)
 {
   const Particles *p = s->domain->particles;
   const double *d = constraint->direction;
@@ -111,6 +120,8 @@ static void speed_part(Explicit *s, const Constraint *constraint, double moved, 
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
+    double moved = constraint->images ? constraint->moved[k] : motion->moved, rate = motion->rate;
+    if (constraint->images) rate += constraint->share * along(p->velocity, d, constraint->images[k]);
     double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * moved * p->volume[i];
     kinetic += 0.5 * mass * (rate * rate - v * v);
     damping -= (fi + fe - p->density[i] * (a - c * v)) * work;
@@ -131,11 +142,12 @@ static void speed_part(Explicit *s, const Constraint *constraint, double moved, 
 
 void explicit_prescribe_velocities(Explicit *s)
 {
-  for (int n = 0; n < s->loading->constraint_count; ++n) {
-    const Constraint *constraint = &s->loading->constraints[n];
-    if (!load_acts(s->loading, constraint->load)) continue;
-    const struct Motion *motion = &s->motions[n];
-    TEAM_FOR (part, explicit_parts_of(constraint)) speed_part(s, constraint, motion->moved, motion->rate, part);
+  const int count = s->loading->constraint_count;
+  for (int n = 0; n < 2 * count; ++n) {
+    const Constraint *constraint = &s->loading->constraints[n % count];
+    if (!is_turn(s, constraint, n >= count)) continue;
+    const struct Motion *motion = &s->motions[n % count];
+    TEAM_FOR (part, explicit_parts_of(constraint)) speed_part(s, constraint, motion, part);
     TEAM_SINGLE add_parts(s, constraint);
   }
 }

@@ -344,6 +344,96 @@ static void a_column_with_tied_sides_shears_as_if_it_had_none(void **state)
   breccia_model_destroy(&m);
 }
 
+#define STRIP(nx)                                                                                                      \
+  UNITS                                                                                                                \
+  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"                            \
+  "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [" nx                      \
+  ", 0], to: [2, 1.2]}}}}\n"                                                                                           \
+  "peridynamics: {space: plane stress}\n"
+
+/* Half a body on a plane of symmetry is the half of a whole one, at every moment and particle. */
+static void half_a_body_on_a_support_across_is_half_a_whole(void **state)
+{
+  (void)state;
+  const char *whole_loads = "loads: [{on: {face: x+}, traction: [3, 1]}, {on: {face: x-}, traction: [-3, 1]}]\n",
+             *half_loads = "loads: [{on: {face: x+}, traction: [3, 1]}, {on: {face: x-}, support: {held: across}}]\n",
+             *solve = "solve: {explicit: {steps: 200, time step: 2e-4}}\n";
+  breccia_model *whole = model_of(STRIP("-2") "%s%s", whole_loads, solve),
+                *half = model_of(STRIP("0") "%s%s", half_loads, solve);
+  assert_int_equal(half->domain.particles->count, 20 * 12 + 6 * 12);
+  run_all(whole);
+  run_all(half);
+  const Particles *p = whole->domain.particles, *q = half->domain.particles;
+  double largest = 0;
+  for (int64_t n = 0; n < q->count; ++n) {
+    const int32_t i = q->place_of[n];
+    if (q->position[0][i] < 0) continue;
+    const int32_t j = particles_nearest(p, (double[]){q->position[0][i], q->position[1][i], 0});
+    for (int k = 0; k < 2; ++k) {
+      largest = fmax(largest, fabs(p->displacement[k][j]));
+      assert_near(q->displacement[k][i], p->displacement[k][j], 1e-10);
+    }
+    assert_near(half->domain.stress[0][i], whole->domain.stress[0][j], 1e-6);
+  }
+  assert_true(largest > 1e-4);
+  assert_balanced(half, 1e-3);
+  breccia_model_destroy(&whole);
+  breccia_model_destroy(&half);
+}
+
+/* A quarter of a plate, with a corner where two supports meet, pulled to rest: stress and strain are alike in all of it up to the faces. */
+static void stresses_are_right_up_to_a_support(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(STRIP("0") "loads:\n  - {on: {face: x-}, support: {held: across}}\n"
+                                         "  - {on: {face: y-}, support: {held: across}}\n"
+                                         "  - {on: {face: x+, layers: 3}, traction: [5, 0]}\n"
+                                         "solve: {explicit: {end time: 3, damping: 60, rest: 1e-5}}\n");
+  run_all(m);
+  assert_true(m->solver.records[0].came_to_rest == 1);
+  for (double x = 0.05; x < 1; x += 0.1)
+    for (double y = 0.05; y < 0.6; y += 0.1) {
+      const int32_t i = body_nearest(&m->domain.body, (double[]){x, y, 0});
+      assert_near(m->domain.stress[0][i], 5, 0.01 * 5);
+      assert_near(m->domain.stress[1][i], 0, 0.02 * 5);
+      assert_near(m->domain.particles->displacement[0][i], 5e-4 * x, 0.01 * 5e-4);
+      assert_near(m->domain.particles->displacement[1][i], -1.25e-4 * y, 0.01 * 5e-4);
+    }
+  breccia_model_destroy(&m);
+}
+
+/* A face that is pushed by a support stands where it is told: a bar between two of them has the mean strain at once. */
+static void a_face_goes_where_its_support_goes(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      STRIP("0") "selections: {held: {outside: yes, face: x-, layers: 6}}\n"
+                 "loads:\n  - {on: {face: x-}, support: {held: all, layers: 6}}\n"
+                 "  - {on: {face: x+}, support: {held: across, displacement: [2e-3, 0]}, history: {ramp to: 0.05}}\n"
+                 "solve: {explicit: {end time: 3, damping: 60, rest: 1e-5}}\n"
+                 "watch: {reaction: {force on: held}}\n");
+  run_all(m);
+  const int32_t i = body_nearest(&m->domain.body, (double[]){1.95, 0.65, 0});
+  const int32_t j = body_nearest(&m->domain.body, (double[]){1, 0.6, 0});
+  assert_near(m->domain.particles->displacement[0][i], 2e-3 * 1.95 / 2, 0.02 * 2e-3);
+  assert_near(m->domain.stress[0][j], 10, 0.02 * 10);
+  assert_near(solver_energy(&m->solver).imbalance, 0, 1e-2);
+  breccia_model_destroy(&m);
+  const char *const wrong[][2] = {
+      {"{on: {inside: {box: {from: [0, 0], to: [1, 1]}}}, support: {held: all}}", "takes the whole face of a block"},
+      {"{on: {face: x-}, support: {held: across, displacement: [0, 1]}}", "its displacement along y must be 0"},
+      {"{on: {face: x-}, support: {held: all}}, {on: {face: x-}, support: {held: across}}",
+       "this face has one already"},
+  };
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck, STRIP("0") "loads: [%s]\nsolve: {explicit: {steps: 1}}\n", wrong[k][0]);
+    char *words = refusal_of(deck);
+    if (!strstr(words, wrong[k][1])) fail_msg("expected '%s', found '%s'", wrong[k][1], words);
+    free(words);
+  }
+}
+
 static void a_prescribed_acceleration_does_the_work_that_it_must(void **state)
 {
   (void)state;
@@ -409,6 +499,9 @@ int main(void)
       cmocka_unit_test(tied_bodies_move_as_one_and_keep_their_momentum),
       cmocka_unit_test(a_tie_in_one_direction_leaves_the_others),
       cmocka_unit_test(a_column_with_tied_sides_shears_as_if_it_had_none),
+      cmocka_unit_test(half_a_body_on_a_support_across_is_half_a_whole),
+      cmocka_unit_test(stresses_are_right_up_to_a_support),
+      cmocka_unit_test(a_face_goes_where_its_support_goes),
       cmocka_unit_test(a_prescribed_acceleration_does_the_work_that_it_must),
       cmocka_unit_test(what_does_not_fit_is_said),
   };

@@ -104,6 +104,38 @@ static void bonds_near_grips_hold_where_the_deck_says_so(void **state)
   assert_int_equal(near[1], 0);
 }
 
+static void no_bond_breaks_where_the_deck_says_so(void **state)
+{
+  (void)state;
+  /* The same bar; what lies within 0.45 of its last two layers, and what lies in a box, keeps all bonds; bonds that leave these places may
+   * break. */
+  const char *const where[] = {"", ", no failure within: {distance: 4.5 spacings}",
+                               ", no failure within: [{distance: 0.15}, {of: kept}]"};
+  const double from[] = {INFINITY, 1.85 - 0.45, 1.85 - 0.15};
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                                "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 5, 3]}}}}\n"
+                                "selections: {kept: {inside: {box: {from: [1.4, 0, 0], to: [1.8, 1, 1]}}}}\n"
+                                "failure: {critical stretch: 0.01%s}\n"
+                                "loads: [{on: {face: x+, layers: 2}, velocity: [3, free, free]}]\n"
+                                "solve: {explicit: {steps: 150}}\n",
+                                where[k]);
+    assert_int_equal(breccia_model_step(m, 150, NULL), 0);
+    const Domain *d = &m->domain;
+    int64_t within = 0, box = 0;
+    for (int64_t n = 0; n < d->broken_count; ++n) {
+      const double x = d->particles->position[0][d->particles->place_of[d->broken[n].a]],
+                   y = d->particles->position[0][d->particles->place_of[d->broken[n].b]];
+      within += fmin(x, y) > from[k] - 0.01;
+      box += fmin(x, y) > 1.4 && fmax(x, y) < 1.8;
+    }
+    assert_true(d->broken_count > 0);
+    assert_int_equal(within, 0);
+    assert_true(k == 2 ? box == 0 : k == 0 ? box > 0 : true);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void an_elastic_body_keeps_its_energy(void **state)
 {
   (void)state;
@@ -478,6 +510,7 @@ int main(void)
       cmocka_unit_test(a_wave_runs_along_a_slender_bar_at_root_e_over_rho),
       cmocka_unit_test(energy_of_loads_motions_damping_yielding_and_cracks_balances),
       cmocka_unit_test(bonds_near_grips_hold_where_the_deck_says_so),
+      cmocka_unit_test(no_bond_breaks_where_the_deck_says_so),
       cmocka_unit_test(an_elastic_body_keeps_its_energy),
       cmocka_unit_test(damping_takes_the_speed_of_a_free_body_as_its_rate_says),
       cmocka_unit_test(the_stable_step_is_stable_and_a_tenth_more_is_not),

@@ -21,6 +21,7 @@ LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",
      "prescribed acceleration, from rest; its history is integrated over time")
 LOAD_SECTION(along, "along", "motion prescribed in one direction only")
 LOAD(roller, "roller", FIELD_POINT, "1", "held in this direction, of any length; free across it, without friction")
+LOAD_SECTION(support, "support", "a face that is held exactly, by layers of particles outside it")
 LOAD_SECTION(tie, "tie", "particles that move together")
 LOAD_SECTION(initial_velocity, "initial velocity",
              "velocity that the particles have when the load begins; free after that")

@@ -1,0 +1,178 @@
+/* A face that is held where it is, and not in the middle of held layers: particles stand outside it as mirror images of those inside, and move
+ * as these do, mirrored: the other way in the directions that are held, u = 2 g(t) - u of the particle inside, and the same way in the others. Between
+ * two images the displacement is g(t) at the face; and families there find the strain going on beyond it. */
+#include "loading/support.h"
+
+#include "loading/load/load_parts.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct SupportSpec {
+  SectionHead head;
+  const char *held;
+  double displacement[3];
+  int64_t layers;
+} SupportSpec;
+
+static const char *held_word(int k)
+{
+  static const char *const words[] = {"all", "across", NULL};
+  return words[k];
+}
+
+static const Field support_fields[] = {
+    {"held", FIELD_CHOICE, offsetof(SupportSpec, held), NULL, NULL, NULL,
+     "all: the face does not move; across: it slides along itself without friction, as in a plane of symmetry", NULL,
+     held_word, 0},
+    {"displacement", FIELD_POINT, offsetof(SupportSpec, displacement), "length", "", NULL,
+     "of the face, times the history, in the directions that are held; 0 when absent", NULL, NULL, 0},
+    {"layers", FIELD_COUNT, offsetof(SupportSpec, layers), NULL, "", "[1, 1000]",
+     "how many stand outside; when absent two horizons, so that those next to the face have whole families of "
+     "particles with whole "
+     "families",
+     NULL, NULL, 0},
+};
+const Section support_load_section = {"support",
+                                      "Layers outside a face of a block on a square or cubic lattice, as mirror images "
+                                      "of those inside, so that stresses are right up to the face.",
+                                      sizeof(SupportSpec),
+                                      FIELDS(support_fields),
+                                      NULL,
+                                      NULL,
+                                      NULL,
+                                      0};
+
+typedef struct Support {
+  int32_t *images; /* [particles of the load] places inside */
+} Support;
+
+/** The face of which `on` speaks, and nothing else. */
+static const SelectionSpec *face_of(const LoadSpec *spec, const SectionList *selections)
+{
+  const SelectionSpec *on = selection_spec(selections, &spec->on);
+  const bool whole = on && on->face && !on->group && !on->inside && isnan(on->nearest[0]) && !on->any_of.count &&
+                     !on->all_of.count && !on->except.count && !on->outside;
+  return whole ? on : NULL;
+}
+
+static int find_block(const SelectionSpec *on, const SectionList *blocks)
+{
+  for (int b = 0; b < blocks->count; ++b)
+    if (on->block ? !strcmp(((const SectionHead *)blocks->items[b])->name, on->block) : blocks->count == 1) return b;
+  return -1;
+}
+
+static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList *selections, const SectionList *blocks,
+                      const Length *horizon, const DeckReader *reader)
+{
+  const SupportSpec *support = spec->of[LOAD_support].section;
+  const SelectionSpec *on = face_of(spec, selections);
+  const Node *place = support->head.node;
+  const int b = on ? find_block(on, blocks) : -1;
+  if (b < 0)
+    return node_error(reader->document, place, reader->error,
+                      "support: takes the whole face of a block: 'on' must be like {face: x-}%s",
+                      blocks->count > 1 ? " with 'block'" : "");
+  const BlockSpec *block = blocks->items[b];
+  if (block->file || !block->lattice || !lattice_is_grid(lattice_find(block->lattice)))
+    return node_error(
+        reader->document, place, reader->error,
+        "support: the lattice of block '%s' is not its own mirror image; take 'square' or 'cubic', or hold "
+        "layers by 'displacement'",
+        block->head.name);
+  const int axis = on->face[0] - 'x';
+  const double reach = horizon->in_spacings ? horizon->value : horizon->value / block->spacing;
+  const Margin margin = {spec, b, axis, on->face[1] == '+',
+                         support->layers > 0 ? support->layers : 2 * (int64_t)fmin(floor(reach + 1e-6), 500)};
+  for (int m = 0; m < list->count; ++m)
+    if (list->items[m].block == b && list->items[m].axis == axis && list->items[m].high == margin.high)
+      return node_error(reader->document, place, reader->error, "support: this face has one already, of line %d",
+                        ((const LoadSpec *)list->items[m].owner)->head.node->line);
+  Margin *grown = realloc(list->items, sizeof *grown * (size_t)(list->count + 1));
+  if (!grown) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: supports");
+  list->items = grown;
+  list->items[list->count++] = margin;
+  return BRECCIA_OK;
+}
+
+int support_margins(MarginList *list, const SectionList *loads, const SectionList *selections,
+                    const SectionList *blocks, const Length *horizon, const DeckReader *reader)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < loads->count; ++k) {
+    const LoadSpec *spec = loads->items[k];
+    if (!spec->of[LOAD_support].section) continue;
+    const int bad = add_margin(list, spec, selections, blocks, horizon, reader);
+    if (bad) status = bad;
+  }
+  return status;
+}
+
+static int create(Load *load, const LoadMaking *making)
+{
+  const SupportSpec *spec = load->value->section;
+  const Body *body = making->body;
+  Error *error = making->reader->error;
+  int margin = 0;
+  while (margin < body->margins.count && body->margins.items[margin].owner != load->spec) ++margin;
+  if (margin == body->margins.count) return BRECCIA_USER_ERROR; /* said when the margins were found */
+  const int axis = body->margins.items[margin].axis;
+  Support *support = load->own = memory_zeroed(1, sizeof *support, "supports", error);
+  if (!support) return BRECCIA_FAILURE;
+  int64_t count = 0;
+  for (int64_t n = 0; n < body->particles.count; ++n) count += body->margin_of[n] == margin;
+  selection_destroy(&load->selection);
+  load->selection.places = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
+  support->images = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
+  if (!load->selection.places || !support->images) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < body->particles.count; ++n) {
+    if (body->margin_of[n] != margin) continue;
+    support->images[load->selection.count] = body->particles.place_of[body->image_of[n]];
+    load->selection.places[load->selection.count++] = body->particles.place_of[n];
+  }
+  for (int k = 0; k < body->dimensions; ++k) {
+    const bool held = !strcmp(spec->held, "all") || k == axis;
+    const double moved = isnan(spec->displacement[k]) ? 0 : spec->displacement[k];
+    double direction[3] = {0};
+    direction[k] = 1;
+    if (!held && moved != 0)
+      return node_error(making->reader->document, load->place, making->reader->error,
+                        "support: a face that is held across slides along itself; its displacement along %c must be 0",
+                        "xyz"[k]);
+    load_constrain(load, making, direction, 2 * moved, 0);
+    Constraint *constraint = &making->loading->constraints[making->loading->constraint_count - 1];
+    constraint->images = support->images;
+    constraint->share = held ? -1 : 1;
+    constraint->moved = memory_zeroed((size_t)count, sizeof(double), "supports", error);
+    if (!constraint->moved) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+static void destroy(Load *load)
+{
+  free(((Support *)load->own)->images);
+  free(load->own);
+}
+
+static const double *vector(const LoadValue *value)
+{
+  return ((const SupportSpec *)value->section)->displacement;
+}
+
+static const char *kind(const LoadValue *value, const char **dimension)
+{
+  (void)value;
+  *dimension = "length";
+  return "support";
+}
+
+static double magnitude(const LoadValue *value)
+{
+  const double *u = vector(value);
+  return isnan(u[0]) ? 0 : sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+}
+
+const LoadType support_load = {
+    .create = create, .destroy = destroy, .vector = vector, .kind = kind, .magnitude = magnitude};
