@@ -1,7 +1,7 @@
 # What people type. CMake does the work (CMakePresets.json); this says it in short.
 cores := $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan coverage clang fuzz install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan coverage clang clang-test fuzz install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -78,9 +78,13 @@ coverage:
 	@ctest --preset coverage
 	@gcovr -r . --filter source build/coverage --print-summary
 
-# A second compiler, warnings as errors, and the unit tests with what it makes. It has no vector clones (base/lanes.h says why): the plain
-# version of the sweeps is tested here.
+# A second compiler, warnings as errors.
 clang:
+	@cmake --preset clang > /dev/null
+	@cmake --build --preset clang --parallel $(cores)
+
+# The unit tests with what it makes. It has no vector clones (base/lanes.h says why): the plain version of the sweeps is tested here.
+clang-test:
 	@sh scripts/setup.sh test
 	@cmake --preset clang-test > /dev/null
 	@cmake --build --preset clang-test --parallel $(cores)

@@ -351,7 +351,7 @@ static void a_chosen_step_ends_with_the_end_time_by_a_shorter_last_one(void **st
              SOFT "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
                   "solve: {explicit: {%s}}\n",
              cases[k].solve);
-    breccia_model *m = model_of(deck);
+    breccia_model *m = model_of("%s", deck);
     assert_int_equal(m->solver.clock.steps, cases[k].steps);
     snprintf(words, sizeof words, "the last one %.4g so as to end at %g", cases[k].last, cases[k].end);
     assert_true((strstr(breccia_model_overview(m), words) != NULL) == isfinite(cases[k].last));

@@ -24,8 +24,8 @@ static int32_t *write_particles(const breccia_model *model, bool plane)
   for (int32_t n = 0; n < p->count; ++n) {
     int32_t i = p->place_of[row[n]];
     fprintf(file, "%.17g, %.17g,%.17g", p->volume[i], p->position[0][i], p->position[1][i]);
-    fprintf(file, plane ? "" : ",%.17g", p->position[2][i]);
-    fprintf(file, n + 1 < p->count ? "\n" : ""); /* the last row needs no end */
+    if (!plane) fprintf(file, ",%.17g", p->position[2][i]);
+    if (n + 1 < p->count) fprintf(file, "\n"); /* the last row needs no end */
   }
   fclose(file);
   return row;

@@ -32,10 +32,10 @@ static void a_wave_runs_along_a_slender_bar_at_root_e_over_rho(void **state)
   const double near[3] = {0.5, 0.05, 0.05}, far[3] = {1.2, 0.05, 0.05};
   int32_t a = particles_nearest(m->domain.particles, near), b = particles_nearest(m->domain.particles, far);
   double *v = breccia_model_array(m, "velocity x"), first = 0, second = 0;
-  while (!second && m->solver.clock.step < m->solver.clock.steps) {
+  while (second == 0 && m->solver.clock.step < m->solver.clock.steps) {
     breccia_model_step(m, 1, NULL);
-    if (!first && v[a] > 0.5) first = breccia_model_time(m);
-    if (!second && v[b] > 0.5) second = breccia_model_time(m);
+    if (first == 0 && v[a] > 0.5) first = breccia_model_time(m);
+    if (second == 0 && v[b] > 0.5) second = breccia_model_time(m);
   }
   assert_true(second > 0);
   double speed = (m->domain.particles->position[0][b] - m->domain.particles->position[0][a]) / (second - first);
