@@ -434,6 +434,43 @@ static void a_face_goes_where_its_support_goes(void **state)
   }
 }
 
+/* A block that is moved whole presses another by contact, without friction: what bonds of the platen carry is what crosses the block. */
+static void a_rigid_platen_presses_by_contact(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+      "body:\n"
+      "  b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [0, 0], to: [2, 1]}}}\n"
+      "  platen: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [-0.5, 1], to: [2.5, "
+      "1.4]}}}\n"
+      "cracks: [{cut: {line: [[-1, 1], [3, 1]]}}]\n"
+      "peridynamics: {space: plane stress}\n"
+      "contact: {friction: 0}\n"
+      "loads: [{on: {block: b, face: y-}, support: {held: across}},\n"
+      "        {on: {block: platen}, displacement: [0, -0.01], history: {ramp to: 0.3}}]\n"
+      "solve: {explicit: {end time: 1, damping: 60}}\n");
+  run_all(m);
+  const Particles *p = m->domain.particles;
+  double platen = 0, section = 0, strain = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    if (p->block[i / SLICE] == 1) {
+      platen += p->internal[1][i] * p->volume[i];
+      assert_near(p->displacement[1][i], -0.01, 1e-12);
+    } else if (fabs(p->position[1][i] - 0.35) < 1e-6) {
+      section += m->domain.stress[1][i] * 0.1;
+      strain += m->domain.strain[1][i] / 20;
+    }
+  }
+  assert_near(platen, -section, 0.02 * platen);
+  assert_near(strain, -0.01, 0.001); /* less what contact gives way */
+  assert_near(section, 2 * 1e4 * strain, 0.02 * platen);
+  assert_balanced(m, 1e-3);
+  breccia_model_destroy(&m);
+}
+
 static void a_prescribed_acceleration_does_the_work_that_it_must(void **state)
 {
   (void)state;
@@ -502,6 +539,7 @@ int main(void)
       cmocka_unit_test(half_a_body_on_a_support_across_is_half_a_whole),
       cmocka_unit_test(stresses_are_right_up_to_a_support),
       cmocka_unit_test(a_face_goes_where_its_support_goes),
+      cmocka_unit_test(a_rigid_platen_presses_by_contact),
       cmocka_unit_test(a_prescribed_acceleration_does_the_work_that_it_must),
       cmocka_unit_test(what_does_not_fit_is_said),
   };
