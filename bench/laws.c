@@ -21,6 +21,7 @@ typedef struct Sample {
 static const Sample samples[] = {
     {"elastic", {"Young modulus=30e6", "Poisson ratio=0.2"}, 1e-4},
     {"j2", {"Young modulus=2e8", "Poisson ratio=0.3", "yield stress=2e5", "hardening modulus=1e6"}, 1e-3},
+    {"viscoelastic", {"Young modulus=2e8", "Poisson ratio=0.3", "relaxing share=0.6", "relaxation time=1"}, 1e-3},
     {"multi-yield-j2", {"shear modulus=60000", "bulk modulus=100000", "octahedral strength=30"}, 2e-5},
     {"cap",
      {"bulk modulus=14478996", "shear modulus=11721092", "cap position=110320", "compaction rate=4.6412e-7",

@@ -71,6 +71,13 @@ typedef struct breccia_batch {
   const double *length;   /* over which a fracture energy is spread, [count]; NULL: not known */
 } breccia_batch;
 
+/** How the deviator of an isotropic law flows, for formulations that have no strain to give it (ordinary peridynamics). */
+typedef struct breccia_deviator {
+  double yield_stress;    /* in uniaxial tension, of von Mises, without hardening; infinite: it does not yield */
+  double relaxing;        /* share of the shear modulus that relaxes, 0 to 1 */
+  double relaxation_time; /* in which it falls to 1 / e */
+} breccia_deviator;
+
 /** A constitutive law: strain to stress for many points. */
 typedef struct breccia_law {
   size_t size;
@@ -99,6 +106,8 @@ typedef struct breccia_law {
   void (*begin)(const void *constants, double *history);
   /** Stress, trial history and, if wanted, tangent. @return -1, or the first point that could not be integrated */
   int (*update)(const void *constants, const breccia_batch *batch);
+  /** How its deviator flows, if that and `moduli` say all. NULL: they do not. @return 0, or 1 with the reason in words */
+  int (*deviator)(const void *constants, breccia_deviator *deviator, char *reason, size_t reason_size);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

@@ -1,5 +1,6 @@
 LAW(elastic)
 LAW(j2)
+LAW(viscoelastic)
 LAW(multi_yield_j2)
 LAW(cap)
 LAW(drucker_prager)

@@ -96,7 +96,11 @@ void domain_set_elastic_stage(Domain *d, bool elastic)
 
 void domain_commit_points(Domain *d)
 {
-  for (int r = 0; r < d->region_count; ++r) points_commit(&d->regions[r].points);
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
+    points_commit(&d->regions[r].points);
+    if (region->type->commit) region->type->commit(region->formulation, true);
+  }
 }
 
 const char *domain_server_problem(const Domain *d)

@@ -431,6 +431,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                                     .points = &region->points,
                                     .bonds = region->points.components == 1 ? &region->bonds : NULL,
                                     .materials = d->materials,
+                                    .material_count = d->material_count,
                                     .material = d->material,
                                     .foreign = region->foreign};
     if (!(region->formulation = region->type->create(&parts, error))) return BRECCIA_USER_ERROR;

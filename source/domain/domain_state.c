@@ -103,8 +103,11 @@ void domain_state(Domain *d, StateList *list)
                           .values = d->gave_up},
               "failed laws", NULL);
   char part[16];
-  for (int r = 0; r < d->region_count; ++r)
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
     points_state(&d->regions[r].points, region_part(r, part, sizeof part), list);
+    if (region->type->state) region->type->state(region->formulation, region_part(r, part, sizeof part), list);
+  }
   family_state(&d->family, list);
   state_add_number(list, "motion", "length", STATE_TRIED, &d->motion);
   state_add_number(list, "fracture energy", "energy", STATE_TRIED, &d->fracture_energy);

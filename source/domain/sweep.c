@@ -62,7 +62,8 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t bl
   Points *points = &region->points;
   const int64_t first = span->first * SLICE;
   const int count = (int)(span->last * SLICE - first);
-  Sweep sweep = {.first = span->first, .last = span->last, .carry = carry, .at = purpose->at};
+  Sweep sweep = {
+      .first = span->first, .last = span->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
   if (purpose->at && points->plane_stress) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
   for (int k = 0; k < 6 && points->components == 6; ++k) {
     sweep.strain[k] = purpose->at ? change + k * BLOCK : points->strain[k] + first;
@@ -266,6 +267,8 @@ static void remake_forces(void *context)
 
 void domain_follow(Domain *d)
 {
+  for (int r = 0; r < d->region_count; ++r)
+    if (d->regions[r].type->commit) d->regions[r].type->commit(d->regions[r].formulation, false);
   if (domain_is_elastic(d))
     domain_evaluate(d);
   else if (domain_laws_in_forces(d))

@@ -40,6 +40,7 @@ typedef struct FormulationParts {
   const Points *points;
   const BondList *bonds; /* of points on bonds; NULL if there are none */
   const Material *materials;
+  int material_count;
   const int32_t *material; /* [slices] which of the materials */
   /** [slices] 1: of another formulation; NULL: none is. Only displacements are seen of such places, at most next to own ones: what a
    *  formulation gives own places is their own force state for all their bonds, less those of own neighbours. */
@@ -101,6 +102,7 @@ typedef struct Sweep {
   double *strain[6], *stress[6];
   int64_t row; /* of points on bonds: the first of them (family/bond_list.h) */
   int rows;
+  bool no_law; /* stresses are as they should be: laws of a formulation that keeps no points are not asked either */
   /** NULL: forces of the displacements held. Otherwise a linearised step: changes of forces with changes v of displacements, which
    *  stand in their place, and these are the displacements at which it was linearised. */
   double *const *at;
@@ -155,6 +157,10 @@ typedef struct FormulationType {
   /** [places] shares of its stress that the family of a place carries, beyond what its bonds allow: 1 as long as nothing breaks. They
    *  are state; after a change `renew` is called. NULL where bonds have energies of their own. */
   double *(*shares)(void *formulation);
+  /** Rows of what laws remember where there are no points; NULL: nothing. @param[in] part  put behind their names, or NULL */
+  void (*state)(void *formulation, const char *part, StateList *list);
+  /** The step under way has come out well, or has failed: makes what laws remember of it the committed state, or forgets it. */
+  void (*commit)(void *formulation, bool well);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.
    *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
   void (*stored_energy)(const void *formulation, int64_t place, double time, StoredEnergy *energy);

@@ -137,6 +137,7 @@ BRECCIA_CLONES
 static int64_t respond(void *formulation, const Sweep *sweep)
 {
   const Ordinary *o = formulation;
+  if (o->flow && !sweep->at && !sweep->no_law) ordinary_flow(o, sweep);
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES) {
     if (sweep->at) {
       lanes_store(o->change + place, lanes_load(o->volumetric + place) * lanes_load(o->change + place));
@@ -224,6 +225,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
       resist_way(o, slice, true, (StretchRange)o->range[slice]);
     else
       resist_way(o, slice, false, (StretchRange)o->range[slice]);
+  if (o->flow) ordinary_flow_resist(o, sweep);
   return -1;
 }
 
@@ -245,13 +247,15 @@ const FormulationType formulation_ordinary = {
     .renew = ordinary_renew,
     .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, 0, false, show_displacements},
                {OF_DISPLACEMENTS, OF_STRAINS, OF_DISPLACEMENTS | OF_SHOWN, 0, 0, false, dilate},
-               {OF_STRAINS | OF_STRESSES, OF_STATES, 0, 0, 0, false, respond},
+               {OF_STRAINS | OF_STRESSES, OF_STATES, OF_DISPLACEMENTS, 0, 0, false, respond},
                {OF_DISPLACEMENTS | OF_STATES, OF_FORCES, OF_DISPLACEMENTS | OF_STATES, 0, 0, false, resist}},
     .linearise = ordinary_linearise,
     .half_state = ordinary_half_state,
     .point_count = ordinary_point_count,
     .point = ordinary_point,
     .shares = ordinary_shares,
+    .state = ordinary_state,
+    .commit = ordinary_commit,
     .stored_energy = ordinary_stored_energy,
     .gradient = ordinary_gradient,
     .stress = ordinary_stress,

@@ -27,6 +27,13 @@ typedef struct OrdinaryResisting {
   double weight;                          /* w / 2 */
 } OrdinaryResisting;
 
+/** What families remember whose deviators yield or relax (ordinary_flow.c): committed and trial. */
+typedef struct Flow {
+  double *shift[2]; /* [slots][8] s */
+  double *last[2];  /* [slots][8] deviatoric elongations of those that relax; NULL if none does */
+  int64_t *back;    /* [slots][8] the other end's place in these arrays */
+} Flow;
+
 typedef struct Ordinary {
   const Particles *particles;
   const Family *family;
@@ -47,6 +54,8 @@ typedef struct Ordinary {
   double *base, *slope;         /* [places] a and b - a */
   double *change;               /* [places] of theta in a linearised step, then of a; NULL before */
   double *shown;                /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  breccia_deviator *deviators;  /* [materials] */
+  Flow *flow;                   /* NULL: all families are elastic */
   uint8_t *range;               /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;                /* [slices] 1: a bond of a lattice slot is missing */
 } Ordinary;
@@ -95,6 +104,18 @@ double ordinary_critical_stretch(const BondLength *of, const Material *material,
 size_t ordinary_bytes(const void *formulation);
 FormerBonds ordinary_former_bonds(const void *formulation);
 double *ordinary_shares(void *formulation);
+
+/** Reads the laws' deviators; makes room for what they remember. */
+int ordinary_flow_create(Ordinary *o, int materials, Error *error);
+void ordinary_flow_destroy(Ordinary *o);
+/** Whether a deviator does more than resist. */
+bool ordinary_flows(const breccia_deviator *deviator);
+/** Asks them: trial shifts of slices whose dilatations are known. */
+void ordinary_flow(const Ordinary *o, const Sweep *sweep);
+/** Takes what shifts take off the forces of slices. */
+void ordinary_flow_resist(const Ordinary *o, const Sweep *sweep);
+void ordinary_commit(void *formulation, bool well);
+void ordinary_state(void *formulation, const char *part, StateList *list);
 
 void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                          double state[3]);

@@ -21,10 +21,17 @@ OrdinaryStretch ordinary_stretch(double *const u[3], int64_t place, const Bond *
   return s;
 }
 
-/** Scalar force state over influence: a |xi| + b e. */
-static double tension(const Ordinary *o, int64_t place, const Bond *bond, const OrdinaryStretch *s)
+/** Elongation that carries nothing. */
+static double shift_of(const Ordinary *o, int64_t slot, int lane, int state)
 {
-  return o->base[place] * bond->length + (o->base[place] + o->slope[place]) * s->elongation;
+  return o->flow ? o->flow->shift[state][slot * SLICE + lane] : 0;
+}
+
+/** Scalar force state over influence: a |xi| + b (e - s). */
+static double tension(const Ordinary *o, int64_t place, int64_t slot, const Bond *bond, const OrdinaryStretch *s)
+{
+  return o->base[place] * bond->length +
+         (o->base[place] + o->slope[place]) * (s->elongation - shift_of(o, slot, (int)(place % SLICE), 1));
 }
 
 void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
@@ -35,7 +42,7 @@ void ordinary_half_state(const void *formulation, double *const *at, int64_t sli
   const Bond bond = ordinary_bond(o, slice, slot, lane);
   const OrdinaryStretch s = ordinary_stretch(at ? at : o->particles->displacement, place, &bond);
   const double omega = bond.weight / o->particles->volume[bond.neighbour],
-               across = tension(o, place, &bond, &s) / s.length;
+               across = tension(o, place, slot, &bond, &s) / s.length;
   double change[3], along = 0;
   for (int k = 0; k < 3; ++k) {
     state[k] = omega * across * s.y[k];
@@ -57,7 +64,9 @@ void ordinary_stored_energy(const void *formulation, int64_t place, double time,
   const Family *f = o->family;
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
-  double volume = 0, square = 0, volume_moved = 0, square_moved = 0; /* sums of w |xi| e and w e^2; of their changes */
+  double volume = 0, square = 0, volume_moved = 0, square_moved = 0,
+         flowed = 0; /* sums of w |xi| e and w e^2; of their changes */
+  const double relaxing = o->deviators[o->material[slice]].relaxing, part = relaxing > 0 ? relaxing : 1;
   *energy = (StoredEnergy){0};
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
@@ -67,14 +76,17 @@ void ordinary_stored_energy(const void *formulation, int64_t place, double time,
     for (int k = 0; k < 3; ++k)
       grown += time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]) * s.y[k] / s.length;
     volume += bond.weight * bond.length * s.elongation;
-    square += bond.weight * s.elongation * s.elongation;
+    const double shift = shift_of(o, slot, lane, 1), elastic = s.elongation - shift;
+    square += bond.weight * (elastic * elastic + (1 / part - 1) * shift * shift);
+    flowed += bond.weight * (s.elongation - shift / part) * (shift - shift_of(o, slot, lane, 0));
     volume_moved += bond.weight * bond.length * grown;
-    square_moved += bond.weight * s.elongation * grown;
+    square_moved += bond.weight * elastic * grown;
   }
   const double inverse = o->inverse[place], own = p->volume[place];
   const double base = o->volumetric[place] * inverse, shear = o->shear[place];
   energy->stored = 0.5 * own * (base * volume * volume + shear * square);
   energy->received = energy->stored - 0.5 * own * (base * volume * volume_moved + shear * square_moved);
+  energy->received += own * shear * flowed; /* what has been dissipated in the step is not what the break takes */
 }
 
 /** What the strain across the plane is to the sum of those in it, in plane stress: -nu / (1 - nu). */
@@ -105,7 +117,7 @@ void ordinary_stress(const void *formulation, int64_t place, double stress[6])
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double pull = bond.weight * tension(o, place, &bond, &s) / s.length;
+    const double pull = bond.weight * tension(o, place, slot, &bond, &s) / s.length;
     for (int k = 0; k < 6; ++k) stress[k] += pull * s.y[symmetric_row[k]] * s.y[symmetric_column[k]];
   }
   const Material *m = ordinary_material(o, place);

@@ -75,6 +75,7 @@ int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep)
 int ordinary_linearise(void *formulation, Error *error)
 {
   Ordinary *o = formulation;
+  if (o->flow) return error_add(error, BRECCIA_FAILURE, "ordinary: families that yield or relax have no tangent");
   if (!o->change) o->change = places_array(o->particles->places, "linearised step", error);
   return o->change ? BRECCIA_OK : BRECCIA_FAILURE;
 }

@@ -42,7 +42,7 @@ int ordinary_check(const void *keys, const Body *body, const DeckReader *reader)
 
 bool ordinary_takes(const breccia_law *law)
 {
-  return law->linear;
+  return law->linear || law->deviator;
 }
 
 /* ---- constants ---- */
@@ -120,6 +120,7 @@ void ordinary_destroy(void *formulation)
 {
   Ordinary *o = formulation;
   if (!o) return;
+  ordinary_flow_destroy(o);
   free(o->factor);
   free(o->dilating);
   free(o->resisting);
@@ -169,7 +170,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
   for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
   for (int block = 0; block < o->body->block_count && !strcmp(spec->weights, "isotropic"); ++block)
     ordinary_balance(o, block);
-  if (create_rows(o, error)) {
+  if (create_rows(o, error) || ordinary_flow_create(o, parts->material_count, error)) {
     ordinary_destroy(o);
     return NULL;
   }

@@ -165,7 +165,14 @@ static double over_tension(const Point *p, const double s[6])
   return least > 0 ? (most - 3000 * 1.0) / 3000 - 0.2 : 0; /* all in tension: Mazars' strain lets more than f_t pass */
 }
 
+static Material viscoelastic(void)
+{
+  return material_of("viscoelastic", "Young modulus=2e8", "Poisson ratio=0.3", "relaxing share=0.6",
+                     "relaxation time=1", NULL);
+}
+
 const Sample samples[SAMPLES] = {
+    {.name = "viscoelastic", .make = viscoelastic, .strain = 1e-3, .associated = true, .passes_on = true},
     {.name = "elastic", .make = elastic, .strain = 1e-3, .associated = true, .passes_on = true},
     {.name = "j2", .make = j2, .strain = 5e-3, .associated = true},
     {.name = "j2 fixed", .make = j2_fixed, .strain = 5e-3, .associated = true, .over = over_j2},

@@ -4,7 +4,7 @@
 
 #include "point.h"
 
-enum { SAMPLES = 14 };
+enum { SAMPLES = 15 };
 
 typedef struct Sample {
   const char *name;

@@ -356,18 +356,143 @@ static void the_critical_stretch_spends_the_fracture_energy(void **state)
   }
 }
 
+/** Pulls the second of two particles along x to u and takes a step. @return its pull on the first, as a tension */
+static double pull_to(breccia_model *m, double u)
+{
+  Domain *d = &m->domain;
+  const Particles *p = d->particles;
+  const int32_t at = p->place_of[1], first = p->place_of[0];
+  p->displacement[0][at] = u;
+  compute_forces(m);
+  domain_commit_points(d);
+  const double along = p->internal[0][first] > 0 ? 1 : -1;
+  return along * hypot(p->internal[0][first], p->internal[1][first]);
+}
+
+static void two_points_yield_as_in_another_program(void **state)
+{
+  (void)state;
+  /* validation U6: points at (0, 0, 0) and (1, 1, 0), dilatation taken as 0, load to u = 0.0051 in 50 steps, back to -0.0005, up again. The other program
+   * has psi_0 = 75 tau_y^2 / (8 pi delta^5) of the continuum, we 2.5 sigma_y^2 / m of the family: a yield stress with the same psi_0. */
+  const double pi = acos(-1), horizon = sqrt(2), moment = 2, shear_yield = 351.79 / sqrt(3);
+  const double psi = 75 * pow(shear_yield, 2) / (8 * pi * pow(horizon, 5));
+  breccia_model *m =
+      model_of("materials: {m: {model: j2, density: 1, Young modulus: 68.9e3, Poisson ratio: 0.33, yield "
+               "stress: %.17g}}\nperidynamics: {formulation: ordinary, horizon: 1.5, lattice weights: plain}\n"
+               "body: {b: {material: m, spacing: 1, shape: {union: [{box: {from: [0, 0, 0], to: [1, 1, 1]}}, "
+               "{box: {from: [1, 1, 0], to: [2, 2, 1]}}]}}}\n" SOLVE,
+               sqrt(psi * moment / 2.5));
+  const Ordinary *o = ordinary_of(m);
+  const Particles *p = m->domain.particles;
+  assert_int_equal(p->count, 2);
+  assert_near(weighted_volume(m, p->place_of[0]), moment, 1e-13);
+  for (int32_t n = 0; n < 2; ++n) o->inverse[p->place_of[n]] = 1e-300; /* its dilatation is nothing */
+  double force = 0;
+  for (int k = 1; k <= 50; ++k) force = pull_to(m, 0.0051 * k / 50);
+  assert_near(force, 417.245, 1e-5 * 417.245);
+  assert_near(force, 2 * sqrt(2 * psi), 1e-12 * force);
+  force = pull_to(m, 0.004988);
+  assert_near(force, 386.397, 1e-5 * 386.397);
+  for (int k = 2; k <= 50; ++k) force = pull_to(m, 0.0051 - 0.0056 * k / 50);
+  assert_near(force, -417.245, 1e-5 * 417.245);
+  for (int k = 1; k <= 50; ++k) force = pull_to(m, -0.0005 + 0.0056 * k / 50);
+  assert_near(force, 417.245, 1e-5 * 417.245);
+  breccia_model_destroy(&m);
+}
+
+static void two_points_relax_like_a_standard_linear_solid(void **state)
+{
+  (void)state;
+  /* validation VE: dilatation taken as 0, stretched at once and held: t = t_infinity + lambda b e exp(-t / tau). Then drawn at
+   * a steady rate, for which steps are exact. */
+  const double share = 0.7, tau = 2, moment = 1, step = 0.3, e = 1e-3, shear = 78;
+  breccia_model *m =
+      model_of("materials: {m: {model: viscoelastic, density: 1, bulk modulus: 130, shear modulus: 78, "
+               "relaxing share: %g, relaxation time: %g}}\nperidynamics: {formulation: ordinary, horizon: 1.1}\n"
+               "body: {b: {material: m, spacing: 1, shape: {box: {particles: [2, 1, 1]}}}}\n" SOLVE,
+               share, tau);
+  Domain *d = &m->domain;
+  const Particles *p = d->particles;
+  const double whole = 2 * 15 * shear / moment * e;
+  for (int32_t n = 0; n < 2; ++n) ordinary_of(m)->inverse[p->place_of[n]] = 1e-300;
+  p->displacement[0][p->place_of[1]] = e;
+  d->regions[0].points.time_step = 1e-12; /* at once */
+  for (int k = 0; k <= 12; ++k) {
+    compute_forces(m);
+    domain_commit_points(d);
+    const double wanted = whole * (1 - share + share * exp(-k * step / tau));
+    assert_near(p->internal[0][p->place_of[0]], wanted, 1e-9 * whole);
+    d->regions[0].points.time_step = step;
+  }
+  for (int k = 1; k <= 20; ++k) { /* drawn further at a steady rate: what the dashpot lags behind goes to rate x tau */
+    p->displacement[0][p->place_of[1]] = e * (1 + k);
+    compute_forces(m);
+    domain_commit_points(d);
+  }
+  /* e - v = rate tau + (h - rate tau) exp(-t / tau), h = e exp(-12 step / tau) when it began */
+  const double rate = e / step, h = e * exp(-12 * step / tau) - rate * tau,
+               wanted = whole / e * (21 * e * (1 - share) + share * (rate * tau + h * exp(-20 * step / tau)));
+  assert_near(p->internal[0][p->place_of[0]], wanted, 1e-9 * wanted);
+  breccia_model_destroy(&m);
+}
+
+static void a_sheared_body_yields_at_the_stress_of_von_mises(void **state)
+{
+  (void)state;
+  /* In any direction, as weights are isotropic; and elastically on the way back. Deviators of the plane are those of space only in shear. */
+  const char *const spaces[] = {"3-D", "plane strain"};
+  const double strains[][4] = {{0, 1, 1, 0}, {1, 0, 0, -1}, {0.6, 0.8, 0.8, -0.6}};
+  for (int k = 0; k < 2; ++k)
+    for (int s = 0; s < 3; ++s) {
+      breccia_model *m =
+          model_of("materials: {m: {model: j2, density: 1, Young modulus: 150, Poisson ratio: 0.3, yield "
+                   "stress: 1e-5}}\nperidynamics: {formulation: ordinary, space: %s}\nbody: {b: {material: "
+                   "m, %s}}\n" SOLVE,
+                   spaces[k], k ? SQUARE : CUBE);
+      const Particles *p = m->domain.particles;
+      const double size[3] = {k ? 19 : 17, k ? 17 : 16, k ? 0 : 15};
+      double first[2] = {0};
+      for (int step = 0; step < 2; ++step) {
+        const double h = step ? 2e-7 - 2e-8 : 2e-7, *e = strains[s];
+        deform_uniformly(m, (const double[]){1 + h * e[0], h * e[1], 0, h * e[2], 1 + h * e[3], 0, 0, 0, 1});
+        compute_forces(m);
+        domain_commit_points(&m->domain);
+        int inside = 0;
+        for (int32_t n = 0; n < p->count; ++n) {
+          double strain[6], stress[6];
+          if (!is_inside(p, size, p->place_of[n], 3.53)) continue;
+          domain_look(&m->domain, p->place_of[n], strain, stress);
+          const double xx = stress[XX] - stress[YY], yy = stress[YY] - stress[ZZ], zz = stress[ZZ] - stress[XX];
+          const double mises = sqrt((xx * xx + yy * yy + zz * zz) / 2 + 3 * stress[XY] * stress[XY]);
+          if (!step) {
+            assert_near(mises, 1e-5, 1e-6 * 1e-5);
+            first[0] = stress[XX];
+            first[1] = stress[XY];
+          } else {
+            const double shear = 150 / 2.6;
+            assert_near(stress[XX], first[0] - 2 * shear * 2e-8 * e[0], 1e-5 * 1e-5);
+            assert_near(stress[XY], first[1] - 2 * shear * 2e-8 * e[1], 1e-5 * 1e-5);
+          }
+          ++inside;
+        }
+        assert_true(inside > 0);
+      }
+      breccia_model_destroy(&m);
+    }
+}
+
 /** Kalthoff and Winkler's plate, coarser, struck between its notches. */
-static breccia_model *struck_plate(const char *space, double ratio)
+static breccia_model *struck_plate(const char *space, double ratio, const char *law)
 {
   return model_of("units: {length: m, force: N, time: s}\n"
-                  "materials: {s: {model: elastic, density: 8000, Young modulus: 190 GPa, Poisson ratio: %g}}\n"
+                  "materials: {s: {model: %s, density: 8000, Young modulus: 190 GPa, Poisson ratio: %g}}\n"
                   "body: {p: {material: s, lattice: square, spacing: 0.0025, thickness: 0.009, shape: {box: {from: [0, "
                   "0], to: [0.1, 0.2]}}}}\n"
                   "cracks: [{cut: {line: [[-1, 0.075], [0.05, 0.075]]}}, {cut: {line: [[-1, 0.125], [0.05, 0.125]]}}]\n"
                   "peridynamics: {formulation: ordinary, space: %s}\nfailure: {fracture energy: 22170}\n"
                   "loads: [{on: {inside: {box: {from: [-1, 0.0755], to: [0.002, 0.1245]}}}, velocity: [16.5, free]}]\n"
                   "solve: {explicit: {end time: 80e-6}}\n",
-                  ratio, space);
+                  law, ratio, space);
 }
 
 static void the_books_of_a_struck_plate_balance(void **state)
@@ -378,7 +503,7 @@ static void the_books_of_a_struck_plate_balance(void **state)
     double ratio;
   } plates[] = {{"plane strain", 0.3}, {"plane strain", 0.1}, {"plane stress", 0.3}, {"plane stress", 0.45}};
   for (int k = 0; k < 4; ++k) {
-    breccia_model *m = struck_plate(plates[k].space, plates[k].ratio);
+    breccia_model *m = struck_plate(plates[k].space, plates[k].ratio, "elastic");
     breccia_error *error = breccia_error_create();
     if (breccia_model_step(m, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
     const Energy e = solver_energy(&m->solver);
@@ -392,22 +517,49 @@ static void the_books_of_a_struck_plate_balance(void **state)
   }
 }
 
+static void plates_that_flow_dissipate_and_break(void **state)
+{
+  (void)state;
+  const char *const laws[] = {"j2, yield stress: 1 GPa", "viscoelastic, relaxing share: 0.5, relaxation time: 20e-6"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = struck_plate("plane strain", 0.3, laws[k]);
+    breccia_error *error = breccia_error_create();
+    double dissipated = 0;
+    while (m->solver.clock.step < m->solver.clock.steps) {
+      if (breccia_model_step(m, 20, error)) fail_msg("%s: %s", laws[k], breccia_error_text(error));
+      const Energy e = solver_energy(&m->solver);
+      assert_true(e.dissipated > dissipated - 1e-3 * e.external);
+      dissipated = e.dissipated;
+    }
+    const Energy e = solver_energy(&m->solver);
+    print_message("%s: %lld bonds, fracture %.1f J, dissipated %.1f J of %.1f J\n", laws[k],
+                  (long long)m->domain.broken_count, e.fracture, e.dissipated, e.external);
+    assert_true(m->domain.broken_count > 20);
+    assert_true(e.stored > 0 && e.fracture > 0 && e.dissipated > 0.02 * e.external);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void any_number_of_threads_gives_the_same_bits(void **state)
 {
   (void)state;
-  breccia_model *m[2];
-  for (int k = 0; k < 2; ++k) {
-    m[k] = struck_plate("plane strain", 0.3);
-    m[k]->threads = k ? 3 : 1;
+  breccia_model *m[4];
+  for (int k = 0; k < 4; ++k) {
+    m[k] = struck_plate("plane strain", 0.3, k < 2 ? "elastic" : "j2, yield stress: 1 GPa");
+    m[k]->threads = k % 2 ? 3 : 1;
     assert_int_equal(breccia_model_step(m[k], 150, NULL), 0);
   }
-  assert_true(m[0]->domain.broken_count > 20);
-  assert_int_equal(m[0]->domain.broken_count, m[1]->domain.broken_count);
-  assert_true(m[0]->domain.fracture_energy == m[1]->domain.fracture_energy);
-  for (int k = 0; k < 3; ++k)
-    assert_memory_equal(m[0]->domain.particles->velocity[k], m[1]->domain.particles->velocity[k],
-                        sizeof(double) * (size_t)m[0]->domain.particles->places);
-  for (int k = 0; k < 2; ++k) breccia_model_destroy(&m[k]);
+  for (int k = 0; k < 4; k += 2) {
+    const Domain *one = &m[k]->domain, *three = &m[k + 1]->domain;
+    assert_true(one->broken_count > 20);
+    assert_int_equal(one->broken_count, three->broken_count);
+    assert_true(one->fracture_energy == three->fracture_energy);
+    for (int c = 0; c < 3; ++c)
+      assert_memory_equal(one->particles->velocity[c], three->particles->velocity[c],
+                          sizeof(double) * (size_t)one->particles->places);
+  }
+  for (int k = 0; k < 4; ++k) breccia_model_destroy(&m[k]);
 }
 
 int main(void)
@@ -420,7 +572,11 @@ int main(void)
       cmocka_unit_test(plain_weights_show_the_moduli_of_the_theory),
       cmocka_unit_test(rigid_rotation_makes_no_force_and_momenta_are_kept),
       cmocka_unit_test(the_critical_stretch_spends_the_fracture_energy),
+      cmocka_unit_test(two_points_yield_as_in_another_program),
+      cmocka_unit_test(two_points_relax_like_a_standard_linear_solid),
+      cmocka_unit_test(a_sheared_body_yields_at_the_stress_of_von_mises),
       cmocka_unit_test(the_books_of_a_struck_plate_balance),
+      cmocka_unit_test(plates_that_flow_dissipate_and_break),
       cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
       cmocka_unit_test(the_stable_step_does_not_fall_as_bonds_break),
   };

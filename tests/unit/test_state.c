@@ -93,14 +93,18 @@ static void a_state_given_back_leads_to_the_same_steps(void **state)
   assert_returns(model_of(deck, "cubic", "", ", 2", ""), 80, true);
   assert_returns(model_of(deck, "square", "thickness: 1, ", "", "peridynamics: {space: plane stress}\n"), 80, true);
   /* Families that keep what they show, and may carry less. */
-  assert_returns(model_of("units: {length: m, force: kN, time: s}\n"
-                          "materials: {rock: {model: elastic, density: 2.6, Young modulus: 3e7, Poisson ratio: 0.2}}\n"
-                          "body: {plate: {material: rock, spacing: 0.1, shape: {box: {particles: [24, 16, 2]}}}}\n"
-                          "cracks: [{cut: {line: [[1.2, -1], [1.2, 0.4]]}}]\n"
-                          "peridynamics: {formulation: ordinary}\nfailure: {critical stretch: 0.001}\n"
-                          "loads: [{on: {face: x-, layers: 3}, velocity: [-5, 0, 0]}, {on: {face: x+, layers: 3}, "
-                          "velocity: [5, 0, 0]}]\nsolve: {explicit: {steps: 5000}}\n"),
-                 80, true);
+  const char *const laws[] = {"elastic", "j2, yield stress: 2e4",
+                              "viscoelastic, relaxing share: 0.5, relaxation time: 1e-4"};
+  for (int k = 0; k < 3; ++k)
+    assert_returns(model_of("units: {length: m, force: kN, time: s}\n"
+                            "materials: {rock: {model: %s, density: 2.6, Young modulus: 3e7, Poisson ratio: 0.2}}\n"
+                            "body: {plate: {material: rock, spacing: 0.1, shape: {box: {particles: [24, 16, 2]}}}}\n"
+                            "cracks: [{cut: {line: [[1.2, -1], [1.2, 0.4]]}}]\n"
+                            "peridynamics: {formulation: ordinary}\nfailure: {critical stretch: 0.001}\n"
+                            "loads: [{on: {face: x-, layers: 3}, velocity: [-5, 0, 0]}, {on: {face: x+, layers: 3}, "
+                            "velocity: [5, 0, 0]}]\nsolve: {explicit: {steps: 5000}}\n",
+                            laws[k]),
+                   80, !k);
 }
 
 static void so_it_does_where_bonds_remember_and_bodies_meet(void **state)

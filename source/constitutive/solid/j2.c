@@ -80,6 +80,17 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
+static int deviator_of(const void *constants, breccia_deviator *d, char *reason, size_t size)
+{
+  const J2 *c = constants;
+  *d = (breccia_deviator){.yield_stress = c->hardening.first};
+  if (c->kinematic == 0 && c->hardening.gain == 0 && c->hardening.modulus == 0) return 0;
+  snprintf(reason, size,
+           "families yield without hardening: leave out 'saturation stress', 'hardening modulus' and "
+           "'kinematic modulus'");
+  return 1;
+}
+
 LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
 {
   const J2 *c = constants;
@@ -121,4 +132,5 @@ const breccia_law law_j2 = {
     .history_values = history_values,
     .history_name = history_name,
     .update = update,
+    .deviator = deviator_of,
 };

@@ -1,0 +1,238 @@
+/* Deviators that yield or relax. A law tells how (breccia_deviator); the state of a family is a shift s of the deviatoric elongations of its bonds,
+ *   t = omega (a |xi| + b (e - s)) y / |y|.
+ * Perfectly plastic (Mitchell 2011; docs/theory.md 3): with the trial e_d - s and N^2 = sum w (e_d - s)^2, the deviator stores b N^2 / 2, which is
+ * q^2 / (6 G) for the stress q of von Mises; beyond the yield stress the trial is scaled back, and s takes the rest. Viscoelastic: s = lambda e_v,
+ * de_v/dt = (e_d - e_v) / tau, exact for elongations that grow evenly in a step. */
+#include "formulation/ordinary.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const breccia_deviator *deviator_at(const Ordinary *o, int64_t slice)
+{
+  return &o->deviators[o->material[slice]];
+}
+
+bool ordinary_flows(const breccia_deviator *deviator)
+{
+  return isfinite(deviator->yield_stress) || deviator->relaxing > 0;
+}
+
+/** Where the other end of each bond finds it. */
+static void find_back(void *context, int64_t slice)
+{
+  const Ordinary *o = context;
+  const Family *f = o->family;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      if (!(f->intact[slot] >> lane & 1)) continue;
+      const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(f, slice, slot, lane).neighbour;
+      o->flow->back[slot * SLICE + lane] = family_slot(f, other, place) * SLICE + other % SLICE;
+    }
+}
+
+static int create_flow(Ordinary *o, Error *error)
+{
+  const size_t bonds = (size_t)o->family->slots * SLICE;
+  bool relaxes = false;
+  for (int64_t slice = 0; slice < o->particles->slices; ++slice) relaxes |= deviator_at(o, slice)->relaxing > 0;
+  Flow *flow = o->flow = calloc(1, sizeof *flow);
+  if (!flow) return error_add(error, BRECCIA_FAILURE, "out of memory: force states");
+  int failed = !(flow->back = memory_zeroed(bonds, sizeof *flow->back, "force states", error));
+  for (int k = 0; k < 2; ++k) {
+    failed |= !(flow->shift[k] = memory_zeroed(bonds, sizeof(double), "force states", error));
+    if (relaxes) failed |= !(flow->last[k] = memory_zeroed(bonds, sizeof(double), "force states", error));
+  }
+  if (failed) return BRECCIA_FAILURE;
+  team_each(o->particles->slices, find_back, o);
+  return BRECCIA_OK;
+}
+
+/** Whether a material is one of the formulation's own blocks. */
+static bool is_own(const Ordinary *o, int material)
+{
+  for (int64_t slice = 0; slice < o->particles->slices; ++slice)
+    if (o->material[slice] == material && !is_foreign(o->foreign, slice * SLICE)) return true;
+  return false;
+}
+
+int ordinary_flow_create(Ordinary *o, int materials, Error *error)
+{
+  char reason[200];
+  bool any = false;
+  o->deviators = memory_zeroed((size_t)materials, sizeof *o->deviators, "force states", error);
+  if (!o->deviators) return BRECCIA_FAILURE;
+  for (int k = 0; k < materials; ++k) {
+    const Material *m = &o->materials[k];
+    o->deviators[k] = (breccia_deviator){.yield_stress = INFINITY};
+    if (!m->law->deviator || !is_own(o, k)) continue;
+    if (m->law->deviator(m->constants, &o->deviators[k], reason, sizeof reason))
+      return error_add(error, BRECCIA_USER_ERROR, "material '%s': ordinary: %s", m->name, reason);
+    if (ordinary_flows(&o->deviators[k]) && o->space == SPACE_PLANE_STRESS)
+      return error_add(
+          error, BRECCIA_USER_ERROR,
+          "material '%s': ordinary: '%s' needs space or plane strain: in plane stress the deviator and the "
+          "dilatation of the plane flow together",
+          m->name, m->law->name);
+  }
+  for (int64_t slice = 0; slice < o->particles->slices; ++slice) any |= ordinary_flows(deviator_at(o, slice));
+  return any ? create_flow(o, error) : BRECCIA_OK;
+}
+
+void ordinary_flow_destroy(Ordinary *o)
+{
+  Flow *flow = o->flow;
+  free(o->deviators);
+  if (!flow) return;
+  free(flow->back);
+  for (int k = 0; k < 2; ++k) {
+    free(flow->shift[k]);
+    free(flow->last[k]);
+  }
+  free(flow);
+}
+
+/* ---- a family ---- */
+
+/** Deviatoric elongation of a bond of a place. */
+static double deviatoric(const Ordinary *o, int64_t place, const Bond *bond, const OrdinaryStretch *s)
+{
+  return s->elongation - o->dilatation[place] * bond->length / o->dimensions;
+}
+
+/** Scales the deviators of a family back to its yield surface. */
+static void yield(const Ordinary *o, int64_t place, const breccia_deviator *deviator)
+{
+  const Family *f = o->family;
+  Flow *flow = o->flow;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  const double shear = ordinary_material(o, place)->shear;
+  double square = 0, factor = 1;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, lane);
+    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const double trial = deviatoric(o, place, &bond, &s) - flow->shift[0][slot * SLICE + lane];
+    square += bond.weight * trial * trial;
+  }
+  const double b = o->share[place] > 0 ? o->shear[place] / o->share[place] : 0, mises = sqrt(3 * shear * b * square);
+  if (mises > deviator->yield_stress && !o->points->elastic_stage) factor = deviator->yield_stress / mises;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    const int64_t at = slot * SLICE + lane;
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, lane);
+    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const double e = deviatoric(o, place, &bond, &s), trial = e - flow->shift[0][at];
+    flow->shift[1][at] = factor < 1 ? e - factor * trial : flow->shift[0][at];
+  }
+}
+
+static void relax(const Ordinary *o, int64_t place, const breccia_deviator *deviator)
+{
+  const Family *f = o->family;
+  Flow *flow = o->flow;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  const double part = deviator->relaxing,
+               times = o->points->elastic_stage ? 0 : o->points->time_step / deviator->relaxation_time;
+  const double gone = -expm1(-times), late = times > 0 ? 1 - gone / times : 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    const int64_t at = slot * SLICE + lane;
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Bond bond = ordinary_bond(o, slice, slot, lane);
+    const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+    const double e = deviatoric(o, place, &bond, &s), before = flow->last[0][at];
+    flow->last[1][at] = o->points->elastic_stage ? before : e; /* then the history is kept */
+    flow->shift[1][at] = part * (before * gone + late * (e - before)) + flow->shift[0][at] * (1 - gone);
+  }
+}
+
+void ordinary_flow(const Ordinary *o, const Sweep *sweep)
+{
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
+    const breccia_deviator *deviator = deviator_at(o, slice);
+    for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; ++place)
+      if (o->inverse[place] == 0)
+        continue;
+      else if (deviator->relaxing > 0)
+        relax(o, place, deviator);
+      else if (isfinite(deviator->yield_stress))
+        yield(o, place, deviator);
+  }
+}
+
+void ordinary_flow_resist(const Ordinary *o, const Sweep *sweep)
+{
+  const Family *f = o->family;
+  const Flow *flow = o->flow;
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int64_t place = slice * SLICE + lane;
+      double force[3] = {0};
+      for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+        const int64_t at = slot * SLICE + lane;
+        if (!(f->intact[slot] >> lane & 1)) continue;
+        const Bond bond = ordinary_bond(o, slice, slot, lane);
+        const double pull =
+            o->shear[place] * flow->shift[1][at] + o->shear[bond.neighbour] * flow->shift[1][flow->back[at]];
+        if (pull == 0) continue;
+        const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
+        for (int k = 0; k < 3; ++k) force[k] += bond.weight * pull * s.y[k] / s.length;
+      }
+      for (int k = 0; k < 3; ++k) o->particles->internal[k][place] -= force[k];
+    }
+}
+
+/* ---- state ---- */
+
+typedef struct Commit {
+  const Ordinary *ordinary;
+  int from, to; /* of both states */
+} Commit;
+
+static void copy_slice(void *context, int64_t slice)
+{
+  const Commit *c = context;
+  const Flow *flow = c->ordinary->flow;
+  const int64_t *slots = c->ordinary->family->first + slice, first = slots[0] * SLICE;
+  const size_t bytes = sizeof(double) * (size_t)(slots[1] - slots[0]) * SLICE;
+  memcpy(flow->shift[c->to] + first, flow->shift[c->from] + first, bytes);
+  if (flow->last[0]) memcpy(flow->last[c->to] + first, flow->last[c->from] + first, bytes);
+}
+
+void ordinary_commit(void *formulation, bool well)
+{
+  Commit commit = {formulation, well, !well};
+  if (commit.ordinary->flow) team_each(commit.ordinary->particles->slices, copy_slice, &commit);
+}
+
+/** The committed state was put in place from outside. */
+static int take_up(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)numbers;
+  (void)count;
+  (void)error;
+  ordinary_commit(owner, false);
+  return BRECCIA_OK;
+}
+
+void ordinary_state(void *formulation, const char *part, StateList *list)
+{
+  static const StateCare care = {.resume = take_up};
+  Ordinary *o = formulation;
+  if (!o->flow) return;
+  StateRow row = {.unit = "length",
+                  .kind = STATE_NUMBERS,
+                  .entity = STATE_OF_SLOT,
+                  .role = STATE_COMMITTED,
+                  .count = o->family->slots * SLICE,
+                  .values = o->flow->shift[0],
+                  .care = &care,
+                  .owner = o};
+  state_add(list, &row, "inelastic elongation", part);
+  row.values = o->flow->last[0];
+  if (row.values) state_add(list, &row, "deviatoric elongation", part);
+}
