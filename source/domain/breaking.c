@@ -167,16 +167,22 @@ static void find_left(Domain *d, const Region *region)
       stress[k] = points->stress[k][torn->place];
     }
     torn->control = energy.control;
+    torn->stored = energy.stored;
     torn->carried =
         energy.received + energy.weight * (torn->elastic + half_work(torn->stress, stress, torn->strain, strain) -
                                            half_work(stress, nothing, energy.was, energy.strain));
   }
 }
 
+/* Of the energy that a family stores. Both what it had received and what it would have received are products of the strains at the beginning
+ * and the end of a step. Where it was hardly strained at the beginning they are small and of either sign, from the turning of its bonds, and
+ * their ratio, which would stay with it for good, says nothing. What it may gain there is less than this share. */
+static const double SMALL_SHARE = 0.02;
+
 /** A family whose strain grows as it loses bonds would have received what nobody has put in: it carries less from here on. */
 static void carry_less(Domain *d, Torn *torn)
 {
-  if (torn->carried + torn->control <= torn->received || torn->carried <= 0) return;
+  if (torn->carried + torn->control <= torn->received || torn->carried <= SMALL_SHARE * torn->stored) return;
   const double factor = fmax(0, torn->received - torn->control) / torn->carried;
   const Region *region = domain_region(d, torn->place);
   region->type->shares(region->formulation)[torn->place] *= factor;

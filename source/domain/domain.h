@@ -58,6 +58,7 @@ typedef struct Torn {
   double strain[6], stress[6], elastic; /* of its point at the beginning of the step, and its energy by them */
   double received;                      /* until the end of the step, with the bonds */
   double carried, control;              /* the same without them: in proportion to the share, and not */
+  double stored;                        /* at the end of the step without them */
 } Torn;
 
 typedef struct Domain {

@@ -542,6 +542,37 @@ static void a_family_that_loses_a_bond_never_stores_more(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Bonds that break in the first step, before anything was strained: what families had received is then nothing but roundings and
+ *  turning, whose ratio says nothing. */
+static void families_that_were_at_rest_keep_their_stiffness(void **state)
+{
+  (void)state;
+  static const char *const formulations[] = {"ordinary", "correspondence"};
+  for (size_t n = 0; n < sizeof formulations / sizeof *formulations; ++n) {
+    char deck[1000];
+    snprintf(
+        deck, sizeof deck,
+        SOFT
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [9, 9]}}}}\n"
+        "peridynamics: {formulation: %s, space: plane strain}\nfailure: {critical stretch: 0.02}\n"
+        "loads: [{on: {inside: {box: {from: [0.4, 0.2], to: [0.6, 0.5]}}}, initial velocity: {translation: [1.5, "
+        "1]}},\n"
+        "        {on: {inside: {box: {from: [0.2, 0.3], to: [0.4, 0.7]}}}, initial velocity: {translation: [-0.5, "
+        "2]}}]\n"
+        "solve: {explicit: {time step: 0.002, steps: 1}}\n",
+        formulations[n]);
+    breccia_model *m = model_of(deck);
+    breccia_error *error = breccia_error_create();
+    if (breccia_model_step(m, 1, error)) fail_msg("%s", breccia_error_text(error));
+    const Domain *d = &m->domain;
+    assert_true(d->broken_count > 0);
+    const double *shares = d->regions[0].type->shares(d->regions[0].formulation);
+    for (int64_t i = 0; i < d->particles->count; ++i) assert_true(shares[d->particles->place_of[i]] == 1);
+    breccia_model_destroy(&m);
+    breccia_error_destroy(&error);
+  }
+}
+
 /** The plate above, coarser and for a shorter time, with a control and an influence. */
 static breccia_model *struck_coarse_plate(const char *peridynamics, const char *material)
 {
@@ -669,6 +700,7 @@ int main(void)
       cmocka_unit_test(a_law_that_gives_more_than_it_got_stops_the_run),
       cmocka_unit_test(a_family_that_loses_a_bond_never_stores_more),
       cmocka_unit_test(bodies_gain_no_energy_as_they_break),
+      cmocka_unit_test(families_that_were_at_rest_keep_their_stiffness),
       cmocka_unit_test(families_that_carry_less_restart_to_the_same_bits),
       cmocka_unit_test(the_books_of_laws_that_yield_balance_as_they_break),
       cmocka_unit_test(marks_of_laws_that_gave_up_outlive_a_restart),
