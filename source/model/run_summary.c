@@ -5,9 +5,16 @@
 #include <math.h>
 #include <string.h>
 
-static double load_peak(const Load *load, double time)
+static bool has_begun(const Load *load, const Clock *clock)
 {
-  return history_peak(&load->history, time - load->begin) * load_magnitude(load->spec);
+  return load->first <= clock->stage;
+}
+
+/** The farthest from zero that a load has been; 0 before its stage. */
+static double load_peak(const Load *load, const Clock *clock)
+{
+  if (!has_begun(load, clock)) return 0;
+  return history_peak(&load->history, clock->time - load->begin) * load_magnitude(load->spec);
 }
 
 static double nanoseconds_per_bond(const breccia_model *model)
@@ -150,7 +157,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     text_add(&t, "%s{\"name\": ", k ? ", " : "");
     text_add_json(&t, l->name ? l->name : "");
     text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
-    add_number(&t, "peak", load_peak(&model->loading.loads[k], s->clock.time));
+    add_number(&t, "peak", load_peak(&model->loading.loads[k], &s->clock));
     text_add(&t, ", \"unit\": ");
     text_add_json(&t, unit);
     text_add(&t, "}");
@@ -196,6 +203,20 @@ static void tell_rest(const Solver *s, Text *t)
         rest.unbalanced, rest.kinetic, rest_limit);
 }
 
+static void tell_load(const breccia_model *model, const Load *load, Text *t)
+{
+  const char *dimension, *kind = load_kind(load->spec, &dimension);
+  text_add(t, "load '%s': %s", load->spec->name, kind);
+  if (!has_begun(load, &model->solver.clock))
+    text_add(t, ", has not begun");
+  else if (load_magnitude(load->spec) != 0) { /* else a support, which has no size */
+    char unit[64];
+    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
+    text_add(t, ", peak %.6g %s", load_peak(load, &model->solver.clock), unit);
+  }
+  text_add(t, "\n");
+}
+
 void run_tell_outcome(Run *run, int status)
 {
   breccia_model *model = run->model;
@@ -214,15 +235,8 @@ void run_tell_outcome(Run *run, int status)
            (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
            (long long)model->run_steps, nanoseconds_per_bond(model));
   tell_stages(s, time, t);
-  for (int k = 0; k < model->loading.count; ++k) {
-    const LoadSpec *l = model->loading.loads[k].spec;
-    const char *dimension, *kind = load_kind(l, &dimension);
-    char unit[64];
-    units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    if (l->name)
-      text_add(t, "load '%s': %s, peak %.6g %s\n", l->name, kind, load_peak(&model->loading.loads[k], s->clock.time),
-               unit);
-  }
+  for (int k = 0; k < model->loading.count; ++k)
+    if (model->loading.loads[k].spec->name) tell_load(model, &model->loading.loads[k], t);
   double x[3];
   const BrokenBond *first = first_broken(d, x);
   if (first)

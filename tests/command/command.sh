@@ -88,6 +88,23 @@ solve: {explicit: {end time: 0.1}}
 J
 contains "jump" "$("$breccia" check jump.yaml)" "grows over 100 µs"
 
+# a blow tells its kinetic energy, half the mass times the square of the speed; a run tells which loads have begun, and no size of supports
+cat > blow.yaml <<'J'
+materials: {m: {model: elastic, density: 2400, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}
+loads: [{name: roll, on: {face: z-}, roller: [0, 0, 1]}, {name: weight, gravity: [0, 0, -9.81]}]
+solve:
+  - explicit: {steps: 4}
+  - {explicit: {steps: 4}, loads: [{name: blow, on: {all: yes}, initial velocity: {translation: [3, 0, 4]}}]}
+J
+contains "blow" "$("$breccia" check blow.yaml)" "load 'blow': its particles begin with a kinetic energy of 4.8 kJ"
+"$breccia" run blow.yaml --steps 2 > out || fail "run of the first stage"
+contains "load of a later stage" "$(cat out)" "load 'blow': initial velocity, has not begun"
+contains "load of a later stage, in the summary" "$(cat blow/summary.json)" '"kind": "initial velocity", "peak": 0,'
+grep -qx "load 'roll': roller" out || fail "a support has a size: $(grep roll out)"
+"$breccia" run blow.yaml > out || fail "run of both stages"
+contains "load of this stage" "$(cat out)" "load 'blow': initial velocity, peak 5 m/s"
+
 # a burst writes the last good state and ends with status 1
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
 "$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2

@@ -51,28 +51,60 @@ static int create(Load *load, const LoadMaking *making)
   return BRECCIA_OK;
 }
 
-static bool begin(Load *load, Particles *p)
+typedef struct Motion {
+  double translation[3], rotation[3], centre[3];
+} Motion;
+
+static Motion motion_of(const Load *load, const Particles *p)
 {
   const InitialVelocitySpec *s = load->value->section;
-  double centre[3] = {0}, mass = 0, w[3];
+  Motion m;
+  double moment[3] = {0}, mass = 0;
   for (int64_t n = 0; n < load->selection.count; ++n) {
     const int32_t i = load->selection.places[n];
-    for (int k = 0; k < 3; ++k) centre[k] += p->density[i] * p->volume[i] * (p->position[k][i] + p->displacement[k][i]);
+    for (int k = 0; k < 3; ++k) moment[k] += p->density[i] * p->volume[i] * (p->position[k][i] + p->displacement[k][i]);
     mass += p->density[i] * p->volume[i];
   }
   for (int k = 0; k < 3; ++k) {
-    centre[k] = isnan(s->about[0]) ? centre[k] / mass : s->about[k];
-    w[k] = or_none(s->rotation[k]);
+    m.translation[k] = or_none(s->translation[k]);
+    m.rotation[k] = or_none(s->rotation[k]);
+    m.centre[k] = isnan(s->about[0]) ? moment[k] / mass : s->about[k];
   }
+  return m;
+}
+
+static void velocity_at(const Motion *m, const Particles *p, int32_t i, double velocity[3])
+{
+  double arm[3];
+  for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement[k][i] - m->centre[k];
+  for (int k = 0; k < 3; ++k)
+    velocity[k] =
+        m->translation[k] + m->rotation[(k + 1) % 3] * arm[(k + 2) % 3] - m->rotation[(k + 2) % 3] * arm[(k + 1) % 3];
+}
+
+static bool begin(Load *load, Particles *p)
+{
+  const Motion m = motion_of(load, p);
   for (int64_t n = 0; n < load->selection.count; ++n) {
     const int32_t i = load->selection.places[n];
-    double arm[3];
-    for (int k = 0; k < 3; ++k) arm[k] = p->position[k][i] + p->displacement[k][i] - centre[k];
-    for (int k = 0; k < 3; ++k)
-      p->velocity[k][i] =
-          or_none(s->translation[k]) + w[(k + 1) % 3] * arm[(k + 2) % 3] - w[(k + 2) % 3] * arm[(k + 1) % 3];
+    double v[3];
+    velocity_at(&m, p, i, v);
+    for (int k = 0; k < 3; ++k) p->velocity[k][i] = v[k];
   }
   return true;
+}
+
+static LoadWords tell(const Load *load, const Particles *p)
+{
+  const Motion m = motion_of(load, p);
+  double kinetic = 0;
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int32_t i = load->selection.places[n];
+    double v[3];
+    velocity_at(&m, p, i, v);
+    kinetic += 0.5 * p->density[i] * p->volume[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  return (LoadWords){"its particles begin with a kinetic energy of", kinetic, "energy", "J"};
 }
 
 static const char *kind(const LoadValue *value, const char **dimension)
@@ -89,5 +121,10 @@ static double magnitude(const LoadValue *value)
   return sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2]);
 }
 
-const LoadType initial_velocity_load = {
-    .everywhere = true, .timeless = true, .create = create, .begin = begin, .kind = kind, .magnitude = magnitude};
+const LoadType initial_velocity_load = {.everywhere = true,
+                                        .timeless = true,
+                                        .create = create,
+                                        .begin = begin,
+                                        .tell = tell,
+                                        .kind = kind,
+                                        .magnitude = magnitude};
