@@ -327,10 +327,10 @@ static void take_step(void *context)
 static int advance(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
+  state_note_others(&s->before); /* first, so that a step that fails gives back the plan and the stable step too */
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
   explicit_foresee_motions(s);
-  state_note_others(&s->before);
   team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);
   domain_commit_points(s->domain);
