@@ -167,10 +167,10 @@ static void find_left(Domain *d, const Region *region)
       stress[k] = points->stress[k][torn->place];
     }
     torn->control = energy.control;
-    torn->stored = energy.stored;
-    torn->carried =
-        energy.received + energy.weight * (torn->elastic + half_work(torn->stress, stress, torn->strain, strain) -
-                                           half_work(stress, nothing, energy.was, energy.strain));
+    const double density = torn->elastic + half_work(torn->stress, stress, torn->strain, strain);
+    /* of points not as their laws unload, which laws in servers are not asked */
+    torn->stored = points->components == 6 ? energy.weight * density : energy.stored;
+    torn->carried = energy.received + energy.weight * (density - half_work(stress, nothing, energy.was, energy.strain));
   }
 }
 
