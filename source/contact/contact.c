@@ -88,7 +88,7 @@ int contact_create(Contact *c, const ContactSpec *spec, const Body *body, const 
                    const ForcesBlock *blocks, Error *error)
 {
   const int64_t places = body->particles.places;
-  *c = (Contact){.spec = spec, .body = body, .family = family, .margin = 0.3 * body->largest_spacing};
+  *c = (Contact){.spec = spec, .body = body, .family = family, .margin = 0.3 * body->largest_spacing, .free_act = -1};
   if (!spec) return BRECCIA_OK;
   c->young = memory_zeroed((size_t)body->block_count, sizeof(double), "contact", error);
   c->smoothed = memory_zeroed((size_t)body->block_count, sizeof(double), "contact", error);
@@ -115,6 +115,7 @@ void contact_destroy(Contact *c)
     free(c->rows[r].grips);
   }
   free(c->rows);
+  free(c->acts);
   free(c->row_of);
   free(c->touched);
   free(c->young);
@@ -158,14 +159,59 @@ static bool row_grows(const Contact *c, ContactRow *row)
   return true;
 }
 
+/** Where the pair with a neighbour of this number is among those of a row, or would be. */
+static int32_t find_pair(const ContactRow *row, const int32_t *number, int32_t neighbour)
+{
+  int32_t first = 0, last = row->count;
+  while (first < last) {
+    const int32_t middle = (first + last) / 2;
+    if (number[row->pairs[middle].neighbour] < number[neighbour])
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first;
+}
+
+static bool is_pair(const ContactRow *row, int32_t at, int32_t neighbour)
+{
+  return at < row->count && row->pairs[at].neighbour == neighbour;
+}
+
+/** The act that the other end of a pair has already, or a new one. @return -1 if memory is out */
+static int32_t act_for(Contact *c, int32_t place, int32_t neighbour)
+{
+  const ContactRow *other = c->row_of[neighbour] < 0 ? NULL : &c->rows[c->row_of[neighbour]];
+  const int32_t at = other ? find_pair(other, c->body->particles.number, place) : 0;
+  int32_t act = c->free_act;
+  if (other && is_pair(other, at, place)) {
+    ++c->acts[other->pairs[at].act].ends;
+    return other->pairs[at].act;
+  }
+  if (act >= 0) {
+    c->free_act = c->acts[act].next;
+  } else {
+    if (c->act_count == c->act_capacity) {
+      const int32_t capacity = c->act_capacity ? 2 * c->act_capacity : 256;
+      PairAct *grown = realloc(c->acts, sizeof *grown * (size_t)capacity);
+      if (!grown) return -1;
+      c->acts = grown;
+      c->act_capacity = capacity;
+    }
+    act = c->act_count++;
+  }
+  c->acts[act] = (PairAct){.ends = 1, .next = -1};
+  return act;
+}
+
 ContactPair *contact_pair_for(Contact *c, int32_t place, int32_t neighbour)
 {
   const int32_t *number = c->body->particles.number;
   ContactRow *row = contact_row_for(c, place);
-  int32_t at = row ? row->count : 0;
-  while (row && at > 0 && number[row->pairs[at - 1].neighbour] > number[neighbour]) --at;
-  if (row && at > 0 && row->pairs[at - 1].neighbour == neighbour) return &row->pairs[at - 1];
-  if (!row || !row_grows(c, row)) {
+  const int32_t at = row ? find_pair(row, number, neighbour) : 0;
+  if (row && is_pair(row, at, neighbour)) return &row->pairs[at];
+  const int32_t act = row && row_grows(c, row) ? act_for(c, place, neighbour) : -1;
+  if (act < 0) {
     c->failed = true;
     return NULL;
   }
@@ -175,14 +221,19 @@ ContactPair *contact_pair_for(Contact *c, int32_t place, int32_t neighbour)
     memmove(row->grips + 2 * (at + 1), row->grips + 2 * at, 2 * sizeof *row->grips * behind);
     row->grips[2 * at] = row->grips[2 * at + 1] = (Grip){.known = false};
   }
-  row->pairs[at] = (ContactPair){.neighbour = neighbour};
+  row->pairs[at] = (ContactPair){.neighbour = neighbour, .low = number[place] < number[neighbour], .act = act};
   ++row->count;
   return &row->pairs[at];
 }
 
-static void remove_pair(ContactRow *row, int32_t at)
+static void remove_pair(Contact *c, ContactRow *row, int32_t at)
 {
   const size_t behind = (size_t)(row->count - at - 1);
+  PairAct *act = &c->acts[row->pairs[at].act];
+  if (--act->ends == 0) {
+    act->next = c->free_act;
+    c->free_act = row->pairs[at].act;
+  }
   memmove(row->pairs + at, row->pairs + at + 1, sizeof *row->pairs * behind);
   if (row->grips) memmove(row->grips + 2 * at, row->grips + 2 * (at + 1), 2 * sizeof *row->grips * behind);
   --row->count;
@@ -204,7 +255,12 @@ void contact_bond_broke(Contact *c, int32_t a, int32_t b)
   for (int end = 0; end < 2; ++end) {
     ContactPair *pair = contact_pair_for(c, end ? b : a, end ? a : b);
     if (!pair) return;
-    *pair = (ContactPair){.neighbour = pair->neighbour, .kind = PAIR_BROKEN, .bond = true, .rest = rest};
+    *pair = (ContactPair){.neighbour = pair->neighbour,
+                          .kind = PAIR_BROKEN,
+                          .low = pair->low,
+                          .bond = true,
+                          .act = pair->act,
+                          .rest = rest};
     lose_bond(c, end ? b : a);
   }
 }
@@ -218,8 +274,8 @@ void contact_bond_mended(Contact *c, int32_t a, int32_t b)
     ContactRow *row = &c->rows[at];
     row->stale = row->faceless = true;
     row->torn = false;
-    for (int32_t n = row->count - 1; n >= 0; --n)
-      if (row->pairs[n].neighbour == (end ? a : b)) remove_pair(row, n);
+    const int32_t n = find_pair(row, c->body->particles.number, end ? a : b);
+    if (is_pair(row, n, end ? a : b)) remove_pair(c, row, n);
   }
 }
 
@@ -310,7 +366,7 @@ void contact_search(Contact *c)
   if (!c->failed && c->cuts) visit_near(c, here, contact_cut_reach(c) + c->margin, true, visit_across);
   for (int32_t r = 0; r < c->row_count; ++r)
     for (int32_t n = c->rows[r].count - 1; n >= 0; --n)
-      if (!c->rows[r].pairs[n].found) remove_pair(&c->rows[r], n);
+      if (!c->rows[r].pairs[n].found) remove_pair(c, &c->rows[r], n);
   for (int k = 0; k < 3; ++k) places_free(&now[k]);
   c->choosing = true;
   c->travelled = 0;
@@ -320,7 +376,7 @@ void contact_forget_pairs(Contact *c)
 {
   for (int32_t r = 0; r < c->row_count; ++r)
     for (int32_t n = c->rows[r].count - 1; n >= 0; --n)
-      if (!c->rows[r].pairs[n].bond) remove_pair(&c->rows[r], n);
+      if (!c->rows[r].pairs[n].bond) remove_pair(c, &c->rows[r], n);
 }
 
 void contact_follow(Contact *c, double motion)

@@ -29,14 +29,25 @@ typedef enum PairKind {
 typedef struct ContactPair {
   int32_t neighbour; /* place */
   PairKind kind;
+  bool low;            /* this is the row of the lower number */
   bool bond;           /* this was a bond */
   bool found;          /* by the last search */
+  int32_t act;         /* what it does, one for both ends: index of acts */
   double normal[2][3]; /* of the face, in the reference, as the lower and the higher end know it; 0: it does not */
   double depth;        /* of both ends below their faces */
   double rest;         /* distance across the face below which it resists */
 } ContactPair;
 
-/** What friction remembers of a pair that touches or nearly does; direction as in ContactPair. */
+/** What a pair does to both its ends, found once from the lower one; direction as in ContactPair, per volume squared. */
+typedef struct PairAct {
+  int32_t ends; /* rows that have the pair */
+  int32_t next; /* free one, while no row has it; or -1 */
+  bool presses, turns;
+  double force[3];   /* on the lower end; against it on the higher one */
+  double turning[3]; /* derivative of the energy by the normal as the frames make it, if it turns with these */
+} PairAct;
+
+/** What friction remembers of a pair that touches or nearly does, kept with its lower end; direction as in ContactPair. */
 typedef struct Grip {
   bool known;               /* way and normal are */
   double spring[3];         /* elastic slip times the square root of the stiffness: half its square is what it stores;
@@ -69,7 +80,7 @@ typedef struct ContactRow {
   double face[MOST_FACES][3]; /* their unit normals in the reference, outwards */
   double level[MOST_CUTS];    /* of the planes of cuts along their normals */
   double depth;               /* below the faces */
-  double stored, slid;        /* energy, and work of friction, of the last evaluation: half of that of each pair */
+  double stored, slid; /* energy, and work of friction, of the last evaluation: of pairs whose lower end this is */
 } ContactRow;
 
 typedef struct Contact {
@@ -84,17 +95,19 @@ typedef struct Contact {
   int32_t *row_of;  /* [places] or -1 */
   ContactRow *rows;
   int32_t row_count, row_capacity;
-  double stiffest;         /* the most that contact adds to an eigenvalue */
-  double margin;           /* how far the rows reach beyond any contact */
-  double travelled;        /* sum of largest motions since the rows were made */
-  int committed;           /* which grips are committed */
-  double friction_work;    /* dissipated by friction up to the last commit */
-  bool cuts;               /* a closed cut parts some pairs */
-  bool choosing;           /* pairs were found again: those that do not press choose their faces */
-  bool remembered;         /* frames before bonds broke in the step under way are known */
-  bool torn;               /* rows are */
-  double travelled_before; /* the step under way */
-  double *kept;            /* the state before the step under way, as numbers, if it has changed since; or NULL */
+  PairAct *acts;
+  int32_t act_count, act_capacity, free_act; /* the first free one, or -1 */
+  double stiffest;                           /* the most that contact adds to an eigenvalue */
+  double margin;                             /* how far the rows reach beyond any contact */
+  double travelled;                          /* sum of largest motions since the rows were made */
+  int committed;                             /* which grips are committed */
+  double friction_work;                      /* dissipated by friction up to the last commit */
+  bool cuts;                                 /* a closed cut parts some pairs */
+  bool choosing;                             /* pairs were found again: those that do not press choose their faces */
+  bool remembered;                           /* frames before bonds broke in the step under way are known */
+  bool torn;                                 /* rows are */
+  double travelled_before;                   /* the step under way */
+  double *kept; /* the state before the step under way, as numbers, if it has changed since; or NULL */
   int64_t kept_count;
   bool failed; /* memory was out */
 } Contact;

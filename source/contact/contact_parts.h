@@ -52,12 +52,6 @@ static inline void present_way(const Particles *p, int32_t a, int32_t b, double 
     way[k] = p->position[k][b] - p->position[k][a] + (p->displacement[k][b] - p->displacement[k][a]);
 }
 
-/** True if a row is that of the lower number of both ends. */
-static inline bool is_low(const Contact *c, const ContactRow *row, const ContactRow *other)
-{
-  return c->body->particles.number[row->place] < c->body->particles.number[other->place];
-}
-
 /* Pairs (contact.c). */
 ContactRow *contact_row_for(Contact *c, int32_t place);
 /** The pair of a place with a neighbour, made if it is not there. @return NULL if memory is out */

@@ -81,7 +81,7 @@ static int read_pair(Contact *c, const double *in)
     pair->depth = in[9];
     pair->rest = in[10];
     const ContactRow *row = &c->rows[c->row_of[end ? high : low]];
-    if (!row->grips) continue;
+    if (!row->grips || !pair->low) continue;
     Grip *held = &row->grips[2 * (pair - row->pairs) + c->committed];
     const double *grip = in + SAVED_PAIR;
     held->known = grip[0] != 0;

@@ -227,8 +227,7 @@ static void choose_met(const Contact *c, const ContactRow *low, const ContactRow
 
 void contact_choose(const Contact *c, const ContactRow *row, const ContactRow *other, ContactPair *pair)
 {
-  const bool first = is_low(c, row, other);
-  const ContactRow *low = first ? row : other, *high = first ? other : row;
+  const ContactRow *low = pair->low ? row : other, *high = pair->low ? other : row;
   Press press;
   if (pair->kind == PAIR_BROKEN || (pair->kind != PAIR_NEW && contact_press(c, low, high, pair, false, &press))) return;
   const int cut = pair->bond ? -1 : contact_common_cut(c, low, high);

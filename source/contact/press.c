@@ -207,30 +207,26 @@ static void keep_row(const Contact *c, const ContactRow *row)
   for (int32_t n = 0; n < row->count; ++n) {
     const ContactRow *other = &c->rows[c->row_of[row->pairs[n].neighbour]];
     if (!row->torn && !other->torn) continue;
-    const bool first = is_low(c, row, other);
-    keep_energy(c, first ? row : other, first ? other : row, &row->pairs[n]);
+    const bool low = row->pairs[n].low;
+    keep_energy(c, low ? row : other, low ? other : row, &row->pairs[n]);
   }
 }
 
-/** Adds the force of a pair to that on its row, and its part of the derivative by the row's deformation gradient. */
-static void add_pair(const Contact *c, const ContactRow *row, const ContactRow *other, const ContactPair *pair,
-                     const Press *m, const double pull[3], double force[3], double moment[9])
+/** What a pair that presses does. @param[in] pull  of friction */
+static void find_act(const Press *m, const double pull[3], PairAct *act)
 {
-  const Particles *p = &c->body->particles;
-  const bool first = is_low(c, row, other);
-  const double share = p->volume[other->place] * (first ? 1 : -1);
   const double along = m->gap * m->gap * m->slope;
-  double q[3];
+  act->presses = true;
+  act->turns = !m->central;
   for (int k = 0; k < 3; ++k) {
     const double side = m->way[k] - m->across * m->normal[k];
-    force[k] += share * (along * side - m->stiffness * m->gap * m->normal[k] + pull[k]);
-    q[k] = -m->gap * (m->stiffness + m->gap * m->slope * m->across) * m->way[k] - m->across * pull[k];
+    act->force[k] = along * side - m->stiffness * m->gap * m->normal[k] + pull[k];
+    act->turning[k] = -m->gap * (m->stiffness + m->gap * m->slope * m->across) * m->way[k] - m->across * pull[k];
   }
-  if (m->central || !row->frame.known) return;
-  flatten(m->normal, q);
-  const double size = p->volume[row->place] * p->volume[other->place] / sqrt(dot(m->long_normal, m->long_normal));
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) moment[3 * i + j] += size * q[i] * pair->normal[!first][j];
+  if (m->central) return;
+  flatten(m->normal, act->turning);
+  const double size = sqrt(dot(m->long_normal, m->long_normal));
+  for (int k = 0; k < 3; ++k) act->turning[k] /= size;
 }
 
 /** The derivative by F from that by cof(F) N, and what the family is pulled with. */
@@ -262,39 +258,56 @@ static void mark_family(Contact *c, const ContactRow *row)
                        __ATOMIC_RELAXED);
 }
 
-/** Energy and forces of the pairs of a row. @param[in] only_energy  of the committed state */
-static void resist_row(Contact *c, ContactRow *row, bool only_energy)
+/** Energy and acts of the pairs whose lower end a row is. @param[in] only_energy  of the committed state */
+static void press_row(Contact *c, ContactRow *row, bool only_energy)
 {
   const Particles *p = &c->body->particles;
-  double force[3] = {0}, moment[9] = {0};
   row->slid = row->stored = 0;
-  row->pulls = false;
   for (int32_t n = 0; n < row->count; ++n) {
     const ContactPair *pair = &row->pairs[n];
+    if (!pair->low) continue;
     const ContactRow *other = &c->rows[c->row_of[pair->neighbour]];
     const Grip *before = row->grips ? &row->grips[2 * n + c->committed] : NULL;
     Grip *after = row->grips && !only_energy ? &row->grips[2 * n + !c->committed] : NULL;
-    const double half = p->volume[row->place] * p->volume[other->place] / 2;
-    const bool first = is_low(c, row, other);
-    const ContactRow *low = first ? row : other, *high = first ? other : row;
-    Press m;
-    if (after) after->known = false;
-    if (only_energy && before && before->known) row->stored += half * dot(before->spring, before->spring) / 2;
-    if (!row->near || !other->near) continue; /* nor did it press before: rows reach far beyond */
-    const bool presses = contact_press(c, low, high, pair, false, &m);
+    PairAct none, *act = only_energy ? &none : &c->acts[pair->act];
+    const double volumes = p->volume[row->place] * p->volume[other->place];
     double pull[3] = {0};
+    Press m;
+    act->presses = false;
+    if (after) after->known = false;
+    if (only_energy && before && before->known) row->stored += volumes * dot(before->spring, before->spring) / 2;
+    if (!row->near || !other->near) continue; /* nor did it press before: rows reach far beyond */
+    const bool presses = contact_press(c, row, other, pair, false, &m);
     if (after) {
-      row->slid += half * contact_grip(before, after, &m, c->spec->friction);
-      row->stored += half * dot(after->spring, after->spring) / 2;
+      row->slid += volumes * contact_grip(before, after, &m, c->spec->friction);
+      row->stored += volumes * dot(after->spring, after->spring) / 2;
       memcpy(pull, after->pull, sizeof pull);
     }
     if (!presses) continue;
-    row->stored += half * m.energy;
-    if (only_energy) continue;
-    add_pair(c, row, other, pair, &m, pull, force, moment);
-    row->pulls |= !m.central && row->frame.known;
+    row->stored += volumes * m.energy;
+    if (!only_energy) find_act(&m, pull, act);
   }
-  if (only_energy) return;
+}
+
+/** Forces on the particle of a row by its pairs, and what its family is pulled with. */
+static void resist_row(Contact *c, ContactRow *row)
+{
+  const Particles *p = &c->body->particles;
+  double force[3] = {0}, moment[9] = {0};
+  row->pulls = false;
+  if (!row->near) return;
+  for (int32_t n = 0; n < row->count; ++n) {
+    const ContactPair *pair = &row->pairs[n];
+    const PairAct *act = &c->acts[pair->act];
+    if (!act->presses) continue;
+    const double volume = p->volume[pair->neighbour], share = pair->low ? volume : -volume;
+    for (int k = 0; k < 3; ++k) force[k] += share * act->force[k];
+    if (!act->turns || !row->frame.known) continue;
+    row->pulls = true;
+    const double *normal = pair->normal[!pair->low], volumes = volume * p->volume[row->place];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) moment[3 * i + j] += volumes * act->turning[i] * normal[j];
+  }
   for (int k = 0; k < 3; ++k) p->internal[k][row->place] += force[k];
   row->pulls = row->pulls && c->body->dimensions > 1;
   if (!row->pulls) return;
@@ -348,7 +361,8 @@ void contact_resist(Contact *c)
     c->choosing = c->torn = c->remembered = false;
     memset(c->marked, 0, (size_t)c->body->particles.slices);
   }
-  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r], false);
+  TEAM_FOR (r, c->row_count) press_row(c, &c->rows[r], false);
+  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r]);
   TEAM_FOR (s, c->body->particles.slices)
     if (c->marked[s]) gather(c, s);
 }
@@ -357,7 +371,7 @@ static void find_stored(void *context)
 {
   Contact *c = context;
   TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
-  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r], true);
+  TEAM_FOR (r, c->row_count) press_row(c, &c->rows[r], true);
 }
 
 /** Sum over rows in the order of places: they stand in the order of events, which a restart does not know. */
