@@ -87,7 +87,7 @@ static void state(void *forces, StateList *list)
 }
 
 const ForcesType contact_forces = {.name = "contact",
-                                   .settle = true,
+                                   .strike = true,
                                    .create = create,
                                    .destroy = destroy,
                                    .follow = follow,

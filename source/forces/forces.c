@@ -102,11 +102,11 @@ double forces_eigenvalue(const Forces *f)
   return sum;
 }
 
-bool forces_settle(const Forces *f)
+bool forces_strike(const Forces *f)
 {
-  bool settle = false;
-  for (int k = 0; k < f->count; ++k) settle |= f->type[k]->settle;
-  return settle;
+  bool strike = false;
+  for (int k = 0; k < f->count; ++k) strike |= f->type[k]->strike;
+  return strike;
 }
 
 const char *forces_failed(const Forces *f)

@@ -24,7 +24,7 @@ typedef struct ForcesParts {
 /** Each function may be NULL where there is nothing to do. */
 typedef struct ForcesType {
   const char *name;
-  bool settle; /* they may give some energy as they set in, from faces that are still being chosen */
+  bool strike; /* they may set in and end within a step or two, and works summed over such steps err by some per cent */
   void *(*create)(const void *spec, const ForcesParts *parts, Error *error);
   void (*destroy)(void *forces);
   /** Before the forces of a step: no particle has moved by more than `motion`. By one thread. */
@@ -83,7 +83,7 @@ void forces_commit(Forces *forces);
 double forces_energy(const Forces *forces);
 double forces_dissipated(const Forces *forces);
 double forces_eigenvalue(const Forces *forces);
-bool forces_settle(const Forces *forces);
+bool forces_strike(const Forces *forces);
 /** @return the name of a kind for which memory was out, or NULL */
 const char *forces_failed(const Forces *forces);
 void forces_state(Forces *forces, StateList *list);

@@ -6,9 +6,9 @@
  *  The second bound is wide, because a step close to the stable one hardly follows the shortest waves. */
 int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
-  /* Steps: when a load sets in, all energies are next to nothing, and what presses at first may come from faces that settle. */
-  const int64_t lasting = forces_settle(&d->forces) ? 100 : 3;
-  const double most_given = forces_settle(&d->forces) ? 1 : 0.1, most_unexplained = 1000;
+  /* Steps: when a load sets in, all energies are next to nothing. */
+  const int64_t lasting = 3;
+  const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
   const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_dissipated(&d->forces);
   l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
   const bool sound = fmin(internal, fracture) >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
