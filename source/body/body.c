@@ -178,8 +178,10 @@ static bool removed(const Body *body, const Lattice *lattice, const double point
 {
   for (int c = 0; c < body->crack_count; ++c)
     if (body->cracks[c]->remove &&
-        shape_contains(body->cracks[c]->remove, &lattice->unit, lattice->dimensions, point, 1e-6 * lattice->spacing))
+        shape_contains(body->cracks[c]->remove, &lattice->unit, lattice->dimensions, point, 1e-6 * lattice->spacing)) {
+      __atomic_store_n(&body->crack_met[c], 1, __ATOMIC_RELAXED);
       return true;
+    }
   return false;
 }
 
@@ -436,9 +438,10 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
   body->blocks = memory_zeroed((size_t)blocks->count, sizeof *body->blocks, "blocks", error);
   body->lattices = memory_zeroed((size_t)blocks->count, sizeof *body->lattices, "lattices", error);
   body->cracks = memory_zeroed((size_t)cracks->count, sizeof *body->cracks, "cracks", error);
+  body->crack_met = memory_zeroed((size_t)cracks->count, 1, "cracks", error);
   Filling *fillings = memory_zeroed((size_t)blocks->count, sizeof *fillings, "lattice cells", error);
   body->margins.items = memory_zeroed((size_t)margins->count, sizeof(Margin), "supports", error);
-  if (!body->blocks || !body->lattices || !body->cracks || !fillings || !body->margins.items) {
+  if (!body->blocks || !body->lattices || !body->cracks || !body->crack_met || !fillings || !body->margins.items) {
     free(fillings);
     return BRECCIA_FAILURE;
   }
@@ -481,5 +484,6 @@ void body_destroy(Body *body)
   free(body->lattices);
   free(body->blocks);
   free(body->cracks);
+  free(body->crack_met);
   *body = (Body){0};
 }

@@ -39,6 +39,7 @@ typedef struct Body {
   Lattice *lattices; /* one per block */
   int crack_count;
   const CrackSpec **cracks;
+  uint8_t *crack_met; /* [cracks] 1: it has taken out particles, or parted some within a horizon of each other */
   double largest_spacing;
   const Lattice *coarsest; /* the one with that spacing */
   double low[3], high[3];  /* outermost particles */
@@ -65,7 +66,7 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
                 const MarginList *margins);
 void body_destroy(Body *body);
 
-/** True if the segment between two points crosses one of the body's cuts; alike from both ends. */
+/** True if the segment between two points crosses one of the body's cuts; alike from both ends. Notes which are crossed in `crack_met`. */
 bool body_cuts(const Body *body, const double a[3], const double b[3]);
 /** True if a cut without thickness parts the two points, and no notch, whose faces stand apart.
  *  @param[out] normal  unit normal of the cut, towards b

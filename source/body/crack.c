@@ -319,12 +319,16 @@ static const double *cut_crossed(const Body *body, const CutSpec *cut, const dou
 bool body_cuts(const Body *body, const double a[3], const double b[3])
 {
   if (!comes_first(a, b)) return body_cuts(body, b, a);
+  bool cuts = false;
   for (int c = 0; c < body->crack_count; ++c) {
     const CrackSpec *crack = body->cracks[c];
-    if (crack->cut_faces && crack->remove && crosses_middle(crack->remove->box, body, a, b)) return true;
-    if (crack->cut && cut_crossed(body, crack->cut, a, b, NULL)) return true;
+    if (!(crack->cut_faces && crack->remove && crosses_middle(crack->remove->box, body, a, b)) &&
+        !(crack->cut && cut_crossed(body, crack->cut, a, b, NULL)))
+      continue;
+    __atomic_store_n(&body->crack_met[c], 1, __ATOMIC_RELAXED);
+    cuts = true;
   }
-  return false;
+  return cuts;
 }
 
 static bool runs_through_notch(const Body *body, const double a[3], const double b[3])

@@ -395,8 +395,26 @@ static void check_grips(breccia_model *model)
   }
 }
 
+/** Cracks beside the body do nothing. */
+static void check_cracks(breccia_model *model)
+{
+  const Body *body = &model->domain.body;
+  for (int c = 0; c < body->crack_count; ++c) {
+    if (body->crack_met[c]) continue;
+    char low[80] = "", high[80] = "";
+    for (int k = 0; k < body->dimensions; ++k) {
+      snprintf(low + strlen(low), sizeof low - strlen(low), "%s%.4g", k ? ", " : "", body->low[k]);
+      snprintf(high + strlen(high), sizeof high - strlen(high), "%s%.4g", k ? ", " : "", body->high[k]);
+    }
+    warn(model, body->cracks[c]->head.node,
+         "crack: it %s; the outermost particles stand at [%s] and [%s]: look at its coordinates and their unit",
+         body->cracks[c]->remove ? "takes out no particle" : "cuts no bond", low, high);
+  }
+}
+
 void plausibility_warn(breccia_model *model)
 {
+  check_cracks(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
   for (int k = 0; k < model->loading.count; ++k) {
     check_jump(model, &model->loading.loads[k]);

@@ -259,6 +259,8 @@ warns "s/  steel: .*/  wall: $(echo "$mazars" | sed 's/120/22/; s/3 MPa/1.4 MPa/
 warns 's/  steel: .*/  wall: {model: mohr-coulomb, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, cohesion: 10 GPa, friction angle: 30, tensile strength: 3 GPa}/' 5:144 "tensile strength: it is 0.1 of Young's modulus"
 warns 's/body force: \[1, 0, 0\], history: {ramp to: 0.1 s}/displacement: [0.01, free, free]/' 18:27 "displacement: the particles jump by 0.01 m in the first step; let it grow"
 warns 's/body force: \[1, 0, 0\]/displacement: [0.01, free, free]/' 18:6 "load: bonds may break at the grips, within a horizon"
+warns 's/\[\[0.45, 0\], \[0.45, 0.2\]\]/[[450, 0], [450, 200]]/' 14:6 'crack: it cuts no bond; the outermost particles stand at [0.05, 0.05, 0.05] and [0.95, 0.45, 0.25]: look at its coordinates and their unit'
+warns 's/{cut: .*/{remove: {box: {from: [450, 0, 0], to: [451, 200, 1]}}}/' 14:6 'crack: it takes out no particle; the outermost'
 for word in hold break; do
   sed "s/body force: \[1, 0, 0\]/displacement: [0.01, free, free]/; s/stretch: 0.05/stretch: 0.05, near grips: $word/" "$work/good.yaml" > "$work/deck.yaml"
   "$breccia" check "$work/deck.yaml" 2> "$work/errors" > /dev/null
