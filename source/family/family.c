@@ -247,7 +247,11 @@ static int fill_slots(Build *build, Error *error)
 
 int family_create(Family *family, const Body *body, const FamilySpec *spec, Error *error)
 {
-  *family = (Family){.particles = &body->particles, .lattices = body->lattices, .horizon = spec->horizon};
+  const double beyond = spec->correction == VOLUME_PARTIAL_BEYOND ? body->largest_spacing / 2 : 0;
+  *family = (Family){.particles = &body->particles,
+                     .lattices = body->lattices,
+                     .horizon = spec->horizon,
+                     .reach = spec->horizon + beyond};
   int blocks = body->block_count;
   family->rows.kind = memory_zeroed((size_t)blocks * ROW_KINDS, sizeof(RowKind), "lattice rows", error);
   if (!family->rows.kind) return BRECCIA_FAILURE;

@@ -39,8 +39,8 @@ typedef struct FamilySpec {
 
 struct Family {
   const Particles *particles;
-  const Lattice *lattices; /* one per block */
-  double horizon;
+  const Lattice *lattices;            /* one per block */
+  double horizon, reach;              /* reach: no bond is longer; beyond the horizon if parts of volumes count there */
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
   int64_t *first;                     /* [slices + 1] */
   int64_t *stored;                    /* [slices] first stored slot */

@@ -14,7 +14,7 @@ static bool bond_is_valid(const Family *f, int64_t slice, int64_t slot, int lane
       slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
   if (there < 0 || there >= p->places || there == here || p->number[there] < 0) return false;
   const Bond bond = family_bond(f, slice, slot, lane);
-  if (!(bond.length > 0 && bond.length <= f->horizon * (1 + 1e-6) && bond.weight >= 0)) return false;
+  if (!(bond.length > 0 && bond.length <= f->reach * (1 + 1e-6) && bond.weight >= 0)) return false;
   return !looked_for || family_slot(f, bond.neighbour, here) >= 0; /* bonds come in pairs, both intact */
 }
 

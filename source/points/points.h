@@ -63,7 +63,7 @@ typedef struct PointsSpec {
 int points_create(Points *points, const PointsSpec *spec, Error *error);
 void points_destroy(Points *points);
 
-/** Whether what must always hold of points does: runs in order that cover all rows, histories behind each other. */
+/** Whether what must always hold of points does: runs in order, the last one up to the last row, histories behind each other. */
 bool points_is_valid(const Points *points);
 
 /** The run of a row. */

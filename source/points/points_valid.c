@@ -9,12 +9,12 @@ bool points_is_valid(const Points *points)
   if (!points->components) return true; /* all laws are linear: there is nothing to keep */
   for (int64_t n = 0; n < points->run_count; ++n) {
     const PointsRun *run = &points->runs[n];
-    if (run->first != row || run->count < 0) return false; /* in order, and they cover all rows */
+    if (run->first < row || run->count < 0) return false; /* in order; rows between them are other regions' */
     if (run->material < 0 || run->material >= points->material_count) return false;
     const Material *m = &points->materials[run->material];
     if (m->law->components != points->components) return false;
     if (points->history_first[n] != number) return false;
-    row += run->count;
+    row = run->first + run->count;
     number += run->count * m->history_values;
   }
   if (row != points->count || number > (int64_t)points->history_size) return false;
