@@ -67,16 +67,19 @@ static double run_lammps(const char *folder, double *bonds)
   return seconds;
 }
 
-static breccia_model *ours(const char *folder, int n)
+static breccia_model *ours(const char *folder, int n, const char *style)
 {
+  const char *const kinds[2][2] = {
+      {"model: elastic-brittle, tensile strength: 1e9 MPa", "bond-based, calibration: continuum"},
+      {"model: elastic, Poisson ratio: 0.25", "ordinary, influence: inverse, lattice weights: plain"}};
+  const char *const *kind = kinds[!strcmp(style, "lps")];
   char *block = n == SCATTERED ? text_format("file: scattered.csv")
                                : text_format("shape: {box: {particles: [%d, %d, %d]}}", n, n, n);
-  char *deck =
-      text_format("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: %g, model: elastic-brittle, "
-                  "Young modulus: %g, tensile strength: %g}}\nperidynamics: {formulation: bond-based, calibration: "
-                  "continuum, horizon: %.17g}\nbody: {b: {material: m, spacing: %g, %s}}\n"
-                  "solve: {explicit: {steps: 1000000, time step: 1e-12}}\n",
-                  density, young, young * 1000, horizon, spacing, block);
+  char *deck = text_format("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: %g, %s, "
+                           "Young modulus: %g}}\nperidynamics: {formulation: %s, horizon: %.17g}\nbody: {b: {material: "
+                           "m, spacing: %g, %s}}\n"
+                           "solve: {explicit: {steps: 1000000, time step: 1e-12}}\n",
+                           density, kind[0], young, kind[1], horizon, spacing, block);
   char *name = text_format("%s/deck", folder);
   breccia_model *model = NULL;
   breccia_error *error = breccia_error_create();
@@ -92,9 +95,9 @@ static breccia_model *ours(const char *folder, int n)
 }
 
 /** Takes up the positions that LAMMPS wrote. @return largest difference of accelerations over the largest acceleration */
-static double compare(const char *folder, int n)
+static double compare(const char *folder, int n, const char *style)
 {
-  breccia_model *model = ours(folder, n);
+  breccia_model *model = ours(folder, n, style);
   char *path = text_format("%s/dump.txt", folder), line[1024];
   FILE *f = fopen(path, "r");
   const Particles *p = model->domain.particles;
@@ -137,45 +140,48 @@ int main(void)
   free(csv);
   free(data);
   int failed = 0;
-  for (int k = 0; k < 2; ++k) {
-    const int n = k ? SCATTERED : 16;
+  for (int k = 0; k < 4; ++k) {
+    const int n = k % 2 ? SCATTERED : 16;
+    const char *style = k < 2 ? "pmb" : "lps";
     double bonds = 0;
-    write_input(folder, n, "pmb", 0);
+    write_input(folder, n, style, 0);
     run_lammps(folder, &bonds);
-    const double difference = compare(folder, n);
-    printf("Accelerations of a random field on %s particles, pmb without volume correction: they differ by %.1e of the "
+    const double difference = compare(folder, n, style);
+    printf("Accelerations of a random field on %s particles, %s without volume correction: they differ by %.1e of the "
            "largest.\n\n",
-           k ? "scattered" : "16³", difference);
+           k % 2 ? "scattered" : "16³", style, difference);
     failed |= !(difference < 1e-10);
   }
-  printf("| particles | directed bonds | LAMMPS pmb | ours | ratio | LAMMPS lps |\n|---|---|---|---|---|---|\n");
+  printf("| particles | directed bonds | LAMMPS pmb | bond-based | ratio | LAMMPS lps | ordinary | ratio |\n"
+         "|---|---|---|---|---|---|---|---|\n");
   const int sizes[] = {32, 40, 80, SCATTERED};
   for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
+    const char *const styles[2] = {"pmb", "lps"};
     const int n = sizes[s];
-    breccia_model *model = ours(folder, n);
-    if (!model) return 1;
-    const double our_bonds = (double)model->domain.family.bonds;
+    breccia_model *models[2] = {ours(folder, n, "pmb"), ours(folder, n, "lps")};
+    if (!models[0] || !models[1]) return 1;
+    const double our_bonds = (double)models[0]->domain.family.bonds;
     const int64_t steps = (int64_t)(3e7 / our_bonds) + 2;
-    double pmb[TURNS], lps[TURNS], own[TURNS], ratio[TURNS], their_bonds = 0, lps_bonds = 0;
-    breccia_model_step(model, steps, NULL);
-    for (int t = 0; t < TURNS; ++t) {
-      write_input(folder, n, "pmb", steps);
-      pmb[t] = 1e9 * run_lammps(folder, &their_bonds) / (double)steps / our_bonds;
-      double start = clock_seconds();
-      breccia_model_step(model, 8 * steps, NULL);
-      own[t] = 1e9 * (clock_seconds() - start) / (double)(8 * steps) / our_bonds;
-      write_input(folder, n, "lps", steps);
-      lps[t] = 1e9 * run_lammps(folder, &lps_bonds) / (double)steps / our_bonds;
-      ratio[t] = pmb[t] / own[t];
-    }
+    double theirs[2][TURNS], own[2][TURNS], ratio[2][TURNS], their_bonds[2] = {0};
+    for (int k = 0; k < 2; ++k) breccia_model_step(models[k], steps, NULL);
+    for (int t = 0; t < TURNS; ++t)
+      for (int k = 0; k < 2; ++k) {
+        write_input(folder, n, styles[k], steps);
+        theirs[k][t] = 1e9 * run_lammps(folder, &their_bonds[k]) / (double)steps / our_bonds;
+        const double start = clock_seconds();
+        breccia_model_step(models[k], 8 * steps, NULL);
+        own[k][t] = 1e9 * (clock_seconds() - start) / (double)(8 * steps) / our_bonds;
+        ratio[k][t] = theirs[k][t] / own[k][t];
+      }
     char body[32];
     snprintf(body, sizeof body, n == SCATTERED ? "64000 scattered" : "%d³", n);
-    printf("| %s | %.0f%s | %.1f | %.2f | %.1f | %.1f |\n", body, our_bonds,
-           their_bonds == our_bonds ? "" : " (LAMMPS has another number)", median(pmb, TURNS), median(own, TURNS),
-           median(ratio, TURNS), median(lps, TURNS));
+    printf("| %s | %.0f%s |", body, our_bonds, their_bonds[0] == our_bonds ? "" : " (LAMMPS has another number)");
+    for (int k = 0; k < 2; ++k)
+      printf(" %.1f | %.2f | %.1f |", median(theirs[k], TURNS), median(own[k], TURNS), median(ratio[k], TURNS));
+    printf("\n");
     fflush(stdout);
-    failed |= their_bonds != our_bonds;
-    breccia_model_destroy(&model);
+    failed |= their_bonds[0] != our_bonds;
+    for (int k = 0; k < 2; ++k) breccia_model_destroy(&models[k]);
   }
   printf("\nns per directed bond and whole step on one thread, medians of %d, taken in turn; LAMMPS by its own loop "
          "time.\n",
