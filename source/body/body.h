@@ -2,20 +2,10 @@
 #ifndef BRECCIA_BODY_BODY_H
 #define BRECCIA_BODY_BODY_H
 
-#include "body/lattice.h"
-#include "body/margin.h"
+#include "body/block.h"
 #include "body/particles.h"
 
 typedef enum Space { SPACE_3D, SPACE_PLANE_STRAIN, SPACE_PLANE_STRESS, SPACE_BAR } Space;
-
-typedef struct BlockSpec {
-  SectionHead head;
-  const char *material;
-  const char *lattice;
-  double spacing, thickness, area;
-  Shape *shape; /* NULL: particles come from a file */
-  const char *file;
-} BlockSpec;
 
 typedef struct CutSpec { /* a surface that no bond crosses */
   SectionHead head;
@@ -30,7 +20,7 @@ typedef struct CrackSpec {
   CutSpec *cut;
 } CrackSpec;
 
-extern const Section block_section, crack_section;
+extern const Section crack_section;
 
 typedef struct Body {
   Particles particles;

@@ -5,7 +5,8 @@
 #include <string.h>
 
 static const LatticeType types[] = {
-#define LATTICE(name, dimensions, turns, ...) {name, dimensions, turns, {__VA_ARGS__}},
+#define LATTICE(word, in_dimensions, turned_axes, ...)                                                                 \
+  {.name = word, .dimensions = in_dimensions, .turns = turned_axes, .vector = {__VA_ARGS__}},
 #include "body/lattices.h"
 #undef LATTICE
 };

@@ -60,10 +60,10 @@ static int run(int argc, char **argv, const Verb *verb)
 }
 
 const Verb verb_calibrate = {
-    "calibrate",
-    "TEST.yaml [options]",
-    "fit parameters of a law to a measured curve",
-    options,
-    "TEST.yaml is a file as for 'breccia material', with the measured points under 'against' and under 'fit'\n"
-    "the parameters to choose with their ranges: fit: {cohesion: {from: 5, to: 50}}.",
-    run};
+    .name = "calibrate",
+    .arguments = "TEST.yaml [options]",
+    .about = "fit parameters of a law to a measured curve",
+    .options = options,
+    .more = "TEST.yaml is a file as for 'breccia material', with the measured points under 'against' and under 'fit'\n"
+            "the parameters to choose with their ranges: fit: {cohesion: {from: 5, to: 50}}.",
+    .run = run};

@@ -36,5 +36,8 @@ static int run(int argc, char **argv, const Verb *verb)
   return fail(error, status);
 }
 
-const Verb verb_check = {
-    "check", "DECK [options]", "check a deck and tell what it would run; write nothing", options, NULL, run};
+const Verb verb_check = {.name = "check",
+                         .arguments = "DECK [options]",
+                         .about = "check a deck and tell what it would run; write nothing",
+                         .options = options,
+                         .run = run};

@@ -78,9 +78,9 @@ static int run(int argc, char **argv, const Verb *verb)
   return 0;
 }
 
-const Verb verb_completion = {"completion",
-                              "[--man]",
-                              "print shell completion (bash, zsh) or the manual page",
-                              options,
-                              "To use it: source <(breccia completion)",
-                              run};
+const Verb verb_completion = {.name = "completion",
+                              .arguments = "[--man]",
+                              .about = "print shell completion (bash, zsh) or the manual page",
+                              .options = options,
+                              .more = "To use it: source <(breccia completion)",
+                              .run = run};

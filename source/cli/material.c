@@ -169,10 +169,10 @@ static int run(int argc, char **argv, const Verb *verb)
 }
 
 const Verb verb_material = {
-    "material",
-    "TEST.yaml | --model NAME --set KEY=VALUE ... (--strain PATH.csv | --test KIND --to STRAIN) [options]",
-    "drive one material point through a laboratory test or a strain path",
-    options,
-    "TEST.yaml holds units, a material as in a deck, and a test or stages (docs/models.md). On the command\n"
-    "line plain numbers are in m, N, s, as in decks; shear strains are engineering, tension is positive.",
-    run};
+    .name = "material",
+    .arguments = "TEST.yaml | --model NAME --set KEY=VALUE ... (--strain PATH.csv | --test KIND --to STRAIN) [options]",
+    .about = "drive one material point through a laboratory test or a strain path",
+    .options = options,
+    .more = "TEST.yaml holds units, a material as in a deck, and a test or stages (docs/models.md). On the command\n"
+            "line plain numbers are in m, N, s, as in decks; shear strains are engineering, tension is positive.",
+    .run = run};

@@ -24,5 +24,8 @@ static int run(int argc, char **argv, const Verb *verb)
   return fail(error, status);
 }
 
-const Verb verb_models = {"models", "[MODEL]", "list constitutive models and formulations with their parameters",
-                          options,  NULL,      run};
+const Verb verb_models = {.name = "models",
+                          .arguments = "[MODEL]",
+                          .about = "list constitutive models and formulations with their parameters",
+                          .options = options,
+                          .run = run};

@@ -195,10 +195,10 @@ static int run(int argc, char **argv, const Verb *verb)
 }
 
 const Verb verb_new = {
-    "new",
-    "DECK, or breccia new --example [NAME [DECK]]",
-    "write a commented deck to start from, or the deck of an example",
-    options,
-    "Without a NAME the examples are listed. Files that a deck needs are written beside it; nothing that\n"
-    "exists is written over.",
-    run};
+    .name = "new",
+    .arguments = "DECK, or breccia new --example [NAME [DECK]]",
+    .about = "write a commented deck to start from, or the deck of an example",
+    .options = options,
+    .more = "Without a NAME the examples are listed. Files that a deck needs are written beside it; nothing that\n"
+            "exists is written over.",
+    .run = run};

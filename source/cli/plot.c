@@ -149,10 +149,11 @@ static int run(int argc, char **argv, const Verb *verb)
   return fail(error, status);
 }
 
-const Verb verb_plot = {"plot",
-                        "RESULT ... [options]",
-                        "draw fields and curves from results",
-                        options,
-                        "RESULT is a result folder or its results.vtkhdf; several give a line each with --curve.\n"
-                        "--range each: every picture has a range of its own.",
-                        run};
+const Verb verb_plot = {.name = "plot",
+                        .arguments = "RESULT ... [options]",
+                        .about = "draw fields and curves from results",
+                        .options = options,
+                        .more =
+                            "RESULT is a result folder or its results.vtkhdf; several give a line each with --curve.\n"
+                            "--range each: every picture has a range of its own.",
+                        .run = run};

@@ -114,10 +114,10 @@ static int run(int argc, char **argv, const Verb *verb)
 }
 
 const Verb verb_run = {
-    "run",
-    "DECK [options]",
-    "run a deck and write its results, histories and pictures",
-    options,
-    "Ctrl-C stops cleanly: files are closed and a checkpoint is written, from which --restart goes on.\n"
-    "Exit status: 0 done, 1 the computation failed, 2 the deck or the arguments are wrong, 130 stopped.",
-    run};
+    .name = "run",
+    .arguments = "DECK [options]",
+    .about = "run a deck and write its results, histories and pictures",
+    .options = options,
+    .more = "Ctrl-C stops cleanly: files are closed and a checkpoint is written, from which --restart goes on.\n"
+            "Exit status: 0 done, 1 the computation failed, 2 the deck or the arguments are wrong, 130 stopped.",
+    .run = run};

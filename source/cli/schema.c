@@ -17,10 +17,10 @@ static int run(int argc, char **argv, const Verb *verb)
   return 0;
 }
 
-const Verb verb_schema = {"schema",
-                          "[--markdown]",
-                          "print a JSON Schema of the deck, for completion in editors",
-                          options,
-                          "An editor with the YAML language server uses it after a first line like\n"
-                          "  # yaml-language-server: $schema=breccia.schema.json",
-                          run};
+const Verb verb_schema = {.name = "schema",
+                          .arguments = "[--markdown]",
+                          .about = "print a JSON Schema of the deck, for completion in editors",
+                          .options = options,
+                          .more = "An editor with the YAML language server uses it after a first line like\n"
+                                  "  # yaml-language-server: $schema=breccia.schema.json",
+                          .run = run};

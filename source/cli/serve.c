@@ -49,10 +49,10 @@ static int serve_verb(int argc, char **argv, const Verb *verb)
 }
 
 const Verb verb_serve = {
-    "serve",
-    "--listen ADDRESS [options]",
-    "offer the program's own laws to other programs over a socket",
-    options,
-    "A client names a law as 'LAW; KEY=VALUE; ...'. The protocol stands in docs/material-server.md. Without a "
-    "secret only this machine is listened to; the line is not encrypted.",
-    serve_verb};
+    .name = "serve",
+    .arguments = "--listen ADDRESS [options]",
+    .about = "offer the program's own laws to other programs over a socket",
+    .options = options,
+    .more = "A client names a law as 'LAW; KEY=VALUE; ...'. The protocol stands in docs/material-server.md. Without a "
+            "secret only this machine is listened to; the line is not encrypted.",
+    .run = serve_verb};

@@ -269,14 +269,14 @@ static int run(int argc, char **argv, const Verb *verb)
 }
 
 const Verb verb_study = {
-    "study",
-    "DECK --vary KEY=VALUES [options]",
-    "run a deck with several values of some of its keys, and compare",
-    options,
-    "Each case has a folder of its own; those that are done are not run again, and one that was stopped goes on from "
-    "its\n"
-    "checkpoint. table.csv and table.txt have a row for each case; pictures show the curves of all cases, and each "
-    "result\n"
-    "over the first varied key.\n"
-    "Exit status: 0 all cases done, 1 one or more failed, 2 the deck or the arguments are wrong, 130 stopped.",
-    run};
+    .name = "study",
+    .arguments = "DECK --vary KEY=VALUES [options]",
+    .about = "run a deck with several values of some of its keys, and compare",
+    .options = options,
+    .more = "Each case has a folder of its own; those that are done are not run again, and one that was stopped goes "
+            "on from its\n"
+            "checkpoint. table.csv and table.txt have a row for each case; pictures show the curves of all cases, and "
+            "each result\n"
+            "over the first varied key.\n"
+            "Exit status: 0 all cases done, 1 one or more failed, 2 the deck or the arguments are wrong, 130 stopped.",
+    .run = run};

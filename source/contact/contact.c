@@ -7,25 +7,31 @@
 #include <string.h>
 
 static const Field contact_fields[] = {
-    {"stiffness", FIELD_NUMBER, offsetof(ContactSpec, stiffness), "1", "1", "(0, inf)",
-     "of faces that meet, over that of a layer of the body one spacing thick", NULL, NULL, 0},
-    {"friction", FIELD_NUMBER, offsetof(ContactSpec, friction), "1", "0", "[0, inf)",
-     "Coulomb's coefficient: faces stick until the force along them is this share of that across them, then slide",
-     NULL, NULL, 0},
+    {.key = "stiffness",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(ContactSpec, stiffness),
+     .dimension = "1",
+     .standard = "1",
+     .range = "(0, inf)",
+     .meaning = "of faces that meet, over that of a layer of the body one spacing thick"},
+    {.key = "friction",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(ContactSpec, friction),
+     .dimension = "1",
+     .standard = "0",
+     .range = "[0, inf)",
+     .meaning =
+         "Coulomb's coefficient: faces stick until the force along them is this share of that across them, then slide"},
 };
+
 const Section contact_section = {
-    "contact",
-    "Particles that no bond joins repel each other where they come near: bodies that meet, and crack faces that close. "
-    "The faces of a cut or of broken bonds carry pressure as soon as they are nearer than they were, as stiffly as the "
-    "bonds; other faces meet where their outermost particles are half a spacing of each apart. Without this section "
-    "they "
-    "pass through each other. It costs a shorter time step.",
-    sizeof(ContactSpec),
-    FIELDS(contact_fields),
-    NULL,
-    NULL,
-    NULL,
-    0};
+    .name = "contact",
+    .about = "Particles that no bond joins repel each other where they come near: bodies that meet, and crack faces "
+             "that close. The faces of a cut or of broken bonds carry pressure as soon as they are nearer than they "
+             "were, as stiffly as the bonds; other faces meet where their outermost particles are half a spacing of "
+             "each apart. Without this section they pass through each other. It costs a shorter time step.",
+    .size = sizeof(ContactSpec),
+    FIELDS(contact_fields)};
 
 /* ---- making ---- */
 

@@ -49,42 +49,64 @@ static const char *near_grips_word(int k)
 }
 
 static const Field no_failure_fields[] = {
-    {"of", FIELD_REFERENCE, offsetof(NoFailureSpec, of), NULL, "", NULL,
-     "these particles; when absent those whose motion loads prescribe", &selection_section, NULL, 0},
-    {"distance", FIELD_LENGTH, offsetof(NoFailureSpec, distance), "length", "0", "[0, inf)",
-     "and all particles that stood no further from one of them", NULL, NULL, 0},
+    {.key = "of",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(NoFailureSpec, of),
+     .standard = "",
+     .meaning = "these particles; when absent those whose motion loads prescribe",
+     .section = &selection_section},
+    {.key = "distance",
+     .kind = FIELD_LENGTH,
+     .offset = offsetof(NoFailureSpec, distance),
+     .dimension = "length",
+     .standard = "0",
+     .range = "[0, inf)",
+     .meaning = "and all particles that stood no further from one of them"},
 };
-static const Section no_failure_section = {"no failure within",
-                                           "Particles among which no bond breaks, whatever its stretch. Laws that "
-                                           "soften still do.",
-                                           sizeof(NoFailureSpec),
-                                           FIELDS(no_failure_fields),
-                                           NULL,
-                                           NULL,
-                                           NULL,
-                                           0};
+
+static const Section no_failure_section = {
+    .name = "no failure within",
+    .about = "Particles among which no bond breaks, whatever its stretch. Laws that soften still do.",
+    .size = sizeof(NoFailureSpec),
+    FIELDS(no_failure_fields)};
 
 static const Field failure_fields[] = {
-    {"criterion", FIELD_CHOICE, offsetof(FailureSpec, criterion), NULL, "critical stretch", NULL, "when a bond breaks",
-     NULL, criterion_word, 0},
-    {"criterion", FIELD_CHOSEN, offsetof(FailureSpec, keys), NULL, "", NULL, "keys of the criterion",
-     &criterion_choice.section, NULL, 0},
-    {"failed laws", FIELD_CHOICE, offsetof(FailureSpec, failed_laws), NULL, "stop", NULL,
-     "what happens to a particle whose law cannot be integrated: the run stops there, or all its bonds break", NULL,
-     failed_laws_word, 0},
-    {"near grips", FIELD_CHOICE, offsetof(FailureSpec, near_grips), NULL, "", NULL,
-     "bonds between particles that are moved by a load or stand within a horizon of such: they break as everywhere, or "
-     "hold "
-     "whatever their stretch; when absent they break, and `breccia check` warns",
-     NULL, near_grips_word, 0},
-    {"no failure within", FIELD_ONE_OR_SECTIONS, offsetof(FailureSpec, nowhere), NULL, "", NULL,
-     "particles among which no bond breaks", &no_failure_section, NULL, 0},
+    {.key = "criterion",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(FailureSpec, criterion),
+     .standard = "critical stretch",
+     .meaning = "when a bond breaks",
+     .choice = criterion_word},
+    {.key = "criterion",
+     .kind = FIELD_CHOSEN,
+     .offset = offsetof(FailureSpec, keys),
+     .standard = "",
+     .meaning = "keys of the criterion",
+     .section = &criterion_choice.section},
+    {.key = "failed laws",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(FailureSpec, failed_laws),
+     .standard = "stop",
+     .meaning =
+         "what happens to a particle whose law cannot be integrated: the run stops there, or all its bonds break",
+     .choice = failed_laws_word},
+    {.key = "near grips",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(FailureSpec, near_grips),
+     .standard = "",
+     .meaning = "bonds between particles that are moved by a load or stand within a horizon of such: they break as "
+                "everywhere, or hold whatever their stretch; when absent they break, and `breccia check` warns",
+     .choice = near_grips_word},
+    {.key = "no failure within",
+     .kind = FIELD_ONE_OR_SECTIONS,
+     .offset = offsetof(FailureSpec, nowhere),
+     .standard = "",
+     .meaning = "particles among which no bond breaks",
+     .section = &no_failure_section},
 };
-const Section failure_section = {"failure",
-                                 "When bonds break. Without this section, or with nothing in it, they never do.",
-                                 sizeof(FailureSpec),
-                                 FIELDS(failure_fields),
-                                 NULL,
-                                 NULL,
-                                 NULL,
-                                 0};
+
+const Section failure_section = {.name = "failure",
+                                 .about =
+                                     "When bonds break. Without this section, or with nothing in it, they never do.",
+                                 .size = sizeof(FailureSpec),
+                                 FIELDS(failure_fields)};

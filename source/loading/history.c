@@ -16,32 +16,38 @@ static const HistoryType *const types[] = {
 };
 
 static const Field history_fields[] = {
-#define HISTORY(name, key, kind, dimension, range, meaning)                                                            \
-  {key, kind, offsetof(HistorySpec, of[HISTORY_##name]), dimension, "", range, meaning, NULL, NULL, 'A'},
-#define HISTORY_SECTION(name, key, meaning)                                                                            \
-  {key,                                                                                                                \
-   FIELD_SECTION,                                                                                                      \
-   offsetof(HistorySpec, of[HISTORY_##name]),                                                                          \
-   NULL,                                                                                                               \
-   "",                                                                                                                 \
-   NULL,                                                                                                               \
-   meaning,                                                                                                            \
-   &name##_history_section,                                                                                            \
-   NULL,                                                                                                               \
-   'A'},
-#define HISTORY_LIST(name, key, meaning)                                                                               \
-  {key, FIELD_SECTIONS, offsetof(HistorySpec, of[HISTORY_##name]), NULL, "", NULL, meaning, &history_section, NULL,    \
-   'A'},
+#define HISTORY(name, word, form, measure, interval, about)                                                            \
+  {.key = word,                                                                                                        \
+   .kind = form,                                                                                                       \
+   .offset = offsetof(HistorySpec, of[HISTORY_##name]),                                                                \
+   .dimension = measure,                                                                                               \
+   .standard = "",                                                                                                     \
+   .range = interval,                                                                                                  \
+   .meaning = about,                                                                                                   \
+   .group = 'A'},
+#define HISTORY_SECTION(name, word, about)                                                                             \
+  {.key = word,                                                                                                        \
+   .kind = FIELD_SECTION,                                                                                              \
+   .offset = offsetof(HistorySpec, of[HISTORY_##name]),                                                                \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .section = &name##_history_section,                                                                                 \
+   .group = 'A'},
+#define HISTORY_LIST(name, word, about)                                                                                \
+  {.key = word,                                                                                                        \
+   .kind = FIELD_SECTIONS,                                                                                             \
+   .offset = offsetof(HistorySpec, of[HISTORY_##name]),                                                                \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .section = &history_section,                                                                                        \
+   .group = 'A'},
 #include "loading/history/histories.h"
 };
-const Section history_section = {"history",
-                                 "How a load varies in time: a factor on its value.",
-                                 sizeof(HistorySpec),
-                                 FIELDS(history_fields),
-                                 NULL,
-                                 NULL,
-                                 NULL,
-                                 0};
+
+const Section history_section = {.name = "history",
+                                 .about = "How a load varies in time: a factor on its value.",
+                                 .size = sizeof(HistorySpec),
+                                 FIELDS(history_fields)};
 
 int history_create(History *history, const HistorySpec *spec, const DeckReader *reader)
 {

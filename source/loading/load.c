@@ -16,20 +16,47 @@ static const LoadType *const types[] = {
 enum { OTHERS = 4 }; /* keys that all loads have */
 
 static const Field load_fields[] = {
-    {"name", FIELD_TEXT, offsetof(LoadSpec, name), NULL, "", NULL, "name, for watching what it applies", NULL, NULL, 0},
-    {"on", FIELD_REFERENCE, offsetof(LoadSpec, on), NULL, "", NULL,
-     "name of a selection, or a selection; gravity, base acceleration and initial velocity are of the whole body when "
-     "absent",
-     &selection_section, NULL, 0},
-    {"history", FIELD_SECTION, offsetof(LoadSpec, history), NULL, "", NULL, "constant when absent", &history_section,
-     NULL, 0},
-    {"area", FIELD_NUMBER, offsetof(LoadSpec, area), "area", "", "(0, inf)",
-     "of a traction: the area that all its particles have together, where they are no face of a lattice", NULL, NULL,
-     0},
-#define LOAD(name, key, kind, dimension, meaning)                                                                      \
-  {key, kind, offsetof(LoadSpec, of[LOAD_##name]), dimension, "", NULL, meaning, NULL, NULL, 'A'},
-#define LOAD_SECTION(name, key, meaning)                                                                               \
-  {key, FIELD_SECTION, offsetof(LoadSpec, of[LOAD_##name]), NULL, "", NULL, meaning, &name##_load_section, NULL, 'A'},
+    {.key = "name",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(LoadSpec, name),
+     .standard = "",
+     .meaning = "name, for watching what it applies"},
+    {.key = "on",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(LoadSpec, on),
+     .standard = "",
+     .meaning = "name of a selection, or a selection; gravity, base acceleration and initial velocity are of the whole "
+                "body when absent",
+     .section = &selection_section},
+    {.key = "history",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(LoadSpec, history),
+     .standard = "",
+     .meaning = "constant when absent",
+     .section = &history_section},
+    {.key = "area",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(LoadSpec, area),
+     .dimension = "area",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "of a traction: the area that all its particles have together, where they are no face of a lattice"},
+#define LOAD(name, word, form, measure, about)                                                                         \
+  {.key = word,                                                                                                        \
+   .kind = form,                                                                                                       \
+   .offset = offsetof(LoadSpec, of[LOAD_##name]),                                                                      \
+   .dimension = measure,                                                                                               \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .group = 'A'},
+#define LOAD_SECTION(name, word, about)                                                                                \
+  {.key = word,                                                                                                        \
+   .kind = FIELD_SECTION,                                                                                              \
+   .offset = offsetof(LoadSpec, of[LOAD_##name]),                                                                      \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .section = &name##_load_section,                                                                                    \
+   .group = 'A'},
 #include "loading/load/loads.h"
 };
 
@@ -54,14 +81,12 @@ static void check_load(const DeckReader *reader, void *section)
     node_error(reader->document, section_place(load, "area"), reader->error, "area: only a 'traction' has one");
 }
 
-const Section load_section = {"load",
-                              "A force on some particles, a motion prescribed to them, or what joins them to others.",
-                              sizeof(LoadSpec),
-                              FIELDS(load_fields),
-                              check_load,
-                              NULL,
-                              NULL,
-                              0};
+const Section load_section = {
+    .name = "load",
+    .about = "A force on some particles, a motion prescribed to them, or what joins them to others.",
+    .size = sizeof(LoadSpec),
+    FIELDS(load_fields),
+    .check = check_load};
 
 /** In the plane nothing moves along z, in a bar along x only. */
 static int check_directions(const Load *load, int dimensions, const DeckReader *reader)

@@ -22,6 +22,7 @@ static const Field units_fields[] = {
      .standard = UNITS_TIME,
      .meaning = "unit of time"},
 };
+
 const Section units_section = {
     .name = "units",
     .about = "What plain numbers mean, and in what results are written. m, kN, s give kPa and t/m3.",
@@ -84,7 +85,12 @@ static const Field deck_fields[] = {
      .meaning = "when bonds break; never when absent",
      .section = &failure_section},
 #define FORCES(name, about)                                                                                            \
-  {#name, FIELD_SECTION, offsetof(DeckSpec, forces[FORCES_##name]), NULL, "", NULL, about, &name##_section, NULL, 0},
+  {.key = #name,                                                                                                       \
+   .kind = FIELD_SECTION,                                                                                              \
+   .offset = offsetof(DeckSpec, forces[FORCES_##name]),                                                                \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .section = &name##_section},
 #include "forces/kinds.h"
 #undef FORCES
     {.key = "loads",

@@ -31,7 +31,13 @@ static const char *displacements_word(int k)
 
 static const Field solve_fields[] = {
 #define SOLVER(name, about)                                                                                            \
-  {#name, FIELD_SECTION, offsetof(SolveSpec, of[SOLVER_##name]), NULL, "", NULL, about, &name##_section, NULL, 'S'},
+  {.key = #name,                                                                                                       \
+   .kind = FIELD_SECTION,                                                                                              \
+   .offset = offsetof(SolveSpec, of[SOLVER_##name]),                                                                   \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .section = &name##_section,                                                                                         \
+   .group = 'S'},
 #include "solver/solvers.h"
 #undef SOLVER
     {.key = "name",
@@ -67,6 +73,7 @@ static const Field solve_fields[] = {
      .standard = "",
      .meaning = "names of earlier loads that end"},
 };
+
 const Section solve_section = {.name = "solve",
                                .about = "How the equations are solved, or a stage of that.",
                                .size = sizeof(SolveSpec),

@@ -15,28 +15,36 @@ typedef struct FileSpec {
 } FileSpec;
 
 static const Field file_fields[] = {
-    {"name", FIELD_TEXT, offsetof(FileSpec, name), NULL, NULL, NULL,
-     "of the file, relative to the deck's. `.AT2`, `.VT2` and `.DT2` are read as the PEER database writes them (first "
-     "value at time 0, accelerations in g); others have two columns, times and values, parted by blanks or commas, or "
-     "a heading and the 'column' that it names",
-     NULL, NULL, 0},
-    {"column", FIELD_TEXT, offsetof(FileSpec, column), NULL, "", NULL,
-     "of a CSV file with a heading: which one holds the values", NULL, NULL, 0},
-    {"times", FIELD_TEXT, offsetof(FileSpec, times), NULL, "time", NULL,
-     "of a CSV file with a heading: the column of times, in the unit that stands behind its name in parentheses, else "
-     "in the deck's",
-     NULL, NULL, 0},
-    {"scale", FIELD_NUMBER, offsetof(FileSpec, scale), "1", "1", NULL, "factor on all values", NULL, NULL, 0},
+    {.key = "name",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(FileSpec, name),
+     .meaning = "of the file, relative to the deck's. `.AT2`, `.VT2` and `.DT2` are read as the PEER database writes "
+                "them (first value at time 0, accelerations in g); others have two columns, times and values, parted "
+                "by blanks or commas, or a heading and the 'column' that it names"},
+    {.key = "column",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(FileSpec, column),
+     .standard = "",
+     .meaning = "of a CSV file with a heading: which one holds the values"},
+    {.key = "times",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(FileSpec, times),
+     .standard = "time",
+     .meaning = "of a CSV file with a heading: the column of times, in the unit that stands behind its name in "
+                "parentheses, else in the deck's"},
+    {.key = "scale",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(FileSpec, scale),
+     .dimension = "1",
+     .standard = "1",
+     .meaning = "factor on all values"},
 };
-const Section file_history_section = {"file history",
-                                      "Numbers from a file as factors on the load's value: straight lines between "
-                                      "them, 0 before the first and after the last.",
-                                      sizeof(FileSpec),
-                                      FIELDS(file_fields),
-                                      NULL,
-                                      NULL,
-                                      NULL,
-                                      0};
+
+const Section file_history_section = {.name = "file history",
+                                      .about = "Numbers from a file as factors on the load's value: straight lines "
+                                               "between them, 0 before the first and after the last.",
+                                      .size = sizeof(FileSpec),
+                                      FIELDS(file_fields)};
 
 /** Size of the unit in parentheses behind a column's name, in the deck's unit of time; 1 where there is none. */
 static double unit_of_times(const char *label, const DeckReader *reader)

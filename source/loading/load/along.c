@@ -15,22 +15,39 @@ static void check_along(const DeckReader *reader, void *section)
 }
 
 static const Field along_fields[] = {
-    {"direction", FIELD_POINT, offsetof(AlongSpec, direction), "1", NULL, NULL, "any length but zero", NULL, NULL, 0},
-    {"displacement", FIELD_NUMBER, offsetof(AlongSpec, displacement), "length", "", NULL, "in that direction", NULL,
-     NULL, 'A'},
-    {"velocity", FIELD_NUMBER, offsetof(AlongSpec, velocity), "velocity", "", NULL, "in that direction", NULL, NULL,
-     'A'},
-    {"acceleration", FIELD_NUMBER, offsetof(AlongSpec, acceleration), "acceleration", "", NULL,
-     "in that direction, from rest", NULL, NULL, 'A'},
+    {.key = "direction",
+     .kind = FIELD_POINT,
+     .offset = offsetof(AlongSpec, direction),
+     .dimension = "1",
+     .meaning = "any length but zero"},
+    {.key = "displacement",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(AlongSpec, displacement),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "in that direction",
+     .group = 'A'},
+    {.key = "velocity",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(AlongSpec, velocity),
+     .dimension = "velocity",
+     .standard = "",
+     .meaning = "in that direction",
+     .group = 'A'},
+    {.key = "acceleration",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(AlongSpec, acceleration),
+     .dimension = "acceleration",
+     .standard = "",
+     .meaning = "in that direction, from rest",
+     .group = 'A'},
 };
-const Section along_load_section = {"along",
-                                    "A motion in one direction; the particles stay free across it.",
-                                    sizeof(AlongSpec),
+
+const Section along_load_section = {.name = "along",
+                                    .about = "A motion in one direction; the particles stay free across it.",
+                                    .size = sizeof(AlongSpec),
                                     FIELDS(along_fields),
-                                    check_along,
-                                    NULL,
-                                    NULL,
-                                    0};
+                                    .check = check_along};
 
 /** How often what is given must be integrated over time for a displacement. */
 static int order_of(const AlongSpec *along, double *value)

@@ -16,22 +16,32 @@ static void check_initial_velocity(const DeckReader *reader, void *section)
 }
 
 static const Field initial_velocity_fields[] = {
-    {"translation", FIELD_POINT, offsetof(InitialVelocitySpec, translation), "velocity", "", NULL,
-     "of all these particles", NULL, NULL, 0},
-    {"rotation", FIELD_POINT, offsetof(InitialVelocitySpec, rotation), "angular velocity", "", NULL,
-     "angular velocity about the three axes, anticlockwise; in the plane [0, 0, w]", NULL, NULL, 0},
-    {"about", FIELD_POINT, offsetof(InitialVelocitySpec, about), "length", "", NULL,
-     "a point that the axis goes through; when absent the centre of mass of these particles", NULL, NULL, 0},
+    {.key = "translation",
+     .kind = FIELD_POINT,
+     .offset = offsetof(InitialVelocitySpec, translation),
+     .dimension = "velocity",
+     .standard = "",
+     .meaning = "of all these particles"},
+    {.key = "rotation",
+     .kind = FIELD_POINT,
+     .offset = offsetof(InitialVelocitySpec, rotation),
+     .dimension = "angular velocity",
+     .standard = "",
+     .meaning = "angular velocity about the three axes, anticlockwise; in the plane [0, 0, w]"},
+    {.key = "about",
+     .kind = FIELD_POINT,
+     .offset = offsetof(InitialVelocitySpec, about),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "a point that the axis goes through; when absent the centre of mass of these particles"},
 };
-const Section initial_velocity_load_section = {"initial velocity",
-                                               "The motion of a rigid body, which particles have at first. It takes "
-                                               "the place of what they had.",
-                                               sizeof(InitialVelocitySpec),
-                                               FIELDS(initial_velocity_fields),
-                                               check_initial_velocity,
-                                               NULL,
-                                               NULL,
-                                               0};
+
+const Section initial_velocity_load_section = {
+    .name = "initial velocity",
+    .about = "The motion of a rigid body, which particles have at first. It takes the place of what they had.",
+    .size = sizeof(InitialVelocitySpec),
+    FIELDS(initial_velocity_fields),
+    .check = check_initial_velocity};
 
 static double or_none(double value)
 {

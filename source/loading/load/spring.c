@@ -20,24 +20,33 @@ static void check_spring(const DeckReader *reader, void *section)
 }
 
 static const Field spring_fields[] = {
-    {"stiffness", FIELD_NUMBER, offsetof(SpringSpec, stiffness), "force per length", NULL, "(0, inf)",
-     "of all these particles together, shared by volume", NULL, NULL, 0},
-    {"direction", FIELD_POINT, offsetof(SpringSpec, direction), "1", "", NULL,
-     "in which it acts, of any length. When absent: in all directions alike to the ground; to other particles along "
-     "the line between the two centres",
-     NULL, NULL, 0},
-    {"to", FIELD_REFERENCE, offsetof(SpringSpec, to), NULL, "", NULL,
-     "particles at the other end, which move as their mean; the ground when absent", &selection_section, NULL, 0},
+    {.key = "stiffness",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(SpringSpec, stiffness),
+     .dimension = "force per length",
+     .range = "(0, inf)",
+     .meaning = "of all these particles together, shared by volume"},
+    {.key = "direction",
+     .kind = FIELD_POINT,
+     .offset = offsetof(SpringSpec, direction),
+     .dimension = "1",
+     .standard = "",
+     .meaning = "in which it acts, of any length. When absent: in all directions alike to the ground; to other "
+                "particles along the line between the two centres"},
+    {.key = "to",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(SpringSpec, to),
+     .standard = "",
+     .meaning = "particles at the other end, which move as their mean; the ground when absent",
+     .section = &selection_section},
 };
-const Section spring_load_section = {"spring",
-                                     "Springs without force when the load begins; force = stiffness times change of "
-                                     "displacement.",
-                                     sizeof(SpringSpec),
-                                     FIELDS(spring_fields),
-                                     check_spring,
-                                     NULL,
-                                     NULL,
-                                     0};
+
+const Section spring_load_section = {
+    .name = "spring",
+    .about = "Springs without force when the load begins; force = stiffness times change of displacement.",
+    .size = sizeof(SpringSpec),
+    FIELDS(spring_fields),
+    .check = check_spring};
 
 typedef struct Spring {
   double stiffness, direction[3];

@@ -22,26 +22,33 @@ static const char *held_word(int k)
 }
 
 static const Field support_fields[] = {
-    {"held", FIELD_CHOICE, offsetof(SupportSpec, held), NULL, NULL, NULL,
-     "all: the face does not move; across: it slides along itself without friction, as in a plane of symmetry", NULL,
-     held_word, 0},
-    {"displacement", FIELD_POINT, offsetof(SupportSpec, displacement), "length", "", NULL,
-     "of the face, times the history, in the directions that are held; 0 when absent", NULL, NULL, 0},
-    {"layers", FIELD_COUNT, offsetof(SupportSpec, layers), NULL, "", "[1, 1000]",
-     "how many stand outside; when absent two horizons, so that those next to the face have whole families of "
-     "particles with whole "
-     "families",
-     NULL, NULL, 0},
+    {.key = "held",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(SupportSpec, held),
+     .meaning =
+         "all: the face does not move; across: it slides along itself without friction, as in a plane of symmetry",
+     .choice = held_word},
+    {.key = "displacement",
+     .kind = FIELD_POINT,
+     .offset = offsetof(SupportSpec, displacement),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "of the face, times the history, in the directions that are held; 0 when absent"},
+    {.key = "layers",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(SupportSpec, layers),
+     .standard = "",
+     .range = "[1, 1000]",
+     .meaning = "how many stand outside; when absent two horizons, so that those next to the face have whole families "
+                "of particles with whole families"},
 };
-const Section support_load_section = {"support",
-                                      "Layers outside a face of a block on a square or cubic lattice, as mirror images "
-                                      "of those inside, so that stresses are right up to the face.",
-                                      sizeof(SupportSpec),
-                                      FIELDS(support_fields),
-                                      NULL,
-                                      NULL,
-                                      NULL,
-                                      0};
+
+const Section support_load_section = {.name = "support",
+                                      .about =
+                                          "Layers outside a face of a block on a square or cubic lattice, as mirror "
+                                          "images of those inside, so that stresses are right up to the face.",
+                                      .size = sizeof(SupportSpec),
+                                      FIELDS(support_fields)};
 
 typedef struct Support {
   int32_t *images; /* [particles of the load] places inside */

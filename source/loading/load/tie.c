@@ -18,22 +18,26 @@ static const char *directions_word(int k)
 }
 
 static const Field tie_fields[] = {
-    {"to", FIELD_REFERENCE, offsetof(TieSpec, to), NULL, "", NULL,
-     "each particle moves as that one of these which was nearest to it at the start; when absent all particles of the "
-     "load move as one, without turning",
-     &selection_section, NULL, 0},
-    {"directions", FIELD_CHOICE, offsetof(TieSpec, directions), NULL, "xyz", NULL,
-     "in which the motions are one; in the others they stay apart", NULL, directions_word, 0},
+    {.key = "to",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(TieSpec, to),
+     .standard = "",
+     .meaning = "each particle moves as that one of these which was nearest to it at the start; when absent all "
+                "particles of the load move as one, without turning",
+     .section = &selection_section},
+    {.key = "directions",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(TieSpec, directions),
+     .standard = "xyz",
+     .meaning = "in which the motions are one; in the others they stay apart",
+     .choice = directions_word},
 };
-const Section tie_load_section = {"tie",
-                                  "Particles that have the same motion from when the load begins, and share their "
-                                  "forces and masses: momentum and energy stay.",
-                                  sizeof(TieSpec),
-                                  FIELDS(tie_fields),
-                                  NULL,
-                                  NULL,
-                                  NULL,
-                                  0};
+
+const Section tie_load_section = {.name = "tie",
+                                  .about = "Particles that have the same motion from when the load begins, and share "
+                                           "their forces and masses: momentum and energy stay.",
+                                  .size = sizeof(TieSpec),
+                                  FIELDS(tie_fields)};
 
 static int32_t nearest(const Particles *p, int32_t place, const Selection *to)
 {
