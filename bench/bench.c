@@ -96,14 +96,14 @@ static double law_seconds(Domain *d)
 {
   if (d->regions[0].points.components != 6) return 0;
   double start = clock_seconds();
-  for (int64_t b = 0; b < d->block_count; ++b) {
-    const int64_t first = d->blocks[b].first * SLICE;
+  for (int64_t b = 0; b < d->batch_count; ++b) {
+    const int64_t first = d->batches[b].first * SLICE;
     double *strain[6], *stress[6];
     for (int k = 0; k < 6; ++k) {
       strain[k] = d->regions[0].points.strain[k] + first;
       stress[k] = d->regions[0].points.stress[k] + first;
     }
-    points_update(&d->regions[0].points, first, (int)(d->blocks[b].last * SLICE - first), strain, stress);
+    points_update(&d->regions[0].points, first, (int)(d->batches[b].last * SLICE - first), strain, stress);
   }
   return clock_seconds() - start;
 }

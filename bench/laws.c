@@ -52,12 +52,12 @@ static const Sample samples[] = {
     {"menegotto-pinto", {"Young modulus=2e8", "yield stress=4e5"}, 2e-3},
 };
 
-typedef struct Batch {
+typedef struct LawPoints {
   Material material;
   int components, count;
   double *strain[6], *stress[6], *committed, *trial, *direction[6];
   uint8_t *plastic;
-} Batch;
+} LawPoints;
 
 static double *numbers(size_t count)
 {
@@ -67,7 +67,7 @@ static double *numbers(size_t count)
 }
 
 /** Half of the directions are compression with shear, so that laws with pressure see both their cones and their caps. */
-static void prepare(Batch *b, const Sample *sample, const Units *units, double share, int points)
+static void prepare(LawPoints *b, const Sample *sample, const Units *units, double share, int points)
 {
   breccia_error *error = breccia_error_create();
   int count = 0;
@@ -100,7 +100,7 @@ static void prepare(Batch *b, const Sample *sample, const Units *units, double s
   }
 }
 
-static void release(Batch *b)
+static void release(LawPoints *b)
 {
   for (int k = 0; k < b->components; ++k) {
     free(b->strain[k]);
@@ -114,7 +114,7 @@ static void release(Batch *b)
 }
 
 /** Plastic points are strained on from step to step, the others go up and down within a twentieth of the yield strain. */
-static double step(Batch *b, double yield, int number)
+static double step(LawPoints *b, double yield, int number)
 {
   for (int i = 0; i < b->count; ++i) {
     const double size = yield * (b->plastic[i] ? 4 + 0.02 * number : number % 2 ? 0.05 : 0.02);
@@ -122,9 +122,9 @@ static double step(Batch *b, double yield, int number)
   }
   const ptrdiff_t values = b->material.history_values;
   const double start = clock_seconds();
-  for (int first = 0; first < b->count; first += BLOCK) {
+  for (int first = 0; first < b->count; first += BATCH) {
     breccia_batch batch = {.size = sizeof(breccia_batch),
-                           .count = BLOCK,
+                           .count = BATCH,
                            .committed = b->committed + values * first,
                            .trial = b->trial + values * first};
     for (int k = 0; k < b->components; ++k) {
@@ -168,7 +168,7 @@ int main(void)
     enum { WAYS = 5 };
     static const double shares[WAYS] = {0, 0.5, 1, 0, 1};
     double seconds[WAYS][REPEATS], nanoseconds[WAYS], memory = 0;
-    Batch batch[WAYS];
+    LawPoints batch[WAYS];
     for (int way = 0; way < WAYS; ++way) {
       prepare(&batch[way], &samples[s], units, shares[way], way < 3 ? POINTS : FEW);
       for (int n = 0; n < STEPS; ++n) step(&batch[way], samples[s].strain, n);

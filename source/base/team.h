@@ -4,7 +4,7 @@
  *   static void advance(void *context)
  *   {
  *     Domain *d = context;
- *     TEAM_FOR (b, d->block_count) resist(d, b);
+ *     TEAM_FOR (b, d->batch_count) resist(d, b);
  *     TEAM_SINGLE add_sums(d);
  *   }
  *   ...

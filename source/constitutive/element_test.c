@@ -9,14 +9,14 @@ enum { COMPONENTS = 6 };
 
 #define STRAIN_FIELD(name, k)                                                                                          \
   {                                                                                                                    \
-    "strain " name, FIELD_NUMBER, offsetof(StageSpec, strain) + sizeof(double) * (k), "1", "", NULL,                   \
-        "at the stage's end, from the end of the consolidation if there is one; shear is engineering strain", NULL,    \
-        NULL, 0                                                                                                        \
+    .key = "strain " name, .kind = FIELD_NUMBER, .offset = offsetof(StageSpec, strain) + sizeof(double) * (k),         \
+    .dimension = "1", .standard = "",                                                                                  \
+    .meaning = "at the stage's end, from the end of the consolidation if there is one; shear is engineering strain"    \
   }
 #define STRESS_FIELD(name, k)                                                                                          \
   {                                                                                                                    \
-    "stress " name, FIELD_NUMBER, offsetof(StageSpec, stress) + sizeof(double) * (k), "stress", "", NULL,              \
-        "at the stage's end, total", NULL, NULL, 0                                                                     \
+    .key = "stress " name, .kind = FIELD_NUMBER, .offset = offsetof(StageSpec, stress) + sizeof(double) * (k),         \
+    .dimension = "stress", .standard = "", .meaning = "at the stage's end, total"                                      \
   }
 static const Field stage_fields[] = {
     STRAIN_FIELD("xx", XX),
@@ -37,8 +37,7 @@ static const Field stage_fields[] = {
      .standard = "no",
      .meaning =
          "this stage prepares the specimen: strain is zero at its end, later strains count from there, and the curve "
-         "begins "
-         "there"},
+         "begins there"},
     {.key = "steps",
      .kind = FIELD_COUNT,
      .offset = offsetof(StageSpec, steps),

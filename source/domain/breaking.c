@@ -224,8 +224,8 @@ void domain_break(Domain *d, const Moment *moment)
     TEAM_SINGLE forces_follow(&d->forces, moment->motion);
   }
   if (!judges) return;
-  TEAM_FOR (b, d->block_count)
-    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) {
+  TEAM_FOR (b, d->batch_count)
+    for (int64_t s = d->batches[b].first; s < d->batches[b].last; ++s) {
       d->suspects[s] = 0;
       if (d->failure.criterion && d->motion >= d->look_again[s])
         d->look_again[s] = d->motion + d->failure.criterion->suspect(&d->failure, &d->family, s, &d->suspects[s]);

@@ -124,24 +124,24 @@ bool domain_has_servers(const Domain *d)
   return servers;
 }
 
-static void store_block(void *context, int64_t b)
+static void store_batch(void *context, int64_t b)
 {
   const Domain *d = context;
-  d->block_sum[b] = 0;
-  for (int64_t place = d->blocks[b].first * SLICE; place < d->blocks[b].last * SLICE; ++place) {
+  d->batch_sum[b] = 0;
+  for (int64_t place = d->batches[b].first * SLICE; place < d->batches[b].last * SLICE; ++place) {
     StoredEnergy energy;
     if (d->particles->number[place] < 0) continue;
     const Region *region = domain_region(d, place);
     region->type->stored_energy(region->formulation, place, 0, &energy);
-    d->block_sum[b] += energy.stored;
+    d->batch_sum[b] += energy.stored;
   }
 }
 
 double domain_stored_energy(Domain *d)
 {
-  team_each(d->block_count, store_block, d);
+  team_each(d->batch_count, store_batch, d);
   double sum = 0;
-  for (int64_t b = 0; b < d->block_count; ++b) sum += d->block_sum[b]; /* in order */
+  for (int64_t b = 0; b < d->batch_count; ++b) sum += d->batch_sum[b]; /* in order */
   return sum;
 }
 

@@ -1,6 +1,6 @@
-/* The part of the body that one process owns: particles, bonds, regions with the formulations that join them, and the blocks
+/* The part of the body that one process owns: particles, bonds, regions with the formulations that join them, and the batches
  * that its threads work on. Functions marked "by all threads" contain loops that are shared out (base/team.h): call them from
- * every thread of a team_run, or from none. Whatever is summed over particles is summed block by block in a fixed order. */
+ * every thread of a team_run, or from none. Whatever is summed over particles is summed batch by batch in a fixed order. */
 #ifndef BRECCIA_DOMAIN_DOMAIN_H
 #define BRECCIA_DOMAIN_DOMAIN_H
 
@@ -8,9 +8,9 @@
 #include "forces/forces.h"
 #include "formulation/formulation.h"
 
-typedef struct Span { /* slices first .. last - 1, of one region and material, at most BLOCK places */
+typedef struct Batch { /* slices first .. last - 1, of one region and material, at most BATCH places */
   int64_t first, last;
-} Span;
+} Batch;
 
 /** Blocks of the body with one formulation. */
 typedef struct Region {
@@ -25,7 +25,7 @@ typedef struct Region {
   bool is_linear;                                /* no law of it dissipates or remembers */
   uint8_t *foreign;                              /* [slices] 1: of other regions; NULL: there are none */
   int64_t *border;                               /* [border_count] slices of others that have bonds with it */
-  int64_t border_count, first_block, last_block; /* its blocks: the last is not one of them */
+  int64_t border_count, first_batch, last_batch; /* its batches: the last is not one of them */
 } Region;
 
 /** Bonds between regions, place by place (joint.c). */
@@ -68,21 +68,20 @@ typedef struct Domain {
   Material *materials;
   int material_count;
   int32_t *material; /* [slices] */
-  double *strain[6],
-      *stress
-          [6]; /* [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
-  uint8_t *
-      gave_up; /* [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
+  /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
+  double *strain[6], *stress[6];
+  /** [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
+  uint8_t *gave_up;
   Region *regions;
   int region_count;
   int32_t *region; /* [slices] */
   Joint joint;
   Failure failure;
   Forces forces;
-  Span *blocks;
-  int64_t block_count;
-  int64_t *lowest;       /* [blocks] first block that holds a neighbour of a particle of the block */
-  bool rows_cut;         /* a row is longer than a block */
+  Batch *batches;
+  int64_t batch_count;
+  int64_t *lowest;       /* [batches] first batch that holds a neighbour of a particle of the batch */
+  bool rows_cut;         /* a row is longer than a batch */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */
   double *look_again;    /* [slices] sum of largest motions at which the criterion looks at the slice again */
@@ -97,8 +96,8 @@ typedef struct Domain {
   bool any_suspect;      /* in the step under way */
   bool out_of_memory;    /* while bonds broke */
   double force_sum;      /* of all internal force components' magnitudes, as of the last domain_forces */
-  double *block_sum;     /* [blocks] */
-  int64_t *block_failed; /* [blocks] */
+  double *batch_sum;     /* [batches] */
+  int64_t *batch_failed; /* [batches] */
   int64_t failed_place;  /* whose law could not be integrated, or -1 */
 } Domain;
 

@@ -153,59 +153,59 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
 static int find_lowest(Domain *d, Error *error)
 {
   const Family *f = &d->family;
-  int32_t *block_of = memory_zeroed((size_t)d->particles->slices, sizeof *block_of, "blocks", error);
-  d->lowest = memory_zeroed((size_t)d->block_count, sizeof *d->lowest, "blocks", error);
-  if (!block_of || !d->lowest) {
-    free(block_of);
+  int32_t *batch_of = memory_zeroed((size_t)d->particles->slices, sizeof *batch_of, "batches", error);
+  d->lowest = memory_zeroed((size_t)d->batch_count, sizeof *d->lowest, "batches", error);
+  if (!batch_of || !d->lowest) {
+    free(batch_of);
     return BRECCIA_FAILURE;
   }
-  for (int64_t b = 0; b < d->block_count; ++b)
-    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s) block_of[s] = (int32_t)b;
-  for (int64_t b = 0; b < d->block_count; ++b) {
+  for (int64_t b = 0; b < d->batch_count; ++b)
+    for (int64_t s = d->batches[b].first; s < d->batches[b].last; ++s) batch_of[s] = (int32_t)b;
+  for (int64_t b = 0; b < d->batch_count; ++b) {
     d->lowest[b] = b;
-    for (int64_t s = d->blocks[b].first; s < d->blocks[b].last; ++s)
+    for (int64_t s = d->batches[b].first; s < d->batches[b].last; ++s)
       for (int64_t slot = f->first[s]; slot < f->first[s + 1]; ++slot)
         for (int lane = 0; lane < SLICE; ++lane) {
           if (!(f->intact[slot] >> lane & 1)) continue;
           const int32_t there =
               slot < f->stored[s] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
           if (d->region[there / SLICE] != d->region[s]) continue;
-          if (block_of[there / SLICE] < d->lowest[b]) d->lowest[b] = block_of[there / SLICE];
+          if (batch_of[there / SLICE] < d->lowest[b]) d->lowest[b] = batch_of[there / SLICE];
         }
   }
-  free(block_of);
+  free(batch_of);
   return BRECCIA_OK;
 }
 
-/* Blocks end with a row, as far as rows are no longer than a block: sums along rows can then be made while what is summed is still
+/* Batches end with a row, as far as rows are no longer than a batch: sums along rows can then be made while what is summed is still
  * in the cache. */
 static int share_out(Domain *d, Error *error)
 {
   int64_t slices = d->particles->slices;
-  d->blocks = memory_zeroed((size_t)slices, sizeof(Span), "blocks", error);
-  if (!d->blocks) return BRECCIA_FAILURE;
+  d->batches = memory_zeroed((size_t)slices, sizeof(Batch), "batches", error);
+  if (!d->batches) return BRECCIA_FAILURE;
   for (int r = 0; r < d->region_count; ++r) {
-    d->regions[r].first_block = d->block_count;
+    d->regions[r].first_batch = d->batch_count;
     for (int64_t s = 0; s < slices;) {
       int64_t end = s + 1, row_end = row_goes_on(d, s) ? s : end;
       if (d->region[s] != r) {
         s = end;
         continue;
       }
-      for (; end < slices && end - s < BLOCK / SLICE && d->region[end] == r && d->material[end] == d->material[s];
+      for (; end < slices && end - s < BATCH / SLICE && d->region[end] == r && d->material[end] == d->material[s];
            ++end)
         if (!row_goes_on(d, end)) row_end = end + 1;
       if (row_end > s) end = row_end;
       d->rows_cut |= row_goes_on(d, end - 1);
-      d->blocks[d->block_count++] = (Span){s, end};
+      d->batches[d->batch_count++] = (Batch){s, end};
       s = end;
     }
-    d->regions[r].last_block = d->block_count;
+    d->regions[r].last_batch = d->batch_count;
   }
-  d->block_sum = memory_zeroed((size_t)d->block_count, sizeof(double), "block sums", error);
-  d->block_failed = memory_zeroed((size_t)d->block_count, sizeof(int64_t), "block sums", error);
-  if (!d->block_sum || !d->block_failed) return BRECCIA_FAILURE;
-  for (int64_t b = 0; b < d->block_count; ++b) d->block_failed[b] = -1;
+  d->batch_sum = memory_zeroed((size_t)d->batch_count, sizeof(double), "batch sums", error);
+  d->batch_failed = memory_zeroed((size_t)d->batch_count, sizeof(int64_t), "batch sums", error);
+  if (!d->batch_sum || !d->batch_failed) return BRECCIA_FAILURE;
+  for (int64_t b = 0; b < d->batch_count; ++b) d->batch_failed[b] = -1;
   return find_lowest(d, error);
 }
 
@@ -457,10 +457,10 @@ void domain_destroy(Domain *d)
   for (int k = 0; k < d->material_count; ++k) material_destroy(&d->materials[k]);
   free(d->materials);
   free(d->material);
-  free(d->blocks);
+  free(d->batches);
   free(d->lowest);
-  free(d->block_sum);
-  free(d->block_failed);
+  free(d->batch_sum);
+  free(d->batch_failed);
   free(d->family_volume);
   free(d->suspects);
   free(d->look_again);

@@ -1,5 +1,5 @@
-/* Phases of formulations, and laws between them, over the blocks of a body, region by region. Phases follow each other within a block, while its numbers are
- * in the cache, as far as none reads of its neighbours what another one of them writes: there all blocks wait for each other. */
+/* Phases of formulations, and laws between them, over the batches of a body, region by region. Phases follow each other within a batch, while
+ * its numbers are in the cache, as far as none reads of its neighbours what another one of them writes: there all batches wait for each other. */
 #include "base/team.h"
 #include "base/tensor.h"
 #include "domain/regions.h"
@@ -14,19 +14,19 @@ typedef struct Purpose {
   unsigned without;  /* phases that write any of these are left out */
 } Purpose;
 
-/** Not finite if any force of the block is not. */
+/** Not finite if any force of the batch is not. */
 BRECCIA_CLONES
-static double force_magnitude(const Particles *p, const Span *span)
+static double force_magnitude(const Particles *p, const Batch *batch)
 {
   Lanes sum = {0};
   for (int k = 0; k < 3; ++k)
-    for (int64_t place = span->first * SLICE; place < span->last * SLICE; place += LANES)
+    for (int64_t place = batch->first * SLICE; place < batch->last * SLICE; place += LANES)
       sum += lanes_absolute(lanes_load(p->internal[k] + place));
   return lanes_total(sum);
 }
 
-/** Phases `from` .. `to` - 1 of a formulation that follow each other within a block; `law` is the first that reads stresses, if any. From
- *  `close` on they need that the blocks with lower neighbours are done too. */
+/** Phases `from` .. `to` - 1 of a formulation that follow each other within a batch; `law` is the first that reads stresses, if any. From
+ *  `close` on they need that the batches with lower neighbours are done too. */
 typedef struct Group {
   int from, law, close, to;
 } Group;
@@ -53,21 +53,21 @@ static void run_phases(const Region *region, int from, int to, const Sweep *swee
     if (!(region->type->phases[p].writes & purpose->without)) region->type->phases[p].run(region->formulation, sweep);
 }
 
-/** A block of points on particles, or of none.
+/** A batch of points on particles, or of none.
  *  @param[in] send  only up to the law: strains are sent to servers */
-static void run_places(Domain *d, Region *region, const Group *group, int64_t block, const Purpose *purpose, bool send)
+static void run_places(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
-  _Alignas(64) double carry[CARRY * BLOCK], change[12 * BLOCK];
-  const Span *span = &d->blocks[block];
+  _Alignas(64) double carry[CARRY * BATCH], change[12 * BATCH];
+  const Batch *slices = &d->batches[batch];
   Points *points = &region->points;
-  const int64_t first = span->first * SLICE;
-  const int count = (int)(span->last * SLICE - first);
+  const int64_t first = slices->first * SLICE;
+  const int count = (int)(slices->last * SLICE - first);
   Sweep sweep = {
-      .first = span->first, .last = span->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
-  if (purpose->at && points->plane_stress) memset(change + ZZ * BLOCK, 0, sizeof(double) * BLOCK);
+      .first = slices->first, .last = slices->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
+  if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   for (int k = 0; k < 6 && points->components == 6; ++k) {
-    sweep.strain[k] = purpose->at ? change + k * BLOCK : points->strain[k] + first;
-    sweep.stress[k] = purpose->at ? change + (6 + k) * BLOCK : points->stress[k] + first;
+    sweep.strain[k] = purpose->at ? change + k * BATCH : points->strain[k] + first;
+    sweep.stress[k] = purpose->at ? change + (6 + k) * BATCH : points->stress[k] + first;
   }
   run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
   if (group->law < 0) return;
@@ -79,7 +79,7 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t bl
     if (purpose->at)
       points_change(points, first, count, sweep.strain, sweep.stress);
     else if (!purpose->no_law)
-      d->block_failed[block] = points_update(points, first, count, sweep.strain, sweep.stress);
+      d->batch_failed[batch] = points_update(points, first, count, sweep.strain, sweep.stress);
   }
   run_phases(region, group->law, group->to, &sweep, purpose);
 }
@@ -107,20 +107,20 @@ static int64_t owner_of(const Domain *d, const Region *region, int64_t slice, in
   return slice * SLICE + lane;
 }
 
-/** A block of points on bonds, chunk by chunk of rows of one slice and material. */
-static void run_bonds(Domain *d, Region *region, const Group *group, int64_t block, const Purpose *purpose, bool send)
+/** The points on bonds of a batch of places, in batches of rows of one slice and material. */
+static void run_bonds(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
-  _Alignas(64) double carry[CARRY * BLOCK], strain[BLOCK], stress[BLOCK];
+  _Alignas(64) double carry[CARRY * BATCH], strain[BATCH], stress[BATCH];
   Sweep sweep = {.carry = carry, .strain = {strain}, .stress = {stress}};
   Points *points = &region->points;
   const BondList *bonds = &region->bonds;
   int64_t failed = -1;
-  for (int64_t slice = d->blocks[block].first; slice < d->blocks[block].last; ++slice) {
+  for (int64_t slice = d->batches[batch].first; slice < d->batches[batch].last; ++slice) {
     const int64_t end = bonds->first[slice + 1];
     for (sweep.row = bonds->first[slice]; sweep.row < end; sweep.row += sweep.rows) {
       const PointsRun *run = &points->runs[points_run(points, sweep.row)];
       const int64_t left = (run->first + run->count < end ? run->first + run->count : end) - sweep.row;
-      sweep.rows = left < BLOCK ? (int)left : BLOCK;
+      sweep.rows = left < BATCH ? (int)left : BATCH;
       sweep.first = slice;
       sweep.last = slice + 1;
       run_phases(region, group->from, group->law, &sweep, purpose);
@@ -134,32 +134,32 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t blo
       run_phases(region, group->law, group->to, &sweep, purpose);
     }
   }
-  d->block_failed[block] = failed;
+  d->batch_failed[batch] = failed;
 }
 
-static void run_group(Domain *d, Region *region, const Group *group, int64_t block, const Purpose *purpose, bool send)
+static void run_group(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
   if (group->law < 0 || region->points.components != 1)
-    run_places(d, region, group, block, purpose, send);
+    run_places(d, region, group, batch, purpose, send);
   else if (!purpose->at && !purpose->no_law)
-    run_bonds(d, region, group, block, purpose, send);
+    run_bonds(d, region, group, batch, purpose, send);
 }
 
-/** Phases of a block that have waited for lower blocks. */
-static void finish_block(Domain *d, Region *region, const Group *group, int64_t b, const Purpose *purpose,
+/** Phases of a batch that have waited for lower batches. */
+static void finish_batch(Domain *d, Region *region, const Group *group, int64_t b, const Purpose *purpose,
                          unsigned writes)
 {
   run_group(d, region, group, b, purpose, false);
-  if (writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
+  if (writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
 }
 
-/** Where bonds have broken: the same again for blocks whose families turn out to carry less, with the stresses that laws have given. */
+/** Where bonds have broken: the same again for batches whose families turn out to carry less, with the stresses that laws have given. */
 static void settle(Domain *d, Region *region, const Group *group)
 {
   domain_settle(d, region);
-  TEAM_FOR (n, region->last_block - region->first_block) {
-    const int64_t b = region->first_block + n, first = d->blocks[b].first * SLICE,
-                  places = d->blocks[b].last * SLICE - first;
+  TEAM_FOR (n, region->last_batch - region->first_batch) {
+    const int64_t b = region->first_batch + n, first = d->batches[b].first * SLICE,
+                  places = d->batches[b].last * SLICE - first;
     if (memchr(d->is_torn + first, 2, (size_t)places))
       run_group(d, region, group, b, &(Purpose){.no_law = true}, false);
   }
@@ -178,7 +178,7 @@ static void show_border(const Region *region, const Group *group, const Purpose 
 static void run_region(Domain *d, Region *region, const Purpose *purpose)
 {
   const Phase *phases = region->type->phases;
-  const int64_t from = region->first_block, count = region->last_block - from;
+  const int64_t from = region->first_batch, count = region->last_batch - from;
   const bool ahead = !purpose->at && !purpose->no_law && points_ask_ahead(&region->points);
   for (int p = 0; p < MOST_PHASES && phases[p].run;) {
     const Group group = group_from(d, region, p);
@@ -205,14 +205,14 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
       const int64_t b = from + n;
       run_group(d, region, &before, b, purpose, false);
       /* Where bonds have broken, forces wait for what families carry. */
-      if (in_two && !torn && d->lowest[b] >= from + share.first) finish_block(d, region, &after, b, purpose, writes);
-      if (!in_two && writes & OF_FORCES) d->block_sum[b] = force_magnitude(d->particles, &d->blocks[b]);
+      if (in_two && !torn && d->lowest[b] >= from + share.first) finish_batch(d, region, &after, b, purpose, writes);
+      if (!in_two && writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
     }
     if (torn) settle(d, region, &before);
     if (in_two) {
       TEAM_FOR (n, count) /* the rest, whose neighbours were another thread's */
         if (torn || d->lowest[from + n] < from + share.first)
-          finish_block(d, region, &after, from + n, purpose, writes);
+          finish_batch(d, region, &after, from + n, purpose, writes);
     }
   }
 }
@@ -231,9 +231,9 @@ void domain_forces(Domain *d)
   {
     d->force_sum = 0;
     d->failed_place = -1;
-    for (int64_t b = 0; b < d->block_count; ++b) {
-      d->force_sum += d->block_sum[b];
-      if (d->failed_place < 0) d->failed_place = d->block_failed[b];
+    for (int64_t b = 0; b < d->batch_count; ++b) {
+      d->force_sum += d->batch_sum[b];
+      if (d->failed_place < 0) d->failed_place = d->batch_failed[b];
     }
   }
 }

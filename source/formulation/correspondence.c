@@ -291,7 +291,7 @@ LANES_INLINE void strain_half(const Correspondence *c, const SliceShape *shape, 
     for (int k = 0; k < 3; ++k)
       g[3 * r + k] = sums[r][0] * inverse[symmetric_place[k]] + sums[r][1] * inverse[symmetric_place[3 + k]] +
                      sums[r][2] * inverse[symmetric_place[6 + k]];
-  for (int k = 0; k < 9; ++k) lanes_store(gradients + k * BLOCK, g[k]);
+  for (int k = 0; k < 9; ++k) lanes_store(gradients + k * BATCH, g[k]);
   for (int k = 0; k < 9 && at; ++k) g0[k] = lanes_load(at + k * SLICE);
   for (int k = 0; k < 6; ++k) {
     if (k == ZZ && c->points->plane_stress) continue; /* that strain is the law's affair */
@@ -375,7 +375,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, const Sweep *sweep, int
   }
   hold[0] = lanes_set(c->uniform);
   for (int k = 0; k < hold_components(c->control); ++k) hold[k] = lanes_load(c->hold[k] + place);
-  for (int k = 0; k < 9; ++k) g[k] = lanes_load(sweep->carry + here + k * BLOCK);
+  for (int k = 0; k < 9; ++k) g[k] = lanes_load(sweep->carry + here + k * BATCH);
   for (int k = 0; k < 9 && linear; ++k)
     g0[k] = lanes_load(c->gradients + place / SLICE * (9 * SLICE) + k * SLICE + place % SLICE);
   first_stress(c, g, s, g0, s0, linear, p);

@@ -86,19 +86,19 @@ typedef struct FormerBonds {
 typedef enum Quantity {
   OF_DISPLACEMENTS = 1, /* displacements, or what stands for them in a linearised step */
   OF_SHOWN = 2,         /* what neighbours read of displacements beyond these themselves */
-  OF_STRAINS = 4,       /* of the points of the block; laws are asked before the first phase that reads OF_STRESSES */
+  OF_STRAINS = 4,       /* of the points of the batch; laws are asked before the first phase that reads OF_STRESSES */
   OF_STRESSES = 8,
   OF_STATES = 16, /* force states */
   OF_SUMS = 32,   /* sums of force states along lattice rows */
   OF_FORCES = 64
 } Quantity;
 
-/** Slices first .. last - 1, of one material and at most BLOCK places, that are worked on together. */
+/** Slices first .. last - 1, of one material and at most BATCH places, that are worked on together. */
 typedef struct Sweep {
   int64_t first, last;
-  double *carry; /* [CARRY][BLOCK] numbers that one phase leaves for a later one: they need never leave the cache */
-  /** Strains that are found and stresses that are answered, in a linearised step their changes: [6][places of the block] of points on
-   *  particles. Of points on bonds [1][rows], of a chunk of rows of one material; the block is then their slice. */
+  double *carry; /* [CARRY][BATCH] numbers that one phase leaves for a later one: they need never leave the cache */
+  /** Strains that are found and stresses that are answered, in a linearised step their changes: [6][places of the batch] of points on
+   *  particles. Of points on bonds [1][rows], of a batch of rows of one material; first .. last is then their slice. */
   double *strain[6], *stress[6];
   int64_t row; /* of points on bonds: the first of them (family/bond_list.h) */
   int rows;
@@ -109,10 +109,10 @@ typedef struct Sweep {
 } Sweep;
 
 typedef struct Phase {
-  unsigned reads, writes; /* Quantity bits, of the block's own places */
-  unsigned of_neighbours; /* and what it reads of neighbours: all blocks have written that before */
+  unsigned reads, writes; /* Quantity bits, of the batch's own places */
+  unsigned of_neighbours; /* and what it reads of neighbours: all batches have written that before */
   unsigned of_lower;      /* what it reads of neighbours with lower places only, so that it may follow close behind */
-  unsigned along_rows;    /* what it reads along its lattice row; only rows longer than a block wait for that */
+  unsigned along_rows;    /* what it reads along its lattice row; only rows longer than a batch wait for that */
   bool by_one;            /* one thread calls it once, for few places anywhere */
   /** @return -1, or a place whose law could not be integrated */
   int64_t (*run)(void *formulation, const Sweep *sweep);
@@ -138,7 +138,7 @@ typedef struct FormulationType {
   void (*destroy)(void *formulation);
   /** Bonds of this slice have broken. NULL: nothing to do. */
   void (*renew)(void *formulation, int64_t slice);
-  /** From displacements to internal forces per volume, block by block, in this order; up to the first without `run`. */
+  /** From displacements to internal forces per volume, batch by batch, in this order; up to the first without `run`. */
   Phase phases[MOST_PHASES];
   /** Keeps what a linearised step needs of the state that was evaluated last, tangents of the points among it. */
   int (*linearise)(void *formulation, Error *error);

@@ -44,7 +44,7 @@ void operator_gradient(const Operator *point, double *const u[3], double g[9]);
 void operator_strain(const Operator *point, double *const u[3], double *const v[3], double strain[6]);
 /** Adds the forces of the point and its springs on all its places to arrays over places. */
 void operator_add_forces(const Operator *point, double *const u[3], double *const force[3]);
-/** Change of the force on place a with the displacement of place b (both 0 .. count - 1), row by row: a block of minus the
+/** Change of the force on place a with the displacement of place b (both 0 .. count - 1), row by row: 3 x 3 numbers of minus the
  *  tangent stiffness, from the tangent of the law, its stress and the springs. */
 void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9]);
 

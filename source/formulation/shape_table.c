@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = 2048 }; /* slices whose shapes are found at once before alike ones are looked for */
+enum { PORTION = 2048 }; /* slices whose shapes are found at once before alike ones are looked for */
 
 /* A family that has lost most of its bonds answers with the whole stress through the few that are left, so that the stable step would
  * fall to a quarter and less (docs/theory.md 4). It carries only a share of its stress when its demand, or the part of its neighbours
@@ -71,20 +71,20 @@ static int32_t find_entry(ShapeTable *table, const SliceShape *shape, int32_t *s
   }
 }
 
-typedef struct Batch { /* of slices whose shapes are found together */
+typedef struct Portion { /* of slices whose shapes are found together */
   ShapeTable *table;
   const Family *family;
   int64_t begin;
   SliceShape *shapes;
   double *whole; /* [slices] as of slice_shape */
-} Batch;
+} Portion;
 
 static void find_shape(void *context, int64_t n)
 {
-  const Batch *batch = context;
-  const int64_t slice = batch->begin + n;
-  batch->whole[slice] = INFINITY;
-  batch->shapes[n] = slice_shape(batch->table, batch->family, slice, &batch->whole[slice]);
+  const Portion *portion = context;
+  const int64_t slice = portion->begin + n;
+  portion->whole[slice] = INFINITY;
+  portion->shapes[n] = slice_shape(portion->table, portion->family, slice, &portion->whole[slice]);
 }
 
 /** Families that are poor from the beginning, and all that are no poorer than at a face, carry their whole stress.
@@ -118,7 +118,7 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
   table->kept = memory_zeroed((size_t)family->particles->places, sizeof *table->kept, "shape tensors", error);
   table->mode = memory_zeroed((size_t)family->particles->places, 1, "shape tensors", error);
   double *whole = memory_zeroed((size_t)slices, sizeof *whole, "shape tensors", error);
-  SliceShape *shapes = memory_zeroed(BATCH, sizeof *shapes, "shape tensors", error);
+  SliceShape *shapes = memory_zeroed(PORTION, sizeof *shapes, "shape tensors", error);
   int32_t *slots = memory_zeroed(slots_count, sizeof *slots, "shape tensors", error);
   /* Not zeroed: pages that no entry ever needs are never touched, and so take no memory. */
   table->entries = aligned_alloc(64, (capacity * sizeof(SliceShape) + 63) / 64 * 64);
@@ -126,10 +126,10 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
                !table->mode || !whole || !shapes || !slots;
   for (int64_t place = 0; table->kept && place < family->particles->places; ++place) table->kept[place] = 1;
   if (!table->entries) failed = error_add(error, BRECCIA_FAILURE, "out of memory: shape tensors");
-  for (int64_t begin = 0; begin < slices && !failed; begin += BATCH) {
-    int64_t end = begin + BATCH < slices ? begin + BATCH : slices;
-    Batch batch = {table, family, begin, shapes, whole};
-    team_each(end - begin, find_shape, &batch);
+  for (int64_t begin = 0; begin < slices && !failed; begin += PORTION) {
+    int64_t end = begin + PORTION < slices ? begin + PORTION : slices;
+    Portion portion = {table, family, begin, shapes, whole};
+    team_each(end - begin, find_shape, &portion);
     for (int64_t slice = begin; slice < end; ++slice)
       table->entry_of[slice] = find_entry(table, &shapes[slice - begin], slots, slots_count - 1);
   }

@@ -65,7 +65,7 @@ static bool bisect_zz(const Material *m, const breccia_batch *batch, int at, dou
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz)
 {
   enum { MOST_ITERATIONS = 20 };
-  double local[BLOCK * 36], *const tangent = batch->tangent;
+  double local[BATCH * 36], *const tangent = batch->tangent;
   batch->tangent = tangent ? tangent : local;
   for (int iteration = 0;; ++iteration) {
     int bad = m->law->update(m->constants, batch), worst = -1;

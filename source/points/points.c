@@ -44,7 +44,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
                      .materials = spec->materials,
                      .material_count = spec->material_count,
                      .run_count = spec->run_count};
-  for (int i = 0; i < BLOCK; ++i) points->length[i] = spec->length;
+  for (int i = 0; i < BATCH; ++i) points->length[i] = spec->length;
   if (create_runs(points, spec, error)) return BRECCIA_FAILURE;
   if (spec->may_give_up && !(points->gave_up = memory_zeroed((size_t)points->count, 1, "failed laws", error)))
     return BRECCIA_FAILURE;

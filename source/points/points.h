@@ -10,7 +10,9 @@
 #include "body/body.h"
 #include "constitutive/material.h"
 
-enum { BLOCK = 128 }; /* points worked on together: their strains, stresses and states stay in the first-level cache */
+enum {
+  BATCH = 128
+}; /* points worked on together, at most: their strains, stresses and states stay in the first-level cache */
 
 /** Rows first .. first + count - 1, of one material. */
 typedef struct PointsRun {
@@ -41,7 +43,7 @@ typedef struct Points {
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
   int elastic_stage;      /* laws respond elastically while it is set */
   double time, time_step; /* for laws with rates: at the end of the step under way, and its length */
-  double length[BLOCK];   /* over which laws spread a fracture energy, alike for all points; NaN: unknown */
+  double length[BATCH];   /* over which laws spread a fracture energy, alike for all points; NaN: unknown */
   PointServers *servers;  /* NULL: no law is remote */
   double *identity;       /* by which the servers are found again after a restart */
   size_t identity_size;
@@ -72,7 +74,7 @@ const Material *points_material(const Points *points, int64_t row);
 /** Committed history of a row. */
 const double *points_history(const Points *points, int64_t row);
 
-/** The one door to laws: stress, trial history and, where they are kept, tangents of `count` rows, of one run and at most BLOCK. In plane
+/** The one door to laws: stress, trial history and, where they are kept, tangents of `count` rows, of one run and at most BATCH. In plane
  *  stress the strain zz is found such that the stress zz vanishes.
  *  @param[in,out] strain, stress  [components][count]
  *  @return -1, or a row whose law could not be integrated */

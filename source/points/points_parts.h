@@ -12,7 +12,7 @@ breccia_batch batch_part(const breccia_batch *whole, const Material *m, int comp
  *  @return -1, or the index of a point whose law could not be integrated */
 int plane_stress_update(const Material *m, breccia_batch *batch, double *strain_zz);
 
-enum { UNTOUCHED_NUMBERS = 4 * BLOCK }; /* of the histories of a batch of untouched rows, at most */
+enum { UNTOUCHED_NUMBERS = 4 * BATCH }; /* of the histories of a batch of untouched rows, at most */
 
 int untouched_create(Points *points, Error *error);
 void untouched_destroy(Points *points);

@@ -11,7 +11,7 @@ enum { GROUP = 64, MOST_VALUES = 4 }; /* rows; longer histories are compared at 
 
 struct Untouched {
   uint8_t *groups; /* [count / GROUP + 1] 1: all rows of it */
-  double **begin;  /* [materials][BLOCK][history_values], or NULL: rows of this material are not looked after */
+  double **begin;  /* [materials][BATCH][history_values], or NULL: rows of this material are not looked after */
   int material_count;
 };
 
@@ -31,9 +31,9 @@ int untouched_create(Points *points, Error *error)
   for (int k = 0; k < points->material_count; ++k) {
     const Material *m = &points->materials[k];
     if (m->remote || m->history_values < 1 || m->history_values > MOST_VALUES) continue;
-    u->begin[k] = memory_zeroed((size_t)(BLOCK * m->history_values), sizeof(double), "histories", error);
+    u->begin[k] = memory_zeroed((size_t)(BATCH * m->history_values), sizeof(double), "histories", error);
     if (!u->begin[k]) return BRECCIA_FAILURE;
-    for (int i = 0; i < BLOCK && m->law->begin; ++i)
+    for (int i = 0; i < BATCH && m->law->begin; ++i)
       m->law->begin(m->constants, u->begin[k] + (ptrdiff_t)i * m->history_values);
   }
   memset(u->groups, 1, group_count(points));

@@ -114,7 +114,7 @@ static int create(Solver *run, Error *error)
   int failed = 0;
   for (int k = 0; k < 3; ++k)
     failed |= !(s->acceleration[k] = places_array(d->particles->places, "accelerations", error));
-  s->sums = memory_zeroed((size_t)d->block_count, sizeof *s->sums, "energy sums", error);
+  s->sums = memory_zeroed((size_t)d->batch_count, sizeof *s->sums, "energy sums", error);
   int64_t parts = 0;
   for (int n = 0; n < run->loading->constraint_count; ++n)
     if (explicit_parts_of(&run->loading->constraints[n]) > parts)
@@ -205,12 +205,12 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
 
 /** First half: velocities to the middle of the step, displacements to its end. */
 BRECCIA_CLONES
-static void kick_and_drift(Explicit *s, int64_t block)
+static void kick_and_drift(Explicit *s, int64_t batch)
 {
   const Particles *p = s->domain->particles;
   const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(s->spec->damping), one_half = lanes_set(0.5);
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
-  int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
+  int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = first; i < last; i += LANES) {
       Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
@@ -225,7 +225,7 @@ static void kick_and_drift(Explicit *s, int64_t block)
       lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
       lanes_store(p->velocity[k] + i, half);
     }
-  double *sums = s->sums[block];
+  double *sums = s->sums[batch];
   sums[BOND_WORK] = lanes_total(bond);
   sums[EXTERNAL_WORK] = lanes_total(external);
   sums[DAMPING_WORK] = lanes_total(damping);
@@ -235,14 +235,14 @@ static void kick_and_drift(Explicit *s, int64_t block)
 
 /** Second half: accelerations and velocities at the end of the step. */
 BRECCIA_CLONES
-static void kick(Explicit *s, int64_t block)
+static void kick(Explicit *s, int64_t batch)
 {
   const Particles *p = s->domain->particles;
   double c = s->spec->damping;
   const Lanes dt = lanes_set(s->clock->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
   const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->clock->time_step)), viscous = lanes_set(c);
   Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0}, between = {0};
-  int64_t first = s->domain->blocks[block].first * SLICE, last = s->domain->blocks[block].last * SLICE;
+  int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = first; i < last; i += LANES) {
       Lanes half = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
@@ -260,7 +260,7 @@ static void kick(Explicit *s, int64_t block)
       lanes_store(s->acceleration[k] + i, acceleration);
       lanes_store(p->velocity[k] + i, end);
     }
-  double *sums = s->sums[block];
+  double *sums = s->sums[batch];
   sums[BOND_WORK] += lanes_total(bond);
   sums[EXTERNAL_WORK] += lanes_total(external);
   sums[DAMPING_WORK] += lanes_total(damping);
@@ -271,7 +271,7 @@ static void kick(Explicit *s, int64_t block)
 static void add_sums(Explicit *s)
 {
   s->ledger->kinetic = 0;
-  for (int64_t b = 0; b < s->domain->block_count; ++b) explicit_add_to_ledger(s, s->sums[b]);
+  for (int64_t b = 0; b < s->domain->batch_count; ++b) explicit_add_to_ledger(s, s->sums[b]);
 }
 
 static int begin(Solver *run, Error *error)
@@ -303,8 +303,8 @@ static void take_step(void *context)
   Explicit *s = context;
   Domain *d = s->domain;
   const double end = explicit_time_after_step(s);
-  TEAM_FOR (b, d->block_count) {
-    state_note_places(&s->before, d->blocks[b].first * SLICE, d->blocks[b].last * SLICE);
+  TEAM_FOR (b, d->batch_count) {
+    state_note_places(&s->before, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
     kick_and_drift(s, b);
   }
   explicit_prescribe_displacements(s);
@@ -313,7 +313,7 @@ static void take_step(void *context)
   if (!is_sound(s)) return;
   domain_accept(d);
   loading_apply(s->loading, d->particles, end);
-  TEAM_FOR (b, d->block_count) kick(s, b);
+  TEAM_FOR (b, d->batch_count) kick(s, b);
   TEAM_SINGLE
   {
     add_sums(s);

@@ -38,7 +38,7 @@ typedef struct Explicit {
     double rate;                                /* velocity at its end */
   } * motions;
   double motion;         /* largest component of any displacement increment in the step under way */
-  double (*sums)[SUMS];  /* [blocks] */
+  double (*sums)[SUMS];  /* [batches] */
   double (*parts)[SUMS]; /* the same for parts of prescribed selections */
 } Explicit;
 

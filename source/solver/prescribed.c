@@ -101,7 +101,7 @@ void explicit_prescribe_displacements(Explicit *s)
   TEAM_SINGLE
   {
     s->motion = 0;
-    for (int64_t b = 0; b < s->domain->block_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
+    for (int64_t b = 0; b < s->domain->batch_count; ++b) s->motion = fmax(s->motion, s->sums[b][MOTION]);
   }
   const int count = s->loading->constraint_count; /* one after the other: they may share particles */
   for (int n = 0; n < 2 * count; ++n) {

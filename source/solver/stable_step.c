@@ -44,11 +44,10 @@ static double mass_product(const Domain *d, double *const a[3], double *const b[
 {
   const Particles *p = d->particles;
   double sum = 0;
-  for (int64_t block = 0; block < d->block_count;
-       ++block) { /* block by block: the same bits for any number of threads */
+  for (int64_t batch = 0; batch < d->batch_count; ++batch) { /* the same bits for any number of threads */
     double part = 0;
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = d->blocks[block].first * SLICE; i < d->blocks[block].last * SLICE; ++i)
+      for (int64_t i = d->batches[batch].first * SLICE; i < d->batches[batch].last * SLICE; ++i)
         part += p->density[i] * p->volume[i] * a[k][i] * b[k][i];
     sum += part;
   }
