@@ -11,7 +11,7 @@ static void check_block(const DeckReader *reader, void *section)
     node_error(reader->document, block->head.node, reader->error,
                "block: a line needs the 'area' of the bar's cross-section");
   if (!line && !isnan(block->area))
-    node_error(reader->document, section_place(section, "area"), reader->error,
+    node_error(reader->document, section_node(section, "area"), reader->error,
                "block: 'area' goes with 'lattice: line'");
   if (plane && isnan(block->thickness))
     node_error(reader->document, block->head.node, reader->error,
@@ -19,7 +19,7 @@ static void check_block(const DeckReader *reader, void *section)
                block->lattice);
   if (!plane && !isnan(block->thickness))
     node_error(
-        reader->document, section_place(section, "thickness"), reader->error,
+        reader->document, section_node(section, "thickness"), reader->error,
         "block: 'thickness' goes with a square or hexagonal lattice; one in space has its own depth, a line an 'area'");
 }
 
@@ -166,7 +166,7 @@ int block_place_lattice(const BlockSpec *block, int b, const MarginList *margins
     lattice->origin[k] = low[k] + lattice->unit.first[k];
   }
   if (!(total < 2e9))
-    return node_error(reader->document, section_place(block, "spacing"), reader->error,
+    return node_error(reader->document, section_node(block, "spacing"), reader->error,
                       "block: %.3g lattice cells are more than the 2e9 that can be numbered; is the spacing right?",
                       total);
   add_margins(lattice, b, margins);

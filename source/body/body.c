@@ -90,7 +90,7 @@ static int occupy_cloud(Body *body, int b, const DeckReader *reader, Filling *fi
   const BlockSpec *block = body->blocks[b];
   const Lattice *lattice = &body->lattices[b];
   Cloud *cloud = &filling->cloud;
-  int status = cloud_read(cloud, reader, section_place(block, "file"), block->file, lattice->dimensions);
+  int status = cloud_read(cloud, reader, section_node(block, "file"), block->file, lattice->dimensions);
   if (status) return status;
   uint8_t *gone = memory_zeroed((size_t)cloud->count, 1, "particles", reader->error);
   if (!gone) return BRECCIA_FAILURE;
@@ -114,9 +114,9 @@ static int occupy(Body *body, int b, const DeckReader *reader, Filling *filling,
                            : occupy_lattice(body, b, filling, slices, count, reader->error);
   if (status || *count > before) return status;
   if (block->file)
-    return node_error(reader->document, section_place(block, "file"), reader->error,
+    return node_error(reader->document, section_node(block, "file"), reader->error,
                       "block '%s': the cracks take out every particle of it", block->head.name);
-  return node_error(reader->document, section_place(block, "shape"), reader->error,
+  return node_error(reader->document, section_node(block, "shape"), reader->error,
                     "block '%s': no lattice cell has its centre inside the shape; is the spacing too large?%s",
                     block->head.name,
                     body->lattices[b].dimensions == 2 && block->shape->cylinder
@@ -300,7 +300,7 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
       body->coarsest = &body->lattices[b];
     }
     if (b && body->lattices[b].dimensions != body->lattices[0].dimensions)
-      status = node_error(reader->document, section_place(body->blocks[b], "lattice"), error,
+      status = node_error(reader->document, section_node(body->blocks[b], "lattice"), error,
                           "block: lattices of space, of the plane and lines cannot stand in one body");
   }
   body->dimensions = body->lattices[0].dimensions;

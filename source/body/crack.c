@@ -7,9 +7,9 @@ static void check_cut(const DeckReader *reader, void *section)
 {
   const CutSpec *cut = section;
   if (cut->line.count == 1)
-    node_error(reader->document, section_place(section, "line"), reader->error, "line: needs at least two points");
+    node_error(reader->document, section_node(section, "line"), reader->error, "line: needs at least two points");
   if (cut->polygon.count == 1 || cut->polygon.count == 2)
-    node_error(reader->document, section_place(section, "polygon"), reader->error,
+    node_error(reader->document, section_node(section, "polygon"), reader->error,
                "polygon: needs at least three corners");
   for (int n = 3; n < cut->polygon.count; ++n) {
     const double *p = cut->polygon.values;
@@ -23,7 +23,7 @@ static void check_cut(const DeckReader *reader, void *section)
     double volume =
         c[0] * (a[1] * b[2] - a[2] * b[1]) + c[1] * (a[2] * b[0] - a[0] * b[2]) + c[2] * (a[0] * b[1] - a[1] * b[0]);
     if (fabs(volume) > 1e-9 * pow(size, 1.5)) {
-      node_error(reader->document, section_place(section, "polygon"), reader->error,
+      node_error(reader->document, section_node(section, "polygon"), reader->error,
                  "polygon: corner %d does not lie in the plane of the first three", n + 1);
       break;
     }
@@ -60,10 +60,10 @@ static void check_crack(const DeckReader *reader, void *section)
 {
   const CrackSpec *crack = section;
   if (crack->remove && crack->cut_faces && !crack->remove->box)
-    node_error(reader->document, section_place(section, "cut faces"), reader->error,
+    node_error(reader->document, section_node(section, "cut faces"), reader->error,
                "cut faces: works for a box only; give the cut as a line or polygon of its own");
   else if (!crack->remove && crack->cut_faces)
-    node_error(reader->document, section_place(section, "cut faces"), reader->error, "cut faces: goes with 'remove'");
+    node_error(reader->document, section_node(section, "cut faces"), reader->error, "cut faces: goes with 'remove'");
 }
 
 static const Field crack_fields[] = {

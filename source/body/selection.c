@@ -240,14 +240,14 @@ static int find_spec(const Resolving *r, uint8_t *held)
   const int block = spec->block ? block_index(r->body, spec->block) : -1;
   if (spec->block && block < 0) return BRECCIA_USER_ERROR; /* said when the deck was read */
   if (spec->face && spec->face[0] - 'x' >= r->body->dimensions)
-    return node_error(r->reader->document, section_place(spec, "face"), r->reader->error,
+    return node_error(r->reader->document, section_node(spec, "face"), r->reader->error,
                       "face: the body has no face %s; it %s", spec->face,
                       r->body->dimensions == 2 ? "is plane: x-, x+, y- or y+" : "is a bar along x: x- or x+");
   for (int64_t n = 0; n < p->count; ++n)
     held[n] = (block < 0 || p->block[p->place_of[n] / SLICE] == block) && body_outside(r->body, n) == spec->outside;
   int status = BRECCIA_OK;
   if (spec->group) {
-    Reference group = {.name = spec->group, .node = section_place(spec, "group")};
+    Reference group = {.name = spec->group, .node = section_node(spec, "group")};
     status = keep_listed(r, &(ReferenceList){&group, 1}, JOIN_ANY, "group", held);
   }
   if (status) return status;

@@ -95,7 +95,7 @@ static void check_polygon(const DeckReader *reader, void *section)
 {
   const Polygon *polygon = section;
   if (polygon->corners.count < 3)
-    node_error(reader->document, section_place(section, "corners"), reader->error, "polygon: needs at least 3 corners");
+    node_error(reader->document, section_node(section, "corners"), reader->error, "polygon: needs at least 3 corners");
   else if (polygon->top <= polygon->bottom)
     node_error(reader->document, polygon->head.node, reader->error, "polygon: 'top' must be above 'bottom'");
 }

@@ -171,10 +171,10 @@ static int from_kind(ElementTest *t, const DeckReader *reader, const TestSpec *s
   int kind = 0;
   while (strcmp(kinds[kind], spec->kind)) ++kind;
   if (uniaxial && kind != UNIAXIAL)
-    return node_error(reader->document, section_place(spec, "kind"), reader->error,
+    return node_error(reader->document, section_node(spec, "kind"), reader->error,
                       "kind: a law of one strain knows the test 'uniaxial' only");
   if (kind == UNIAXIAL && spec->confining > 0)
-    return node_error(reader->document, section_place(spec, "confining pressure"), reader->error,
+    return node_error(reader->document, section_node(spec, "confining pressure"), reader->error,
                       "confining pressure: the test 'uniaxial' has none; take 'triaxial'");
   t->stages = memory_zeroed(2 * (size_t)spec->cycles + 4, sizeof *t->stages, "stages", reader->error);
   if (!t->stages) return BRECCIA_FAILURE;
@@ -220,7 +220,7 @@ static int from_stages(ElementTest *t, const DeckReader *reader, const SectionLi
     Stage *stage = &t->stages[t->count++];
     stage->steps = (int)spec->steps;
     if (spec->consolidation && t->consolidation < n)
-      return node_error(reader->document, section_place(spec, "consolidation"), reader->error,
+      return node_error(reader->document, section_node(spec, "consolidation"), reader->error,
                         "stage: consolidation comes before all other stages");
     if (spec->consolidation) t->consolidation = n + 1;
     for (int k = 0; k < COMPONENTS; ++k) {

@@ -152,7 +152,7 @@ static int check_command(const DeckReader *reader, const MaterialSpec *spec)
   const bool solid = !strncmp(c, "nDMaterial ", 11), uniaxial = !strncmp(c, "uniaxialMaterial ", 17);
   const char *kind = c + (solid ? 11 : 17), *tag = solid || uniaxial ? strchr(kind, ' ') : NULL;
   if (tag && !strncmp(tag, " $tag", 5) && (tag[5] == ' ' || !tag[5]) && !strpbrk(c, "[];{}\"\\\n")) return BRECCIA_OK;
-  return node_error(reader->document, section_place(spec, "opensees"), reader->error,
+  return node_error(reader->document, section_node(spec, "opensees"), reader->error,
                     "opensees: expected 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...', plain words");
 }
 
@@ -162,7 +162,7 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
   char names[3][64];
   if (spec->opensees && check_command(reader, spec)) return BRECCIA_USER_ERROR;
   if (spec->remote && !spec->servers.count)
-    return node_error(reader->document, section_place(spec, "remote"), reader->error,
+    return node_error(reader->document, section_node(spec, "remote"), reader->error,
                       "remote: give the addresses of its servers under 'server'");
   RemoteSpec remote = {.material = spec->head.name ? spec->head.name : "",
                        .command = spec->opensees ? spec->opensees : spec->remote,
@@ -182,7 +182,7 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
     char *one = text_format("1 %s", spec->stress_unit);
     const int bad = !one || units_read(reader->units, dimension_find("stress"), one, &remote.stress_unit, &reason);
     if (bad)
-      node_error(reader->document, section_place(spec, "stress unit"), reader->error, "stress unit: %s",
+      node_error(reader->document, section_node(spec, "stress unit"), reader->error, "stress unit: %s",
                  reason.characters ? reason.characters : "out of memory");
     free(one);
     text_free(&reason);
@@ -191,7 +191,7 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
   Error *error = breccia_error_create();
   int status = remote_open(&material->remote, &remote, error);
   if (status)
-    node_error(reader->document, section_place(spec, spec->opensees ? "opensees" : "remote"), reader->error, "%s",
+    node_error(reader->document, section_node(spec, spec->opensees ? "opensees" : "remote"), reader->error, "%s",
                breccia_error_text(error));
   breccia_error_destroy(&error);
   if (status) return status;

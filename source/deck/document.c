@@ -114,12 +114,12 @@ static void build_alias(Builder *builder, struct fy_node *from, Node *node, int 
     return;
   }
   ++builder->aliases;
-  const Node place = *node;
+  const Node where = *node;
   build(builder, target, node, depth);
   --builder->aliases;
   if (node->line) return;
-  node->line = place.line; /* an empty value stands nowhere */
-  node->column = place.column;
+  node->line = where.line; /* an empty value stands nowhere */
+  node->column = where.column;
 }
 
 static bool is_merge(const Node *key, struct fy_node *from)
@@ -156,13 +156,13 @@ static void merge_into(Builder *builder, Node *node, const Node *merged)
 static void build_entry(Builder *builder, struct fy_node_pair *pair, Node *item, bool *merges, int depth)
 {
   struct fy_node *key = pair ? fy_node_pair_key(pair) : NULL;
-  Node place = *item;
-  build(builder, key, &place, depth + 1);
-  item->key = place.kind == NODE_SCALAR && place.text ? place.text : "?";
-  item->line = item->key_line = place.line;
-  item->column = item->key_column = place.column;
-  *merges = key && is_merge(&place, key);
-  if (place.kind != NODE_SCALAR) refuse(builder, item, "a key must be words");
+  Node where = *item;
+  build(builder, key, &where, depth + 1);
+  item->key = where.kind == NODE_SCALAR && where.text ? where.text : "?";
+  item->line = item->key_line = where.line;
+  item->column = item->key_column = where.column;
+  *merges = key && is_merge(&where, key);
+  if (where.kind != NODE_SCALAR) refuse(builder, item, "a key must be words");
   if (strstr(item->key, "${")) refuse(builder, item, "a key cannot hold an expression: ${...} stands in values");
   build(builder, pair ? fy_node_pair_value(pair) : NULL, item, depth + 1);
 }
@@ -269,11 +269,11 @@ static void tell_problem(const char *name, bool setting, struct fy_diag *diagnos
 {
   void *iterator = NULL;
   struct fy_diag_error *problem = diagnostics ? fy_diag_errors_iterate(diagnostics, &iterator) : NULL;
-  char place[32] = "";
-  if (problem && !setting) snprintf(place, sizeof place, ":%d:%d", problem->line, problem->column);
+  char where[32] = "";
+  if (problem && !setting) snprintf(where, sizeof where, ":%d:%d", problem->line, problem->column);
   if (problem) {
     const char *message = problem->msg ? problem->msg : "it cannot be read", *advice = yaml_advice(message);
-    error_add(error, BRECCIA_USER_ERROR, "%s%s: not valid YAML: %s%s%s%s", name, place, advice, *advice ? " (" : "",
+    error_add(error, BRECCIA_USER_ERROR, "%s%s: not valid YAML: %s%s%s%s", name, where, advice, *advice ? " (" : "",
               message, *advice ? ")" : "");
   } else
     error_add(error, BRECCIA_USER_ERROR, "%s:1:1: the deck is empty; 'breccia new' writes one to start from", name);
@@ -359,7 +359,7 @@ const Node *node_get(const Node *map, const char *key)
   return NULL;
 }
 
-void node_place(const Document *document, const Node *node, char *words, size_t size)
+void node_where(const Document *document, const Node *node, char *words, size_t size)
 {
   if (node->line)
     snprintf(words, size, "%s:%d:%d", node->file ? node->file : document->name, node->line, node->column);
@@ -374,23 +374,23 @@ const char *node_file(const Document *document, const Node *node)
 
 Node node_of_key(const Node *item)
 {
-  Node place = *item;
-  place.line = item->key_line;
-  place.column = item->key_column;
-  place.written = NULL;
-  return place;
+  Node where = *item;
+  where.line = item->key_line;
+  where.column = item->key_column;
+  where.written = NULL;
+  return where;
 }
 
 int node_error(const Document *document, const Node *node, Error *error, const char *format, ...)
 {
   Text words = {0};
-  char place[PLACE];
-  node_place(document, node, place, sizeof place);
+  char where[WHERE_SIZE];
+  node_where(document, node, where, sizeof where);
   va_list arguments;
   va_start(arguments, format);
   text_add_list(&words, format, arguments);
   va_end(arguments);
-  error_add(error, BRECCIA_USER_ERROR, "%s: %s%s%s%s", place, text_words(&words), node->written ? " (written '" : "",
+  error_add(error, BRECCIA_USER_ERROR, "%s: %s%s%s%s", where, text_words(&words), node->written ? " (written '" : "",
             node->written ? node->written : "", node->written ? "')" : "");
   text_free(&words);
   return BRECCIA_USER_ERROR;

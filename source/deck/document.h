@@ -42,10 +42,10 @@ void document_destroy(Document **document);
 /** @return the value of the first entry with that key, or NULL */
 const Node *node_get(const Node *map, const char *key);
 
-enum { PLACE = 4200 }; /* room for a path and its line and column */
+enum { WHERE_SIZE = 4200 }; /* room for a path and its line and column */
 
 /** Where a node stands, as messages begin: "name:line:column". */
-void node_place(const Document *document, const Node *node, char *words, size_t size);
+void node_where(const Document *document, const Node *node, char *words, size_t size);
 /** The file in which a node stands: what it says of other files is relative to that. */
 const char *node_file(const Document *document, const Node *node);
 /** A node that points at the key of another, for messages. */

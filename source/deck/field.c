@@ -194,8 +194,8 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
     const Node *item = &node->items[k];
     for (int other = 0; wanted == NODE_MAP && other < k; ++other)
       if (!strcmp(node->items[other].key, item->key)) {
-        const Node place = node_of_key(item);
-        node_error(reader->document, &place, reader->error, "%s: '%s' is defined twice (first in line %d)", label,
+        const Node where = node_of_key(item);
+        node_error(reader->document, &where, reader->error, "%s: '%s' is defined twice (first in line %d)", label,
                    item->key, node->items[other].key_line);
       }
     SectionHead *head = section_read(reader, item, field->section);

@@ -105,7 +105,7 @@ static int resolve_scalar(Resolver *r, Node *node)
 {
   if (node->kind != NODE_SCALAR || !node->text || !strstr(node->text, "${")) return BRECCIA_OK;
   Text words = {0}, reason = {0};
-  Node place = *node;
+  Node where = *node;
   int bad = 0;
   for (const char *next = node->text; *next && !bad;) {
     const char *open = strstr(next, "${"), *close = open ? strchr(open, '}') : NULL;
@@ -118,8 +118,8 @@ static int resolve_scalar(Resolver *r, Node *node)
       text_add(&reason, "'%s' has no '}' on its line", open);
     } else
       bad = !expression || add_result(r, expression, &words, &at, &reason);
-    if (place.line && bad) /* as far as one line of text says where */
-      place.column += (int)(open - node->text) + (close ? 2 : 0) + (int)at;
+    if (where.line && bad) /* as far as one line of text says where */
+      where.column += (int)(open - node->text) + (close ? 2 : 0) + (int)at;
     if (!bad && words.length > LONGEST) {
       bad = 1;
       text_add(&reason, "the result is longer than %d letters", LONGEST);
@@ -128,7 +128,7 @@ static int resolve_scalar(Resolver *r, Node *node)
     next = close ? close + 1 : "";
   }
   if (bad && reason.length)
-    node_error(r->document, &place, r->error, "%s%s%s", node->key ? node->key : "", node->key ? ": " : "",
+    node_error(r->document, &where, r->error, "%s%s%s", node->key ? node->key : "", node->key ? ": " : "",
                text_words(&reason));
   if (!bad) {
     node->written = node->text;
@@ -157,17 +157,17 @@ static int check_variables(const Resolver *r)
                       "variables: expected names and values, like 'variables: {width: 0.5 m, spacing: 5 mm}'");
   for (int k = 0; k < r->variables->count; ++k) {
     const Node *item = &r->variables->items[k];
-    const Node place = node_of_key(item);
+    const Node where = node_of_key(item);
     if (!expression_is_name(item->key, strlen(item->key)) || strlen(item->key) > 63)
       status = node_error(
-          r->document, &place, r->error,
+          r->document, &where, r->error,
           "variables: '%s' is no name for a variable: it begins with a letter, and letters, digits and _ follow",
           item->key);
     else if (expression_is_taken(item->key))
       status =
-          node_error(r->document, &place, r->error, "variables: '%s' is a name of the expressions' own", item->key);
+          node_error(r->document, &where, r->error, "variables: '%s' is a name of the expressions' own", item->key);
     else if (variable_index(r, item->key) != k)
-      status = node_error(r->document, &place, r->error, "variables: '%s' is defined twice (first in line %d)",
+      status = node_error(r->document, &where, r->error, "variables: '%s' is defined twice (first in line %d)",
                           item->key, r->variables->items[variable_index(r, item->key)].key_line);
     else if (item->kind != NODE_SCALAR)
       status =

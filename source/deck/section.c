@@ -76,7 +76,7 @@ static void say_unknown_key(const DeckReader *reader, const Node *item, const Se
   for (int k = 0; k < section->field_count; ++k)
     if (section->fields[k].kind != FIELD_CHOSEN) names[count++] = section->fields[k].key;
   for (int k = 0; chosen && k < chosen->field_count; ++k) names[count++] = chosen->fields[k].key;
-  const Node place = node_of_key(item);
+  const Node where = node_of_key(item);
   Text advice = {0};
   const Field *above = field_with(section, item->key, &key);
   const char *nearest = spelling_nearest(item->key, names, count);
@@ -88,7 +88,7 @@ static void say_unknown_key(const DeckReader *reader, const Node *item, const Se
     text_add(&advice, "'%s' stands under '%s', like %s: {%s: ...}", key, above->key, above->key, key);
   else
     spelling_advice(&advice, item->key, names, count, "the keys here are");
-  node_error(reader->document, &place, reader->error, "%s: unknown key '%s'; %s", section->name, item->key,
+  node_error(reader->document, &where, reader->error, "%s: unknown key '%s'; %s", section->name, item->key,
              text_words(&advice));
   text_free(&advice);
 }
@@ -102,9 +102,9 @@ static bool say_other_choice(const DeckReader *reader, const Node *item, const F
     if (section_field(c->chosen(k), item->key, strlen(item->key)))
       text_add(&words, "%s%s", words.length ? ", " : "", c->word(k));
   const bool found = words.length > 0;
-  const Node place = node_of_key(item);
+  const Node where = node_of_key(item);
   if (found)
-    node_error(reader->document, &place, reader->error, "%s: is for %s; %s does not have it: leave it out", item->key,
+    node_error(reader->document, &where, reader->error, "%s: is for %s; %s does not have it: leave it out", item->key,
                words.characters, c->word(choice));
   text_free(&words);
   return found;
@@ -252,8 +252,8 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
     told |= !known && (chosen || meant);
     for (int other = 0; other < k; ++other)
       if (!strcmp(node->items[other].key, item->key)) {
-        const Node place = node_of_key(item);
-        node_error(reader->document, &place, reader->error, "%s: key '%s' stands here twice (first in line %d)",
+        const Node where = node_of_key(item);
+        node_error(reader->document, &where, reader->error, "%s: key '%s' stands here twice (first in line %d)",
                    section->name, item->key, node->items[other].key_line);
         break;
       }
@@ -273,7 +273,7 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
   return target;
 }
 
-const Node *section_place(const void *section, const char *key)
+const Node *section_node(const void *section, const char *key)
 {
   const SectionHead *head = section;
   const Node *node = node_get(head->node, key);

@@ -42,8 +42,7 @@ typedef struct SectionList {
   int count;
 } SectionList;
 
-typedef struct
-    Reference { /* the name of something defined at another place of the deck, or its definition on the spot */
+typedef struct Reference { /* the name of something that the deck defines elsewhere, or its definition on the spot */
   const char *name;
   void *section;
   const Node *node;
@@ -141,7 +140,7 @@ const Field *section_field(const Section *section, const char *key, size_t lengt
 void *section_read(const DeckReader *reader, const Node *node, const Section *section);
 
 /** The node under a key of a section that was read, or the section's own node: where to point in a message. */
-const Node *section_place(const void *section, const char *key);
+const Node *section_node(const void *section, const char *key);
 
 /** Finds a named section in a list. @return NULL if there is none of that name */
 void *section_find(const SectionList *list, const char *name);

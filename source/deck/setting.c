@@ -108,23 +108,23 @@ static Node *add_entry(const Path *path, Node *map, const char *key, size_t leng
   return item;
 }
 
-typedef struct Place { /* while a path is followed */
+typedef struct Position { /* while a path is followed */
   Node *node;
   const Section *section; /* of the node, where it is a section; else NULL */
   const Section *items; /* of what stands in the node, where that is a map of names or a list of sections; else NULL */
-} Place;
+} Position;
 
 /** One step down a map: to an entry that is there, or may be. Advances `key` behind the part that it used.
  *  @return 0, or 1 after a message */
-static int step_into(const Path *path, Place *place, const char **key)
+static int step_into(const Path *path, Position *position, const char **key)
 {
   size_t length;
-  Node *map = place->node, *item = entry_of(map, *key, &length);
-  const Field *field = section_field(place->section, *key, length);
+  Node *map = position->node, *item = entry_of(map, *key, &length);
+  const Field *field = section_field(position->section, *key, length);
   const bool last = !(*key)[length];
   /* Keys that depend on another, like the parameters of a material, are judged when the deck is read. */
-  const bool judged_later = last && place->section && place->section->parameters;
-  if (!item && !field && !judged_later) return refuse_key(path, map, place->section, *key, length);
+  const bool judged_later = last && position->section && position->section->parameters;
+  if (!item && !field && !judged_later) return refuse_key(path, map, position->section, *key, length);
   const bool listed = item && item->kind == NODE_LIST;
   const bool section = field && (field->kind == FIELD_SECTION || field->kind == FIELD_NUMBER_OR_SECTION ||
                                  field->kind == FIELD_REFERENCE || (field->kind == FIELD_ONE_OR_SECTIONS && !listed));
@@ -132,7 +132,7 @@ static int step_into(const Path *path, Place *place, const char **key)
     return refuse(path, "the deck has no '%s' yet, which its items would have to be written into", field->key);
   if (!item && !(item = add_entry(path, map, *key, length))) return 1;
   const Section *below = field ? field->section : NULL;
-  *place = (Place){item, place->items ? place->items : section ? below : NULL, section ? NULL : below};
+  *position = (Position){item, position->items ? position->items : section ? below : NULL, section ? NULL : below};
   *key += length + !last;
   return 0;
 }
@@ -140,22 +140,22 @@ static int step_into(const Path *path, Place *place, const char **key)
 /** The value that a path leads to. NULL after a message. */
 static Node *follow(const Path *path, Node *root, const Section *section, const char *key)
 {
-  Place place = {root, section, NULL};
+  Position position = {root, section, NULL};
   while (*key) {
     size_t length;
-    if (place.node->kind == NODE_MAP) {
-      if (step_into(path, &place, &key)) return NULL;
-    } else if (place.node->kind == NODE_LIST) {
-      if (!(place.node = item_of(path, place.node, key, &length))) return NULL;
+    if (position.node->kind == NODE_MAP) {
+      if (step_into(path, &position, &key)) return NULL;
+    } else if (position.node->kind == NODE_LIST) {
+      if (!(position.node = item_of(path, position.node, key, &length))) return NULL;
       key += length + (key[length] == '.');
-      place.section = place.items;
-      place.items = NULL;
+      position.section = position.items;
+      position.items = NULL;
     } else {
-      refuse(path, "'%s' would stand below the single value '%s'", key, place.node->text);
+      refuse(path, "'%s' would stand below the single value '%s'", key, position.node->text);
       return NULL;
     }
   }
-  return place.node;
+  return position.node;
 }
 
 int deck_set(Document *document, const Section *section, const char *setting, Error *error)

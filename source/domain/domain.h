@@ -14,8 +14,8 @@ typedef struct Batch { /* slices first .. last - 1, of one region and material, 
 
 /** Blocks of the body with one formulation. */
 typedef struct Region {
-  const char *name;  /* of the deck; NULL: what no region names */
-  const Node *place; /* of its keys, for messages */
+  const char *name; /* of the deck; NULL: what no region names */
+  const Node *node; /* of its keys, for messages */
   const FormulationType *type;
   const void *keys;
   void *formulation;

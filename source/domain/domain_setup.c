@@ -23,14 +23,14 @@ static int check_law(const FormulationType *type, const DeckReader *reader, cons
   Text words = {0};
   for (int k = 0; law_at(laws, k); ++k)
     if (takes(type, law_at(laws, k))) text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
-  const Node *place = section_place(spec, spec->model ? "model" : spec->opensees ? "opensees" : "remote");
+  const Node *node = section_node(spec, spec->model ? "model" : spec->opensees ? "opensees" : "remote");
   const char *name = spec->model ? law->name : law->source;
   if (law->components == type->components)
-    node_error(reader->document, place, reader->error,
+    node_error(reader->document, node, reader->error,
                "material '%s': '%s' needs a strain, which %s does not have; it takes %s", spec->head.name, name,
                type->name, text_words(&words));
   else
-    node_error(reader->document, place, reader->error, "material '%s': '%s' is a law of %s; %s takes %s",
+    node_error(reader->document, node, reader->error, "material '%s': '%s' is a law of %s; %s takes %s",
                spec->head.name, name, law->components == 1 ? "one strain" : "strain in space", type->name,
                text_words(&words));
   text_free(&words);
@@ -107,7 +107,7 @@ static int check_space(const Domain *d, const DeckReader *reader, const DomainSp
     if (d->regions[r].type->check) status = d->regions[r].type->check(d->regions[r].keys, &d->body, reader);
   if (status) return status;
   if (d->body.dimensions == (space == SPACE_3D ? 3 : space == SPACE_BAR ? 1 : 2)) return BRECCIA_OK;
-  return node_error(reader->document, section_place(spec->peridynamics, "space"), reader->error,
+  return node_error(reader->document, section_node(spec->peridynamics, "space"), reader->error,
                     d->body.dimensions == 1 ? "space: a line needs '1-D'"
                     : d->body.dimensions == 2
                         ? "space: a lattice of the plane needs 'plane strain' or 'plane stress'"
@@ -358,7 +358,7 @@ static void weigh_family(void *context, int64_t place)
 /** True if a horizon without a unit is a usual number of spacings, but no usual length. */
 static bool forgets_spacings(const PeridynamicsSpec *spec, const Body *body)
 {
-  const Node *node = section_place(spec, "horizon");
+  const Node *node = section_node(spec, "horizon");
   const double number = spec->horizon.value, spacings = number / body->largest_spacing;
   const bool plain = node->kind == NODE_SCALAR && node->text[strspn(node->text, "0123456789.")] == 0;
   const bool odd = spacings < 1 || (spacings > 20 && body->dimensions > 1);
@@ -385,17 +385,17 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if ((status = fill_particles(d, spec, error))) return status;
 
   if (forgets_spacings(pd, &d->body))
-    return node_error(reader->document, section_place(pd, "horizon"), error,
+    return node_error(reader->document, section_node(pd, "horizon"), error,
                       "horizon: did you mean '%g spacings'? A plain number is a length, and this one is %.3g spacings "
                       "of %g",
                       horizon, horizon / d->body.largest_spacing, d->body.largest_spacing);
   if (horizon < d->body.largest_spacing)
-    return node_error(reader->document, section_place(pd, "horizon"), error,
+    return node_error(reader->document, section_node(pd, "horizon"), error,
                       "horizon: %g is less than the spacing of %g, so that no particle has a neighbour", horizon,
                       d->body.largest_spacing);
   const double reach = horizon / d->body.largest_spacing, across = pow(reach, d->body.dimensions);
   if (across > 1e6) /* family_create would go through all that many neighbours before it refuses them */
-    return node_error(reader->document, section_place(pd, "horizon"), error,
+    return node_error(reader->document, section_node(pd, "horizon"), error,
                       "horizon: %g reaches over %.3g spacings of %g; 3 to 4 are usual", horizon, reach,
                       d->body.largest_spacing);
   int correction = 0;
@@ -411,7 +411,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 
   const bool may_give_up = spec->failure && !strcmp(spec->failure->failed_laws, "break");
   if (may_give_up && d->region_count > 1)
-    return node_error(reader->document, section_place(spec->failure, "failed laws"), error,
+    return node_error(reader->document, section_node(spec->failure, "failed laws"), error,
                       "failed laws: 'break' needs a body of one formulation; leave 'regions' out, or let the run stop");
   for (int r = 0; r < d->region_count && !status; ++r)
     status = create_points(d, &d->regions[r], space, may_give_up, &of, error);

@@ -12,11 +12,11 @@ static int name_blocks(const Domain *d, const DeckReader *reader, const Peridyna
   int status = BRECCIA_OK;
   for (int r = 0; r < spec->regions.count; ++r) {
     const RegionSpec *region = spec->regions.items[r];
-    const Node *list = section_place(region, "blocks");
+    const Node *list = section_node(region, "blocks");
     if (!region->blocks.count)
       status = node_error(reader->document, list, reader->error, "blocks: region '%s' names none", region->head.name);
     for (int k = 0; k < region->blocks.count; ++k) {
-      const Node *place = list->kind == NODE_LIST ? &list->items[k] : list;
+      const Node *node = list->kind == NODE_LIST ? &list->items[k] : list;
       const char *names[64];
       int found = -1, count = 0;
       for (int b = 0; b < d->body.block_count; ++b) {
@@ -24,10 +24,10 @@ static int name_blocks(const Domain *d, const DeckReader *reader, const Peridyna
         if (count < 64) names[count++] = d->body.blocks[b]->head.name;
       }
       if (found < 0) {
-        name_unknown(reader, place, "block", region->blocks.items[k], names, count);
+        name_unknown(reader, node, "block", region->blocks.items[k], names, count);
         status = BRECCIA_USER_ERROR;
       } else if (region_of[found])
-        status = node_error(reader->document, place, reader->error, "blocks: '%s' is in region '%s' already",
+        status = node_error(reader->document, node, reader->error, "blocks: '%s' is in region '%s' already",
                             region->blocks.items[k],
                             ((const RegionSpec *)spec->regions.items[region_of[found] - 1])->head.name);
       else
@@ -39,12 +39,12 @@ static int name_blocks(const Domain *d, const DeckReader *reader, const Peridyna
 
 static Region region_of_spec(const PeridynamicsSpec *spec, int r)
 {
-  if (!r) return (Region){.type = formulation_find(spec->formulation), .keys = spec->keys, .place = spec->head.node};
+  if (!r) return (Region){.type = formulation_find(spec->formulation), .keys = spec->keys, .node = spec->head.node};
   const RegionSpec *region = spec->regions.items[r - 1];
   return (Region){.name = region->head.name,
                   .type = formulation_find(region->formulation),
                   .keys = region->keys,
-                  .place = region->head.node};
+                  .node = region->head.node};
 }
 
 int regions_create(Domain *d, const DeckReader *reader, const PeridynamicsSpec *spec)
@@ -67,7 +67,7 @@ int regions_create(Domain *d, const DeckReader *reader, const PeridynamicsSpec *
   free(region_of);
   for (int r = 0; r < d->region_count && d->region_count > 1 && !status; ++r) {
     if (!d->regions[r].type->joins)
-      return node_error(reader->document, d->regions[r].place, reader->error,
+      return node_error(reader->document, d->regions[r].node, reader->error,
                         "formulation: %s cannot stand beside others in one body; leave 'regions' out",
                         d->regions[r].type->name);
     d->regions[r].foreign = memory_zeroed((size_t)p->slices, 1, "regions", reader->error);

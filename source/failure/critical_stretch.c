@@ -35,10 +35,10 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
   const CriticalStretchSpec *spec = critical_stretch_spec(failure);
   const DeckReader *reader = of->reader;
   if (spec && !isnan(spec->stretch) && !isnan(spec->fracture_energy))
-    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
+    return node_error(reader->document, section_node(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
   if (spec && !isnan(spec->fracture_energy) && !of->type->critical_stretch)
-    return node_error(reader->document, section_place(spec, "fracture energy"), reader->error,
+    return node_error(reader->document, section_node(spec, "fracture energy"), reader->error,
                       "fracture energy: no critical stretch follows from it in %s; give 'critical stretch'",
                       of->type->name);
   for (int k = 0; k < of->material_count; ++k) {

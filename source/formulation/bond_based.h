@@ -71,7 +71,7 @@ LANES_INLINE Lanes bond_constant(const BondBased *b, int64_t slice, const Stretc
 /** Forces on slices first .. last - 1 from linear bonds. */
 void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
 
-/** Of bonds with points: stretches of a chunk of rows, their pulls from stresses, forces from pulls (bond_points.c). */
+/** Of bonds with points: stretches of a batch of rows, their pulls from stresses, forces from pulls (bond_points.c). */
 int64_t bond_stretch(void *formulation, const Sweep *sweep);
 int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep);
 void bond_resist_points(const BondBased *b, int64_t first, int64_t last);

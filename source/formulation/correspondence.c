@@ -328,7 +328,7 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, const Swe
     for (int k = 0; k < 3; ++k) {
       Lanes u = lanes_load(c->particles->displacement[k] + place);
       for (int j = 0; j < 3; ++j) moved[k][j] = sums[k][half][j] - u * lanes_load(shape->first_moment[j] + lane);
-      lanes_store(c->stretch[k] + place, sums[k][half][3] - u * lanes_load(shape->weight_sum + lane));
+      lanes_store(c->relative[k] + place, sums[k][half][3] - u * lanes_load(shape->weight_sum + lane));
     }
     strain_half(c, shape, lane, moved, sweep->carry + here + lane,
                 linear ? c->gradients + slice * (9 * SLICE) + lane : NULL, sweep->strain, here + lane);
@@ -431,20 +431,20 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
   unsigned lanes = lattice_rows_lanes(&f->rows, slice);
   for (int half = 0; half < 2; ++half) {
     int64_t place = slice * SLICE + LANES * half;
-    Lanes u[3], stretch[3];
+    Lanes u[3], relative[3];
     for (int k = 0; k < 3; ++k) {
       u[k] = lanes_load(c->particles->displacement[k] + place);
-      stretch[k] = lanes_load(c->stretch[k] + place);
+      relative[k] = lanes_load(c->relative[k] + place);
     }
     for (int r = 0; r < 3; ++r) {
       Lanes sum = force[half][r];
       for (int j = 0; j < 3; ++j)
         sum += lanes_load(c->state[3 * r + j] + place) * lanes_load(shape->first_moment[j] + LANES * half);
-      if (control == CONTROL_UNIFORM) sum += lanes_set(2 * c->uniform) * stretch[r];
-      if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * stretch[r] - hold[half][0] * u[r];
+      if (control == CONTROL_UNIFORM) sum += lanes_set(2 * c->uniform) * relative[r];
+      if (control == CONTROL_SCALAR) sum += lanes_load(c->hold[0] + place) * relative[r] - hold[half][0] * u[r];
       for (int j = 0; control == CONTROL_TENSOR && j < 3; ++j) {
         int k = symmetric_place[3 * r + j];
-        sum += lanes_load(c->hold[k] + place) * stretch[j] - hold[half][k] * u[j];
+        sum += lanes_load(c->hold[k] + place) * relative[j] - hold[half][k] * u[j];
       }
       lanes_store(c->particles->internal[r] + place, lanes_where(lanes_half(lanes, half), sum));
     }

@@ -7,7 +7,7 @@
  * C : K^-1 (Wan et al. 2019), of the family with all its bonds: a C that follows the family would give energy as bonds break
  * (docs/theory.md 4). All sums over bonds are arranged such that they are linear in what is read of the neighbour, and so can be
  * made along whole lattice rows (family/lattice_rows.h). With the moments of the family m = sum w xi and w_sum = sum w, one state
- * Q = P K^-1 - C G per particle and the stretch e = sum w eta,
+ * Q = P K^-1 - C G per particle and the sum of relative displacements e = sum w eta,
  *   sum w eta (x) xi = sum w u_j (x) xi - u_i (x) m,      e = sum w u_j - w_sum u_i,
  *   f_i = Q_i m + C_i e + sum w [Q_j xi + C_j u_j] - (sum w C_j) u_i. */
 #ifndef BRECCIA_FORMULATION_CORRESPONDENCE_H
@@ -32,12 +32,12 @@ typedef struct Correspondence {
   bool plane, finite;
   Control control;
   double strength;
-  ShapeTable shapes;  /* K^-1, m, w_sum */
-  double *state[9];   /* Q */
-  double *stretch[3]; /* e */
-  double uniform;     /* C, if it is uniform */
-  double *hold[6];    /* C: one component, or six, or none */
-  double *held[3];    /* C u, if neighbours read it */
+  ShapeTable shapes;   /* K^-1, m, w_sum */
+  double *state[9];    /* Q */
+  double *relative[3]; /* e */
+  double uniform;      /* C, if it is uniform */
+  double *hold[6];     /* C: one component, or six, or none */
+  double *held[3];     /* C u, if neighbours read it */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull

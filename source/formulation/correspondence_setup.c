@@ -76,7 +76,7 @@ const Section correspondence_section = {.name = "correspondence",
 int correspondence_check(const void *keys, const Body *body, const DeckReader *reader)
 {
   if (body->dimensions == 1)
-    return node_error(reader->document, section_place(keys, "formulation"), reader->error,
+    return node_error(reader->document, section_node(keys, "formulation"), reader->error,
                       "formulation: correspondence has no strain along a line; bars take bond-based");
   return BRECCIA_OK;
 }
@@ -88,7 +88,7 @@ void correspondence_destroy(void *formulation)
   for (int k = 0; k < 9; ++k) places_free(&c->state[k]);
   for (int k = 0; k < 6; ++k) places_free(&c->hold[k]);
   for (int k = 0; k < 3; ++k) {
-    places_free(&c->stretch[k]);
+    places_free(&c->relative[k]);
     places_free(&c->held[k]);
   }
   for (int kind = 0; kind < ROW_KINDS; ++kind) {
@@ -222,7 +222,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   for (int k = 0; k < 9; ++k) failed |= !(c->state[k] = places_array(places, "force states", error));
   for (int k = 0; k < hold_components(c->control); ++k)
     failed |= !(c->hold[k] = places_array(places, "zero-energy control", error));
-  for (int k = 0; k < 3; ++k) failed |= !(c->stretch[k] = places_array(places, "deformation", error));
+  for (int k = 0; k < 3; ++k) failed |= !(c->relative[k] = places_array(places, "deformation", error));
   failed |= !(c->axial = memory_zeroed((size_t)parts->particles->count, sizeof *c->axial, "axial particles", error));
   failed |= shape_table_create(&c->shapes, c->family, c->plane, error);
   if (failed || check_shapes(c, error)) {

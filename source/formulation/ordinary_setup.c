@@ -36,7 +36,7 @@ const Section ordinary_section = {.name = "ordinary",
 int ordinary_check(const void *keys, const Body *body, const DeckReader *reader)
 {
   if (body->dimensions > 1) return BRECCIA_OK;
-  return node_error(reader->document, section_place(keys, "formulation"), reader->error,
+  return node_error(reader->document, section_node(keys, "formulation"), reader->error,
                     "formulation: ordinary has no deviator along a line; bars take bond-based");
 }
 

@@ -75,10 +75,10 @@ static void check_load(const DeckReader *reader, void *section)
   if (!load->on.node && !types[k]->everywhere)
     node_error(reader->document, load->head.node, reader->error, "load: missing key 'on': which particles are loaded");
   if (load->history && types[k]->timeless)
-    node_error(reader->document, section_place(load, "history"), reader->error,
+    node_error(reader->document, section_node(load, "history"), reader->error,
                "history: '%s' does not vary in time; leave it out", load_fields[OTHERS + k].key);
   if (!isnan(load->area) && k != LOAD_traction)
-    node_error(reader->document, section_place(load, "area"), reader->error, "area: only a 'traction' has one");
+    node_error(reader->document, section_node(load, "area"), reader->error, "area: only a 'traction' has one");
 }
 
 const Section load_section = {
@@ -94,8 +94,8 @@ static int check_directions(const Load *load, int dimensions, const DeckReader *
   const double *vector = load->type->vector ? load->type->vector(load->value) : NULL;
   for (int k = dimensions; k < 3 && vector; ++k)
     if (!isnan(vector[k]) && vector[k] != 0)
-      return node_error(reader->document, load->place, reader->error, "%s: has a part along %c, but the body is %s",
-                        load->place->key, "xyz"[k], dimensions == 2 ? "plane" : "a bar along x");
+      return node_error(reader->document, load->node, reader->error, "%s: has a part along %c, but the body is %s",
+                        load->node->key, "xyz"[k], dimensions == 2 ? "plane" : "a bar along x");
   return BRECCIA_OK;
 }
 
@@ -109,7 +109,7 @@ int load_create(Load *load, const LoadSpec *spec, const LoadMaking *making)
   load->spec = spec;
   load->type = types[k];
   load->value = &spec->of[k];
-  load->place = node_get(spec->head.node, load_fields[OTHERS + k].key);
+  load->node = node_get(spec->head.node, load_fields[OTHERS + k].key);
   int status = selection_create(&load->selection, making->body, making->reader, making->selections, &reference);
   if (!status) status = check_directions(load, making->body->dimensions, making->reader);
   const int bad = history_create(&load->history, spec->history, making->reader);

@@ -35,7 +35,7 @@ typedef struct Load {
   const LoadType *type;
   const LoadSpec *spec;
   const LoadValue *value;
-  const Node *place;          /* of the value in the deck */
+  const Node *node;           /* of the value in the deck */
   Selection selection, other; /* `other`: what it joins these to, if anything */
   double volume;              /* of the selected particles */
   int64_t first, behind;      /* acts in the stages first .. behind - 1 */

@@ -26,7 +26,7 @@ static int end_named(Loading *loading, const DeckReader *reader, const LoadStage
   int status = BRECCIA_OK;
   for (int k = 0; k < stage->without->count; ++k)
     if (!end_loads(loading, stage->without->items[k], number))
-      status = node_error(reader->document, section_place(stage->section, "without"), reader->error,
+      status = node_error(reader->document, section_node(stage->section, "without"), reader->error,
                           "without: no load that acts before this stage has the name '%s'; give it one with 'name:'",
                           stage->without->items[k]);
   return status;

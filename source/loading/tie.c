@@ -99,7 +99,7 @@ static int check_pairs(const Load *load, const Constraint *held, const uint8_t *
     const int32_t a = load->selection.places[n], b = tie->masters[n];
     if (marked[a] == marked[b]) continue;
     const int32_t bad = marked[a] ? a : b;
-    return node_error(reader->document, load->place, reader->error,
+    return node_error(reader->document, load->node, reader->error,
                       "tie: particle %d at [%g, %g, %g] is moved or held by the load in line %d, and the one it is "
                       "tied to is not; let that load act on both, or leave this particle out of the tie",
                       p->number[bad], p->position[0][bad], p->position[1][bad], p->position[2][bad],

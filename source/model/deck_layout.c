@@ -128,9 +128,9 @@ static void check_deck(const DeckReader *reader, void *section)
 {
   const DeckSpec *deck = section;
   if (!deck->materials.count)
-    node_error(reader->document, section_place(section, "materials"), reader->error, "materials: none is given");
+    node_error(reader->document, section_node(section, "materials"), reader->error, "materials: none is given");
   if (!deck->body.count)
-    node_error(reader->document, section_place(section, "body"), reader->error, "body: no block is given");
+    node_error(reader->document, section_node(section, "body"), reader->error, "body: no block is given");
 }
 
 const Section deck_section = {.name = "deck",
@@ -151,11 +151,11 @@ ParameterTable *law_tables(const LawList *laws, int *count)
   return tables;
 }
 
-void *section_standard(const DeckReader *reader, const Section *section, const Node *place)
+void *section_standard(const DeckReader *reader, const Section *section, const Node *node)
 {
   Node *empty = arena_zeroed(reader->document->arena, sizeof *empty);
   if (!empty) return NULL;
-  *empty = (Node){.kind = NODE_MAP, .file = place->file, .line = place->line, .column = place->column};
+  *empty = (Node){.kind = NODE_MAP, .file = node->file, .line = node->line, .column = node->column};
   return section_read(reader, empty, section);
 }
 

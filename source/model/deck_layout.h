@@ -42,6 +42,6 @@ int deck_open(const DeckText *text, const Section *section, const LawList *laws,
               Error *error);
 
 /** A section as if it stood in the deck with nothing in it, so that all its defaults hold. */
-void *section_standard(const DeckReader *reader, const Section *section, const Node *place);
+void *section_standard(const DeckReader *reader, const Section *section, const Node *node);
 
 #endif

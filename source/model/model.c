@@ -41,9 +41,9 @@ static void warn_of_late_picture(breccia_model *model, const PictureSpec *pictur
 {
   const double end = model->solver.clock.end_time;
   if (time <= end * (1 + 1e-9)) return;
-  const Node *place = section_place(picture, "at");
-  char words[PLACE];
-  node_place(model->document, place, words, sizeof words);
+  const Node *node = section_node(picture, "at");
+  char words[WHERE_SIZE];
+  node_where(model->document, node, words, sizeof words);
   text_add(&model->warnings, "%swarning: %s: the run ends at %g, before the picture at %g, which is not made",
            model->warnings.length ? "\n" : "", words, end, time);
 }

@@ -245,7 +245,7 @@ int parameter_fit_run(ElementDeck *deck, const double *x, const double *y, int c
                       "nothing to calibrate: give the parameters and their ranges under 'fit', like 'fit: {cohesion: "
                       "{from: 5, to: 50}}'");
   if (count < fitted)
-    return node_error(deck->document, section_place(deck->spec, "fit"), error,
+    return node_error(deck->document, section_node(deck->spec, "fit"), error,
                       "fit: %d parameters cannot be told from %d points; fit fewer, or measure more", fitted, count);
   double *values = memory_zeroed((size_t)parameters, sizeof(double), "parameters", error),
          *places = memory_zeroed((size_t)((STARTS + 1) * fitted), sizeof(double), "parameters", error);

@@ -12,15 +12,15 @@ static double in_si(const breccia_model *model, const char *dimension, double va
   return units_in_si(model->units, dimension_find(dimension), value);
 }
 
-__attribute__((format(printf, 3, 4))) static void warn(breccia_model *model, const Node *place, const char *format, ...)
+__attribute__((format(printf, 3, 4))) static void warn(breccia_model *model, const Node *node, const char *format, ...)
 {
   Text words = {0};
   va_list arguments;
   va_start(arguments, format);
   text_add_list(&words, format, arguments);
   va_end(arguments);
-  char where[PLACE];
-  node_place(model->document, place, where, sizeof where);
+  char where[WHERE_SIZE];
+  node_where(model->document, node, where, sizeof where);
   text_add(&model->warnings, "%swarning: %s: %s", model->warnings.length ? "\n" : "", where, text_words(&words));
   text_free(&words);
 }
@@ -56,10 +56,10 @@ typedef struct Candidate {
 } Candidate;
 
 /** The unit in which a number as it stands in the deck has a usual size, to be suggested. @return its words, or "" */
-static void suggest(const breccia_model *model, const Node *place, const char *dimension, const Candidate *candidates,
+static void suggest(const breccia_model *model, const Node *node, const char *dimension, const Candidate *candidates,
                     int count, double low, double high, Text *text)
 {
-  const double number = place->kind == NODE_SCALAR ? strtod(place->text, NULL) : NAN;
+  const double number = node->kind == NODE_SCALAR ? strtod(node->text, NULL) : NAN;
   for (int k = 0; k < count; ++k) {
     if (!(number * candidates[k].factor >= low && number * candidates[k].factor <= high)) continue;
     char length[32], force[32], time[32];
@@ -77,7 +77,7 @@ static const Candidate stiffnesses[] = {{"GPa", 1e9}, {"MPa", 1e6}, {"kPa", 1e3}
 static const Candidate fracture_energies[] = {{"N/m", 1}, {"N/mm", 1000}};
 
 /** Warns where a number lies outside of what real things have. @return whether it does */
-static bool beyond(breccia_model *model, const Node *place, const char *what, const char *dimension, double value,
+static bool beyond(breccia_model *model, const Node *node, const char *what, const char *dimension, double value,
                    double low, double high, const char *unit, const Candidate *candidates, int count, double usual_low,
                    double usual_high)
 {
@@ -88,10 +88,10 @@ static bool beyond(breccia_model *model, const Node *place, const char *what, co
   quantity_describe(low, unit, &band[0]);
   quantity_describe(high, unit, &band[1]);
   Text hint = {0};
-  suggest(model, place, dimension, candidates, count, usual_low, usual_high, &hint);
-  const char *given = place->kind == NODE_SCALAR ? place->text : "it";
+  suggest(model, node, dimension, candidates, count, usual_low, usual_high, &hint);
+  const char *given = node->kind == NODE_SCALAR ? node->text : "it";
   const bool told = !strcmp(given, text_words(&words)); /* in the deck already as it is said here */
-  warn(model, place, "%s: %s%s%s; materials like it have %s to %s%s", what, told ? "" : given, told ? "" : " is ",
+  warn(model, node, "%s: %s%s%s; materials like it have %s to %s%s", what, told ? "" : given, told ? "" : " is ",
        text_words(&words), text_words(&band[0]), text_words(&band[1]), text_words(&hint));
   text_free(&words);
   text_free(&band[0]);
@@ -120,14 +120,14 @@ static bool like_concrete(const breccia_model *model, const Material *m)
 
 /** Fracture energies of concrete are 73 f_cm^0.18 N/m (fib Model Code 2010, 5.1.5.2; f_cm in MPa): 120 to 160 N/m; measured ones of
  *  mortar and of large aggregates reach from 40 to 400. */
-static void check_fracture_energy(breccia_model *model, const Material *m, double energy, const Node *place)
+static void check_fracture_energy(breccia_model *model, const Material *m, double energy, const Node *node)
 {
   const double real = in_si(model, "fracture energy", energy);
-  if (isnan(real) || beyond(model, place, "fracture energy", "fracture energy", energy, 0.1, 1e6, "J/m2",
-                            fracture_energies, 2, 1, 1e4))
+  if (isnan(real) ||
+      beyond(model, node, "fracture energy", "fracture energy", energy, 0.1, 1e6, "J/m2", fracture_energies, 2, 1, 1e4))
     return;
   if (like_concrete(model, m) && (real < 40 || real > 400))
-    warn(model, place, "fracture energy: %.4g N/m is %s for concrete, which has 60 to 200 N/m", real,
+    warn(model, node, "fracture energy: %.4g N/m is %s for concrete, which has 60 to 200 N/m", real,
          real < 40 ? "little" : "much");
 }
 
@@ -136,11 +136,11 @@ static void check_material(breccia_model *model, int k)
   const Material *m = &model->domain.materials[k];
   const MaterialSpec *spec = spec_of(model, m);
   if (!spec) return;
-  const Node *stiff = section_place(spec, "Young modulus");
-  if (stiff == spec->head.node) stiff = section_place(spec, "bulk modulus");
-  if (stiff == spec->head.node) stiff = section_place(spec, "shear modulus");
+  const Node *stiff = section_node(spec, "Young modulus");
+  if (stiff == spec->head.node) stiff = section_node(spec, "bulk modulus");
+  if (stiff == spec->head.node) stiff = section_node(spec, "shear modulus");
   const bool young_given = !isnan(parameter(model, m, "Young modulus"));
-  bool odd = beyond(model, section_place(spec, "density"), "density", "density", m->density, 100, 25000, "kg/m3",
+  bool odd = beyond(model, section_node(spec, "density"), "density", "density", m->density, 100, 25000, "kg/m3",
                     densities, 2, 300, 20000);
   const bool concrete = called_concrete(m); /* from lean mortar to the strongest */
   odd |= beyond(model, stiff, young_given ? "Young modulus" : "Young's modulus that follows", "stress",
@@ -153,16 +153,16 @@ static void check_material(breccia_model *model, int k)
          "density and stiffness",
          m->name, speed);
   if (strength > material_young(m) / 20)
-    warn(model, section_place(spec, "tensile strength"),
+    warn(model, section_node(spec, "tensile strength"),
          "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
          strength / material_young(m), 100 * strength / material_young(m));
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
-  check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_place(spec, "fracture energy"));
+  check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_node(spec, "fracture energy"));
   if (failure && !isnan(failure->fracture_energy))
-    check_fracture_energy(model, m, failure->fracture_energy, section_place(failure, "fracture energy"));
+    check_fracture_energy(model, m, failure->fracture_energy, section_node(failure, "fracture energy"));
   const bool softens = m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
   if (softens && !isfinite(model->domain.failure.limit[k]))
-    warn(model, section_place(spec, "model"),
+    warn(model, section_node(spec, "model"),
          "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "
          "holds cracks together; add 'failure: {critical stretch: ...}'",
          m->name, m->law->name);
@@ -350,7 +350,7 @@ static void check_jump(breccia_model *model, const Load *load)
   if ((!has_kind(l, "displacement") && !has_kind(l, "support")) || start == 0) return;
   char length[32];
   units_name(model->units, dimension_find("length"), length, sizeof length);
-  warn(model, load->place,
+  warn(model, load->node,
        "displacement: the particles jump by %.4g %s in the first step; let it grow, like 'history: {ramp to: ...}'",
        start, length);
 }
@@ -363,10 +363,10 @@ static void check_shaking(breccia_model *model, const Load *load)
   const double peak = in_si(model, "acceleration", load_magnitude(load->spec)) *
                       history_peak(&load->history, model->solver.clock.end_time - load->begin);
   if (peak > most)
-    warn(model, load->place,
+    warn(model, load->node,
          "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
          "load's value is what 1 in it means",
-         load->place->key, peak, peak / gravity);
+         load->node->key, peak, peak / gravity);
 }
 
 /** Bonds near particles that are moved carry most, and break there first. */

@@ -13,7 +13,7 @@ static int check_names(const breccia_model *model, const Domain *domain, const T
 {
   int status = BRECCIA_OK;
   for (int k = 0; k < names->count; ++k) {
-    const Node *place = list->kind == NODE_LIST ? &list->items[k] : list;
+    const Node *node = list->kind == NODE_LIST ? &list->items[k] : list;
     bool known = output_field_find(names->items[k]) != NULL;
     for (int m = 0; m < domain->material_count; ++m)
       known |= history_field_index(&domain->materials[m], names->items[k]) >= 0;
@@ -27,7 +27,7 @@ static int check_names(const breccia_model *model, const Domain *domain, const T
     Text advice = {0};
     spelling_advice(&advice, names->items[k], fields, count, "the fields are");
     status =
-        node_error(model->document, place, model->reader.error, "there is no field '%s'; %s%s", names->items[k],
+        node_error(model->document, node, model->reader.error, "there is no field '%s'; %s%s", names->items[k],
                    text_words(&advice),
                    spelling_nearest(names->items[k], fields, count) ? "" : " and named histories of the materials");
     text_free(&advice);
@@ -47,7 +47,7 @@ static int check_component(const breccia_model *model, const PictureSpec *pictur
   spelling_advice(&advice, picture->component ? picture->component : "", field ? field->component_names : NULL, count,
                   "its components are");
   const int status = node_error(
-      model->document, section_place(picture, picture->component ? "component" : "field"), model->reader.error,
+      model->document, section_node(picture, picture->component ? "component" : "field"), model->reader.error,
       picture->component ? "component: %s has no '%s'; %s" : "field: %s is drawn by 'component'%s; %s", picture->field,
       picture->component ? picture->component : "",
       count ? text_words(&advice) : "it is one number, leave 'component' out");
@@ -56,7 +56,7 @@ static int check_component(const breccia_model *model, const PictureSpec *pictur
 }
 
 /** A column that a curve draws is one that a history of the deck will write. */
-static int check_column(const breccia_model *model, const CurveNames *names, int which, const Node *place)
+static int check_column(const breccia_model *model, const CurveNames *names, int which, const Node *node)
 {
   Error *error = model->reader.error;
   const char **words = memory_zeroed((size_t)watches_count(model->watches) + 64, sizeof(char *), "curves", error);
@@ -79,9 +79,8 @@ static int check_column(const breccia_model *model, const CurveNames *names, int
   Text advice = {0};
   spelling_advice(&advice, given, words, count, watch < 0 ? "the deck watches" : "its columns are");
   if (!known)
-    node_error(model->document, place, error, "curve: %s%sthere is no %s '%s'; %s",
-               watch < 0 ? "" : names->watch[which], watch < 0 ? "" : ": ", watch < 0 ? "history" : "column", given,
-               text_words(&advice));
+    node_error(model->document, node, error, "curve: %s%sthere is no %s '%s'; %s", watch < 0 ? "" : names->watch[which],
+               watch < 0 ? "" : ": ", watch < 0 ? "history" : "column", given, text_words(&advice));
   text_free(&advice);
   free(words);
   return known ? BRECCIA_OK : BRECCIA_USER_ERROR;
@@ -89,16 +88,16 @@ static int check_column(const breccia_model *model, const CurveNames *names, int
 
 static int check_curve(const breccia_model *model, const PictureSpec *picture)
 {
-  const Node *place = section_place(picture, "curve");
+  const Node *node = section_node(picture, "curve");
   if (!model->watches) return BRECCIA_OK; /* the deck is refused for something else */
   CurveNames names;
   if (curve_names(picture->curve, &names))
-    return node_error(model->document, place, model->reader.error,
+    return node_error(model->document, node, model->reader.error,
                       "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or "
                       "with a minus 'tip.y : -grip.y'",
                       picture->curve);
   int status = BRECCIA_OK;
-  for (int k = 0; k < names.count && !status; ++k) status = check_column(model, &names, k, place);
+  for (int k = 0; k < names.count && !status; ++k) status = check_column(model, &names, k, node);
   return status;
 }
 
@@ -107,13 +106,13 @@ int model_check_results(breccia_model *model)
   DeckSpec *spec = (DeckSpec *)(void *)(uintptr_t)model->spec;
   if (!spec->results) spec->results = section_standard(&model->reader, &results_section, spec->head.node);
   if (!spec->results) return BRECCIA_FAILURE;
-  int status = check_names(model, &model->domain, &spec->results->fields, section_place(spec->results, "fields"));
+  int status = check_names(model, &model->domain, &spec->results->fields, section_node(spec->results, "fields"));
   for (int k = 0; k < spec->pictures.count; ++k) {
     const PictureSpec *picture = spec->pictures.items[k];
     if (picture->curve && check_curve(model, picture)) status = BRECCIA_USER_ERROR;
     if (!picture->field) continue;
     TextList one = {(const char *[]){picture->field}, 1};
-    int bad = check_names(model, &model->domain, &one, section_place(picture, "field"));
+    int bad = check_names(model, &model->domain, &one, section_node(picture, "field"));
     if (!bad) bad = check_component(model, picture);
     if (bad) status = bad;
   }

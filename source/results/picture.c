@@ -112,7 +112,7 @@ static void check_picture(const DeckReader *reader, void *section)
 {
   const PictureSpec *p = section;
   if (p->range[0] >= p->range[1])
-    node_error(reader->document, section_place(p, "range"), reader->error,
+    node_error(reader->document, section_node(p, "range"), reader->error,
                "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
 }
 

@@ -10,7 +10,7 @@
 static void check_between(const DeckReader *reader, const void *section, const char *key, const NumberList *points)
 {
   if (points->count && points->count != 2)
-    node_error(reader->document, section_place(section, key), reader->error, "%s: expected two points, found %d", key,
+    node_error(reader->document, section_node(section, key), reader->error, "%s: expected two points, found %d", key,
                points->count);
 }
 static void check_watch(const DeckReader *reader, void *section)
@@ -263,10 +263,10 @@ static int resolve_ends(Watch *w, const Body *body, const Family *family, const 
   const char *key = w->spec->opening.count ? "opening between" : "bond between";
   for (int e = 0; e < 2; ++e) w->ends[e] = body_nearest(body, points->values + 3 * e);
   if (w->ends[0] == w->ends[1])
-    return node_error(reader->document, section_place(w->spec, key), reader->error,
+    return node_error(reader->document, section_node(w->spec, key), reader->error,
                       "%s: the same particle is nearest to both points", key);
   if (w->spec->bond.count && !family_joins(family, w->ends[0], w->ends[1]))
-    return node_error(reader->document, section_place(w->spec, key), reader->error,
+    return node_error(reader->document, section_node(w->spec, key), reader->error,
                       "%s: no bond joins the particles nearest to these points", key);
   return BRECCIA_OK;
 }
@@ -279,7 +279,7 @@ static int name_histories(Watch *w, const Domain *domain, const DeckReader *read
   int count = 0;
   for (int64_t n = 0; n < w->selection.count; ++n)
     if (domain->material[w->selection.places[n] / SLICE] != material)
-      return node_error(reader->document, section_place(w->spec, "history of"), reader->error,
+      return node_error(reader->document, section_node(w->spec, "history of"), reader->error,
                         "history of: the particles are of several materials, whose histories are not the same");
   for (int k = 0; m->law->history_name && k < m->history_values && count < MOST_COLUMNS - 1; ++k) {
     char name[64] = "";
@@ -291,7 +291,7 @@ static int name_histories(Watch *w, const Domain *domain, const DeckReader *read
   }
   w->history[count] = -1;
   if (!count)
-    return node_error(reader->document, section_place(w->spec, "history of"), reader->error,
+    return node_error(reader->document, section_node(w->spec, "history of"), reader->error,
                       "history of: %s has no named history", m->law->name);
   w->own = (Kind){w->columns, history_row};
   w->kind = &w->own;

@@ -20,7 +20,7 @@ static void check_explicit(const DeckReader *reader, void *section)
   ExplicitSpec *spec = section;
   spec->damping = damping_rate(&spec->damping_given);
   if (!isnan(spec->rest) && !is_damped(spec))
-    node_error(reader->document, section_place(section, "rest"), reader->error,
+    node_error(reader->document, section_node(section, "rest"), reader->error,
                "rest: without 'damping' or 'local damping' a body does not come to rest");
 }
 

@@ -124,7 +124,7 @@ static int check_laws(const Solver *s, Error *error)
   for (int64_t k = 0; k < s->clock.stages; ++k)
     for (int m = 0; m < s->domain->material_count && !strcmp(stage_of(s, k)->laws, "elastic"); ++m)
       if (s->domain->materials[m].remote)
-        return node_error(s->reader->document, section_place(stage_of(s, k), "laws"), error,
+        return node_error(s->reader->document, section_node(stage_of(s, k), "laws"), error,
                           "laws: the law of material '%s' runs in a server, which cannot be told to be elastic for a "
                           "stage; leave 'laws' out",
                           s->domain->materials[m].name);

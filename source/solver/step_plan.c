@@ -116,16 +116,16 @@ static int check_time_step(const Solver *run, const ExplicitSpec *spec, double s
 {
   const double chosen = spec->time_step, share = chosen / stable;
   const Document *document = run->reader->document;
-  const Node *place = section_place(spec, "time step");
+  const Node *node = section_node(spec, "time step");
   if (share > 1 && !run->force)
     return node_error(
-        document, place, error,
+        document, node, error,
         "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
         "--force",
         chosen, share, stable);
   if (warning && share > 0.9) {
-    char where[PLACE];
-    node_place(document, place, where, sizeof where);
+    char where[WHERE_SIZE];
+    node_where(document, node, where, sizeof where);
     text_add(warning, "%s%s: warning: time step: %g is %.2f times the stable step of %.4g", warning->length ? "\n" : "",
              where, chosen, share, stable);
   }

@@ -106,8 +106,8 @@ static int create(History *h, const DeckReader *reader)
 {
   const FileSpec *spec = h->value->section;
   if (!spec) return BRECCIA_USER_ERROR; /* said when it was read */
-  const Node *place = section_place(spec, "name");
-  char *path = text_beside(node_file(reader->document, place), spec->name);
+  const Node *node = section_node(spec, "name");
+  char *path = text_beside(node_file(reader->document, node), spec->name);
   Error *words = breccia_error_create();
   Record record = {0};
   int status = path && words ? BRECCIA_OK : BRECCIA_FAILURE;
@@ -119,7 +119,7 @@ static int create(History *h, const DeckReader *reader)
     status = record_read_plain(&record, path, words);
   if (!status) status = check_rows(&record, path, words);
   if (status)
-    node_error(reader->document, place, reader->error, "file: %s", words ? breccia_error_text(words) : "out of memory");
+    node_error(reader->document, node, reader->error, "file: %s", words ? breccia_error_text(words) : "out of memory");
   h->rows = record.rows;
   for (int k = 0; !status && k < record.count; ++k) h->rows[2 * k + 1] *= spec->scale;
   h->line = (Polyline){.rows = h->rows, .count = record.count, .ends = true};

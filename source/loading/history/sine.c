@@ -12,7 +12,7 @@ static void check_sine(const DeckReader *reader, void *section)
 {
   const SineSpec *s = section;
   if (s->until <= s->from)
-    node_error(reader->document, section_place(s, "until"), reader->error, "until: must be later than 'from'");
+    node_error(reader->document, section_node(s, "until"), reader->error, "until: must be later than 'from'");
 }
 
 static const Field sine_fields[] = {

@@ -11,7 +11,7 @@ static void check_along(const DeckReader *reader, void *section)
 {
   const AlongSpec *along = section;
   if (along->direction[0] == 0 && along->direction[1] == 0 && along->direction[2] == 0)
-    node_error(reader->document, section_place(section, "direction"), reader->error, "direction: must not be zero");
+    node_error(reader->document, section_node(section, "direction"), reader->error, "direction: must not be zero");
 }
 
 static const Field along_fields[] = {

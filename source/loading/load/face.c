@@ -19,9 +19,9 @@ int face_create(Face *face, const Load *load, const LoadMaking *making)
   const double area = load->spec->area;
   *face = (Face){0};
   if ((!on || !on->face) && isnan(area))
-    return node_error(reader->document, load->place, reader->error,
-                      "%s: acts on a face: 'on' must say which, like {face: x+}%s", load->place->key,
-                      load->place->key[0] == 't' ? ", or 'area' how large it is" : "");
+    return node_error(reader->document, load->node, reader->error,
+                      "%s: acts on a face: 'on' must say which, like {face: x+}%s", load->node->key,
+                      load->node->key[0] == 't' ? ", or 'area' how large it is" : "");
   face->axis = on && on->face ? on->face[0] - 'x' : 0;
   face->outwards = on && on->face && on->face[1] == '-' ? -1 : 1;
   face->per_depth = memory_zeroed((size_t)p->slices, sizeof(double), "face", reader->error);
@@ -32,10 +32,10 @@ int face_create(Face *face, const Load *load, const LoadMaking *making)
     face->per_depth[slice] =
         !isnan(area) ? area / load->volume : 1 / depth_of(&body->lattices[b], body->blocks[b], face->axis, on->layers);
     if (isnan(face->per_depth[slice]))
-      return node_error(reader->document, load->place, reader->error,
+      return node_error(reader->document, load->node, reader->error,
                         "%s: the particles of block '%s' come from a file, so that the area of its face is not known; "
                         "take 'traction' with 'area'",
-                        load->place->key, body->blocks[b]->head.name);
+                        load->node->key, body->blocks[b]->head.name);
   }
   return BRECCIA_OK;
 }

@@ -55,7 +55,7 @@ static int create(Load *load, const LoadMaking *making)
   for (int k = 0; k < 3; ++k)
     if ((dimensions < 3 && k >= dimensions && or_none(s->translation[k]) != 0) ||
         (dimensions < 3 && (k < 2 || dimensions == 1) && or_none(s->rotation[k]) != 0))
-      return node_error(making->reader->document, load->place, making->reader->error,
+      return node_error(making->reader->document, load->node, making->reader->error,
                         "initial velocity: the body is %s, this motion leads out of it",
                         dimensions == 2 ? "plane and turns about z only" : "a bar along x");
   return BRECCIA_OK;

@@ -3,7 +3,7 @@
 static int create(Load *load, const LoadMaking *making)
 {
   if (load_length(load->value) == 0)
-    return node_error(making->reader->document, load->place, making->reader->error, "roller: must not be zero");
+    return node_error(making->reader->document, load->node, making->reader->error, "roller: must not be zero");
   load_constrain(load, making, load->value->point, 0, 0);
   return BRECCIA_OK;
 }

@@ -16,7 +16,7 @@ static void check_spring(const DeckReader *reader, void *section)
 {
   const SpringSpec *s = section;
   if (s->direction[0] == 0 && s->direction[1] == 0 && s->direction[2] == 0)
-    node_error(reader->document, section_place(section, "direction"), reader->error, "direction: must not be zero");
+    node_error(reader->document, section_node(section, "direction"), reader->error, "direction: must not be zero");
 }
 
 static const Field spring_fields[] = {
@@ -81,7 +81,7 @@ static int aim(Spring *spring, const Load *load, const LoadMaking *making)
                                             mean(p, &load->selection, load->volume, p->position[k]);
   const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   if (spring->directed && length < 1e-9 * making->body->largest_spacing)
-    return node_error(making->reader->document, load->place, making->reader->error,
+    return node_error(making->reader->document, load->node, making->reader->error,
                       "spring: its ends have one centre; say its 'direction'");
   for (int k = 0; k < 3 && spring->directed; ++k) d[k] /= length;
   return BRECCIA_OK;

@@ -75,16 +75,16 @@ static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList 
 {
   const SupportSpec *support = spec->of[LOAD_support].section;
   const SelectionSpec *on = face_of(spec, selections);
-  const Node *place = support->head.node;
+  const Node *node = support->head.node;
   const int b = on ? find_block(on, blocks) : -1;
   if (b < 0)
-    return node_error(reader->document, place, reader->error,
+    return node_error(reader->document, node, reader->error,
                       "support: takes the whole face of a block: 'on' must be like {face: x-}%s",
                       blocks->count > 1 ? " with 'block'" : "");
   const BlockSpec *block = blocks->items[b];
   if (block->file || !block->lattice || !lattice_is_grid(lattice_find(block->lattice)))
     return node_error(
-        reader->document, place, reader->error,
+        reader->document, node, reader->error,
         "support: the lattice of block '%s' is not its own mirror image; take 'square' or 'cubic', or hold "
         "layers by 'displacement'",
         block->head.name);
@@ -94,7 +94,7 @@ static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList 
                          support->layers > 0 ? support->layers : 2 * (int64_t)fmin(floor(reach + 1e-6), 500)};
   for (int m = 0; m < list->count; ++m)
     if (list->items[m].block == b && list->items[m].axis == axis && list->items[m].high == margin.high)
-      return node_error(reader->document, place, reader->error, "support: this face has one already, of line %d",
+      return node_error(reader->document, node, reader->error, "support: this face has one already, of line %d",
                         ((const LoadSpec *)list->items[m].owner)->head.node->line);
   Margin *grown = realloc(list->items, sizeof *grown * (size_t)(list->count + 1));
   if (!grown) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: supports");
@@ -144,7 +144,7 @@ static int create(Load *load, const LoadMaking *making)
     double direction[3] = {0};
     direction[k] = 1;
     if (!held && moved != 0)
-      return node_error(making->reader->document, load->place, making->reader->error,
+      return node_error(making->reader->document, load->node, making->reader->error,
                         "support: a face that is held across slides along itself; its displacement along %c must be 0",
                         "xyz"[k]);
     load_constrain(load, making, direction, 2 * moved, 0);

@@ -81,7 +81,7 @@ static int create(Load *load, const LoadMaking *making)
     const int32_t place = load->selection.places[n];
     tie->masters[n] = spec->to.node ? nearest(p, place, &load->other) : load->selection.places[0];
     if (spec->to.node && tie->masters[n] == place)
-      return node_error(reader->document, load->place, reader->error,
+      return node_error(reader->document, load->node, reader->error,
                         "tie: particle %d at [%g, %g, %g] is among 'on' and among 'to'", p->number[place],
                         p->position[0][place], p->position[1][place], p->position[2][place]);
   }
