@@ -95,7 +95,15 @@ int bond_correct_surface(BondBased *b, Error *error)
   Correction c = {.bonds = b, .inner = inner};
   int failed = !inner || !b->surface;
   for (int a = 0; a < 3; ++a) failed |= !(c.factor[a] = places_array(p->places, "surface correction", error));
-  for (int block = 0; block < b->body->block_count && !failed; ++block) inner_energies(b, block, inner + 3 * block);
+  for (int block = 0; block < b->body->block_count && !failed; ++block) {
+    inner_energies(b, block, inner + 3 * block);
+    if (inner[3 * block] > 0 || block_is_foreign(b->foreign, p, block)) continue;
+    failed = error_add(error, BRECCIA_USER_ERROR,
+                       "block '%s': surface correction: energy compares particles from a file with those whose "
+                       "neighbours fill the horizon of %g; there are none; take more particles, a shorter horizon, or "
+                       "'surface correction: none'",
+                       b->body->blocks[block]->head.name, f->horizon);
+  }
   for (; c.turn < TURNS && !failed; ++c.turn) {
     team_each(p->places, find_factors, &c);
     team_each(p->slices, correct_slice, &c);

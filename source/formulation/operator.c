@@ -34,9 +34,13 @@ OperatorPlace *operator_add(Operator *point, int64_t place, Error *error)
 
 void operator_close(Operator *point)
 {
+  OperatorPlace *first = &point->places[0];
   for (int k = 0; k < 3; ++k) {
-    point->places[0].g[k] = 0;
-    for (int l = 1; l < point->count; ++l) point->places[0].g[k] -= point->places[l].g[k];
+    first->g[k] = first->second[k] = 0;
+    for (int l = 1; l < point->count; ++l) {
+      first->g[k] -= point->places[l].g[k];
+      first->second[k] -= point->places[l].second[k];
+    }
   }
 }
 
@@ -55,10 +59,15 @@ static void deformation(const Operator *point, double *const u[3], double f[9])
   for (int k = 0; k < 3; ++k) f[4 * k] += 1;
 }
 
-/** The matrix from a displacement of place l to the strain. */
+/** The matrix from a displacement of place l to the strain; rows beyond the point's components are not filled. */
 static void strain_matrix(const Operator *point, const double f[9], int l, double b[6][3])
 {
   const double *g = point->places[l].g;
+  if (point->components < 6) {
+    memcpy(b[0], g, 3 * sizeof *g);
+    memcpy(b[1], point->places[l].second, 3 * sizeof *g);
+    return;
+  }
   for (int k = 0; k < 6; ++k)
     for (int i = 0; i < 3; ++i) {
       const int r = symmetric_row[k], s = symmetric_column[k];
@@ -73,12 +82,9 @@ void operator_strain(const Operator *point, double *const u[3], double *const v[
   deformation(point, u, f);
   for (int l = 0; l < point->count; ++l) {
     const int32_t place = point->places[l].place;
-    if (point->components == 6) strain_matrix(point, f, l, b);
+    strain_matrix(point, f, l, b);
     for (int i = 0; i < 3; ++i)
-      if (point->components == 1)
-        strain[0] += v[i][place] * point->places[l].g[i];
-      else
-        for (int k = 0; k < point->components; ++k) strain[k] += b[k][i] * v[i][place];
+      for (int k = 0; k < point->components; ++k) strain[k] += b[k][i] * v[i][place];
   }
 }
 
@@ -102,12 +108,11 @@ void operator_add_forces(const Operator *point, double *const u[3], double *cons
   }
   for (int l = 0; l < point->count; ++l) {
     const OperatorPlace *p = &point->places[l];
-    if (point->components == 6) strain_matrix(point, f, l, b);
+    strain_matrix(point, f, l, b);
     shaped(point, l, kg);
     for (int i = 0; i < 3; ++i) {
       double sum = 0;
-      for (int k = 0; k < point->components; ++k)
-        sum -= point->stress[k] * (point->components == 1 ? p->g[i] : b[k][i]);
+      for (int k = 0; k < point->components; ++k) sum -= point->stress[k] * b[k][i];
       for (int j = 0; j < 3; ++j) sum += held[3 * i + j] * kg[j];
       force[i][p->place] += point->volume * sum - p->pull[i];
       force[i][point->places[0].place] += p->pull[i];
@@ -121,7 +126,7 @@ static void against_first(const Operator *point, int l, double k[9])
   const OperatorPlace *p = &point->places[l];
   double square = 0;
   for (int i = 0; i < 3; ++i) square += p->g[i] * p->g[i];
-  const double turn = point->components == 1 ? point->volume * point->stress[0] * p->turn : 0;
+  const double turn = point->components < 6 ? point->volume * point->stress[0] * p->turn : 0;
   for (int c = 0; c < 9; ++c) {
     k[c] = p->spring[symmetric_place[c]] + (c % 4 == 0 ? turn : 0);
     if (turn != 0) k[c] -= turn * p->g[c / 3] * p->g[c % 3] / square;
@@ -134,15 +139,13 @@ void operator_stiffness(const Operator *point, double *const u[3], int a, int b,
   double f[9], ba[6][3], bb[6][3], kg[3], part[9], along = 0, across = 0;
   memset(k, 0, 9 * sizeof *k);
   deformation(point, u, f);
-  if (point->components == 6) {
-    strain_matrix(point, f, a, ba);
-    strain_matrix(point, f, b, bb);
-  }
+  strain_matrix(point, f, a, ba);
+  strain_matrix(point, f, b, bb);
   for (int c = 0; c < 9; ++c) {
     double sum = 0;
-    if (point->components == 1) sum = point->tangent[0] * pa->g[c / 3] * pb->g[c % 3];
-    for (int r = 0; r < 6 && point->components == 6; ++r)
-      for (int s = 0; s < 6; ++s) sum += ba[r][c / 3] * point->tangent[6 * r + s] * bb[s][c % 3];
+    for (int r = 0; r < point->components; ++r)
+      for (int s = 0; s < point->components; ++s)
+        sum += ba[r][c / 3] * point->tangent[point->components * r + s] * bb[s][c % 3];
     k[c] -= point->volume * sum;
   }
   shaped(point, b, kg);

@@ -3,8 +3,8 @@
  * With six components, G = sum u_l (x) g_l, the strain is E = (G + G^T + G^T G) / 2 (or its linear part), so that
  *   delta E = sym F^T sum delta u_l (x) g_l,   F = I + G,
  * and the force on place l is -V F S g_l. With one component (bonds, states of a family) delta E = sum delta u_l . g_l with vectors g_l that turn
- * with the deformation: delta g_l = turn_l (I - n n)(delta u_l - delta u_0), n = g_l / |g_l|; the force is -V S g_l. The g_l add up to
- * nothing. Beside the point may stand springs between the first place and the others, and what they lack of a uniform
+ * with the deformation: delta g_l = turn_l (I - n n)(delta u_l - delta u_0), n = g_l / |g_l|; the force is -V S g_l. With two components the second one has
+ * vectors of its own and a stress of 0, but a part in the tangent (families that flow). The g_l add up to nothing. Beside the point may stand springs between the first place and the others, and what they lack of a uniform
  * deformation: the control of zero-energy modes has the energy V/2 (sum w_l C : eta_l (x) eta_l - C : G K G^T). */
 #ifndef BRECCIA_FORMULATION_OPERATOR_H
 #define BRECCIA_FORMULATION_OPERATOR_H
@@ -15,19 +15,19 @@
 
 typedef struct OperatorPlace {
   int32_t place;
-  double g[3], turn;
-  double pull[3];   /* force on the first place from a spring to this one */
+  double g[3], second[3], turn; /* second: of the second of two components */
+  double pull[3];               /* force on the first place from a spring to this one */
   double spring[6]; /* its stiffness: change of the pull with this place's displacement less the first one's */
 } OperatorPlace;
 
 typedef struct Operator {
-  int components; /* 6, 1, or 0: there is no point, but maybe springs */
+  int components; /* 6, 2, 1, or 0: there is no point, but maybe springs */
   bool finite;    /* strain of finite deformation */
   int count, capacity;
-  OperatorPlace *places; /* [count], owned; the first is the one to which the point belongs */
-  double volume;         /* for which the point stands */
-  double stress[6], tangent[36];
-  double hold[6], shape[6]; /* C and K of the control; C = 0: none */
+  OperatorPlace *places;         /* [count], owned; the first is the one to which the point belongs */
+  double volume;                 /* for which the point stands */
+  double stress[6], tangent[36]; /* tangent: [components][components] */
+  double hold[6], shape[6];      /* C and K of the control; C = 0: none */
 } Operator;
 
 /** Empties an operator for another point; its memory is kept. */

@@ -137,17 +137,18 @@ BRECCIA_CLONES
 static int64_t respond(void *formulation, const Sweep *sweep)
 {
   const Ordinary *o = formulation;
-  if (o->flow && !sweep->at && !sweep->no_law) ordinary_flow(o, sweep);
+  if (sweep->at) return ordinary_change_states(o, sweep);
+  if (o->flow && !sweep->no_law) ordinary_flow(o, sweep);
+  const double pull = ordinary_coupling(o->space, ordinary_material(o, sweep->first * SLICE)).pull;
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES) {
-    if (sweep->at) {
-      lanes_store(o->change + place, lanes_load(o->volumetric + place) * lanes_load(o->change + place));
-      continue;
-    }
-    const Lanes base = lanes_load(o->volumetric + place) * lanes_load(o->dilatation + place);
+    Lanes base = lanes_load(o->volumetric + place) * lanes_load(o->dilatation + place);
+    if (o->flow)
+      base -= lanes_set(pull) * lanes_load(o->share + place) * lanes_load(o->inverse + place) *
+              lanes_load(o->flow->across[1] + place);
     lanes_store(o->base + place, base);
     lanes_store(o->slope + place, lanes_load(o->shear + place) - base);
   }
-  for (int64_t place = sweep->first * SLICE; o->shown && !sweep->at && place < sweep->last * SLICE; ++place)
+  for (int64_t place = sweep->first * SLICE; o->shown && place < sweep->last * SLICE; ++place)
     o->shown[STRETCH_SHOWN * place + STRETCH_SHOWN - 1] = o->base[place];
   return -1;
 }

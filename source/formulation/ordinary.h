@@ -27,11 +27,25 @@ typedef struct OrdinaryResisting {
   double weight;                          /* w / 2 */
 } OrdinaryResisting;
 
+/** How the deviator of a family answers a step (ordinary_return.c). Derivatives are with the dilatation, and with the amount sum w x de_d of the deviator
+ *  x = e_d - s that is kept. */
+typedef struct FlowReturn {
+  double factor;       /* of the trial e_d - s that is kept, and of its further growth */
+  double across;       /* p */
+  double factor_by[2]; /* relative growth of the factor */
+  double across_by[2];
+} FlowReturn;
+
 /** What families remember whose deviators yield or relax (ordinary_flow.c): committed and trial. */
 typedef struct Flow {
-  double *shift[2]; /* [slots][8] s */
-  double *last[2];  /* [slots][8] deviatoric elongations of those that relax; NULL if none does */
-  int64_t *back;    /* [slots][8] the other end's place in these arrays */
+  double *shift[2];       /* [slots][8] s */
+  double *last[2];        /* [slots][8] deviatoric elongations of those that relax; NULL if none does */
+  double *across[2];      /* [places] p */
+  double *across_last[2]; /* [places] what would make it grow, of those that relax */
+  double *equivalent[2];  /* [places] equivalent plastic strain */
+  FlowReturn *returned;   /* [places] at the last evaluation */
+  double *amount;         /* [places] in a linearised step: of x, then what x is taken times; NULL before */
+  int64_t *back;          /* [slots][8] the other end's place in the arrays of slots */
 } Flow;
 
 typedef struct Ordinary {
@@ -75,6 +89,19 @@ typedef struct OrdinaryStretch {
 
 /** @param[in] u  displacements */
 OrdinaryStretch ordinary_stretch(double *const u[3], int64_t place, const Bond *bond);
+/** e_d. */
+static inline double ordinary_deviatoric(const Ordinary *o, int64_t place, const Bond *bond, const OrdinaryStretch *s)
+{
+  return s->elongation - o->dilatation[place] * bond->length / o->dimensions;
+}
+
+/** What an end of a bond gives it, over its influence. */
+typedef struct OrdinaryEnd {
+  double tension, stiffness; /* scalar force state; its growth with the elongation alone */
+  double turned;             /* growth with the change of the family, in a linearised step */
+} OrdinaryEnd;
+/** @param[in] at  the bond's place in the arrays of slots, seen from this end */
+OrdinaryEnd ordinary_end(const Ordinary *o, int64_t place, int64_t at, const Bond *bond, const OrdinaryStretch *s);
 
 static inline const Material *ordinary_material(const Ordinary *o, int64_t place)
 {
@@ -85,6 +112,14 @@ static inline const Material *ordinary_material(const Ordinary *o, int64_t place
 double ordinary_bulk(Space space, const Material *material);
 /** b m. */
 double ordinary_shear(Space space, const Material *material);
+/** What the strain across the plane is to the sum of those in it, in plane stress: -nu / (1 - nu). */
+double ordinary_across(const Material *material);
+
+/** What the inelastic dilatation p of the plane does: energies - pull theta p + own p^2 / 2. */
+typedef struct Across {
+  double pull, own;
+} Across;
+Across ordinary_coupling(Space space, const Material *material);
 
 /** Adds to the factors of the patterns of a block what makes its lattice isotropic; leaves them where that would all but take bonds away
  *  (ordinary_weights.c). */
@@ -92,7 +127,7 @@ void ordinary_balance(const Ordinary *o, int block);
 /** Shear modulus that a lattice shows in a deviatoric strain (shear components as of a tensor), over the wanted one. */
 double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
 
-/** As FormulationType describes them (ordinary_setup.c, ordinary_bonds.c, ordinary_linear.c). */
+/** As FormulationType describes them (ordinary_setup.c, ordinary_bonds.c, ordinary_linear.c, ordinary_flow_state.c). */
 extern const Section ordinary_section;
 int ordinary_check(const void *keys, const Body *body, const DeckReader *reader);
 bool ordinary_takes(const breccia_law *law);
@@ -104,6 +139,25 @@ double ordinary_critical_stretch(const BondLength *of, const Material *material,
 size_t ordinary_bytes(const void *formulation);
 FormerBonds ordinary_former_bonds(const void *formulation);
 double *ordinary_shares(void *formulation);
+
+/** Von Mises with a yield stress.
+ *  @param[in] across  committed p
+ *  @param[in] shear   b
+ *  @param[in] square  sum w (e_d - s)^2 of the trial */
+FlowReturn ordinary_yield(Space space, const Material *material, double yield_stress, double dilatation, double across,
+                          double shear, double square);
+/** A share of the shear modulus that relaxes.
+ *  @param[in] times   step over relaxation time
+ *  @param[in] across  committed p
+ *  @param[in] last    what made it grow, at the end of the last step
+ *  @param[out] now    the same now */
+FlowReturn ordinary_relax(Space space, const Material *material, double share, double times, double dilatation,
+                          double across, double last, double *now);
+/** What a relaxing part takes of a step: `gone` of what it began with, `late` of what was added evenly in it. */
+typedef struct Relaxed {
+  double gone, late;
+} Relaxed;
+Relaxed ordinary_relaxed(double times);
 
 /** Reads the laws' deviators; makes room for what they remember. */
 int ordinary_flow_create(Ordinary *o, int materials, Error *error);
@@ -127,6 +181,7 @@ int ordinary_linearise(void *formulation, Error *error);
 int64_t ordinary_point_count(const void *formulation);
 int ordinary_point(const void *formulation, int64_t place, Operator *point, Error *error);
 int64_t ordinary_change_dilatation(const Ordinary *o, const Sweep *sweep);
+int64_t ordinary_change_states(const Ordinary *o, const Sweep *sweep);
 int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep);
 
 #endif

@@ -27,11 +27,18 @@ static double shift_of(const Ordinary *o, int64_t slot, int lane, int state)
   return o->flow ? o->flow->shift[state][slot * SLICE + lane] : 0;
 }
 
-/** Scalar force state over influence: a |xi| + b (e - s). */
-static double tension(const Ordinary *o, int64_t place, int64_t slot, const Bond *bond, const OrdinaryStretch *s)
+/** With the scalar force state over influence a |xi| + b (e - s), its change in a linearised step is da |xi| + b f de + b x df / f. */
+OrdinaryEnd ordinary_end(const Ordinary *o, int64_t place, int64_t at, const Bond *bond, const OrdinaryStretch *s)
 {
-  return o->base[place] * bond->length +
-         (o->base[place] + o->slope[place]) * (s->elongation - shift_of(o, slot, (int)(place % SLICE), 1));
+  OrdinaryEnd end = {.tension = o->base[place] * bond->length + o->shear[place] * s->elongation,
+                     .stiffness = o->shear[place],
+                     .turned = o->change ? o->change[place] * bond->length : 0};
+  if (!o->flow) return end;
+  const double shift = o->flow->shift[1][at];
+  end.tension -= o->shear[place] * shift;
+  end.stiffness *= o->flow->returned[place].factor;
+  if (o->flow->amount) end.turned += o->flow->amount[place] * (ordinary_deviatoric(o, place, bond, s) - shift);
+  return end;
 }
 
 void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
@@ -41,8 +48,8 @@ void ordinary_half_state(const void *formulation, double *const *at, int64_t sli
   const int64_t place = slice * SLICE + lane;
   const Bond bond = ordinary_bond(o, slice, slot, lane);
   const OrdinaryStretch s = ordinary_stretch(at ? at : o->particles->displacement, place, &bond);
-  const double omega = bond.weight / o->particles->volume[bond.neighbour],
-               across = tension(o, place, slot, &bond, &s) / s.length;
+  const OrdinaryEnd end = ordinary_end(o, place, slot * SLICE + lane, &bond, &s);
+  const double omega = bond.weight / o->particles->volume[bond.neighbour], across = end.tension / s.length;
   double change[3], along = 0;
   for (int k = 0; k < 3; ++k) {
     state[k] = omega * across * s.y[k];
@@ -50,10 +57,8 @@ void ordinary_half_state(const void *formulation, double *const *at, int64_t sli
     change[k] = o->particles->displacement[k][bond.neighbour] - o->particles->displacement[k][place];
     along += change[k] * s.y[k] / s.length;
   }
-  const double stiffness = o->base[place] + o->slope[place];
   for (int k = 0; k < 3 && at; ++k)
-    state[k] = omega * ((o->change[place] * bond.length + (stiffness - across) * along) * s.y[k] / s.length +
-                        across * change[k]);
+    state[k] = omega * ((end.turned + (end.stiffness - across) * along) * s.y[k] / s.length + across * change[k]);
 }
 
 /** Of the displacements held and the bonds as they are, not of what was evaluated last: bonds may have broken since. */
@@ -84,15 +89,19 @@ void ordinary_stored_energy(const void *formulation, int64_t place, double time,
   }
   const double inverse = o->inverse[place], own = p->volume[place];
   const double base = o->volumetric[place] * inverse, shear = o->shear[place];
+  const Material *m = ordinary_material(o, place);
   energy->stored = 0.5 * own * (base * volume * volume + shear * square);
   energy->received = energy->stored - 0.5 * own * (base * volume * volume_moved + shear * square_moved);
+  if (o->flow) { /* and what p stores: with - pull theta p + own p^2 / 2 what a relaxing share keeps to itself */
+    const Across c = ordinary_coupling(o->space, m);
+    const double share = own * o->share[place], across = o->flow->across[1][place], theta = inverse * volume,
+                 stiffness = c.own + (o->space == SPACE_3D ? 0 : 3 * m->shear * (1 / part - 1));
+    const double stored = share * across * (0.5 * stiffness * across - c.pull * theta);
+    energy->stored += stored;
+    energy->received += stored + 0.5 * share * c.pull * across * inverse * volume_moved;
+    energy->received += share * (c.pull * theta - stiffness * across) * (across - o->flow->across[0][place]);
+  }
   energy->received += own * shear * flowed; /* what has been dissipated in the step is not what the break takes */
-}
-
-/** What the strain across the plane is to the sum of those in it, in plane stress: -nu / (1 - nu). */
-static double across(const Material *m)
-{
-  return -(3 * m->bulk - 2 * m->shear) / (3 * m->bulk + 4 * m->shear);
 }
 
 void ordinary_gradient(const void *formulation, int64_t place, double f[9])
@@ -101,11 +110,12 @@ void ordinary_gradient(const void *formulation, int64_t place, double f[9])
   const ShapeTensor shape = shape_tensor(o->family, (int32_t)place, o->dimensions, 0);
   shape_gradient(o->family, (int32_t)place, shape.inverse, f);
   if (o->space != SPACE_PLANE_STRESS) return;
-  const double sum = f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4] - 2; /* 2 (E_xx + E_yy) */
-  f[8] = sqrt(fmax(0, 1 + across(ordinary_material(o, place)) * sum));
+  const double sum = f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4] - 2, /* 2 (E_xx + E_yy) */
+      inelastic = o->flow ? 2 * o->flow->across[1][place] : 0;
+  f[8] = sqrt(fmax(0, 1 + ordinary_across(ordinary_material(o, place)) * (sum - inelastic) - inelastic));
 }
 
-/** Stress of the family's own force state: sum t y (x) y / |y| V. Across the plane, in plane strain, lambda theta. */
+/** Stress of the family's own force state: sum t y (x) y / |y| V. Across the plane, in plane strain, lambda theta + 2 G p. */
 void ordinary_stress(const void *formulation, int64_t place, double stress[6])
 {
   const Ordinary *o = formulation;
@@ -117,10 +127,11 @@ void ordinary_stress(const void *formulation, int64_t place, double stress[6])
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double pull = bond.weight * tension(o, place, slot, &bond, &s) / s.length;
+    const double pull = bond.weight * ordinary_end(o, place, slot * SLICE + lane, &bond, &s).tension / s.length;
     for (int k = 0; k < 6; ++k) stress[k] += pull * s.y[symmetric_row[k]] * s.y[symmetric_column[k]];
   }
   const Material *m = ordinary_material(o, place);
-  if (o->space == SPACE_PLANE_STRAIN)
-    stress[ZZ] = o->share[place] * (m->bulk - 2 * m->shear / 3) * o->dilatation[place];
+  if (o->space != SPACE_PLANE_STRAIN) return;
+  const double inelastic = o->flow ? o->flow->across[1][place] : 0;
+  stress[ZZ] = o->share[place] * ((m->bulk - 2 * m->shear / 3) * o->dilatation[place] + 2 * m->shear * inelastic);
 }

@@ -1,4 +1,5 @@
-/* Deviators that yield or relax. A law tells how (breccia_deviator); the state of a family is a shift s of the deviatoric elongations of its bonds,
+/* Deviators that yield or relax. A law tells how (breccia_deviator); the state of a family is a shift s of the deviatoric elongations of its bonds, and in the
+ * plane the inelastic dilatation p of the plane, which takes P p d / m off a (ordinary_coupling, ordinary_return.c):
  *   t = omega (a |xi| + b (e - s)) y / |y|.
  * Perfectly plastic (Mitchell 2011; docs/theory.md 3): with the trial e_d - s and N^2 = sum w (e_d - s)^2, the deviator stores b N^2 / 2, which is
  * q^2 / (6 G) for the stress q of von Mises; beyond the yield stress the trial is scaled back, and s takes the rest. Viscoelastic: s = lambda e_v,
@@ -8,7 +9,6 @@
 #include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const breccia_deviator *deviator_at(const Ordinary *o, int64_t slice)
 {
@@ -41,7 +41,11 @@ static int create_flow(Ordinary *o, Error *error)
   Flow *flow = o->flow = calloc(1, sizeof *flow);
   if (!flow) return error_add(error, BRECCIA_FAILURE, "out of memory: force states");
   int failed = !(flow->back = memory_zeroed(bonds, sizeof *flow->back, "force states", error));
+  failed |=
+      !(flow->returned = memory_zeroed((size_t)o->particles->places, sizeof *flow->returned, "force states", error));
   for (int k = 0; k < 2; ++k) {
+    double **const of_places[] = {&flow->across[k], &flow->across_last[k], &flow->equivalent[k]};
+    for (int n = 0; n < 3; ++n) failed |= !(*of_places[n] = places_array(o->particles->places, "force states", error));
     failed |= !(flow->shift[k] = memory_zeroed(bonds, sizeof(double), "force states", error));
     if (relaxes) failed |= !(flow->last[k] = memory_zeroed(bonds, sizeof(double), "force states", error));
   }
@@ -70,12 +74,6 @@ int ordinary_flow_create(Ordinary *o, int materials, Error *error)
     if (!m->law->deviator || !is_own(o, k)) continue;
     if (m->law->deviator(m->constants, &o->deviators[k], reason, sizeof reason))
       return error_add(error, BRECCIA_USER_ERROR, "material '%s': ordinary: %s", m->name, reason);
-    if (ordinary_flows(&o->deviators[k]) && o->space == SPACE_PLANE_STRESS)
-      return error_add(
-          error, BRECCIA_USER_ERROR,
-          "material '%s': ordinary: '%s' needs space or plane strain: in plane stress the deviator and the "
-          "dilatation of the plane flow together",
-          m->name, m->law->name);
   }
   for (int64_t slice = 0; slice < o->particles->slices; ++slice) any |= ordinary_flows(deviator_at(o, slice));
   return any ? create_flow(o, error) : BRECCIA_OK;
@@ -87,46 +85,54 @@ void ordinary_flow_destroy(Ordinary *o)
   free(o->deviators);
   if (!flow) return;
   free(flow->back);
+  free(flow->returned);
+  places_free(&flow->amount);
   for (int k = 0; k < 2; ++k) {
     free(flow->shift[k]);
     free(flow->last[k]);
+    places_free(&flow->across[k]);
+    places_free(&flow->across_last[k]);
+    places_free(&flow->equivalent[k]);
   }
   free(flow);
 }
 
 /* ---- a family ---- */
 
-/** Deviatoric elongation of a bond of a place. */
-static double deviatoric(const Ordinary *o, int64_t place, const Bond *bond, const OrdinaryStretch *s)
-{
-  return s->elongation - o->dilatation[place] * bond->length / o->dimensions;
-}
-
-/** Scales the deviators of a family back to its yield surface. */
+/** Scales the deviator of a family back to its yield surface. */
 static void yield(const Ordinary *o, int64_t place, const breccia_deviator *deviator)
 {
   const Family *f = o->family;
   Flow *flow = o->flow;
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
-  const double shear = ordinary_material(o, place)->shear;
-  double square = 0, factor = 1;
+  const Material *m = ordinary_material(o, place);
+  const double before = flow->across[0][place];
+  double square = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double trial = deviatoric(o, place, &bond, &s) - flow->shift[0][slot * SLICE + lane];
+    const double trial = ordinary_deviatoric(o, place, &bond, &s) - flow->shift[0][slot * SLICE + lane];
     square += bond.weight * trial * trial;
   }
-  const double b = o->share[place] > 0 ? o->shear[place] / o->share[place] : 0, mises = sqrt(3 * shear * b * square);
-  if (mises > deviator->yield_stress && !o->points->elastic_stage) factor = deviator->yield_stress / mises;
+  const double b = o->share[place] > 0 ? o->shear[place] / o->share[place] : 0;
+  FlowReturn r = {.factor = 1, .across = before};
+  if (!o->points->elastic_stage)
+    r = ordinary_yield(o->space, m, deviator->yield_stress, o->dilatation[place], before, b, square);
+  /* Plastic strain in the plane is (1 - f)^2 b N^2 / 2 G squared, across it and evenly in the plane 3/2 of p squared. */
+  const double grown = r.across - before, kept = 1 - r.factor;
+  flow->equivalent[1][place] =
+      flow->equivalent[0][place] + sqrt(kept * kept * b * square / (3 * m->shear) + grown * grown);
+  flow->across[1][place] = r.across;
+  flow->returned[place] = r;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     const int64_t at = slot * SLICE + lane;
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double e = deviatoric(o, place, &bond, &s), trial = e - flow->shift[0][at];
-    flow->shift[1][at] = factor < 1 ? e - factor * trial : flow->shift[0][at];
+    const double e = ordinary_deviatoric(o, place, &bond, &s), trial = e - flow->shift[0][at];
+    flow->shift[1][at] = r.factor < 1 ? e - r.factor * trial : flow->shift[0][at];
   }
 }
 
@@ -136,17 +142,23 @@ static void relax(const Ordinary *o, int64_t place, const breccia_deviator *devi
   Flow *flow = o->flow;
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
-  const double part = deviator->relaxing,
+  const double share = deviator->relaxing,
                times = o->points->elastic_stage ? 0 : o->points->time_step / deviator->relaxation_time;
-  const double gone = -expm1(-times), late = times > 0 ? 1 - gone / times : 0;
+  const Relaxed relaxed = ordinary_relaxed(times);
+  double now;
+  flow->returned[place] = ordinary_relax(o->space, ordinary_material(o, place), share, times, o->dilatation[place],
+                                         flow->across[0][place], flow->across_last[0][place], &now);
+  flow->across[1][place] = flow->returned[place].across;
+  flow->across_last[1][place] = o->points->elastic_stage ? flow->across_last[0][place] : now; /* then history is kept */
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     const int64_t at = slot * SLICE + lane;
     if (!(f->intact[slot] >> lane & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, lane);
     const OrdinaryStretch s = ordinary_stretch(o->particles->displacement, place, &bond);
-    const double e = deviatoric(o, place, &bond, &s), before = flow->last[0][at];
-    flow->last[1][at] = o->points->elastic_stage ? before : e; /* then the history is kept */
-    flow->shift[1][at] = part * (before * gone + late * (e - before)) + flow->shift[0][at] * (1 - gone);
+    const double e = ordinary_deviatoric(o, place, &bond, &s), before = flow->last[0][at];
+    flow->last[1][at] = o->points->elastic_stage ? before : e;
+    flow->shift[1][at] =
+        share * (before * relaxed.gone + relaxed.late * (e - before)) + flow->shift[0][at] * (1 - relaxed.gone);
   }
 }
 
@@ -161,6 +173,8 @@ void ordinary_flow(const Ordinary *o, const Sweep *sweep)
         relax(o, place, deviator);
       else if (isfinite(deviator->yield_stress))
         yield(o, place, deviator);
+      else
+        o->flow->returned[place] = (FlowReturn){.factor = 1};
   }
 }
 
@@ -184,55 +198,4 @@ void ordinary_flow_resist(const Ordinary *o, const Sweep *sweep)
       }
       for (int k = 0; k < 3; ++k) o->particles->internal[k][place] -= force[k];
     }
-}
-
-/* ---- state ---- */
-
-typedef struct Commit {
-  const Ordinary *ordinary;
-  int from, to; /* of both states */
-} Commit;
-
-static void copy_slice(void *context, int64_t slice)
-{
-  const Commit *c = context;
-  const Flow *flow = c->ordinary->flow;
-  const int64_t *slots = c->ordinary->family->first + slice, first = slots[0] * SLICE;
-  const size_t bytes = sizeof(double) * (size_t)(slots[1] - slots[0]) * SLICE;
-  memcpy(flow->shift[c->to] + first, flow->shift[c->from] + first, bytes);
-  if (flow->last[0]) memcpy(flow->last[c->to] + first, flow->last[c->from] + first, bytes);
-}
-
-void ordinary_commit(void *formulation, bool well)
-{
-  Commit commit = {formulation, well, !well};
-  if (commit.ordinary->flow) team_each(commit.ordinary->particles->slices, copy_slice, &commit);
-}
-
-/** The committed state was put in place from outside. */
-static int take_up(void *owner, const double *numbers, int64_t count, Error *error)
-{
-  (void)numbers;
-  (void)count;
-  (void)error;
-  ordinary_commit(owner, false);
-  return BRECCIA_OK;
-}
-
-void ordinary_state(void *formulation, const char *part, StateList *list)
-{
-  static const StateCare care = {.resume = take_up};
-  Ordinary *o = formulation;
-  if (!o->flow) return;
-  StateRow row = {.unit = "length",
-                  .kind = STATE_NUMBERS,
-                  .entity = STATE_OF_SLOT,
-                  .role = STATE_COMMITTED,
-                  .count = o->family->slots * SLICE,
-                  .values = o->flow->shift[0],
-                  .care = &care,
-                  .owner = o};
-  state_add(list, &row, "inelastic elongation", part);
-  row.values = o->flow->last[0];
-  if (row.values) state_add(list, &row, "deviatoric elongation", part);
 }

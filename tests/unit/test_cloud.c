@@ -310,6 +310,13 @@ static void wrong_files_are_refused_with_the_reason(void **state)
     free(words);
     free(deck);
   }
+  write_scattered(5);
+  char *words =
+      refusal_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, " FIBRE "}}\n"
+                 "peridynamics: {formulation: bond-based, calibration: continuum, surface correction: energy}\n"
+                 "body: {b: {material: m, spacing: 0.1, file: " FILE_NAME "}}\nsolve: {explicit: {steps: 1}}\n");
+  if (!strstr(words, "neighbours fill the horizon")) fail_msg("found '%s'", words);
+  free(words);
   remove(FILE_NAME);
 }
 
