@@ -79,7 +79,7 @@ static const struct Covered {
 static const char *const space_bodies[BODIES][2] = {
     {"spacing: 1, shape: {box: {particles: [6, 5, 4]}}",
      "spacing: 0.8, shape: {box: {from: [0, 0, 4], to: [2.4, 4, 6.4]}}"},
-    {"spacing: 1, lattice: face-centred cubic, shape: {box: {particles: [5, 4, 6]}}"},
+    {"spacing: 1, lattice: face-centred cubic, shape: {box: {particles: [5, 4, 4]}}"},
     {"spacing: 1, file: " FILE_NAME}};
 static const char *const plane_bodies[BODIES][2] = {
     {"spacing: 1, lattice: square, thickness: 0.7, shape: {box: {particles: [9, 6]}}",
@@ -95,7 +95,7 @@ static const char *const line_bodies[BODIES][2] = {
 /** A grid of particles, each moved by up to 0.3 of the spacing, with volumes that differ. */
 static void scatter(const char *space)
 {
-  static const int counts[3][3] = {{6, 5, 4}, {9, 8, 1}, {13, 1, 1}};
+  static const int counts[3][3] = {{5, 5, 4}, {9, 8, 1}, {13, 1, 1}};
   const int k = !strcmp(space, "1-D") ? 2 : *space == 'p', *count = counts[k];
   const double depth[] = {1, 0.7, 0.5};
   static const char *const names[] = {"x,y,z,volume\n", "x,y,volume\n", "x,volume\n"};

@@ -481,6 +481,141 @@ static void a_sheared_body_yields_at_the_stress_of_von_mises(void **state)
     }
 }
 
+/** Sets a small uniform strain xx, yy, xy (engineering), zz and evaluates. @return a particle deep inside, its stress and its energy per volume */
+static int32_t strain_to(breccia_model *m, const double e[4], double stress[6], double *energy)
+{
+  const Particles *p = m->domain.particles;
+  const Region *region = &m->domain.regions[0];
+  const double size[3] = {19, 17, 15};
+  double strain[6];
+  StoredEnergy stored;
+  deform_uniformly(m, (const double[]){1 + e[0], e[2] / 2, 0, e[2] / 2, 1 + e[1], 0, 0, 0, 1 + e[3]});
+  compute_forces(m);
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t place = p->place_of[n];
+    bool inside = true;
+    for (int k = 0; k < m->domain.body.dimensions; ++k) inside &= fabs(p->position[k][place] - size[k] / 2) < 1;
+    if (!inside) continue;
+    domain_look(&m->domain, place, strain, stress);
+    region->type->stored_energy(region->formulation, place, 0, &stored);
+    *energy = stored.stored / p->volume[place];
+    return place;
+  }
+  fail();
+  return -1;
+}
+
+static breccia_model *flowing_body(const char *law, const char *space, const char *formulation)
+{
+  return model_of("materials: {m: {model: %s, density: 1, Young modulus: 150, Poisson ratio: 0.3}}\nperidynamics: "
+                  "{space: %s, formulation: %s}\nbody: {b: {material: m, %s}}\n" SOLVE,
+                  law, space, formulation, *space == '3' ? CUBE : SQUARE);
+}
+
+#define PLASTIC "j2, yield stress: 1e-5"
+#define RELAXING "viscoelastic, relaxing share: 0.7, relaxation time: 2"
+
+static void evenly_strained_bodies_flow_as_the_law_in_space_does(void **state)
+{
+  (void)state;
+  /* A path that loads, turns, reverses and rests: the stresses are those that the law itself gives, with zero strain or stress across the plane. */
+  const char *const spaces[] = {"3-D", "plane strain", "plane stress"}, *const laws[] = {PLASTIC, RELAXING};
+  const double path[][4] = {{6, 1, 0, -1}, {12, 3, 2, 1},   {12, 9, 8, 2}, {4, 15, 11, 2}, {-5, 9, 3, 5},
+                            {-5, 9, 3, 5}, {-9, -4, -8, 0}, {0, 0, 0, 0},  {0, 0, 0, 0},   {0.3, 0.2, 0, 0.1}};
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 2; ++l) {
+      breccia_model *m = flowing_body(laws[l], spaces[k], "ordinary");
+      breccia_model *reference = flowing_body(laws[l], spaces[k], "correspondence, strain: small");
+      m->domain.regions[0].points.time_step = reference->domain.regions[0].points.time_step = 0.5;
+      for (size_t n = 0; n < sizeof path / sizeof *path; ++n) {
+        double e[4], stress[6], wanted[6], energy, same, square = 0;
+        for (int c = 0; c < 4; ++c) e[c] = c == 3 && k ? 0 : 2e-8 * path[n][c];
+        strain_to(m, e, stress, &energy);
+        strain_to(reference, e, wanted, &same);
+        const double mean = (wanted[0] + wanted[1] + wanted[2]) / 3;
+        for (int c = 0; c < 6; ++c) square += (c < 3 ? 1 : 2) * pow(wanted[c] - (c < 3 ? mean : 0), 2);
+        if (l == 0) /* what is stored is elastic */
+          assert_near(energy, mean * mean / (2 * 125) + square / (4 * 150 / 2.6), 1e-5 * 1e-10 / 150);
+        for (int c = 0; c < 6; ++c)
+          if (!(fabs(stress[c] - wanted[c]) <= 1e-5 * 1e-5))
+            fail_msg("%s, %s, step %zu, component %d: %g, and %g by the law", spaces[k], laws[l], n, c, stress[c],
+                     wanted[c]);
+        domain_commit_points(&m->domain);
+        domain_commit_points(&reference->domain);
+      }
+      breccia_model_destroy(&m);
+      breccia_model_destroy(&reference);
+    }
+}
+
+static void plane_stress_yields_at_the_yield_stress(void **state)
+{
+  (void)state;
+  const double yield = 1e-5, young = 150, e = 4 * yield / young;
+  double stress[6], energy;
+  breccia_model *m = flowing_body(PLASTIC, "plane stress", "ordinary");
+  const double *plastic_strain = ordinary_of(m)->flow->equivalent[1];
+  int32_t inside = 0;
+  /* Tension along x, the sides free: the strain across is searched by the secant. */
+  double sides[2] = {-0.3 * e, -0.5 * e}, found[2];
+  strain_to(m, (const double[]){e, sides[0], 0, 0}, stress, &energy);
+  found[0] = stress[YY];
+  for (int n = 0; n < 12 && sides[0] != sides[1]; ++n) {
+    inside = strain_to(m, (const double[]){e, sides[1], 0, 0}, stress, &energy);
+    found[1] = stress[YY];
+    if (fabs(found[1]) < 1e-9 * yield) break;
+    const double next = sides[1] - found[1] * (sides[1] - sides[0]) / (found[1] - found[0]);
+    sides[0] = sides[1];
+    found[0] = found[1];
+    sides[1] = next;
+  }
+  assert_near(stress[YY], 0, 1e-8 * yield);
+  assert_near(stress[XX], yield, 2e-6 * yield);
+  assert_near(sides[1], -0.3 * yield / young - 0.5 * (e - yield / young), 1e-5 * e);
+  assert_near(plastic_strain[inside], e - yield / young, 1e-5 * e);
+  strain_to(m, (const double[]){0, 0, e, 0}, stress, &energy);
+  assert_near(stress[XY], yield / sqrt(3), 2e-6 * yield);
+  assert_near(plastic_strain[inside], (e - yield / sqrt(3) * 2.6 / young) / sqrt(3), 1e-5 * e);
+  strain_to(m, (const double[]){e, e, 0, 0}, stress, &energy); /* both ways: the strain across is twice as much */
+  assert_near(stress[XX], yield, 2e-6 * yield);
+  assert_near(stress[YY], yield, 2e-6 * yield);
+  assert_near(plastic_strain[inside], 2 * (e - yield * 0.7 / young), 1e-5 * e);
+  breccia_model_destroy(&m);
+}
+
+static void plane_stress_relaxes_by_the_closed_form(void **state)
+{
+  (void)state;
+  /* Stretched at once both ways and held: the stress is -3/2 of the deviator across, s = 2 G (e - lambda v), with K (theta + z) + s = 0, e = (2 z - theta) / 3 and
+   * dv/dt = (e - v) / tau, so that v comes near its end with the rate (1 - c) / tau, c = 4 G lambda / (3 K + 4 G). */
+  const double share = 0.7, tau = 2, bulk = 125, shear = 150 / 2.6, theta = 2e-7, step = 0.02,
+               whole = 3 * bulk + 4 * shear, c = 4 * shear * share / whole, first = -3 * bulk * theta / whole,
+               end = first / (1 - c); /* of e and v */
+  double stress[6], energy;
+  breccia_model *m = flowing_body(RELAXING, "plane stress", "ordinary");
+  m->domain.regions[0].points.time_step = 1e-12;
+  for (int k = 0; k <= 200; ++k) {
+    strain_to(m, (const double[]){theta / 2, theta / 2, 0, 0}, stress, &energy);
+    domain_commit_points(&m->domain);
+    m->domain.regions[0].points.time_step = step;
+    const double v = end * (1 - exp(-(1 - c) * k * step / tau)), e = first + c * v;
+    if (k % 40) continue;
+    if (!k) assert_near(energy, stress[XX] * theta / 2, 1e-5 * energy);
+    assert_near(stress[XX], -3 * shear * (e - share * v), 1e-5 * 9 * bulk * shear * theta / whole);
+    assert_near(stress[YY], stress[XX], 1e-6 * stress[XX]);
+  }
+  /* Relaxed to the end it is elastic with what is left of the shear modulus. */
+  const double left = (1 - share) * shear, relaxed = theta / 2 * 18 * bulk * left / (3 * bulk + 4 * left);
+  m->domain.regions[0].points.time_step = 1e4;
+  for (int k = 0; k < 2; ++k) {
+    strain_to(m, (const double[]){theta / 2, theta / 2, 0, 0}, stress, &energy);
+    domain_commit_points(&m->domain);
+  }
+  assert_near(stress[XX], relaxed, 1e-3 * relaxed);
+  assert_near(energy, relaxed * theta / 2, 1e-3 * relaxed * theta / 2);
+  breccia_model_destroy(&m);
+}
+
 /** Kalthoff and Winkler's plate, coarser, struck between its notches. */
 static breccia_model *struck_plate(const char *space, double ratio, const char *law)
 {
@@ -521,8 +656,9 @@ static void plates_that_flow_dissipate_and_break(void **state)
 {
   (void)state;
   const char *const laws[] = {"j2, yield stress: 1 GPa", "viscoelastic, relaxing share: 0.5, relaxation time: 20e-6"};
-  for (int k = 0; k < 2; ++k) {
-    breccia_model *m = struck_plate("plane strain", 0.3, laws[k]);
+  for (int n = 0; n < 4; ++n) {
+    const int k = n % 2;
+    breccia_model *m = struck_plate(n < 2 ? "plane strain" : "plane stress", 0.3, laws[k]);
     breccia_error *error = breccia_error_create();
     double dissipated = 0;
     while (m->solver.clock.step < m->solver.clock.steps) {
@@ -575,6 +711,9 @@ int main(void)
       cmocka_unit_test(two_points_yield_as_in_another_program),
       cmocka_unit_test(two_points_relax_like_a_standard_linear_solid),
       cmocka_unit_test(a_sheared_body_yields_at_the_stress_of_von_mises),
+      cmocka_unit_test(evenly_strained_bodies_flow_as_the_law_in_space_does),
+      cmocka_unit_test(plane_stress_yields_at_the_yield_stress),
+      cmocka_unit_test(plane_stress_relaxes_by_the_closed_form),
       cmocka_unit_test(the_books_of_a_struck_plate_balance),
       cmocka_unit_test(plates_that_flow_dissipate_and_break),
       cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
