@@ -2,18 +2,13 @@
 #include "base/csv.h"
 #include "deck/document.h"
 #include "model/host.h"
-#include "model/study.h"
-#include "results/curve.h"
-#include "results/curve_names.h"
-#include "results/plot.h"
+#include "model/study_report.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MOST_RESULTS = 64, WORDS = 160 };
 
 /* ---- what is taken of a history ---- */
 
@@ -53,33 +48,14 @@ static const struct {
               {"last", "at the end", last_of}};
 enum { TAKERS = sizeof takers / sizeof *takers };
 
-typedef struct Result { /* a column of the table */
-  char words[WORDS];    /* "peak beam.y", or a name of summary.json */
-  int taker;            /* -1: of summary.json */
-  char watch[CURVE_NAME], column[CURVE_NAME];
-  char unit[64];
-  double *values; /* of each case; NaN: not there */
-} Result;
-
-typedef struct Report {
-  const Study *study;
-  const breccia_study_plan *plan;
-  Result results[MOST_RESULTS];
-  int result_count;
-  char *curves[MOST_RESULTS];
-  int curve_count;
-  int *states;
-  Text *files;
-} Report;
-
-static int add_result(Report *report, const char *words, Error *error)
+static int add_result(StudyReport *report, const char *words, Error *error)
 {
   for (int k = 0; k < report->result_count; ++k)
     if (!strcmp(report->results[k].words, words)) return BRECCIA_OK;
-  if (report->result_count == MOST_RESULTS)
-    return error_add(error, BRECCIA_USER_ERROR, "--result: at most %d", MOST_RESULTS);
-  Result *r = &report->results[report->result_count];
-  *r = (Result){.taker = -1};
+  if (report->result_count == STUDY_RESULTS)
+    return error_add(error, BRECCIA_USER_ERROR, "--result: at most %d", STUDY_RESULTS);
+  StudyResult *r = &report->results[report->result_count];
+  *r = (StudyResult){.taker = -1};
   snprintf(r->words, sizeof r->words, "%s", words);
   const size_t first = strcspn(words, " ");
   for (int k = 0; k < TAKERS; ++k)
@@ -98,16 +74,16 @@ static int add_result(Report *report, const char *words, Error *error)
   return BRECCIA_OK;
 }
 
-static int add_curve(Report *report, const char *words, Error *error)
+static int add_curve(StudyReport *report, const char *words, Error *error)
 {
-  if (report->curve_count == MOST_RESULTS)
-    return error_add(error, BRECCIA_USER_ERROR, "--curve: at most %d", MOST_RESULTS);
+  if (report->curve_count == STUDY_RESULTS)
+    return error_add(error, BRECCIA_USER_ERROR, "--curve: at most %d", STUDY_RESULTS);
   report->curves[report->curve_count] = text_format("%s", words);
   return report->curves[report->curve_count++] ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: study");
 }
 
 /** The curves that the deck draws. Those of the first case stand for all. */
-static int add_curves_of_deck(Report *report, Error *error)
+static int add_curves_of_deck(StudyReport *report, Error *error)
 {
   const char *deck = report->study->cases[0].deck;
   Document *document = document_parse(deck, strlen(deck), "deck", error);
@@ -121,7 +97,7 @@ static int add_curves_of_deck(Report *report, Error *error)
   return status;
 }
 
-static int choose_results(Report *report, Error *error)
+static int choose_results(StudyReport *report, Error *error)
 {
   const breccia_study_plan *plan = report->plan;
   int status = BRECCIA_OK;
@@ -157,7 +133,7 @@ static const struct {
                     {"time", "times"},
                     {"stable_time_step", "times"}};
 
-static void find_unit(const Node *summary, Result *result)
+static void find_unit(const Node *summary, StudyResult *result)
 {
   for (size_t k = 0; k < sizeof figure_units / sizeof *figure_units; ++k) {
     if (strncmp(result->words, figure_units[k].begin, strlen(figure_units[k].begin)) != 0) continue;
@@ -184,14 +160,14 @@ static double figure(const Node *root, const char *path)
   return node && node->kind == NODE_SCALAR && end != node->text && !*end ? value : NAN;
 }
 
-static int read_summary_figures(Report *report, int k, Error *error)
+static int read_summary_figures(StudyReport *report, int k, Error *error)
 {
   char *path = text_format("%s/summary.json", report->study->cases[k].folder),
        *text = path ? text_read_file(path, NULL) : NULL;
   Document *document = text ? document_parse(text, strlen(text), path, error) : NULL;
   const int status = document || !text ? BRECCIA_OK : BRECCIA_USER_ERROR;
   for (int r = 0; r < report->result_count; ++r) {
-    Result *result = &report->results[r];
+    StudyResult *result = &report->results[r];
     if (result->taker >= 0) continue;
     result->values[k] = document ? figure(document->root, result->words) : NAN;
     if (document) find_unit(document->root, result);
@@ -202,7 +178,7 @@ static int read_summary_figures(Report *report, int k, Error *error)
   return status;
 }
 
-static double read_history_figure(const StudyCase *one, Result *r, Error *error)
+static double read_history_figure(const StudyCase *one, StudyResult *r, Error *error)
 {
   char file[CURVE_NAME], label[128] = "";
   text_file_name(r->watch, file, sizeof file);
@@ -217,7 +193,7 @@ static double read_history_figure(const StudyCase *one, Result *r, Error *error)
   return value;
 }
 
-static int read_values(Report *report, Error *error)
+static int read_values(StudyReport *report, Error *error)
 {
   int status = BRECCIA_OK;
   for (int k = 0; k < report->study->count && !status; ++k) {
@@ -225,7 +201,7 @@ static int read_values(Report *report, Error *error)
     const bool there = (report->states[k] = study_state(one)) == BRECCIA_CASE_DONE;
     if (there) status = read_summary_figures(report, k, error);
     for (int r = 0; r < report->result_count && !status; ++r) {
-      Result *result = &report->results[r];
+      StudyResult *result = &report->results[r];
       if (!there)
         result->values[k] = NAN;
       else if (result->taker >= 0) {
@@ -245,7 +221,7 @@ static int read_values(Report *report, Error *error)
 
 /* ---- tables ---- */
 
-static int write_text(Report *report, const char *name, const Text *words, Error *error)
+static int write_text(StudyReport *report, const char *name, const Text *words, Error *error)
 {
   char *path = text_format("%s/%s", report->plan->folder, name);
   FILE *file = path ? fopen(path, "w") : NULL;
@@ -278,7 +254,7 @@ static const char *state_words(int state)
   return words[state];
 }
 
-static int write_csv(Report *report, Error *error)
+static int write_csv(StudyReport *report, Error *error)
 {
   const Study *study = report->study;
   Text text = {0};
@@ -289,8 +265,8 @@ static int write_csv(Report *report, Error *error)
   }
   text_add(&text, ",state");
   for (int r = 0; r < report->result_count; ++r) {
-    const Result *result = &report->results[r];
-    char heading[WORDS + 72];
+    const StudyResult *result = &report->results[r];
+    char heading[RESULT_WORDS + 72];
     snprintf(heading, sizeof heading, *result->unit ? "%s (%s)" : "%s", result->words, result->unit);
     text_add(&text, ",");
     add_cell(&text, heading);
@@ -316,7 +292,7 @@ static int write_csv(Report *report, Error *error)
 }
 
 /** The words of a cell: row -1 is the heading, columns are the varied keys, the state, and the results. */
-static void cell_words(const Report *report, int row, int column, char *words, size_t size)
+static void cell_words(const StudyReport *report, int row, int column, char *words, size_t size)
 {
   const Study *study = report->study;
   const int r = column - study->varied_count - 1;
@@ -334,7 +310,7 @@ static void cell_words(const Report *report, int row, int column, char *words, s
     snprintf(words, size, "-");
 }
 
-static int write_table(Report *report, Text *text, Error *error)
+static int write_table(StudyReport *report, Text *text, Error *error)
 {
   const int columns = report->study->varied_count + 1 + report->result_count;
   for (int row = -1; row < report->study->count; ++row)
@@ -351,124 +327,17 @@ static int write_table(Report *report, Text *text, Error *error)
   return write_text(report, "table.txt", text, error);
 }
 
-/* ---- pictures ---- */
-
-static int draw_curves(Report *report, Error *error)
-{
-  const char **folders = calloc((size_t)report->study->count + 1, sizeof *folders);
-  int done = 0, status = folders ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: study");
-  for (int k = 0; folders && k < report->study->count; ++k)
-    if (report->states[k] == BRECCIA_CASE_DONE) folders[done++] = report->study->cases[k].folder;
-  for (int c = 0; c < report->curve_count && done && !status; ++c) {
-    char name[160];
-    curve_name(report->curves[c], name, sizeof name);
-    char *path = text_format("%s/%s.png", report->plan->folder, name);
-    const CurveOptions o = {.title = "", .low = NAN, .high = NAN};
-    status = path ? curve_draw(folders, done, report->curves[c], &o, path, error) : BRECCIA_FAILURE;
-    if (!status) text_add(report->files, "  %s\n", path);
-    free(path);
-  }
-  free(folders);
-  return status;
-}
-
-/** The number of a value and what stands behind it. @return false if it is none */
-static bool number_of(const char *words, double *value, const char **unit)
-{
-  char *end;
-  *value = strtod(words, &end);
-  *unit = end + strspn(end, " ");
-  return end != words && isfinite(*value);
-}
-
-/** Whether a varied key takes numbers of one unit. */
-static bool is_axis(const Varied *varied, const char **unit)
-{
-  double ignored;
-  for (int k = 0; k < varied->count; ++k) {
-    const char *other;
-    if (!number_of(varied->values[k], &ignored, k ? &other : unit) || (k && strcmp(other, *unit) != 0)) return false;
-  }
-  return varied->count > 1;
-}
-
-static bool same_line(const Study *study, const StudyCase *a, const StudyCase *b, bool together)
-{
-  for (int v = 1; v < study->varied_count && !together; ++v)
-    if (a->which[v] != b->which[v]) return false;
-  return true;
-}
-
-/** A result over the first varied key, with a line for each combination of the others. */
-static int draw_result(Report *report, const Result *result, const char *unit, Error *error)
-{
-  const Study *study = report->study;
-  PlotLine *lines = calloc((size_t)study->count, sizeof *lines);
-  double *x = calloc((size_t)study->count * 2 + 1, sizeof *x), *y = x + study->count;
-  char **titles = calloc((size_t)study->count, sizeof *titles);
-  int count = 0, used = 0, status = BRECCIA_OK;
-  if (!lines || !x || !titles) status = error_add(error, BRECCIA_FAILURE, "out of memory: study");
-  for (int first = 0; first < study->count && !status; ++first) {
-    const StudyCase *one = &study->cases[first];
-    bool known = false;
-    for (int k = 0; k < first; ++k) known |= same_line(study, one, &study->cases[k], report->plan->together);
-    if (known) continue;
-    Text title = {0};
-    for (int v = 1; v < study->varied_count && !report->plan->together; ++v)
-      text_add(&title, "%s%s %s", v > 1 ? ", " : "", study_key(study, v), study->varied[v].values[one->which[v]]);
-    titles[count] = title.characters;
-    lines[count] = (PlotLine){titles[count] ? titles[count] : "", x + used, y + used, 0, false, count, 0};
-    for (int k = first; k < study->count; ++k) {
-      const char *ignored;
-      if (!same_line(study, one, &study->cases[k], report->plan->together)) continue;
-      number_of(study->varied[0].values[study->cases[k].which[0]], &x[used], &ignored);
-      y[used++] = result->values[k];
-      ++lines[count].count;
-    }
-    ++count;
-  }
-  char name[WORDS];
-  text_file_name(result->words, name, sizeof name);
-  char *path = text_format("%s/%s.png", report->plan->folder, name);
-  const PlotOptions o = {.title = "",
-                         .x = {study_key(study, 0), unit, NULL, false},
-                         .y = {result->words, result->unit, NULL, false},
-                         .low = NAN,
-                         .high = NAN};
-  if (!status) status = path ? plot_draw(lines, count, &o, path, error) : BRECCIA_FAILURE;
-  if (!status) text_add(report->files, "  %s\n", path);
-  free(path);
-  for (int k = 0; titles && k < count; ++k) free(titles[k]);
-  free(titles);
-  free(x);
-  free(lines);
-  return status;
-}
-
-static int draw_results(Report *report, Error *error)
-{
-  const char *unit;
-  int status = BRECCIA_OK;
-  if (!is_axis(&report->study->varied[0], &unit)) return BRECCIA_OK;
-  for (int r = 0; r < report->result_count && !status; ++r) {
-    int there = 0;
-    for (int k = 0; k < report->study->count; ++k) there += isfinite(report->results[r].values[k]);
-    if (there > 1) status = draw_result(report, &report->results[r], unit, error);
-  }
-  return status;
-}
-
 static int make_report(Study *study, Error *error)
 {
-  Report report = {.study = study, .plan = &study->plan, .files = &study->files};
+  StudyReport report = {.study = study, .plan = &study->plan, .files = &study->files};
   report.states = calloc((size_t)study->count + 1, sizeof *report.states);
   int status =
       report.states ? choose_results(&report, error) : error_add(error, BRECCIA_FAILURE, "out of memory: study");
   if (!status) status = read_values(&report, error);
   if (!status) status = write_csv(&report, error);
   if (!status) status = write_table(&report, &study->table, error);
-  if (!status) status = draw_curves(&report, error);
-  if (!status) status = draw_results(&report, error);
+  if (!status) status = study_draw_curves(&report, error);
+  if (!status) status = study_draw_results(&report, error);
   for (int r = 0; r < report.result_count; ++r) free(report.results[r].values);
   for (int c = 0; c < report.curve_count; ++c) free(report.curves[c]);
   free(report.states);

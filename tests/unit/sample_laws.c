@@ -1,5 +1,6 @@
 #include "sample_laws.h"
 
+#include "base/random.h"
 #include "base/tensor.h"
 
 void stress_invariants(const double s[6], double *i, double *length)
@@ -252,3 +253,17 @@ const breccia_law law_of_giver = {.size = sizeof(breccia_law),
                                   .moduli = glass_moduli,
                                   .history_values = giver_values,
                                   .update = giver_update};
+
+double sample_stiffness(const Material *m)
+{
+  return m->bulk + 4 * m->shear / 3;
+}
+
+void sample_wander(uint64_t *seed, double size, double step, double strain[6])
+{
+  const double volume = random_uniform(seed) < 0.5 ? 0 : 2 * (random_uniform(seed) - 0.5);
+  for (int k = 0; k < 6; ++k) {
+    strain[k] += step * (2 * (random_uniform(seed) - 0.5) + (k < 3 ? volume : 0));
+    if (fabs(strain[k]) > 3 * size) strain[k] *= 0.5;
+  }
+}

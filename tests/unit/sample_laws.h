@@ -29,6 +29,11 @@ extern const breccia_law law_of_glass;
 /** "giver": twice as stiff while it is unloaded as while it is loaded. */
 extern const breccia_law law_of_giver;
 
+/** Of pressure waves, K + 4 G / 3. */
+double sample_stiffness(const Material *m);
+/** The next of strains that walk at random and return: they keep within a few times `size`. */
+void sample_wander(uint64_t *seed, double size, double step, double strain[6]);
+
 /** First invariant, and length of the deviator. */
 void stress_invariants(const double stress[6], double *first, double *length);
 

@@ -123,3 +123,11 @@ void assert_families_are_all_pairs(const breccia_model *model)
   }
   assert_int_equal(f->bonds, bonds);
 }
+
+void step_surely(breccia_model *model, int64_t steps)
+{
+  breccia_error *error = breccia_error_create();
+  breccia_model_step(model, steps, error);
+  assert_string_equal(breccia_error_text(error), "");
+  breccia_error_destroy(&error);
+}

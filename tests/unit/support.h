@@ -20,6 +20,9 @@ breccia_model *model_of(const char *format, ...) __attribute__((format(printf, 1
 /** The words with which a deck is refused, to be freed; fails the test if it is accepted. */
 char *refusal_of(const char *deck);
 
+/** Of a deck: a soft elastic material m in m, kN, s, whose waves run at 77 m/s. */
+#define SOFT_SOLID "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+
 /** Fails unless |a - b| <= tolerance. */
 #define assert_near(a, b, tolerance) assert_near_at((a), (b), (tolerance), #a, __FILE__, __LINE__)
 void assert_near_at(double a, double b, double tolerance, const char *what, const char *file, int line);
@@ -28,6 +31,8 @@ void assert_near_at(double a, double b, double tolerance, const char *what, cons
 void deform_uniformly(breccia_model *model, const double f[9]);
 /** Internal forces of the displacements held. */
 void compute_forces(breccia_model *model);
+/** Steps a model; fails the test with the error's words if a step fails. */
+void step_surely(breccia_model *model, int64_t steps);
 /** Compares every family with all pairs of the body tried one by one. */
 void assert_families_are_all_pairs(const breccia_model *model);
 /** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */
