@@ -9,7 +9,8 @@
 double domain_history(const Domain *d, int64_t place, int k)
 {
   const Region *region = domain_region(d, place);
-  if (!region->points.components) return 0;
+  if (!region->points.components)
+    return region->type->history ? region->type->history(region->formulation, place, k) : 0;
   if (region->points.components == 6) return points_history(&region->points, place)[k];
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);

@@ -47,6 +47,20 @@ static bool same_length(double a, double b)
   return a == b || (isnan(a) && isnan(b));
 }
 
+/** Whether the formulations of a material's regions take its parameters. */
+static int check_parameters(const Domain *d, const DeckReader *reader, const MaterialSpec *spec, const Material *made)
+{
+  char reason[200];
+  for (int r = 0; r < d->region_count; ++r) {
+    const FormulationType *type = d->regions[r].type;
+    if (!type->check_material || !region_has_material(d, &d->regions[r], spec->head.name)) continue;
+    if (type->check_material(made, reason, sizeof reason))
+      return node_error(reader->document, spec->head.node, reader->error, "material '%s': %s: %s", spec->head.name,
+                        type->name, reason);
+  }
+  return BRECCIA_OK;
+}
+
 /** A material for the regions whose blocks are made of it. */
 static int create_material(Domain *d, const DeckReader *reader, const MaterialSpec *spec, const BondLength *of)
 {
@@ -71,8 +85,10 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
   if (!type) length = length_of((type = d->regions[0].type), of);
   if (!bad && (bad = material_create(new, reader, spec, length)))
     material_destroy(new);
-  else if (!bad)
+  else if (!bad) {
     ++d->material_count;
+    bad = check_parameters(d, reader, spec, new);
+  }
   if (!bad && new->remote) {
     bad = check_law(type, reader, spec, new->law);
     if (!bad && d->region_count > 1)

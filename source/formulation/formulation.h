@@ -131,6 +131,8 @@ typedef struct FormulationType {
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */
   bool (*takes)(const breccia_law *law);
+  /** Refuses parameters of a law that it takes, with the reason. NULL: takes all. */
+  int (*check_material)(const Material *material, char *reason, size_t size);
   /** Refuses bodies and spaces that the formulation does not take. NULL: takes all. */
   int (*check)(const void *keys, const Body *body, const DeckReader *reader);
   /** Makes a formulation for a body. Says where families are too poor for it. */
@@ -161,6 +163,8 @@ typedef struct FormulationType {
   void (*state)(void *formulation, const char *part, StateList *list);
   /** The step under way has come out well, or has failed: makes what laws remember of it the committed state, or forgets it. */
   void (*commit)(void *formulation, bool well);
+  /** History number k of the law at a place, as committed, where there are no points; NULL: 0. */
+  double (*history)(const void *formulation, int64_t place, int k);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.
    *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
   void (*stored_energy)(const void *formulation, int64_t place, double time, StoredEnergy *energy);

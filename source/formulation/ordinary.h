@@ -131,6 +131,7 @@ double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
 extern const Section ordinary_section;
 int ordinary_check(const void *keys, const Body *body, const DeckReader *reader);
 bool ordinary_takes(const breccia_law *law);
+int ordinary_check_material(const Material *material, char *reason, size_t size);
 void *ordinary_create(const FormulationParts *parts, Error *error);
 void ordinary_destroy(void *formulation);
 void ordinary_renew(void *formulation, int64_t slice);
@@ -170,6 +171,8 @@ void ordinary_flow(const Ordinary *o, const Sweep *sweep);
 void ordinary_flow_resist(const Ordinary *o, const Sweep *sweep);
 void ordinary_commit(void *formulation, bool well);
 void ordinary_state(void *formulation, const char *part, StateList *list);
+double ordinary_history(const void *formulation, int64_t place, int k);
+size_t ordinary_flow_bytes(const Ordinary *o);
 
 void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                          double state[3]);

@@ -4,6 +4,9 @@
 #include "base/team.h"
 #include <string.h>
 
+/** As laws name it. */
+static const char equivalent_name[] = "equivalent plastic strain";
+
 typedef struct Commit {
   const Ordinary *ordinary;
   int from, to; /* of both states */
@@ -52,7 +55,7 @@ void ordinary_state(void *formulation, const char *part, StateList *list)
       {"deviatoric elongation", "length", STATE_OF_SLOT, o->flow->last[0]},
       {"inelastic dilatation of the plane", "1", STATE_OF_PLACE, o->flow->across[0]},
       {"deviatoric strain across", "1", STATE_OF_PLACE, o->flow->across_last[0]},
-      {"equivalent plastic strain", "1", STATE_OF_PLACE, o->flow->equivalent[0]},
+      {equivalent_name, "1", STATE_OF_PLACE, o->flow->equivalent[0]},
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
     const bool of_slot = rows[k].entity == STATE_OF_SLOT;
@@ -66,4 +69,21 @@ void ordinary_state(void *formulation, const char *part, StateList *list)
                           .owner = o};
     if (row.values) state_add(list, &row, rows[k].name, part);
   }
+}
+
+double ordinary_history(const void *formulation, int64_t place, int k)
+{
+  const Ordinary *o = formulation;
+  const Material *m = ordinary_material(o, place);
+  char name[64] = "";
+  if (m->law->history_name) m->law->history_name(m->constants, k, name, sizeof name);
+  return o->flow && !strcmp(name, equivalent_name) ? o->flow->equivalent[0][place] : 0;
+}
+
+size_t ordinary_flow_bytes(const Ordinary *o)
+{
+  if (!o->flow) return 0;
+  const size_t of_slot = (o->flow->last[0] ? 4 : 2) * sizeof(double) + sizeof *o->flow->back,
+               of_place = 6 * sizeof(double) + sizeof *o->flow->returned;
+  return (size_t)o->family->slots * SLICE * of_slot + (size_t)o->particles->places * of_place;
 }

@@ -45,6 +45,12 @@ bool ordinary_takes(const breccia_law *law)
   return law->linear || law->deviator;
 }
 
+int ordinary_check_material(const Material *m, char *reason, size_t size)
+{
+  breccia_deviator deviator;
+  return m->law->deviator ? m->law->deviator(m->constants, &deviator, reason, size) : BRECCIA_OK;
+}
+
 /* ---- constants ---- */
 
 double ordinary_bulk(Space space, const Material *m)
@@ -256,5 +262,7 @@ size_t ordinary_bytes(const void *formulation)
 {
   const Ordinary *o = formulation;
   return (size_t)o->particles->places * sizeof(double) * (size_t)(7 + (o->shown ? STRETCH_SHOWN : 0)) +
-         2 * (size_t)o->particles->slices;
+         2 * (size_t)o->particles->slices +
+         (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
+         ordinary_flow_bytes(o);
 }

@@ -118,6 +118,16 @@ refuse 's/  tip: .*/  tip: {history of: end}/; s/material: clay/material: steel/
 refuse 's/  tip: .*/  tip: {history of: {face: z-}}/; s/^selections:/  foot: {material: steel, spacing: 0.1, shape: {box: {particles: [3, 5, 3], first particle: [1.05, 0.05, 0.05]}}}\nselections:/' \
   22:9 'history of: the particles are of several materials'
 
+# Ordinary peridynamics knows no strain of a law
+ordinary='s/horizon: 3.015 spacings/formulation: ordinary/'
+refuse "$ordinary" 4:17 "material 'clay': 'multi-yield-j2' needs a strain, which ordinary does not have; it takes elastic, j2, viscoelastic"
+refuse "$ordinary; s/  clay: .*/  clay: {model: j2, density: 1.5, Young modulus: 60 MPa, Poisson ratio: 0.3, yield stress: 50, hardening modulus: 1 MPa}/" \
+  4:3 "material 'clay': ordinary: families yield without hardening: leave out"
+refuse "$ordinary; s/  clay: .*/  clay: {model: elastic-1d, density: 1.5, Young modulus: 60 MPa}/" 4:17 "'elastic-1d' is a law of one strain; ordinary takes"
+refuse "$ordinary; s/ordinary}/ordinary, lattice weights: even}/" 15:56 "lattice weights: 'even' is not known; choose from isotropic, plain"
+refuse "$ordinary; s/  clay: .*/  clay: {model: elastic, density: 1.5, Young modulus: 60 MPa, Poisson ratio: 0.3}/; s/    spacing: 0.1\$/    spacing: 0.1\n    lattice: line\n    area: 1/; s/^peri.*/peridynamics: {formulation: ordinary, space: 1-D}/" \
+  17:29 'formulation: ordinary has no deviator along a line; bars take bond-based'
+
 # Words of other programs and of notes, and keys in the wrong section
 refuse 's/Young modulus/E/' 5:42 "unknown key 'E'; did you mean 'Young modulus'?"
 refuse 's/Poisson ratio/nu/' 5:66 "unknown key 'nu'; did you mean 'Poisson ratio'?"
