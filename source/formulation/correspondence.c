@@ -1,4 +1,4 @@
-#include "formulation/correspondence.h"
+#include "formulation/correspondence_stored.h"
 
 #include <stddef.h>
 
@@ -91,92 +91,6 @@ LANES_INLINE void resist_lattice(const Correspondence *c, int64_t slice, bool ga
   }
 }
 
-/* ---- bonds one by one, where neighbours stand anywhere ---- */
-
-/* Vectors run over components here, not over particles: neighbours that lie scattered cost less to read so, and what is read of one
- * lies together (measured: 14 ns a bond with numbers gathered one by one, 6 with records turned round in registers, 5 so). */
-enum { SHOWN = 8 }; /* x, y, z, 0, V u, V v, V w, V */
-
-static void show_places(const Correspondence *c, int64_t first, int64_t last)
-{
-  const Particles *p = c->particles;
-  for (int64_t place = first * SLICE; place < last * SLICE; ++place) {
-    double *shown = c->shown + SHOWN * place;
-    for (int k = 0; k < 3; ++k) {
-      shown[k] = p->position[k][place];
-      shown[4 + k] = p->volume[place] * p->displacement[k][place];
-    }
-    shown[7] = p->volume[place];
-  }
-}
-
-LANES_INLINE void deform_stored(const Correspondence *c, int64_t slice, bool scaled, Lanes sums[3][2][4])
-{
-  const Family *f = c->family;
-  const int64_t first = f->stored[slice], count = f->first[slice + 1] - first;
-  const uint8_t *intact = f->intact + first;
-  const double *shown = c->shown;
-  for (int lane = 0; lane < SLICE; ++lane) {
-    Lanes own[3], sum[4] = {{0}};
-    const int64_t begin = (int64_t)f->base[first] * SLICE + lane;
-    const int32_t *neighbour = f->neighbour + begin;
-    const double *scale = scaled ? f->scale + begin : NULL;
-    for (int k = 0; k < 3; ++k) own[k] = lanes_set(c->particles->position[k][slice * SLICE + lane]);
-    for (int64_t n = 0; n < count; ++n) {
-      if (!(intact[n] & 1u << lane)) continue;
-      const double *there = shown + (int64_t)neighbour[n * SLICE] * SHOWN;
-      Lanes u = lanes_load(there + LANES);
-      if (scaled) u *= lanes_set(scale[n * SLICE]);
-      for (int k = 0; k < 3; ++k) sum[k] += u * (lanes_set(there[k]) - own[k]);
-      sum[3] += u;
-    }
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 4; ++j) sums[k][lane / LANES][j][lane % LANES] += sum[j][k];
-  }
-}
-
-/** Q, x, C u and C of a place, times its volume where sums need that, for its neighbours to read. */
-LANES_INLINE void show_state(const Correspondence *c, int64_t place)
-{
-  double *row = c->row + place * state_length(c->control), volume = c->particles->volume[place];
-  for (int k = 0; k < 3; ++k) {
-    for (int r = 0; r < 3; ++r) row[4 * k + r] = volume * c->state[3 * r + k][place];
-    row[4 * k + 3] = c->particles->position[k][place];
-  }
-  for (int k = 0; k < 3 && hold_is_read(c->control); ++k) row[12 + k] = volume * c->held[k][place];
-  for (int k = 0; k < hold_components(c->control); ++k) row[15 + k] = volume * c->hold[k][place];
-}
-
-LANES_INLINE void resist_stored(const Correspondence *c, int64_t slice, bool scaled, Control control, Lanes force[2][3],
-                                Lanes hold[2][6])
-{
-  const Family *f = c->family;
-  const int64_t first = f->stored[slice], count = f->first[slice + 1] - first;
-  const uint8_t *intact = f->intact + first;
-  const double *rows = c->row;
-  const int numbers = hold_is_read(control) ? 3 + hold_components(control) : 0, length = state_length(control);
-  for (int lane = 0; lane < SLICE; ++lane) {
-    Lanes own[3], sum[3] = {{0}}, held[3] = {{0}}; /* three sums, so that additions need not wait */
-    const int64_t begin = (int64_t)f->base[first] * SLICE + lane;
-    const int32_t *neighbour = f->neighbour + begin;
-    const double *scale = scaled ? f->scale + begin : NULL;
-    for (int k = 0; k < 3; ++k) own[k] = lanes_set(c->particles->position[k][slice * SLICE + lane]);
-    for (int64_t n = 0; n < count; ++n) {
-      if (!(intact[n] & 1u << lane)) continue;
-      const double *there = rows + (int64_t)neighbour[n * SLICE] * length;
-      Lanes factor = scaled ? lanes_set(scale[n * SLICE]) : lanes_set(1);
-      for (int k = 0; k < 3; ++k) {
-        Lanes xi = lanes_set(there[4 * k + 3]) - own[k];
-        sum[k] += lanes_load(there + 4 * k) * (scaled ? xi * factor : xi);
-      }
-      for (int k = 0; k < numbers; k += LANES)
-        held[k / LANES] += scaled ? lanes_load(there + 12 + k) * factor : lanes_load(there + 12 + k);
-    }
-    for (int r = 0; r < 3; ++r) force[lane / LANES][r][lane % LANES] += sum[0][r] + sum[1][r] + sum[2][r] + held[0][r];
-    for (int k = 0; k < numbers - 3; ++k) hold[lane / LANES][k][lane % LANES] += held[(3 + k) / LANES][(3 + k) % LANES];
-  }
-}
-
 /* ---- bonds by whole rows ---- */
 
 BRECCIA_CLONES
@@ -185,7 +99,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
   const Correspondence *c = formulation;
   const int64_t first = sweep->first, last = sweep->last;
   const LatticeRows *rows = &c->family->rows;
-  if (c->shown) show_places(c, first, last);
+  if (c->shown) correspondence_show_places(c, first, last);
   for (int64_t slice = first; slice < last; ++slice)
     for (int kind = 0; kind < rows->kinds; ++kind) {
       const RowKind *row = &rows->kind[c->particles->block[slice] * ROW_KINDS + kind];
@@ -317,9 +231,9 @@ LANES_INLINE void deform_slice(const Correspondence *c, int64_t slice, const Swe
     deform_lattice(c, slice, false, sums);
   if (f->stored[slice] < f->first[slice + 1]) {
     if (f->scale)
-      deform_stored(c, slice, true, sums);
+      correspondence_deform_stored(c, slice, true, sums);
     else
-      deform_stored(c, slice, false, sums);
+      correspondence_deform_stored(c, slice, false, sums);
   }
   for (int half = 0; half < 2; ++half) {
     const int lane = LANES * half;
@@ -408,7 +322,8 @@ static int64_t respond(void *formulation, const Sweep *sweep)
       respond_lanes(c, sweep, place, true);
     else
       respond_lanes(c, sweep, place, false);
-  for (int64_t place = sweep->first * SLICE; c->row && place < sweep->last * SLICE; ++place) show_state(c, place);
+  for (int64_t place = sweep->first * SLICE; c->row && place < sweep->last * SLICE; ++place)
+    correspondence_show_state(c, place);
   return -1;
 }
 
@@ -424,9 +339,9 @@ LANES_INLINE void resist_slice(const Correspondence *c, int64_t slice, Control c
     resist_lattice(c, slice, false, control, force, hold);
   if (f->stored[slice] < f->first[slice + 1]) {
     if (f->scale)
-      resist_stored(c, slice, true, control, force, hold);
+      correspondence_resist_stored(c, slice, true, control, force, hold);
     else
-      resist_stored(c, slice, false, control, force, hold);
+      correspondence_resist_stored(c, slice, false, control, force, hold);
   }
   unsigned lanes = lattice_rows_lanes(&f->rows, slice);
   for (int half = 0; half < 2; ++half) {
@@ -483,12 +398,19 @@ const FormulationType formulation_correspondence = {
     .create = correspondence_create,
     .destroy = correspondence_destroy,
     .renew = correspondence_renew,
-    .phases = {{OF_DISPLACEMENTS, OF_SHOWN, 0, 0, 0, false, show_displacements},
-               {OF_DISPLACEMENTS, OF_STRAINS, OF_SHOWN, 0, 0, false, deform},
-               {OF_DISPLACEMENTS | OF_STRESSES, OF_STATES, 0, 0, 0, false, respond},
-               {OF_STATES, OF_SUMS, 0, 0, OF_STATES, false, sum_states},
-               {OF_DISPLACEMENTS | OF_STATES, OF_FORCES, OF_STATES | OF_SUMS, 0, 0, false, resist},
-               {OF_DISPLACEMENTS, OF_FORCES, OF_FORCES, 0, 0, true, correspondence_finish}},
+    .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
+               {.run = deform, .reads = OF_DISPLACEMENTS, .writes = OF_STRAINS, .of_neighbours = OF_SHOWN},
+               {.run = respond, .reads = OF_DISPLACEMENTS | OF_STRESSES, .writes = OF_STATES},
+               {.run = sum_states, .reads = OF_STATES, .writes = OF_SUMS, .along_rows = OF_STATES},
+               {.run = resist,
+                .reads = OF_DISPLACEMENTS | OF_STATES,
+                .writes = OF_FORCES,
+                .of_neighbours = OF_STATES | OF_SUMS},
+               {.run = correspondence_finish,
+                .reads = OF_DISPLACEMENTS,
+                .writes = OF_FORCES,
+                .of_neighbours = OF_FORCES,
+                .by_one = true}},
     .linearise = correspondence_linearise,
     .half_state = correspondence_half_state,
     .point_count = correspondence_point_count,

@@ -22,6 +22,7 @@
 typedef enum Control { CONTROL_NONE, CONTROL_UNIFORM, CONTROL_SCALAR, CONTROL_TENSOR } Control;
 
 enum { MOST_PULLS = 9 + 3 + 6 };
+enum { CORRESPONDENCE_SHOWN = 8 }; /* of a place, where bonds are stored: x, y, z, 0, V u, V v, V w, V */
 
 typedef struct Correspondence {
   const Particles *particles;
@@ -44,7 +45,7 @@ typedef struct Correspondence {
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
   /* What bonds of stored slots read of a neighbour, together (correspondence.c); NULL if there are none. */
-  double *shown;     /* [places][8] of its place and displacement */
+  double *shown;     /* [places][CORRESPONDENCE_SHOWN] */
   double *row;       /* [places][state_length] of its response */
   double *gradients; /* [slices][9][8] G of the state at which it was linearised; NULL before */
   int32_t *axial;    /* places whose bonds act as springs, ascending (some may have become free since) */

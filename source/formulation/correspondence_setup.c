@@ -242,7 +242,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   }
   if (c->family->stored_slots) {
     failed |= !(c->row = places_array(state_length(c->control) * places, "force states", error));
-    failed |= !(c->shown = places_array(8 * places, "force states", error));
+    failed |= !(c->shown = places_array(CORRESPONDENCE_SHOWN * places, "force states", error));
   }
   for (int k = 0; k < 3 && hold_is_read(c->control); ++k)
     failed |= !(c->held[k] = places_array(places, "zero-energy control", error));
