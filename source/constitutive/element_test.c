@@ -314,16 +314,16 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
         return error_add(error, BRECCIA_USER_ERROR,
                          "%s: its server cannot repeat a trial, so that no stress can be prescribed; give strains, or "
                          "take a server that iterates",
-                         material->law->name);
+                         material->law_name);
   int status = driver_create(&d, material, error);
   if (status) return status;
   status = create_curve(curve, test, d.components, error);
   const double none[6] = {0};
   if (!status && !driver_try(&d, none))
-    status = *server_problem(material)
-                 ? error_add(error, BRECCIA_FAILURE, "%s", server_problem(material))
-                 : error_add(error, BRECCIA_FAILURE, "%s: the unstrained point could not be integrated",
-                             material->law->name);
+    status =
+        *server_problem(material)
+            ? error_add(error, BRECCIA_FAILURE, "%s", server_problem(material))
+            : error_add(error, BRECCIA_FAILURE, "%s: the unstrained point could not be integrated", material->law_name);
   double zero[6] = {0};
   if (!status) keep(curve, test, &d, zero);
   for (int n = 0; n < test->count && !status; ++n) {

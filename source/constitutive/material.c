@@ -115,7 +115,8 @@ const Section material_section = {.name = "material",
 
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size)
 {
-  *material = (Material){.name = law->name, .law = law, .constants = calloc(1, law->constants_size + 1)};
+  *material =
+      (Material){.name = law->name, .law = law, .law_name = law->name, .constants = calloc(1, law->constants_size + 1)};
   if (!material->constants) {
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;
@@ -196,6 +197,7 @@ static int create_remote(Material *material, const DeckReader *reader, const Mat
   breccia_error_destroy(&error);
   if (status) return status;
   material->law = remote_law(material->remote);
+  material->law_name = material->law->name;
   if (!(material->constants = memory_zeroed(1, sizeof(Remote *), "material", reader->error))) return BRECCIA_FAILURE;
   memcpy(material->constants, &material->remote, sizeof(Remote *));
   material->law->moduli(material->constants, &material->bulk, &material->shear);

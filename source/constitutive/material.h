@@ -23,7 +23,8 @@ extern const Section material_section;
 typedef struct Material {
   const char *name;
   const breccia_law *law;
-  void *constants; /* owned */
+  const char *law_name; /* as decks call it, also where strains have limits */
+  void *constants;      /* owned */
   double density, bulk, shear;
   int history_values;
   Remote *remote; /* owned; NULL: the law is in this program */

@@ -215,10 +215,7 @@ void domain_break(Domain *d, const Moment *moment)
   {
     d->broken_before = d->broken_count;
     d->motion += moment->motion;
-    for (int r = 0; r < d->region_count; ++r) {
-      d->regions[r].points.time = moment->time;
-      d->regions[r].points.time_step = moment->time_step;
-    }
+    domain_tell_time(d, moment->time, moment->time_step);
   }
   if (d->forces.count) {
     TEAM_SINGLE forces_follow(&d->forces, moment->motion);

@@ -95,6 +95,14 @@ void domain_set_elastic_stage(Domain *d, bool elastic)
   for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;
 }
 
+void domain_tell_time(Domain *d, double time, double time_step)
+{
+  for (int r = 0; r < d->region_count; ++r) {
+    d->regions[r].points.time = time;
+    d->regions[r].points.time_step = time_step;
+  }
+}
+
 void domain_commit_points(Domain *d)
 {
   for (int r = 0; r < d->region_count; ++r) {

@@ -141,6 +141,9 @@ void domain_state(Domain *domain, StateList *list);
 /** Forces, strains and stresses of the state that a step began with, after all rows that it had tried have come back. */
 void domain_follow(Domain *domain);
 
+/** Tells laws with rates the time at the end of a step under way, and its length; 0 between two steps. By one thread. */
+void domain_tell_time(Domain *domain, double time, double time_step);
+
 /** Breaks the bonds that the criterion says, by all threads, and renews the families concerned. Displacements are those at the end of
  *  the step under way, strains and stresses those at its beginning. */
 void domain_break(Domain *domain, const Moment *moment);

@@ -99,6 +99,7 @@ typedef struct LoadMaking {
 struct LoadType {
   bool everywhere; /* on the whole body where the deck does not say on what */
   bool timeless;   /* it has no history */
+  bool lasting;    /* it acts from the first stage to the last */
   /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
   int (*create)(Load *load, const LoadMaking *making);
   void (*destroy)(Load *load);

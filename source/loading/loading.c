@@ -53,6 +53,22 @@ static int add_loads(const LoadMaking *making, const SectionList *specs, int64_t
   return status;
 }
 
+/** Loads that have put particles outside the body: these would ride along while nobody moves them. */
+static int check_lasting(const Loading *loading, const DeckReader *reader)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < loading->count; ++k) {
+    const Load *load = &loading->loads[k];
+    if (!load->type || !load->type->lasting || (!load->first && load->behind == INT64_MAX)) continue;
+    status =
+        node_error(reader->document, load->node, reader->error,
+                   "%s: its particles stand outside the body from the first stage to the last, so that it must act "
+                   "all the while; let it begin with the run, and leave it out of 'without'",
+                   load->node->key);
+  }
+  return status;
+}
+
 int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
                    const LoadStage *stages, int stage_count, const SectionList *selections)
 {
@@ -70,6 +86,7 @@ int loading_create(Loading *loading, const Body *body, const DeckReader *reader,
     bad = add_loads(&making, stages[s].loads, s);
     if (bad) status = bad;
   }
+  if (!status) status = check_lasting(loading, reader);
   if (!status) status = constraints_check(loading, &body->particles, reader);
   return status ? status : ties_check(loading, &body->particles, reader);
 }

@@ -35,6 +35,8 @@ struct breccia_model {
   double *schedule; /* ascending times of the stage at which results are written, besides every so many steps */
   double *stops;    /* those of them that steps of the program's own choice meet exactly */
   int64_t schedule_count;
+  int64_t next_due;      /* the first of the schedule that is not written yet */
+  int64_t last_due;      /* step of the last state that was due; -1: none */
   int64_t states_before; /* that were due in earlier stages */
   Peaks peaks;
   double run_seconds;
@@ -61,7 +63,7 @@ int model_advance(breccia_model *model, Error *error);
  *  @param[in] again  plan steps to end with them; not where a plan has been taken up from a file */
 int model_make_schedule(breccia_model *model, bool again, Error *error);
 
-/** Rows of the whole state: of the domain, the solver and the largest values so far. */
+/** Rows of the whole state: of the domain, the solver, the largest values so far and how far results are written. */
 void model_state(breccia_model *model, StateList *list);
 
 /** Holds the names of fields, components, histories and columns that the deck asks for against what there is. */

@@ -72,7 +72,7 @@ int breccia_model_array_at(breccia_model *model, int k, breccia_array *given)
 {
   StateList list = {0};
   breccia_array array = {0};
-  if (list_state(model, &list)) return 0;
+  if (k < 0 || list_state(model, &list)) return 0;
   for (size_t d = 0; d < sizeof described / sizeof *described && k >= 0; ++d) {
     array = (breccia_array){.name = described[d].name, .about = described[d].about, .writable = described[d].writable};
     if (collect(model, &list, array.name, &array)) --k;

@@ -134,7 +134,7 @@ const char *breccia_model_overview(breccia_model *model)
            (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
   describe_regions(d, text);
   for (int k = 0; k < d->material_count; ++k)
-    text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law->name);
+    text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law_name);
   if (d->failure.criterion)
     text_add(text, "; %s", d->failure.criterion->name);
   else

@@ -165,7 +165,7 @@ static void check_material(breccia_model *model, int k)
     warn(model, section_node(spec, "model"),
          "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "
          "holds cracks together; add 'failure: {critical stretch: ...}'",
-         m->name, m->law->name);
+         m->name, m->law_name);
 }
 
 /** Of most of the body. */
@@ -229,17 +229,20 @@ static Extent extent_of(const breccia_model *model)
 {
   const Domain *d = &model->domain;
   Extent e = {.smallest = INFINITY};
-  double low[3], high[3];
-  particles_bounds(d->particles, low, high);
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, mass = 0;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    const int32_t place = d->particles->place_of[n];
+    if (body_outside(&d->body, n)) continue;
+    mass += d->particles->density[place] * d->particles->volume[place];
+    for (int k = 0; k < 3; ++k) {
+      low[k] = fmin(low[k], d->particles->position[k][place]);
+      high[k] = fmax(high[k], d->particles->position[k][place]);
+    }
+  }
   for (int k = 0; k < d->body.dimensions; ++k) {
     e.size[k] = in_si(model, "length", high[k] - low[k] + d->body.coarsest->plane[k]);
     e.largest = fmax(e.largest, e.size[k]);
     e.smallest = fmin(e.smallest, e.size[k]);
-  }
-  double mass = 0;
-  for (int64_t n = 0; n < d->particles->count; ++n) {
-    const int32_t place = d->particles->place_of[n];
-    mass += d->particles->density[place] * d->particles->volume[place];
   }
   e.mass = in_si(model, "density", mass) * pow(in_si(model, "length", 1), 3);
   e.speed = wave_speed(model, main_material(model));

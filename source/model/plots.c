@@ -219,6 +219,7 @@ int breccia_plot_curve(const char *const *folders, int count, const breccia_plot
   breccia_plot plot;
   int status = take_plot(&plot, given, error);
   if (!status) status = check_ending(plot.path, error);
+  if (!status && count < 1) status = error_add(error, BRECCIA_USER_ERROR, "a curve needs a folder with histories");
   char *curve = NULL, *path = NULL, title[256] = "";
   if (!status) {
     curve = plot.curve ? text_format("%s", plot.curve) : curve_of_energies(folders[0], error);

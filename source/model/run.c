@@ -105,7 +105,21 @@ int run_write_file(Run *run, const char *name, const Text *words, Error *error)
   return bad ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
-/** The deck as it is run, beside its results. What is told of an earlier run would be told of another deck. */
+/** Takes away what an earlier run in this folder left to go on from, and what it told: both are of results that are written over now. */
+static int forget_earlier(const Run *run, Error *error)
+{
+  static const char *const names[] = {"checkpoint.h5", "summary.json"};
+  int status = BRECCIA_OK;
+  for (int k = 0; k < 2; ++k) {
+    char *path = text_format("%s/%s", run->wish->folder, names[k]);
+    if (!path || (unlink(path) && errno != ENOENT))
+      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be removed: %s", path ? path : names[k], strerror(errno));
+    free(path);
+  }
+  return status;
+}
+
+/** The deck as it is run, beside its results. */
 static int write_deck(Run *run, Error *error)
 {
   const breccia_model *model = run->model;
@@ -118,10 +132,7 @@ static int write_deck(Run *run, Error *error)
   }
   text_add(&words, "\n# Everything is worked out in it. Files that it names are beside the file above.\n%s",
            text_words(&model->deck));
-  char *summary = run->wish->restart ? NULL : text_format("%s/summary.json", run->wish->folder);
-  if (summary) unlink(summary);
   const int status = run_write_file(run, "deck.yaml", &words, error);
-  free(summary);
   text_free(&words);
   return status;
 }
@@ -148,18 +159,16 @@ static int open_files(Run *run, Error *error)
   int64_t resume = run->wish->restart ? model->solver.clock.step : -1;
   int status;
   if (run->wish->restart) {
-    const WrittenAt at = {model->schedule,
-                          model->schedule_count,
-                          model->spec->results->every,
-                          model->solver.clock.time_step / 2,
-                          model->solver.clock.step,
-                          model->solver.clock.ended && model->solver.clock.stages > 1};
-    while (model_has_passed(model, run->next_write, model->solver.clock.time)) ++run->next_write;
     status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
-                                &names, &at, error);
-  } else
-    status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
-                                &names, error);
+                                &names, model->last_due, error);
+  } else {
+    model->next_due = 0;
+    model->last_due = -1;
+    status = forget_earlier(run, error);
+    if (!status)
+      status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
+                                  &names, error);
+  }
   if (!status) status = write_deck(run, error);
   return status ? status : watches_open(model->watches, run->wish->folder, model->units, resume, error);
 }
@@ -175,7 +184,7 @@ static void show_progress(Run *run, bool always)
   run->last_progress = now;
   run->told_at = s->clock.step;
   run->paused = 0;
-  const Task left = model_task(run->model, s->clock.step, run->steps, run->model->states_before + run->next_write);
+  const Task left = model_task(run->model, s->clock.step, run->steps, run->model->states_before + run->model->next_due);
   run->wish->progress(run->wish->context, s->clock.step, run->steps, outlook_left(&run->model->outlook, &left));
 }
 
@@ -186,8 +195,9 @@ static int due(Run *run, Error *error)
   const ResultsSpec *r = model->spec->results;
   int status = watches_write(model->watches, s, false, error);
   bool write = r->every > 0 && s->clock.step % r->every == 0;
-  for (; model_has_passed(model, run->next_write, s->clock.time); ++run->next_write) write = true;
+  for (; model_has_passed(model, model->next_due, s->clock.time); ++model->next_due) write = true;
   write |= s->clock.ended && s->clock.stages > 1;
+  if (write) model->last_due = s->clock.step;
   if (!status && write) status = write_results(run, error);
   bool by_steps = r->checkpoint_steps > 0 && s->clock.step && s->clock.step % r->checkpoint_steps == 0;
   if (!status && (by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
@@ -203,12 +213,11 @@ static int64_t steps_wanted(const Run *run)
 }
 
 /** What was due at the end of the stage before has been written. */
-static void begin_stage(Run *run)
+static void begin_stage(breccia_model *model)
 {
-  run->next_write = 0;
-  while (run->next_write < run->model->schedule_count &&
-         run->model->schedule[run->next_write] <= run->model->solver.clock.stage_time)
-    ++run->next_write;
+  model->next_due = 0;
+  while (model->next_due < model->schedule_count && model->schedule[model->next_due] <= model->solver.clock.stage_time)
+    ++model->next_due;
 }
 
 static int loop(Run *run, Error *error)
@@ -220,7 +229,7 @@ static int loop(Run *run, Error *error)
     if (run->wish->interrupted && *run->wish->interrupted) return BRECCIA_INTERRUPTED;
     const int64_t stage = s->clock.stage, step = s->clock.step;
     status = model_advance(model, error);
-    if (s->clock.stage != stage) begin_stage(run);
+    if (s->clock.stage != stage) begin_stage(model);
     if (status) break;
     model->run_steps += s->clock.step - step;
     run->steps = steps_wanted(run);

@@ -9,8 +9,7 @@ typedef struct Run {
   breccia_model *model;
   const breccia_run *wish;
   ResultFile *results;
-  int64_t next_write; /* index in the schedule */
-  int64_t steps;      /* where to stop */
+  int64_t steps; /* where to stop */
   double started, last_checkpoint, last_progress;
   double paused;   /* seconds since the last progress that went into writing */
   int64_t told_at; /* step of the last progress */

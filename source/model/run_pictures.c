@@ -112,7 +112,8 @@ void run_draw_pictures(Run *run)
        *folder = text_format("%s/pictures", run->wish->folder);
   ResultView view;
   int status = path && folder ? run_make_folder(folder, error) : BRECCIA_FAILURE;
-  if (!status && !(status = result_view_open(&view, path, error))) {
+  const bool open = !status && !result_view_open(&view, path, error);
+  if (open && view.steps) {
     static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
     for (int k = 0; !model->spec->pictures.count && k < 3; ++k) {
       bool written = false;
@@ -128,8 +129,8 @@ void run_draw_pictures(Run *run)
       else
         draw_curve(run, spec, error);
     }
-    result_view_close(&view);
   }
+  if (open) result_view_close(&view);
   if (error_count(error))
     text_add(&model->warnings, "%swarning: %s", model->warnings.length ? "\n" : "", breccia_error_text(error));
   breccia_error_destroy(&error);

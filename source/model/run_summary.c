@@ -11,10 +11,11 @@ static bool has_begun(const Load *load, const Clock *clock)
 }
 
 /** The farthest from zero that a load has been; 0 before its stage. */
-static double load_peak(const Load *load, const Clock *clock)
+static double load_peak(const Load *load, const Solver *s)
 {
-  if (!has_begun(load, clock)) return 0;
-  return history_peak(&load->history, clock->time - load->begin) * load_magnitude(load->spec);
+  if (!has_begun(load, &s->clock)) return 0;
+  const double end = load->behind <= s->clock.stage ? s->records[load->behind - 1].end : s->clock.time;
+  return history_peak(&load->history, end - load->begin) * load_magnitude(load->spec);
 }
 
 static double nanoseconds_per_bond(const breccia_model *model)
@@ -157,7 +158,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     text_add(&t, "%s{\"name\": ", k ? ", " : "");
     text_add_json(&t, l->name ? l->name : "");
     text_add(&t, ", \"line\": %d, \"kind\": \"%s\", ", l->head.node->line, kind);
-    add_number(&t, "peak", load_peak(&model->loading.loads[k], &s->clock));
+    add_number(&t, "peak", load_peak(&model->loading.loads[k], s));
     text_add(&t, ", \"unit\": ");
     text_add_json(&t, unit);
     text_add(&t, "}");
@@ -212,7 +213,7 @@ static void tell_load(const breccia_model *model, const Load *load, Text *t)
   else if (load_magnitude(load->spec) != 0) { /* else a support, which has no size */
     char unit[64];
     units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    text_add(t, ", peak %.6g %s", load_peak(load, &model->solver.clock), unit);
+    text_add(t, ", peak %.6g %s", load_peak(load, &model->solver), unit);
   }
   text_add(t, "\n");
 }

@@ -428,31 +428,20 @@ int result_file_show(ResultFile *file, Error *error)
   return file->hidden ? show(file, error) : BRECCIA_OK;
 }
 
-/** A state in the middle of a run was due; at its end one may stand only because the run ended there. */
-static bool was_due(const WrittenAt *due, int64_t step, double time)
-{
-  if (step != due->last) return step < due->last;
-  if (due->stage_end) return true;
-  if (due->every > 0 && step % due->every == 0) return true;
-  for (int64_t k = 0; k < due->count; ++k)
-    if (fabs(due->times[k] - time) <= due->tolerance) return true;
-  return false;
-}
-
 int result_file_resume(ResultFile **out, const char *folder, const Domain *d, const Units *units, const char *title,
-                       const ResultNames *names, const WrittenAt *due, Error *error)
+                       const ResultNames *names, int64_t last, Error *error)
 {
   ResultFile *file = *out = prepare(folder, d, units, title, names, error);
   if (!file) return BRECCIA_FAILURE;
   ResultView view;
   int status = result_view_open(&view, file->path, error);
   if (status) return status;
-  for (int k = 0; k < view.steps && was_due(due, view.step_numbers[k], view.times[k]) && !grow_times(file); ++k) {
+  for (int k = 0; k < view.steps && view.step_numbers[k] <= last && !grow_times(file); ++k) {
     file->times[file->writes] = view.times[k];
     file->steps[file->writes++] = view.step_numbers[k];
   }
-  int64_t last = file->writes ? file->steps[file->writes - 1] : -1;
-  while (file->broken_written < d->broken_count && d->broken[file->broken_written].step <= last) ++file->broken_written;
+  const int64_t kept = file->writes ? file->steps[file->writes - 1] : -1;
+  while (file->broken_written < d->broken_count && d->broken[file->broken_written].step <= kept) ++file->broken_written;
   bool same = view.particles == file->particles;
   result_view_close(&view);
   if (!same)

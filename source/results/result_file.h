@@ -23,19 +23,10 @@ typedef struct ResultNames {
 /** Begins a result file in `folder` (results.vtkhdf and results.xdmf), replacing an older one. */
 int result_file_create(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
                        const char *title, const ResultNames *names, Error *error);
-/** Which states stand in a file because they were due, and not because a run ended there. */
-typedef struct WrittenAt {
-  const double *times; /* ascending */
-  int64_t count;
-  int64_t every;    /* one in so many steps; or none */
-  double tolerance; /* of times */
-  int64_t last;     /* step up to which they are kept */
-  bool stage_end;   /* a stage of several ended with it */
-} WrittenAt;
-
-/** Takes up the file of a run that stopped, keeping only the states that were due. */
+/** Takes up the file of a run that stopped, keeping the states up to a step: the last that was due. What stands behind was written because the
+ *  run ended there, or after its checkpoint. */
 int result_file_resume(ResultFile **file, const char *folder, const Domain *domain, const Units *units,
-                       const char *title, const ResultNames *names, const WrittenAt *due, Error *error);
+                       const char *title, const ResultNames *names, int64_t last, Error *error);
 /** Bytes that one state takes in a file with these fields. */
 double result_file_state_bytes(const Domain *domain, const ResultNames *names);
 /** Adds the present state. It may stand only in the copy at first; result_file_show shows it. */

@@ -117,7 +117,7 @@ struct Watch {
   const WatchSpec *spec;
   const Kind *kind;
   Kind own; /* of histories, whose columns the material names, and of loads */
-  char columns[512];
+  char columns[1024];
   int history[MOST_COLUMNS]; /* which numbers they are */
   Selection selection;
   int32_t ends[2];
@@ -292,7 +292,7 @@ static int name_histories(Watch *w, const Domain *domain, const DeckReader *read
   w->history[count] = -1;
   if (!count)
     return node_error(reader->document, section_node(w->spec, "history of"), reader->error,
-                      "history of: %s has no named history", m->law->name);
+                      "history of: %s has no named history", m->law_name);
   w->own = (Kind){w->columns, history_row};
   w->kind = &w->own;
   return BRECCIA_OK;
@@ -329,12 +329,19 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
     w->kind = &energy_kind;
     return BRECCIA_OK;
   }
-  for (int l = 0; l < loading->count; ++l)
-    if (loading->loads[l].spec->name && !strcmp(loading->loads[l].spec->name, spec->load))
-      w->load = loading->loads[l].spec;
+  const char *dimension = NULL, *other;
+  for (int l = 0; l < loading->count; ++l) {
+    if (!loading->loads[l].spec->name || strcmp(loading->loads[l].spec->name, spec->load) != 0) continue;
+    w->load = loading->loads[l].spec;
+    load_kind(w->load, &other);
+    if (dimension && strcmp(dimension, other) != 0)
+      return node_error(reader->document, section_node(spec, "load"), reader->error,
+                        "load: the loads of the name '%s' are of several kinds, whose values have not one unit; give "
+                        "each a name of its own, and end the earlier one by 'without'",
+                        spec->load);
+    dimension = other;
+  }
   if (w->load) { /* the value of a load, in the unit of what it prescribes */
-    const char *dimension;
-    load_kind(w->load, &dimension);
     snprintf(w->columns, sizeof w->columns, "factor:1,value:%s", dimension);
     w->own = (Kind){w->columns, load_row};
     w->kind = &w->own;

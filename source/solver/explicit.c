@@ -279,6 +279,7 @@ static int begin(Solver *run, Error *error)
   (void)error;
   Explicit *s = run->own;
   Domain *d = s->domain;
+  domain_tell_time(d, s->clock->time, 0); /* laws with rates answered to the last step of the stage before already */
   domain_evaluate(d);
   loading_apply(s->loading, d->particles, s->clock->time);
   const Particles *p = d->particles;

@@ -84,8 +84,10 @@ void explicit_foresee_motions(Explicit *s)
     const Constraint *constraint = &s->loading->constraints[n];
     if (!load_acts(s->loading, constraint->load)) continue;
     const double before = constraint_displacement(constraint, end - dt);
+    const bool first =
+        s->clock->time <= constraint->load->begin; /* particles stand where they were, whatever is told */
     s->motions[n] = (struct Motion){.target = constraint_displacement(constraint, s->clock->time + dt),
-                                    .moved = constraint_displacement(constraint, end) - before,
+                                    .moved = constraint_displacement(constraint, end) - (first ? 0 : before),
                                     .rate = (constraint_displacement(constraint, end + dt) - before) / (2 * dt)};
   }
 }

@@ -17,7 +17,7 @@ static const char *describe_failed_law(const Domain *d, int64_t place, char *wor
 {
   const Material *m = &d->materials[d->material[place / SLICE]];
   if (domain_region(d, place)->points.components != 6) {
-    snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law->name,
+    snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law_name,
              m->name);
     return words;
   }
@@ -25,7 +25,7 @@ static const char *describe_failed_law(const Domain *d, int64_t place, char *wor
   for (int k = 0; k < 6; ++k) e[k] = d->strain[k][place];
   snprintf(words, size,
            "the law %s of material '%s' could not be integrated at the strain xx %g, yy %g, zz %g, xy %g, yz %g, zx %g",
-           m->law->name, m->name, e[0], e[1], e[2], e[3], e[4], e[5]);
+           m->law_name, m->name, e[0], e[1], e[2], e[3], e[4], e[5]);
   return words;
 }
 

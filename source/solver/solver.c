@@ -131,9 +131,10 @@ static int check_laws(const Solver *s, Error *error)
   return BRECCIA_OK;
 }
 
-int solver_enter(Solver *s, int64_t stage, Error *error)
+/** Makes the loads, laws and solver of a stage those in use. What the solver of the stage before keeps stays. */
+static int take_stage(Solver *s, int64_t stage, Error *error)
 {
-  if (s->own) s->type->destroy(s);
+  s->own = NULL;
   s->clock.stage = stage;
   s->stage = stage_of(s, stage);
   s->type = types[type_of(s->stage)];
@@ -143,6 +144,12 @@ int solver_enter(Solver *s, int64_t stage, Error *error)
   domain_set_elastic_stage(s->domain, !strcmp(s->stage->laws, "elastic"));
   const int status = loading_enter(s->loading, s->domain->particles, stage, error);
   return status ? status : s->type->create(s, error);
+}
+
+int solver_enter(Solver *s, int64_t stage, Error *error)
+{
+  if (s->own) s->type->destroy(s);
+  return take_stage(s, stage, error);
 }
 
 int solver_create(Solver *s, Text *warning, Error *error)
@@ -176,18 +183,31 @@ static void zero_displacements(Particles *p)
   for (int k = 0; k < 3; ++k) memcpy(p->zero[k], p->displacement[k], sizeof(double) * (size_t)p->places);
 }
 
+/** A stage that cannot be planned leaves the end of the one before as it was, so that a checkpoint of that can be taken up. */
+static void leave_stage(Solver *s, const Solver *before)
+{
+  if (s->own) s->type->destroy(s);
+  *s = *before;
+  domain_set_elastic_stage(s->domain, !strcmp(s->stage->laws, "elastic"));
+  loading_enter(s->loading, s->domain->particles, s->clock.stage, NULL);
+}
+
 int solver_next_stage(Solver *s, Text *warning, Error *error)
 {
+  Solver before = *s;
   Clock *clock = &s->clock;
-  int status = solver_enter(s, clock->stage + 1, error);
-  if (status) return status;
+  int status = take_stage(s, clock->stage + 1, error);
   clock->stage_step = clock->step;
   clock->stage_time = clock->time;
   clock->ended = 0;
+  if (!status) status = s->type->plan(s, warning, error);
+  if (status) {
+    leave_stage(s, &before);
+    return status;
+  }
+  if (before.own) before.type->destroy(&before);
   if (!strcmp(s->stage->displacements, "zero")) zero_displacements(s->domain->particles);
   loading_begin(s->loading, s->domain->particles, clock->time);
-  status = s->type->plan(s, warning, error);
-  if (status) return status;
   foresee(s);
   return solver_begin(s, error);
 }

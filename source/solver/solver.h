@@ -93,7 +93,8 @@ void solver_describe_stage(const Solver *solver, int64_t stage, const char *time
 /** Makes ready for the state of a stage, which is to be taken up from a file. */
 int solver_enter(Solver *solver, int64_t stage, Error *error);
 
-/** Begins with the next stage, when one has ended: its loads, its laws, its displacements from zero if so wished. */
+/** Begins with the next stage, when one has ended: its loads, its laws, its displacements from zero if so wished. If its steps cannot be planned,
+ *  everything is as it was at the end of the stage before. */
 int solver_next_stage(Solver *solver, Text *warning, Error *error);
 
 /** Whether the last stage has ended. */

@@ -105,6 +105,27 @@ grep -qx "load 'roll': roller" out || fail "a support has a size: $(grep roll ou
 "$breccia" run blow.yaml > out || fail "run of both stages"
 contains "load of this stage" "$(cat out)" "load 'blow': initial velocity, peak 5 m/s"
 
+# a law is called as the deck calls it, also where its strains have limits
+cat > limited.yaml <<'J'
+materials: {m: {model: elastic-1d, density: 2400, Young modulus: 30 GPa, largest strain: 1e-3}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}
+peridynamics: {formulation: bond-based}
+solve: {explicit: {steps: 4}}
+J
+contains "name of a law with limits" "$("$breccia" check limited.yaml)" "m (elastic-1d)"
+
+# what a load was before it ended is told of one that has ended; layers that supports put outside are no part of the body
+cat > ended.yaml <<'J'
+materials: {m: {model: j2, yield stress: 300 MPa, density: 2000, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [10, 4, 4]}}}}
+peridynamics: {formulation: ordinary}
+loads: [{on: {face: x-}, support: {held: all}}, {name: push, on: {face: x+}, force: [1 kN, 0, 0], history: {ramp to: 1 ms}}]
+solve: [{explicit: {end time: 0.5 ms}}, {explicit: {end time: 1 ms}, without: [push]}]
+J
+"$breccia" run ended.yaml > out || fail "run without a load: $(cat out)"
+contains "load that has ended" "$(cat out)" "load 'push': force, peak 500 N"
+contains "size of a body with a support" "$(cat out)" "body: 1 m x 400 mm x 400 mm, 320 kg"
+
 # a burst writes the last good state and ends with status 1
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
 "$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2

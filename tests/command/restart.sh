@@ -58,6 +58,29 @@ equal "restart beyond the steps foreseen" "$(json shorter/summary.json steps)" "
 # states that were written while steps were longer stay
 "$build/tests/compare_results" longer/results.vtkhdf shorter/results.vtkhdf || fail "shorter: results differ"
 
+# a time of the results half way between two steps belongs to the second of them, whatever roundings say
+cat > between.yaml <<'Z'
+materials: {m: {model: elastic, Young modulus: 1 kPa, Poisson ratio: 0.2, density: 2000}}
+body: {b: {material: m, spacing: 1, shape: {box: {particles: [6, 4, 4]}}}}
+loads: [{on: {face: x+}, force: [10, 0, 0]}]
+solve: {explicit: {time step: 0.1, steps: 5}}
+results: {number: 2}
+Z
+"$breccia" run between.yaml --output straight > out 2>&1 || fail "between: $(cat out)"
+for step in 2 3; do
+  "$breccia" run between.yaml --output stopped --steps $step > out 2>&1 || fail "between: $(cat out)"
+  "$breccia" run between.yaml --output stopped --restart > out 2>&1 || fail "between: $(cat out)"
+  "$build/tests/compare_results" straight/results.vtkhdf stopped/results.vtkhdf || fail "stopped at $step: results differ"
+  "$build/tests/compare_results" stopped/results.vtkhdf straight/results.vtkhdf || fail "stopped at $step: more results"
+  checks=$((checks + 1))
+done
+
+# a run that begins again removes the checkpoint of the one before
+mkdir straight/deck.yaml.part
+"$breccia" run between.yaml --output straight > out 2>&1 && fail "deck.yaml could be written"
+[ -e straight/checkpoint.h5 ] && fail "the checkpoint of the run before is left beside new results"
+rmdir straight/deck.yaml.part
+
 # bonds that remember, particles that stand anywhere, and contact
 {
   echo x,y,z,volume

@@ -224,6 +224,7 @@ static void test_arrays_are_all_named_and_what_is_written_to_them_counts(void **
   assert_int_equal(breccia_model_load_string(deck, "bar", NULL, &model, error), BRECCIA_OK);
   breccia_array array = {.size = sizeof array};
   int count = 0, writable = 0;
+  assert_int_equal(breccia_model_array_at(model, -1, &array), 0);
   for (; breccia_model_array_at(model, count, &array); ++count) {
     writable += array.writable;
     assert_true(array.components == 1 || array.components == 3 || array.components == 6);

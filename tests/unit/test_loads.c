@@ -437,6 +437,38 @@ static void a_face_goes_where_its_support_goes(void **state)
     if (!strstr(words, wrong[k][1])) fail_msg("expected '%s', found '%s'", wrong[k][1], words);
     free(words);
   }
+  /* Its layers are there from the first stage to the last, and would be part of the body where nobody moves them. */
+  const char *const staged[] = {
+      "solve: [{explicit: {steps: 1}}, {explicit: {steps: 1}, loads: [{on: {face: x-}, support: {held: all}}]}]\n",
+      "loads: [{name: wall, on: {face: x-}, support: {held: all}}]\n"
+      "solve: [{explicit: {steps: 1}}, {explicit: {steps: 1}, without: [wall]}]\n"};
+  for (size_t k = 0; k < sizeof staged / sizeof *staged; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck, STRIP("0") "%s", staged[k]);
+    char *words = refusal_of(deck);
+    if (!strstr(words, "it must act all the while")) fail_msg("found '%s'", words);
+    free(words);
+  }
+}
+
+/* A face that stands a millimetre aside from the first step on: what that takes is work of its load, alike whether the body is damped or not. */
+static void a_face_that_jumps_pays_for_it(void **state)
+{
+  (void)state;
+  const char *const solves[] = {"", ", damping: 30", ", local damping: 0.5"};
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m =
+        model_of(CUBE "loads: [{on: {face: x-}, displacement: [1e-5, 0, 0]}, {on: {face: x+}, roller: [1, 0, "
+                      "0]}]\nsolve: {explicit: {steps: 40, safety: 0.3%s}}\n",
+                 solves[k]);
+    breccia_model_step(m, 1, NULL);
+    const Energy first = solver_energy(&m->solver);
+    assert_true(first.stored > 0);
+    assert_near(first.external, first.stored + first.kinetic + first.damping - first.between, 1e-3 * first.external);
+    run_all(m);
+    assert_balanced(m, 2e-3);
+    breccia_model_destroy(&m);
+  }
 }
 
 /* A block that is moved whole presses another by contact, without friction: what bonds of the platen carry is what crosses the block. */
@@ -544,6 +576,7 @@ int main(void)
       cmocka_unit_test(half_a_body_on_a_support_across_is_half_a_whole),
       cmocka_unit_test(stresses_are_right_up_to_a_support),
       cmocka_unit_test(a_face_goes_where_its_support_goes),
+      cmocka_unit_test(a_face_that_jumps_pays_for_it),
       cmocka_unit_test(a_rigid_platen_presses_by_contact),
       cmocka_unit_test(a_prescribed_acceleration_does_the_work_that_it_must),
       cmocka_unit_test(what_does_not_fit_is_said),

@@ -82,8 +82,7 @@ static void histories_and_motions_count_from_the_beginning_of_their_stage(void *
           "    explicit: {end time: 0.006, damping: 300}\n"
           "  - loads: [{name: jack, on: {face: x+, layers: 3}, velocity: [0.2, 0]}]\n"
           "    explicit: {end time: 0.005, damping: 300}\n"
-          "  - {without: [jack], explicit: {end time: 0.1, damping: 300}}\n"
-          "watch: {jack: {load: jack}}\n";
+          "  - {without: [jack], explicit: {end time: 0.1, damping: 300}}\n";
   breccia_model *m = model_of("%s", deck);
   const double ends[] = {0.01, 0.016, 0.021}, moved[] = {1e-3, 0.8e-3, 1.8e-3};
   for (int k = 0; k < 3; ++k) {
@@ -221,6 +220,7 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
       for (int k = 0; k < 3; ++k)
         assert_memory_equal(&second->solver.records[k], &whole->solver.records[k], sizeof(StageRecord));
       second->peaks = whole->peaks = (Peaks){0}; /* of the states written: none in a run by steps */
+      second->next_due = second->last_due = 0;
       const StateCopy found = state_of(second), expected = state_of(whole);
       assert_same_state(&expected, &found);
       StateCopy copies[] = {found, expected};
@@ -262,6 +262,68 @@ static void one_stage_in_a_list_is_the_same_as_no_list(void **state)
   breccia_model_destroy(&halves);
 }
 
+/* A stage begins between two steps: no time passes, and nothing relaxes in it. */
+static void laws_with_rates_do_not_see_where_a_stage_begins(void **state)
+{
+  (void)state;
+  const char *const formulations[] = {"correspondence", "ordinary"};
+  for (int f = 0; f < 2; ++f) {
+    const char *deck =
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: viscoelastic, density: 2, Young modulus: 1e6, Poisson ratio: 0.2, relaxing share: 0.5, "
+        "relaxation time: 1e-3}}\n"
+        "body: {bar: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+        "peridynamics: {formulation: %s}\nloads: [{on: {face: x+}, force: [10, 0, 0]}]\nsolve: [%s]\n";
+    breccia_model *one = model_of(deck, formulations[f], "{explicit: {time step: 5e-5, steps: 60}}"),
+                  *two = model_of(deck, formulations[f],
+                                  "{explicit: {time step: 5e-5, steps: 25}}, {explicit: {time step: 5e-5, steps: 35}}");
+    run_all(one);
+    run_all(two);
+    const Particles *p = one->domain.particles, *q = two->domain.particles;
+    assert_memory_equal(p->displacement[0], q->displacement[0], sizeof(double) * (size_t)p->places);
+    breccia_model_destroy(&one);
+    breccia_model_destroy(&two);
+  }
+}
+
+/* A spring of the second stage leaves no room for its time step: the run stops, and its checkpoint is the end of the first one. */
+static void a_stage_that_cannot_begin_leaves_the_one_before(void **state)
+{
+  (void)state;
+  const char *deck = BAR "loads: [{on: {face: x-}, displacement: [0, 0]}, {on: {face: x+}, force: [1, 0]}]\nsolve:\n"
+                         "  - {explicit: {time step: 2e-5, steps: 40}}\n"
+                         "  - {explicit: {time step: 2e-5, steps: 40}, laws: elastic, displacements: zero, loads: "
+                         "[{on: {face: x+}, spring: "
+                         "{stiffness: 1e9}}, {initial velocity: {translation: [1, 0]}}]}\n";
+  char folder[] = "/tmp/breccia-XXXXXX", command[64];
+  assert_non_null(mkdtemp(folder));
+  breccia_run run = {.size = sizeof(breccia_run), .folder = folder};
+  StateCopy ends[3];
+  for (int k = 0; k < 3; ++k) { /* stepped to the end of the first stage; run on from there; taken up */
+    breccia_model *m = model_of("%s", deck);
+    Error *error = breccia_error_create();
+    run.restart = k == 2;
+    if (k == 0) {
+      assert_int_equal(breccia_model_step(m, 40, NULL), 0);
+      m->last_due = 40; /* by a run, as the end of a stage is */
+      m->next_due = m->schedule_count;
+    } else {
+      assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_USER_ERROR);
+      assert_non_null(strstr(breccia_error_text(error), "times the stable step"));
+    }
+    assert_int_equal(m->solver.clock.stage, 0);
+    assert_int_equal(m->solver.clock.step, 40);
+    m->peaks = (Peaks){0};
+    ends[k] = state_of(m);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+  for (int k = 1; k < 3; ++k) assert_same_state(&ends[0], &ends[k]);
+  for (int k = 0; k < 3; ++k) state_copy_destroy(&ends[k]);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 static void what_does_not_fit_is_said(void **state)
 {
   (void)state;
@@ -275,6 +337,9 @@ static void what_does_not_fit_is_said(void **state)
       {"solve: [{explicit: {steps: 1}}, {name: late, explicit: {steps: 1, time step: 1}}]\n", "times the stable step"},
       {"solve: [{laws: plastic, explicit: {steps: 1}}]\n", "elastic"},
       {"solve: [{name: nothing}]\n", "none of 'explicit' is given"},
+      {"watch: {w: {load: a}}\nsolve: [{loads: [{name: a, gravity: [1, 0]}], explicit: {steps: 1}}, {loads: [{name: a, "
+       "on: {face: x+}, force: [1, 0]}], explicit: {steps: 1}}]\n",
+       "the loads of the name 'a' are of several kinds"},
   };
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
     char deck[1024];
@@ -295,6 +360,8 @@ int main(void)
       cmocka_unit_test(in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break),
       cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),
+      cmocka_unit_test(laws_with_rates_do_not_see_where_a_stage_begins),
+      cmocka_unit_test(a_stage_that_cannot_begin_leaves_the_one_before),
       cmocka_unit_test(what_does_not_fit_is_said),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

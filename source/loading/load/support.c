@@ -182,4 +182,4 @@ static double magnitude(const LoadValue *value)
 }
 
 const LoadType support_load = {
-    .create = create, .destroy = destroy, .vector = vector, .kind = kind, .magnitude = magnitude};
+    .lasting = true, .create = create, .destroy = destroy, .vector = vector, .kind = kind, .magnitude = magnitude};
