@@ -75,25 +75,41 @@ static int add_patterns(Family *family, const Lattice *lattice, const FamilySpec
   return BRECCIA_OK;
 }
 
-/** One lattice slot: base place and mask of existing neighbours. @return the mask */
-static uint8_t lattice_slot(const Body *body, const Lattice *lattice, int64_t row, int64_t chunk, const int offset[3],
-                            int32_t *base)
+/** The row of a lattice in which neighbours of a slice stand. */
+typedef struct NeighbourRow {
+  int pattern;           /* the first that leads there; -1: none yet */
+  const int32_t *slices; /* [chunks], or NULL where the lattice has no such row */
+  int64_t begin;         /* cell in it from which offsets along the row count */
+} NeighbourRow;
+
+/** @param[in] cell  of the first place of the slice */
+static NeighbourRow neighbour_row(const Lattice *lattice, const int64_t cell[3], const Pattern *pattern)
 {
-  int64_t cell[3], there[3];
-  lattice_cell(lattice, row, chunk, 0, cell);
-  if (!lattice_neighbour(lattice, cell, offset, there)) return 0;
-  int64_t start = there[lattice->axis];
-  int64_t near = start >= 0 ? start / SLICE : (start - SLICE + 1) / SLICE, shift = start - near * SLICE;
-  const int32_t *slices = lattice->slice + lattice_row(lattice, there) * lattice->chunks;
-  int32_t a = near >= 0 && near < lattice->chunks ? slices[near] : -1;
-  int32_t b = shift && near + 1 >= 0 && near + 1 < lattice->chunks ? slices[near + 1] : -1;
+  NeighbourRow row = {.pattern = pattern->row};
+  int offset[3] = {pattern->offset[0], pattern->offset[1], pattern->offset[2]};
+  int64_t there[3];
+  offset[lattice->axis] = 0;
+  if (!lattice_neighbour(lattice, cell, offset, there)) return row;
+  row.slices = lattice->slice + lattice_row(lattice, there) * lattice->chunks;
+  row.begin = there[lattice->axis];
+  return row;
+}
+
+/** One lattice slot: base place and mask of existing neighbours.
+ *  @param[in] start  cell of the first one in its row
+ *  @return the mask */
+static uint8_t lattice_slot(const Particles *p, const Lattice *lattice, int64_t slice, const int32_t *slices,
+                            int64_t start, int32_t *base)
+{
+  const int64_t near = start >= 0 ? start / SLICE : (start - SLICE + 1) / SLICE, shift = start - near * SLICE;
+  const int32_t a = near >= 0 && near < lattice->chunks ? slices[near] : -1;
+  const int32_t b = shift && near + 1 >= 0 && near + 1 < lattice->chunks ? slices[near + 1] : -1;
   if (a < 0 && b < 0) return 0;
   *base = (int32_t)(a >= 0 ? a * SLICE + shift : b * SLICE + shift - SLICE);
-  const Particles *p = &body->particles;
-  int64_t here = (int64_t)lattice->slice[row * lattice->chunks + chunk] * SLICE;
+  const int64_t here = slice * SLICE;
   uint8_t mask = 0;
   for (int lane = 0; lane < SLICE; ++lane) {
-    bool in_first = shift + lane < SLICE;
+    const bool in_first = shift + lane < SLICE;
     if (p->number[here + lane] < 0 || (in_first ? a : b) < 0 || p->number[*base + lane] < 0) continue;
     mask |= (uint8_t)(1u << lane);
   }
@@ -136,11 +152,16 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
   const Rows *where = &build->rows[slice];
   const int block = build->body->particles.block[slice];
   const Lattice *lattice = &build->body->lattices[block];
-  int64_t slot = write ? family->first[slice] : 0, begin = slot;
+  int64_t slot = write ? family->first[slice] : 0, begin = slot, cell[3];
+  NeighbourRow beyond = {.pattern = -1};
+  if (lattice->chunks) lattice_cell(lattice, where->row, where->chunk, 0, cell);
   for (int k = 0; k < family->pattern_begin[block + 1] - family->pattern_begin[block]; ++k) {
     int32_t base = 0;
     const Pattern *pattern = &family->patterns[family->pattern_begin[block] + k];
-    uint8_t mask = lattice_slot(build->body, lattice, where->row, where->chunk, pattern->offset, &base);
+    if (pattern->row != beyond.pattern) beyond = neighbour_row(lattice, cell, pattern);
+    if (!beyond.slices) continue;
+    uint8_t mask = lattice_slot(&build->body->particles, lattice, slice, beyond.slices,
+                                beyond.begin + pattern->offset[lattice->axis], &base);
     if (mask && build->body->crack_count) mask = cut_slot(build->body, slice, base, mask);
     if (!mask) continue;
     if (write) {

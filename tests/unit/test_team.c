@@ -158,7 +158,7 @@ static double cost_of_steps(breccia_model *model)
 }
 
 /** Two cores and eight threads; then two threads that were begun on two cores and must make do with one, as where somebody else has
- *  taken the other. Of three tries the best counts. */
+ *  taken the other. Neighbours that use the machine make it dearer now and then: one good try of twelve is enough. */
 static void steps_cost_little_more_where_cores_are_too_few(void **state)
 {
   (void)state;
@@ -166,8 +166,9 @@ static void steps_cost_little_more_where_cores_are_too_few(void **state)
   if (sched_getaffinity(0, sizeof allowed, &allowed)) skip();
   confine(&allowed, 2);
   breccia_model *one = small_body(1), *many = small_body(4 * cores_available()), *two = small_body(2);
+  const double most_many = 2.5, most_two = 1.5;
   double best_many = INFINITY, best_two = INFINITY;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 12 && (best_many > most_many || best_two > most_two); ++k) {
     confine(&allowed, 2);
     best_many = fmin(best_many, cost_of_steps(many) / cost_of_steps(one));
     confine(&allowed, 1);
@@ -177,8 +178,8 @@ static void steps_cost_little_more_where_cores_are_too_few(void **state)
   breccia_model_destroy(&many);
   breccia_model_destroy(&two);
   confine(&allowed, CPU_SETSIZE);
-  if (best_many > 2.5) fail_msg("eight threads on two cores took %.2f times what one does", best_many);
-  if (best_two > 1.5) fail_msg("two threads on one core took %.2f times what one does", best_two);
+  if (best_many > most_many) fail_msg("eight threads on two cores took %.2f times what one does", best_many);
+  if (best_two > most_two) fail_msg("two threads on one core took %.2f times what one does", best_two);
 }
 
 static void a_model_takes_its_threads_along(void **state)
