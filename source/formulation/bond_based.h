@@ -14,6 +14,9 @@ typedef struct SpringRow {
   int32_t xi[3], length;
 } SpringRow;
 
+/* What is read of a length in them, and how often each stands there. */
+enum { LENGTH_PULL = 0, LENGTH_LIMIT = STRETCH_TERMS * LANES };
+
 typedef struct BondBased {
   const Particles *particles;
   const Family *family;
@@ -36,6 +39,7 @@ typedef struct BondBased {
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
+  bool wide;               /* sweeps take whole slots on long vectors where they can (base/wide.h) */
 } BondBased;
 
 /** Material of a block. */
@@ -70,6 +74,9 @@ LANES_INLINE Lanes bond_constant(const BondBased *b, int64_t slice, const Stretc
 
 /** Forces on slices first .. last - 1 from linear bonds. */
 void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
+/** The same of one slice whose stretches are small and whose slots all stretch_is_wide (bond_springs_wide.c).
+ *  @return the way that they should go */
+StretchRange bond_resist_springs_wide(const BondBased *b, int64_t slice);
 
 /** Of bonds with points: stretches of a batch of rows, their pulls from stresses, forces from pulls (bond_points.c). */
 int64_t bond_stretch(void *formulation, const Sweep *sweep);

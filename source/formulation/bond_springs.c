@@ -3,16 +3,12 @@
  * g(d) = 1 - (1 + d)^-1/2 only; d has no cancellation however small the stretch. */
 #include "formulation/bond_based.h"
 
+#include "base/wide.h"
 #include <math.h>
 
 /* The table of lattice bonds. Components of reference vectors are few, and so are lengths with weights: each number stands there as often
- * as a vector has lanes, so that arithmetic takes it from memory (a tenth faster than spreading one). What is read of a length: */
-enum {
-  LENGTH_PULL = 0,
-  LENGTH_LIMIT = STRETCH_TERMS * LANES,
-  LENGTH_KEY = LENGTH_LIMIT + LANES,
-  LENGTH_SIZE = LENGTH_KEY + LANES
-};
+ * as a vector has lanes, so that arithmetic takes it from memory (a tenth faster than spreading one). Behind what is read of a length: */
+enum { LENGTH_KEY = LENGTH_LIMIT + LANES, LENGTH_SIZE = LENGTH_KEY + LANES };
 
 static void put(BondBased *b, int64_t at, double number)
 {
@@ -35,6 +31,7 @@ int bond_springs_create(BondBased *b, Error *error)
   b->rows = memory_zeroed((size_t)f->pattern_count, sizeof *b->rows, "bond constants", error);
   b->numbers = places_array((int64_t)f->pattern_count * (3 * LANES + LENGTH_SIZE), "bond constants", error);
   if (!b->rows || !b->numbers) return BRECCIA_FAILURE;
+  b->wide = wide_lanes_pay();
   int32_t end = 0;
   for (int p = 0; p < f->pattern_count; ++p)
     for (int k = 0; k < 3; ++k) {
@@ -135,6 +132,8 @@ LANES_INLINE StretchRange resist_slice(const BondBased *b, int64_t slice, bool g
 
 LANES_INLINE StretchRange resist_way(const BondBased *b, int64_t slice, bool gaps, bool corrected, StretchRange range)
 {
+  if (range == RANGE_SERIES && b->wide && !corrected && stretch_is_wide(b->family, slice))
+    return bond_resist_springs_wide(b, slice);
   if (range == RANGE_SERIES) return resist_slice(b, slice, gaps, corrected, RANGE_SERIES);
   if (range == RANGE_NEWTON) return resist_slice(b, slice, gaps, corrected, RANGE_NEWTON);
   return resist_slice(b, slice, gaps, corrected, RANGE_ANY);

@@ -107,6 +107,7 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
 
 LANES_INLINE StretchRange dilate_way(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
 {
+  if (range == RANGE_SERIES && o->wide && stretch_is_wide(o->family, slice)) return ordinary_dilate_wide(o, slice);
   if (range == RANGE_SERIES) return dilate_slice(o, slice, gaps, RANGE_SERIES);
   if (range == RANGE_NEWTON) return dilate_slice(o, slice, gaps, RANGE_NEWTON);
   return dilate_slice(o, slice, gaps, RANGE_ANY);
@@ -207,7 +208,9 @@ LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, Stre
 
 LANES_INLINE void resist_way(const Ordinary *o, int64_t slice, bool gaps, StretchRange range)
 {
-  if (range == RANGE_SERIES)
+  if (range == RANGE_SERIES && o->wide && stretch_is_wide(o->family, slice))
+    ordinary_resist_wide(o, slice);
+  else if (range == RANGE_SERIES)
     resist_slice(o, slice, gaps, RANGE_SERIES);
   else if (range == RANGE_NEWTON)
     resist_slice(o, slice, gaps, RANGE_NEWTON);

@@ -72,6 +72,7 @@ typedef struct Ordinary {
   Flow *flow;                   /* NULL: all families are elastic */
   uint8_t *range;               /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;                /* [slices] 1: a bond of a lattice slot is missing */
+  bool wide;                    /* sweeps take whole slots on long vectors where they can (base/wide.h) */
 } Ordinary;
 
 /** A bond with its weight. */
@@ -126,6 +127,10 @@ Across ordinary_coupling(Space space, const Material *material);
 void ordinary_balance(const Ordinary *o, int block);
 /** Shear modulus that a lattice shows in a deviatoric strain (shear components as of a tensor), over the wanted one. */
 double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
+
+/** Sweeps over a slice whose stretches are small and whose slots all stretch_is_wide (ordinary_wide.c). @return the way that bonds should go */
+StretchRange ordinary_dilate_wide(const Ordinary *o, int64_t slice);
+void ordinary_resist_wide(const Ordinary *o, int64_t slice);
 
 /** As FormulationType describes them (ordinary_setup.c, ordinary_bonds.c, ordinary_linear.c, ordinary_flow_state.c). */
 extern const Section ordinary_section;

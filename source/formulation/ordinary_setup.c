@@ -2,6 +2,7 @@
 
 #include "base/team.h"
 #include "base/tensor.h"
+#include "base/wide.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -173,6 +174,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
     ordinary_destroy(o);
     return NULL;
   }
+  o->wide = wide_lanes_pay();
   for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
   for (int block = 0; block < o->body->block_count && !strcmp(spec->weights, "isotropic"); ++block)
     ordinary_balance(o, block);

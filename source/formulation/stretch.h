@@ -69,6 +69,12 @@ typedef struct StretchEnds {
   Lanes y[3], d, by_length, weight, last;
 } StretchEnds;
 
+/** A slice can be gone through by whole slots on long vectors (base/wide.h): all its bonds are along a lattice. */
+static inline bool stretch_is_wide(const Family *f, int64_t slice)
+{
+  return f->stored[slice] == f->first[slice + 1];
+}
+
 /** @param[in] shown  [places][STRETCH_SHOWN]
  *  @param[in] own    displacements of the half slice */
 LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int64_t slice, int64_t slot, int half,
