@@ -139,13 +139,39 @@ int state_keep(StateCopy *copy, const StateList *list, Error *error)
   return make_room(copy, list, true, error);
 }
 
+/** Copies what will hardly ever be read past the caches, whose lines would have to be read before they are written: a tenth of a step of
+ *  linear bonds. @param[out] to  begins with a line, as `bytes` end with one */
+static void copy_away(char *to, const char *from, size_t bytes)
+{
+#ifdef __SSE2__
+  typedef double Two __attribute__((vector_size(16)));
+  for (size_t k = 0; k < bytes; k += sizeof(Two)) {
+    Two two;
+    memcpy(&two, from + k, sizeof two);
+#ifdef __clang__
+    __builtin_nontemporal_store(two, (Two *)(void *)(to + k));
+#else
+    __builtin_ia32_movntpd((double *)(void *)(to + k), two);
+#endif
+  }
+  __builtin_ia32_sfence(); /* before other threads are told */
+#else
+  memcpy(to, from, bytes);
+#endif
+}
+
 void state_note_places(const StateCopy *copy, int64_t first, int64_t last)
 {
   for (int k = 0; k < copy->count; ++k) {
     const StateRow *row = &copy->rows[k];
     if (row->entity != STATE_OF_PLACE) continue;
     const size_t size = state_size(row), from = size * (size_t)first;
-    memcpy((char *)copy->values[k] + from, (const char *)row->values + from, size * (size_t)(last - first));
+    const size_t bytes = size * (size_t)(last - first);
+    char *to = (char *)copy->values[k] + from;
+    if (row->kind == STATE_NUMBERS)
+      copy_away(to, (const char *)row->values + from, bytes);
+    else
+      memcpy(to, (const char *)row->values + from, bytes);
   }
 }
 
