@@ -131,3 +131,31 @@ void step_surely(breccia_model *model, int64_t steps)
   assert_string_equal(breccia_error_text(error), "");
   breccia_error_destroy(&error);
 }
+
+Sums sums_of(const breccia_model *m)
+{
+  const Particles *p = m->domain.particles;
+  Sums s = {0};
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double mass = p->density[i] * p->volume[i];
+    s.mass += mass;
+    s.volume += p->volume[i];
+    for (int k = 0; k < 3; ++k) {
+      const int a = (k + 1) % 3, b = (k + 2) % 3;
+      s.momentum[k] += mass * p->velocity[k][i];
+      s.external[k] += p->volume[i] * p->external[k][i];
+      s.moved[k] += p->volume[i] * p->displacement[k][i];
+      s.turn[k] += mass * ((p->position[a][i] + p->displacement[a][i]) * p->velocity[b][i] -
+                           (p->position[b][i] + p->displacement[b][i]) * p->velocity[a][i]);
+    }
+  }
+  for (int k = 0; k < 3; ++k) s.moved[k] /= s.volume;
+  return s;
+}
+
+void assert_balanced(const breccia_model *m, double tolerance)
+{
+  const Energy e = solver_energy(&m->solver);
+  if (!(e.imbalance < tolerance)) fail_msg("imbalance %g", e.imbalance);
+}

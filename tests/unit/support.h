@@ -33,6 +33,13 @@ void deform_uniformly(breccia_model *model, const double f[9]);
 void compute_forces(breccia_model *model);
 /** Steps a model; fails the test with the error's words if a step fails. */
 void step_surely(breccia_model *model, int64_t steps);
+/** Masses, volumes, momentum and moment of momentum about the origin, external force, and the mean displacement, of all particles. */
+typedef struct Sums {
+  double mass, volume, momentum[3], turn[3], external[3], moved[3];
+} Sums;
+Sums sums_of(const breccia_model *model);
+/** Fails unless the ledger of energies balances, as a share of the largest of them. */
+void assert_balanced(const breccia_model *model, double tolerance);
 /** Compares every family with all pairs of the body tried one by one. */
 void assert_families_are_all_pairs(const breccia_model *model);
 /** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */

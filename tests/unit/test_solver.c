@@ -1,5 +1,4 @@
 #include "base/random.h"
-#include "sample_laws.h"
 #include "solver/stable_step.h"
 #include "support.h"
 
@@ -72,66 +71,6 @@ static void energy_of_loads_motions_damping_yielding_and_cracks_balances(void **
     assert_true(e.fracture > 0);
     if (k) assert_true(e.damping > 0.01 * e.external);
     if (e.imbalance > 2e-3) fail_msg("%s: imbalance %g", cases[k], e.imbalance);
-    breccia_model_destroy(&m);
-  }
-}
-
-static void bonds_near_grips_hold_where_the_deck_says_so(void **state)
-{
-  (void)state;
-  /* A bar torn so fast that it breaks at the end that is pulled; with held grips no bond breaks between particles nearer to
-   * them than the horizon of 0.3015. */
-  int64_t near[2] = {0}, all[2] = {0};
-  for (int hold = 0; hold < 2; ++hold) {
-    breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
-                                "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 5, 3]}}}}\n"
-                                "failure: {critical stretch: 0.01%s}\n"
-                                "loads: [{on: {face: x+, layers: 2}, velocity: [3, free, free]}]\n"
-                                "solve: {explicit: {steps: 150}}\n",
-                                hold ? ", near grips: hold" : "");
-    assert_int_equal(breccia_model_step(m, 150, NULL), 0);
-    const Domain *d = &m->domain;
-    all[hold] = d->broken_count;
-    for (int64_t k = 0; k < d->broken_count; ++k) {
-      double x = d->particles->position[0][d->particles->place_of[d->broken[k].a]];
-      double y = d->particles->position[0][d->particles->place_of[d->broken[k].b]];
-      near[hold] += fmin(x, y) > 1.95 - 0.1 - 0.3015;
-    }
-    breccia_model_destroy(&m);
-  }
-  assert_true(near[0] > 0);
-  assert_true(all[1] > 0);
-  assert_int_equal(near[1], 0);
-}
-
-static void no_bond_breaks_where_the_deck_says_so(void **state)
-{
-  (void)state;
-  /* The same bar; what lies within 0.45 of its last two layers, and what lies in a box, keeps all bonds; bonds that leave these places may
-   * break. */
-  const char *const where[] = {"", ", no failure within: {distance: 4.5 spacings}",
-                               ", no failure within: [{distance: 0.15}, {of: kept}]"};
-  const double from[] = {INFINITY, 1.85 - 0.45, 1.85 - 0.15};
-  for (int k = 0; k < 3; ++k) {
-    breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
-                                "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 5, 3]}}}}\n"
-                                "selections: {kept: {inside: {box: {from: [1.4, 0, 0], to: [1.8, 1, 1]}}}}\n"
-                                "failure: {critical stretch: 0.01%s}\n"
-                                "loads: [{on: {face: x+, layers: 2}, velocity: [3, free, free]}]\n"
-                                "solve: {explicit: {steps: 150}}\n",
-                                where[k]);
-    assert_int_equal(breccia_model_step(m, 150, NULL), 0);
-    const Domain *d = &m->domain;
-    int64_t within = 0, box = 0;
-    for (int64_t n = 0; n < d->broken_count; ++n) {
-      const double x = d->particles->position[0][d->particles->place_of[d->broken[n].a]],
-                   y = d->particles->position[0][d->particles->place_of[d->broken[n].b]];
-      within += fmin(x, y) > from[k] - 0.01;
-      box += fmin(x, y) > 1.4 && fmax(x, y) < 1.8;
-    }
-    assert_true(d->broken_count > 0);
-    assert_int_equal(within, 0);
-    assert_true(k == 2 ? box == 0 : k == 0 ? box > 0 : true);
     breccia_model_destroy(&m);
   }
 }
@@ -428,89 +367,12 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
   breccia_model_destroy(&m);
 }
 
-static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **state)
-{
-  (void)state;
-  const breccia_law *const laws[] = {&law_of_glass};
-  for (int breaks = 0; breaks < 2; ++breaks) {
-    const breccia_options options = {
-        .size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1 + breaks};
-    breccia_error *error = breccia_error_create();
-    breccia_model *model = NULL;
-    char deck[1024];
-    snprintf(deck, sizeof deck,
-             "units: {length: m, force: kN, time: s}\nmaterials: {vase: {model: glass, density: 2}}\n"
-             "body: {b: {material: vase, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\n"
-             "failure: {failed laws: %s}\n"
-             "loads: [{on: {face: x-, layers: 3}, velocity: [0, 0, 0]}, {on: {face: x+, layers: 3}, velocity: [0.5, 0, "
-             "0]}]\n"
-             "solve: {explicit: {steps: 400}}\n",
-             breaks ? "break" : "stop");
-    assert_int_equal(breccia_model_load_string(deck, "deck", &options, &model, error), 0);
-    const int status = breccia_model_step(model, INT64_MAX, error);
-    if (breaks) {
-      assert_int_equal(status, 0);
-      assert_true(breccia_model_broken_bonds(model) > 100);
-      for (int64_t i = 0; i < model->domain.particles->places; ++i)
-        for (int k = 0; k < 3; ++k) assert_true(isfinite(model->domain.particles->displacement[k][i]));
-      assert_true(model->domain.gave_up != NULL);
-    } else {
-      assert_int_equal(status, BRECCIA_FAILURE);
-      assert_non_null(strstr(breccia_error_text(error),
-                             "the law glass of material 'vase' could not be integrated at the strain xx 0.001"));
-      assert_int_equal(breccia_model_broken_bonds(model), 0);
-    }
-    breccia_model_destroy(&model);
-    breccia_error_destroy(&error);
-  }
-}
-
-static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(void **state)
-{
-  (void)state;
-  /* Damage spreads over the 2 delta of particles whose families the crack divides; control, which would hold it together, is negligible. */
-  double spent[2];
-  for (int fine = 0; fine < 2; ++fine) {
-    const int half = fine ? 20 : 10, rows = fine ? 9 : 5;
-    const double spacing = fine ? 0.005 : 0.01;
-    breccia_model *model =
-        model_of("units: {length: m, force: kN, time: s}\n"
-                 "materials:\n"
-                 "  c: {density: 2.4, model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, "
-                 "tensile strength: 3000}\n"
-                 "  w: {density: 2.4, model: mazars, Young modulus: 30e6, Poisson ratio: 0.2, fracture energy: 0.1, "
-                 "tensile strength: 2700}\n"
-                 "body:\n"
-                 "  a: {material: c, lattice: square, thickness: 1, spacing: %g, shape: {box: {particles: [%d, %d], "
-                 "first particle: "
-                 "[0, 0]}}}\n"
-                 "  b: {material: w, lattice: square, thickness: 1, spacing: %g, shape: {box: {particles: [1, %d], "
-                 "first particle: "
-                 "[%g, 0]}}}\n"
-                 "  c: {material: c, lattice: square, thickness: 1, spacing: %g, shape: {box: {particles: [%d, %d], "
-                 "first particle: "
-                 "[%g, 0]}}}\n"
-                 "peridynamics: {space: plane strain, zero-energy control: {silling: 1e-4}}\n"
-                 "loads: [{on: {face: x-, layers: 3}, velocity: [-0.01, 0, 0], history: {ramp to: 0.001}},\n"
-                 "        {on: {face: x+, layers: 3}, velocity: [0.01, 0, 0], history: {ramp to: 0.001}}]\n"
-                 "solve: {explicit: {end time: 0.015}}\n",
-                 spacing, half, rows, spacing, rows, half * spacing, spacing, half, rows, (half + 1) * spacing);
-    assert_int_equal(breccia_model_step(model, INT64_MAX, NULL), 0);
-    spent[fine] = solver_energy(&model->solver).external / (rows * spacing);
-    assert_near(spent[fine], 0.1, 0.03);
-    breccia_model_destroy(&model);
-  }
-  assert_near(spent[0], spent[1], 0.2 * 0.1);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_free_body_under_gravity_falls_as_galilei_says),
       cmocka_unit_test(a_wave_runs_along_a_slender_bar_at_root_e_over_rho),
       cmocka_unit_test(energy_of_loads_motions_damping_yielding_and_cracks_balances),
-      cmocka_unit_test(bonds_near_grips_hold_where_the_deck_says_so),
-      cmocka_unit_test(no_bond_breaks_where_the_deck_says_so),
       cmocka_unit_test(an_elastic_body_keeps_its_energy),
       cmocka_unit_test(damping_takes_the_speed_of_a_free_body_as_its_rate_says),
       cmocka_unit_test(the_stable_step_is_stable_and_a_tenth_more_is_not),
@@ -524,8 +386,6 @@ int main(void)
       cmocka_unit_test(a_force_that_is_no_number_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),
       cmocka_unit_test(plate_with_crack_opens_at_rest_as_finite_elements_say),
-      cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
-      cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
