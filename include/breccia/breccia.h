@@ -108,6 +108,7 @@ typedef struct breccia_law {
   int (*update)(const void *constants, const breccia_batch *batch);
   /** How its deviator flows, if that and `moduli` say all. NULL: they do not. @return 0, or 1 with the reason in words */
   int (*deviator)(const void *constants, breccia_deviator *deviator, char *reason, size_t reason_size);
+  int takes_time; /* 1: stress depends on how long steps take */
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */
@@ -281,6 +282,7 @@ typedef struct breccia_test_words {
   const char *kind, *to, *back;        /* its kind, the strain that it goes to, and the other end of its cycles */
   const char *confining, *strain_zero; /* pressure before anything else; where strain is zero */
   int64_t steps, elastic_rows;         /* from end to end; of a path: so many rows are answered elastically */
+  const char *duration;                /* of each way to an end of a test; a path may have a column 'time' */
 } breccia_test_words;
 
 /** Reads a test from its file (docs/laboratory.md), or makes one from words. */

@@ -16,6 +16,7 @@ enum {
   ZERO,
   CYCLES,
   STEPS,
+  DURATION,
   AGAINST,
   PICTURE,
   OUTPUT,
@@ -29,7 +30,8 @@ static const Option options[] = {
     {"model", "NAME", "constitutive model"},
     {"set", "KEY=VALUE", "a parameter, with or without unit (repeat for each)"},
     {"strain", "PATH.csv",
-     "total strains: columns strain xx, yy, zz, xy, yz, zx; strain xx alone for laws of one strain"},
+     "total strains: columns strain xx, yy, zz, xy, yz, zx; strain xx alone for laws of one strain; a column time for "
+     "laws that take it"},
     {"test", "KIND",
      "instead: uniaxial, triaxial, 'undrained triaxial', oedometer, biaxial, isotropic, 'simple shear', 'undrained "
      "shear'"},
@@ -39,6 +41,7 @@ static const Option options[] = {
     {"strain-zero", "WHERE", "'after consolidation' (default), or 'before consolidation' for total strains"},
     {"cycles", "N", "cycles of the test (0: once to the strain)"},
     {"steps", "N", "steps from end to end (200)"},
+    {"duration", "TIME", "of each way to an end of the test, for laws that take time (at once)"},
     {"against", "DATA.csv", "measured points: x and y of the test's curve in the first two columns"},
     {"picture", "FILE", "draw the test's curve (.png, .svg, .pdf)"},
     {"output", "OUT.csv", "where strains and stresses go (standard output; nowhere with --picture or --against)"},
@@ -68,6 +71,7 @@ static int read_words(const char **values, const DeckSettings *parameters, brecc
                                 .confining = values[CONFINING],
                                 .strain_zero = values[ZERO],
                                 .steps = steps,
+                                .duration = values[DURATION],
                                 .elastic_rows = elastic};
   return 0;
 }

@@ -47,6 +47,8 @@ bool driver_try(Driver *d, const double *strain)
                          .committed = d->committed,
                          .trial = d->trial,
                          .tangent = d->tangent,
+                         .time = d->time + d->time_step,
+                         .time_step = d->time_step,
                          .elastic_stage = d->elastic};
   if (strain != d->strain) memcpy(d->strain, strain, sizeof(double) * (size_t)d->components);
   for (int k = 0; k < d->components; ++k) {
@@ -61,6 +63,7 @@ void driver_commit(Driver *d)
   double *other = d->committed;
   d->committed = d->trial;
   d->trial = other;
+  d->time += d->time_step;
   if (d->material->remote) remote_commit(d->material->remote);
 }
 
@@ -105,6 +108,7 @@ static bool balance(Driver *d, const bool *by_stress, const double *target, doub
 bool driver_step(Driver *d, const bool *by_stress, const double *target, double tolerance)
 {
   enum { MOST_PARTS = 1024 };
+  const double whole = d->time_step;
   double from[6], before[6];
   memcpy(before, d->strain, sizeof before);
   for (int k = 0; k < d->components; ++k) from[k] = by_stress[k] ? d->stress[k] : d->strain[k];
@@ -113,6 +117,7 @@ bool driver_step(Driver *d, const bool *by_stress, const double *target, double 
     double aim[6];
     if (part > MOST_PARTS - done) part = MOST_PARTS - done;
     const double share = (double)(done + part) / MOST_PARTS;
+    d->time_step = whole * part / MOST_PARTS;
     for (int k = 0; k < d->components; ++k)
       aim[k] = done + part == MOST_PARTS ? target[k] : from[k] + share * (target[k] - from[k]);
     if (balance(d, by_stress, aim, tolerance)) {
@@ -122,9 +127,10 @@ bool driver_step(Driver *d, const bool *by_stress, const double *target, double 
       continue;
     }
     driver_try(d, before);
-    if (part == 1) return false;
+    if (part == 1) break;
     part = part > 3 ? part / 4 : 1;
     memcpy(d->strain, before, sizeof before);
   }
-  return true;
+  d->time_step = whole;
+  return done == MOST_PARTS;
 }

@@ -10,6 +10,7 @@ typedef struct Driver {
   double *committed, *trial;
   double strain[6], stress[6], tangent[36]; /* of the last step; tangent [components][components] */
   bool elastic;                             /* respond elastically (gravity stage) */
+  double time, time_step;                   /* of the committed state; of the step to come, 0: at once */
 } Driver;
 
 int driver_create(Driver *driver, const Material *material, Error *error);
@@ -20,7 +21,7 @@ bool driver_try(Driver *driver, const double *strain);
 /** Makes the last trial state the committed one. */
 void driver_commit(Driver *driver);
 
-/** One step to targets, which are stresses where `by_stress` says so and strains otherwise, and commits it. The strains
+/** One step, in `time_step`, to targets, which are stresses where `by_stress` says so and strains otherwise, and commits it. The strains
  *  that belong to stresses are found by Newton's method; a step that fails is cut into up to 1024 parts.
  *  @param[in] tolerance  of stresses
  *  @return false, with the state of the last part that went well, if the targets cannot be reached */

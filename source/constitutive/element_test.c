@@ -44,6 +44,13 @@ static const Field stage_fields[] = {
      .standard = "100",
      .range = "[1, 1e7]",
      .meaning = "equal parts"},
+    {.key = "duration",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(StageSpec, duration),
+     .dimension = "time",
+     .standard = "",
+     .range = "[0, inf)",
+     .meaning = "of the stage, for laws that take time; at once when absent"},
 };
 
 static void check_stage(const DeckReader *reader, void *section)
@@ -124,6 +131,13 @@ static const Field test_fields[] = {
      .standard = "200",
      .range = "[1, 1e6]",
      .meaning = "from end to end"},
+    {.key = "duration",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(TestSpec, duration),
+     .dimension = "time",
+     .standard = "",
+     .range = "[0, inf)",
+     .meaning = "of each way to an end, for laws that take time; at once when absent"},
 };
 const Section test_section = {
     .name = "test", .about = "A laboratory test on one material point.", .size = sizeof(TestSpec), FIELDS(test_fields)};
@@ -199,6 +213,7 @@ static int from_kind(ElementTest *t, const DeckReader *reader, const TestSpec *s
       if (stage->by_strain[k]) stage->target[k] *= to - at;
     stage->relative = true;
     stage->steps = (int)spec->steps;
+    stage->duration = isnan(spec->duration) ? 0 : spec->duration;
     at = to;
   }
   if (uniaxial)
@@ -219,6 +234,7 @@ static int from_stages(ElementTest *t, const DeckReader *reader, const SectionLi
     const StageSpec *spec = list->items[n];
     Stage *stage = &t->stages[t->count++];
     stage->steps = (int)spec->steps;
+    stage->duration = isnan(spec->duration) ? 0 : spec->duration;
     if (spec->consolidation && t->consolidation < n)
       return node_error(reader->document, section_node(spec, "consolidation"), reader->error,
                         "stage: consolidation comes before all other stages");
@@ -342,6 +358,7 @@ int element_test_run(const ElementTest *test, const Material *material, ElementC
                                                        : d.strain[k];
       if (!stage->by_stress[k]) largest = fmax(largest, fabs(to[k]));
     }
+    d.time_step = stage->duration / stage->steps;
     const double tolerance = 1e-10 * (material->bulk + material->shear) * fmin(largest, 1e-2);
     for (int step = 1; step <= stage->steps && !status; ++step) {
       double target[6];

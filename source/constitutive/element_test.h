@@ -9,12 +9,13 @@ typedef struct StageSpec {
   double strain[6], stress[6]; /* NaN: not given */
   bool consolidation;
   int64_t steps;
+  double duration; /* NaN: at once */
 } StageSpec;
 
 typedef struct TestSpec {
   SectionHead head;
   const char *kind, *zero;
-  double strain, back, confining;
+  double strain, back, confining, duration; /* duration: NaN: at once */
   int64_t cycles, steps;
 } TestSpec;
 
@@ -29,7 +30,7 @@ const char *test_zero_word(int k);
 typedef struct Stage {
   bool by_stress[6], by_strain[6];
   bool relative; /* strains count from the stage's beginning */
-  double target[6];
+  double target[6], duration;
   int steps;
 } Stage;
 

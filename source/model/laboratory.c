@@ -61,6 +61,7 @@ void breccia_test_destroy(breccia_test **out)
   text_free(&test->judgement);
   free(test->title);
   free(test->path);
+  free(test->path_time);
   free(test);
   *out = NULL;
 }
@@ -82,6 +83,7 @@ static int follow_path(const breccia_test *test, ElementCurve *curve, Error *err
     status = error_add(error, BRECCIA_FAILURE, "out of memory: strain path");
   for (int i = 0; i < rows && !status; ++i) {
     d.elastic = i < test->elastic_rows;
+    d.time_step = test->path_time ? test->path_time[i] - d.time : 0;
     if (!driver_try(&d, test->path + 6 * i)) {
       status = error_add(error, BRECCIA_FAILURE, "row %d: the law could not be integrated at this strain", i + 1);
       break;
@@ -135,6 +137,18 @@ static int make_columns(breccia_test *test, bool tangents, Error *error)
   return bad ? error_add(error, BRECCIA_FAILURE, "out of memory: columns") : BRECCIA_OK;
 }
 
+/** Laws that take time answer a test without any by their stiffness of the first moment. */
+static void doubt_time(const breccia_test *test)
+{
+  double time = test->path_time ? test->path_time[test->path_rows - 1] : 0;
+  for (int n = 0; n < test->deck.test.count; ++n) time += test->deck.test.stages[n].duration;
+  if (test->deck.law->takes_time && time == 0)
+    error_add(test->doubts, BRECCIA_USER_ERROR,
+              "%s: %s depends on time, of which this test takes none: this is its answer of the first moment; give a "
+              "'duration' (--duration), or a column 'time' in a path of strains",
+              test->where, test->deck.law->name);
+}
+
 int breccia_test_run(breccia_test *test, int tangents, breccia_error *error)
 {
   const Host host = host_enter();
@@ -142,6 +156,7 @@ int breccia_test_run(breccia_test *test, int tangents, breccia_error *error)
   test->curve = (ElementCurve){0};
   if (!test->path && !test->fit.count)
     element_doubt_material(&test->deck.material, test->deck.units, test->where, test->doubts);
+  doubt_time(test);
   int status = test->path ? follow_path(test, &test->curve, error)
                           : element_test_run(&test->deck.test, &test->deck.material, &test->curve, error);
   const int bad = make_columns(test, tangents != 0, error);

@@ -9,7 +9,8 @@ struct breccia_test {
   ElementDeck deck;  /* of a test in words: its units, law, material and test only */
   const char *where; /* for messages: the file */
   char *title;
-  double *path; /* [path_rows][6] strains, instead of a test; NULL: a test */
+  double *path;      /* [path_rows][6] strains, instead of a test; NULL: a test */
+  double *path_time; /* [path_rows] NULL: all of it happens at once */
   int path_rows, elastic_rows;
   ElementCurve curve;
   MeasuredPoints points; /* last compared with, or fitted to */

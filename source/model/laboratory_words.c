@@ -12,6 +12,22 @@
 
 enum { USUAL_STEPS = 200 };
 
+/** Times of the rows, if the file has them. */
+static int read_times(breccia_test *test, const char *path, Error *error)
+{
+  CsvWords words;
+  int status = csv_words(&words, path, "time", error), count;
+  const bool given = words.cells != NULL;
+  csv_words_destroy(&words);
+  if (status || !given) return status;
+  if (!(test->path_time = csv_column(path, "time", CSV_FINISHED, &count, NULL, error))) return BRECCIA_FAILURE;
+  for (int i = 0; i < count; ++i)
+    if (!(test->path_time[i] >= (i ? test->path_time[i - 1] : 0)))
+      return error_add(error, BRECCIA_USER_ERROR, "%s: row %d: time must be a number that does not fall, from 0 on",
+                       path, i + 1);
+  return BRECCIA_OK;
+}
+
 int laboratory_read_path(breccia_test *test, const char *path, Error *error)
 {
   const int components = test->deck.law->components;
@@ -38,7 +54,8 @@ int laboratory_read_path(breccia_test *test, const char *path, Error *error)
   }
   test->path = rows;
   test->path_rows = count;
-  return rows && count ? BRECCIA_OK : error_add(error, BRECCIA_USER_ERROR, "%s: has no row of strains", path);
+  return rows && count ? read_times(test, path, error)
+                       : error_add(error, BRECCIA_USER_ERROR, "%s: has no row of strains", path);
 }
 
 /** The kind of a test and its numbers. */
@@ -49,11 +66,13 @@ static int read_test(const breccia_test_words *words, const Units *units, TestSp
     double *value;
   } numbers[] = {{"to", words->to, "1", &spec->strain},
                  {"return", words->back, "1", &spec->back},
-                 {"confining", words->confining, "stress", &spec->confining}};
+                 {"confining", words->confining, "stress", &spec->confining},
+                 {"duration", words->duration, "time", &spec->duration}};
   *spec = (TestSpec){.kind = words->kind,
                      .zero = words->strain_zero ? words->strain_zero : test_zero_word(0),
                      .strain = NAN,
                      .back = NAN,
+                     .duration = NAN,
                      .cycles = words->cycles,
                      .steps = words->steps ? words->steps : USUAL_STEPS};
   int status = BRECCIA_OK, kind = 0;
@@ -68,7 +87,7 @@ static int read_test(const breccia_test_words *words, const Units *units, TestSp
   if (strcmp(spec->zero, test_zero_word(0)) && strcmp(spec->zero, test_zero_word(1)))
     status = error_add(error, BRECCIA_USER_ERROR, "--strain-zero '%s' is not known; choose '%s' or '%s'", spec->zero,
                        test_zero_word(0), test_zero_word(1));
-  for (int k = 0; k < 3; ++k) {
+  for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k) {
     Text reason = {0};
     if (numbers[k].words &&
         units_read(units, dimension_find(numbers[k].dimension), numbers[k].words, numbers[k].value, &reason))
@@ -79,6 +98,7 @@ static int read_test(const breccia_test_words *words, const Units *units, TestSp
   if (!words->to) status = error_add(error, BRECCIA_USER_ERROR, "--test needs --to STRAIN, what it goes to");
   if (spec->confining < 0)
     status = error_add(error, BRECCIA_USER_ERROR, "--confining: must not be negative: it is a pressure");
+  if (spec->duration < 0) status = error_add(error, BRECCIA_USER_ERROR, "--duration: must not be negative");
   return status;
 }
 

@@ -14,6 +14,25 @@ cell() {
     NR > 1 {value = $c} row != "last" && NR == row + 1 {print value; exit} END {if (row == "last") print value}' "$1"
 }
 
+# ---- laws that take time ----
+# Sheared at an even rate over two relaxation times: v = 0.01 (2 - (1 - exp(-2))) / 2, stress G (0.01 - v / 2); held: half of it goes with exp(-t).
+slow() { "$breccia" material --model viscoelastic --set "shear modulus=100 MPa" --set "bulk modulus=200 MPa" --set "relaxing share=0.5" --set "relaxation time=1" "$@"; }
+slow --test "undrained shear" --to 0.01 --steps 4 --duration "2 s" > slow.csv 2> errors || fail "a test that takes time"
+near "slow shear: stress" "$(cell slow.csv last "stress xy")" 716166.179190847 1e-9
+equal "slow shear: nothing to say" "$(cat errors)" ""
+slow --test "undrained shear" --to 0.01 --steps 4 > slow.csv 2> errors || fail "a test without time"
+near "at once: stress" "$(cell slow.csv last "stress xy")" 1e6 1e-9
+contains "at once" "$(cat errors)" "viscoelastic depends on time, of which this test takes none"
+slow --test "undrained shear" --to 0.01 --duration "2 m" 2> errors; equal "duration: status" $? 2
+slow --test "undrained shear" --to 0.01 --duration "-2 s" 2> errors; equal "negative duration: status" $? 2
+printf 'time,strain xx,strain yy,strain zz,strain xy,strain yz,strain zx\n0,0,0,0,0.01,0,0\n2,0,0,0,0.01,0,0\n' > held.csv
+slow --strain held.csv > slow.csv 2> errors || fail "a path that takes time"
+near "held: first" "$(cell slow.csv 1 "stress xy")" 1e6 1e-9
+near "held: later" "$(cell slow.csv last "stress xy")" 567667.641618306 1e-9
+printf '1,0,0,0,0.01,0,0\n' >> held.csv
+slow --strain held.csv 2> errors; equal "falling time: status" $? 2
+contains "falling time" "$(cat errors)" "row 3: time must be a number that does not fall"
+
 # ---- strain is zero after consolidation ----
 # E = 40 MPa, nu = 0.3 at 100 kPa: the deviator is E times the axial strain, and that shortens by 100 kPa (1 - 2 nu) / E = 1e-3 before.
 elastic() { "$breccia" material --model elastic --set "Young modulus=40 MPa" --set "Poisson ratio=0.3" --units m,kN,s --confining 100 --steps 4 "$@"; }

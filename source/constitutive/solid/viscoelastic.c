@@ -87,4 +87,5 @@ const breccia_law law_viscoelastic = {
     .history_values = history_values,
     .update = update,
     .deviator = deviator_of,
+    .takes_time = 1,
 };
