@@ -51,6 +51,12 @@ static inline bool body_outside(const Body *body, int64_t number)
   return body->margin_of && body->margin_of[number] >= 0;
 }
 
+/** Thickness of a plane body, cross-section of a bar, else 1. */
+static inline double body_section(const Body *body)
+{
+  return body->dimensions == 3 ? 1 : body->dimensions == 2 ? body->blocks[0]->thickness : body->blocks[0]->area;
+}
+
 /** Builds particles from the deck's blocks and cracks (sections read before, borrowed for the body's life). */
 int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks,
                 const MarginList *margins);

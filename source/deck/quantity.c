@@ -30,6 +30,7 @@ static const Dimension dimensions[] = {
     {"density", -4, 1, 2, "t/m3"},
     {"energy", 1, 1, 0, "kJ"},
     {"fracture energy", -1, 1, 0, "N/m"},
+    {"bond energy", -5, 1, 0, "J/m6"},
     {NULL, 0, 0, 0, NULL},
 };
 

@@ -66,7 +66,8 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
   }
   family_break(&d->family, place, neighbour);
   forces_bond_broke(&d->forces, place, neighbour);
-  d->suspects[neighbour / SLICE] = 1; /* so that its family is renewed */
+  d->suspects[neighbour / SLICE] = 1;   /* so that its family is renewed */
+  d->look_again[neighbour / SLICE] = 0; /* families that lose a bond may pull more at others */
 }
 
 /** True if a bond was squeezed at the beginning of the step. It has then done more work in this step than it had received, and would
@@ -96,7 +97,7 @@ static void judge(Domain *d, const Moment *moment, bool only_note)
         const Bond bond = family_bond(f, s, slot, lane);
         const int32_t place = (int32_t)(s * SLICE + lane);
         if (!(gave_up && gave_up[place]) &&
-            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, &bond, lane) &&
+            !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, slot, &bond, lane) &&
               !was_squeezed(d, moment, &bond, place)))
           continue;
         if (only_note) {
@@ -215,6 +216,7 @@ void domain_break(Domain *d, const Moment *moment)
   {
     d->broken_before = d->broken_count;
     d->motion += moment->motion;
+    d->failure.moved = moment->motion;
     domain_tell_time(d, moment->time, moment->time_step);
   }
   if (d->forces.count) {

@@ -114,6 +114,9 @@ static inline Region *domain_region(const Domain *domain, int64_t place)
   return &domain->regions[domain->region[place / SLICE]];
 }
 
+/** Whether a block of the body is made of a material in a region. */
+bool region_has_material(const Domain *domain, const Region *region, const char *material);
+
 /** Builds everything that a step needs. `domain` must be zero; destroy it in any case. */
 int domain_create(Domain *domain, const DeckReader *reader, const DomainSpec *spec);
 void domain_destroy(Domain *domain);

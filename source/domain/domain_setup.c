@@ -145,24 +145,45 @@ static bool row_goes_on(const Domain *d, int64_t slice)
   return true;
 }
 
+/** What a criterion works on. */
+static int create_failure_parts(Domain *d, const Influence *influence, Error *error)
+{
+  Failure *failure = &d->failure;
+  failure->limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", error);
+  failure->regions = memory_zeroed((size_t)d->region_count, sizeof *failure->regions, "failure", error);
+  if (!failure->limit || !failure->regions) return BRECCIA_FAILURE;
+  failure->material = d->material;
+  failure->material_count = d->material_count;
+  failure->region = d->region;
+  failure->region_count = d->region_count;
+  failure->influence = influence;
+  for (int r = 0; r < d->region_count; ++r)
+    failure->regions[r] = (FailureRegion){d->regions[r].type, d->regions[r].formulation};
+  return BRECCIA_OK;
+}
+
 static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec *spec, const BondLength *lengths)
 {
   const Criterion *criterion = criterion_of(spec);
   double *limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
-  d->failure.limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
-  d->failure.material = d->material;
-  int status = limit && d->failure.limit ? BRECCIA_OK : BRECCIA_FAILURE;
+  bool *present = memory_zeroed((size_t)d->material_count, sizeof(bool), "failure", reader->error);
+  int status = limit && present ? create_failure_parts(d, lengths->influence, reader->error) : BRECCIA_FAILURE;
   for (int k = 0; k < d->material_count && !status; ++k) d->failure.limit[k] = INFINITY;
   for (int r = 0; r < d->region_count && !status; ++r) {
-    const LimitsOf of = {reader, d->regions[r].type, lengths, d->materials, d->material_count};
+    for (int k = 0; k < d->material_count; ++k)
+      present[k] = region_has_material(d, &d->regions[r], d->materials[k].name);
+    const LimitsOf of = {reader,  d->regions[r].type, lengths, body_section(&d->body), d->materials,
+                         present, d->material_count};
     status = criterion->limits(spec, &of, limit);
     for (int k = 0; k < d->material_count && !status; ++k)
-      if (region_has_material(d, &d->regions[r], d->materials[k].name))
-        d->failure.limit[k] = fmin(d->failure.limit[k], limit[k]);
+      if (present[k]) d->failure.limit[k] = fmin(d->failure.limit[k], limit[k]);
   }
   for (int k = 0; k < d->material_count && !status; ++k)
     if (isfinite(d->failure.limit[k])) d->failure.criterion = criterion;
   free(limit);
+  free(present);
+  if (!status && d->failure.criterion && criterion->create)
+    status = criterion->create(&d->failure, &d->family, reader->error);
   return status;
 }
 
@@ -481,6 +502,8 @@ void domain_destroy(Domain *d)
   free(d->suspects);
   free(d->look_again);
   free(d->failure.limit);
+  free(d->failure.regions);
+  free(d->failure.weights);
   free(d->failure.kept);
   free(d->broken);
   free(d->torn);

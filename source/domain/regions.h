@@ -8,9 +8,6 @@
 int regions_create(Domain *domain, const DeckReader *reader, const PeridynamicsSpec *spec);
 void regions_destroy(Domain *domain);
 
-/** Whether a block of the body is made of a material in a region. */
-bool region_has_material(const Domain *domain, const Region *region, const char *material);
-
 /** Slices of other regions whose particles have bonds with those of each region. Families stand. */
 int regions_find_borders(Domain *domain, Error *error);
 

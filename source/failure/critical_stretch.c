@@ -93,8 +93,9 @@ static double suspect(const Failure *failure, const Family *f, int64_t slice, ui
   return smallest > rounding ? (smallest - rounding) / 2 : 0;
 }
 
-static bool exceeds(const Failure *failure, const Family *f, int64_t slice, const Bond *bond, int lane)
+static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
 {
+  (void)slot;
   const Particles *p = f->particles;
   int64_t place = slice * SLICE + lane;
   double square = 0;

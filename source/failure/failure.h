@@ -30,21 +30,29 @@ typedef struct LimitsOf {
   const DeckReader *reader;
   const FormulationType *type;
   const BondLength *lengths;
+  double section; /* thickness of a plane body, cross-section of a bar, else 1 */
   const Material *materials;
+  const bool *present; /* [materials] whether bonds of this formulation are made of it */
   int material_count;
 } LimitsOf;
 
 typedef struct Criterion {
   const char *name, *about, *source;
+  const char *dimension;  /* of limits; NULL: they are numbers */
   const Section *section; /* its keys, which stand among those of failure */
   /** Finds the limit of the bonds of each material, infinite where they never break.
    *  @param[in] spec  NULL: the deck says nothing of failure */
   int (*limits)(const FailureSpec *spec, const LimitsOf *of, double *limit);
+  /** Makes what it needs beside limits, once. NULL: nothing. */
+  int (*create)(Failure *failure, const Family *family, Error *error);
+  /** Adds to an overview what people should know of the limit of a material, behind its number. NULL: nothing. */
+  void (*describe)(const LimitsOf *of, int material, double limit, const Units *units, Text *text);
   /** Marks a slice if some bond of it may exceed its limit.
    *  @return how far every particle may move before the slice has to be looked at again; 0: look at every step */
   double (*suspect)(const Failure *failure, const Family *family, int64_t slice, uint8_t *suspect);
   /** True if this bond exceeds it. */
-  bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, const Bond *bond, int lane);
+  bool (*exceeds)(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
+                  int lane);
 } Criterion;
 
 /** @return the k-th criterion, or NULL after the last */
@@ -52,10 +60,23 @@ const Criterion *criterion_at(int k);
 /** The criterion of a deck; `spec` may be NULL. */
 const Criterion *criterion_of(const FailureSpec *spec);
 
+/** What makes the forces of a part of the body. */
+typedef struct FailureRegion {
+  const FormulationType *type;
+  void *formulation;
+} FailureRegion;
+
 struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */
   double *limit;              /* [materials] infinite: never; a bond between two has the smaller one */
   const int32_t *material;    /* [slices] */
+  int material_count;
+  FailureRegion *regions; /* [region_count] */
+  int region_count;
+  const int32_t *region;      /* [slices] */
+  const Influence *influence; /* of bonds */
+  double *weights;            /* [patterns] its values, where a criterion has made them */
+  double moved;               /* largest displacement increment of any particle in the step under way */
   uint8_t *
       kept; /* [places] sets that a place belongs to, a bit each: bonds between two of one set do not break; NULL: all may */
 };

@@ -305,6 +305,7 @@ const FormulationType formulation_bond_based = {
     .point = bond_point,
     .stored_energy = stored_energy,
     .bond_energy = bond_energy,
+    .energy_room = bond_energy_room,
     .gradient = gradient,
     .stress = stress,
     .characteristic_length = bond_characteristic_length,

@@ -3,13 +3,6 @@
 
 #include <string.h>
 
-/** Thickness of a plane body, cross-section of a bar. */
-static double thickness(const BondBased *b)
-{
-  const BlockSpec *block = b->body->blocks[0];
-  return b->body->dimensions == 3 ? 1 : b->body->dimensions == 2 ? block->thickness : block->area;
-}
-
 /** Integral of omega(q) q^power over 0 <= q <= 1 by Simpson's rule. */
 static double influence_moment(const BondLength *of, int power)
 {
@@ -34,7 +27,7 @@ static double continuum_constant(const BondLength *of, double young, double thic
 
 double bond_continuum_constant(const BondBased *b, double young)
 {
-  return continuum_constant(&(BondLength){b->space, b->influence, b->family->horizon}, young, thickness(b));
+  return continuum_constant(&(BondLength){b->space, b->influence, b->family->horizon}, young, body_section(b->body));
 }
 
 /* Symmetric tensors of rank four as matrices in Mandel's components, so that inverse and product keep their meaning. */
@@ -96,8 +89,8 @@ bool bond_family_is_whole(const BondBased *b, int64_t place)
 {
   const double pi = acos(-1), horizon = b->family->horizon;
   const double full = b->body->dimensions == 3   ? 4 * pi / 3 * pow(horizon, 3)
-                      : b->body->dimensions == 2 ? pi * horizon * horizon * thickness(b)
-                                                 : 2 * horizon * thickness(b);
+                      : b->body->dimensions == 2 ? pi * horizon * horizon * body_section(b->body)
+                                                 : 2 * horizon * body_section(b->body);
   return b->particles->volume[place] + family_volume(b->family, (int32_t)place) >= 0.95 * full;
 }
 

@@ -292,6 +292,7 @@ LANES_INLINE void respond_lanes(const Correspondence *c, const Sweep *sweep, int
   for (int k = 0; k < 9; ++k) g[k] = lanes_load(sweep->carry + here + k * BATCH);
   for (int k = 0; k < 9 && linear; ++k)
     g0[k] = lanes_load(c->gradients + place / SLICE * (9 * SLICE) + k * SLICE + place % SLICE);
+  if (c->turns && !linear) correspondence_keep_turn(c, place, g);
   first_stress(c, g, s, g0, s0, linear, p);
   for (int r = 0; r < 3; ++r)
     for (int k = 0; k < 3; ++k) {
@@ -417,6 +418,9 @@ const FormulationType formulation_correspondence = {
     .point = correspondence_point,
     .shares = correspondence_shares,
     .stored_energy = correspondence_stored_energy,
+    .elongation = correspondence_elongation,
+    .keep_turns = correspondence_keep_turns,
+    .energy_room = correspondence_energy_room,
     .gradient = correspondence_gradient,
     .characteristic_length = correspondence_characteristic_length,
     .former_bonds = correspondence_former_bonds,

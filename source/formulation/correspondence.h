@@ -48,7 +48,8 @@ typedef struct Correspondence {
   double *shown;     /* [places][CORRESPONDENCE_SHOWN] */
   double *row;       /* [places][state_length] of its response */
   double *gradients; /* [slices][9][8] G of the state at which it was linearised; NULL before */
-  int32_t *axial;    /* places whose bonds act as springs, ascending (some may have become free since) */
+  double *turns;  /* [slices][9][8] how families have turned, less 1 (correspondence_breaking.c); NULL: nobody asks */
+  int32_t *axial; /* places whose bonds act as springs, ascending (some may have become free since) */
   int64_t axial_count;
 } Correspondence;
 
@@ -95,6 +96,13 @@ void correspondence_half_state(const void *formulation, double *const *at, int64
 int64_t correspondence_point_count(const void *formulation);
 int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
 int correspondence_linearise(void *formulation, Error *error);
+
+/** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
+ *  1 + (G - G^T) / 2. Written less 1. */
+void correspondence_keep_turn(const Correspondence *c, int64_t place, const Lanes g[9]);
+int correspondence_keep_turns(void *formulation, Error *error);
+void correspondence_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
+double correspondence_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 
 void correspondence_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 

@@ -98,6 +98,7 @@ void correspondence_destroy(void *formulation)
   places_free(&c->row);
   places_free(&c->shown);
   places_free(&c->gradients);
+  places_free(&c->turns);
   shape_table_destroy(&c->shapes);
   free(c->axial);
   free(c);
@@ -264,7 +265,8 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
 size_t correspondence_bytes(const void *formulation)
 {
   const Correspondence *c = formulation;
-  size_t numbers = 9 + 3 + (size_t)hold_components(c->control) + (hold_is_read(c->control) ? 3 : 0);
+  size_t numbers =
+      9 + 3 + (size_t)hold_components(c->control) + (hold_is_read(c->control) ? 3 : 0) + (c->turns ? 9 : 0);
   numbers += (size_t)(c->family->rows.kinds * (6 + c->pulls) + (c->row ? state_length(c->control) + 8 : 0));
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
          (size_t)c->particles->count * sizeof(int32_t);

@@ -76,6 +76,15 @@ typedef struct StoredEnergy {
   double strain[6], was[6]; /* of that point at the end and at the beginning of the last step, with the present bonds */
 } StoredEnergy;
 
+/** Energies that bonds may hold, per volume squared and influence as in `half_state`: force times elongation over two, of both ends. */
+typedef struct EnergyLimit {
+  double
+      half; /* half of the least of a slice's bonds: what one of the two ends has at least where both have more than that */
+  const double *influence; /* [patterns] omega of bonds along lattices */
+  const Influence *of;     /* omega of others */
+  double moved;            /* the most that any particle has moved since stresses were evaluated */
+} EnergyLimit;
+
 /** What bonds that broke leave to contact. */
 typedef struct FormerBonds {
   double share; /* of the stiffness of bonds calibrated in uniform expansion that they had */
@@ -171,6 +180,15 @@ typedef struct FormulationType {
   /** The same of one bond, if bonds have energies of their own and hand nothing on when one of them breaks; or NULL. */
   void (*bond_energy)(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                       StoredEnergy *energy);
+  /** How a bond has changed as its particle sees it: y less the reference vector, turned as the particle's family has turned. Half of its product
+   *  with the half state is the particle's share of the bond's energy. NULL: y - |xi| y / |y|, for forces along bonds. */
+  void (*elongation)(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
+  /** From now on keeps what `elongation` and `energy_room` need. NULL: nothing. */
+  int (*keep_turns)(void *formulation, Error *error);
+  /** Looks for bonds of which a slice's own particles hold more than half of an energy. NULL: nobody knows.
+   *  @param[out] found  1 if there may be such, else 0
+   *  @return how far every particle may move before there may be; 0: only until the next step */
+  double (*energy_room)(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
   /** Virial stress of the bonds at a place; NULL where points have a stress. */
   void (*stress)(const void *formulation, int64_t place, double stress[6]);
   /** Length over which a law must spread a fracture energy: G_F over the area below its stress against strain. NULL: unknown. */

@@ -267,6 +267,7 @@ const FormulationType formulation_ordinary = {
     .commit = ordinary_commit,
     .history = ordinary_history,
     .stored_energy = ordinary_stored_energy,
+    .energy_room = ordinary_energy_room,
     .gradient = ordinary_gradient,
     .stress = ordinary_stress,
     .critical_stretch = ordinary_critical_stretch,

@@ -68,6 +68,7 @@ typedef struct Ordinary {
   double *base, *slope;         /* [places] a and b - a */
   double *change;               /* [places] of theta in a linearised step, then of a; NULL before */
   double *shown;                /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  double shortest;              /* of all bonds */
   breccia_deviator *deviators;  /* [materials] */
   Flow *flow;                   /* NULL: all families are elastic */
   uint8_t *range;               /* [slices] how large stretches were at the last evaluation */
@@ -181,6 +182,7 @@ size_t ordinary_flow_bytes(const Ordinary *o);
 
 void ordinary_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                          double state[3]);
+double ordinary_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 void ordinary_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 void ordinary_gradient(const void *formulation, int64_t place, double f[9]);
 void ordinary_stress(const void *formulation, int64_t place, double stress[6]);

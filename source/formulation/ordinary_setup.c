@@ -105,6 +105,18 @@ static void weigh(void *context, int64_t place)
   o->share[place] = 1;
 }
 
+/** Length of the shortest bond. */
+static double shortest_bond(const Family *f)
+{
+  double least = INFINITY;
+  for (int p = 0; p < f->pattern_count; ++p) least = fmin(least, f->patterns[p].length);
+  for (int64_t slice = 0; slice < f->particles->slices; ++slice)
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane)
+        if (f->intact[slot] >> lane & 1) least = fmin(least, family_bond(f, slice, slot, lane).length);
+  return least;
+}
+
 void ordinary_renew(void *formulation, int64_t slice)
 {
   Ordinary *o = formulation;
@@ -169,7 +181,8 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
                   .material = parts->material,
                   .foreign = parts->foreign,
                   .space = parts->space,
-                  .dimensions = parts->body->dimensions};
+                  .dimensions = parts->body->dimensions,
+                  .shortest = shortest_bond(parts->family)};
   if (allocate(o, error)) {
     ordinary_destroy(o);
     return NULL;

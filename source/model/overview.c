@@ -113,6 +113,36 @@ static void describe_regions(const Domain *d, Text *text)
   text_add(text, ";");
 }
 
+/** What bonds of a material bear. */
+static void describe_limit(const breccia_model *model, int material, Text *text)
+{
+  const Domain *d = &model->domain;
+  const Failure *failure = &d->failure;
+  const Criterion *criterion = failure->criterion;
+  text_add(text, material ? ", " : " ");
+  if (!isfinite(failure->limit[material])) {
+    text_add(text, "none");
+    return;
+  }
+  text_add(text, "%g", failure->limit[material]);
+  char unit[64];
+  if (criterion->dimension) {
+    units_name(model->units, dimension_find(criterion->dimension), unit, sizeof unit);
+    text_add(text, " %s", unit);
+  }
+  const BondLength lengths = {peridynamics_space(model->spec->peridynamics), failure->influence, d->family.horizon};
+  for (int r = 0; criterion->describe && r < d->region_count; ++r) {
+    const LimitsOf of = {.type = d->regions[r].type,
+                         .lengths = &lengths,
+                         .section = body_section(&d->body),
+                         .materials = d->materials,
+                         .material_count = d->material_count};
+    if (!region_has_material(d, &d->regions[r], d->materials[material].name)) continue;
+    criterion->describe(&of, material, failure->limit[material], model->units, text);
+    return;
+  }
+}
+
 const char *breccia_model_overview(breccia_model *model)
 {
   const Domain *d = &model->domain;
@@ -139,11 +169,7 @@ const char *breccia_model_overview(breccia_model *model)
     text_add(text, "; %s", d->failure.criterion->name);
   else
     text_add(text, "; bonds do not break");
-  for (int k = 0; d->failure.criterion && k < d->material_count; ++k)
-    if (isfinite(d->failure.limit[k]))
-      text_add(text, "%s %g", k ? "," : "", d->failure.limit[k]);
-    else
-      text_add(text, "%s none", k ? "," : "");
+  for (int k = 0; d->failure.criterion && k < d->material_count; ++k) describe_limit(model, k, text);
   text_add(text, "\n");
   for (int r = 0; r < d->region_count; ++r)
     if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, text);

@@ -1,5 +1,6 @@
 #include "model/plausibility.h"
 
+#include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
 #include <math.h>
 #include <stdarg.h>
@@ -160,6 +161,9 @@ static void check_material(breccia_model *model, int k)
   check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_node(spec, "fracture energy"));
   if (failure && !isnan(failure->fracture_energy))
     check_fracture_energy(model, m, failure->fracture_energy, section_node(failure, "fracture energy"));
+  const CriticalEnergySpec *energy = critical_energy_spec(model->spec->failure);
+  if (energy && !isnan(energy->fracture_energy))
+    check_fracture_energy(model, m, energy->fracture_energy, section_node(energy, "fracture energy"));
   const bool softens = m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
   if (softens && !isfinite(model->domain.failure.limit[k]))
     warn(model, section_node(spec, "model"),
@@ -211,7 +215,7 @@ static void describe_material(const breccia_model *model, int k, Text *text)
     text_add(text, ", E G_F / f_t^2 ");
     quantity_describe(length, "m", text);
     text_add(text, " (%.2g horizons)", length / horizon);
-  } else if (isfinite(limit)) {
+  } else if (isfinite(limit) && !d->failure.criterion->dimension) {
     text_add(text, ", bonds break at a stretch of %.3g (elastically ", limit);
     quantity_describe(young * limit, "Pa", text);
     text_add(text, ")");

@@ -220,6 +220,13 @@ refuse 's/model: elastic, density: 7.85, Young modulus: 210 GPa, Poisson ratio: 
   5:18 "'elastic-1d' is a law of one strain; correspondence takes elastic, j2"
 refuse 's/critical stretch: 0.05/critical stretch: 0.05, fracture energy: 100 N\/m/' 16:52 "give 'critical stretch' or 'fracture energy', not both"
 refuse 's/critical stretch: 0.05/fracture energy: 100 N\/m/' 16:28 'no critical stretch follows from it in correspondence'
+refuse 's/critical stretch: 0.05/criterion: critical bond energy/' 16:22 "give 'bond energy' or 'fracture energy'"
+refuse 's/critical stretch: 0.05/criterion: critical bond energy, bond energy: 1 kJ\/m6, fracture energy: 100 N\/m/' 16:57 "give 'bond energy' or 'fracture energy', not both"
+refuse 's/critical stretch: 0.05/criterion: critical bond energy, bond energy: 1 kJ\/m3/' 16:57 'expected a bond energy'
+refuse 's/critical stretch: 0.05/criterion: critical bond energy, critical stretch: 0.05/' 16:44 'critical stretch: is for critical stretch'
+refuse 's/critical stretch: 0.05/criterion: critical energy, bond energy: 1 kJ\/m6/' 16:22 "did you mean 'critical bond energy'"
+refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: elastic-brittle, density: 1, Young modulus: 1 GPa, fracture energy: 100 N\\/m}/; s/^peri.*/peridynamics: {formulation: bond-based}/; s/critical stretch: 0.05/criterion: critical bond energy, bond energy: 1 kJ\\/m6/" \
+  16:22 "'elastic-brittle' of material 'clay' says by itself what bonds carry"
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, zero-energy control: {none: yes}}/" 15:41 'zero-energy control: is for correspondence'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: elastic}/" 15:54 "calibration: 'elastic' is not known; choose from continuum, uniform-expansion, uniaxial"
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, strain: small}/" 15:41 'strain: is for correspondence; bond-based does not have it: leave it out'

@@ -224,7 +224,7 @@ static void broken_bonds_stay_broken_and_damage_grows(void **state)
       for (int lane = 0; lane < SLICE; ++lane) {
         if (!(d->family.intact[slot] >> lane & 1)) continue;
         Bond bond = family_bond(&d->family, s, slot, lane);
-        assert_false(d->failure.criterion->exceeds(&d->failure, &d->family, s, &bond, lane));
+        assert_false(d->failure.criterion->exceeds(&d->failure, &d->family, s, slot, &bond, lane));
       }
   breccia_model_destroy(&m);
 }

@@ -31,8 +31,10 @@ static double suspect(const Failure *failure, const Family *family, int64_t slic
   return 0;
 }
 
-static bool exceeds(const Failure *failure, const Family *family, int64_t slice, const Bond *bond, int lane)
+static bool exceeds(const Failure *failure, const Family *family, int64_t slice, int64_t slot, const Bond *bond,
+                    int lane)
 {
+  (void)slot;
   const Particles *p = family->particles;
   const int64_t place = slice * SLICE + lane;
   double square = 0;
@@ -44,6 +46,7 @@ static bool exceeds(const Failure *failure, const Family *family, int64_t slice,
 const Criterion criterion_promised = {.name = "promised",
                                       .about = "a bond breaks when it has grown by a length",
                                       .source = "tests/promise",
+                                      .dimension = "length",
                                       .section = &section,
                                       .limits = limits,
                                       .suspect = suspect,

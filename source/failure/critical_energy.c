@@ -1,0 +1,178 @@
+/* A bond breaks when it holds more than an energy per volume squared w_c (Foster, Silling and Chen 2011; docs/theory.md 4). Held are half of
+ * (t_ij - t_ji) times the elongation, each end by its own half state: what all bonds store adds up to what the body does. That is a function of the
+ * state, where the source integrates the work along the path; they agree as long as a bond is loaded in proportion. Parts of volumes
+ * that count, beta, count here too: the bond between V_i and V_j breaks at w_c beta V_i V_j. */
+#include "failure/critical_energy.h"
+
+#include <math.h>
+
+static const Field fields[] = {
+    {.key = "bond energy",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(CriticalEnergySpec, energy),
+     .dimension = "bond energy",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "w_c: a bond that holds more energy than this times the volumes of its two particles breaks for good"},
+    {.key = "fracture energy",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(CriticalEnergySpec, fracture_energy),
+     .dimension = "fracture energy",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "G_F, from which it follows: 4 G_F / (pi delta^4) in space, 3 G_F / (2 t delta^3) in the plane, "
+                "2 G_F / (A delta^2) of a bar"},
+};
+static const Section section = {
+    .name = "critical bond energy",
+    .about = "Keys of `failure` with `criterion: critical bond energy`: one of the two. Only bonds "
+             "that are longer than they were break.",
+    .size = sizeof(CriticalEnergySpec),
+    FIELDS(fields)};
+
+const CriticalEnergySpec *critical_energy_spec(const FailureSpec *failure)
+{
+  return failure && criterion_of(failure)->section == &section ? failure->keys : NULL;
+}
+
+double bonds_across(Space space, double horizon, double cut)
+{
+  const double pi = acos(-1);
+  if (space == SPACE_3D) return pi * pow(horizon, 4) / 4;
+  return space == SPACE_BAR ? cut * pow(horizon, 2) / 2 : 2 * cut * pow(horizon, 3) / 3;
+}
+
+static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
+{
+  const CriticalEnergySpec *spec = failure->keys;
+  const DeckReader *reader = of->reader;
+  if (isnan(spec->energy) == isnan(spec->fracture_energy))
+    return node_error(reader->document, section_node(spec, isnan(spec->energy) ? "criterion" : "bond energy"),
+                      reader->error, "failure: give 'bond energy' or 'fracture energy'%s",
+                      isnan(spec->energy) ? "" : ", not both");
+  const double energy =
+      isnan(spec->energy) ? spec->fracture_energy / bonds_across(of->lengths->space, of->lengths->horizon, of->section)
+                          : spec->energy;
+  for (int k = 0; k < of->material_count; ++k) {
+    const Material *m = &of->materials[k];
+    if (of->present[k] && m->law->components == 1 && (!m->law->linear || isfinite(material_failure_strain(m))))
+      return node_error(reader->document, section_node(spec, "criterion"), reader->error,
+                        "criterion: 'critical bond energy' takes bonds that are elastic until they break; '%s' of "
+                        "material '%s' says by itself what bonds carry: leave the criterion out, or give "
+                        "'elastic-1d'",
+                        m->law->name, m->name);
+    limit[k] = energy;
+  }
+  return BRECCIA_OK;
+}
+
+static int create(Failure *failure, const Family *f, Error *error)
+{
+  failure->weights = memory_zeroed((size_t)f->pattern_count, sizeof(double), "failure", error);
+  if (!failure->weights) return BRECCIA_FAILURE;
+  for (int p = 0; p < f->pattern_count; ++p) {
+    const double length = f->patterns[p].length;
+    failure->weights[p] = failure->influence->value(fmin(1, length / f->horizon), length);
+  }
+  for (int r = 0; r < failure->region_count; ++r) {
+    const FailureRegion *region = &failure->regions[r];
+    if (region->type->keep_turns && region->type->keep_turns(region->formulation, error)) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+/** Least limit of the bonds of a slice: those of lattice slots join one material. */
+static double least_limit(const Failure *failure, const Family *f, int64_t slice)
+{
+  double least = failure->limit[failure->material[slice]];
+  for (int k = 0; k < failure->material_count && f->stored[slice] < f->first[slice + 1]; ++k)
+    least = fmin(least, failure->limit[k]);
+  return least;
+}
+
+static double suspect(const Failure *failure, const Family *f, int64_t slice, uint8_t *suspects)
+{
+  const FailureRegion *own = &failure->regions[failure->region[slice]];
+  const EnergyLimit limit = {.half = least_limit(failure, f, slice) / 2,
+                             .influence = failure->weights,
+                             .of = failure->influence,
+                             .moved = failure->moved};
+  if (isinf(limit.half)) return INFINITY;
+  if (own->type->energy_room) return own->type->energy_room(own->formulation, slice, &limit, suspects);
+  *suspects = 1;
+  return 0;
+}
+
+/** What a bond holds by the formulation of one of its ends, per volume squared. */
+static double half_energy(const Failure *failure, const Family *f, int64_t slice, int64_t slot, int lane,
+                          const Bond *bond)
+{
+  const FailureRegion *own = &failure->regions[failure->region[slice]];
+  double state[3], change[3], y[3], square = 0, sum = 0;
+  own->type->half_state(own->formulation, NULL, slice, slot, lane, state);
+  if (own->type->elongation) {
+    own->type->elongation(own->formulation, slice, slot, lane, change);
+  } else {
+    const int64_t place = slice * SLICE + lane;
+    double along = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
+      y[k] = bond->xi[k] + eta;
+      square += y[k] * y[k];
+      along += eta * (bond->xi[k] + y[k]);
+    }
+    const double length = sqrt(square), elongation = along / (length + bond->length); /* exact where it is small */
+    for (int k = 0; k < 3; ++k) change[k] = elongation * y[k] / length;
+  }
+  for (int k = 0; k < 3; ++k) sum += 0.5 * state[k] * change[k];
+  return sum;
+}
+
+static bool is_longer(const Family *f, int64_t place, const Bond *bond)
+{
+  double along = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
+    along += eta * (2 * bond->xi[k] + eta);
+  }
+  return along > 0;
+}
+
+/** A bond beyond its limit is so for one of its ends by more than half of that: the other end's slice need not be a suspect. */
+static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int64_t slot, const Bond *bond, int lane)
+{
+  const int64_t place = slice * SLICE + lane;
+  const double influence = failure->influence->value(fmin(1, bond->length / f->horizon), bond->length);
+  const double limit = failure_limit(failure, place, bond->neighbour) * bond->weight /
+                       (influence * f->particles->volume[bond->neighbour]);
+  if (!(bond->weight > 0) || isinf(limit) || !is_longer(f, place, bond)) return false;
+  const double own = half_energy(failure, f, slice, slot, lane, bond);
+  if (own < limit / 2 * (1 - 1e-12)) return false;
+  const int64_t there = bond->neighbour / SLICE, back = family_slot(f, bond->neighbour, (int32_t)place);
+  const Bond turned = family_bond(f, there, back, bond->neighbour % SLICE);
+  return own + half_energy(failure, f, there, back, bond->neighbour % SLICE, &turned) > limit;
+}
+
+/** The fracture energy behind the limit, and the stretch of which a crack spends as much. */
+static void describe(const LimitsOf *of, int material, double limit, const Units *units, Text *text)
+{
+  char unit[64];
+  units_name(units, dimension_find("fracture energy"), unit, sizeof unit);
+  const double energy = limit * bonds_across(of->lengths->space, of->lengths->horizon, of->section);
+  const FormulationType *type = of->type->critical_stretch ? of->type : formulation_find("bond-based");
+  text_add(text, " (a fracture energy of %.4g %s, as of bonds that break at a stretch of %.3g)", energy, unit,
+           type->critical_stretch(of->lengths, &of->materials[material], energy));
+}
+
+const Criterion criterion_critical_energy = {
+    .name = "critical bond energy",
+    .about = "a bond breaks when it holds more than an energy",
+    .source = "Foster, Silling and Chen 2011",
+    .dimension = "bond energy",
+    .section = &section,
+    .limits = limits,
+    .create = create,
+    .describe = describe,
+    .suspect = suspect,
+    .exceeds = exceeds,
+};
