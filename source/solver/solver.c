@@ -165,8 +165,10 @@ int solver_create(Solver *s, Text *warning, Error *error)
   if (!status) status = s->type->plan(s, warning, error);
   for (int64_t k = 1; !status && k < s->clock.stages; ++k) {
     const int type = type_of(stage_of(s, k));
+    s->loading->stage = k; /* with its springs */
     status = types[type]->check(s, stage_of(s, k)->of[type], error);
   }
+  s->loading->stage = 0;
   if (!status) foresee(s);
   return status;
 }
