@@ -175,6 +175,7 @@ static void waves_of_twenty_spacings_pass(void **state)
   assert_true(wide < 0.025);
   assert_near(wide, (speeds[0] - speeds[1]) / (speeds[0] + speeds[1]), 0.008);
   assert_true(reflected("horizon: 2.015", speeds) < 0.01);
+  assert_true(reflected("horizon: 3.015, influence: cubic-spline", speeds) < 0.006);
 }
 
 /** A region with all blocks is the body without regions, to the bit. */
