@@ -273,6 +273,12 @@ static int fill(Body *body, const DeckReader *reader, Filling *fillings)
   return status;
 }
 
+/** Whether two blocks have the same thickness in the plane, or the same area on a line: bonds have constants of one. */
+static bool alike_sections(const BlockSpec *one, const BlockSpec *other, int dimensions)
+{
+  return dimensions == 3 || (dimensions == 2 ? one->thickness == other->thickness : one->area == other->area);
+}
+
 int body_create(Body *body, const DeckReader *reader, const SectionList *blocks, const SectionList *cracks,
                 const MarginList *margins)
 {
@@ -302,6 +308,13 @@ int body_create(Body *body, const DeckReader *reader, const SectionList *blocks,
     if (b && body->lattices[b].dimensions != body->lattices[0].dimensions)
       status = node_error(reader->document, section_node(body->blocks[b], "lattice"), error,
                           "block: lattices of space, of the plane and lines cannot stand in one body");
+    else if (b && !alike_sections(body->blocks[0], body->blocks[b], body->lattices[b].dimensions))
+      status =
+          node_error(reader->document,
+                     section_node(body->blocks[b], body->lattices[b].dimensions == 2 ? "thickness" : "area"), error,
+                     "block: a plane body has one thickness and a bar one area, those of block '%s'; where they "
+                     "differ, scale Young's modulus and density of the material instead, or build it in space",
+                     body->blocks[0]->head.name);
   }
   body->dimensions = body->lattices[0].dimensions;
   if (!status) status = fill(body, reader, fillings);

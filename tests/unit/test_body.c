@@ -364,6 +364,25 @@ static void particles_on_top_of_each_other_are_refused(void **state)
   free(words);
 }
 
+/** Constants of bonds are of one thickness. */
+static void blocks_of_unlike_thickness_or_area_are_refused(void **state)
+{
+  (void)state;
+  static const char *const of[2][2] = {{"lattice: square, thickness", "has one thickness"},
+                                       {"lattice: line, area", "a bar one area"}};
+  for (int k = 0; k < 2; ++k) {
+    char deck[512];
+    snprintf(deck, sizeof deck,
+             MATERIAL SOLVE
+             "body:\n  a: {material: m, spacing: 1, %s: 1, shape: {box: {from: [0, 0], to: [9, %d]}}}\n  "
+             "b: {material: m, spacing: 1, %s: 2, shape: {box: {from: [9, 0], to: [18, %d]}}}\n",
+             of[k][0], k ? 1 : 5, of[k][0], k ? 1 : 5);
+    char *words = refusal_of(deck);
+    assert_non_null(strstr(words, of[k][1]));
+    free(words);
+  }
+}
+
 static void selections_hold_what_they_say(void **state)
 {
   (void)state;
@@ -435,6 +454,7 @@ int main(void)
       cmocka_unit_test(weighted_volume_of_whole_cells_matches_peridigm),
       cmocka_unit_test(weights_of_bonds_are_influence_times_volume),
       cmocka_unit_test(particles_on_top_of_each_other_are_refused),
+      cmocka_unit_test(blocks_of_unlike_thickness_or_area_are_refused),
       cmocka_unit_test(selections_hold_what_they_say),
       cmocka_unit_test(selections_join_others_have_them_in_common_and_leave_them_out),
   };
