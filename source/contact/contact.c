@@ -20,8 +20,9 @@ static const Field contact_fields[] = {
      .dimension = "1",
      .standard = "0",
      .range = "[0, inf)",
-     .meaning =
-         "Coulomb's coefficient: faces stick until the force along them is this share of that across them, then slide"},
+     .meaning = "Coulomb's coefficient, on faces of cuts and of different bodies: they stick until the force along "
+                "them is this "
+                "share of that across them, then slide. Faces of broken bonds interlock, whatever it is"},
 };
 
 const Section contact_section = {

@@ -120,9 +120,14 @@ static const Field deck_fields[] = {
      .kind = FIELD_SECTIONS,
      .offset = offsetof(DeckSpec, pictures),
      .standard = "",
-     .meaning = "when absent: displacement, octahedral shear stress and damage at the end",
+     .meaning = "when absent: displacement, octahedral shear stress and damage at the end; []: none",
      .section = &picture_section},
 };
+
+bool deck_usual_pictures(const DeckSpec *spec)
+{
+  return section_node(spec, "pictures") == spec->head.node;
+}
 
 static void check_deck(const DeckReader *reader, void *section)
 {

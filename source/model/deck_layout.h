@@ -27,6 +27,9 @@ typedef struct DeckSpec {
 
 extern const Section deck_section, units_section;
 
+/** Whether a run draws the usual pictures: the deck says nothing of pictures. */
+bool deck_usual_pictures(const DeckSpec *spec);
+
 /** Parameter tables of all laws, for the descriptions; to be freed. */
 ParameterTable *law_tables(const LawList *laws, int *count);
 

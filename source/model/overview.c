@@ -24,7 +24,7 @@ Task model_task(const breccia_model *model, int64_t first, int64_t last, int64_t
     const PictureSpec *picture = model->spec->pictures.items[k];
     task.pictures += picture->times.count ? picture->times.count : 1;
   }
-  if (!model->spec->pictures.count) task.pictures = 3;
+  if (deck_usual_pictures(model->spec)) task.pictures = 3;
   return task;
 }
 
@@ -173,6 +173,7 @@ const char *breccia_model_overview(breccia_model *model)
   text_add(text, "\n");
   for (int r = 0; r < d->region_count; ++r)
     if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, text);
+  plausibility_describe_contact(model, text);
   plausibility_in_short(model, text);
   text_add(text, "\n");
   if (s->clock.stages > 1)

@@ -1,30 +1,11 @@
-#include "model/plausibility.h"
+#include "model/plausibility_parts.h"
 
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-static double in_si(const breccia_model *model, const char *dimension, double value)
-{
-  return units_in_si(model->units, dimension_find(dimension), value);
-}
-
-__attribute__((format(printf, 3, 4))) static void warn(breccia_model *model, const Node *node, const char *format, ...)
-{
-  Text words = {0};
-  va_list arguments;
-  va_start(arguments, format);
-  text_add_list(&words, format, arguments);
-  va_end(arguments);
-  char where[WHERE_SIZE];
-  node_where(model->document, node, where, sizeof where);
-  text_add(&model->warnings, "%swarning: %s: %s", model->warnings.length ? "\n" : "", where, text_words(&words));
-  text_free(&words);
-}
 
 /* ---- materials ---- */
 
@@ -48,7 +29,7 @@ static double wave_speed(const breccia_model *model, const Material *m)
 {
   const bool bar = model->domain.body.dimensions == 1;
   const double modulus = bar ? material_young(m) : m->bulk + 4 * m->shear / 3;
-  return sqrt(in_si(model, "stress", modulus) / in_si(model, "density", m->density));
+  return sqrt(plausibility_in_si(model, "stress", modulus) / plausibility_in_si(model, "density", m->density));
 }
 
 typedef struct Candidate {
@@ -68,7 +49,7 @@ static void suggest(const breccia_model *model, const Node *node, const char *di
     units_name(model->units, dimension_find("force"), force, sizeof force);
     units_name(model->units, dimension_find("time"), time, sizeof time);
     text_add(text, "; did you mean '%g %s'? In %s, %s, %s that is %.4g", number, candidates[k].unit, length, force,
-             time, number * candidates[k].factor / in_si(model, dimension, 1));
+             time, number * candidates[k].factor / plausibility_in_si(model, dimension, 1));
     return;
   }
 }
@@ -82,7 +63,7 @@ static bool beyond(breccia_model *model, const Node *node, const char *what, con
                    double low, double high, const char *unit, const Candidate *candidates, int count, double usual_low,
                    double usual_high)
 {
-  const double real = in_si(model, dimension, value);
+  const double real = plausibility_in_si(model, dimension, value);
   if (real >= low && real <= high) return false;
   Text words = {0}, band[2] = {{0}, {0}};
   quantity_describe(real, unit, &words);
@@ -92,8 +73,9 @@ static bool beyond(breccia_model *model, const Node *node, const char *what, con
   suggest(model, node, dimension, candidates, count, usual_low, usual_high, &hint);
   const char *given = node->kind == NODE_SCALAR ? node->text : "it";
   const bool told = !strcmp(given, text_words(&words)); /* in the deck already as it is said here */
-  warn(model, node, "%s: %s%s%s; materials like it have %s to %s%s", what, told ? "" : given, told ? "" : " is ",
-       text_words(&words), text_words(&band[0]), text_words(&band[1]), text_words(&hint));
+  plausibility_say(model, node, "%s: %s%s%s; materials like it have %s to %s%s", what, told ? "" : given,
+                   told ? "" : " is ", text_words(&words), text_words(&band[0]), text_words(&band[1]),
+                   text_words(&hint));
   text_free(&words);
   text_free(&band[0]);
   text_free(&band[1]);
@@ -114,8 +96,9 @@ static bool called_concrete(const Material *m)
 static bool like_concrete(const breccia_model *model, const Material *m)
 {
   if (called_concrete(m)) return true;
-  const double young = in_si(model, "stress", material_young(m)), density = in_si(model, "density", m->density);
-  const double strength = in_si(model, "stress", parameter(model, m, "tensile strength"));
+  const double young = plausibility_in_si(model, "stress", material_young(m)),
+               density = plausibility_in_si(model, "density", m->density);
+  const double strength = plausibility_in_si(model, "stress", parameter(model, m, "tensile strength"));
   return young > 15e9 && young < 50e9 && density > 2000 && density < 2600 && strength > 1e6 && strength < 6e6;
 }
 
@@ -123,13 +106,13 @@ static bool like_concrete(const breccia_model *model, const Material *m)
  *  mortar and of large aggregates reach from 40 to 400. */
 static void check_fracture_energy(breccia_model *model, const Material *m, double energy, const Node *node)
 {
-  const double real = in_si(model, "fracture energy", energy);
+  const double real = plausibility_in_si(model, "fracture energy", energy);
   if (isnan(real) ||
       beyond(model, node, "fracture energy", "fracture energy", energy, 0.1, 1e6, "J/m2", fracture_energies, 2, 1, 1e4))
     return;
   if (like_concrete(model, m) && (real < 40 || real > 400))
-    warn(model, node, "fracture energy: %.4g N/m is %s for concrete, which has 60 to 200 N/m", real,
-         real < 40 ? "little" : "much");
+    plausibility_say(model, node, "fracture energy: %.4g N/m is %s for concrete, which has 60 to 200 N/m", real,
+                     real < 40 ? "little" : "much");
 }
 
 static void check_material(breccia_model *model, int k)
@@ -149,14 +132,16 @@ static void check_material(breccia_model *model, int k)
                 concrete ? 5e9 : 1e6, concrete ? 1e11 : 5e11);
   const double speed = wave_speed(model, m), strength = parameter(model, m, "tensile strength");
   if (!odd && !(speed >= 10 && speed <= 10000 * 1.5))
-    warn(model, spec->head.node,
-         "material '%s': waves would run at %.3g m/s; in known materials they run at 10 to 15000 m/s: look at "
-         "density and stiffness",
-         m->name, speed);
+    plausibility_say(
+        model, spec->head.node,
+        "material '%s': waves would run at %.3g m/s; in known materials they run at 10 to 15000 m/s: look at "
+        "density and stiffness",
+        m->name, speed);
   if (strength > material_young(m) / 20)
-    warn(model, section_node(spec, "tensile strength"),
-         "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
-         strength / material_young(m), 100 * strength / material_young(m));
+    plausibility_say(
+        model, section_node(spec, "tensile strength"),
+        "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
+        strength / material_young(m), 100 * strength / material_young(m));
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
   check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_node(spec, "fracture energy"));
   if (failure && !isnan(failure->fracture_energy))
@@ -166,10 +151,11 @@ static void check_material(breccia_model *model, int k)
     check_fracture_energy(model, m, energy->fracture_energy, section_node(energy, "fracture energy"));
   const bool softens = m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
   if (softens && !isfinite(model->domain.failure.limit[k]))
-    warn(model, section_node(spec, "model"),
-         "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "
-         "holds cracks together; add 'failure: {critical stretch: ...}'",
-         m->name, m->law_name);
+    plausibility_say(
+        model, section_node(spec, "model"),
+        "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "
+        "holds cracks together; add 'failure: {critical stretch: ...}'",
+        m->name, m->law_name);
 }
 
 /** Of most of the body. */
@@ -196,12 +182,12 @@ static void describe_material(const breccia_model *model, int k, Text *text)
 {
   const Domain *d = &model->domain;
   const Material *m = &d->materials[k];
-  const double young = in_si(model, "stress", material_young(m)), limit = d->failure.limit[k];
-  const double strength = in_si(model, "stress", parameter(model, m, "tensile strength"));
-  const double energy = in_si(model, "fracture energy", parameter(model, m, "fracture energy"));
-  const double horizon = in_si(model, "length", d->family.horizon);
+  const double young = plausibility_in_si(model, "stress", material_young(m)), limit = d->failure.limit[k];
+  const double strength = plausibility_in_si(model, "stress", parameter(model, m, "tensile strength"));
+  const double energy = plausibility_in_si(model, "fracture energy", parameter(model, m, "fracture energy"));
+  const double horizon = plausibility_in_si(model, "length", d->family.horizon);
   text_add(text, "  %s: ", m->name);
-  quantity_describe(in_si(model, "density", m->density), "kg/m3", text);
+  quantity_describe(plausibility_in_si(model, "density", m->density), "kg/m3", text);
   text_add(text, ", E ");
   quantity_describe(young, "Pa", text);
   text_add(text, ", waves ");
@@ -244,11 +230,11 @@ static Extent extent_of(const breccia_model *model)
     }
   }
   for (int k = 0; k < d->body.dimensions; ++k) {
-    e.size[k] = in_si(model, "length", high[k] - low[k] + d->body.coarsest->plane[k]);
+    e.size[k] = plausibility_in_si(model, "length", high[k] - low[k] + d->body.coarsest->plane[k]);
     e.largest = fmax(e.largest, e.size[k]);
     e.smallest = fmin(e.smallest, e.size[k]);
   }
-  e.mass = in_si(model, "density", mass) * pow(in_si(model, "length", 1), 3);
+  e.mass = plausibility_in_si(model, "density", mass) * pow(plausibility_in_si(model, "length", 1), 3);
   e.speed = wave_speed(model, main_material(model));
   e.crossing = e.largest / e.speed;
   return e;
@@ -291,7 +277,8 @@ void plausibility_in_short(const breccia_model *model, Text *text)
 static void describe_frequencies(const breccia_model *model, const Extent *e, Text *text)
 {
   const Material *m = main_material(model);
-  const double bar = sqrt(in_si(model, "stress", material_young(m)) / in_si(model, "density", m->density));
+  const double bar =
+      sqrt(plausibility_in_si(model, "stress", material_young(m)) / plausibility_in_si(model, "density", m->density));
   const double along = bar / (2 * e->largest), bending = 1.028 * bar * e->smallest / (e->largest * e->largest);
   text_add(text, "  lowest frequency of the free body: about ");
   quantity_describe(along, "Hz", text);
@@ -324,11 +311,11 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
     text_add(text, "  load in line %d: ", l->head.node->line);
   if (told.words) {
     text_add(text, "%s ", told.words);
-    quantity_describe(in_si(model, told.dimension, told.value), told.unit, text);
+    quantity_describe(plausibility_in_si(model, told.dimension, told.value), told.unit, text);
     text_add(text, "%s", load->type->timeless ? "\n" : "; ");
     if (load->type->timeless) return;
   }
-  const double rise = in_si(model, "time", history_rise(&load->history));
+  const double rise = plausibility_in_si(model, "time", history_rise(&load->history));
   if (rise > 0) {
     text_add(text, "grows over ");
     quantity_describe(rise, "s", text);
@@ -340,11 +327,11 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
     text_add(text, "acts in full from the start");
   if (has_kind(l, "velocity")) {
     const Material *m = main_material(model);
-    const double speed = in_si(model, "velocity", magnitude);
+    const double speed = plausibility_in_si(model, "velocity", magnitude);
     text_add(text, "; a wave behind ");
     quantity_describe(speed, "m/s", text);
     text_add(text, " carries ");
-    quantity_describe(speed * e->speed * in_si(model, "density", m->density), "Pa", text);
+    quantity_describe(speed * e->speed * plausibility_in_si(model, "density", m->density), "Pa", text);
   }
   text_add(text, "\n");
 }
@@ -357,9 +344,10 @@ static void check_jump(breccia_model *model, const Load *load)
   if ((!has_kind(l, "displacement") && !has_kind(l, "support")) || start == 0) return;
   char length[32];
   units_name(model->units, dimension_find("length"), length, sizeof length);
-  warn(model, load->node,
-       "displacement: the particles jump by %.4g %s in the first step; let it grow, like 'history: {ramp to: ...}'",
-       start, length);
+  plausibility_say(
+      model, load->node,
+      "displacement: the particles jump by %.4g %s in the first step; let it grow, like 'history: {ramp to: ...}'",
+      start, length);
 }
 
 /** Earthquakes stay below 3 g; a record in g acts on a load of 1 g, one in cm/s2 on one of 1 cm/s2. */
@@ -367,13 +355,14 @@ static void check_shaking(breccia_model *model, const Load *load)
 {
   static const double most = 30, gravity = 9.81; /* m/s2 */
   if (!has_kind(load->spec, "base acceleration") && !has_kind(load->spec, "acceleration")) return;
-  const double peak = in_si(model, "acceleration", load_magnitude(load->spec)) *
+  const double peak = plausibility_in_si(model, "acceleration", load_magnitude(load->spec)) *
                       history_peak(&load->history, model->solver.clock.end_time - load->begin);
   if (peak > most)
-    warn(model, load->node,
-         "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
-         "load's value is what 1 in it means",
-         load->node->key, peak, peak / gravity);
+    plausibility_say(
+        model, load->node,
+        "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
+        "load's value is what 1 in it means",
+        load->node->key, peak, peak / gravity);
 }
 
 /** Bonds near particles that are moved carry most, and break there first. */
@@ -395,9 +384,10 @@ static void check_grips(breccia_model *model)
     for (int64_t n = 0; n < held->count; ++n)
       breaks |= isfinite(d->failure.limit[d->material[held->places[n] / SLICE]]);
     if (!breaks) continue;
-    warn(model, l->head.node,
-         "load: bonds may break at the grips, within a horizon of the particles that it moves, and let the body go; "
-         "'failure: {..., near grips: hold}' keeps them, 'near grips: break' says that it is meant");
+    plausibility_say(
+        model, l->head.node,
+        "load: bonds may break at the grips, within a horizon of the particles that it moves, and let the body go; "
+        "'failure: {..., near grips: hold}' keeps them, 'near grips: break' says that it is meant");
     return;
   }
 }
@@ -413,15 +403,18 @@ static void check_cracks(breccia_model *model)
       snprintf(low + strlen(low), sizeof low - strlen(low), "%s%.4g", k ? ", " : "", body->low[k]);
       snprintf(high + strlen(high), sizeof high - strlen(high), "%s%.4g", k ? ", " : "", body->high[k]);
     }
-    warn(model, body->cracks[c]->head.node,
-         "crack: it %s; the outermost particles stand at [%s] and [%s]: look at its coordinates and their unit",
-         body->cracks[c]->remove ? "takes out no particle" : "cuts no bond", low, high);
+    plausibility_say(
+        model, body->cracks[c]->head.node,
+        "crack: it %s; the outermost particles stand at [%s] and [%s]: look at its coordinates and their unit",
+        body->cracks[c]->remove ? "takes out no particle" : "cuts no bond", low, high);
   }
 }
 
 void plausibility_warn(breccia_model *model)
 {
   check_cracks(model);
+  plausibility_warn_of_blocks(model);
+  plausibility_warn_of_contact(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
   for (int k = 0; k < model->loading.count; ++k) {
     check_jump(model, &model->loading.loads[k]);
@@ -437,7 +430,8 @@ void plausibility_describe(const breccia_model *model, Text *text)
   for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
   describe_frequencies(model, &e, text);
   for (int k = 0; k < model->loading.count; ++k) describe_load(model, &model->loading.loads[k], &e, text);
-  const double time = in_si(model, "time", (double)model->solver.clock.steps * model->solver.clock.time_step);
+  const double time =
+      plausibility_in_si(model, "time", (double)model->solver.clock.steps * model->solver.clock.time_step);
   text_add(text, "  the run: ");
   quantity_describe(time, "s", text);
   text_add(text, ", %.3g travel times of a wave", time / e.crossing);

@@ -14,4 +14,7 @@ void plausibility_describe(const breccia_model *model, Text *text);
 /** Adds the shortest of it: how big the body is, and how long a wave takes through it. */
 void plausibility_in_short(const breccia_model *model, Text *text);
 
+/** Adds a line on contact, if the deck has it. */
+void plausibility_describe_contact(const breccia_model *model, Text *text);
+
 #endif

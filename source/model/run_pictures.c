@@ -107,6 +107,8 @@ static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
 void run_draw_pictures(Run *run)
 {
   breccia_model *model = run->model;
+  const bool usual_ones = deck_usual_pictures(model->spec);
+  if (!usual_ones && !model->spec->pictures.count) return;
   Error *error = breccia_error_create();
   char *path = text_format("%s/results.vtkhdf", run->wish->folder),
        *folder = text_format("%s/pictures", run->wish->folder);
@@ -115,7 +117,7 @@ void run_draw_pictures(Run *run)
   const bool open = !status && !result_view_open(&view, path, error);
   if (open && view.steps) {
     static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
-    for (int k = 0; !model->spec->pictures.count && k < 3; ++k) {
+    for (int k = 0; usual_ones && k < 3; ++k) {
       bool written = false;
       for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
       const PictureSpec spec = {

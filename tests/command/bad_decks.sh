@@ -284,6 +284,61 @@ for word in hold break; do
   equal "near grips: $word: warnings" "$(cat "$work/errors")" ""
 done
 
+# Contact, and blocks that a gap parts or that overlap. two GAP FURTHER: a deck of two blocks so far apart
+two() {
+  cat > "$work/two.yaml" <<Y
+title: Two blocks
+units: {length: m, force: kN, time: s}
+materials: {s: {model: elastic, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body:
+  a: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, 0], to: [0.2, 0.1]}}}
+  b: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [$2, $(awk "BEGIN {print 0.1 + $1}")], to: [0.2, $(awk "BEGIN {print 0.2 + $1}")]}}}
+peridynamics: {space: plane strain}
+loads: [{on: {block: a}, body force: [0, 0]}]
+$3
+Y
+  (cd "$work" && "$breccia" check two.yaml > out 2> errors)
+  equal "two blocks, $*: status" $? 0
+}
+standard='solve: {explicit: {steps: 3}}'
+two 0 0 "$standard"
+equal "blocks that touch: warnings" "$(cat "$work/errors")" ""
+two 0.01 0.01 "$standard"
+equal "blocks that touch nearly: warnings" "$(cat "$work/errors")" ""
+two 0.02 0 "$standard"
+contains "blocks apart" "$(cat "$work/errors")" "warning: two.yaml:6:3: blocks 'a' and 'b' are 20 mm apart, within the horizon of 60.3 mm: bonded across the gap"
+two 0.08 0 "$standard"
+equal "blocks more than a horizon apart: warnings" "$(cat "$work/errors")" ""
+two -0.05 0 "$standard"
+contains "blocks that overlap" "$(cat "$work/errors")" "warning: two.yaml:6:3: blocks 'a' and 'b' overlap: 20 particles of the first stand inside the second, 20 of the second"
+cut="$standard
+cracks: [{cut: {line: [[-1, 0.11], [1, 0.11]]}}]"
+two 0.02 0 "$cut
+contact: {}"
+contains "a cut in a gap" "$(cat "$work/errors")" "warning: two.yaml:10:11: crack: the cut lies in a gap of 20 mm, and contact takes cuts as closed"
+contains "a line on contact" "$(cat "$work/out")" "contact: 1 times as stiff as the body, no friction"
+two 0.02 0 "$cut"
+equal "a cut in a gap without contact: warnings" "$(cat "$work/errors")" ""
+two 0.0002 0 "$(echo "$cut" | sed 's/0.11/0.1001/g')
+contact: {}"
+equal "a cut between blocks that touch: warnings" "$(cat "$work/errors")" ""
+two 0.02 0 "$standard
+cracks: [{remove: {box: {from: [-1, 0.1], to: [1, 0.12]}}, cut faces: yes}]
+contact: {}"
+equal "a gap with cut faces: warnings" "$(cat "$work/errors")" ""
+two 0.08 0 "$standard
+failure: {critical stretch: 0.01}
+contact: {friction: 2, stiffness: 2}"
+equal "the most usual contact: warnings" "$(cat "$work/errors")" ""
+contains "contact and breakage" "$(cat "$work/out")" "contact: 2 times as stiff as the body, friction 2 on faces of cuts and of different bodies; faces of broken bonds interlock"
+two 0.08 0 "$standard
+contact: {friction: 60, stiffness: 10}"
+contains "friction in per cent" "$(cat "$work/errors")" "two.yaml:10:11: friction: 60 is more than faces of anything have; it is a number, not per cent"
+contains "stiff contact" "$(cat "$work/errors")" "two.yaml:10:25: stiffness: faces 10 times as stiff as the body meet within a step or two"
+two 0.08 0 "solve: {explicit: {steps: 3, safety: 0.5}}
+contact: {stiffness: 10}"
+equal "stiff contact, half the step: warnings" "$(cat "$work/errors")" ""
+
 # Plane decks with keys of space, and the reverse; brackets and dashes
 refuse 's/to: \[1, 0.5, 0.3\]/to: [1, 0.5]/' 10:13 "box: it has no size along z; give points three numbers, or take 'lattice: square' for a plane body"
 refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: square\n    thickness: 1/; s/face: x+/face: z+/; s/^peri.*/peridynamics: {space: plane strain}/' \

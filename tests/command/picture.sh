@@ -20,6 +20,12 @@ Y
 "$breccia" run bar.yaml > out 2>&1 || fail "run: $(cat out)"
 # names are short, and no picture takes the place of another
 equal "names" "$(ls bar/pictures | tr '\n' ' ')" "damage-2.png damage.png ledger.png moved.png pull-over-end.png stress-xx-0s.png "
+sed '/^  - /d; s/^pictures:/pictures: []/; s/^title.*/title: Bare/' bar.yaml > bare.yaml
+"$breccia" run bare.yaml > out 2>&1 || fail "run without pictures: $(cat out)"
+equal "no pictures asked for" "$(ls bare/pictures 2> errors | wc -l)" 0
+sed '/^pictures/d' bare.yaml > usual.yaml
+"$breccia" run usual.yaml > out 2>&1 || fail "run with the usual pictures: $(cat out)"
+equal "the usual pictures" "$(ls usual/pictures | tr '\n' ' ')" "damage.png displacement.png "
 for file in plain.png plain.svg plain.pdf; do
   "$breccia" plot bar --field stress --component xx --output $file > out 2>&1 || fail "$file: $(cat out)"
   [ "$(wc -c < $file)" -gt 2000 ] || fail "$file is too small to be a picture"

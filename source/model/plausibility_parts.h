@@ -1,0 +1,20 @@
+/* What the files of plausibility share: words and units (plausibility_words.c); blocks and contact (plausibility_contact.c). */
+#ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
+#define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
+
+#include "model/plausibility.h"
+
+/** A value in the deck's units as SI has it. */
+double plausibility_in_si(const breccia_model *model, const char *dimension, double value);
+
+/** Adds a warning about a node of the deck to the model's. */
+__attribute__((format(printf, 3, 4))) void plausibility_say(breccia_model *model, const Node *node, const char *format,
+                                                            ...);
+
+/** Warns where blocks overlap, or are bonded across a gap. */
+void plausibility_warn_of_blocks(breccia_model *model);
+
+/** Warns of contact that is not what its words say. */
+void plausibility_warn_of_contact(breccia_model *model);
+
+#endif
