@@ -284,7 +284,8 @@ for word in hold break; do
   equal "near grips: $word: warnings" "$(cat "$work/errors")" ""
 done
 
-# Contact, and blocks that a gap parts or that overlap. two GAP FURTHER: a deck of two blocks so far apart
+# Contact, and blocks that a gap parts or that overlap. two GAP ASIDE KEYS: a deck of two blocks, the second so
+# far above the first and to its right
 two() {
   cat > "$work/two.yaml" <<Y
 title: Two blocks
@@ -292,7 +293,7 @@ units: {length: m, force: kN, time: s}
 materials: {s: {model: elastic, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2}}
 body:
   a: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, 0], to: [0.2, 0.1]}}}
-  b: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [$2, $(awk "BEGIN {print 0.1 + $1}")], to: [0.2, $(awk "BEGIN {print 0.2 + $1}")]}}}
+  b: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [$2, $(awk "BEGIN {print 0.1 + $1}")], to: [$(awk "BEGIN {print 0.2 + $2}"), $(awk "BEGIN {print 0.2 + $1}")]}}}
 peridynamics: {space: plane strain}
 loads: [{on: {block: a}, body force: [0, 0]}]
 $3
@@ -333,8 +334,8 @@ equal "the most usual contact: warnings" "$(cat "$work/errors")" ""
 contains "contact and breakage" "$(cat "$work/out")" "contact: 2 times as stiff as the body, friction 2 on faces of cuts and of different bodies; faces of broken bonds interlock"
 two 0.08 0 "$standard
 contact: {friction: 60, stiffness: 10}"
-contains "friction in per cent" "$(cat "$work/errors")" "two.yaml:10:11: friction: 60 is more than faces of anything have; it is a number, not per cent"
-contains "stiff contact" "$(cat "$work/errors")" "two.yaml:10:25: stiffness: faces 10 times as stiff as the body meet within a step or two"
+contains "friction in per cent" "$(cat "$work/errors")" "two.yaml:10:21: friction: 60 is more than faces of anything have; it is a number, not per cent"
+contains "stiff contact" "$(cat "$work/errors")" "two.yaml:10:36: stiffness: faces 10 times as stiff as the body meet within a step or two"
 two 0.08 0 "solve: {explicit: {steps: 3, safety: 0.5}}
 contact: {stiffness: 10}"
 equal "stiff contact, half the step: warnings" "$(cat "$work/errors")" ""
