@@ -69,7 +69,7 @@ asan:
 	@sh scripts/setup.sh test
 	@cmake --preset asan-ubsan > /dev/null
 	@cmake --build --preset asan-ubsan --parallel $(cores)
-	@BRECCIA_SANITIZED=1 LSAN_OPTIONS="suppressions='$(CURDIR)/tests/leaks.txt':print_suppressions=0" UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan-ubsan
+	@BRECCIA_SANITIZED=1 LSAN_OPTIONS="suppressions='$(CURDIR)/tests/leaks.txt':print_suppressions=0" UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan-ubsan --parallel $(cores)
 
 coverage:
 	@sh scripts/setup.sh test
