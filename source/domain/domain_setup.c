@@ -3,117 +3,9 @@
 
 #include "base/check.h"
 #include "base/team.h"
-#include "base/tensor.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool takes(const FormulationType *type, const breccia_law *law)
-{
-  return law->components == type->components && (!type->takes || type->takes(law));
-}
-
-/** Laws take one strain or six; formulations offer one or the other, and some take few laws only. */
-static int check_law(const FormulationType *type, const DeckReader *reader, const MaterialSpec *spec,
-                     const breccia_law *made)
-{
-  const LawList *laws = reader->context;
-  const breccia_law *law = spec->model ? law_find(laws, spec->model) : made;
-  if (takes(type, law)) return BRECCIA_OK;
-  Text words = {0};
-  for (int k = 0; law_at(laws, k); ++k)
-    if (takes(type, law_at(laws, k))) text_add(&words, "%s%s", words.length ? ", " : "", law_at(laws, k)->name);
-  const Node *node = section_node(spec, spec->model ? "model" : spec->opensees ? "opensees" : "remote");
-  const char *name = spec->model ? law->name : law->source;
-  if (law->components == type->components)
-    node_error(reader->document, node, reader->error,
-               "material '%s': '%s' needs a strain, which %s does not have; it takes %s", spec->head.name, name,
-               type->name, text_words(&words));
-  else
-    node_error(reader->document, node, reader->error, "material '%s': '%s' is a law of %s; %s takes %s",
-               spec->head.name, name, law->components == 1 ? "one strain" : "strain in space", type->name,
-               text_words(&words));
-  text_free(&words);
-  return BRECCIA_USER_ERROR;
-}
-
-static double length_of(const FormulationType *type, const BondLength *of)
-{
-  return type->characteristic_length ? type->characteristic_length(of) : NAN;
-}
-
-static bool same_length(double a, double b)
-{
-  return a == b || (isnan(a) && isnan(b));
-}
-
-/** Whether the formulations of a material's regions take its parameters. */
-static int check_parameters(const Domain *d, const DeckReader *reader, const MaterialSpec *spec, const Material *made)
-{
-  char reason[200];
-  for (int r = 0; r < d->region_count; ++r) {
-    const FormulationType *type = d->regions[r].type;
-    if (!type->check_material || !region_has_material(d, &d->regions[r], spec->head.name)) continue;
-    if (type->check_material(made, reason, sizeof reason))
-      return node_error(reader->document, spec->head.node, reader->error, "material '%s': %s: %s", spec->head.name,
-                        type->name, reason);
-  }
-  return BRECCIA_OK;
-}
-
-/** A material for the regions whose blocks are made of it. */
-static int create_material(Domain *d, const DeckReader *reader, const MaterialSpec *spec, const BondLength *of)
-{
-  Material *new = &d->materials[d->material_count];
-  const FormulationType *type = NULL;
-  double length = NAN;
-  int bad = BRECCIA_OK;
-  for (int r = 0; r < d->region_count && !bad; ++r) {
-    const Region *region = &d->regions[r];
-    if (!region_has_material(d, region, spec->head.name)) continue;
-    if (spec->model)
-      bad = check_law(region->type, reader, spec, NULL); /* what its parameters lack may follow from that */
-    const bool linear = spec->model && law_find(reader->context, spec->model)->linear;
-    if (type && !bad && !linear && !same_length(length, length_of(region->type, of)))
-      return node_error(reader->document, spec->head.node, reader->error,
-                        "material '%s' is in regions of %s and %s, which spread a fracture energy over different "
-                        "lengths; give each a material of its own",
-                        spec->head.name, type->name, region->type->name);
-    type = region->type;
-    length = length_of(type, of);
-  }
-  if (!type) length = length_of((type = d->regions[0].type), of);
-  if (!bad && (bad = material_create(new, reader, spec, length)))
-    material_destroy(new);
-  else if (!bad) {
-    ++d->material_count;
-    bad = check_parameters(d, reader, spec, new);
-  }
-  if (!bad && new->remote) {
-    bad = check_law(type, reader, spec, new->law);
-    if (!bad && d->region_count > 1)
-      bad = node_error(reader->document, spec->head.node, reader->error,
-                       "material '%s': laws in material servers need a body of one formulation; leave 'regions' out",
-                       spec->head.name);
-  }
-  return bad;
-}
-
-static int create_materials(Domain *d, const DeckReader *reader, const DomainSpec *spec, const BondLength *of)
-{
-  d->materials = memory_zeroed((size_t)spec->materials->count, sizeof(Material), "materials", reader->error);
-  if (!d->materials) return BRECCIA_FAILURE;
-  int status = BRECCIA_OK;
-  for (int k = 0; k < spec->materials->count; ++k) {
-    const int bad = create_material(d, reader, spec->materials->items[k], of);
-    if (bad) status = bad;
-  }
-  for (int b = 0; b < spec->blocks->count; ++b) {
-    const BlockSpec *block = spec->blocks->items[b];
-    if (!section_find(spec->materials, block->material)) status = BRECCIA_USER_ERROR; /* said when the deck was read */
-  }
-  return status;
-}
 
 static int check_space(const Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
@@ -279,113 +171,6 @@ static int create_forces(Domain *d, const DomainSpec *spec, Space space, Error *
   return status;
 }
 
-/** Runs of points, one after another: a row joins the last run if it is of the same material. */
-typedef struct Runs {
-  PointsRun *runs;
-  int64_t count, rows, capacity;
-} Runs;
-
-static int add_rows(Runs *r, int material, int64_t rows, Error *error)
-{
-  if (!rows) return BRECCIA_OK;
-  const PointsRun *last = r->count ? &r->runs[r->count - 1] : NULL;
-  if (!last || last->material != material || last->first + last->count != r->rows) {
-    if (r->count == r->capacity) {
-      r->capacity = 2 * r->capacity + 16;
-      PointsRun *grown = realloc(r->runs, sizeof *grown * (size_t)r->capacity);
-      if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: runs of points");
-      r->runs = grown;
-    }
-    r->runs[r->count++] = (PointsRun){material, r->rows, 0};
-  }
-  r->runs[r->count - 1].count += rows;
-  r->rows += rows;
-  return BRECCIA_OK;
-}
-
-/** Rows of the bonds of a slice: its own material's, then those of the materials at other ends. */
-static int add_bonds(const Domain *d, const BondList *l, int64_t slice, Runs *r, Error *error)
-{
-  int64_t own = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]), n = l->single_first[slice];
-  for (; n < l->single_first[slice + 1] && l->single[n] >= 0; ++n) ++own;
-  int status = add_rows(r, d->material[slice], own, error);
-  for (; n < l->single_first[slice + 1] && !status; ++n) {
-    int64_t slot;
-    int lane;
-    bond_list_bond(l, &d->family, slice, r->rows, &slot, &lane);
-    status = add_rows(r, d->material[family_bond(&d->family, slice, slot, lane).neighbour / SLICE], 1, error);
-  }
-  return status;
-}
-
-/** Whether no law of a region dissipates or remembers. */
-static bool is_linear(const Domain *d, const Region *region)
-{
-  bool linear = true;
-  for (int k = 0; k < d->material_count; ++k)
-    if (region_has_material(d, region, d->materials[k].name)) linear &= d->materials[k].law->linear != 0;
-  return linear;
-}
-
-/** Strains and stresses of all places, where several regions share them. */
-static int create_tensors(Domain *d, Error *error)
-{
-  for (int k = 0; k < 6; ++k) {
-    if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
-    if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
-    if (!d->strain[k] || !d->stress[k]) return BRECCIA_FAILURE;
-  }
-  return BRECCIA_OK;
-}
-
-/** Points on particles where laws take six strains; on bonds where they take one, unless all are linear. */
-static int create_points(Domain *d, Region *region, Space space, bool may_give_up, const BondLength *of, Error *error)
-{
-  const Particles *p = d->particles;
-  PointsSpec spec = {.components = region->type->components,
-                     .plane_stress = space == SPACE_PLANE_STRESS,
-                     .materials = d->materials,
-                     .material_count = d->material_count,
-                     .may_give_up = may_give_up,
-                     .length = length_of(region->type, of)};
-  region->is_linear = is_linear(d, region);
-  if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear)) spec.components = 0;
-  if (spec.components == 1 && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
-    return BRECCIA_FAILURE;
-  if (spec.components == 6 && d->region_count > 1) {
-    if (create_tensors(d, error)) return BRECCIA_FAILURE;
-    spec.strain = d->strain;
-    spec.stress = d->stress;
-  }
-  Runs runs = {0};
-  int status = BRECCIA_OK;
-  for (int64_t s = 0; s < p->slices && !status && spec.components; ++s) {
-    if (is_foreign(region->foreign, s * SLICE)) continue;
-    if (spec.components == 6) runs.rows = s * SLICE;
-    status = spec.components == 6 ? add_rows(&runs, d->material[s], SLICE, error)
-                                  : add_bonds(d, &region->bonds, s, &runs, error);
-  }
-  uint8_t *present = status ? NULL : memory_zeroed((size_t)runs.rows, 1, "points", error);
-  if (!present) status = BRECCIA_FAILURE;
-  for (int64_t i = 0; i < runs.rows && !status && spec.components == 6; ++i)
-    present[i] = p->number[i] >= 0 && !is_foreign(region->foreign, i);
-  if (spec.components == 1 && !status) bond_list_mark(&region->bonds, &d->family, present);
-  spec.runs = runs.runs;
-  spec.run_count = runs.count;
-  spec.present = present;
-  if (!status) status = points_create(&region->points, &spec, error);
-  for (int k = 0; k < 6 && spec.components == 6; ++k) {
-    d->strain[k] = region->points.strain[k];
-    d->stress[k] = region->points.stress[k];
-  }
-  free(runs.runs);
-  free(present);
-  if (status || !may_give_up) return status;
-  d->gave_up =
-      spec.components == 6 ? region->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
-  return d->gave_up ? BRECCIA_OK : BRECCIA_FAILURE;
-}
-
 static void weigh_family(void *context, int64_t place)
 {
   const Domain *d = context;
@@ -415,7 +200,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   status = check_space(d, reader, spec);
   double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
   const BondLength of = {space, influence, horizon};
-  int bad = create_materials(d, reader, spec, &of);
+  int bad = domain_create_materials(d, reader, spec, &of);
   if (bad) status = bad;
   if (status) return status;
   d->particles = &d->body.particles;
@@ -451,7 +236,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     return node_error(reader->document, section_node(spec->failure, "failed laws"), error,
                       "failed laws: 'break' needs a body of one formulation; leave 'regions' out, or let the run stop");
   for (int r = 0; r < d->region_count && !status; ++r)
-    status = create_points(d, &d->regions[r], space, may_give_up, &of, error);
+    status = region_create_points(d, &d->regions[r], space, may_give_up, &of, error);
   if (!status) status = share_out(d, error);
   if (!status) status = regions_find_borders(d, error);
   if (!status) status = joint_create(&d->joint, d, error);

@@ -1,4 +1,4 @@
-/* Inside of domain/: regions of a body, and what its joints do (regions.c, joint.c). */
+/* Inside of domain/: materials, regions of a body, their points, and what joints do. */
 #ifndef BRECCIA_DOMAIN_REGIONS_H
 #define BRECCIA_DOMAIN_REGIONS_H
 
@@ -10,6 +10,21 @@ void regions_destroy(Domain *domain);
 
 /** Slices of other regions whose particles have bonds with those of each region. Families stand. */
 int regions_find_borders(Domain *domain, Error *error);
+
+/** Length over which a formulation spreads a fracture energy; NaN if it does not. */
+static inline double region_length(const FormulationType *type, const BondLength *of)
+{
+  return type->characteristic_length ? type->characteristic_length(of) : __builtin_nan("");
+}
+
+/** Makes the materials of the deck, and refuses laws and parameters that the formulations of their regions do not take
+ *  (domain_materials.c). Regions are made. */
+int domain_create_materials(Domain *domain, const DeckReader *reader, const DomainSpec *spec, const BondLength *of);
+
+/** Makes the points of a region: on particles where laws take six strains; on bonds where they take one, unless all are linear
+ *  (region_points.c). Families and materials are made. */
+int region_create_points(Domain *domain, Region *region, Space space, bool may_give_up, const BondLength *of,
+                         Error *error);
 
 /** Finds the bonds between regions. */
 int joint_create(Joint *joint, const Domain *domain, Error *error);

@@ -1,0 +1,110 @@
+/* Points of a region: on its particles or on its bonds, in runs of one material. */
+#include "domain/regions.h"
+
+#include <stdlib.h>
+
+/** Runs of points, one after another: a row joins the last run if it is of the same material. */
+typedef struct Runs {
+  PointsRun *runs;
+  int64_t count, rows, capacity;
+} Runs;
+
+static int add_rows(Runs *r, int material, int64_t rows, Error *error)
+{
+  if (!rows) return BRECCIA_OK;
+  const PointsRun *last = r->count ? &r->runs[r->count - 1] : NULL;
+  if (!last || last->material != material || last->first + last->count != r->rows) {
+    if (r->count == r->capacity) {
+      r->capacity = 2 * r->capacity + 16;
+      PointsRun *grown = realloc(r->runs, sizeof *grown * (size_t)r->capacity);
+      if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: runs of points");
+      r->runs = grown;
+    }
+    r->runs[r->count++] = (PointsRun){material, r->rows, 0};
+  }
+  r->runs[r->count - 1].count += rows;
+  r->rows += rows;
+  return BRECCIA_OK;
+}
+
+/** Rows of the bonds of a slice: its own material's, then those of the materials at other ends. */
+static int add_bonds(const Domain *d, const BondList *l, int64_t slice, Runs *r, Error *error)
+{
+  int64_t own = SLICE * (l->owned_first[slice + 1] - l->owned_first[slice]), n = l->single_first[slice];
+  for (; n < l->single_first[slice + 1] && l->single[n] >= 0; ++n) ++own;
+  int status = add_rows(r, d->material[slice], own, error);
+  for (; n < l->single_first[slice + 1] && !status; ++n) {
+    int64_t slot;
+    int lane;
+    bond_list_bond(l, &d->family, slice, r->rows, &slot, &lane);
+    status = add_rows(r, d->material[family_bond(&d->family, slice, slot, lane).neighbour / SLICE], 1, error);
+  }
+  return status;
+}
+
+/** Whether no law of a region dissipates or remembers. */
+static bool is_linear(const Domain *d, const Region *region)
+{
+  bool linear = true;
+  for (int k = 0; k < d->material_count; ++k)
+    if (region_has_material(d, region, d->materials[k].name)) linear &= d->materials[k].law->linear != 0;
+  return linear;
+}
+
+/** Strains and stresses of all places, where several regions share them. */
+static int create_tensors(Domain *d, Error *error)
+{
+  for (int k = 0; k < 6; ++k) {
+    if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
+    if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
+    if (!d->strain[k] || !d->stress[k]) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+int region_create_points(Domain *d, Region *region, Space space, bool may_give_up, const BondLength *of, Error *error)
+{
+  const Particles *p = d->particles;
+  PointsSpec spec = {.components = region->type->components,
+                     .plane_stress = space == SPACE_PLANE_STRESS,
+                     .materials = d->materials,
+                     .material_count = d->material_count,
+                     .may_give_up = may_give_up,
+                     .length = region_length(region->type, of)};
+  region->is_linear = is_linear(d, region);
+  if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear)) spec.components = 0;
+  if (spec.components == 1 && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
+    return BRECCIA_FAILURE;
+  if (spec.components == 6 && d->region_count > 1) {
+    if (create_tensors(d, error)) return BRECCIA_FAILURE;
+    spec.strain = d->strain;
+    spec.stress = d->stress;
+  }
+  Runs runs = {0};
+  int status = BRECCIA_OK;
+  for (int64_t s = 0; s < p->slices && !status && spec.components; ++s) {
+    if (is_foreign(region->foreign, s * SLICE)) continue;
+    if (spec.components == 6) runs.rows = s * SLICE;
+    status = spec.components == 6 ? add_rows(&runs, d->material[s], SLICE, error)
+                                  : add_bonds(d, &region->bonds, s, &runs, error);
+  }
+  uint8_t *present = status ? NULL : memory_zeroed((size_t)runs.rows, 1, "points", error);
+  if (!present) status = BRECCIA_FAILURE;
+  for (int64_t i = 0; i < runs.rows && !status && spec.components == 6; ++i)
+    present[i] = p->number[i] >= 0 && !is_foreign(region->foreign, i);
+  if (spec.components == 1 && !status) bond_list_mark(&region->bonds, &d->family, present);
+  spec.runs = runs.runs;
+  spec.run_count = runs.count;
+  spec.present = present;
+  if (!status) status = points_create(&region->points, &spec, error);
+  for (int k = 0; k < 6 && spec.components == 6; ++k) {
+    d->strain[k] = region->points.strain[k];
+    d->stress[k] = region->points.stress[k];
+  }
+  free(runs.runs);
+  free(present);
+  if (status || !may_give_up) return status;
+  d->gave_up =
+      spec.components == 6 ? region->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
+  return d->gave_up ? BRECCIA_OK : BRECCIA_FAILURE;
+}
