@@ -292,9 +292,12 @@ int selection_create(Selection *selection, const Body *body, const DeckReader *r
   const Particles *p = &body->particles;
   *selection = (Selection){0};
   uint8_t *held = memory_zeroed((size_t)p->count, 1, "selection", reader->error);
-  selection->places = memory_zeroed((size_t)p->count, sizeof(int32_t), "selection", reader->error);
-  int status = held && selection->places ? BRECCIA_OK : BRECCIA_FAILURE;
+  int status = held ? BRECCIA_OK : BRECCIA_FAILURE;
   if (!status) status = find(&(Resolving){.body = body, .reader = reader, .named = named}, reference, held);
+  int64_t count = 0;
+  for (int64_t n = 0; n < p->count && !status; ++n) count += held[n] != 0;
+  if (!status && !(selection->places = memory_zeroed((size_t)count, sizeof(int32_t), "selection", reader->error)))
+    status = BRECCIA_FAILURE;
   for (int64_t n = 0; n < p->count && !status; ++n)
     if (held[n]) selection->places[selection->count++] = p->place_of[n];
   free(held);

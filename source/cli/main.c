@@ -3,6 +3,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -192,8 +195,19 @@ static int close_output(int status)
   return status ? status : BRECCIA_FAILURE;
 }
 
+/** Arrays go back to the system when they are freed. Without this the C library keeps some, in pieces, once a larger one was freed: 3 % of the
+ *  memory of a large body. */
+static void give_memory_back(void)
+{
+#ifdef __GLIBC__
+  enum { LARGE = 1 << 18 };
+  mallopt(M_MMAP_THRESHOLD, LARGE);
+#endif
+}
+
 int main(int argc, char **argv)
 {
+  give_memory_back();
   keep_three_files();
   signal(SIGPIPE, SIG_IGN); /* whoever stops reading what is printed does not end a run */
   return close_output(obey(argc, argv));

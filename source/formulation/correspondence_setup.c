@@ -224,7 +224,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   for (int k = 0; k < hold_components(c->control); ++k)
     failed |= !(c->hold[k] = places_array(places, "zero-energy control", error));
   for (int k = 0; k < 3; ++k) failed |= !(c->relative[k] = places_array(places, "deformation", error));
-  failed |= !(c->axial = memory_zeroed((size_t)parts->particles->count, sizeof *c->axial, "axial particles", error));
+  failed |= !(c->axial = memory_reserved((size_t)parts->particles->count, sizeof *c->axial, "axial particles", error));
   failed |= shape_table_create(&c->shapes, c->family, c->plane, error);
   if (failed || check_shapes(c, error)) {
     correspondence_destroy(c);

@@ -60,7 +60,7 @@ static int neighbour_vectors(const Scene *scene, const ResultView *view, int axi
   qsort(order, (size_t)scene->count, sizeof *order, by_row);
   for (int64_t k = 1; k < scene->count; ++k) {
     const Order *p = &order[k - 1], *q = &order[k];
-    const double period = lattice_period(view->lattices[p->particle], axis);
+    const double period = lattice_period(result_view_lattice(view, p->particle), axis);
     if (p->plane != q->plane || llabs(p->row - q->row) > 1 || llabs(q->along - p->along - llround(1000 * period)) > 2)
       continue;
     shorter(scene, p->particle, q->particle, vectors[p->particle]);
@@ -71,7 +71,7 @@ static int neighbour_vectors(const Scene *scene, const ResultView *view, int axi
   }
   free(order);
   for (int64_t n = 0; n < scene->count; ++n)
-    for (int k = 0; k < 2; ++k) vectors[n][k] /= lattice_period(view->lattices[n], axis);
+    for (int k = 0; k < 2; ++k) vectors[n][k] /= lattice_period(result_view_lattice(view, n), axis);
   double mean = 0;
   int64_t found = 0;
   for (int64_t n = 0; n < scene->count; ++n)
@@ -152,9 +152,9 @@ static int draw_flat(cairo_t *cr, const Page *page, const Scene *scene, const Re
     const double y = page->top + page->high - (scene->y[n] - scene->y0) * page->scale;
     const double along[2] = {view->spacings[n], 0}, up[2] = {0, view->spacings[n]};
     if (cells)
-      draw_cell(cr, page, x, y, a[n], b[n], view->lattices[n]);
-    else if (page->thick == 0 && view->lattices[n]->vector[1][0] != 0) /* no square */
-      draw_cell(cr, page, x, y, along, up, view->lattices[n]);
+      draw_cell(cr, page, x, y, a[n], b[n], result_view_lattice(view, n));
+    else if (page->thick == 0 && result_view_lattice(view, n)->vector[1][0] != 0) /* no square */
+      draw_cell(cr, page, x, y, along, up, result_view_lattice(view, n));
     else
       draw_square(cr, page, x, y, view->spacings[n] * page->scale);
   }

@@ -47,33 +47,31 @@ static void *read_all(hid_t where, const char *name, hid_t type, size_t size, hs
 }
 
 /** Which lattice each particle stands on: numbers in a list of names. Files of earlier versions tell none: square, as cells of cubic ones are
- *  seen too. @return NULL without memory */
-static const LatticeType **read_lattices(hid_t own, int64_t particles)
+ *  seen too. */
+static void read_lattices(ResultView *view, hid_t own, int64_t particles)
 {
-  enum { MOST = 32 };
-  const LatticeType *types[MOST] = {lattice_find("square")},
-                    **lattices = malloc(sizeof *lattices * (size_t)(particles + 1));
-  uint8_t *numbers = NULL;
+  const LatticeType *square = lattice_find("square");
+  for (int k = 0; k < MOST_LATTICES; ++k) view->lattice_types[k] = square;
   if (H5Lexists(own, "Lattice", H5P_DEFAULT) > 0) {
     char names[512];
     hsize_t rows = 0;
     hid_t set = H5Dopen2(own, "Lattice", H5P_DEFAULT);
     attribute_read_text(set, "names", names, sizeof names);
     H5Dclose(set);
-    numbers = read_all(own, "Lattice", H5T_NATIVE_UINT8, 1, &rows);
+    view->lattice_numbers = read_all(own, "Lattice", H5T_NATIVE_UINT8, 1, &rows);
     int k = 0;
-    for (char *rest = names, *name; k < MOST && (name = strtok_r(rest, ";", &rest)); ++k) types[k] = lattice_find(name);
-    if ((int64_t)rows < particles) {
-      free(numbers);
-      numbers = NULL;
-    }
+    for (char *rest = names, *name; k < MOST_LATTICES && (name = strtok_r(rest, ";", &rest)); ++k)
+      if (lattice_find(name)) view->lattice_types[k] = lattice_find(name);
+    if ((int64_t)rows >= particles) return;
   }
-  for (int64_t n = 0; lattices && n < particles; ++n) {
-    const int number = numbers ? numbers[n] : 0;
-    lattices[n] = number < MOST && types[number] ? types[number] : lattice_find("square");
-  }
-  free(numbers);
-  return lattices;
+  free(view->lattice_numbers);
+  view->lattice_numbers = calloc((size_t)particles + 1, 1);
+}
+
+const LatticeType *result_view_lattice(const ResultView *view, int64_t particle)
+{
+  const int number = view->lattice_numbers[particle];
+  return view->lattice_types[number < MOST_LATTICES ? number : 0];
 }
 
 int result_view_open(ResultView *view, const char *path, Error *error)
@@ -93,7 +91,7 @@ int result_view_open(ResultView *view, const char *path, Error *error)
     view->times = read_all(root, "Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps);
     view->step_numbers = read_all(root, "Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL);
     view->spacings = read_all(own, "Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL);
-    if (view->positions) view->lattices = read_lattices(own, (int64_t)particles);
+    if (view->positions) read_lattices(view, own, (int64_t)particles);
     attribute_read_text(own, "title", view->title, sizeof view->title);
     attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
     attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
@@ -107,7 +105,7 @@ int result_view_open(ResultView *view, const char *path, Error *error)
   }
   if (root >= 0) H5Gclose(root);
   if (own >= 0) H5Gclose(own);
-  if (!view->positions || !view->times || !view->step_numbers || !view->spacings || !view->lattices) {
+  if (!view->positions || !view->times || !view->step_numbers || !view->spacings || !view->lattice_numbers) {
     result_view_close(view);
     return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
   }
@@ -124,7 +122,7 @@ void result_view_close(ResultView *view)
   free(view->times);
   free(view->step_numbers);
   free(view->spacings);
-  free(view->lattices);
+  free(view->lattice_numbers);
   *view = (ResultView){.file = -1};
 }
 

@@ -7,6 +7,8 @@
 #include "body/lattice.h"
 #include <stdint.h>
 
+enum { MOST_LATTICES = 32 };
+
 typedef struct ResultView {
   int64_t file; /* HDF5 handle */
   int64_t particles;
@@ -14,14 +16,17 @@ typedef struct ResultView {
   int64_t *step_numbers;
   double *times, *positions; /* [particles][3] */
   double spacing;
-  double *spacings;             /* [particles] */
-  const LatticeType **lattices; /* [particles] */
+  double *spacings;         /* [particles] */
+  uint8_t *lattice_numbers; /* [particles] of lattice_types */
+  const LatticeType *lattice_types[MOST_LATTICES];
   bool plane;
   char title[256], length_unit[64], time_unit[64];
 } ResultView;
 
 int result_view_open(ResultView *view, const char *path, Error *error);
 void result_view_close(ResultView *view);
+/** The lattice that a particle stands on. */
+const LatticeType *result_view_lattice(const ResultView *view, int64_t particle);
 /** Names of the fields, comma separated. */
 void result_view_fields(const ResultView *view, Text *names);
 /** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field.

@@ -122,11 +122,20 @@ static int create(Solver *run, Error *error)
   s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", error);
   s->motions = memory_zeroed((size_t)run->loading->constraint_count, sizeof *s->motions, "motions", error);
   if (failed || !s->sums || !s->parts || !s->motions) return BRECCIA_FAILURE;
+  return BRECCIA_OK;
+}
+
+/** Room for what a step tries; only while steps are taken, as pictures and the like need room afterwards. */
+static int keep_before(Solver *run, Error *error)
+{
+  Explicit *s = run->own;
+  if (s->before.rows) return BRECCIA_OK;
   StateList list = {0};
-  domain_state(d, &list);
+  domain_state(s->domain, &list);
   solver_state(run, &list);
   const int status = state_keep(&s->before, &list, error);
   state_list_destroy(&list);
+  if (status) state_copy_destroy(&s->before);
   return status;
 }
 
@@ -328,6 +337,7 @@ static void take_step(void *context)
 static int advance(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
+  if (keep_before(run, error)) return BRECCIA_FAILURE;
   state_note_others(&s->before); /* first, so that a step that fails gives back the plan and the stable step too */
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
@@ -336,7 +346,9 @@ static int advance(Solver *run, Text *warning, Error *error)
   if (!is_sound(s)) return explicit_retreat(s, error);
   domain_commit_points(s->domain);
   forces_commit(&s->domain->forces);
-  return look_for_rest(run, warning, error);
+  const int looked = look_for_rest(run, warning, error);
+  if (run->clock.ended) state_copy_destroy(&s->before);
+  return looked;
 }
 
 const SolverType explicit_solver = {.name = "explicit",
