@@ -222,11 +222,21 @@ void team_each(int64_t count, void (*work)(void *context, int64_t index), void *
   team_run(work_each, &each);
 }
 
+int team_size(void)
+{
+  return own.size;
+}
+
+TeamShare team_share_of(int64_t count, int thread)
+{
+  const int64_t part = count / own.size, more = count % own.size;
+  const int64_t first = thread * part + (thread < more ? thread : more);
+  return (TeamShare){first, first + part + (thread < more), true};
+}
+
 TeamShare team_share(int64_t count)
 {
-  const int64_t part = count / own.size, more = count % own.size, rank = own.rank;
-  const int64_t first = rank * part + (rank < more ? rank : more);
-  return (TeamShare){first, first + part + (rank < more), true};
+  return team_share_of(count, own.rank);
 }
 
 bool team_turn(int64_t number)

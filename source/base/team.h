@@ -44,6 +44,9 @@ typedef struct TeamShare {
 
 /** This thread's part of 0 .. count - 1: runs of equal length, the same ones every time. */
 TeamShare team_share(int64_t count);
+/** Threads that work together here, and the part of one of them: 0 .. team_size() - 1. */
+int team_size(void);
+TeamShare team_share_of(int64_t count, int thread);
 /** True on one thread of the team, on another one for the next number. */
 bool team_turn(int64_t number);
 

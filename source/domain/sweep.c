@@ -153,6 +153,33 @@ static void finish_batch(Domain *d, Region *region, const Group *group, int64_t 
   if (writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
 }
 
+/** Batches of a thread, from a first one on, that close after those of all threads: those with neighbours in the shares of others, and as many more as
+ *  other threads leave for later, so that none waits while another works. */
+typedef struct Later {
+  int64_t from, share_first;
+  int64_t more; /* of those that could close at once */
+} Later;
+
+static Later find_later(const Domain *d, int64_t from, int64_t count)
+{
+  int64_t most = 0, here = 0;
+  const int64_t first = from + team_share(count).first;
+  for (int thread = 0; thread < team_size(); ++thread) {
+    const TeamShare share = team_share_of(count, thread);
+    int64_t waiting = 0;
+    for (int64_t n = share.first; n < share.last; ++n) waiting += d->lowest[from + n] < from + share.first;
+    if (from + share.first == first) here = waiting;
+    if (waiting > most) most = waiting;
+  }
+  return (Later){from, first, most - here};
+}
+
+/** By each thread in the order of its batches. */
+static bool closes_later(const Domain *d, Later *later, int64_t n)
+{
+  return d->lowest[later->from + n] < later->share_first || later->more-- > 0;
+}
+
 /** Where bonds have broken: the same again for batches whose families turn out to carry less, with the stresses that laws have given. */
 static void settle(Domain *d, Region *region, const Group *group)
 {
@@ -199,20 +226,20 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
     Group before = group, after = {group.close, -1, MOST_PHASES, group.to};
     const bool in_two = group.close < group.to;
     if (in_two) before.to = group.close;
-    const TeamShare share = team_share(count);
     const bool torn = group.law >= 0 && d->torn_count && !purpose->at && !region->type->bond_energy;
+    const Later later = in_two ? find_later(d, from, count) : (Later){0};
+    Later first = later, second = later;
     TEAM_FOR (n, count) {
       const int64_t b = from + n;
       run_group(d, region, &before, b, purpose, false);
       /* Where bonds have broken, forces wait for what families carry. */
-      if (in_two && !torn && d->lowest[b] >= from + share.first) finish_batch(d, region, &after, b, purpose, writes);
+      if (in_two && !torn && !closes_later(d, &first, n)) finish_batch(d, region, &after, b, purpose, writes);
       if (!in_two && writes & OF_FORCES) d->batch_sum[b] = force_magnitude(d->particles, &d->batches[b]);
     }
     if (torn) settle(d, region, &before);
     if (in_two) {
-      TEAM_FOR (n, count) /* the rest, whose neighbours were another thread's */
-        if (torn || d->lowest[from + n] < from + share.first)
-          finish_batch(d, region, &after, from + n, purpose, writes);
+      TEAM_FOR (n, count)
+        if (torn || closes_later(d, &second, n)) finish_batch(d, region, &after, from + n, purpose, writes);
     }
   }
 }

@@ -62,18 +62,65 @@ LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_
   }
 }
 
-/** Four stored bonds, each of one row. */
-LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, int at, bool series, LaneMask *beyond)
+/** Four stored bonds from what their ends show. Of those that are broken `lever` is 0.
+ *  @param[in,out] lever  pull per stress, but for the length of y; and with it
+ *  @return the stretches */
+LANES_INLINE Lanes stretch_stored(const Lanes own[2][3], const Lanes x[LANES], const Lanes u[LANES], Lanes *lever,
+                                  bool series, LaneMask *beyond)
+{
+  Lanes d = {0}, square = {0}, shortened;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes xi = x[k] - own[0][k], eta = u[k] - own[1][k];
+    d += eta * (xi + xi + eta);
+    square += xi * xi;
+  }
+  const Lanes strain = stretch_of(lanes_where(*lever != lanes_set(0), d) / square, series, &shortened, beyond);
+  *lever = *lever * shortened / lanes_root(square);
+  return strain;
+}
+
+/** Four stored bonds of half a slot: most of those that a slice owns, and half as dear as four that lie anywhere. */
+LANES_INLINE void stretch_half(const BondBased *b, const Chunk *chunk, int32_t code, int at, bool series,
+                               LaneMask *beyond)
+{
+  const Family *f = b->family;
+  const int64_t slot = f->first[chunk->slice] + code / SLICE, here = chunk->slice * SLICE + code % SLICE,
+                place = (int64_t)f->base[slot] * SLICE + code % SLICE;
+  const int half = code % SLICE / LANES;
+  Lanes own[2][3], x[LANES], u[LANES];
+  for (int k = 0; k < 3; ++k) {
+    own[0][k] = lanes_load(b->particles->position[k] + here);
+    own[1][k] = lanes_load(chunk->u[k] + here);
+  }
+  lanes_gather_rows(b->shown, BOND_SHOWN, f->neighbour + place, x);
+  lanes_gather_rows(b->shown + LANES, BOND_SHOWN, f->neighbour + place, u);
+  Lanes lever = lanes_set(0.5) * (lanes_set(chunk->per_stress) + u[3]);
+  if (f->scale) lever *= lanes_load(f->scale + place);
+  if (b->surface) lever *= bond_surface(b, slot, half);
+  lever = lanes_where(lanes_half(f->intact[slot], half), lever);
+  lanes_store(chunk->strain + at, stretch_stored(own, x, u, &lever, series, beyond));
+  lanes_store(chunk->lever + at, lever);
+}
+
+/** Whether four rows are those of half a slot. */
+static inline bool is_half(const int32_t *codes)
+{
+  return codes[0] >= 0 && codes[0] % LANES == 0 && codes[LANES - 1] == codes[0] + LANES - 1;
+}
+
+/** Up to four stored bonds, each of one row. */
+LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, const int32_t *codes, int count, int at,
+                                  bool series, LaneMask *beyond)
 {
   const Family *f = b->family;
   int32_t here[LANES], there[LANES];
-  Lanes x[2][LANES], u[2][LANES], d = {0}, square = {0}, lever;
+  Lanes x[2][LANES], u[2][LANES], lever = {0}, strain;
   for (int n = 0; n < LANES; ++n) {
-    const int i = at + n < chunk->count ? at + n : chunk->count - 1;
-    int64_t slot;
-    int lane;
-    const bool second = bond_list_bond(b->bonds, f, chunk->slice, chunk->row + i, &slot, &lane);
-    const int64_t place = (int64_t)f->base[slot] * SLICE + lane;
+    const int32_t single = codes[n < count ? n : count - 1];
+    const bool second = single < 0;
+    const int32_t code = second ? -1 - single : single;
+    const int lane = code % SLICE;
+    const int64_t slot = f->first[chunk->slice] + code / SLICE, place = (int64_t)f->base[slot] * SLICE + lane;
     here[n] = (int32_t)(chunk->slice * SLICE + lane);
     there[n] = f->neighbour[place];
     const double own = b->shown[BOND_SHOWN * (int64_t)here[n] + 7],
@@ -87,16 +134,12 @@ LANES_INLINE void stretch_singles(const BondBased *b, const Chunk *chunk, int at
   lanes_gather_rows(b->shown, BOND_SHOWN, there, x[1]);
   lanes_gather_rows(b->shown + LANES, BOND_SHOWN, here, u[0]);
   lanes_gather_rows(b->shown + LANES, BOND_SHOWN, there, u[1]);
-  for (int k = 0; k < 3; ++k) {
-    const Lanes xi = x[1][k] - x[0][k], eta = u[1][k] - u[0][k];
-    d += eta * (xi + xi + eta);
-    square += xi * xi;
+  const Lanes own[2][3] = {{x[0][0], x[0][1], x[0][2]}, {u[0][0], u[0][1], u[0][2]}};
+  strain = stretch_stored(own, x[1], u[1], &lever, series, beyond);
+  for (int n = 0; n < count; ++n) {
+    chunk->strain[at + n] = strain[n];
+    chunk->lever[at + n] = lever[n];
   }
-  const LaneMask intact = lever != lanes_set(0);
-  d = lanes_where(intact, d) / square;
-  Lanes shortened;
-  lanes_store(chunk->strain + at, stretch_of(d, series, &shortened, beyond));
-  lanes_store(chunk->lever + at, lever * shortened / lanes_root(square));
 }
 
 /** @return whether all stretches are small enough for the series, if that is asked for */
@@ -111,7 +154,19 @@ LANES_INLINE bool stretch_rows(const BondBased *b, const Chunk *chunk, bool gaps
     const int64_t slot = b->family->first[slice] + l->owned[l->owned_first[slice] + (from + at) / SLICE];
     stretch_lattice(b, chunk, slot, at, gaps, series, &beyond);
   }
-  for (; at < chunk->count; at += LANES) stretch_singles(b, chunk, at, series, &beyond);
+  const int32_t *singles = l->single + l->single_first[slice] + from - lattice;
+  for (int count; at < chunk->count; at += count) {
+    const int32_t *codes = singles + at;
+    const int left = chunk->count - at;
+    count = left < LANES ? left : LANES;
+    if (!l->partner_row && left >= LANES && is_half(codes)) {
+      stretch_half(b, chunk, codes[0], at, series, &beyond);
+      continue;
+    }
+    for (int n = 1; n < count && n + LANES <= left; ++n)
+      if (is_half(codes + n)) count = n;
+    stretch_singles(b, chunk, codes, count, at, series, &beyond);
+  }
   return !(beyond[0] | beyond[1] | beyond[2] | beyond[3]);
 }
 
