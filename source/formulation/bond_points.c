@@ -154,9 +154,9 @@ LANES_INLINE bool stretch_rows(const BondBased *b, const Chunk *chunk, bool gaps
     const int64_t slot = b->family->first[slice] + l->owned[l->owned_first[slice] + (from + at) / SLICE];
     stretch_lattice(b, chunk, slot, at, gaps, series, &beyond);
   }
-  const int32_t *singles = l->single + l->single_first[slice] + from - lattice;
+  const int64_t singles = l->single_first[slice] + from - lattice;
   for (int count; at < chunk->count; at += count) {
-    const int32_t *codes = singles + at;
+    const int32_t *codes = l->single + (singles + at);
     const int left = chunk->count - at;
     count = left < LANES ? left : LANES;
     if (!l->partner_row && left >= LANES && is_half(codes)) {

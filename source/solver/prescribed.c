@@ -15,9 +15,37 @@ int64_t explicit_parts_of(const Constraint *constraint)
   return (constraint->load->selection.count + PART - 1) / PART;
 }
 
-static double along(double *const vector[3], const double direction[3], int32_t i)
+/** A direction, and the axis that it lies along, or -1. Most do, and reading three components of seven arrays is what prescribing costs. */
+typedef struct Direction {
+  const double *of;
+  int axis;
+} Direction;
+
+static int axis_of(const double direction[3])
 {
-  return vector[0][i] * direction[0] + vector[1][i] * direction[1] + vector[2][i] * direction[2];
+  int axis = -1, others = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 0) continue;
+    ++others;
+    axis = k;
+  }
+  return others == 1 ? axis : -1;
+}
+
+static inline __attribute__((always_inline)) double along(double *const vector[3], Direction d, int32_t i)
+{
+  if (d.axis >= 0) return vector[d.axis][i] * d.of[d.axis];
+  return vector[0][i] * d.of[0] + vector[1][i] * d.of[1] + vector[2][i] * d.of[2];
+}
+
+static inline __attribute__((always_inline)) void add_along(double *const vector[3], Direction d, int32_t i,
+                                                            double amount)
+{
+  if (d.axis >= 0) {
+    vector[d.axis][i] += amount * d.of[d.axis];
+    return;
+  }
+  for (int k = 0; k < 3; ++k) vector[k][i] += amount * d.of[k];
 }
 
 static int64_t part_end(const Constraint *constraint, int64_t part)
@@ -47,7 +75,7 @@ static void add_parts(Explicit *s, const Constraint *constraint)
 static void move_part(Explicit *s, const Constraint *constraint, double target, int64_t part)
 {
   const Particles *p = s->domain->particles;
-  const double *d = constraint->direction;
+  const Direction d = {constraint->direction, axis_of(constraint->direction)};
   double dt = s->clock->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, between = 0, largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
@@ -63,10 +91,8 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
     damping -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
     external += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
     between += dt * dt / 8 * p->density[i] * p->volume[i] * (a - c * v) * (a - c * v);
-    for (int j = 0; j < 3; ++j) {
-      p->displacement[j][i] += off * d[j];
-      p->velocity[j][i] += off / dt * d[j];
-    }
+    add_along(p->displacement, d, i, off);
+    add_along(p->velocity, d, i, off / dt);
   }
   double *sums = s->parts[part];
   sums[BOND_WORK] = bond;
@@ -117,7 +143,7 @@ void explicit_prescribe_displacements(Explicit *s)
 static void speed_part(Explicit *s, const Constraint *constraint, const struct Motion *motion, int64_t part)
 {
   const Particles *p = s->domain->particles;
-  const double *d = constraint->direction;
+  const Direction d = {constraint->direction, axis_of(constraint->direction)};
   double dt = s->clock->time_step, c = s->spec->damping, external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
@@ -129,10 +155,8 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
     damping -= (fi + fe - p->density[i] * (a - c * v)) * work;
     external += 0.5 * mass * rate * rate - fe * work - fi * work;
     between -= dt * dt / 8 * mass * (a - c * v) * (a - c * v);
-    for (int j = 0; j < 3; ++j) {
-      p->velocity[j][i] += (rate - v) * d[j];
-      s->acceleration[j][i] -= a * d[j];
-    }
+    add_along(p->velocity, d, i, rate - v);
+    add_along(s->acceleration, d, i, -a);
   }
   double *sums = s->parts[part];
   sums[BOND_WORK] = sums[MOTION] = 0;
