@@ -72,6 +72,34 @@ near "cycles: first reversal" "$(cell cyclic.csv 5 "strain xx")" -0.01 1e-9
 near "cycles: back" "$(cell cyclic.csv last "strain xx")" 0.002 1e-9
 near "cycles: elastic" "$(cell cyclic.csv last "stress xx")" -20 1e-6
 
+# ---- what every test keeps ----
+# lasts KIND OPTIONS COLUMN=VALUE ...: of E = 40 MPa, nu = 0.3 (K = 33.3, G = 15.4 MPa) under 100 kPa, at the end of the test
+lasts() {
+  local kind=$1 options=$2 pair
+  shift 2
+  elastic --test "$kind" $options > kept.csv 2> errors || fail "$kind: $(cat errors)"
+  for pair; do near "$kind $options: ${pair%=*}" "$(cell kept.csv last "${pair%=*}")" "${pair#*=}" 1e-6; done
+}
+lasts triaxial "--to -0.01" "stress xx=-500" "stress yy=-100" "stress zz=-100" "stress xy=0" "strain yy=0.003" "strain zz=0.003"
+lasts "undrained triaxial" "--to -0.01" "strain yy=0.005" "strain zz=0.005" "stress xx=-407.6923076923" "stress yy=53.8461538462" "stress zz=53.8461538462"
+lasts oedometer "--to -0.01" "strain yy=0" "strain zz=0" "stress yy=-330.7692307692" "stress zz=-330.7692307692"
+# plane strain across zz, and yy is free: eps_yy = nu / (1 - nu) 0.01, s_zz = nu s_xx beyond the confining
+lasts biaxial "--to -0.01" "stress yy=-100" "strain zz=0" "strain yy=0.0042857143" "stress zz=-231.8681318681"
+lasts isotropic "--to -0.001" "strain yy=-0.001" "stress xx=-200" "stress yy=-200" "stress xy=0"
+lasts "simple shear" "--to 0.001" "stress yy=-100" "strain xx=0" "strain yy=0" "strain zz=0" "stress xx=-100"
+lasts "undrained shear" "--to 0.001" "stress xy=15.3846153846" "strain xx=0" "strain yy=0" "strain zz=0" "stress yy=-100"
+
+# ---- an elastic stage is as many rows as asked for ----
+printf 'strain xx\n0.01\n0.02\n0.03\n0.04\n' > path.csv
+for rows in 0 1 3; do
+  "$breccia" material --model elastic-perfectly-plastic --set "Young modulus=100" --set "yield stress=0.5" --strain path.csv --elastic-rows $rows > out 2> errors ||
+    fail "elastic rows: $(cat errors)"
+  for row in 1 2 3 4; do
+    if [ $row -le $rows ]; then stress=$row; else stress=0.5; fi
+    near "$rows elastic rows: row $row" "$(cell out $row "stress xx")" $stress 1e-12
+  done
+done
+
 # Stages of one's own: total strains, or from the end of what is called consolidation.
 cat > stages.yaml <<'Y'
 units: {length: m, force: kN, time: s}
@@ -184,6 +212,18 @@ Y
 "$breccia" calibrate fit.yaml > out 2> errors; equal "a bar with scatter: status" $? 0
 # 0.1 sqrt(40 / 39) / (1e-4 sqrt(40 41 81 / 6)) = 6.807, 0.68 % of 1000
 contains "a bar with scatter" "$(cat out)" "standard deviation 0.68 %"
+
+# Two points at the same strain, 0.4 above and below a line through all others, whose range is 3.9: each is off by 0.4 / 3.9 / sqrt(2) of that, 7.25 %,
+# and the mean square of all 42 is sqrt(2 / 42) of it.
+awk 'BEGIN {for (k = 1; k <= 40; ++k) {e = k * 1e-4; print e "," 1000 * e; if (k == 20) print "0.002,2.4\n0.002,1.6"}}' > true-points.csv
+sed -i 's/strain: 0.005/strain: 0.0041/' fit.yaml
+"$breccia" calibrate fit.yaml > out 2> errors; equal "two points aside: status" $? 0
+near "two points aside: E" "$(fitted "Young modulus")" 1000 2e-3
+near "two points aside: rms" "$(sed -n 's/.* lie \([0-9.]*\) %.*/\1/p' out)" 1.58 1e-2
+near "two points aside: at most" "$(sed -n 's/.* and \([0-9.]*\) % at most.*/\1/p' out)" 7.25 1e-2
+sed 's/Young modulus: 500/Young modulus: 1000/' fit.yaml > line.yaml
+"$breccia" material line.yaml > out 2> errors || fail "two points aside, the line itself: $(cat errors)"
+contains "two points aside, the line itself" "$(cat out errors)" "lie 1.58 % of their range from the curve (rms), 7.25 % at most"
 
 # ---- mistakes of measured files and of units ----
 # told WORDS: the fit of triaxial.yaml with bad.csv warns in one line of these words, and ends well

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "base/tensor.h"
+#include "points/points.h"
 
 /** The walk of the tangents, which begins again now and then: dilation would press a point that wanders for long. */
 static void wander_anew(uint64_t *seed, const Material *m, Point *p, double size, int step, double *length,
@@ -137,10 +138,99 @@ static void the_walk_of_tangents_visits_the_planes_edges_and_corners_of_mohr_and
   material_destroy(&m);
 }
 
+/** How far the tangents of points in plane stress are from central differences, over the stiffness; -1 at a kink. */
+static void plane_stress_errors(Points *points, const Material *m, double h, double error[SLICE], double *skew)
+{
+  static const int in_plane[3] = {XX, YY, XY};
+  double base[3][SLICE], tangent[SLICE][36], at[4][3][SLICE];
+  bool kink[SLICE] = {false};
+  points_keep_tangents(points, true, NULL);
+  assert_int_equal(points_update(points, 0, SLICE, points->strain, points->stress), -1);
+  for (int i = 0; i < SLICE; ++i) {
+    error[i] = 0;
+    points_tangent(points, i, tangent[i]);
+    for (int r = 0; r < 3; ++r) base[r][i] = points->stress[in_plane[r]][i];
+  }
+  points_keep_tangents(points, false, NULL);
+  for (int k = 0; k < 3; ++k) {
+    double *strain = points->strain[in_plane[k]], kept[SLICE];
+    memcpy(kept, strain, sizeof kept);
+    for (int part = 0; part < 4; ++part) { /* -2h, -h, h, 2h */
+      for (int i = 0; i < SLICE; ++i) strain[i] = kept[i] + (part < 2 ? part - 2 : part - 1) * h;
+      assert_int_equal(points_update(points, 0, SLICE, points->strain, points->stress), -1);
+      for (int r = 0; r < 3; ++r) memcpy(at[part][r], points->stress[in_plane[r]], sizeof at[part][r]);
+    }
+    memcpy(strain, kept, sizeof kept);
+    for (int i = 0; i < SLICE; ++i)
+      for (int r = 0; r < 3; ++r) {
+        const double near = (at[2][r][i] - at[1][r][i]) / (2 * h), far = (at[3][r][i] - at[0][r][i]) / (4 * h),
+                     bend = (at[2][r][i] - 2 * base[r][i] + at[1][r][i]) / h,
+                     wide = (at[3][r][i] - 2 * base[r][i] + at[0][r][i]) / (2 * h);
+        if (fmax(fabs(bend), fabs(wide)) > 3e-3 * sample_stiffness(m)) kink[i] = true;
+        error[i] = fmax(error[i], fabs((4 * near - far) / 3 - tangent[i][6 * in_plane[r] + in_plane[k]]));
+        *skew =
+            fmax(*skew, fabs(tangent[i][6 * in_plane[r] + in_plane[k]] - tangent[i][6 * in_plane[k] + in_plane[r]]) /
+                            sample_stiffness(m));
+      }
+  }
+  for (int i = 0; i < SLICE; ++i) error[i] = kink[i] ? -1 : error[i] / sample_stiffness(m);
+}
+
+static void tangents_of_plane_stress_are_derivatives_too(void **state)
+{
+  (void)state;
+  const PointsRun run = {0, 0, SLICE};
+  enum { STEPS = 150, FRESH = 10 };
+  double most_skew = 0;
+  for (int n = 0; n < SAMPLES; ++n) {
+    if (samples[n].jumps) continue;
+    Material m = samples[n].make();
+    uint64_t seed = 61;
+    int smooth = 0;
+    Points points = {0};
+    const PointsSpec spec = {.components = 6,
+                             .plane_stress = true,
+                             .runs = &run,
+                             .run_count = 1,
+                             .materials = &m,
+                             .material_count = 1,
+                             .length = NAN};
+    for (int step = 0; step < STEPS; ++step) {
+      double error[SLICE];
+      const double length = samples[n].strain * pow(10, -2 * random_uniform(&seed));
+      if (step % FRESH == 0) {
+        points_destroy(&points);
+        assert_int_equal(points_create(&points, &spec, NULL), 0);
+      }
+      for (int i = 0; i < SLICE; ++i) {
+        double e[6] = {points.strain[XX][i], points.strain[YY][i], 0, points.strain[XY][i]};
+        sample_wander(&seed, samples[n].strain, length, e);
+        points.strain[XX][i] = e[XX];
+        points.strain[YY][i] = e[YY];
+        points.strain[XY][i] = e[XY];
+      }
+      plane_stress_errors(&points, &m, 1e-4 * length, error, &most_skew);
+      for (int i = 0; i < SLICE; ++i) {
+        smooth += error[i] >= 0 && error[i] < 1e-5;
+        if (error[i] > 1e-2)
+          fail_msg("%s: tangent in plane stress off by %.2e in step %d", samples[n].name, error[i], step);
+      }
+      assert_int_equal(points_update(&points, 0, SLICE, points.strain, points.stress), -1);
+      points_commit(&points);
+    }
+    if (smooth < 0.8 * STEPS * SLICE)
+      fail_msg("%s: only %d tangents were those of differences", samples[n].name, smooth);
+    points_destroy(&points);
+    material_destroy(&m);
+  }
+  assert_true(most_skew > 0.05); /* laws that do not flow along their normal are among them */
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tangents_are_derivatives_of_steps),
+      cmocka_unit_test(tangents_of_plane_stress_are_derivatives_too),
       cmocka_unit_test(the_walk_of_tangents_visits_every_region_of_the_cap),
       cmocka_unit_test(the_walk_of_tangents_visits_the_planes_edges_and_corners_of_mohr_and_coulomb),
   };

@@ -1,0 +1,217 @@
+/* What laws do where no parameter is given, under confinement, after an elastic stage, and when a point gives up: in closed form. */
+#include "sample_laws.h"
+
+#include "base/tensor.h"
+#include "constitutive/driver.h"
+#include "points/points.h"
+
+static const bool lateral[6] = {false, true, true};
+
+/** Triaxial compression in equal steps to an axial strain, after an isotropic one; calls `seen` after each with its context. */
+static void compress(const Material *m, double confining, double strain, int steps,
+                     void (*seen)(void *, const Driver *), void *context)
+{
+  static const bool all[6] = {true, true, true};
+  const double start[6] = {-confining, -confining, -confining};
+  Driver d;
+  assert_int_equal(driver_create(&d, m, NULL), 0);
+  if (confining > 0) assert_true(driver_step(&d, all, start, 1e-9));
+  const double first = d.strain[0];
+  for (int k = 1; k <= steps; ++k) {
+    const double target[6] = {first - strain * k / steps, -confining, -confining};
+    assert_true(driver_step(&d, lateral, target, 1e-6));
+    seen(context, &d);
+  }
+  driver_destroy(&d);
+}
+
+static void keep_peak(void *context, const Driver *d)
+{
+  double *peak = context;
+  *peak = fmax(*peak, -d->stress[0]);
+}
+
+#define CONCRETE                                                                                                       \
+  "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000", "fracture energy=0.1",                           \
+      "compressive strength=34000", "crushing energy=10", "length=0.03"
+
+static void confined_concrete_follows_its_compressive_meridian(void **state)
+{
+  (void)state;
+  /* Lubliner's surface with all stresses compressive: q - alpha (3 p + q) - gamma p = (1 - alpha) f_c, homogeneous in the stresses, so that
+   * it holds for nominal ones too; alpha = (b - 1) / (2 b - 1), gamma = 3 (1 - K) / (2 K - 1). */
+  const double alpha = 0.2 / 1.4, ratio[] = {0.6, 0.75, 1};
+  const char *const meridian[] = {"meridian ratio=0.6", "meridian ratio=0.75", "meridian ratio=1"};
+  for (int k = 0; k < 3; ++k) {
+    Material m = material_of("damage-plasticity", CONCRETE, "biaxial ratio=1.2", meridian[k], NULL);
+    const double gamma = 3 * (1 - ratio[k]) / (2 * ratio[k] - 1);
+    for (double confining = 0; confining <= 10000; confining += 5000) {
+      double peak = 0;
+      compress(&m, confining, 0.02, 800, keep_peak, &peak);
+      const double expected = confining + 34000 + (3 * alpha + gamma) / (1 - alpha) * confining;
+      assert_near(peak, expected, 1e-3 * expected);
+    }
+    material_destroy(&m);
+  }
+}
+
+/** Plastic change of volume over the plastic axial strain; laws whose history begins with the plastic strain. */
+static void keep_dilatancy(void *context, const Driver *d)
+{
+  const double *plastic = d->committed;
+  *(double *)context = (plastic[0] + plastic[1] + plastic[2]) / plastic[0];
+}
+
+static void dilation_that_is_not_given_is_what_the_manual_says(void **state)
+{
+  (void)state;
+  /* In triaxial compression: of Mohr and Coulomb and of the cone at their compressive edges -2 sin / (1 - sin), of a cone of slope a
+   * 3 a / (a - 1 / sqrt(3)), of concrete tan / (tan / 3 - 1) but for the rounding of the tip. */
+  const double a = 0.2, tangent = tan(35 * acos(-1) / 180);
+  struct {
+    Material m;
+    double dilatancy, tolerance;
+  } cases[] = {
+      {material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30", NULL),
+       -2, 1e-6},
+      {material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                   "dilation angle=0", NULL),
+       0, 1e-6},
+      {material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cohesion=20", "friction angle=30",
+                   NULL),
+       -2, 1e-6},
+      {material_of("drucker-prager", "Young modulus=50e3", "Poisson ratio=0.3", "cone strength=20", "cone slope=0.2",
+                   NULL),
+       3 * a / (a - 1 / sqrt(3)), 1e-6},
+      {material_of("damage-plasticity", CONCRETE, NULL), tangent / (tangent / 3 - 1), 1e-3},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    double dilatancy = NAN;
+    compress(&cases[k].m, 50, 0.01, 100, keep_dilatancy, &dilatancy);
+    assert_near(dilatancy, cases[k].dilatancy, cases[k].tolerance);
+    material_destroy(&cases[k].m);
+  }
+}
+
+static void clay_that_was_loaded_elastically_starts_from_there(void **state)
+{
+  (void)state;
+  /* What an elastic stage leaves is where the bounding surface measures from: ds = 2G / (1 + 3 G / H(k)) de with k from
+   * |s + k (s - s0)| = R and s0 the stress at the stage's end; loading on, and unloading. In simple shear |s| = sqrt(2) s. */
+  const double shear = 60000, strength = sqrt(4.0 / 3) * 30, h = 60000;
+  Material m = material_of("bounding-surface-clay", "shear modulus=60000", "bulk modulus=100000",
+                           "undrained strength=30", "hardening modulus=60000", NULL);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    enum { STEPS = 200, FINE = 500 };
+    Point p = point_start(&m);
+    double strain[6] = {0}, stress[6];
+    for (int k = 1; k <= 5; ++k) {
+      strain[3] = 5e-5 * k;
+      point_try(&p, strain, stress, NULL, 1);
+      point_commit(&p);
+      assert_near(stress[3], shear * strain[3], 1e-9);
+    }
+    const double start = stress[3], from = strain[3], step = sign * 1e-3 / STEPS;
+    double s = start;
+    for (int k = 1; k <= STEPS; ++k) {
+      for (int n = 0; n < FINE; ++n) {
+        double rate[2], at = s;
+        for (int stage = 0; stage < 2; ++stage) {
+          const double moved = fabs(at - start), distance = moved > 0 ? (strength - sign * at) / moved : 1e10;
+          rate[stage] = shear / (1 + 3 * shear / (h * distance));
+          at = s + rate[0] * step / FINE;
+        }
+        s += (rate[0] + rate[1]) / 2 * step / FINE;
+      }
+      strain[3] = from + step * k;
+      point_try(&p, strain, stress, NULL, 0);
+      point_commit(&p);
+      assert_near(stress[3], s, 1e-3 * strength);
+    }
+    assert_true(fabs(s - start) > 8);
+    point_stop(&p);
+  }
+  material_destroy(&m);
+}
+
+/* "chalk": elastic up to a strain xx of 1e-3, where it gives up; it remembers its last strain xx, and notes it before it gives up. */
+static int chalk_prepare(const double *values, void *constants, char *reason, size_t size)
+{
+  (void)values, (void)constants, (void)reason, (void)size;
+  return 0;
+}
+static void chalk_moduli(const void *constants, double *bulk, double *shear)
+{
+  (void)constants;
+  *bulk = 1e5;
+  *shear = 6e4;
+}
+static int chalk_values(const void *constants)
+{
+  (void)constants;
+  return 1;
+}
+static int chalk_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    batch->trial[i] = batch->strain[0][i];
+    for (int k = 0; k < 6; ++k) batch->stress[k][i] = 6e4 * batch->strain[k][i];
+    if (batch->strain[0][i] > 1e-3) return i;
+  }
+  return -1;
+}
+static const breccia_law law_of_chalk = {.size = sizeof(breccia_law),
+                                         .name = "chalk",
+                                         .about = "gives up",
+                                         .source = "the tests",
+                                         .maturity = "experimental",
+                                         .constants_size = 1,
+                                         .components = 6,
+                                         .prepare = chalk_prepare,
+                                         .moduli = chalk_moduli,
+                                         .history_values = chalk_values,
+                                         .update = chalk_update};
+
+static void a_point_that_gives_up_carries_nothing_and_keeps_its_history(void **state)
+{
+  (void)state;
+  enum { LOST = 3, FAILS = 3, STEPS = 6 };
+  Material m;
+  char reason[128];
+  assert_int_equal(material_prepare(&m, &law_of_chalk, NULL, reason, sizeof reason), 0);
+  const PointsRun run = {0, 0, SLICE};
+  Points points;
+  const PointsSpec spec = {.components = 6,
+                           .runs = &run,
+                           .run_count = 1,
+                           .materials = &m,
+                           .material_count = 1,
+                           .may_give_up = true,
+                           .length = NAN};
+  assert_int_equal(points_create(&points, &spec, NULL), 0);
+  for (int step = 1; step <= STEPS; ++step) {
+    for (int i = 0; i < SLICE; ++i) points.strain[XX][i] = i == LOST && step >= FAILS ? 2e-3 : 1e-5 * step * (i + 1);
+    assert_int_equal(points_update(&points, 0, SLICE, points.strain, points.stress), -1);
+    points_commit(&points);
+    for (int i = 0; i < SLICE; ++i) {
+      const bool lost = i == LOST && step >= FAILS;
+      assert_near(points_history(&points, i)[0], 1e-5 * (lost ? FAILS - 1 : step) * (i + 1), 1e-18);
+      assert_near(points.stress[XX][i], lost ? 0 : 0.6 * step * (i + 1), 1e-12);
+      assert_int_equal(points.gave_up[i] != 0, lost);
+    }
+  }
+  points_destroy(&points);
+  material_destroy(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
+      cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
+      cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
+      cmocka_unit_test(a_point_that_gives_up_carries_nothing_and_keeps_its_history),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
