@@ -36,6 +36,9 @@ static int serve_verb(int argc, char **argv, const Verb *verb)
   const struct sigaction action = {.sa_handler = interrupt};
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  struct sigaction before;
+  if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN) /* nohup keeps it running */
+    sigaction(SIGHUP, &action, NULL);
   const breccia_service service = {.size = sizeof service,
                                    .address = values[LISTEN],
                                    .secret_file = values[SECRET],

@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -13,8 +14,20 @@
 
 enum { SEND_ROOM = 4 << 20 }; /* bytes */
 
-static int parse(const char *address, Transport *transport, char *host, size_t host_size, char *port, size_t port_size,
-                 Text *reason)
+enum { LARGEST_PORT = 65535 };
+
+/** Whether the words are the number of a port. */
+static bool is_port(const char *words, int smallest)
+{
+  const size_t digits = strspn(words, "0123456789");
+  if (!digits || digits > 5 || words[digits]) return false;
+  const long port = strtol(words, NULL, 10);
+  return port >= smallest && port <= LARGEST_PORT;
+}
+
+/** @param[in] smallest_port  0 where any free one may be taken, otherwise 1 */
+static int parse(const char *address, int smallest_port, Transport *transport, char *host, size_t host_size, char *port,
+                 size_t port_size, Text *reason)
 {
   static const char *const kinds[] = {"tcp://", "unix:", "udp://"};
   int kind = 0;
@@ -40,8 +53,12 @@ static int parse(const char *address, Transport *transport, char *host, size_t h
     ++first;
     --last;
   }
-  if (!colon || first >= last || !colon[1] || (size_t)(last - first) >= host_size || strlen(colon + 1) >= port_size) {
+  if (!colon || first >= last || !colon[1] || (size_t)(last - first) >= host_size) {
     text_add(reason, "an address is %sHOST:PORT", kinds[kind]);
+    return 1;
+  }
+  if (!is_port(colon + 1, smallest_port)) {
+    text_add(reason, "'%.20s' is no port: expected a number from %d to %d", colon + 1, smallest_port, LARGEST_PORT);
     return 1;
   }
   snprintf(host, host_size, "%.*s", (int)(last - first), first);
@@ -59,7 +76,7 @@ void address_tune(int s, Transport transport)
 int address_open(const char *address, bool listen_there, bool open, Transport *transport, Text *reason)
 {
   char host[256], port[32] = "";
-  if (parse(address, transport, host, sizeof host, port, sizeof port, reason)) {
+  if (parse(address, listen_there ? 0 : 1, transport, host, sizeof host, port, sizeof port, reason)) {
     errno = EINVAL;
     return -1;
   }

@@ -10,7 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { MOST_DATAGRAM = 65507, CONNECT_EVERY_MS = 20 };
+enum { MOST_DATAGRAM = 65507, CONNECT_EVERY_MS = 20, LOOK_UP_EVERY_MS = 200 };
 
 typedef struct Buffer {
   uint8_t *bytes; /* a header, a payload and a zero byte */
@@ -19,9 +19,10 @@ typedef struct Buffer {
 
 struct Channel {
   int socket;
-  bool datagrams, borrowed; /* borrowed: the socket is the listener's, and `peer` is where frames go */
-  struct sockaddr_storage peer;
-  socklen_t peer_size;
+  bool datagrams, borrowed;             /* borrowed: the socket is the listener's, and `peer` is where frames go */
+  struct sockaddr_storage peer, sender; /* sender: of the last frame */
+  socklen_t peer_size, sender_size;
+  const volatile int *interrupted; /* may be NULL */
   Buffer out, in;
   size_t out_size;
   double bytes[2];
@@ -43,6 +44,29 @@ Channel *channel_over(int s, bool datagrams, bool borrowed)
 int channel_socket(const Channel *channel)
 {
   return channel->socket;
+}
+
+void channel_interruptible(Channel *channel, const volatile int *interrupted)
+{
+  channel->interrupted = interrupted;
+}
+
+bool channel_from_peer(const Channel *c)
+{
+  return c->peer_size == c->sender_size && !memcmp(&c->peer, &c->sender, c->peer_size);
+}
+
+void channel_turn_to_sender(Channel *c)
+{
+  c->peer = c->sender;
+  c->peer_size = c->sender_size;
+}
+
+void channel_refuse_sender(Channel *c, uint32_t sequence, const char *words)
+{
+  uint8_t bytes[FRAME_HEADER + MOST_REFUSAL];
+  const size_t size = frame_refuse(bytes, sequence, words);
+  sendto(c->socket, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT, (struct sockaddr *)&c->sender, c->sender_size);
 }
 
 Channel *channel_connect(const char *address, double seconds, int (*stop)(void *context), void *context, Text *reason)
@@ -110,14 +134,16 @@ uint8_t *channel_payload(Channel *channel, size_t length)
 }
 
 /** Waits for the socket. @return CHANNEL_OK or CHANNEL_LATE */
-static ChannelStatus await(int s, short events, double end, Text *reason)
+static ChannelStatus await(const Channel *c, short events, double end, Text *reason)
 {
   for (;;) {
     const double left = end - clock_seconds();
-    struct pollfd p = {.fd = s, .events = events};
-    const int n = poll(&p, 1, left > 0 ? (left < 1e6 ? (int)(1000 * left) + 1 : -1) : 0);
+    const bool look_up = c->interrupted && 1000 * left > LOOK_UP_EVERY_MS;
+    struct pollfd p = {.fd = c->socket, .events = events};
+    const int n = poll(&p, 1, look_up ? LOOK_UP_EVERY_MS : left > 0 ? (left < 1e6 ? (int)(1000 * left) + 1 : -1) : 0);
     if (n > 0) return CHANNEL_OK;
-    if (n < 0 && errno == EINTR) continue;
+    if (c->interrupted && *c->interrupted) return CHANNEL_LATE;
+    if (look_up || (n < 0 && errno == EINTR)) continue;
     text_add(reason, "it does not answer");
     return CHANNEL_LATE;
   }
@@ -146,7 +172,7 @@ static ChannelStatus send_all(Channel *c, double seconds, Text *reason)
     if (errno == EINTR) continue;
     if (c->datagrams && errno == ECONNREFUSED) return lost(reason, errno);
     if (errno != EAGAIN && errno != EWOULDBLOCK) return lost(reason, errno);
-    const ChannelStatus status = await(c->socket, POLLOUT, end, reason);
+    const ChannelStatus status = await(c, POLLOUT, end, reason);
     if (status) return status;
   }
   return CHANNEL_OK;
@@ -186,7 +212,7 @@ static ChannelStatus receive_bytes(Channel *c, uint8_t *to, size_t size, double 
     if (n == 0) return lost(reason, 0);
     if (errno == EINTR) continue;
     if (errno != EAGAIN && errno != EWOULDBLOCK) return lost(reason, errno);
-    const ChannelStatus status = await(c->socket, POLLIN, end, reason);
+    const ChannelStatus status = await(c, POLLIN, end, reason);
     if (status) return status;
   }
   return CHANNEL_OK;
@@ -196,13 +222,13 @@ static ChannelStatus receive_bytes(Channel *c, uint8_t *to, size_t size, double 
 static ChannelStatus receive_datagram(Channel *c, Frame *frame, uint8_t **payload, double end, Text *reason)
 {
   for (;;) {
-    struct sockaddr_storage from;
+    struct sockaddr_storage from = {0};
     socklen_t size = sizeof from;
     const ssize_t n = recvfrom(c->socket, c->in.bytes, MOST_DATAGRAM, MSG_DONTWAIT, (struct sockaddr *)&from, &size);
     if (n < 0) {
       if (errno == EINTR) continue;
       if (errno != EAGAIN && errno != EWOULDBLOCK) return lost(reason, errno);
-      const ChannelStatus status = await(c->socket, POLLIN, end, reason);
+      const ChannelStatus status = await(c, POLLIN, end, reason);
       if (status) return status;
       continue;
     }
@@ -213,10 +239,8 @@ static ChannelStatus receive_datagram(Channel *c, Frame *frame, uint8_t **payloa
                        !frame_check(frame, c->in.bytes, c->in.bytes + FRAME_HEADER, &words);
     text_free(&words);
     if (!whole) continue;
-    if (c->borrowed) {
-      c->peer = from;
-      c->peer_size = size;
-    }
+    c->sender = from;
+    c->sender_size = size;
     *payload = c->in.bytes + FRAME_HEADER;
     (*payload)[frame->length] = 0;
     return CHANNEL_OK;

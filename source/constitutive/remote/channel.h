@@ -31,10 +31,17 @@ ChannelStatus channel_send(Channel *channel, const Frame *frame, double seconds,
 ChannelStatus channel_repeat(Channel *channel, double seconds, Text *reason);
 /** Receives one frame. @param[out] payload  borrowed until the next is received; a zero byte stands behind it */
 ChannelStatus channel_receive(Channel *channel, Frame *frame, uint8_t **payload, double seconds, Text *reason);
-/** A channel over a socket that is connected, or, with a `borrowed` one of datagrams, to whoever sent the last frame.
+/** A channel over a socket that is connected, or, with a `borrowed` one of datagrams, to whom channel_turn_to_sender says.
  *  @return NULL, with the socket closed unless it is borrowed: out of memory */
 Channel *channel_over(int socket, bool datagrams, bool borrowed);
 int channel_socket(const Channel *channel);
+/** Waits end early, as if nothing had come in time, once *interrupted is not zero. */
+void channel_interruptible(Channel *channel, const volatile int *interrupted);
+/** Of a borrowed socket of datagrams: whether the last frame came from where frames go; makes its sender the one that they go to; or
+ *  refuses it in words and goes on as before. */
+bool channel_from_peer(const Channel *channel);
+void channel_turn_to_sender(Channel *channel);
+void channel_refuse_sender(Channel *channel, uint32_t sequence, const char *words);
 /** Bytes sent and received so far. */
 void channel_bytes(const Channel *channel, double bytes[2]);
 

@@ -25,6 +25,16 @@ void frame_seal(const Frame *frame, uint8_t *bytes)
   memcpy(bytes + 28, &sum, 4);
 }
 
+size_t frame_refuse(uint8_t bytes[FRAME_HEADER + MOST_REFUSAL], uint32_t sequence, const char *words)
+{
+  const size_t length = strnlen(words, MOST_REFUSAL);
+  const Frame frame = {
+      .version = FRAME_VERSION, .operation = OPERATION_ERROR, .sequence = sequence, .length = (uint32_t)length};
+  memcpy(bytes + FRAME_HEADER, words, length);
+  frame_seal(&frame, bytes);
+  return FRAME_HEADER + length;
+}
+
 int frame_read(Frame *frame, const uint8_t header[FRAME_HEADER], Text *reason)
 {
   uint32_t numbers[6];

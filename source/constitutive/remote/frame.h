@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-enum { FRAME_HEADER = 32, FRAME_VERSION = 1, FRAME_MOST_PAYLOAD = 1 << 28 };
+enum { FRAME_HEADER = 32, FRAME_VERSION = 1, FRAME_MOST_PAYLOAD = 1 << 28, MOST_REFUSAL = 1000 /* bytes */ };
 
 typedef enum Operation {
   OPERATION_HELLO = 1,
@@ -36,6 +36,9 @@ typedef struct Frame {
 
 /** Writes header and checksum in front of `length` bytes of payload that stand at bytes + FRAME_HEADER. */
 void frame_seal(const Frame *frame, uint8_t *bytes);
+
+/** Writes a whole frame that refuses another in words, which are cut after MOST_REFUSAL. @return its size */
+size_t frame_refuse(uint8_t bytes[FRAME_HEADER + MOST_REFUSAL], uint32_t sequence, const char *words);
 
 /** Reads a header. @return 0, or 1 with the reason why these bytes are no frame */
 int frame_read(Frame *frame, const uint8_t header[FRAME_HEADER], Text *reason);

@@ -6,15 +6,26 @@
 
 typedef struct Listener Listener;
 
-/** Waits for clients at an address: loopback or a socket file that only its owner reaches, unless `open` allows any interface.
- *  tcp://127.0.0.1:0 takes any free port. @return NULL with the reason */
-Listener *listener_open(const char *address, bool open, Text *reason);
+typedef struct ListenerSpec {
+  const char
+      *address; /* loopback or a socket file that only its owner reaches; tcp://127.0.0.1:0 takes any free port */
+  bool open;    /* any interface may be listened to */
+  /** Whether a first frame greets as it should; 0, or 1 with the reason why its sender is not served. */
+  int (*greets)(const void *context, const Frame *frame, const uint8_t *payload, Text *reason);
+  const void *context;
+  const volatile int *interrupted; /* ends waits early once it is not zero; may be NULL */
+} ListenerSpec;
+
+/** Waits for clients at an address. @return NULL with the reason */
+Listener *listener_open(const ListenerSpec *spec, Text *reason);
 /** Where it listens, with the port that it got. */
 const char *listener_address(const Listener *listener);
-/** Next frame of the one client that is served; new clients are told that it is busy while one is there. Between clients
- *  `*frame` may be the first of a new one.
- *  @param[out] fresh  the frame is the first of a client
- *  @return CHANNEL_CLOSED when a client has gone, CHANNEL_LATE after `seconds` without a frame */
+/** Next frame of the one client that is served. Whoever has not greeted yet is listened to beside it and never waited for; who greets while
+ *  a client is there is told that the server is busy. A client that sends datagrams says not when it leaves: another may take its place
+ *  when it has been silent for a minute.
+ *  @param[out] fresh  the frame is the greeting of a new client
+ *  @return CHANNEL_CLOSED when a client has gone, CHANNEL_LATE after `seconds` without a frame, CHANNEL_BROKEN, with the reason, after bytes
+ *          that are no frame or one that did not come whole within a minute */
 ChannelStatus listener_receive(Listener *listener, Frame *frame, uint8_t **payload, bool *fresh, double seconds,
                                Text *reason);
 /** The channel to the client that is served. */

@@ -176,14 +176,18 @@ void remote_close(Remote **remote)
   if (!r) return;
   for (int k = 0; k < r->count && r->servers; ++k) {
     RemoteServer *s = &r->servers[k];
-    if (s->channel && !r->problem.length) {
+    const bool told = s->channel && !r->problem.length;
+    if (told) {
       Frame frame;
       uint8_t *reply;
       r->timeout = LEAVE_SECONDS;
       remote_ask(r, s, OPERATION_BYE, 0, NULL, &frame, &reply);
     }
     s->greeted = s->channel != NULL;
-    channel_close(&s->channel);
+    if (told)
+      channel_close(&s->channel);
+    else
+      remote_hang_up(s);
   }
   for (int k = 0; k < r->count && r->servers; ++k) {
     process_stop(&r->servers[k].process, r->servers[k].greeted);

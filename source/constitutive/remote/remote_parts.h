@@ -54,6 +54,8 @@ int remote_ask(Remote *r, RemoteServer *s, Operation operation, uint32_t count, 
 void remote_count_bytes(const RemoteServer *s, double bytes[2]);
 /** HELLO, with the secret. The answer tells what the server holds. */
 int remote_say_hello(Remote *r, RemoteServer *s, Frame *frame, uint8_t **reply);
+/** Closes the line to a server. A server of datagrams does not see that, and is told. */
+void remote_hang_up(RemoteServer *s);
 /** PROBE or CREATE. */
 int remote_ask_points(Remote *r, RemoteServer *s, Operation operation, int64_t count, Frame *frame, uint8_t **reply);
 /** Bytes of a trial of so many points. */

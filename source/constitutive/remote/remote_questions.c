@@ -132,6 +132,17 @@ int remote_say_hello(Remote *r, RemoteServer *s, Frame *frame, uint8_t **reply)
   return bad;
 }
 
+void remote_hang_up(RemoteServer *s)
+{
+  if (s->channel && channel_may_lose(s->channel)) {
+    Text words = {0};
+    const Frame bye = {.version = FRAME_VERSION, .operation = OPERATION_BYE, .sequence = ++s->sequence};
+    channel_send(s->channel, &bye, 0, &words);
+    text_free(&words);
+  }
+  channel_close(&s->channel);
+}
+
 int remote_tell(const Remote *r, Error *error)
 {
   return error_add(error, BRECCIA_FAILURE, "%s", remote_problem(r));

@@ -119,7 +119,7 @@ bool remote_rescue(Remote *r)
     Text words = {0};
     Held held;
     remote_count_bytes(s, s->bytes);
-    channel_close(&s->channel);
+    remote_hang_up(s);
     s->channel = channel_connect(s->address, r->timeout, NULL, NULL, &words);
     text_free(&words);
     s->waiting = s->tried = false;
@@ -145,8 +145,8 @@ static int take_up(Remote *r, RemoteServer *s, const double identity[IDENTITY], 
   if (!is_within_reach(&held, identity[1]))
     return error_add(
         error, BRECCIA_USER_ERROR,
-        "material '%s': the server at %s has gone on to commit %.0f, the checkpoint is of commit %.0f, and "
-        "it cannot go back; run without --restart",
+        "material '%s': the server at %s is at commit %.0f, the checkpoint at commit %.0f, and the server cannot be "
+        "brought there; run without --restart",
         r->material, s->address, held.commits, identity[1]);
   if (catch_up(r, s, &held, identity[1])) return remote_tell(r, error);
   return remote_ask(r, s, OPERATION_ATTACH, 0, NULL, &frame, &reply) ? remote_tell(r, error) : BRECCIA_OK;

@@ -22,7 +22,8 @@ typedef struct Session {
   int64_t points, commits;
   int elastic; /* the elastic stage */
   double *committed, *trial;
-  bool tried; /* there is a trial that could be committed */
+  uint8_t *tried; /* of each point, whether it has a trial that could be committed */
+  int64_t trials; /* how many have */
   double seconds;
   double evaluations;
 } Session;
@@ -31,7 +32,6 @@ typedef struct Server {
   const ServeSpec *spec;
   Listener *listener;
   Session held;
-  bool greeted;  /* the client has shown what it must */
   uint32_t last; /* sequence number of the frame answered last */
   bool answered;
   bool leaving;
@@ -101,6 +101,7 @@ static void session_end(Session *h)
   units_destroy(&h->units);
   free(h->committed);
   free(h->trial);
+  free(h->tried);
   *h = (Session){0};
 }
 
@@ -110,6 +111,7 @@ static int read_material(const Server *s, Session *h, const char *text, size_t l
   const char *words[MOST_PARAMETERS];
   char *units[3], *command = frame_line(text, length, "command");
   static const char *const keys[] = {"length unit", "force unit", "time unit"};
+  const double stage = frame_number(text, length, "stage", 1);
   int count = 0, status = BRECCIA_USER_ERROR;
   for (int k = 0; k < 3; ++k) units[k] = frame_line(text, length, keys[k]);
   char *state = NULL, *name = command ? strtok_r(command, ";", &state) : NULL;
@@ -127,10 +129,12 @@ static int read_material(const Server *s, Session *h, const char *text, size_t l
     error_add(error, BRECCIA_USER_ERROR, "there is no law '%s'; a command is 'LAW; KEY=VALUE; ...' with one of %s",
               name ? name : "", text_words(&names));
     text_free(&names);
+  } else if (stage != 0 && stage != 1) {
+    error_add(error, BRECCIA_USER_ERROR, "a stage is 0 (elastic) or 1 (plastic)");
   } else if ((h->units = units_create(units[0] ? units[0] : UNITS_LENGTH, units[1] ? units[1] : UNITS_FORCE,
                                       units[2] ? units[2] : UNITS_TIME, error)))
     status = material_from_words(&h->material, law, words, count, h->units, "", error);
-  h->elastic = frame_number(text, length, "stage", 1) == 0;
+  h->elastic = stage == 0;
   for (int k = 0; k < 3; ++k) free(units[k]);
   free(command);
   return status;
@@ -145,9 +149,17 @@ static uint32_t new_number(void)
   return number ? number : 1;
 }
 
-static ChannelStatus hello(Server *s, const Frame *asked, const char *text)
+/** Whether a frame is the greeting of a client that may be served. */
+static int greets(const void *context, const Frame *asked, const uint8_t *payload, Text *reason)
 {
-  char *secret = frame_line(text, asked->length, "secret");
+  const Server *s = context;
+  if (asked->version != FRAME_VERSION)
+    text_add(reason, "this server speaks version %d of the protocol, the client version %d", FRAME_VERSION,
+             asked->version);
+  else if (asked->operation != OPERATION_HELLO)
+    text_add(reason, "a client says HELLO first");
+  if (reason->length) return 1;
+  char *secret = frame_line((const char *)payload, asked->length, "secret");
   /* The same time for any wrong secret of a length. */
   unsigned differs = 0;
   const char *wanted = s->spec->secret ? s->spec->secret : "";
@@ -156,12 +168,19 @@ static ChannelStatus hello(Server *s, const Frame *asked, const char *text)
     differs |= (unsigned char)(wanted[k] ^ (k < given ? secret[k] : 0));
   differs |= s->spec->secret && given != strlen(wanted);
   free(secret);
-  if (differs) {
-    s->leaving = true;
-    return refuse(s, asked, -1, "the secret is wrong");
-  }
-  s->greeted = true;
+  if (differs) text_add(reason, "the secret is wrong");
+  return differs != 0;
+}
+
+static ChannelStatus hello(Server *s, const Frame *asked, const uint8_t *payload)
+{
   Text reply = {0};
+  if (greets(s, asked, payload, &reply)) {
+    s->leaving = true;
+    const ChannelStatus status = refuse(s, asked, -1, "%s", text_words(&reply));
+    text_free(&reply);
+    return status;
+  }
   text_add(&reply, "program: breccia serve\nversion: %s\nsession: %lu\npoints: %lld\ncommits: %lld\n", BRECCIA_VERSION,
            (unsigned long)s->held.number, (long long)s->held.points, (long long)s->held.commits);
   return answer_text(s, asked, &reply);
@@ -194,7 +213,8 @@ static ChannelStatus create(Server *s, const Frame *asked, const char *text)
     fresh.number = new_number();
     fresh.committed = memory_zeroed(values * (size_t)fresh.points, sizeof(double), "points", error);
     fresh.trial = memory_zeroed(values * (size_t)fresh.points, sizeof(double), "points", error);
-    bad = !fresh.committed || !fresh.trial;
+    fresh.tried = memory_zeroed((size_t)fresh.points, 1, "points", error);
+    bad = !fresh.committed || !fresh.trial || !fresh.tried;
     for (int64_t i = 0; !bad && fresh.material.law->begin && i < fresh.points; ++i) {
       fresh.material.law->begin(fresh.material.constants, fresh.committed + values * (size_t)i);
       fresh.material.law->begin(fresh.material.constants, fresh.trial + values * (size_t)i);
@@ -215,12 +235,34 @@ static ChannelStatus create(Server *s, const Frame *asked, const char *text)
   return status;
 }
 
+static void forget_trials(Session *h)
+{
+  memset(h->tried, 0, (size_t)h->points);
+  h->trials = 0;
+}
+
+/** Notes whether `count` points from `first` on have a trial. */
+static void note_trials(Session *h, uint32_t first, uint32_t count, bool tried)
+{
+  for (uint32_t i = first; i < first + count; ++i) {
+    h->trials += tried - h->tried[i];
+    h->tried[i] = tried;
+  }
+}
+
+/** Makes the last trial of each point its state; a point that has none keeps its state. */
 static void commit(Session *h)
 {
-  double *trial = h->trial;
-  h->trial = h->committed;
-  h->committed = trial;
-  h->tried = false;
+  if (h->trials == h->points) {
+    double *trial = h->trial;
+    h->trial = h->committed;
+    h->committed = trial;
+  } else {
+    const size_t row = (size_t)h->material.history_values;
+    for (size_t i = 0; i < (size_t)h->points; ++i)
+      if (h->tried[i]) memcpy(h->committed + row * i, h->trial + row * i, sizeof(double) * row);
+  }
+  forget_trials(h);
   ++h->commits;
 }
 
@@ -276,7 +318,7 @@ static ChannelStatus trial(Server *s, const Frame *asked, const uint8_t *payload
     return refuse(s, asked, -1, "points %lu to %lu were asked for; there are %lld", (unsigned long)first,
                   (unsigned long)first + asked->count - 1, (long long)h->points);
   if (asked->flags & TRIAL_COMMITS_BEFORE) {
-    if (!h->tried) return refuse(s, asked, -1, "there is no trial to commit");
+    if (!h->trials) return refuse(s, asked, -1, "there is no trial to commit");
     commit(h);
   }
   Channel *channel = listener_channel(s->listener);
@@ -284,6 +326,7 @@ static ChannelStatus trial(Server *s, const Frame *asked, const uint8_t *payload
   if (!out) return refuse(s, asked, -1, "out of memory: answer");
   const double start = clock_seconds();
   int64_t bad = -1;
+  note_trials(h, first, asked->count, false); /* one that fails leaves the points without */
   if (s->spec->zeros)
     memset(out, 0, (size_t)asked->count * per_point);
   else
@@ -292,7 +335,7 @@ static ChannelStatus trial(Server *s, const Frame *asked, const uint8_t *payload
   h->seconds += clock_seconds() - start;
   h->evaluations += asked->count;
   if (bad >= 0) return refuse(s, asked, bad, "%s could not integrate this strain", h->material.law->name);
-  h->tried = true;
+  note_trials(h, first, asked->count, true);
   return answer(s, asked, asked->count, asked->count * per_point);
 }
 
@@ -313,7 +356,7 @@ static ChannelStatus move_state(Server *s, const Frame *asked, const uint8_t *pa
       memcpy((uint8_t *)h->committed + row * first, payload + 8, size);
       memcpy((uint8_t *)h->trial + row * first, payload + 8, size);
     }
-    h->tried = false;
+    forget_trials(h);
     return answer(s, asked, 0, 0);
   }
   uint8_t *out = channel_payload(listener_channel(s->listener), size);
@@ -353,8 +396,7 @@ static ChannelStatus obey(Server *s, const Frame *asked, const uint8_t *payload)
   if (asked->version != FRAME_VERSION)
     return refuse(s, asked, -1, "this server speaks version %d of the protocol, the client version %d", FRAME_VERSION,
                   asked->version);
-  if (asked->operation == OPERATION_HELLO) return hello(s, asked, text);
-  if (!s->greeted) return refuse(s, asked, -1, "a client says HELLO first");
+  if (asked->operation == OPERATION_HELLO) return hello(s, asked, payload);
   switch (asked->operation) {
   case OPERATION_PROBE:
   case OPERATION_CREATE: return create(s, asked, text);
@@ -369,10 +411,10 @@ static ChannelStatus obey(Server *s, const Frame *asked, const uint8_t *payload)
   case OPERATION_ATTACH: return tell_law(s, asked, h);
   case OPERATION_TRIAL: return trial(s, asked, payload);
   case OPERATION_COMMIT:
-    if (!h->tried) return refuse(s, asked, -1, "there is no trial to commit");
+    if (!h->trials) return refuse(s, asked, -1, "there is no trial to commit");
     commit(h);
     return answer(s, asked, 0, 0);
-  case OPERATION_REVERT: h->tried = false; return answer(s, asked, 0, 0);
+  case OPERATION_REVERT: forget_trials(h); return answer(s, asked, 0, 0);
   case OPERATION_SAVE:
   case OPERATION_RESTORE: return move_state(s, asked, payload);
   default: return refuse(s, asked, -1, "operation %d is unknown", asked->operation);
@@ -383,7 +425,12 @@ int serve_materials(const ServeSpec *spec, Error *error)
 {
   Server s = {.spec = spec};
   Text words = {0};
-  s.listener = listener_open(spec->address, spec->secret != NULL, &words);
+  s.listener = listener_open(&(ListenerSpec){.address = spec->address,
+                                             .open = spec->secret != NULL,
+                                             .greets = greets,
+                                             .context = &s,
+                                             .interrupted = spec->interrupted},
+                             &words);
   if (!s.listener) {
     error_add(error, BRECCIA_USER_ERROR, "%s: cannot be listened to: %s", spec->address, text_words(&words));
     text_free(&words);
@@ -397,11 +444,11 @@ int serve_materials(const ServeSpec *spec, Error *error)
     text_free(&words);
     ChannelStatus status = listener_receive(s.listener, &asked, &payload, &fresh, POLL_SECONDS, &words);
     if (status == CHANNEL_LATE) continue;
-    if (fresh || (!status && asked.operation == OPERATION_HELLO)) s.greeted = s.answered = false;
+    if (fresh) s.answered = false;
     s.leaving = false;
     if (status == CHANNEL_OK) {
       /* An answer that was lost is given once more; nothing is computed or committed twice. */
-      const bool again = s.answered && asked.sequence == s.last;
+      const bool again = s.answered && asked.sequence == s.last && asked.operation != OPERATION_HELLO;
       status = again ? channel_repeat(listener_channel(s.listener), SEND_SECONDS, &words) : obey(&s, &asked, payload);
       s.answered = true;
       s.last = asked.sequence;
@@ -411,7 +458,6 @@ int serve_materials(const ServeSpec *spec, Error *error)
     }
     if (status == CHANNEL_OK && !s.leaving) continue;
     listener_drop(s.listener);
-    s.greeted = false;
     if (spec->once) break;
   }
   text_free(&words);

@@ -1,0 +1,511 @@
+/* Material servers and their clients: who is served, what is committed, and what stays behind. */
+#include "support.h"
+
+#include "base/clock.h"
+#include "constitutive/remote/channel.h"
+#include "constitutive/remote/remote.h"
+#include "constitutive/remote/server.h"
+
+#include <poll.h>
+#include <pthread.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+  PATIENCE = 30
+}; /* seconds, for what comes at once; half of the minute for which a served client is waited for */
+
+/* ---- a server of our laws in a thread, and lines to it ---- */
+
+static char folder[] = "/tmp/breccia-remote-XXXXXX", where[160];
+static volatile int listening, interrupted;
+static pthread_t server;
+
+static void note_address(const char *address)
+{
+  snprintf(where, sizeof where, "%s", address);
+  listening = 1;
+}
+
+static void *serve(void *spec)
+{
+  static int status;
+  status = serve_materials(spec, NULL);
+  return &status;
+}
+
+static ServeSpec spec;
+static char wanted[160];
+
+static void begin(const char *address, const char *secret)
+{
+  snprintf(wanted, sizeof wanted, "%s", address);
+  spec = (ServeSpec){.address = wanted, .secret = secret, .interrupted = &interrupted, .listening = note_address};
+  listening = interrupted = 0;
+  assert_int_equal(pthread_create(&server, NULL, serve, &spec), 0);
+  while (!listening) nanosleep(&(struct timespec){.tv_nsec = 1000000L}, NULL);
+}
+
+static void begin_at_file(char path[128])
+{
+  snprintf(path, 128, "%s/socket", folder);
+  char *address = text_format("unix:%s", path);
+  begin(address, NULL);
+  free(address);
+}
+
+static void end(void)
+{
+  void *status;
+  interrupted = 1;
+  pthread_join(server, &status);
+  assert_int_equal(*(int *)status, BRECCIA_OK);
+}
+
+typedef struct Line {
+  Channel *channel;
+  uint32_t sequence, session;
+  uint32_t operation, count; /* of the last answer */
+  char text[2000];           /* its payload */
+} Line;
+
+static Line connect_to(const char *address)
+{
+  Text words = {0};
+  Line line = {.channel = channel_connect(address, PATIENCE, NULL, NULL, &words)};
+  if (!line.channel) fail_msg("%s: %s", address, text_words(&words));
+  return line;
+}
+
+static void send_frame(Line *line, Operation operation, uint32_t flags, uint32_t count, const void *body, size_t size)
+{
+  Text words = {0};
+  memcpy(channel_payload(line->channel, size), body, size);
+  const Frame frame = {.version = FRAME_VERSION,
+                       .operation = (uint16_t)operation,
+                       .sequence = ++line->sequence,
+                       .flags = flags,
+                       .count = count,
+                       .length = (uint32_t)size,
+                       .session = line->session};
+  assert_int_equal(channel_send(line->channel, &frame, PATIENCE, &words), CHANNEL_OK);
+}
+
+static void hear(Line *line)
+{
+  Text words = {0};
+  Frame frame = {0};
+  uint8_t *payload;
+  const ChannelStatus status = channel_receive(line->channel, &frame, &payload, PATIENCE, &words);
+  if (status) fail_msg("no answer: %s", text_words(&words));
+  line->operation = frame.operation;
+  line->count = frame.count;
+  if (frame.session) line->session = frame.session;
+  memcpy(line->text, payload, frame.length < sizeof line->text ? frame.length + 1 : sizeof line->text);
+}
+
+/** Asks, and fails the test unless the answer holds the words. */
+static void ask(Line *line, Operation operation, uint32_t flags, uint32_t count, const void *body, size_t size,
+                const char *words)
+{
+  send_frame(line, operation, flags, count, body, size);
+  hear(line);
+  if (!strstr(line->text, words)) fail_msg("expected '%s', found '%s'", words, line->text);
+}
+
+static void say(Line *line, Operation operation, uint32_t count, const char *body, const char *words)
+{
+  ask(line, operation, 0, count, body, strlen(body), words);
+}
+
+/** Waits until the other side has closed the line; what still comes is dropped. */
+static void await_end(Line *line)
+{
+  char bytes[256];
+  for (;;) {
+    struct pollfd p = {.fd = channel_socket(line->channel), .events = POLLIN};
+    if (poll(&p, 1, 1000 * PATIENCE) != 1) fail_msg("the line is still open after %d s", PATIENCE);
+    if (recv(p.fd, bytes, sizeof bytes, 0) <= 0) break;
+  }
+  channel_close(&line->channel);
+}
+
+static const char hello[] = "client: test\n";
+/* A bar that yields at 1 ‰. */
+static const char steel[] = "command: elastic-perfectly-plastic; Young modulus=2e8; yield stress=2e5\n";
+static const double YIELD_STRAIN = 1e-3, YIELD_STRESS = 2e5;
+
+/* ---- what is committed ---- */
+
+/** The stress of one point, whose trial may be preceded by a commit. */
+static double pull(Line *line, uint32_t point, double strain, uint32_t flags)
+{
+  uint8_t body[16];
+  double stress;
+  const uint32_t head[2] = {point, 0};
+  memcpy(body, head, 8);
+  memcpy(body + 8, &strain, 8);
+  ask(line, OPERATION_TRIAL, flags, 1, body, sizeof body, "");
+  if (line->operation != (OPERATION_TRIAL | OPERATION_ANSWER)) fail_msg("%s", line->text);
+  memcpy(&stress, line->text, sizeof stress);
+  return stress;
+}
+
+static void partial_trials_keep_the_state_of_the_others(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  Line line = connect_to(where);
+  say(&line, OPERATION_HELLO, 0, hello, "session: 0\n");
+  say(&line, OPERATION_CREATE, 3, steel, "components: 1\n");
+  /* Point 0 is drawn to three times its yield strain: two of them stay when it is unloaded. */
+  assert_near(pull(&line, 0, 3 * YIELD_STRAIN, 0), YIELD_STRESS, 1e-6);
+  say(&line, OPERATION_COMMIT, 0, "", "");
+  for (int n = 0; n < 3; ++n) { /* others go on, with commits of either kind */
+    assert_near(pull(&line, 1, 0.5 * YIELD_STRAIN, 0), 0.5 * YIELD_STRESS, 1e-6);
+    if (n == 1) {
+      assert_near(pull(&line, 2, 0.5 * YIELD_STRAIN, TRIAL_COMMITS_BEFORE), 0.5 * YIELD_STRESS, 1e-6);
+    }
+    say(&line, OPERATION_COMMIT, 0, "", "");
+    assert_near(pull(&line, 0, 2 * YIELD_STRAIN, 0), 0, 1e-6);
+    say(&line, OPERATION_REVERT, 0, "", "");
+  }
+  /* A trial that was reverted is not committed with those of others. */
+  pull(&line, 0, -3 * YIELD_STRAIN, 0);
+  say(&line, OPERATION_REVERT, 0, "", "");
+  pull(&line, 1, 0, 0);
+  say(&line, OPERATION_COMMIT, 0, "", "");
+  assert_near(pull(&line, 0, 2 * YIELD_STRAIN, 0), 0, 1e-6);
+  say(&line, OPERATION_REVERT, 0, "", "");
+  say(&line, OPERATION_COMMIT, 0, "", "there is no trial to commit");
+  /* All points together, twice: the last trial counts. */
+  for (uint32_t k = 0; k < 3; ++k) pull(&line, k, 5 * YIELD_STRAIN, 0);
+  for (uint32_t k = 0; k < 3; ++k) pull(&line, k, (2.0 + k) * YIELD_STRAIN, 0);
+  say(&line, OPERATION_COMMIT, 0, "", "");
+  assert_near(pull(&line, 0, YIELD_STRAIN, 0), -YIELD_STRESS, 1e-6);
+  assert_near(pull(&line, 1, 2 * YIELD_STRAIN, 0), 0, 1e-6);
+  assert_near(pull(&line, 2, 2.5 * YIELD_STRAIN, 0), -0.5 * YIELD_STRESS, 1e-6);
+  channel_close(&line.channel);
+  end();
+}
+
+/* ---- who is served ---- */
+
+static void strangers_cannot_speak_for_a_client(void **state)
+{
+  (void)state;
+  begin("udp://127.0.0.1:0", NULL);
+  Line client = connect_to(where), stranger = connect_to(where);
+  say(&stranger, OPERATION_CREATE, 1, steel, "a client says HELLO first");
+  say(&client, OPERATION_HELLO, 0, hello, "points: 0\n");
+  say(&client, OPERATION_CREATE, 2, steel, "components: 1\n");
+  pull(&client, 0, 3 * YIELD_STRAIN, 0);
+  /* It even knows the session and the number of the next frame. */
+  stranger.session = client.session;
+  stranger.sequence = client.sequence;
+  say(&stranger, OPERATION_COMMIT, 0, "", "a client says HELLO first");
+  say(&stranger, OPERATION_CREATE, 1, steel, "a client says HELLO first");
+  say(&stranger, OPERATION_BYE, 0, "", "a client says HELLO first");
+  say(&stranger, OPERATION_HELLO, 0, hello, "the server is busy with another client");
+  /* What was answered before is answered once more, and points and trial are as they were. */
+  --client.sequence;
+  assert_near(pull(&client, 0, 3 * YIELD_STRAIN, 0), YIELD_STRESS, 1e-6);
+  say(&client, OPERATION_STATISTICS, 0, "", "evaluations: 1\n");
+  say(&client, OPERATION_COMMIT, 0, "", "");
+  say(&client, OPERATION_HELLO, 0, hello, "points: 2\ncommits: 1\n");
+  say(&client, OPERATION_BYE, 0, "", "");
+  say(&client, OPERATION_COMMIT, 0, "", "a client says HELLO first");
+  say(&stranger, OPERATION_HELLO, 0, hello, "points: 2\ncommits: 1\n");
+  channel_close(&client.channel);
+  channel_close(&stranger.channel);
+  end();
+}
+
+static void who_does_not_know_the_secret_holds_nothing(void **state)
+{
+  (void)state;
+  static const char *const addresses[] = {"tcp://127.0.0.1:0", "udp://127.0.0.1:0"};
+  for (int k = 0; k < 2; ++k) {
+    begin(addresses[k], "sesame");
+    Line stranger = connect_to(where), client = connect_to(where);
+    say(&stranger, OPERATION_HELLO, 0, "secret: sesam\n", "the secret is wrong");
+    say(&client, OPERATION_HELLO, 0, "secret: sesame\n", "points: 0\n");
+    if (k) say(&stranger, OPERATION_HELLO, 0, "secret: sesam\n", "the secret is wrong");
+    say(&client, OPERATION_CREATE, 1, steel, "components: 1\n");
+    channel_close(&client.channel);
+    channel_close(&stranger.channel);
+    end();
+  }
+}
+
+/** The first `size` bytes of a greeting that announces a payload of `length` bytes. */
+static Line begin_to_greet(size_t size, uint32_t length)
+{
+  Line line = connect_to(where);
+  uint8_t bytes[FRAME_HEADER + sizeof hello];
+  memcpy(bytes + FRAME_HEADER, hello, sizeof hello - 1);
+  frame_seal(&(Frame){.version = FRAME_VERSION, .operation = OPERATION_HELLO, .length = sizeof hello - 1}, bytes);
+  memcpy(bytes + 20, &length, sizeof length);
+  assert_int_equal(send(channel_socket(line.channel), bytes, size, MSG_NOSIGNAL), size);
+  return line;
+}
+
+static void silent_and_slow_clients_hold_nobody_up(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  enum { MANY = 12 }; /* more than a server listens to at a time */
+  Line idle[MANY];
+  for (int k = 0; k < MANY; ++k) idle[k] = begin_to_greet((size_t)(k % 3) * 20, sizeof hello - 1);
+  Line client = connect_to(where);
+  say(&client, OPERATION_HELLO, 0, hello, "points: 0\n");
+  say(&client, OPERATION_CREATE, 1, steel, "components: 1\n");
+  Line late = connect_to(where);
+  say(&late, OPERATION_HELLO, 0, hello, "the server is busy with another client");
+  await_end(&late);
+  assert_near(pull(&client, 0, YIELD_STRAIN, 0), YIELD_STRESS, 1e-6);
+  for (int k = 0; k < MANY; ++k) await_end(&idle[k]); /* they are let go after some seconds */
+  say(&client, OPERATION_STATISTICS, 0, "", "evaluations: 1\n");
+  channel_close(&client.channel);
+  end();
+}
+
+static void first_frames_are_bounded(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  Line line = begin_to_greet(FRAME_HEADER, 1 << 28);
+  hear(&line);
+  assert_string_equal(line.text, "a first frame of 268435456 bytes was announced; a greeting has at most 4096");
+  await_end(&line);
+  line = begin_to_greet(FRAME_HEADER, 0xffffffffu);
+  hear(&line);
+  assert_string_equal(line.text, "a frame of 4294967295 bytes was announced; the most is 268435456");
+  await_end(&line);
+  line = connect_to(where);
+  say(&line, OPERATION_TRIAL, 0, "", "a client says HELLO first");
+  await_end(&line);
+  line = connect_to(where);
+  assert_int_equal(send(channel_socket(line.channel), "GET / HTTP/1.0\r\nHost: example\r\n\r\n", 33, MSG_NOSIGNAL), 33);
+  hear(&line);
+  assert_int_equal(line.operation, OPERATION_ERROR);
+  assert_non_null(strstr(line.text, "no frame of a material server"));
+  await_end(&line);
+  line = connect_to(where);
+  say(&line, OPERATION_HELLO, 0, hello, "points: 0\n");
+  say(&line, OPERATION_CREATE, 1, "command: elastic-1d; Young modulus=1\nstage: 2\n",
+      "a stage is 0 (elastic) or 1 (plastic)");
+  channel_close(&line.channel);
+  end();
+}
+
+/* ---- addresses and socket files ---- */
+
+static void addresses_are_refused_in_words(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *address, *words;
+  } table[] = {
+      {"tcp://127.0.0.1:65536", "'65536' is no port: expected a number from "},
+      {"tcp://127.0.0.1:99999", "'99999' is no port: expected a number from "},
+      {"udp://127.0.0.1:4294967376", "'4294967376' is no port: expected a number from "},
+      {"tcp://127.0.0.1:-1", "'-1' is no port: expected a number from "},
+      {"tcp://127.0.0.1:80x", "'80x' is no port: expected a number from "},
+      {"tcp://127.0.0.1:", "an address is tcp://HOST:PORT"},
+      {"tcp://:80", "an address is tcp://HOST:PORT"},
+      {"unix:", "the path of a socket must have 1 to 107 characters"},
+  };
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    Error *error = breccia_error_create();
+    assert_int_equal(serve_materials(&(ServeSpec){.address = table[k].address}, error), BRECCIA_USER_ERROR);
+    assert_non_null(strstr(breccia_error_text(error), table[k].words));
+    breccia_error_destroy(&error);
+    Text words = {0};
+    assert_null(channel_connect(table[k].address, 0, NULL, NULL, &words));
+    assert_non_null(strstr(text_words(&words), table[k].words));
+    text_free(&words);
+  }
+  Text words = {0};
+  assert_null(channel_connect("tcp://127.0.0.1:0", 0, NULL, NULL, &words));
+  assert_string_equal(text_words(&words), "'0' is no port: expected a number from 1 to 65535");
+  text_free(&words);
+}
+
+static void write_file(const char *path)
+{
+  FILE *file = fopen(path, "w");
+  fputs("results", file);
+  fclose(file);
+}
+
+static bool is_ordinary(const char *path)
+{
+  struct stat status;
+  return !stat(path, &status) && S_ISREG(status.st_mode) && status.st_size == 7;
+}
+
+static void only_sockets_of_their_own_are_removed(void **state)
+{
+  (void)state;
+  char path[128];
+  snprintf(path, sizeof path, "%s/socket", folder);
+  char *address = text_format("unix:%s", path);
+  write_file(path);
+  Error *error = breccia_error_create();
+  assert_int_equal(serve_materials(&(ServeSpec){.address = address}, error), BRECCIA_USER_ERROR);
+  breccia_error_destroy(&error);
+  assert_true(is_ordinary(path));
+  unlink(path);
+
+  begin_at_file(path);
+  end();
+  assert_int_not_equal(access(path, F_OK), 0);
+
+  begin_at_file(path);
+  unlink(path);
+  write_file(path);
+  end();
+  assert_true(is_ordinary(path));
+  unlink(path);
+  free(address);
+}
+
+static void a_server_ends_while_a_client_is_slow(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  Line line = connect_to(where);
+  say(&line, OPERATION_HELLO, 0, hello, "points: 0\n");
+  assert_int_equal(send(channel_socket(line.channel), "BRMS", 4, MSG_NOSIGNAL), 4);
+  const double start = clock_seconds();
+  end();
+  assert_true(clock_seconds() - start <
+              PATIENCE); /* it does not wait for the rest of the frame, which would take a minute */
+  assert_int_not_equal(access(path, F_OK), 0);
+  channel_close(&line.channel);
+}
+
+/* ---- servers that are found again ---- */
+
+/** A server that saves nothing, at some commit of session 77 with three points. */
+typedef struct Script {
+  int listener, commits, commits_asked;
+} Script;
+
+static void *play(void *context)
+{
+  Script *script = context;
+  Channel *c = channel_over(accept(script->listener, NULL, NULL), false, false);
+  Frame frame = {0};
+  uint8_t *payload;
+  Text words = {0};
+  while (frame.operation != OPERATION_BYE && channel_receive(c, &frame, &payload, PATIENCE, &words) == CHANNEL_OK) {
+    Text reply = {0};
+    if (frame.operation == OPERATION_HELLO) text_add(&reply, "session: 77\npoints: 3\ncommits: %d\n", script->commits);
+    if (frame.operation == OPERATION_PROBE)
+      text_add(&reply, "components: 6\nbulk: 2\nshear: 1\nstate: 0\niterates: 1\nsaves: 0\n");
+    script->commits_asked += frame.operation == OPERATION_COMMIT;
+    memcpy(channel_payload(c, reply.length), text_words(&reply), reply.length);
+    const Frame answer = {.version = FRAME_VERSION,
+                          .operation = frame.operation | OPERATION_ANSWER,
+                          .sequence = frame.sequence,
+                          .length = (uint32_t)reply.length,
+                          .session = 77};
+    channel_send(c, &answer, PATIENCE, &words);
+    text_free(&reply);
+  }
+  text_free(&words);
+  channel_close(&c);
+  return NULL;
+}
+
+/** Takes up a run at commit 5 with a server at another. @return the status; *asked tells how often the server was to commit */
+static int take_up(int commits, int *asked, char *told, size_t size)
+{
+  struct sockaddr_un un = {.sun_family = AF_UNIX};
+  snprintf(un.sun_path, sizeof un.sun_path, "%s/script", folder);
+  Script script = {.listener = socket(AF_UNIX, SOCK_STREAM, 0), .commits = commits};
+  assert_int_equal(bind(script.listener, (struct sockaddr *)&un, sizeof un), 0);
+  assert_int_equal(listen(script.listener, 1), 0);
+  pthread_t player;
+  assert_int_equal(pthread_create(&player, NULL, play, &script), 0);
+  char *address = text_format("unix:%s", un.sun_path);
+  const RemoteSpec remote_spec = {.material = "clay",
+                                  .command = "nDMaterial Any $tag",
+                                  .stage = -1,
+                                  .servers = (const char *const[]){address},
+                                  .server_count = 1,
+                                  .timeout = PATIENCE,
+                                  .stress_unit = 1,
+                                  .units = {"m", "kN", "s"},
+                                  .length = NAN};
+  Error *error = breccia_error_create();
+  Remote *remote = NULL;
+  assert_int_equal(remote_open(&remote, &remote_spec, error), BRECCIA_OK);
+  const int status = remote_resume(remote, (const int64_t[]){0, 3}, NULL, (const double[]){77, 5}, error);
+  snprintf(told, size, "%s", breccia_error_text(error));
+  remote_close(&remote);
+  pthread_join(player, NULL);
+  breccia_error_destroy(&error);
+  close(script.listener);
+  unlink(un.sun_path);
+  free(address);
+  *asked = script.commits_asked;
+  return status;
+}
+
+static void a_server_is_taken_up_where_the_checkpoint_is(void **state)
+{
+  (void)state;
+  char told[400];
+  int asked;
+  assert_int_equal(take_up(5, &asked, told, sizeof told), BRECCIA_OK);
+  assert_int_equal(asked, 0);
+  /* The commit goes with the trial that follows, which never came: it is made up for. */
+  assert_int_equal(take_up(4, &asked, told, sizeof told), BRECCIA_OK);
+  assert_int_equal(asked, 1);
+  static const int elsewhere[] = {6, 7, 3, 0};
+  for (int k = 0; k < 4; ++k) {
+    assert_int_equal(take_up(elsewhere[k], &asked, told, sizeof told), BRECCIA_USER_ERROR);
+    assert_int_equal(asked, 0);
+    char words[100];
+    snprintf(words, sizeof words, " is at commit %d, the checkpoint at commit 5", elsewhere[k]);
+    if (!strstr(told, words)) fail_msg("expected '%s', found '%s'", words, told);
+  }
+}
+
+static int make_folder(void **state)
+{
+  (void)state;
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+  (void)state;
+  return rmdir(folder); /* nothing has stayed behind */
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(partial_trials_keep_the_state_of_the_others),
+      cmocka_unit_test(strangers_cannot_speak_for_a_client),
+      cmocka_unit_test(who_does_not_know_the_secret_holds_nothing),
+      cmocka_unit_test(silent_and_slow_clients_hold_nobody_up),
+      cmocka_unit_test(first_frames_are_bounded),
+      cmocka_unit_test(addresses_are_refused_in_words),
+      cmocka_unit_test(only_sockets_of_their_own_are_removed),
+      cmocka_unit_test(a_server_ends_while_a_client_is_slow),
+      cmocka_unit_test(a_server_is_taken_up_where_the_checkpoint_is),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
