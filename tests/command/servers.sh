@@ -197,6 +197,16 @@ equal "socket for its owner only" "$(stat -c %a one)" 600
 server=$first; stop
 [ -e one ] && fail "the socket's file stays behind"
 
+# The socket's file goes at any end; a number that is no port is refused.
+for signal in TERM INT HUP; do
+  serve "unix:$PWD/ended"
+  kill -$signal "$server"; wait "$server"; equal "status at the end by SIG$signal" $? 0
+  [ -e ended ] && fail "the socket's file stays behind after SIG$signal"
+done
+"$breccia" serve --listen tcp://127.0.0.1:99999 > out 2> err; equal "no port: status" $? 2
+equal "no port" "$(cat err)" "tcp://127.0.0.1:99999: cannot be listened to: '99999' is no port: expected a number from 0 to 65535"
+refuse "$served, server: ['tcp://127.0.0.1:99999']" "server at tcp://127.0.0.1:99999: it cannot be reached: '99999' is no port: expected a number from 1 to 65535"
+
 # A secret.
 echo sesame > secret
 serve tcp://127.0.0.1:0 --secret-file secret; tcp=$(sed 's/listening at //' serve.out)
