@@ -15,16 +15,21 @@ import secrets
 import select
 import signal
 import socket
+import stat
 import struct
 import sys
 import tempfile
 import time
 import zlib
-from itertools import chain, islice, repeat, starmap
+from itertools import chain, compress, islice, repeat, starmap
 
 MAGIC, VERSION, HEADER = b"BRMS", 1, struct.Struct("<4sHHIIIIII")
 MOST_PAYLOAD = 1 << 28
 SEND_ROOM = 4 << 20  # bytes
+# Connections that have not greeted yet: how many are listened to, for how long, and how large a greeting may be.
+GUESTS, GREETING_SECONDS, MOST_GREETING = 8, 5, 4096
+FRAME_SECONDS, SILENT_SECONDS = 60, 60
+BUSY = "the server is busy with another client"
 MOST_POINTS = 1_000_000  # OpenSees takes a time that grows with the square to make them
 HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE, LAWS = range(1, 13)
 ERROR, ANSWER = 0x7F, 0x80
@@ -85,8 +90,10 @@ class Words:
         reading, self.writing = os.pipe()
         if os.fork() == 0:
             os.close(self.writing)
-            signal.signal(signal.SIGTERM, signal.SIG_IGN)
-            if os.read(reading, 1) == b"":
+            for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+                signal.signal(number, signal.SIG_IGN)
+            ended = os.read(reading, 1) == b""
+            if ended and self.since(0):
                 os.write(2, (self.since(0) + "\n").encode())
             os._exit(0)
         os.close(reading)
@@ -164,8 +171,11 @@ class Points:
 
     def clear(self):
         self.command, self.tags = None, []
-        self.tried = False
+        self.forget_trials()
         self.commits, self.seconds, self.evaluations = 0, 0.0, 0
+
+    def forget_trials(self):
+        self.tried = bytearray(len(self.tags))  # of each point, 1 if it has a trial that could be committed
 
     def build(self, command, tag):
         ops = self.ops
@@ -227,6 +237,7 @@ class Points:
         bulk, shear = self.probe(command)
         self.ops.model("basic", "-ndm", 3, "-ndf", 3)
         self.command, self.tags = command, list(range(1, count + 1))
+        self.forget_trials()
         for tag in self.tags:
             self.build(command, tag)
         self.words.mark()
@@ -234,16 +245,19 @@ class Points:
         return bulk, shear
 
     def begin_commit(self):
-        if not self.tried:
+        """Tags of the points whose last trial is their state from now on."""
+        if not any(self.tried):
             raise Refusal("there is no trial to commit")
-        self.tried = False
+        tried = compress(self.tags, self.tried)
+        self.forget_trials()
         self.commits += 1
+        return tried
 
     def commit(self):
-        self.begin_commit()
+        tried = self.begin_commit()
         if not self.command.uniaxial:  # of one strain, setStrain has committed already
             commit = self.ops.NDTest
-            for tag in self.tags:
+            for tag in tried:
                 commit("CommitState", tag)
 
     def pull_bonds(self, tags, strains, wanted):
@@ -280,17 +294,18 @@ class Points:
         if first + count > len(self.tags):
             raise Refusal(f"points {first} to {first + count - 1} were asked for; there are {len(self.tags)}")
         start = time.perf_counter()
-        together = flags & COMMITS_BEFORE and count == len(self.tags) and not self.command.uniaxial
+        together = flags & COMMITS_BEFORE and count == len(self.tags) == self.tried.count(1) and not self.command.uniaxial
         if together:
             self.begin_commit()
         elif flags & COMMITS_BEFORE:
             self.commit()
         tags, wanted = self.tags[first : first + count], bool(flags & WANTS_TANGENT)
+        self.tried[first : first + count] = bytes(count)  # one that fails leaves the points without
         if self.command.uniaxial:
             stresses, tangents = self.pull_bonds(tags, strains, wanted)
         else:
             stresses, tangents = self.strain_points(tags, strains, together, wanted)
-        self.tried = True
+        self.tried[first : first + count] = b"\1" * count
         self.seconds += time.perf_counter() - start
         self.evaluations += count
         return bytes(stresses) + bytes(tangents)
@@ -392,12 +407,22 @@ def offered_laws(points, program):
 class Server:
     def __init__(self, points, secret, program):
         self.points, self.secret, self.program = points, secret, program
-        self.greeted = False
+        self.begin()
+
+    def begin(self):
+        """With a new client."""
         self.last = None  # sequence number and answer of the frame answered last
         self.leaving = False
 
-    def begin(self):
-        self.greeted, self.last, self.leaving = False, None, False
+    def check_greeting(self, header, payload):
+        """Refuses a first frame that does not greet as it should."""
+        if header[1] != VERSION:
+            raise Refusal(f"this server speaks version {VERSION} of the protocol, the client version {header[1]}")
+        if header[2] != HELLO:
+            raise Refusal("a client says HELLO first")
+        given = parse_lines(payload).get("secret", "")
+        if self.secret and not secrets.compare_digest(given.encode(), self.secret.encode()):
+            raise Refusal("the secret is wrong")
 
     def answer(self, header, payload):
         """The frame that answers a frame."""
@@ -407,6 +432,10 @@ class Server:
         try:
             if version != VERSION:
                 raise Refusal(f"this server speaks version {VERSION} of the protocol, the client version {version}")
+            if operation == HELLO:
+                self.leaving = True
+                self.check_greeting(header, payload)
+                self.leaving = False
             points, body = self.obey(operation, flags, count, session, payload)
             frame = self.seal(operation | ANSWER, sequence, 0, points, body)
         except Refusal as refusal:
@@ -423,16 +452,9 @@ class Server:
     def obey(self, operation, flags, count, session, payload):
         points = self.points
         if operation == HELLO:
-            given = parse_lines(payload).get("secret", "")
-            if self.secret and not secrets.compare_digest(given.encode(), self.secret.encode()):
-                self.leaving = True
-                raise Refusal("the secret is wrong")
-            self.greeted = True
             return 0, format_lines(
                 [("program", self.program), ("session", points.session), ("points", len(points.tags)), ("commits", points.commits)]
             )
-        if not self.greeted:
-            raise Refusal("a client says HELLO first")
         if operation == PROBE:
             command = Command(parse_lines(payload))
             return 0, self.law(command, *points.probe(command))
@@ -450,8 +472,10 @@ class Server:
             return 0, b""
         if not points.session or session != points.session:
             raise Refusal(f"session {session} is not held here")
-        if operation == ATTACH or operation == REVERT:
-            points.tried = points.tried and operation == ATTACH
+        if operation == ATTACH:
+            return 0, b""
+        if operation == REVERT:
+            points.forget_trials()
             return 0, b""
         if operation == COMMIT:
             points.commit()
@@ -499,48 +523,144 @@ def check(head, body):
     return zlib.crc32(body, zlib.crc32(head[:28])) == header[8]
 
 
-def read_frame(connection):
-    head = bytes(read_exactly(connection, HEADER.size))
+def read_header(head, most):
     header = HEADER.unpack(head)
-    if header[0] != MAGIC or header[6] > MOST_PAYLOAD:
+    if header[0] != MAGIC:
         raise Refusal("what came is no frame of this protocol")
-    body = read_exactly(connection, header[6])
+    if header[6] > most:
+        raise Refusal(f"a frame of {header[6]} bytes was announced; the most is {most}{' before a greeting' if most < MOST_PAYLOAD else ''}")
+    return header
+
+
+def check_whole(head, body):
     if not check(head, body):
         raise Refusal("a frame came damaged (its checksum does not hold)")
+
+
+def read_frame(connection):
+    connection.settimeout(FRAME_SECONDS)
+    head = bytes(read_exactly(connection, HEADER.size))
+    header = read_header(head, MOST_PAYLOAD)
+    body = read_exactly(connection, header[6])
+    check_whole(head, body)
     return header, body
 
 
-def turn_away(server, connection):
-    """A second client is told that it is one too many, after its first frame has been read."""
+class Guest:
+    """A connection that has not greeted yet. Nothing of it is waited for, and little is kept."""
+
+    def __init__(self, connection):
+        connection.setblocking(False)
+        self.connection, self.bytes = connection, b""
+        self.end = time.monotonic() + GREETING_SECONDS
+        self.dismissed = False  # told why not; what else it sends is dropped, or closing would take the words away again
+
+    def fileno(self):
+        return self.connection.fileno()
+
+    def collect(self, size):
+        """Whether so many bytes have come."""
+        while len(self.bytes) < size:
+            try:
+                piece = self.connection.recv(size - len(self.bytes))
+            except BlockingIOError:
+                return False
+            if not piece:
+                raise Gone
+            self.bytes += piece
+        return True
+
+    def hear(self):
+        """Header and body of its first frame once it is whole, or None."""
+        if self.dismissed:
+            self.bytes = b""
+            self.collect(MOST_GREETING)
+            return None
+        if not self.collect(HEADER.size):
+            return None
+        head = self.bytes[: HEADER.size]
+        header = read_header(head, MOST_GREETING)
+        if not self.collect(HEADER.size + header[6]):
+            return None
+        body = self.bytes[HEADER.size :]
+        check_whole(head, body)
+        return header, body
+
+    def dismiss(self, frame):
+        if self.connection.send(frame) != len(frame):
+            raise Gone
+        self.connection.shutdown(socket.SHUT_WR)
+        self.dismissed = True
+
+
+def serve_guest(server, guest, occupied):
+    """Header and body of the greeting if the guest may be the client now, or None; Gone when it has left."""
+    sequence = 0
     try:
-        connection.settimeout(0.2)
-        header, _ = read_frame(connection)
-        connection.sendall(server.seal(ERROR, header[3], 0, 0, b"the server is busy with another client"))
-    except (OSError, Gone, Refusal):
-        pass
-    connection.close()
+        heard = guest.hear()
+        if heard:
+            sequence = heard[0][3]
+            server.check_greeting(*heard)
+            if occupied:
+                raise Refusal(BUSY)
+        return heard
+    except Refusal as refusal:
+        try:
+            guest.dismiss(server.seal(ERROR, sequence, 0, 0, str(refusal).encode()))
+        except OSError:
+            raise Gone from None
+    except OSError:
+        raise Gone from None
+    return None
+
+
+def accept_guest(listener, guests):
+    try:
+        connection, _ = listener.accept()
+    except OSError:  # it has left already
+        return
+    if connection.family == socket.AF_UNIX:  # else both ends take turns over one batch
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_ROOM)
+    else:
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    if len(guests) == GUESTS:  # the one that has been here longest goes
+        guests.pop(0).connection.close()
+    guests.append(Guest(connection))
+
+
+def attend(server, listener, guests, client):
+    """Waits for the client, which is returned as it is, or for a greeting: a new client, and header and body of it."""
+    while True:
+        left = [max(guest.end - time.monotonic(), 0) for guest in guests]
+        ready, _, _ = select.select([listener, *guests] + ([client] if client else []), [], [], min(left) if left else None)
+        if client in ready:  # if it has just left, whoever knocks is the next one
+            return client, None
+        for guest in list(guests):
+            try:
+                greeting = serve_guest(server, guest, client is not None) if guest in ready else None
+                if not greeting and guest.end <= time.monotonic():
+                    raise Gone
+            except Gone:
+                guests.remove(guest)
+                guest.connection.close()
+                continue
+            if greeting:
+                guests.remove(guest)
+                return guest.connection, greeting
+        if listener in ready:
+            accept_guest(listener, guests)
 
 
 def serve_stream(server, listener, once):
-    client = None
+    client, guests = None, []
+    listener.setblocking(False)
     while True:
-        ready, _, _ = select.select([listener] + ([client] if client else []), [], [])
-        if client not in ready:  # if it has just left, whoever knocks is the next one
-            connection, _ = listener.accept()
-            if connection.family == socket.AF_UNIX:  # else both ends take turns over one batch
-                connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_ROOM)
-            else:
-                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            if client:
-                turn_away(server, connection)
-            else:
-                client = connection
-                server.begin()
-            continue
+        client, greeting = attend(server, listener, guests, client)
+        if greeting:
+            server.begin()
+            client.settimeout(FRAME_SECONDS)
         try:
-            client.settimeout(60)
-            header, body = read_frame(client)
-            client.sendall(server.answer(header, body))
+            client.sendall(server.answer(*(greeting or read_frame(client))))
             if not server.leaving:
                 continue
         except Refusal as refusal:
@@ -557,63 +677,119 @@ def serve_stream(server, listener, once):
 
 
 def serve_datagrams(server, listener, once):
+    client, heard = None, 0.0  # where its greeting came from, and when something came last
     while True:
-        data, peer = listener.recvfrom(65535)
+        data, sender = listener.recvfrom(65535)
         if len(data) < HEADER.size:
             continue
         header, body = HEADER.unpack_from(data), data[HEADER.size :]
         if header[0] != MAGIC or header[6] != len(body) or not check(data[: HEADER.size], body):
             continue  # as if it had been lost
-        if header[2] == HELLO and not (server.last and server.last[0] == header[3]):
+        now = time.monotonic()
+        if sender != client:
+            try:
+                server.check_greeting(header, body)
+                if client and now - heard < SILENT_SECONDS:
+                    raise Refusal(BUSY)
+            except Refusal as refusal:
+                send_datagram(listener, server.seal(ERROR, header[3], 0, 0, str(refusal).encode()), sender)
+                continue
+            client = sender
             server.begin()
+        heard = now
         frame = server.answer(header, body)
         if len(frame) > 65507:
             frame = server.seal(ERROR, header[3], 0, 0, b"the answer does not fit a datagram; use tcp:// or unix:")
-        listener.sendto(frame, peer)
-        if server.leaving and once:
-            return
+        send_datagram(listener, frame, sender)
+        if server.leaving:
+            client = None
+            if once:
+                return
+
+
+def send_datagram(listener, frame, receiver):
+    try:
+        listener.sendto(frame, receiver)
+    except OSError:  # as if it had been lost
+        pass
 
 
 def is_loopback(host):
     return host in ("localhost", "::1") or host.startswith("127.")
 
 
-def open_listener(address, open_to_all):
-    """The socket that listens at an address, where it listens in words, and the file to remove at the end."""
-    if address.startswith("unix:"):
-        path = address[5:]
-        try:
-            probe = socket.socket(socket.AF_UNIX)
-            probe.connect(path)
-            probe.close()
-        except ConnectionRefusedError:
-            os.unlink(path)  # left behind by a server that was killed
-        except OSError:
-            pass
-        listener = socket.socket(socket.AF_UNIX)
+class SocketFile:
+    """The file of a Unix socket; only the one that was made here is removed."""
+
+    def __init__(self):
+        self.path = self.known = None
+
+    def bind(self, listener, path):
+        remove_stale(path)
         mask = os.umask(0o177)
         try:
             listener.bind(path)
+            self.path, self.known = path, self.identity(path)
         finally:
             os.umask(mask)
-        listener.listen(8)
-        return listener, address, path
+
+    @staticmethod
+    def identity(path):
+        try:
+            status = os.lstat(path)
+        except OSError:
+            return None
+        return status.st_dev, status.st_ino
+
+    def remove(self):
+        if self.path and self.known and self.identity(self.path) == self.known:
+            os.unlink(self.path)
+
+
+def remove_stale(path):
+    """Removes a socket that a killed server left behind: nobody answers there."""
+    try:
+        if not stat.S_ISSOCK(os.lstat(path).st_mode):
+            return
+        with socket.socket(socket.AF_UNIX) as probe:
+            probe.connect(path)
+    except ConnectionRefusedError:
+        os.unlink(path)
+    except OSError:
+        pass
+
+
+def parse_address(address, open_to_all):
+    """Kind, host and port of an address of the network."""
     kind, _, rest = address.partition("://")
     host, _, port = rest.rpartition(":")
     host = host.strip("[]")
-    if kind not in ("tcp", "udp") or not host or not port.isdigit():
+    if kind not in ("tcp", "udp") or not host or not port:
         raise ValueError("an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH")
+    if not re.fullmatch("[0-9]{1,5}", port) or int(port) > 65535:
+        raise ValueError(f"'{port[:20]}' is no port: expected a number from 0 to 65535")
     if not is_loopback(host) and not open_to_all:
         raise ValueError("a server listens on this machine only, unless a secret guards it (--secret-file)")
+    return kind, host, int(port)
+
+
+def open_listener(address, open_to_all, file):
+    """The socket that listens at an address, and where it listens in words."""
+    if address.startswith("unix:"):
+        listener = socket.socket(socket.AF_UNIX)
+        file.bind(listener, address[5:])
+        listener.listen(GUESTS)
+        return listener, address
+    kind, host, port = parse_address(address, open_to_all)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listener = socket.socket(family, socket.SOCK_STREAM if kind == "tcp" else socket.SOCK_DGRAM)
     if kind == "tcp":
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    listener.bind((host, int(port)))
+    listener.bind((host, port))
     if kind == "tcp":
-        listener.listen(8)
+        listener.listen(GUESTS)
     where = listener.getsockname()
-    return listener, f"{kind}://{'[' + where[0] + ']' if ':' in where[0] else where[0]}:{where[1]}", None
+    return listener, f"{kind}://{'[' + where[0] + ']' if ':' in where[0] else where[0]}:{where[1]}"
 
 
 def main():
@@ -628,27 +804,28 @@ def main():
             secret = file.readline().strip()
         if not secret:
             parser.error(f"{options.secret_file}: no secret stands there")
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # nohup keeps it running
+            signal.signal(number, lambda *_: sys.exit(0))
     try:
         ops = importlib.import_module("openseespy.opensees")
     except ImportError as problem:
         sys.exit(f"breccia-opensees: the package openseespy is not there: {problem}")
+    file, words = SocketFile(), None
     try:
-        listener, where, path = open_listener(options.listen, secret is not None)
-    except (OSError, ValueError) as problem:
-        sys.exit(f"breccia-opensees: {options.listen}: cannot be listened to: {problem}")
-    print(f"listening at {where}", flush=True)
-    words = Words()
-    server = Server(Points(ops, words), secret, f"OpenSees {ops.version()}")
-    try:
-        if listener.type == socket.SOCK_DGRAM:
-            serve_datagrams(server, listener, options.once)
-        else:
-            serve_stream(server, listener, options.once)
+        try:
+            listener, where = open_listener(options.listen, secret is not None, file)
+        except (OSError, ValueError) as problem:
+            parser.exit(2, f"breccia-opensees: {options.listen}: cannot be listened to: {problem}\n")
+        print(f"listening at {where}", flush=True)
+        words = Words()
+        server = Server(Points(ops, words), secret, f"OpenSees {ops.version()}")
+        serve = serve_datagrams if listener.type == socket.SOCK_DGRAM else serve_stream
+        serve(server, listener, options.once)
     finally:
-        words.end()
-        if path and os.path.exists(path):
-            os.unlink(path)
+        if words:
+            words.end()
+        file.remove()
 
 
 if __name__ == "__main__":

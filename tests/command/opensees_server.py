@@ -1,0 +1,244 @@
+"""The Python server of OpenSees: who is served, what is committed, what stays behind.
+
+opensees_server_test.py SERVER WORK_FOLDER, with an openseespy in PYTHONPATH: the stand-in suffices
+"""
+
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import zlib
+
+SERVER, WORK = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+HEADER = struct.Struct("<4sHHIIIIII")
+HELLO, CREATE, TRIAL, COMMIT, REVERT, STATISTICS, BYE = 1, 3, 5, 6, 7, 10, 11
+COMMITS_BEFORE = 1
+PATIENCE = 30  # seconds, for what comes at once; half of the minute for which a served client is waited for
+BARS = b"command: nDMaterial Bars $tag\n"
+YIELD_STRAIN, YIELD_STRESS = 1e-3, 2e5
+checks = failures = 0
+processes = []
+
+
+def check(what, good, more=""):
+    global checks, failures
+    checks += 1
+    if not good:
+        failures += 1
+        print(f"FAIL: {what}: {more}")
+
+
+def start(address, *options):
+    process = subprocess.Popen([sys.executable, SERVER, "--listen", address, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    line = process.stdout.readline()
+    if not line.startswith("listening at "):
+        sys.exit(f"FAIL: {address}: {process.stderr.read()}")
+    processes.append(process)
+    return process, line.removeprefix("listening at ").rstrip("\n")
+
+
+def end(process, with_signal=signal.SIGTERM):
+    process.send_signal(with_signal)
+    _, said = process.communicate(timeout=PATIENCE)
+    check(f"a quiet end by {with_signal.name}", process.returncode == 0 and said == "", f"{process.returncode}: {said}")
+
+
+def frame(operation, number, body=b"", count=0, flags=0, session=0, length=None):
+    head = HEADER.pack(b"BRMS", 1, operation, number, flags, count, len(body) if length is None else length, session, 0)[:28]
+    return head + struct.pack("<I", zlib.crc32(body, zlib.crc32(head))) + body
+
+
+class Line:
+    def __init__(self, address):
+        kind, _, rest = address.partition(":")
+        if kind == "unix":
+            self.socket = socket.socket(socket.AF_UNIX)
+            self.socket.connect(rest)
+        else:
+            host, _, port = rest.lstrip("/").rpartition(":")
+            self.socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM if kind == "tcp" else socket.SOCK_DGRAM)
+            self.socket.connect((host, int(port)))
+        self.socket.settimeout(PATIENCE)
+        self.datagrams = kind == "udp"
+        self.number = self.session = 0
+
+    def hear(self):
+        if self.datagrams:
+            data = self.socket.recv(65535)
+            head, body = data[:32], data[32:]
+        else:
+            head = self.socket.recv(32, socket.MSG_WAITALL)
+            if len(head) < 32:
+                return 0, b""
+            size = HEADER.unpack(head)[6]
+            body = self.socket.recv(size, socket.MSG_WAITALL) if size else b""
+        header = HEADER.unpack(head)
+        self.session = header[7] or self.session
+        return header[2], body
+
+    def ask(self, operation, body=b"", count=0, flags=0):
+        self.number += 1
+        try:
+            self.socket.sendall(frame(operation, self.number, body, count, flags, self.session))
+            return self.hear()
+        except OSError as problem:
+            return 0, str(problem).encode()
+
+    def expect(self, words, operation, body=b"", count=0):
+        _, answer = self.ask(operation, body, count)
+        check(f"operation {operation}", words.encode() in answer, f"expected '{words}', found {answer}")
+
+    def pull(self, point, strain, flags=0):
+        """The stress of one point along x."""
+        operation, answer = self.ask(TRIAL, struct.pack("<II6d", point, 0, strain, 0, 0, 0, 0, 0), 1, flags)
+        return struct.unpack("<6d", answer)[0] if operation == TRIAL + 128 else answer
+
+    def await_end(self, what):
+        try:
+            while self.socket.recv(4096):
+                pass
+        except ConnectionResetError:
+            pass
+        except TimeoutError:
+            check(what, False, f"the line is still open after {PATIENCE} s")
+        self.socket.close()
+
+
+def stress_is(what, found, expected):
+    check(what, isinstance(found, float) and abs(found - expected) < 1e-6, f"expected {expected}, found {found}")
+
+
+def partial_trials_keep_the_state_of_the_others():
+    process, address = start(f"unix:{WORK}/partial")
+    line = Line(address)
+    line.expect("points: 0\n", HELLO)
+    line.expect("components: 6\n", CREATE, BARS, 3)
+    stress_is("drawn to three times the yield strain", line.pull(0, 3 * YIELD_STRAIN), YIELD_STRESS)
+    line.ask(COMMIT)
+    line.pull(1, 0.5 * YIELD_STRAIN)
+    line.pull(2, 0.5 * YIELD_STRAIN, COMMITS_BEFORE)
+    line.ask(COMMIT)
+    stress_is("the point keeps what it was committed to", line.pull(0, 2 * YIELD_STRAIN), 0)
+    # A trial that is forgotten is not committed with those of others, neither by COMMIT nor by a trial of all.
+    line.pull(0, -3 * YIELD_STRAIN)
+    line.ask(REVERT)
+    line.expect("there is no trial to commit", COMMIT)
+    line.pull(1, 0)
+    line.ask(COMMIT)
+    stress_is("what was forgotten is not committed", line.pull(0, 2 * YIELD_STRAIN), 0)
+    line.pull(0, -3 * YIELD_STRAIN)
+    line.ask(REVERT)
+    line.pull(1, 0)
+    every = [2 * YIELD_STRAIN, 0, 0, 0, 0, 0] * 3
+    _, answer = line.ask(TRIAL, struct.pack("<II18d", 0, 0, *every), 3, COMMITS_BEFORE)
+    stress_is("nor by a trial of all points", struct.unpack("<18d", answer)[0], 0)
+    # The last of several trials counts.
+    line.pull(0, 5 * YIELD_STRAIN)
+    line.pull(0, 4 * YIELD_STRAIN)
+    line.ask(COMMIT)
+    stress_is("the last trial counts", line.pull(0, 2 * YIELD_STRAIN), -YIELD_STRESS)
+    end(process)
+
+
+def strangers_cannot_speak_for_a_client():
+    process, address = start("udp://127.0.0.1:0")
+    client, stranger = Line(address), Line(address)
+    stranger.expect("a client says HELLO first", CREATE, BARS, 1)
+    client.expect("points: 0\n", HELLO)
+    client.expect("components: 6\n", CREATE, BARS, 2)
+    client.pull(0, 3 * YIELD_STRAIN)
+    stranger.session, stranger.number = client.session, client.number
+    for operation in (COMMIT, CREATE, BYE):
+        stranger.expect("a client says HELLO first", operation, BARS, 1)
+    stranger.expect("the server is busy with another client", HELLO)
+    client.number -= 1
+    stress_is("the last answer once more", client.pull(0, 3 * YIELD_STRAIN), YIELD_STRESS)
+    client.expect("evaluations: 1\n", STATISTICS)
+    client.ask(COMMIT)
+    client.expect("points: 2\ncommits: 1\n", HELLO)
+    client.ask(BYE)
+    client.expect("a client says HELLO first", COMMIT)
+    stranger.expect("points: 2\ncommits: 1\n", HELLO)
+    end(process)
+
+
+def silent_and_slow_clients_hold_nobody_up():
+    process, address = start(f"unix:{WORK}/silent")
+    idle = []
+    for k in range(12):  # more than a server listens to at a time
+        idle.append(Line(address))
+        idle[-1].socket.sendall(frame(HELLO, 1, b"client: x\n")[: 20 * (k % 3)])
+    client = Line(address)
+    client.expect("points: 0\n", HELLO)
+    client.expect("components: 6\n", CREATE, BARS, 1)
+    late = Line(address)
+    late.expect("the server is busy with another client", HELLO)
+    late.await_end("one that is told that the server is busy")
+    for line in idle:
+        line.await_end("one that does not greet")
+    stress_is("the client is served all the time", client.pull(0, YIELD_STRAIN), YIELD_STRESS)
+    for announced, words in ((1 << 28, "268435456 bytes was announced; the most is 4096"), (2**32 - 1, "the most is 4096")):
+        line = Line(address)
+        line.socket.sendall(frame(HELLO, 1, length=announced))
+        _, answer = line.hear()
+        check("a greeting is bounded", words.encode() in answer, repr(answer))
+        line.await_end("one that announces too much")
+    line = Line(address)
+    line.expect("a client says HELLO first", TRIAL)
+    line.await_end("one that does not say HELLO")
+    end(process)
+
+
+def addresses_are_refused_in_one_line():
+    with open(f"{WORK}/ordinary", "w", encoding="utf-8") as file:
+        file.write("results")
+    table = [
+        ("tcp://127.0.0.1:65536", "'65536' is no port: expected a number from 0 to 65535"),
+        ("udp://127.0.0.1:99999", "'99999' is no port: expected a number from 0 to 65535"),
+        ("tcp://127.0.0.1:-1", "'-1' is no port: expected a number from 0 to 65535"),
+        ("tcp://127.0.0.1:", "an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH"),
+        ("gopher://x", "an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH"),
+        ("tcp://0.0.0.0:0", "a server listens on this machine only, unless a secret guards it (--secret-file)"),
+        (f"unix:{WORK}/ordinary", "Address already in use"),
+    ]
+    for address, words in table:
+        run = subprocess.run([sys.executable, SERVER, "--listen", address], capture_output=True, text=True, timeout=PATIENCE)
+        check(address, run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1, f"{run.returncode}: {run.stderr}")
+    with open(f"{WORK}/ordinary", encoding="utf-8") as file:
+        check("an ordinary file stays", file.read() == "results")
+
+
+def only_sockets_of_their_own_are_removed():
+    path = f"{WORK}/ended"
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        process, _ = start(f"unix:{path}")
+        end(process, number)
+        check(f"the socket's file goes after {number.name}", not os.path.exists(path))
+    process, _ = start(f"unix:{path}")
+    process.kill()
+    process.wait()
+    process, _ = start(f"unix:{path}")  # over the one that was left behind
+    os.unlink(path)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("results")
+    end(process)
+    check("a file that took its place stays", os.path.isfile(path))
+
+
+def main():
+    try:
+        partial_trials_keep_the_state_of_the_others()
+        strangers_cannot_speak_for_a_client()
+        silent_and_slow_clients_hold_nobody_up()
+        addresses_are_refused_in_one_line()
+        only_sockets_of_their_own_are_removed()
+    finally:
+        for process in processes:
+            process.kill()
+    print(f"{checks} checks, {failures} failed")
+    sys.exit(failures > 0)
+
+
+main()
