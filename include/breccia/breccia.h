@@ -141,10 +141,16 @@ BRECCIA_API void breccia_model_destroy(breccia_model **model);
 /** Advances by up to `steps` time steps (fewer where the deck's steps end). Writes no files. */
 BRECCIA_API int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error);
 
+typedef enum breccia_restart {
+  BRECCIA_RESTART_NO,
+  BRECCIA_RESTART_LAST,   /* go on from the checkpoint in the folder */
+  BRECCIA_RESTART_BEFORE, /* go on from the one before it, which becomes the last */
+} breccia_restart;
+
 typedef struct breccia_run {
   size_t size;
   const char *folder; /* for all files; made if need be */
-  int restart;        /* 1: go on from the checkpoint in the folder */
+  int restart;        /* breccia_restart */
   int64_t steps;      /* stop after so many steps in all; 0: as the deck says */
   const volatile int
       *interrupted; /* polled between steps: non-zero stops the run cleanly, with a checkpoint; may be NULL */

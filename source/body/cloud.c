@@ -1,5 +1,6 @@
 #include "body/cloud.h"
 
+#include "deck/named_file.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,6 +102,7 @@ int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const c
   *cloud = (Cloud){0};
   char *path = text_beside(node_file(reader->document, node), file);
   Error *reason = breccia_error_create();
+  if (path) named_file_note(reader, file, path);
   int status = path ? reader_of(file)->read(cloud, path, dimensions, reason) : BRECCIA_FAILURE;
   if (!path) error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
   if (path && status)

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SET, OUTPUT, STEPS, THREADS, RESTART, FORCE, QUIET, COUNT };
+enum { SET, OUTPUT, STEPS, THREADS, RESTART, RESTART_BEFORE, FORCE, QUIET, COUNT };
 
 static const Option options[] = {
     SET_OPTION,
@@ -13,6 +13,7 @@ static const Option options[] = {
     {"steps", "N", "stop after N steps in all"},
     {"threads", "N", "number of threads (OMP_NUM_THREADS, or one for each core)"},
     {"restart", NULL, "go on from the checkpoint in the folder"},
+    {"restart-before", NULL, "go on from the checkpoint before that, which takes its place"},
     {"force", NULL, "accept a time step above the stable one"},
     {"quiet", NULL, "print nothing but errors"},
     {0},
@@ -80,7 +81,9 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   char *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : result_folder(deck);
   const breccia_run wish = {.size = sizeof wish,
                             .folder = folder,
-                            .restart = values[RESTART] != NULL,
+                            .restart = values[RESTART_BEFORE] ? BRECCIA_RESTART_BEFORE
+                                       : values[RESTART]      ? BRECCIA_RESTART_LAST
+                                                              : BRECCIA_RESTART_NO,
                             .steps = steps,
                             .interrupted = &interrupted,
                             .progress = !quiet && terminal ? show : NULL,

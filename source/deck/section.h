@@ -101,6 +101,7 @@ typedef struct DeckReader {
   const void *context; /* what Section.parameters needs */
   Error *error;
   int *unknown; /* counts the messages that are only about unknown names; may be NULL */
+  Text *files;  /* gathers those that the deck names, a line each: checksum, bytes and name; may be NULL */
 } DeckReader;
 
 struct Section {

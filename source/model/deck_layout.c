@@ -187,7 +187,7 @@ int deck_open(const DeckText *text, const Section *section, const LawList *laws,
   if (!(*document = document_parse(text->words, strlen(text->words), text->name, error))) return BRECCIA_USER_ERROR;
   Units *plain = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
   if (!plain) return BRECCIA_FAILURE;
-  const DeckReader reader = {*document, plain, laws, error, NULL};
+  const DeckReader reader = {.document = *document, .units = plain, .context = laws, .error = error};
   int status = deck_resolve(*document, section, plain, text->settings, text->setting_count, error);
   if (!status) status = read_units(&reader, units);
   units_destroy(&plain);

@@ -32,7 +32,11 @@ void model_leave(const Entry *entry)
 static int open_deck(breccia_model *model, const DeckText *words, Error *error)
 {
   const int status = deck_open(words, &deck_section, &model->laws, &model->document, &model->units, error);
-  model->reader = (DeckReader){model->document, model->units, &model->laws, error, NULL};
+  model->reader = (DeckReader){.document = model->document,
+                               .units = model->units,
+                               .context = &model->laws,
+                               .error = error,
+                               .files = &model->files};
   if (!status) deck_write(model->document, &model->deck);
   return status;
 }
@@ -265,6 +269,7 @@ void breccia_model_destroy(breccia_model **out)
   free(model->own_laws);
   free(model->own_law_list);
   text_free(&model->deck);
+  text_free(&model->files);
   free(model);
   *out = NULL;
 }

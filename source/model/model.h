@@ -16,6 +16,7 @@ struct breccia_model {
   Text deck;                   /* as it is run: nothing in it is left to work out */
   const char *const *settings; /* with which it was loaded */
   int setting_count;
+  Text files;            /* that it names, as they were when they were read */
   breccia_law *own_laws; /* those that the program brought along, as this version of the header has them */
   const breccia_law **own_law_list;
   Document *document;

@@ -71,9 +71,16 @@ static int write_results(Run *run, Error *error)
   return status;
 }
 
+static CheckpointOf what_it_is_of(const breccia_model *model)
+{
+  return (CheckpointOf){text_words(&model->deck), text_words(&model->files), model->domain.particles->count};
+}
+
 static int write_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
+  /* Of energy from nothing the checkpoint before is the better one; of this very step it need not be written twice. */
+  if (model->solver.ledger.unsound_steps || run->checkpoint_step == model->solver.clock.step) return BRECCIA_OK;
   if (result_file_show(run->results, error)) return BRECCIA_FAILURE; /* a restart takes them up from there */
   run->last_checkpoint = clock_seconds();
   for (int r = 0; r < model->domain.region_count; ++r)
@@ -81,9 +88,10 @@ static int write_checkpoint(Run *run, Error *error)
       return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
   StateList state = {0};
   model_state(model, &state);
-  const CheckpointOf of = {text_words(&model->deck), model->domain.particles->count};
+  const CheckpointOf of = what_it_is_of(model);
   const int status = checkpoint_write(run->wish->folder, &state, &of, error);
   state_list_destroy(&state);
+  if (!status) run->checkpoint_step = model->solver.clock.step;
   const double seconds = clock_seconds() - run->last_checkpoint;
   pace_note(&run->model->outlook.checkpoints, 1, seconds);
   run->paused += seconds;
@@ -108,14 +116,12 @@ int run_write_file(Run *run, const char *name, const Text *words, Error *error)
 /** Takes away what an earlier run in this folder left to go on from, and what it told: both are of results that are written over now. */
 static int forget_earlier(const Run *run, Error *error)
 {
-  static const char *const names[] = {"checkpoint.h5", "summary.json"};
-  int status = BRECCIA_OK;
-  for (int k = 0; k < 2; ++k) {
-    char *path = text_format("%s/%s", run->wish->folder, names[k]);
-    if (!path || (unlink(path) && errno != ENOENT))
-      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be removed: %s", path ? path : names[k], strerror(errno));
-    free(path);
-  }
+  int status = checkpoint_forget(run->wish->folder, error);
+  char *path = text_format("%s/summary.json", run->wish->folder);
+  if (!path || (unlink(path) && errno != ENOENT))
+    status =
+        error_add(error, BRECCIA_FAILURE, "%s: cannot be removed: %s", path ? path : "summary.json", strerror(errno));
+  free(path);
   return status;
 }
 
@@ -140,15 +146,22 @@ static int write_deck(Run *run, Error *error)
 static int read_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
+  const CheckpointOf of = what_it_is_of(model);
+  const CheckpointWhich which = run->wish->restart == BRECCIA_RESTART_BEFORE ? CHECKPOINT_BEFORE : CHECKPOINT_LAST;
   StateList state = {0};
-  const int64_t stage = checkpoint_count(run->wish->folder, "stage");
+  Checkpoint checkpoint;
+  int status = checkpoint_open(&checkpoint, run->wish->folder, which, &of, error);
+  const int64_t stage = status ? 0 : checkpoint_count(&checkpoint, "stage");
   if (stage > 0 && stage < model->solver.clock.stages && solver_enter(&model->solver, stage, error))
-    return BRECCIA_FAILURE;
-  model_state(model, &state);
-  const CheckpointOf of = {text_words(&model->deck), model->domain.particles->count};
-  const int status = checkpoint_read(run->wish->folder, &state, &of, error);
+    status = BRECCIA_FAILURE;
+  if (!status) {
+    model_state(model, &state);
+    status = checkpoint_read(&checkpoint, &state, error);
+  }
   state_list_destroy(&state);
+  checkpoint_close(&checkpoint);
   model->begun = !status;
+  run->checkpoint_step = model->solver.clock.step;
   return status ? status : model_make_schedule(model, false, error);
 }
 
@@ -170,7 +183,10 @@ static int open_files(Run *run, Error *error)
                                   &names, error);
   }
   if (!status) status = write_deck(run, error);
-  return status ? status : watches_open(model->watches, run->wish->folder, model->units, resume, error);
+  if (!status) status = watches_open(model->watches, run->wish->folder, model->units, resume, error);
+  if (!status && run->wish->restart == BRECCIA_RESTART_BEFORE)
+    status = checkpoint_return_to_before(run->wish->folder, error);
+  return status;
 }
 
 /* ---- the loop ---- */
@@ -226,7 +242,8 @@ static int loop(Run *run, Error *error)
   Solver *s = &model->solver;
   int status = run->wish->restart ? BRECCIA_OK : due(run, error);
   while (!status && !solver_is_done(s) && s->clock.step < run->steps) {
-    if (run->wish->interrupted && *run->wish->interrupted) return BRECCIA_INTERRUPTED;
+    /* Where energy comes from nothing, a step or two more show whether it goes on. */
+    if (run->wish->interrupted && *run->wish->interrupted && !s->ledger.unsound_steps) return BRECCIA_INTERRUPTED;
     const int64_t stage = s->clock.stage, step = s->clock.step;
     status = model_advance(model, error);
     if (s->clock.stage != stage) begin_stage(model);
@@ -252,8 +269,8 @@ static int finish(Run *run, int status, Error *error)
   } else if (status == BRECCIA_INTERRUPTED) {
     int bad = write_checkpoint(run, error);
     if (bad) status = bad;
-  } else { /* the last good state; of energy from nothing the checkpoint before is the better one */
-    if (!model->solver.ledger.unsound_steps) write_checkpoint(run, error);
+  } else { /* the last good state */
+    write_checkpoint(run, error);
     write_results(run, error);
     watches_write(model->watches, &model->solver, true, error);
   }
@@ -274,7 +291,7 @@ static int finish(Run *run, int status, Error *error)
 
 static int run_whole(breccia_model *model, const breccia_run *wish, Error *error)
 {
-  Run run = {.model = model, .wish = wish};
+  Run run = {.model = model, .wish = wish, .checkpoint_step = -1};
   Entry entry;
   model->run_steps = 0;
   int status = model_enter(model, &entry, error);

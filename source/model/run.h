@@ -9,7 +9,8 @@ typedef struct Run {
   breccia_model *model;
   const breccia_run *wish;
   ResultFile *results;
-  int64_t steps; /* where to stop */
+  int64_t steps;           /* where to stop */
+  int64_t checkpoint_step; /* of the last one in the folder; -1: none, or not of this run */
   double started, last_checkpoint, last_progress;
   double paused;   /* seconds since the last progress that went into writing */
   int64_t told_at; /* step of the last progress */

@@ -2,9 +2,9 @@
 
 #include "base/text.h"
 #include "breccia/breccia.h"
+#include "results/seal.h"
 #include <errno.h>
 #include <fcntl.h>
-#include <hdf5.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ static int save(hid_t file, const char *name, hid_t type, size_t count, const vo
   hid_t space = H5Screate_simple(1, &size, NULL);
   hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   int bad = set < 0 || (count && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0);
-  if (set >= 0) H5Dclose(set);
+  if (set >= 0 && H5Dclose(set) < 0) bad = 1;
   H5Sclose(space);
   return bad;
 }
@@ -61,6 +61,46 @@ static int save_row(hid_t file, const StateRow *row)
   return bad;
 }
 
+static char *path_of(const char *folder, CheckpointWhich which)
+{
+  return text_format("%s/checkpoint%s.h5", folder, which == CHECKPOINT_BEFORE ? "-before" : "");
+}
+
+/** Writes everything into a new file, behind the room for the seal. */
+static int save_all(const char *path, const StateList *state, const CheckpointOf *of)
+{
+  const hid_t way = H5Pcreate(H5P_FILE_CREATE);
+  int bad = way < 0 || H5Pset_userblock(way, SEAL_BYTES) < 0;
+  const hid_t file = bad ? -1 : H5Fcreate(path, H5F_ACC_TRUNC, way, H5P_DEFAULT);
+  bad = file < 0;
+  bad = bad || save(file, "particles", H5T_NATIVE_INT64, 1, &of->particles);
+  bad = bad || save(file, "version", H5T_NATIVE_CHAR, strlen(BRECCIA_VERSION), BRECCIA_VERSION);
+  bad = bad || save(file, "deck", H5T_NATIVE_CHAR, strlen(of->deck), of->deck);
+  bad = bad || save(file, "files", H5T_NATIVE_CHAR, strlen(of->files), of->files);
+  for (int k = 0; !bad && k < state->count; ++k) bad = save_row(file, &state->rows[k]);
+  if (file >= 0 && H5Fclose(file) < 0) bad = 1;
+  if (way >= 0) H5Pclose(way);
+  return bad;
+}
+
+/** Brings the names in a folder to the disk; file systems that cannot do that for folders keep them in order themselves. */
+static int settle_folder(const char *folder)
+{
+  const int file = open(folder, O_RDONLY);
+  const int bad = file < 0 || (fsync(file) && errno != EINVAL && errno != ENOTSUP);
+  if (file >= 0) close(file);
+  return bad;
+}
+
+/** Gives a new, whole file its name, and the one of that name the name of the one before. */
+static int put_in_place(const char *folder, const char *part, const char *path, const char *before)
+{
+  int bad = access(path, F_OK) ? errno != ENOENT : (unlink(before) && errno != ENOENT) != 0;
+  /* A second name first, so that there is no moment without a file at `path`; where files have one name only, there is a short one. */
+  if (!bad && link(path, before) && errno != ENOENT) bad = rename(path, before) != 0;
+  return bad || rename(part, path) || settle_folder(folder);
+}
+
 int checkpoint_write(const char *folder, const StateList *state, const CheckpointOf *of, Error *error)
 {
   if (state->failed) return error_add(error, BRECCIA_FAILURE, "out of memory: state");
@@ -69,31 +109,22 @@ int checkpoint_write(const char *folder, const StateList *state, const Checkpoin
     const int status = row->care && row->care->ready ? row->care->ready(row->owner, error) : BRECCIA_OK;
     if (status) return status;
   }
-  char *path = text_format("%s/checkpoint.h5", folder), *temporary = text_format("%s/checkpoint.h5.part", folder);
+  char *path = path_of(folder, CHECKPOINT_LAST), *before = path_of(folder, CHECKPOINT_BEFORE),
+       *part = text_format("%s/checkpoint.h5.part", folder);
+  int status = BRECCIA_OK;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   errno = 0;
-  hid_t file = path && temporary ? H5Fcreate(temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT) : -1;
-  int bad = file < 0;
-  if (!bad) {
-    bad |= save(file, "particles", H5T_NATIVE_INT64, 1, &of->particles);
-    bad |= save(file, "version", H5T_NATIVE_CHAR, strlen(BRECCIA_VERSION), BRECCIA_VERSION);
-    bad |= save(file, "deck", H5T_NATIVE_CHAR, strlen(of->deck), of->deck);
-    for (int k = 0; !bad && k < state->count; ++k) bad = save_row(file, &state->rows[k]);
-    bad |= H5Fclose(file) < 0;
-  }
-  if (!bad) {
-    int descriptor = open(temporary, O_RDONLY);
-    bad = descriptor < 0 || fsync(descriptor);
-    if (descriptor >= 0) close(descriptor);
-  }
-  bad = bad || rename(temporary, path);
-  if (bad) {
-    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, errno ? strerror(errno) : "HDF5 refused");
-    if (temporary) remove(temporary);
+  if (!path || !before || !part)
+    status = error_add(error, BRECCIA_FAILURE, "out of memory: checkpoint");
+  else if (save_all(part, state, of) || seal_file(part) || put_in_place(folder, part, path, before)) {
+    status =
+        error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, errno ? strerror(errno) : "HDF5 refused");
+    remove(part);
   }
   free(path);
-  free(temporary);
-  return bad ? BRECCIA_FAILURE : BRECCIA_OK;
+  free(before);
+  free(part);
+  return status;
 }
 
 static int same_text(hid_t file, const char *name, const char *words)
@@ -123,6 +154,31 @@ static int load_row(hid_t file, const StateRow *row, Error *error)
   return status;
 }
 
+/** Whether the files that the deck names are as they were. Of the same deck they come in the same order. */
+static int check_files(hid_t file, const char *path, const char *now, Error *error)
+{
+  const int64_t count = load_count(file, "files");
+  if (count < 0) return STATE_MISFIT;
+  char *saved = calloc((size_t)count + 1, 1);
+  int status = !saved                                                       ? BRECCIA_FAILURE
+               : load(file, "files", H5T_NATIVE_CHAR, (size_t)count, saved) ? STATE_MISFIT
+                                                                            : BRECCIA_OK;
+  for (const char *then = saved; !status && (*then || *now);) {
+    const size_t length = strcspn(now, "\n");
+    if (strncmp(then, now, length + 1) != 0) {
+      int name = 0; /* behind checksum and bytes */
+      sscanf(now, "%*s %*s %n", &name);
+      status = error_add(error, BRECCIA_USER_ERROR,
+                         "%.*s: has changed since %s was written; put it back as it was, or run without --restart",
+                         (int)length - name, now + name, path);
+    }
+    now += length + (now[length] != 0);
+    then += strcspn(then, "\n") + (strchr(then, '\n') != NULL);
+  }
+  free(saved);
+  return status;
+}
+
 /** Whether the file is one of this body and deck. */
 static int check_file(hid_t file, const char *path, const CheckpointOf *of, Error *error)
 {
@@ -131,45 +187,95 @@ static int check_file(hid_t file, const char *path, const CheckpointOf *of, Erro
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: was written by another version of the program than %s; run without --restart", path,
                      BRECCIA_VERSION);
+  if (!same_text(file, "deck", of->deck))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: was written with another deck; put the deck back as it was, or run without --restart", path);
+  const int status = check_files(file, path, of->files, error);
+  if (status) return status;
   if (load(file, "particles", H5T_NATIVE_INT64, 1, &particles)) return STATE_MISFIT;
   if (particles != of->particles)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds %lld particles, the deck makes %lld; run without --restart",
                      path, (long long)particles, (long long)of->particles);
-  if (!same_text(file, "deck", of->deck))
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "%s: was written with another deck; put the deck back as it was, or run without --restart", path);
   return BRECCIA_OK;
 }
 
-int checkpoint_read(const char *folder, const StateList *state, const CheckpointOf *of, Error *error)
+/** What to do instead of going on from a checkpoint that is not there or is damaged. */
+static int say_way_out(const Checkpoint *c, const char *folder, CheckpointWhich which, const char *problem,
+                       Error *error)
 {
-  char *path = text_format("%s/checkpoint.h5", folder);
-  if (!path || state->failed) {
-    free(path);
-    return error_add(error, BRECCIA_FAILURE, "out of memory: state");
+  Checkpoint before = {.file = -1};
+  int64_t step = -1;
+  if (which == CHECKPOINT_LAST && (before.path = path_of(folder, CHECKPOINT_BEFORE)) && !seal_is_broken(before.path)) {
+    before.file = H5Fopen(before.path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    step = checkpoint_count(&before, "step");
   }
+  checkpoint_close(&before);
+  if (step < 0) return error_add(error, BRECCIA_USER_ERROR, "%s: %s; run without --restart", c->path, problem);
+  return error_add(error, BRECCIA_USER_ERROR,
+                   "%s: %s; the checkpoint before it, of step %lld, is whole: --restart-before goes on from that",
+                   c->path, problem, (long long)step);
+}
+
+int checkpoint_open(Checkpoint *c, const char *folder, CheckpointWhich which, const CheckpointOf *of, Error *error)
+{
+  *c = (Checkpoint){.path = path_of(folder, which), .file = -1};
+  if (!c->path) return error_add(error, BRECCIA_FAILURE, "out of memory: checkpoint");
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  int status = file < 0 ? error_add(error, BRECCIA_USER_ERROR,
-                                    "%s: there is no checkpoint to restart from; run without --restart", path)
-                        : check_file(file, path, of, error);
-  for (int k = 0; !status && k < state->count; ++k) status = load_row(file, &state->rows[k], error);
+  if (access(c->path, F_OK)) return say_way_out(c, folder, which, "there is no checkpoint to restart from", error);
+  const bool whole = !seal_is_broken(c->path);
+  if (whole) c->file = H5Fopen(c->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  const int status = c->file >= 0 ? check_file(c->file, c->path, of, error) : STATE_MISFIT;
+  if (status != STATE_MISFIT) return status;
+  return say_way_out(c, folder, which,
+                     whole ? "is of another build of the program"
+                           : "is damaged: its bytes do not have the checksum written with them",
+                     error);
+}
+
+int checkpoint_read(const Checkpoint *c, const StateList *state, Error *error)
+{
+  if (state->failed) return error_add(error, BRECCIA_FAILURE, "out of memory: state");
+  int status = BRECCIA_OK;
+  for (int k = 0; !status && k < state->count; ++k) status = load_row(c->file, &state->rows[k], error);
   if (status == STATE_MISFIT)
-    status = error_add(error, BRECCIA_USER_ERROR,
-                       "%s: is damaged, or of another build of the program; run without --restart", path);
-  if (file >= 0) H5Fclose(file);
-  free(path);
+    status =
+        error_add(error, BRECCIA_USER_ERROR, "%s: is of another build of the program; run without --restart", c->path);
   return status;
 }
 
-int64_t checkpoint_count(const char *folder, const char *name)
+int64_t checkpoint_count(const Checkpoint *c, const char *name)
 {
-  char *path = text_format("%s/checkpoint.h5", folder);
   int64_t count = -1;
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  hid_t file = path ? H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
-  if (file < 0 || load(file, name, H5T_NATIVE_INT64, 1, &count)) count = -1;
-  if (file >= 0) H5Fclose(file);
-  free(path);
-  return count;
+  return c->file < 0 || load(c->file, name, H5T_NATIVE_INT64, 1, &count) ? -1 : count;
+}
+
+void checkpoint_close(Checkpoint *c)
+{
+  if (c->file >= 0) H5Fclose(c->file);
+  free(c->path);
+  *c = (Checkpoint){.file = -1};
+}
+
+int checkpoint_return_to_before(const char *folder, Error *error)
+{
+  char *last = path_of(folder, CHECKPOINT_LAST), *before = path_of(folder, CHECKPOINT_BEFORE);
+  int status = BRECCIA_OK;
+  if (!last || !before || rename(before, last) || settle_folder(folder))
+    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be renamed: %s", before ? before : folder, strerror(errno));
+  free(last);
+  free(before);
+  return status;
+}
+
+int checkpoint_forget(const char *folder, Error *error)
+{
+  static const char *const names[] = {"checkpoint.h5", "checkpoint-before.h5", "checkpoint.h5.part"};
+  int status = BRECCIA_OK;
+  for (int k = 0; k < 3; ++k) {
+    char *path = text_format("%s/%s", folder, names[k]);
+    if (!path || (unlink(path) && errno != ENOENT))
+      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be removed: %s", path ? path : names[k], strerror(errno));
+    free(path);
+  }
+  return status;
 }

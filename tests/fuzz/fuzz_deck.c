@@ -51,7 +51,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static Units *units; /* reading the unit database takes longer than a thousand decks */
     if (!units) units = units_create("m", "kN", "s", error);
     const LawList laws = {0};
-    const DeckReader reader = {document, units, &laws, error, NULL};
+    const DeckReader reader = {.document = document, .units = units, .context = &laws, .error = error};
     const char *const settings[] = {setting};
     if (units && !deck_resolve(document, &deck_section, units, settings, setting != NULL, error)) {
       section_read(&reader, document->root, &deck_section);

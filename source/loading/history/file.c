@@ -3,6 +3,7 @@
 
 #include "base/csv.h"
 #include "base/memory.h"
+#include "deck/named_file.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,6 +109,7 @@ static int create(History *h, const DeckReader *reader)
   if (!spec) return BRECCIA_USER_ERROR; /* said when it was read */
   const Node *node = section_node(spec, "name");
   char *path = text_beside(node_file(reader->document, node), spec->name);
+  if (path) named_file_note(reader, spec->name, path);
   Error *words = breccia_error_create();
   Record record = {0};
   int status = path && words ? BRECCIA_OK : BRECCIA_FAILURE;

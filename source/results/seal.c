@@ -1,0 +1,40 @@
+#include "results/seal.h"
+
+#include "base/checksum.h"
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/** The words for the bytes behind them, to the last one: whatever changes there is seen too. */
+static int words_for(const char *path, char words[SEAL_BYTES])
+{
+  uint32_t sum;
+  int64_t bytes;
+  memset(words, 0, SEAL_BYTES);
+  if (checksum_of_file(path, SEAL_BYTES, &sum, &bytes)) return 1;
+  snprintf(words, SEAL_BYTES, "Breccia checkpoint\nbytes behind the first %d: %" PRId64 "\nCRC-32: %08" PRIx32 "\n",
+           SEAL_BYTES, bytes, sum);
+  return 0;
+}
+
+int seal_file(const char *path)
+{
+  char words[SEAL_BYTES];
+  if (words_for(path, words)) return 1;
+  const int file = open(path, O_WRONLY);
+  int bad = file < 0 || pwrite(file, words, SEAL_BYTES, 0) != SEAL_BYTES || fsync(file);
+  if (file >= 0 && close(file)) bad = 1;
+  return bad;
+}
+
+int seal_is_broken(const char *path)
+{
+  char words[SEAL_BYTES], there[SEAL_BYTES];
+  if (words_for(path, words)) return 1;
+  const int file = open(path, O_RDONLY);
+  const int bad = file < 0 || pread(file, there, SEAL_BYTES, 0) != SEAL_BYTES || memcmp(words, there, SEAL_BYTES);
+  if (file >= 0) close(file);
+  return bad;
+}
