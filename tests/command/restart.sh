@@ -174,9 +174,20 @@ sed 's/steps: 1500/steps: 1600/' plate.yaml > other.yaml
 contains "another deck" "$(cat out)" "was written with another deck"
 sed 's/\[26, 22, 2\]/[26, 21, 2]/' plate.yaml > other.yaml
 "$breccia" run other.yaml --output parts --restart > /dev/null 2> out; equal "another body: status" $? 2
-contains "another body" "$(cat out)" "particles, the deck makes"
+contains "another body" "$(cat out)" "was written with another deck"
 "$breccia" run plate.yaml --output nowhere --restart > /dev/null 2> out; equal "no checkpoint: status" $? 2
 contains "no checkpoint" "$(cat out)" "there is no checkpoint to restart from"
 head -c 3000 whole/checkpoint.h5 > parts/checkpoint.h5
 "$breccia" run plate.yaml --output parts --restart > /dev/null 2> out; equal "damaged checkpoint: status" $? 2
+contains "damaged checkpoint" "$(cat out)" "checkpoint.h5: is damaged"
+contains "damaged checkpoint" "$(cat out)" "of step 1480, is whole: --restart-before goes on from that"
+equal "damaged checkpoint: lines" "$(wc -l < out)" 1
+"$breccia" run plate.yaml --output parts --restart-before > out 2>&1 || fail "restart from the one before: $(cat out)"
+same parts
+cp grains.csv kept.csv
+sed '3s/,0\./,0.1/' kept.csv > grains.csv
+"$breccia" run bonds.yaml --output part-bonds --restart > /dev/null 2> out; equal "another file of particles: status" $? 2
+contains "another file of particles" "$(cat out)" "grains.csv: has changed since"
+cp kept.csv grains.csv
+"$breccia" run bonds.yaml --output part-bonds --restart > out 2>&1 || fail "the file of particles as it was: $(cat out)"
 finish
