@@ -13,11 +13,17 @@ namespace eval server {
   variable OPERATIONS
   array set OPERATIONS {1 hello 2 probe 3 create 4 attach 5 trial 6 commit 7 revert 8 save 9 restore 10 statistics 11 bye 12 laws}
   variable ERROR 127
-  # What is held, and the client that is served.
+  # What is held (`tried`: of each point, 1 if it has a trial that could be committed), and the client that is served.
   variable held
-  array set held {session 0 count 0 tried 0 commits 0 seconds 0.0 evaluations 0 probe 2000000000}
+  array set held {session 0 count 0 tried {} commits 0 seconds 0.0 evaluations 0 probe 2000000000}
   variable client
-  array set client {channel {} greeted 0 last -1 frame {} leaving 0 bytes {}}
+  array set client {channel {} last -1 frame {} leaving 0 bytes {} timer {}}
+  # Connections that have not greeted yet, in the order in which they came: of each the timer that ends it and what has come.
+  variable guests {}
+  variable MOST_GUESTS 8
+  variable GREETING_SECONDS 5
+  variable MOST_GREETING 4096
+  variable FRAME_SECONDS 60
   # Words that clients must know; whether to end with the first client; a file with what OpenSees prints.
   variable secret {}
   variable once 0
@@ -97,15 +103,33 @@ proc server::describe {tangent} {
   return "components: 1\nbulk: [expr {$tangent / 1.5}]\nshear: [expr {$tangent / 2.5}]\nstate: 0\niterates: 1\nsaves: 0\n"
 }
 
+proc server::forgetTrials {} {
+  variable held
+  set held(tried) [lrepeat $held(count) 0]
+}
+
+# Notes whether points have a trial.
+proc server::noteTrials {first count tried} {
+  variable held
+  if {$count} {
+    set held(tried) [lreplace $held(tried) $first [expr {$first + $count - 1}] {*}[lrepeat $count $tried]]
+  }
+}
+
+# Makes the last trial of each point its state; a point that has none keeps its state.
 proc server::commitPoints {} {
   variable held
-  if {!$held(tried)} {
+  if {1 ni $held(tried)} {
     refuse "there is no trial to commit"
   }
-  for {set tag 1} {$tag <= $held(count)} {incr tag} {
-    invoke UniaxialMaterial $tag commit
+  set tag 0
+  foreach tried $held(tried) {
+    incr tag
+    if {$tried} {
+      invoke UniaxialMaterial $tag commit
+    }
   }
-  set held(tried) 0
+  forgetTrials
   incr held(commits)
 }
 
@@ -134,16 +158,20 @@ proc server::sameSecret {given} {
   return [expr {!$different}]
 }
 
-proc server::obey_hello {flags count payload} {
+proc server::checkSecret {payload} {
   variable secret
-  variable held
-  variable client
   set lines [parseLines $payload]
   if {$secret ne "" && !([dict exists $lines secret] && [sameSecret [dict get $lines secret]])} {
-    set client(leaving) 1
     refuse "the secret is wrong"
   }
-  set client(greeted) 1
+}
+
+proc server::obey_hello {flags count payload} {
+  variable held
+  variable client
+  set client(leaving) 1
+  checkSecret $payload
+  set client(leaving) 0
   return "program: OpenSees [::version], Tcl [info patchlevel]\nsession: $held(session)\npoints: $held(count)\ncommits: $held(commits)\n"
 }
 
@@ -158,12 +186,13 @@ proc server::obey_create {flags count payload} {
     refuse "$count points are more than a server takes ($MOST_POINTS)"
   }
   set command [parseCommand [parseLines $payload]]
-  array set held {session 0 count 0 tried 0 commits 0 seconds 0.0 evaluations 0}
+  array set held {session 0 count 0 tried {} commits 0 seconds 0.0 evaluations 0}
   set answer [probe $command]
   for {set tag 1} {$tag <= $count} {incr tag} {
     makePoint $command $tag
   }
   set held(count) $count
+  forgetTrials
   set held(session) [expr {int(rand() * 0x7fffffff) + 1}]
   return $answer
 }
@@ -183,6 +212,7 @@ proc server::obey_trial {flags count payload} {
   if {$flags & 1} {
     commitPoints
   }
+  noteTrials $first $count 0 ;# one that fails leaves the points without
   set tag $first
   set stresses {}
   set tangents {}
@@ -202,7 +232,7 @@ proc server::obey_trial {flags count payload} {
   } problem]} {
     return -code error -errorcode [list POINT [expr {$tag - $first - 1}]] "OpenSees cannot follow the strain of a point: $problem"
   }
-  set held(tried) 1
+  noteTrials $first $count 1
   set held(seconds) [expr {$held(seconds) + ([clock microseconds] - $start) * 1e-6}]
   incr held(evaluations) $count
   return $answer
@@ -213,8 +243,7 @@ proc server::obey_commit {flags count payload} {
 }
 
 proc server::obey_revert {flags count payload} {
-  variable held
-  set held(tried) 0
+  forgetTrials
   return
 }
 
@@ -251,9 +280,15 @@ proc server::seal {operation sequence flags count body} {
   return "$head[binary format i [zlib crc32 $body [zlib crc32 $head]]]$body"
 }
 
+proc server::checkVersion {version} {
+  variable VERSION
+  if {$version != $VERSION} {
+    refuse "this server speaks version $VERSION of the protocol, the client version $version"
+  }
+}
+
 proc server::answer {version operation sequence flags count session payload} {
   variable ERROR
-  variable VERSION
   variable held
   variable client
   variable OPERATIONS
@@ -261,16 +296,11 @@ proc server::answer {version operation sequence flags count session payload} {
     return $client(frame)
   }
   if {[catch {
-    if {$version != $VERSION} {
-      refuse "this server speaks version $VERSION of the protocol, the client version $version"
-    }
+    checkVersion $version
     if {![info exists OPERATIONS($operation)]} {
       refuse "operation $operation is unknown"
     }
     set name $OPERATIONS($operation)
-    if {$name ne "hello" && !$client(greeted)} {
-      refuse "a client says HELLO first"
-    }
     if {$operation >= 4 && $operation <= 9 && (!$held(session) || $session != $held(session))} {
       refuse "session $session is not held here"
     }
@@ -287,7 +317,7 @@ proc server::answer {version operation sequence flags count session payload} {
   return $frame
 }
 
-# ---- the line ----
+# ---- the line to the client ----
 
 proc server::closeLine {channel} {
   variable done
@@ -295,6 +325,7 @@ proc server::closeLine {channel} {
   variable client
   catch {close $channel}
   if {$channel eq $client(channel)} {
+    after cancel $client(timer)
     set client(channel) {}
     if {$once} {
       set done 1
@@ -311,68 +342,156 @@ proc server::say {channel frame} {
   }
 }
 
-# Takes what has come, and answers each frame that is whole.
+# Takes the frame in front of what has come, whose payload has at most so many bytes: what `answer` is called with, or nothing while it is not whole.
+proc server::takeFrame {name most} {
+  variable MAGIC
+  upvar 1 $name bytes
+  if {[string length $bytes] < 32} {
+    return {}
+  }
+  binary scan $bytes a4susuiuiuiuiuiuiu magic version operation sequence flags count length session checksum
+  if {$magic ne $MAGIC} {
+    refuse "what came is no frame of this protocol"
+  }
+  if {$length > $most} {
+    refuse "a frame of $length bytes was announced; the most is $most"
+  }
+  if {[string length $bytes] < 32 + $length} {
+    return {}
+  }
+  set payload [string range $bytes 32 [expr {31 + $length}]]
+  if {[zlib crc32 $payload [zlib crc32 [string range $bytes 0 27]]] != $checksum} {
+    refuse "a frame came damaged (its checksum does not hold)"
+  }
+  set bytes [string range $bytes [expr {32 + $length}] end]
+  return [list $version $operation $sequence $flags $count $session $payload]
+}
+
+# Takes what has come from the client, and answers each frame that is whole.
 proc server::hear {channel} {
   variable ERROR
-  variable MAGIC
   variable MOST_PAYLOAD
+  variable FRAME_SECONDS
   variable client
   if {[catch {append client(bytes) [read $channel]}] || [eof $channel]} {
     closeLine $channel
     return
   }
-  while {$client(channel) eq $channel && [string length $client(bytes)] >= 32} {
-    binary scan $client(bytes) a4susuiuiuiuiuiuiu magic version operation sequence flags count length session checksum
-    if {$magic ne $MAGIC || $length > $MOST_PAYLOAD} {
-      say $channel [seal $ERROR 0 0 0 "what came is no frame of this protocol"]
+  after cancel $client(timer)
+  while {$client(channel) eq $channel} {
+    if {[catch {takeFrame client(bytes) $MOST_PAYLOAD} frame]} {
+      say $channel [seal $ERROR 0 0 0 $frame]
       closeLine $channel
+    } elseif {[llength $frame]} {
+      say $channel [answer {*}$frame]
+      if {$client(leaving)} {
+        closeLine $channel
+      }
+    } elseif {$client(bytes) ne ""} {
+      set client(timer) [after [expr {1000 * $FRAME_SECONDS}] [list server::closeLine $channel]]
       return
-    }
-    if {[string length $client(bytes)] < 32 + $length} {
+    } else {
       return
-    }
-    set payload [string range $client(bytes) 32 [expr {31 + $length}]]
-    if {[zlib crc32 $payload [zlib crc32 [string range $client(bytes) 0 27]]] != $checksum} {
-      say $channel [seal $ERROR 0 0 0 "a frame came damaged (its checksum does not hold)"]
-      closeLine $channel
-      return
-    }
-    set client(bytes) [string range $client(bytes) [expr {32 + $length}] end]
-    say $channel [answer $version $operation $sequence $flags $count $session $payload]
-    if {$client(leaving)} {
-      closeLine $channel
     }
   }
 }
 
-# A second client is told that it is one too many, in answer to its first frame.
-proc server::turnAway {channel} {
-  variable ERROR
-  if {![catch {read $channel 32} head] && [string length $head] == 32 && [binary scan $head x8iu sequence]} {
-    say $channel [seal $ERROR $sequence 0 0 "the server is busy with another client"]
-  }
+# ---- connections that have not greeted yet: none is waited for ----
+
+proc server::forgetGuest {channel} {
+  variable guests
+  after cancel [lindex [dict get $guests $channel] 0]
+  dict unset guests $channel
+}
+
+proc server::letGo {channel} {
+  forgetGuest $channel
   catch {close $channel}
 }
 
-proc server::meet {channel host port} {
-  variable client
-  fconfigure $channel -translation binary -blocking 0 -buffersize 1000000
-  if {$client(channel) ne ""} {
-    hear $client(channel) ;# if it has just left, whoever knocks is the next one
-  }
-  if {$client(channel) ne ""} {
-    fileevent $channel readable [list server::turnAway $channel]
+# Tells a guest why it is not served. What else it sends is read and dropped, or closing would take the words away again.
+proc server::dismiss {channel sequence words} {
+  variable ERROR
+  if {[catch {
+    puts -nonewline $channel [seal $ERROR $sequence 0 0 [encoding convertto utf-8 $words]]
+    flush $channel
+    close $channel write
+  }]} {
+    letGo $channel
     return
   }
-  array set client [list channel $channel greeted 0 last -1 frame {} leaving 0 bytes {}]
-  fileevent $channel readable [list server::hear $channel]
+  fileevent $channel readable [list server::drain $channel]
+}
+
+proc server::drain {channel} {
+  if {[catch {read $channel 4096}] || [eof $channel]} {
+    letGo $channel
+  }
+}
+
+# Refuses a first frame that does not greet as it should.
+proc server::checkGreeting {version operation sequence flags count session payload} {
+  variable client
+  checkVersion $version
+  if {$operation != 1} {
+    refuse "a client says HELLO first"
+  }
+  checkSecret $payload
+  if {$client(channel) ne ""} {
+    hear $client(channel) ;# if it has just left, whoever greets is the next one
+  }
+  if {$client(channel) ne ""} {
+    refuse "the server is busy with another client"
+  }
+}
+
+# Takes what has come from a guest; one that greets is the client from then on.
+proc server::hearGuest {channel} {
+  variable guests
+  variable client
+  variable MOST_GREETING
+  lassign [dict get $guests $channel] timer bytes
+  if {[catch {append bytes [read $channel [expr {32 + $MOST_GREETING - [string length $bytes]}]]}] || [eof $channel]} {
+    letGo $channel
+    return
+  }
+  dict set guests $channel [list $timer $bytes]
+  set sequence 0
+  if {[catch {
+    set frame [takeFrame bytes $MOST_GREETING]
+    if {[llength $frame]} {
+      set sequence [lindex $frame 2]
+      checkGreeting {*}$frame
+    }
+  } words]} {
+    dismiss $channel $sequence $words
+    return
+  }
+  if {[llength $frame]} {
+    forgetGuest $channel
+    array set client [list channel $channel last -1 frame {} leaving 0 bytes $bytes timer {}]
+    fileevent $channel readable [list server::hear $channel]
+    say $channel [answer {*}$frame]
+  }
+}
+
+proc server::meet {channel host port} {
+  variable guests
+  variable MOST_GUESTS
+  variable GREETING_SECONDS
+  fconfigure $channel -translation binary -blocking 0 -buffersize 1000000
+  if {[dict size $guests] == $MOST_GUESTS} {
+    letGo [lindex [dict keys $guests] 0] ;# the one that has been here longest
+  }
+  dict set guests $channel [list [after [expr {1000 * $GREETING_SECONDS}] [list server::letGo $channel]] {}]
+  fileevent $channel readable [list server::hearGuest $channel]
 }
 
 # ---- the program ----
 
 proc server::leave {words} {
   ::chan puts stderr "breccia-opensees-tcl: $words"
-  exit 1
+  exit 2
 }
 
 # The options, by their names. Words up to the next option belong together: OpenSees takes a path with a blank apart.
@@ -416,6 +535,9 @@ proc server::main {words} {
   set address [dict get $options --listen]
   if {![regexp {^tcp://(\[[0-9a-fA-F:.]+\]|[^:]+):([0-9]+)$} $address - host port]} {
     leave "where to listen is told by --listen tcp://HOST:PORT"
+  }
+  if {[string length $port] > 5 || [scan $port %d] > 65535} {
+    leave "$address: cannot be listened to: '$port' is no port: expected a number from 0 to 65535"
   }
   set host [string trim $host {[]}]
   if {"--secret-file" in $words} {

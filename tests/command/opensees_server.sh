@@ -1,4 +1,12 @@
 #!/bin/bash
-# The Python server of OpenSees over a stand-in for OpenSees: clients, commits, sockets.
+# The servers of OpenSees over stand-ins for OpenSees: clients, commits, sockets. The Tcl one where there is a tclsh.
 . "$(dirname "$0")/common.sh"
-PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$source/tests/command/stand_in python3 "$source/tests/command/opensees_server.py" "$source/servers/opensees_server.py" "$work"
+try() { python3 "$source/tests/command/opensees_server.py" "$work" "$@" || fail "$1"; }
+export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$source/tests/command/stand_in
+try python3 "$source/servers/opensees_server.py"
+if command -v tclsh > /dev/null; then
+  try tclsh "$source/tests/command/stand_in/opensees.tcl" "$source/servers/opensees_server.tcl"
+else
+  echo "no tclsh: the Tcl server is not tried"
+fi
+[ $failures = 0 ]

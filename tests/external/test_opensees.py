@@ -141,6 +141,22 @@ def trials_are_repeatable(client, name, strain):
     check(f"{name}: the tangent is the slope", abs(row - change) < 1e-2 * abs(change), f"{row} {change}")
 
 
+def partial_trials_keep_the_state_of_the_others(client, name, strain):
+    """A commit leaves points that had no trial, or whose trial was forgotten, as they were."""
+    components, half = client.create(name, 1), [0.5 * value for value in strain]
+    client.trial(strain, components)
+    client.ask(6)
+    alone = client.trial(half, components)
+    client.create(name, 2)
+    client.trial(strain, components)
+    client.ask(6)
+    client.trial([-value for value in strain], components)
+    client.ask(7)
+    client.trial(half, components, first=1)
+    client.ask(6)
+    check(f"{name}: a commit of another point", client.trial(half, components) == alone)
+
+
 def a_client_at_a_time(client):
     second = client.connect()
     head = HEADER.pack(b"BRMS", 1, 1, 77, 0, 0, 0, 0, 0)[:28]
@@ -405,6 +421,7 @@ def main():
     client = Client(f"{WORK}/socket")
     laws_do_not_hang_on_their_company(client, LAWS)
     trials_are_repeatable(client, "J2Plasticity", [2e-3, -1e-3, -1e-3, 1e-3, 0, 0])
+    partial_trials_keep_the_state_of_the_others(client, "J2Plasticity", [2e-3, -1e-3, -1e-3, 1e-3, 0, 0])
     client.create("Steel01", 1)
     check("the Python package cannot iterate along bonds, and says so", not client.iterates)
     refusals_are_told(client)
@@ -413,6 +430,7 @@ def main():
     client = Client()
     laws_do_not_hang_on_their_company(client, [name for name in LAWS if LAWS[name].startswith("uniaxial")])
     trials_are_repeatable(client, "Steel02", [2.5e-3])
+    partial_trials_keep_the_state_of_the_others(client, "Steel02", [4e-3])
     trials_are_repeatable(client, "Concrete02", [-2.5e-3])
     refusals_of_tcl_are_told(client)
     a_client_at_a_time(client)

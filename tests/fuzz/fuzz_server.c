@@ -1,4 +1,4 @@
-/* Random frames to a material server, and random bytes to a client, for libFuzzer. The server must answer a HELLO after anything. */
+/* Random frames to a material server, random bytes to one before the greeting, and to a client, for libFuzzer. The server must answer a HELLO after anything. */
 #include "constitutive/remote/channel.h"
 #include "constitutive/remote/server.h"
 
@@ -79,6 +79,14 @@ static void tell_client(int listener, const uint8_t *data, size_t size)
   channel_close(&channel);
 }
 
+/** Bytes instead of a greeting. */
+static void tell_server(const uint8_t *data, size_t size)
+{
+  Channel *channel = connect_to(address);
+  if (send(channel_socket(channel), data, size, MSG_NOSIGNAL) < 0) abort();
+  channel_close(&channel);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
   static int listener = -1;
@@ -99,6 +107,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if (data[0] % 4 == 0) {
     tell_client(listener, data + 1, size - 1);
     return 0;
+  }
+  if (data[0] % 4 == 2) {
+    tell_server(data + 1, size - 1);
+    size = 1; /* whoever greets next is served */
   }
   /* Frames: operation, flags, count, length of the payload; of whole checksums, or what follows would never be seen. */
   Channel *channel = connect_to(address);

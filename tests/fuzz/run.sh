@@ -23,6 +23,7 @@ mkdir -p build/fuzz/frames
   printf '\5\0\1\70\1\0\0\0\0\0\0\0\0%48s' ''
   printf '\6\0\0\0\1\10\0\1\10\1\0\0\0\0\0\0\0\0'; } > build/fuzz/frames/j2
 printf '\4BRMS\1\0\205\0\1\0\0\0\0\0\0\0\1\0\0\0' > build/fuzz/frames/client
+printf '\2BRMS\1\0\1\0\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\10' > build/fuzz/frames/greeting
 LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_server -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=1024 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
   -verbosity=0 -print_final_stats=1 build/fuzz/frames
 
