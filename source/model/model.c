@@ -6,6 +6,7 @@
 #include "loading/support.h"
 #include "model/plausibility.h"
 #include "model/sized.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -224,6 +225,7 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
   breccia_options options;
   Error *error = given ? given : breccia_error_create();
   breccia_model *model = calloc(1, sizeof *model);
+  if (model) model->peaks = (Peaks){.mean_low = INFINITY, .mean_high = -INFINITY};
   int status = sized_take(&options, sizeof options, given_options, "breccia_options", error);
   if (!status && (!model || !error)) status = error_add(error, BRECCIA_FAILURE, "out of memory: model");
   if (!status) status = load(model, deck, name, &options, error);

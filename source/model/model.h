@@ -8,7 +8,7 @@
 #include "model/outlook.h"
 #include "solver/solver.h"
 
-typedef struct Peaks { /* over all states written */
+typedef struct Peaks { /* over all states written; infinite mean stresses: none was */
   double displacement, velocity, octahedral, mean_low, mean_high, damage;
 } Peaks;
 

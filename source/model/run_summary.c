@@ -269,15 +269,17 @@ void run_tell_outcome(Run *run, int status)
   text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);
-  text_add(t, "largest in the states written: displacement ");
-  quantity_describe(units_in_si(model->units, dimension_find("length"), peaks->displacement), "m", t);
-  text_add(t, ", octahedral shear stress ");
-  quantity_describe(stress * peaks->octahedral, "Pa", t);
-  text_add(t, ", mean stress ");
-  quantity_describe(stress * peaks->mean_low, "Pa", t);
-  text_add(t, " to ");
-  quantity_describe(stress * peaks->mean_high, "Pa", t);
-  text_add(t, ", damage %.3g\n", peaks->damage);
+  if (peaks->mean_low <= peaks->mean_high) { /* a state was written */
+    text_add(t, "largest in the states written: displacement ");
+    quantity_describe(units_in_si(model->units, dimension_find("length"), peaks->displacement), "m", t);
+    text_add(t, ", octahedral shear stress ");
+    quantity_describe(stress * peaks->octahedral, "Pa", t);
+    text_add(t, ", mean stress ");
+    quantity_describe(stress * peaks->mean_low, "Pa", t);
+    text_add(t, " to ");
+    quantity_describe(stress * peaks->mean_high, "Pa", t);
+    text_add(t, ", damage %.3g\n", peaks->damage);
+  }
   tell_rest(s, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));

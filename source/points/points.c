@@ -287,23 +287,33 @@ void points_change(const Points *points, int64_t first, int count, double *const
 
 /* ---- points tried out ---- */
 
+/** Stress of a point of one strain, from a history. @param[out] to  [MOST_VALUES] the history that follows */
+static double stress_from(const Points *points, int64_t row, const double *from, double strain, double *to,
+                          double *tangent)
+{
+  const Material *m = points_material(points, row);
+  double stress = NAN, *const at[1] = {&strain}, *const out[1] = {&stress};
+  breccia_batch batch;
+  make_batch(&batch, points, row, 1, at, out);
+  batch.committed = from;
+  batch.trial = to;
+  batch.tangent = tangent;
+  memcpy(to, from, sizeof(double) * (size_t)m->history_values);
+  m->law->update(m->constants, &batch);
+  return stress;
+}
+
 double points_try(const Points *points, int64_t row, double strain, double *tangent)
 {
   const Material *m = points_material(points, row);
-  double stress = NAN, scratch[MOST_VALUES], *const at[1] = {&strain}, *const to[1] = {&stress};
-  breccia_batch batch;
-  make_batch(&batch, points, row, 1, at, to);
-  batch.trial = scratch;
-  batch.tangent = tangent;
+  const double *history = points_history(points, row);
+  double scratch[MOST_VALUES];
   if (m->remote) {
-    stress = point_servers_last_stress(batch.committed);
+    const double stress = point_servers_last_stress(history);
     if (tangent) *tangent = strain != 0 ? stress / strain : material_young(m);
     return stress;
   }
-  if (m->history_values > MOST_VALUES) return NAN;
-  memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
-  m->law->update(m->constants, &batch);
-  return stress;
+  return m->history_values > MOST_VALUES ? NAN : stress_from(points, row, history, strain, scratch, tangent);
 }
 
 double points_elastic_energy(const Points *points, int64_t row)
@@ -354,9 +364,13 @@ double points_softness(const Points *points, int64_t row)
 
 double points_elastic_share(const Points *points, int64_t row, double strain)
 {
+  const Material *m = points_material(points, row);
   if (strain == 0) return 1;
-  const double back = 1e-3, stress = points_try(points, row, strain, NULL);
-  const double drop = stress - points_try(points, row, strain - back * strain, NULL);
+  if (m->remote || m->history_values > MOST_VALUES) return points_try(points, row, strain, NULL) == 0 ? 0 : 1;
+  /* Unloaded from where the strain has led: from the history before it a law that flows would only flow less. */
+  double here[MOST_VALUES], scratch[MOST_VALUES];
+  const double back = 1e-3, stress = stress_from(points, row, points_history(points, row), strain, here, NULL);
+  const double drop = stress - stress_from(points, row, here, strain - back * strain, scratch, NULL);
   const double share = back * stress / drop;
   return share > 0 ? fmin(1, share) : stress == 0 ? 0 : 1;
 }

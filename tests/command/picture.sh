@@ -62,6 +62,15 @@ for word in "Ends, moved" "How far" "other: x" "again: y" "Time ["; do contains 
 "$breccia" plot other --curve "end.time : end.x" --log y --output log.svg > out 2>&1 || fail "log: $(cat out)"
 "$breccia" plot other --field displacement --time 0 --range each > out 2>&1 || fail "each: $(cat out)"
 equal "name of a plot" "$(cat out)" "other/pictures/displacement-0s.png"
+# --time takes the nearest of the states at 0, a half and the whole of the run
+end=$(tail -1 other/end.csv | cut -d, -f2)
+for near in 0.1:0 0.45:20 0.55:20 0.8:40 1:40; do
+  "$breccia" plot other --field displacement --time "$(awk -v e="$end" -v s="${near%:*}" 'BEGIN {printf "%.12g", s * e}')" --output time.png > out 2>&1 ||
+    fail "--time: $(cat out)"
+  "$breccia" plot other --field displacement --step "${near#*:}" --output step.png > out 2>&1 || fail "--step: $(cat out)"
+  cmp -s time.png step.png || fail "--time ${near%:*} of the run is not step ${near#*:}"
+  checks=$((checks + 1))
+done
 "$breccia" plot other --energy > out 2>&1 || fail "energy: $(cat out)"
 equal "name of the energies" "$(cat out)" "other/pictures/ledger.png"
 # movies: what ffmpeg is given, what it makes where it is installed, and what is said where it is not

@@ -324,34 +324,61 @@ static void weighted_volume_of_whole_cells_matches_peridigm(void **state)
 static void weights_of_bonds_are_influence_times_volume(void **state)
 {
   (void)state;
-  /* docs/theory.md 1, at the bond of length 2 spacings of a horizon of 3 spacings: q = 2/3, spacing 0.5. */
-  const double q = 2.0 / 3;
+  /* docs/theory.md 1, at bonds along an axis of a horizon of 4 spacings of 0.5: q = 1/4, 1/2, 3/4 and 1. */
   const struct {
     const char *name;
-    double value;
-  } cases[] = {{"constant", 1},
-               {"conical", 1 - q},
-               {"inverse", 1},
-               {"inverse-square", 1},
-               {"quartic", pow(1 - q * q, 2)},
-               {"gaussian", exp(-pow(q / 0.5, 2))},
-               {"cubic-spline", 4.0 / 3 * pow(1 - q, 3)}};
-  for (int k = 0; k < 7; ++k) {
+    double value[4];
+  } cases[] = {{"constant", {1, 1, 1, 1}},
+               {"conical", {0.75, 0.5, 0.25, 0}},
+               {"inverse", {2, 1, 2.0 / 3, 0.5}},
+               {"inverse-square", {4, 1, 4.0 / 9, 0.25}},
+               {"quartic", {225.0 / 256, 9.0 / 16, 49.0 / 256, 0}},
+               {"gaussian", {exp(-0.25), exp(-1), exp(-2.25), exp(-4)}},
+               {"cubic-spline", {2.0 / 3 - 0.1875, 1.0 / 6, 1.0 / 48, 0}}};
+  for (int k = 0; influence_word(k); ++k) {
+    int c = 0;
+    while (c < 7 && strcmp(cases[c].name, influence_word(k)) != 0) ++c;
+    if (c == 7) fail_msg("nobody tests the influence '%s'", influence_word(k));
     breccia_model *model =
-        model_of(MATERIAL SOLVE "peridynamics: {horizon: 3 spacings, influence: %s}\n"
+        model_of(MATERIAL SOLVE "peridynamics: {horizon: 4 spacings, influence: %s}\n"
                                 "body: {b: {material: m, spacing: 0.5, shape: {box: {particles: [9, 9, 9]}}}}\n",
-                 cases[k].name);
+                 cases[c].name);
     const Family *f = &model->domain.family;
     int found = 0;
     for (int row = 0; row < f->pattern_count; ++row) {
-      if (fabs(f->patterns[row].length - 1) > 1e-12) continue;
+      const double *xi = f->patterns[row].xi, length = fabs(xi[0]) + fabs(xi[1]) + fabs(xi[2]);
+      if (fabs(f->patterns[row].length - length) > 1e-12) continue;
       ++found;
-      assert_near(f->patterns[row].weight, cases[k].value * 0.125, 1e-15);
-      assert_near(f->patterns[row].weighted_xi[0], f->patterns[row].weight * f->patterns[row].xi[0], 1e-18);
+      assert_near(f->patterns[row].weight, cases[c].value[(int)lround(2 * length) - 1] * 0.125, 1e-15);
+      assert_near(f->patterns[row].weighted_xi[0], f->patterns[row].weight * xi[0], 1e-18);
     }
-    assert_int_equal(found, 6);
+    assert_int_equal(found, 4 * 6);
     breccia_model_destroy(&model);
   }
+}
+
+static void round_bodies_lie_in_the_middle_of_their_lattice(void **state)
+{
+  (void)state;
+  /* Whatever the spacing: their particles are as symmetric as they are. */
+  const struct {
+    const char *shape;
+    double middle[3];
+  } cases[] = {{"{sphere: {centre: [1.1, 2.2, 3.3], radius: 0.5}}", {1.1, 2.2, 3.3}},
+               {"{cylinder: {from: [0.3, 0.1, 0.2], to: [0.3, 0.1, 1.2], radius: 0.4}}", {0.3, 0.1, 0.7}},
+               {"{cylinder: {from: [-0.3, 0.1, 0.2], to: [0.9, 0.1, 0.2], radius: 0.4}}", {0.3, 0.1, 0.2}}};
+  const double spacings[] = {1.0 / 16, 0.07, 0.091};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)
+    for (int n = 0; n < 3; ++n) {
+      breccia_model *model = block_of(cases[k].shape, spacings[n]);
+      const Particles *p = model->domain.particles;
+      for (int j = 0; j < 3; ++j) {
+        double moment = 0;
+        for (int64_t i = 0; i < p->places; ++i) moment += p->volume[i] * p->position[j][i];
+        assert_near(moment / volume_of(model), cases[k].middle[j], 1e-10);
+      }
+      breccia_model_destroy(&model);
+    }
 }
 
 static void particles_on_top_of_each_other_are_refused(void **state)
@@ -457,6 +484,7 @@ int main(void)
       cmocka_unit_test(blocks_of_unlike_thickness_or_area_are_refused),
       cmocka_unit_test(selections_hold_what_they_say),
       cmocka_unit_test(selections_join_others_have_them_in_common_and_leave_them_out),
+      cmocka_unit_test(round_bodies_lie_in_the_middle_of_their_lattice),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -223,6 +223,74 @@ static void each_material_has_its_own_limit_and_a_joint_the_smaller_one(void **s
   breccia_model_destroy(&model);
 }
 
+static void the_smaller_of_the_limits_of_deck_and_law_holds(void **state)
+{
+  (void)state;
+  breccia_model *model = bodies("model: elastic-brittle, density: 1, Young modulus: 30 GPa, tensile strength: 3 MPa",
+                                "model: elastic-brittle, density: 1, Young modulus: 10 GPa, tensile strength: 2 MPa",
+                                "}\nfailure: {critical stretch: 1.5e-4");
+  const Failure *failure = &model->domain.failure;
+  assert_near(failure->limit[0], 1e-4, 1e-18);
+  assert_near(failure->limit[1], 1.5e-4, 1e-18);
+  breccia_model_destroy(&model);
+}
+
+/** A body of 12 x 8, or x 4 in space too, as one block or as two that stand side by side on one lattice. */
+static breccia_model *parted(bool two, int dimensions, const char *law, const char *keys)
+{
+  const char *const plane[] = {
+      "b: {material: m, lattice: square, thickness: 0.2, spacing: 0.1, shape: {box: {from: [0, 0], "
+      "to: [1.2, 0.8]}}}",
+      "b: {material: m, lattice: square, thickness: 0.2, spacing: 0.1, shape: {box: {from: [0, 0], "
+      "to: [0.5, 0.8]}}}, c: {material: m, lattice: square, thickness: 0.2, spacing: 0.1, shape: "
+      "{box: {from: [0.5, 0], to: [1.2, 0.8]}}}"};
+  const char *const space[] = {
+      "b: {material: m, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.8, 0.4]}}}",
+      "b: {material: m, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [0.5, 0.8, 0.4]}}}, c: {material: m, "
+      "spacing: 0.1, shape: {box: {from: [0.5, 0, 0], to: [1.2, 0.8, 0.4]}}}"};
+  return model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {%s, density: 1}}\n"
+                  "peridynamics: {formulation: bond-based, space: %s%s}\nbody: {%s}\n"
+                  "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                  law, dimensions == 2 ? "plane stress" : "3-D", keys, (dimensions == 2 ? plane : space)[two]);
+}
+
+static void a_body_in_two_blocks_is_as_one(void **state)
+{
+  (void)state;
+  const char
+      *const laws[] = {"model: elastic-1d, Young modulus: 30 GPa",
+                       "model: bilinear-softening, Young modulus: 30 GPa, tensile strength: 300 MPa, fracture energy: "
+                       "10 MN/m"},
+             *const keys[] = {"", ", surface correction: energy", ", influence: conical, volume correction: partial"};
+  for (int c = 0; c < 12; ++c) {
+    breccia_model *model[2];
+    const int dimensions = 2 + c / 6;
+    for (int n = 0; n < 2; ++n) {
+      model[n] = parted(n == 1, dimensions, laws[c % 2], keys[c / 2 % 3]);
+      const Particles *p = model[n]->domain.particles;
+      for (int64_t i = 0; i < p->places; ++i)
+        for (int k = 0; k < dimensions; ++k)
+          p->displacement[k][i] =
+              1e-4 * sin(13 * p->position[0][i] + 17 * p->position[1][i] + 7 * p->position[2][i] + k);
+      compute_forces(model[n]);
+    }
+    const Particles *p = model[0]->domain.particles, *q = model[1]->domain.particles;
+    assert_int_equal(p->count, q->count);
+    double largest = 0;
+    for (int64_t i = 0; i < p->places; ++i) largest = fmax(largest, fabs(p->internal[0][i]));
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      const double at[3] = {p->position[0][i], p->position[1][i], p->position[2][i]};
+      const int32_t j = particles_nearest(q, at);
+      for (int k = 0; k < dimensions; ++k)
+        if (fabs(p->internal[k][i] - q->internal[k][j]) > 1e-6 * largest)
+          fail_msg("%s%s: force %g in one block, %g in two at [%g, %g, %g]", laws[c % 2], keys[c / 2 % 3],
+                   p->internal[k][i], q->internal[k][j], at[0], at[1], at[2]);
+    }
+    for (int n = 0; n < 2; ++n) breccia_model_destroy(&model[n]);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -231,6 +299,8 @@ int main(void)
       cmocka_unit_test(parting_a_body_spends_its_fracture_energy),
       cmocka_unit_test(a_pulled_bar_softens_alike_for_any_number_of_threads_and_keeps_its_energy),
       cmocka_unit_test(each_material_has_its_own_limit_and_a_joint_the_smaller_one),
+      cmocka_unit_test(the_smaller_of_the_limits_of_deck_and_law_holds),
+      cmocka_unit_test(a_body_in_two_blocks_is_as_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -320,6 +320,35 @@ static void wrong_files_are_refused_with_the_reason(void **state)
   remove(FILE_NAME);
 }
 
+static void comments_and_blank_lines_of_a_file_are_no_particles(void **state)
+{
+  (void)state;
+  write_scattered(6);
+  const Setting setting = {false, SOLID, "horizon: 3 spacings"};
+  breccia_model *plain = body_of(&setting, "file: " FILE_NAME);
+  char *text = text_read_file(FILE_NAME, NULL);
+  FILE *file = fopen(FILE_NAME, "w");
+  assert_true(text && file);
+  fputs("# scattered by hand\n", file);
+  int row = 0;
+  for (char *line = text, *end; (end = strchr(line, '\n')); line = end + 1)
+    fprintf(file, "%.*s\n%s", (int)(end - line), line,
+            ++row % 3 == 0 ? "# 9, 9, 9, 9\n"
+            : row % 5 == 0 ? "\n"
+            : row % 7 == 0 ? " \t\n#\n"
+                           : "");
+  fclose(file);
+  free(text);
+  breccia_model *marked = body_of(&setting, "file: " FILE_NAME);
+  const Particles *p = plain->domain.particles, *q = marked->domain.particles;
+  assert_int_equal(p->count, q->count);
+  for (int k = 0; k < 3; ++k) assert_memory_equal(p->position[k], q->position[k], sizeof(double) * (size_t)p->places);
+  assert_memory_equal(p->volume, q->volume, sizeof(double) * (size_t)p->places);
+  breccia_model_destroy(&plain);
+  breccia_model_destroy(&marked);
+  remove(FILE_NAME);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -329,6 +358,7 @@ int main(void)
       cmocka_unit_test(scattered_bonds_are_calibrated_inside_the_body),
       cmocka_unit_test(threads_do_not_change_a_bit),
       cmocka_unit_test(groups_of_a_file_are_selections),
+      cmocka_unit_test(comments_and_blank_lines_of_a_file_are_no_particles),
       cmocka_unit_test(wrong_files_are_refused_with_the_reason),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -329,6 +329,32 @@ static void forces_are_the_derivative_of_the_energy(void **state)
   }
 }
 
+static void families_of_unlike_particles_feel_contact_as_its_energy_says(void **state)
+{
+  (void)state;
+  /* The lower body is two blocks of unlike spacing, bonded: the faces of one know where the particles of the other are. */
+  breccia_model *model = model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, %s}}\n"
+      "peridynamics: {formulation: bond-based, horizon: 0.0202}\nbody:\n"
+      "  one: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.03, 0.05, 0.03]}}}\n"
+      "  other: {material: m, spacing: 0.006, shape: {box: {from: [0.03, 0.001, 0], to: [0.06, 0.049, 0.03]}}}\n"
+      "  two: {material: m, spacing: 0.006, shape: {box: {from: [0.011, 0.008, 0.05], to: [0.047, 0.038, 0.068]}}}\n"
+      "contact: {}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+      FIBRE);
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  compute_forces(model);
+  for (int64_t i = 0; i < p->places; ++i)
+    if (p->block[i / SLICE] == 2) p->displacement[2][i] = -0.0199;
+  contact_search(contact_of(d));
+  compute_forces(model);
+  wave(model, 0.06, 0.004);
+  for (int64_t i = 0; i < p->places; ++i)
+    if (p->block[i / SLICE] == 2) p->displacement[2][i] -= 6e-4;
+  check_derivative(model, 0.01, "joined");
+  breccia_model_destroy(&model);
+}
+
 static void bodies_that_crumble_gain_nothing(void **state)
 {
   (void)state;
@@ -411,6 +437,7 @@ int main(void)
       cmocka_unit_test(bodies_that_crumble_gain_nothing),
       cmocka_unit_test(bodies_of_unlike_spacing_that_meet_keep_their_momentum),
       cmocka_unit_test(threads_do_not_change_a_bit),
+      cmocka_unit_test(families_of_unlike_particles_feel_contact_as_its_energy_says),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

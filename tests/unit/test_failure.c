@@ -137,6 +137,53 @@ static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(v
   assert_near(spent[0], spent[1], 0.2 * 0.1);
 }
 
+/** Fails if a bond is left that is beyond its limit. */
+static void assert_none_is_beyond(const breccia_model *m, const char *what)
+{
+  const Domain *d = &m->domain;
+  const Family *f = &d->family;
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    const int32_t place = d->particles->place_of[n];
+    const int lane = place % SLICE;
+    for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
+      if (!(f->intact[slot] >> lane & 1)) continue;
+      const Bond bond = family_bond(f, place / SLICE, slot, lane);
+      if (d->failure.criterion->exceeds(&d->failure, f, place / SLICE, slot, &bond, lane))
+        fail_msg("%s: a bond beyond its limit is whole after step %lld", what, (long long)m->solver.clock.step);
+    }
+  }
+}
+
+static void bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time(void **state)
+{
+  (void)state;
+  /* Both ends move by as much as anything does, along the bond and along no axis: nothing lets it grow faster. The springs are so soft
+   * that all fly straight on. */
+  const char *const keys[] = {"critical stretch: 0.01", "criterion: critical bond energy, bond energy: 1e-9"};
+  for (int plane = 0; plane < 2; ++plane)
+    for (int k = 0; k < 2; ++k) {
+      breccia_model *m =
+          model_of("materials: {m: {model: elastic-1d, density: 1, Young modulus: 1e-6}}\n"
+                   "body: {b: {material: m, spacing: 1, %s}}\n"
+                   "peridynamics: {formulation: bond-based, space: %s, horizon: 1.8 spacings}\nfailure: {%s}\n"
+                   "solve: {explicit: {time step: 0.1, steps: 3000}}\n",
+                   plane ? "lattice: square, thickness: 1, shape: {box: {particles: [2, 2]}}"
+                         : "shape: {box: {particles: [2, 2, 2]}}",
+                   plane ? "plane stress" : "3-D", keys[k]);
+      const Particles *p = m->domain.particles;
+      for (int64_t n = 0; n < p->count; ++n)
+        for (int c = 0; c < (plane ? 2 : 3); ++c)
+          p->velocity[c][p->place_of[n]] = p->position[c][p->place_of[n]] > 1 ? 1e-3 : -1e-3;
+      for (int step = 0; step < 600 && m->domain.broken_count < m->domain.family.bonds / 2; ++step) {
+        step_surely(m, 1);
+        assert_none_is_beyond(m, keys[k]);
+      }
+      assert_int_equal(m->domain.broken_count, m->domain.family.bonds / 2);
+      assert_true(m->solver.clock.step > 20);
+      breccia_model_destroy(&m);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -144,6 +191,7 @@ int main(void)
       cmocka_unit_test(no_bond_breaks_where_the_deck_says_so),
       cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
+      cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

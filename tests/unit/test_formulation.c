@@ -420,6 +420,36 @@ static void one_layer_in_space_is_refused_with_advice(void **state)
   free(words);
 }
 
+static void a_lone_bond_pulls_with_the_micromodulus(void **state)
+{
+  (void)state;
+  /* The last bond of two families, too few for a strain: both ends give it half of c s, c = 12 E / (pi delta^4) in space and
+   * 9 E / (pi t delta^3) in the plane. */
+  const double pi = acos(-1), delta = 1.8 * 0.1, stretch = 0.01;
+  for (int plane = 0; plane < 2; ++plane) {
+    breccia_model *m = model_of(SOFT_SOLID "peridynamics: {space: %s, horizon: 1.8 spacings}\n"
+                                           "body: {b: {material: m, spacing: 0.1, %s}}\n"
+                                           "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                                plane ? "plane strain" : "3-D",
+                                plane ? "lattice: square, thickness: 0.2, shape: {box: {particles: [3, 3]}}"
+                                      : "shape: {box: {particles: [3, 3, 3]}}");
+    Domain *d = &m->domain;
+    const Particles *p = d->particles;
+    for (int64_t a = 0; a < p->count; ++a)
+      for (int64_t b = a + 1; b < p->count; ++b)
+        if (a || b != 1) family_break(&d->family, p->place_of[a], p->place_of[b]);
+    for (int64_t slice = 0; slice < p->slices; ++slice) d->regions[0].type->renew(d->regions[0].formulation, slice);
+    assert_int_equal(family_count(&d->family, p->place_of[0]), 1);
+    p->displacement[0][p->place_of[1]] = 0.1 * stretch;
+    compute_forces(m);
+    const double c = plane ? 9 * 1e4 / (pi * 0.2 * pow(delta, 3)) : 12 * 1e4 / (pi * pow(delta, 4)),
+                 volume = 0.01 * (plane ? 0.2 : 0.1), force = c * stretch * volume;
+    assert_near(p->internal[0][p->place_of[0]], force, 1e-9 * force);
+    assert_near(p->internal[0][p->place_of[1]], -force, 1e-9 * force);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -436,6 +466,7 @@ int main(void)
       cmocka_unit_test(plane_stress_and_plane_strain_have_their_moduli),
       cmocka_unit_test(lone_particles_and_torn_families_give_finite_forces),
       cmocka_unit_test(one_layer_in_space_is_refused_with_advice),
+      cmocka_unit_test(a_lone_bond_pulls_with_the_micromodulus),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -214,6 +214,20 @@ static void what_files_lack_is_said(void **state)
   remove_files(folder);
 }
 
+static void the_peak_of_a_history_is_its_farthest_from_zero(void **state)
+{
+  (void)state;
+  breccia_model *down = with_history("table: [[0, 0], [1, -3], [2, 1], [9, 2]]"),
+                *up = with_history("table: [[0, 0], [1, 3], [2, -1], [9, -2]]"),
+                *wave = with_history("sine: {frequency: 500 Hz, phase: 180}");
+  assert_near(history_peak(history_of(down), 9), 3, 1e-12);
+  assert_near(history_peak(history_of(up), 9), 3, 1e-12);
+  assert_near(history_peak(history_of(down), 0.5), 1.5, 1e-12);
+  assert_near(history_peak(history_of(wave), 0.6), 1, 1e-4); /* down first */
+  breccia_model *all[] = {down, up, wave};
+  for (int k = 0; k < 3; ++k) breccia_model_destroy(&all[k]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -223,6 +237,7 @@ int main(void)
       cmocka_unit_test(what_was_found_does_not_depend_on_what_was_asked_before),
       cmocka_unit_test(records_in_every_form_say_the_same),
       cmocka_unit_test(what_files_lack_is_said),
+      cmocka_unit_test(the_peak_of_a_history_is_its_farthest_from_zero),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

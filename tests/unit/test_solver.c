@@ -367,6 +367,35 @@ static void plate_with_crack_opens_at_rest_as_finite_elements_say(void **state)
   breccia_model_destroy(&m);
 }
 
+static void prescribed_particles_have_the_velocity_of_their_motion(void **state)
+{
+  (void)state;
+  /* Parabolas, of which the speed at the end of a step is known to all digits: x = D (t / T)^2, and x = V t^2 / 2 T, along slanting directions. */
+  breccia_model *m =
+      model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+               "loads:\n"
+               "  - {on: {face: x-}, along: {direction: [4, 0, -3], displacement: 0.02}, history: {product: [{ramp to: "
+               "0.02}, {ramp to: 0.02}]}}\n"
+               "  - {on: {face: x+}, along: {direction: [3, 4, 0], velocity: 2}, history: {ramp to: 0.02}}\n"
+               "solve: {explicit: {end time: 0.02, safety: 0.4}}\n");
+  const Particles *p = m->domain.particles;
+  const double direction[2][3] = {{0.8, 0, -0.6}, {0.6, 0.8, 0}};
+  for (int step = 0; step < 12; ++step) {
+    step_surely(m, 1);
+    const double t = breccia_model_time(m), speed[2] = {2 * 0.02 * t / (0.02 * 0.02), 2 * t / 0.02};
+    for (int n = 0; n < 2; ++n) {
+      const Selection *s = &m->loading.loads[n].selection;
+      for (int64_t q = 0; q < s->count; ++q) {
+        double along = 0;
+        for (int k = 0; k < 3; ++k) along += direction[n][k] * p->velocity[k][s->places[q]];
+        assert_near(along, speed[n], 1e-9 * speed[n]);
+      }
+    }
+  }
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -386,6 +415,7 @@ int main(void)
       cmocka_unit_test(a_force_that_is_no_number_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),
       cmocka_unit_test(plate_with_crack_opens_at_rest_as_finite_elements_say),
+      cmocka_unit_test(prescribed_particles_have_the_velocity_of_their_motion),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

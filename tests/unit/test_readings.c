@@ -1,0 +1,240 @@
+/* What people read of a run says what happened: one known state, no two of whose numbers are alike, through histories, fields, summary and
+ * pictures. */
+#include "support.h"
+
+#include "base/csv.h"
+#include "base/tensor.h"
+#include "results/fields.h"
+#include "results/picture.h"
+#include <unistd.h>
+
+static char folder[] = "/tmp/breccia-XXXXXX";
+
+static int make_folder(void **state)
+{
+  (void)state;
+  return mkdtemp(folder) == NULL;
+}
+
+static int remove_folder(void **state)
+{
+  (void)state;
+  char command[80];
+  snprintf(command, sizeof command, "rm -r '%s'", folder);
+  return system(command);
+}
+
+/** A body of 5 x 4 x 6 with small strains; lambda = G = 4 kPa. */
+static breccia_model *body(const char *rest)
+{
+  return model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
+      "peridynamics: {strain: small}\nbody: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
+      "solve: {explicit: {time step: 1e-9, steps: 1}}\n%s",
+      rest);
+}
+
+static void run_into(breccia_model *m, const char *name, char *path, size_t size)
+{
+  breccia_error *error = breccia_error_create();
+  snprintf(path, size, "%s/%s", folder, name);
+  breccia_run run = {.size = sizeof(breccia_run), .folder = path};
+  if (breccia_model_run(m, &run, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+}
+
+/** A number of the first row of a history. @param[out] heading  with its unit; NULL: not wanted */
+static double first_of(const char *path, const char *watch, const char *column, char *heading)
+{
+  char file[128], label[128];
+  int count = 0;
+  snprintf(file, sizeof file, "%s/%s.csv", path, watch);
+  double *values = csv_column(file, column, CSV_FINISHED, &count, label, NULL);
+  if (!values || !count) fail_msg("%s has no column '%s'", file, column);
+  const double first = values[0];
+  free(values);
+  if (heading) strcpy(heading, label);
+  return first;
+}
+
+/** A number of summary.json. */
+static double told(const char *path, const char *key)
+{
+  char file[128], quoted[64];
+  snprintf(file, sizeof file, "%s/summary.json", path);
+  snprintf(quoted, sizeof quoted, "\"%s\": ", key);
+  char *text = text_read_file(file, NULL), *at = text ? strstr(text, quoted) : NULL;
+  if (!at) fail_msg("%s does not tell '%s'", file, key);
+  const double value = strtod(at + strlen(quoted), NULL);
+  free(text);
+  return value;
+}
+
+/** Octahedral shear of six components of a tensor, by the differences of its normal ones. */
+static double octahedral(const double t[6])
+{
+  return sqrt(pow(t[0] - t[1], 2) + pow(t[1] - t[2], 2) + pow(t[2] - t[0], 2) +
+              6 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5])) /
+         3;
+}
+
+static double field(const breccia_model *m, const char *name, int component)
+{
+  double value[9];
+  const OutputField *f = output_field_find(name);
+  assert_non_null(f);
+  f->value(&m->domain, m->domain.particles->place_of[57], value);
+  return value[component];
+}
+
+static void one_state_reads_alike_wherever_it_is_told(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  for (int sign = -1; sign <= 1; sign += 2) { /* pressed from all sides, and drawn */
+    breccia_model *m =
+        body("watch: {all: {stress and strain of: {all: yes}, every: 1}, ends: {displacement of: {nearest: "
+             "[0.45, 0.05, 0.55]}, every: 1}}\nresults: {every: 1}\n");
+    const double a = sign * 1e-3,
+                 gradient[9] = {3 * a, 0.5 * a, -0.2 * a, 1.1 * a, 5 * a, 0.9 * a, 0.4 * a, -2.1 * a, 11 * a};
+    double f[9], strain[6], stress[6], tensor[6], volume = 0;
+    char path[80];
+    for (int k = 0; k < 9; ++k) f[k] = gradient[k] + (k % 4 == 0);
+    for (int k = 0; k < 6; ++k) {
+      tensor[k] = (gradient[3 * symmetric_row[k] + symmetric_column[k]] +
+                   gradient[3 * symmetric_column[k] + symmetric_row[k]]) /
+                  2;
+      strain[k] = k < 3 ? tensor[k] : 2 * tensor[k];
+      volume += k < 3 ? tensor[k] : 0;
+    }
+    for (int k = 0; k < 6; ++k) stress[k] = 8 * tensor[k] + (k < 3 ? 4 * volume : 0);
+    const double mean = (stress[0] + stress[1] + stress[2]) / 3, tau = octahedral(stress), off = 1e-6 * 1e-2 * 10;
+    deform_uniformly(m, f);
+    run_into(m, sign < 0 ? "pressed" : "drawn", path, sizeof path);
+    for (int k = 0; k < 6; ++k) {
+      char column[32];
+      snprintf(column, sizeof column, "strain %s", names[k]);
+      assert_near(first_of(path, "all", column, NULL), strain[k], off);
+      assert_near(field(m, "strain", k), strain[k], off);
+      snprintf(column, sizeof column, "stress %s", names[k]);
+      assert_near(first_of(path, "all", column, NULL), stress[k], off);
+      assert_near(field(m, "stress", k), stress[k], off);
+    }
+    assert_near(first_of(path, "all", "octahedral shear strain", NULL), 2 * octahedral(tensor), off);
+    assert_near(field(m, "octahedral shear strain", 0), 2 * octahedral(tensor), off);
+    assert_near(first_of(path, "all", "octahedral shear stress", NULL), tau, off);
+    assert_near(field(m, "octahedral shear stress", 0), tau, off);
+    assert_near(field(m, "deviator norm", 0), sqrt(3) * tau, off);
+    assert_near(field(m, "von Mises stress", 0), 3 / sqrt(2) * tau, off);
+    assert_near(first_of(path, "all", "mean stress", NULL), mean, off);
+    assert_near(field(m, "mean stress", 0), mean, off);
+    const double corner[3] = {0.45, 0.05, 0.55};
+    for (int k = 0; k < 3; ++k) {
+      double moved = 0;
+      for (int j = 0; j < 3; ++j) moved += gradient[3 * k + j] * corner[j];
+      assert_near(first_of(path, "ends", (const char *[]){"x", "y", "z"}[k], NULL), moved, off);
+    }
+    for (int k = 0; k < 9; ++k) assert_near(field(m, "deformation gradient", k), f[k], off);
+    assert_near(told(path, "octahedral_shear_stress"), tau, off);
+    assert_near(told(path, "mean_stress_lowest"), mean, off);
+    assert_near(told(path, "mean_stress_highest"), mean, off);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_watched_load_has_the_unit_and_value_of_what_it_prescribes(void **state)
+{
+  (void)state;
+  const struct {
+    const char *load, *heading;
+    double value;
+  } cases[] = {{"along: {direction: [0, 3, -4], displacement: 0.25}", "value (m)", 0.25},
+               {"along: {direction: [0, 3, -4], velocity: 2}", "value (m/s)", 2},
+               {"along: {direction: [0, 3, -4], acceleration: 7}", "value (m/s2)", 7},
+               {"displacement: [0, 3, 4]", "value (m)", 5},
+               {"velocity: [0, 3, 4]", "value (m/s)", 5},
+               {"acceleration: [0, 3, 4]", "value (m/s2)", 5},
+               {"force: [0, 3, 4]", "value (kN)", 5},
+               {"body force: [0, 3, 4]", "value (kN/m3)", 5},
+               {"pressure: 6", "value (kPa)", 6}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char rest[400], path[80], name[16], heading[128];
+    snprintf(name, sizeof name, "load%d", (int)k);
+    snprintf(rest, sizeof rest,
+             "loads: [{name: it, on: {face: x+}, %s, history: {constant: yes}}]\nwatch: {it: {load: it, every: 1}}\n",
+             cases[k].load);
+    breccia_model *m = body(rest);
+    run_into(m, name, path, sizeof path);
+    assert_near(first_of(path, "it", "value", heading), cases[k].value, 1e-12);
+    if (strcmp(heading, cases[k].heading) != 0)
+      fail_msg("%s is told as '%s' and not as '%s'", cases[k].load, heading, cases[k].heading);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Mean of x and of y, down from the top, of the body's pixels that are darker or lighter than the middle of the colours; words and the bar
+ *  at the right are no part of it. */
+static void find_halves(const unsigned char *pixels, int wide, int high, double dark[2], double light[2])
+{
+  double sum[2][3] = {{0}};
+  for (int y = 0; y < high; ++y)
+    for (int x = 0; x < wide - 110; ++x) {
+      const unsigned char *p = pixels + 4 * (y * wide + x);
+      const int most = p[0] > p[1] ? (p[0] > p[2] ? p[0] : p[2]) : (p[1] > p[2] ? p[1] : p[2]),
+                least = p[0] < p[1] ? (p[0] < p[2] ? p[0] : p[2]) : (p[1] < p[2] ? p[1] : p[2]);
+      if (most - least < 40) continue;
+      double *half = sum[p[0] + p[1] + p[2] > 300];
+      half[0] += x;
+      half[1] += y;
+      half[2] += 1;
+    }
+  assert_true(sum[0][2] > 1000 && sum[1][2] > 1000);
+  for (int k = 0; k < 2; ++k) {
+    dark[k] = sum[0][k] / sum[0][2];
+    light[k] = sum[1][k] / sum[1][2];
+  }
+}
+
+static void bodies_in_space_stand_upright_in_pictures(void **state)
+{
+  (void)state;
+  /* What moves more is lighter: once what is above, once what lies along x, which the eye at -60 degrees sees at the right. */
+  for (int axis = 0; axis < 3; axis += 2) {
+    breccia_model *m = body("results: {every: 1}\n");
+    const Particles *p = m->domain.particles;
+    for (int64_t n = 0; n < p->count; ++n)
+      p->displacement[2][p->place_of[n]] = 1e-3 * p->position[axis][p->place_of[n]];
+    char path[80], file[112];
+    run_into(m, axis ? "up" : "right", path, sizeof path);
+    snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+    ResultView view;
+    assert_int_equal(result_view_open(&view, file, NULL), 0);
+    const PictureOptions o = {
+        .field = "displacement", .deformed = 0, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+    PictureSurvey survey;
+    assert_int_equal(picture_survey(&view, 0, 0, true, &o, &survey, NULL), 0);
+    int wide, high;
+    unsigned char *pixels = picture_pixels(&view, 0, &o, &survey, &wide, &high, NULL);
+    assert_non_null(pixels);
+    double dark[2], light[2];
+    find_halves(pixels, wide, high, dark, light);
+    if (axis)
+      assert_true(light[1] < dark[1] - 50);
+    else
+      assert_true(light[0] > dark[0] + 50);
+    free(pixels);
+    result_view_close(&view);
+    breccia_model_destroy(&m);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
+      cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),
+      cmocka_unit_test(bodies_in_space_stand_upright_in_pictures),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
