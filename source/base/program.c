@@ -41,6 +41,7 @@ static int start(const char *const *words, FILE *in, FILE *out, pid_t *number)
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setsigmask(&attributes, &usual);
   sigaddset(&usual, SIGPIPE); /* which this command ignores */
+  sigaddset(&usual, SIGXFSZ);
   posix_spawnattr_setsigdefault(&attributes, &usual);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
   const int code = posix_spawnp(number, words[0], &actions, &attributes, (char *const *)words, environ);

@@ -210,5 +210,8 @@ int main(int argc, char **argv)
   give_memory_back();
   keep_three_files();
   signal(SIGPIPE, SIG_IGN); /* whoever stops reading what is printed does not end a run */
+  signal(
+      SIGXFSZ,
+      SIG_IGN); /* a file beyond the limit is a write that fails, of which the run tells and from which it can go on */
   return close_output(obey(argc, argv));
 }

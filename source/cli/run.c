@@ -59,9 +59,12 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   if (values[STEPS] && read_whole(values[STEPS], "steps", 1, &steps)) return 2;
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return 2;
   /* From here on: what is stopped while it is still being set up leaves a checkpoint too. */
-  struct sigaction action = {.sa_handler = on_signal};
+  struct sigaction action = {.sa_handler = on_signal}, before;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGXCPU, &action, NULL); /* the processor time that the system allows is nearly spent */
+  if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN) /* by nohup: to go on without a terminal */
+    sigaction(SIGHUP, &action, NULL);
   breccia_error *error = breccia_error_create();
   const breccia_options wishes = {.size = sizeof wishes,
                                   .threads = (int)(threads > 4096 ? 4096 : threads),

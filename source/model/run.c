@@ -5,7 +5,9 @@
 #include "base/tensor.h"
 #include "model/sized.h"
 #include "results/checkpoint.h"
+#include "results/result_view.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,6 +73,20 @@ static int write_results(Run *run, Error *error)
   return status;
 }
 
+/** Brings the result file to the disk: a checkpoint must not be ahead of it when the machine goes down. */
+static int settle_results(const Run *run, Error *error)
+{
+  char *path = text_format("%s/results.vtkhdf", run->wish->folder);
+  const int file = path ? open(path, O_RDONLY) : -1;
+  int status = BRECCIA_OK;
+  if (file < 0 || (fsync(file) && errno != EINVAL))
+    status =
+        error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : "results.vtkhdf", strerror(errno));
+  if (file >= 0) close(file);
+  free(path);
+  return status;
+}
+
 static CheckpointOf what_it_is_of(const breccia_model *model)
 {
   return (CheckpointOf){text_words(&model->deck), text_words(&model->files), model->domain.particles->count};
@@ -86,6 +102,7 @@ static int write_checkpoint(Run *run, Error *error)
   for (int r = 0; r < model->domain.region_count; ++r)
     if (!points_can_save(&model->domain.regions[r].points))
       return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
+  if (watches_settle(model->watches, error) || settle_results(run, error)) return BRECCIA_FAILURE;
   StateList state = {0};
   model_state(model, &state);
   const CheckpointOf of = what_it_is_of(model);
@@ -165,6 +182,28 @@ static int read_checkpoint(Run *run, Error *error)
   return status ? status : model_make_schedule(model, false, error);
 }
 
+/** The states that were written before the checkpoint must be there. */
+static int check_states(const Run *run, Error *error)
+{
+  const breccia_model *model = run->model;
+  ResultView view;
+  char *path = text_format("%s/results.vtkhdf", run->wish->folder);
+  int status =
+      path ? result_view_open(&view, path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: results");
+  if (!status) {
+    bool there = model->last_due < 0;
+    for (int k = 0; k < view.steps && !there; ++k) there = view.step_numbers[k] == model->last_due;
+    result_view_close(&view);
+    if (!there)
+      status = error_add(error, BRECCIA_USER_ERROR,
+                         "%s: lacks the state of step %lld, which was written before the checkpoint of step %lld; put "
+                         "the file back as it was, or run without --restart",
+                         path, (long long)model->last_due, (long long)model->solver.clock.step);
+  }
+  free(path);
+  return status;
+}
+
 static int open_files(Run *run, Error *error)
 {
   breccia_model *model = run->model;
@@ -172,18 +211,21 @@ static int open_files(Run *run, Error *error)
   int64_t resume = run->wish->restart ? model->solver.clock.step : -1;
   int status;
   if (run->wish->restart) {
-    status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
-                                &names, model->last_due, error);
+    status = check_states(run, error);
+    if (!status)
+      status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
+                                  &names, model->last_due, error);
   } else {
     model->next_due = 0;
     model->last_due = -1;
+    model->began = model->solver.clock.step;
     status = forget_earlier(run, error);
     if (!status)
       status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                   &names, error);
   }
   if (!status) status = write_deck(run, error);
-  if (!status) status = watches_open(model->watches, run->wish->folder, model->units, resume, error);
+  if (!status) status = watches_open(model->watches, run->wish->folder, model->units, model->began, resume, error);
   if (!status && run->wish->restart == BRECCIA_RESTART_BEFORE)
     status = checkpoint_return_to_before(run->wish->folder, error);
   return status;

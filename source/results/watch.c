@@ -387,26 +387,56 @@ static void write_header(FILE *file, const Kind *kind, const Units *units)
   fprintf(file, "\n");
 }
 
-/** Cuts a history file after the last whole row that is due and not beyond `step`. @return that row's step, or -1 */
-static int64_t cut_rows(const char *path, int64_t step, int64_t every)
+/** Whether a text begins with the whole row of a step, with so many columns. */
+static bool is_row_of(const char *text, int64_t step, int columns)
 {
-  size_t length;
-  char *text = text_read_file(path, &length);
-  if (!text) return -1;
-  int64_t last = -1;
-  char *line = strchr(text, '\n'), *keep = line ? line + 1 : text;
-  for (char *row = keep, *end; line && (end = strchr(row, '\n')); row = end + 1) {
-    long long number = strtoll(row, NULL, 10);
-    if (number > step || number % every) break;
-    last = number;
-    keep = end + 1;
-  }
-  int bad = truncate(path, keep - text);
-  free(text);
-  return bad ? -1 : last;
+  char *end;
+  const size_t length = strcspn(text, "\n");
+  if (!text[length] || strtoll(text, &end, 10) != step || *end != ',') return false;
+  int commas = 0;
+  for (size_t k = 0; k < length; ++k) commas += text[k] == ',';
+  return commas == columns + 1;
 }
 
-int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error)
+static int column_count(const Kind *kind)
+{
+  int columns = 1;
+  for (const char *c = kind->columns; *c; ++c) columns += *c == ',';
+  return columns;
+}
+
+/** Cuts a history file behind the last row that is due and not beyond the step from which the run goes on. All rows since the run began must
+ *  be there. */
+static int take_up_rows(Watch *w, int64_t began, int64_t step, Error *error)
+{
+  size_t length;
+  char *text = text_read_file(w->path, &length), *row = text ? strchr(text, '\n') : NULL;
+  if (!text)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or run "
+                     "without --restart",
+                     w->path, strerror(errno), (long long)step);
+  const int64_t every = w->spec->every;
+  const int columns = column_count(w->kind);
+  int64_t due = (began + every - 1) / every * every, line = 2;
+  for (row = row ? row + 1 : text + length; due <= step && is_row_of(row, due, columns); due += every, ++line) {
+    w->last_step = due;
+    row = strchr(row, '\n') + 1;
+  }
+  int status = BRECCIA_OK;
+  if (due <= step)
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "%s:%lld: expected the row of step %lld; the run goes on from step %lld and needs all rows up "
+                       "to there: put the file back as it was, or run without --restart",
+                       w->path, (long long)line, (long long)due, (long long)step);
+  else if (truncate(w->path, row - text))
+    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+  free(text);
+  return status;
+}
+
+int watches_open(Watches *watches, const char *folder, const Units *units, int64_t began, int64_t resume_after,
+                 Error *error)
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
@@ -415,10 +445,21 @@ int watches_open(Watches *watches, const char *folder, const Units *units, int64
     free(w->path);
     w->path = text_format("%s/%s.csv", folder, name);
     if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
-    if (resume_after >= 0) w->last_step = cut_rows(w->path, resume_after, w->spec->every);
-    w->file = fopen(w->path, resume_after >= 0 && w->last_step >= 0 ? "a" : "w");
+    const int status = resume_after >= 0 ? take_up_rows(w, began, resume_after, error) : BRECCIA_OK;
+    if (status) return status;
+    w->file = fopen(w->path, resume_after >= 0 ? "a" : "w");
     if (!w->file) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    if (w->last_step < 0) write_header(w->file, w->kind, units);
+    if (resume_after < 0) write_header(w->file, w->kind, units);
+  }
+  return BRECCIA_OK;
+}
+
+int watches_settle(const Watches *watches, Error *error)
+{
+  for (int k = 0; k < watches->count; ++k) {
+    const Watch *w = &watches->items[k];
+    if (fflush(w->file) || (fsync(fileno(w->file)) && errno != EINVAL))
+      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
   }
   return BRECCIA_OK;
 }
@@ -429,8 +470,7 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
     Watch *w = &watches->items[k];
     if (w->last_step == solver->clock.step || (solver->clock.step % w->spec->every && !last)) continue;
     double values[MOST_COLUMNS];
-    int columns = 1;
-    for (const char *c = w->kind->columns; *c; ++c) columns += *c == ',';
+    const int columns = column_count(w->kind);
     w->kind->row(w, solver, values);
     fprintf(w->file, "%lld,%.10g", (long long)solver->clock.step, solver->clock.time);
     for (int c = 0; c < columns; ++c) fprintf(w->file, ",%.17g", values[c]);

@@ -20,8 +20,12 @@ typedef struct Watches Watches;
 /** Resolves the watches of a deck on a body. */
 int watches_create(Watches **watches, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *specs, const SectionList *selections);
-/** Opens <folder>/<name>.csv for each; with `resume_after` >= 0 old files are kept up to that step and continued. */
-int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume_after, Error *error);
+/** Opens <folder>/<name>.csv for each; with `resume_after` >= 0 old files are kept up to that step and continued. All their rows from the step on
+ *  at which the run began must be there: else BRECCIA_USER_ERROR. */
+int watches_open(Watches *watches, const char *folder, const Units *units, int64_t began, int64_t resume_after,
+                 Error *error);
+/** Brings all rows to the disk: a checkpoint must not be ahead of them when the machine goes down. */
+int watches_settle(const Watches *watches, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */
 int watches_write(Watches *watches, const Solver *solver, bool last, Error *error);
 /** Names the c-th column of the k-th history; of one that could not be resolved only step and time are known.

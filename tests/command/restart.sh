@@ -145,7 +145,7 @@ done
 
 # interrupted and killed at random moments
 RANDOM=7
-for signal in INT TERM KILL KILL KILL; do
+for signal in INT HUP TERM KILL KILL KILL; do
   rm -rf killed
   "$breccia" run plate.yaml --output killed > out 2>&1 &
   for attempt in 1 2 3; do
@@ -183,6 +183,24 @@ contains "damaged checkpoint" "$(cat out)" "checkpoint.h5: is damaged"
 contains "damaged checkpoint" "$(cat out)" "of step 1480, is whole: --restart-before goes on from that"
 equal "damaged checkpoint: lines" "$(wc -l < out)" 1
 "$breccia" run plate.yaml --output parts --restart-before > out 2>&1 || fail "restart from the one before: $(cat out)"
+same parts
+# histories: rows beyond the checkpoint go, rows that are missing are refused
+"$breccia" run plate.yaml --output parts --steps 801 > out 2>&1 || fail "parts: $(cat out)"
+echo '805,0.1,0.2,0.3' >> parts/mouth.csv
+cp parts/mouth.csv mouth.kept; cp parts/energy.csv energy.kept; cp parts/results.vtkhdf results.kept
+refused() { # refused WHAT WORDS: with one line, and nothing lost by the attempt
+  "$breccia" run plate.yaml --output parts --restart > /dev/null 2> out; equal "$1: status" $? 2
+  contains "$1" "$(cat out)" "$2"
+  equal "$1: lines" "$(wc -l < out)" 1
+  cp mouth.kept parts/mouth.csv; cp energy.kept parts/energy.csv; cp results.kept parts/results.vtkhdf
+}
+rm parts/mouth.csv; refused "a history is missing" "mouth.csv: No such file"
+sed -i 5d parts/mouth.csv; refused "a row is missing" "mouth.csv:5: expected the row of step 21"
+head -c -20 mouth.kept | head -n -2 > parts/mouth.csv; refused "the end is missing" "expected the row of step 79"
+sed -i '4s/,[^,]*$//' parts/energy.csv; refused "a row is short" "energy.csv:4: expected the row of step 100"
+"$breccia" run plate.yaml --output early --steps 300 > out 2>&1 || fail "early: $(cat out)"
+cp early/results.vtkhdf parts/; refused "an earlier result file" "results.vtkhdf: lacks the state of step"
+"$breccia" run plate.yaml --output parts --restart > out 2>&1 || fail "restart: $(cat out)"
 same parts
 cp grains.csv kept.csv
 sed '3s/,0\./,0.1/' kept.csv > grains.csv

@@ -63,6 +63,7 @@ int process_start(Process *process, const char *folder, int number, Text *reason
   sigset_t usual;
   sigemptyset(&usual);
   sigaddset(&usual, SIGPIPE); /* which the command ignores, and a server need not */
+  sigaddset(&usual, SIGXFSZ);
   posix_spawnattr_setsigdefault(&attributes, &usual);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   posix_spawnattr_setpgroup(&attributes, 0);
