@@ -75,6 +75,9 @@ cmp -s test-home.csv test-away.csv || fail "laboratory: $(diff test-home.csv tes
 "$breccia" material test-away.yaml > again.csv; cmp -s again.csv test-home.csv || fail "laboratory: a point begins where another ended"
 
 serve "udp://127.0.0.1:0"; udp=$(sed 's/listening at //' serve.out)
+# A client that gives up takes leave, or the next one would be told that the server is busy.
+deck "remote: jelly, server: ['$udp']" > jelly.yaml
+"$breccia" run jelly.yaml > out 2>&1; equal "no such law over datagrams: status" $? 2
 deck "$served, server: ['$udp']" > datagrams.yaml
 "$breccia" run datagrams.yaml > out 2>&1 || fail "datagrams: $(cat out)"
 same home datagrams results.vtkhdf
