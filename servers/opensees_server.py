@@ -29,6 +29,8 @@ SEND_ROOM = 4 << 20  # bytes
 # Connections that have not greeted yet: how many are listened to, for how long, and how large a greeting may be.
 GUESTS, GREETING_SECONDS, MOST_GREETING = 8, 5, 4096
 FRAME_SECONDS, SILENT_SECONDS = 60, 60
+LOOK_UP_SECONDS = 0.2  # a signal that comes just before a wait is seen after it only
+ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 BUSY = "the server is busy with another client"
 MOST_POINTS = 1_000_000  # OpenSees takes a time that grows with the square to make them
 HELLO, PROBE, CREATE, ATTACH, TRIAL, COMMIT, REVERT, SAVE, RESTORE, STATISTICS, BYE, LAWS = range(1, 13)
@@ -90,7 +92,7 @@ class Words:
         reading, self.writing = os.pipe()
         if os.fork() == 0:
             os.close(self.writing)
-            for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            for number in ENDS:
                 signal.signal(number, signal.SIG_IGN)
             ended = os.read(reading, 1) == b""
             if ended and self.since(0):
@@ -631,8 +633,7 @@ def accept_guest(listener, guests):
 def attend(server, listener, guests, client):
     """Waits for the client, which is returned as it is, or for a greeting: a new client, and header and body of it."""
     while True:
-        left = [max(guest.end - time.monotonic(), 0) for guest in guests]
-        ready, _, _ = select.select([listener, *guests] + ([client] if client else []), [], [], min(left) if left else None)
+        ready, _, _ = select.select([listener, *guests] + ([client] if client else []), [], [], LOOK_UP_SECONDS)
         if client in ready:  # if it has just left, whoever knocks is the next one
             return client, None
         for guest in list(guests):
@@ -677,9 +678,13 @@ def serve_stream(server, listener, once):
 
 
 def serve_datagrams(server, listener, once):
+    listener.settimeout(LOOK_UP_SECONDS)
     client, heard = None, 0.0  # where its greeting came from, and when something came last
     while True:
-        data, sender = listener.recvfrom(65535)
+        try:
+            data, sender = listener.recvfrom(65535)
+        except socket.timeout:
+            continue
         if len(data) < HEADER.size:
             continue
         header, body = HEADER.unpack_from(data), data[HEADER.size :]
@@ -727,11 +732,13 @@ class SocketFile:
     def bind(self, listener, path):
         remove_stale(path)
         mask = os.umask(0o177)
+        signal.pthread_sigmask(signal.SIG_BLOCK, ENDS)  # the file and that it is known belong together
         try:
             listener.bind(path)
             self.path, self.known = path, self.identity(path)
         finally:
             os.umask(mask)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)
 
     @staticmethod
     def identity(path):
@@ -804,7 +811,7 @@ def main():
             secret = file.readline().strip()
         if not secret:
             parser.error(f"{options.secret_file}: no secret stands there")
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+    for number in ENDS:
         if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # nohup keeps it running
             signal.signal(number, lambda *_: sys.exit(0))
     try:
