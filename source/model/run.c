@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/tensor.h"
+#include "base/whole_file.h"
 #include "model/sized.h"
 #include "results/checkpoint.h"
 #include "results/result_view.h"
@@ -62,10 +63,12 @@ static int write_results(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   const double start = clock_seconds();
-  if (domain_observe(&model->domain, error)) return BRECCIA_FAILURE;
-  update_peaks(model);
-  const int status =
-      result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
+  int status = domain_observe(&model->domain, error);
+  if (!status) {
+    update_peaks(model);
+    status = result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
+  }
+  run->unwritten |= status != 0;
   const double seconds = clock_seconds() - start;
   Outlook *o = &model->outlook;
   pace_note(&o->bytes, o->state_bytes, seconds);
@@ -92,12 +95,22 @@ static CheckpointOf what_it_is_of(const breccia_model *model)
   return (CheckpointOf){text_words(&model->deck), text_words(&model->files), model->domain.particles->count};
 }
 
+static int write_histories(Run *run, bool last, Error *error)
+{
+  const int status = watches_write(run->model->watches, &run->model->solver, last, error);
+  run->unwritten |= status != 0;
+  return status;
+}
+
 static int write_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   /* Of energy from nothing the checkpoint before is the better one; of this very step it need not be written twice. */
   if (model->solver.ledger.unsound_steps || run->checkpoint_step == model->solver.clock.step) return BRECCIA_OK;
-  if (result_file_show(run->results, error)) return BRECCIA_FAILURE; /* a restart takes them up from there */
+  if (result_file_show(run->results, error)) { /* a restart takes them up from there */
+    run->unwritten = true;
+    return BRECCIA_FAILURE;
+  }
   run->last_checkpoint = clock_seconds();
   for (int r = 0; r < model->domain.region_count; ++r)
     if (!points_can_save(&model->domain.regions[r].points))
@@ -107,6 +120,7 @@ static int write_checkpoint(Run *run, Error *error)
   model_state(model, &state);
   const CheckpointOf of = what_it_is_of(model);
   const int status = checkpoint_write(run->wish->folder, &state, &of, error);
+  run->unwritten |= status != 0;
   state_list_destroy(&state);
   if (!status) run->checkpoint_step = model->solver.clock.step;
   const double seconds = clock_seconds() - run->last_checkpoint;
@@ -117,17 +131,11 @@ static int write_checkpoint(Run *run, Error *error)
 
 int run_write_file(Run *run, const char *name, const Text *words, Error *error)
 {
-  char *path = text_format("%s/%s", run->wish->folder, name),
-       *part = text_format("%s/%s.part", run->wish->folder, name);
-  errno = 0;
-  FILE *file = part && path ? fopen(part, "w") : NULL;
-  int bad = !file || fwrite(text_words(words), 1, words->length, file) != words->length;
-  if (file && fclose(file)) bad = 1;
-  bad = bad || rename(part, path);
-  if (bad) error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : name, strerror(errno));
+  char *path = text_format("%s/%s", run->wish->folder, name);
+  const int status = path ? whole_file_write(path, words, error)
+                          : error_add(error, BRECCIA_FAILURE, "%s: cannot be written: out of memory", name);
   free(path);
-  free(part);
-  return bad ? BRECCIA_FAILURE : BRECCIA_OK;
+  return status;
 }
 
 /** Takes away what an earlier run in this folder left to go on from, and what it told: both are of results that are written over now. */
@@ -231,6 +239,15 @@ static int open_files(Run *run, Error *error)
   return status;
 }
 
+/** Shows all states and ends the histories. */
+static int close_files(Run *run, Error *error)
+{
+  int status = result_file_show(run->results, error);
+  if (watches_close(run->model->watches, status ? NULL : error)) status = BRECCIA_FAILURE;
+  run->unwritten |= status != 0;
+  return status;
+}
+
 /* ---- the loop ---- */
 
 static void show_progress(Run *run, bool always)
@@ -251,7 +268,7 @@ static int due(Run *run, Error *error)
   breccia_model *model = run->model;
   const Solver *s = &model->solver;
   const ResultsSpec *r = model->spec->results;
-  int status = watches_write(model->watches, s, false, error);
+  int status = write_histories(run, false, error);
   bool write = r->every > 0 && s->clock.step % r->every == 0;
   for (; model_has_passed(model, model->next_due, s->clock.time); ++model->next_due) write = true;
   write |= s->clock.ended && s->clock.stages > 1;
@@ -304,28 +321,28 @@ static int finish(Run *run, int status, Error *error)
   model->run_seconds = clock_seconds() - run->started;
   char *problem = text_format("%s", breccia_error_text(error));
   if (!status) {
-    status = watches_write(model->watches, &model->solver, true, error);
+    status = write_histories(run, true, error);
     /* First the checkpoint: a state written because a run stops early leaves no trace when it is taken up again. */
     if (!status) status = write_checkpoint(run, error);
     if (!status) status = write_results(run, error);
   } else if (status == BRECCIA_INTERRUPTED) {
     int bad = write_checkpoint(run, error);
     if (bad) status = bad;
-  } else { /* the last good state */
+  } else if (!run->unwritten) { /* the last good state */
     write_checkpoint(run, error);
     write_results(run, error);
-    watches_write(model->watches, &model->solver, true, error);
+    write_histories(run, true, error);
   }
-  if (result_file_show(run->results, error) && !status) status = BRECCIA_FAILURE;
+  if (close_files(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;
   Text own = {0};
   text_add(&own, "  %s/deck.yaml (what was run)\n  %s/results.vtkhdf (and results.xdmf for older ParaView)\n",
            run->wish->folder, run->wish->folder);
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
   text_free(&run->files);
   run->files = own;
-  int bad = run_write_summary(run, status, problem, error);
+  int bad = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
   if (bad && !status) status = bad;
-  run_draw_pictures(run);
+  if (!run->unwritten) run_draw_pictures(run);
   run_tell_outcome(run, status);
   free(problem);
   return status;

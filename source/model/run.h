@@ -14,6 +14,7 @@ typedef struct Run {
   double started, last_checkpoint, last_progress;
   double paused;   /* seconds since the last progress that went into writing */
   int64_t told_at; /* step of the last progress */
+  bool unwritten;  /* a file lacks what was due: said, and no checkpoint may stand behind the gap */
   TextList names;
   Text files;
 } Run;

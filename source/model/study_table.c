@@ -1,5 +1,6 @@
 /* What the cases of a study gave, side by side. */
 #include "base/csv.h"
+#include "base/whole_file.h"
 #include "deck/document.h"
 #include "model/host.h"
 #include "model/study_report.h"
@@ -224,15 +225,11 @@ static int read_values(StudyReport *report, Error *error)
 static int write_text(StudyReport *report, const char *name, const Text *words, Error *error)
 {
   char *path = text_format("%s/%s", report->plan->folder, name);
-  FILE *file = path ? fopen(path, "w") : NULL;
-  int bad = !file || fwrite(text_words(words), 1, words->length, file) != words->length;
-  if (file && fclose(file)) bad = 1;
-  if (bad)
-    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : name, strerror(errno));
-  else
-    text_add(report->files, "  %s\n", path);
+  const int status = path ? whole_file_write(path, words, error)
+                          : error_add(error, BRECCIA_FAILURE, "%s: cannot be written: out of memory", name);
+  if (!status) text_add(report->files, "  %s\n", path);
   free(path);
-  return bad ? BRECCIA_FAILURE : BRECCIA_OK;
+  return status;
 }
 
 static void add_cell(Text *text, const char *words)

@@ -8,12 +8,12 @@ int dataset_create(hid_t where, const char *name, hid_t type, int columns, hsize
   hsize_t chunk[2] = {rows_per_chunk ? rows_per_chunk : 1, (hsize_t)columns};
   int rank = columns > 1 ? 2 : 1;
   hid_t space = H5Screate_simple(rank, size, most), properties = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_chunk(properties, rank, chunk);
-  hid_t set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  hid_t set = -1;
+  if (H5Pset_chunk(properties, rank, chunk) >= 0 && H5Pset_fletcher32(properties) >= 0)
+    set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
   H5Pclose(properties);
   H5Sclose(space);
-  if (set >= 0) H5Dclose(set);
-  return set < 0;
+  return set < 0 || H5Dclose(set) < 0;
 }
 
 int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns, hsize_t first, hsize_t rows,
@@ -25,12 +25,12 @@ int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns,
   herr_t bad = set < 0 ? -1 : H5Dset_extent(set, end);
   if (bad >= 0 && rows) {
     hid_t space = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
-    bad = H5Dwrite(set, memory_type, memory, space, H5P_DEFAULT, values);
+    bad = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+    if (bad >= 0) bad = H5Dwrite(set, memory_type, memory, space, H5P_DEFAULT, values);
     H5Sclose(space);
     H5Sclose(memory);
   }
-  if (set >= 0) H5Dclose(set);
+  if (set >= 0 && H5Dclose(set) < 0) bad = -1;
   return bad < 0;
 }
 
@@ -50,8 +50,7 @@ int dataset_view(hid_t where, const char *name, hid_t file, const char *source, 
   H5Sclose(theirs);
   H5Tclose(type);
   H5Dclose(whole);
-  if (set >= 0) H5Dclose(set);
-  return set < 0;
+  return set < 0 || H5Dclose(set) < 0;
 }
 
 int attribute_numbers(hid_t where, const char *name, hid_t type, hsize_t count, const void *values)
@@ -60,7 +59,7 @@ int attribute_numbers(hid_t where, const char *name, hid_t type, hsize_t count, 
   hid_t attribute = H5Aexists(where, name) > 0 ? H5Aopen(where, name, H5P_DEFAULT)
                                                : H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
   herr_t bad = attribute < 0 ? -1 : H5Awrite(attribute, type, values);
-  if (attribute >= 0) H5Aclose(attribute);
+  if (attribute >= 0 && H5Aclose(attribute) < 0) bad = -1;
   H5Sclose(space);
   return bad < 0;
 }
@@ -72,7 +71,7 @@ int attribute_text(hid_t where, const char *object, const char *name, const char
   H5Tset_strpad(type, H5T_STR_NULLPAD);
   hid_t attribute = H5Acreate_by_name(where, object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   herr_t bad = attribute < 0 ? -1 : H5Awrite(attribute, type, words);
-  if (attribute >= 0) H5Aclose(attribute);
+  if (attribute >= 0 && H5Aclose(attribute) < 0) bad = -1;
   H5Sclose(space);
   H5Tclose(type);
   return bad < 0;

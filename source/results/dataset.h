@@ -4,7 +4,8 @@
 
 #include <hdf5.h>
 
-/** An empty dataset [0][columns] that can grow without end, stored in pieces of so many rows. */
+/** An empty dataset [0][columns] that can grow without end, stored in pieces of so many rows, each with a checksum (Fletcher's) that HDF5 looks
+ *  at whenever it reads the piece, in whatever program. */
 int dataset_create(hid_t where, const char *name, hid_t type, int columns, hsize_t rows_per_chunk);
 /** Writes rows from `first` on, growing or cutting the dataset to end with them. */
 int dataset_write(hid_t where, const char *name, hid_t memory_type, int columns, hsize_t first, hsize_t rows,

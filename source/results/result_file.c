@@ -2,17 +2,17 @@
 
 #include "base/clock.h"
 #include "base/team.h"
+#include "base/whole_file.h"
 #include "results/dataset.h"
+#include "results/hdf5_file.h"
 #include "results/result_view.h"
 #include "results/xdmf.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 enum { CHUNK_BYTES = 1 << 18 };
 
@@ -24,7 +24,8 @@ typedef struct Column {
 
 struct ResultFile {
   char *path, *part, *xdmf;
-  bool hidden;                                  /* `part` holds states that `path` lacks */
+  bool hidden; /* `part` holds states that `path` lacks */
+  bool lost;   /* a write failed: `path` lacks states for good, and nothing is added to it */
   double copied_at, copy_seconds, list_seconds; /* list_seconds: of results.xdmf, the last time */
   int64_t particles, writes, broken_written;
   bool single;
@@ -53,7 +54,7 @@ static int write_cells(hid_t root, int64_t particles)
       bad |= dataset_write(group, names[n], H5T_NATIVE_INT64, 1, 0, rows[n], numbers);
     }
     free(numbers);
-    H5Gclose(group);
+    bad |= H5Gclose(group) < 0;
   }
   return bad;
 }
@@ -119,10 +120,7 @@ static int create_sets(hid_t root, const ResultFile *file)
   }
   int64_t none = 0;
   bad |= attribute_numbers(steps, "NSteps", H5T_NATIVE_INT64, 1, &none);
-  H5Gclose(offsets);
-  H5Gclose(steps);
-  H5Gclose(data);
-  return bad;
+  return bad | (H5Gclose(offsets) < 0) | (H5Gclose(steps) < 0) | (H5Gclose(data) < 0);
 }
 
 static int write_geometry(hid_t root, const Domain *d)
@@ -157,8 +155,8 @@ static int write_geometry(hid_t root, const Domain *d)
     for (int k = 0; lattice_word(k); ++k) text_add(&names, "%s%s", k ? ";" : "", lattice_word(k));
     bad |= attribute_text(own, "Lattice", "names", text_words(&names));
     text_free(&names);
-    H5Gclose(own);
-    H5Fclose(file);
+    bad |= H5Gclose(own) < 0;
+    bad |= H5Fclose(file) < 0;
   }
   free(positions);
   free(spacings);
@@ -166,32 +164,21 @@ static int write_geometry(hid_t root, const Domain *d)
   return bad;
 }
 
-static int copy_file(const char *from, const char *to)
+/** Takes away what did not become whole, and says why. */
+static int give_up(ResultFile *file, const char *reason, Error *error)
 {
-  int in = open(from, O_RDONLY), out = open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666), bad = in < 0 || out < 0;
-  char *buffer = malloc(1 << 20);
-  bad |= !buffer;
-  while (!bad) {
-    ssize_t n = read(in, buffer, 1 << 20);
-    if (n <= 0) {
-      bad = n < 0;
-      break;
-    }
-    for (ssize_t done = 0; done < n && !bad;) {
-      ssize_t m = write(out, buffer + done, (size_t)(n - done));
-      bad = m < 0;
-      done += m;
-    }
-  }
-  free(buffer);
-  if (in >= 0) close(in);
-  if (out >= 0 && close(out)) bad = 1;
-  return bad;
+  remove(file->part);
+  file->hidden = false;
+  file->lost = true;
+  return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", file->path, reason);
 }
 
-static int file_error(const char *path, Error *error)
+/** Puts the copy in the place of the file that others read. */
+static int put_in_place(ResultFile *file, Error *error)
 {
-  return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, errno ? strerror(errno) : "HDF5 refused");
+  if (rename(file->part, file->path)) return give_up(file, strerror(errno), error);
+  file->hidden = false;
+  return BRECCIA_OK;
 }
 
 static ResultFile *prepare(const char *folder, const Domain *d, const Units *units, const char *title,
@@ -227,34 +214,31 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
 {
   ResultFile *file = *out = prepare(folder, d, units, title, names, error);
   if (!file) return BRECCIA_FAILURE;
-  errno = 0;
-  hid_t h5 = H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  int bad = h5 < 0;
-  if (!bad) {
-    hid_t root = H5Gcreate2(h5, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  Hdf5File h5;
+  int bad = hdf5_file_create(&h5, file->part);
+  if (h5.id >= 0) {
+    hid_t root = H5Gcreate2(h5.id, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     int64_t version[2] = {2, 0};
     bad |= attribute_numbers(root, "Version", H5T_NATIVE_INT64, 2, version);
     bad |= attribute_text(root, ".", "Type", "PolyData");
     bad |= write_geometry(root, d);
     bad |= write_cells(root, file->particles);
     const hsize_t column[2] = {(hsize_t)file->particles, 1};
-    bad |= dataset_view(h5, "/Breccia/Particles", h5, "/VTKHDF/Vertices/Connectivity", 0, 2, column);
+    bad |= dataset_view(h5.id, "/Breccia/Particles", h5.id, "/VTKHDF/Vertices/Connectivity", 0, 2, column);
     bad |= create_sets(root, file);
-    H5Gclose(root);
-    hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
+    bad |= H5Gclose(root) < 0;
+    hid_t own = H5Gopen2(h5.id, "Breccia", H5P_DEFAULT);
     char unit[64];
     units_name(units, dimension_find("length"), unit, sizeof unit);
     bad |= attribute_text(own, ".", "title", title) | attribute_text(own, ".", "length unit", unit);
     units_name(units, dimension_find("time"), unit, sizeof unit);
     bad |= attribute_text(own, ".", "time unit", unit);
     hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    bad |= states < 0;
-    H5Gclose(states);
-    H5Gclose(own);
-    bad |= H5Fclose(h5) < 0;
+    bad |= states < 0 || H5Gclose(states) < 0;
+    bad |= H5Gclose(own) < 0;
   }
-  bad = bad || rename(file->part, file->path);
-  return bad ? file_error(file->path, error) : BRECCIA_OK;
+  bad |= hdf5_file_close(&h5);
+  return bad ? give_up(file, hdf5_file_reason(&h5), error) : put_in_place(file, error);
 }
 
 static int grow_times(ResultFile *file)
@@ -269,10 +253,10 @@ static int grow_times(ResultFile *file)
   return !times || !steps;
 }
 
-static int write_xdmf(const ResultFile *file)
+static int write_xdmf(const ResultFile *file, Error *error)
 {
   XdmfField *fields = calloc((size_t)file->column_count + 1, sizeof *fields);
-  if (!fields) return 1;
+  if (!fields) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", file->xdmf);
   for (int c = 0; c < file->column_count; ++c)
     fields[c] = (XdmfField){file->columns[c].name, file->columns[c].components};
   const XdmfSeries series = {.particles = file->particles,
@@ -282,9 +266,9 @@ static int write_xdmf(const ResultFile *file)
                              .fields = fields,
                              .count = file->column_count,
                              .bytes = file->single ? 4 : 8};
-  int bad = xdmf_write(file->xdmf, &series);
+  const int status = xdmf_write(file->xdmf, &series, error);
   free(fields);
-  return bad;
+  return status;
 }
 
 /** Cuts the lists of steps to those of `file`, or extends them. @param[in] from  the first that is not in them */
@@ -314,8 +298,8 @@ static int write_steps(hid_t root, const ResultFile *file, int64_t from)
   free(zeros);
   free(ones);
   free(starts);
-  if (offsets >= 0) H5Gclose(offsets);
-  if (steps >= 0) H5Gclose(steps);
+  if (offsets >= 0 && H5Gclose(offsets) < 0) bad = 1;
+  if (steps >= 0 && H5Gclose(steps) < 0) bad = 1;
   return bad;
 }
 
@@ -334,15 +318,14 @@ static int create_state(hid_t h5, const ResultFile *file, int64_t k)
     bad = dataset_view(state, column->name, h5, source, (hsize_t)(k * file->particles), column->components > 1 ? 2 : 1,
                        shape);
   }
-  if (state >= 0) H5Gclose(state);
+  if (state >= 0 && H5Gclose(state) < 0) bad = 1;
   return bad;
 }
 
-static int append(ResultFile *file, const char *path, const Domain *d)
+/** Adds the present state to the file that is open. */
+static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
 {
-  hid_t h5 = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
-  if (h5 < 0) return 1;
-  hid_t root = H5Gopen2(h5, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
+  hid_t root = H5Gopen2(h5->id, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
   double *values = malloc(sizeof(double) * MOST_COMPONENTS * (size_t)file->particles);
   int bad = !values || root < 0 || data < 0;
   for (int c = 0; c < file->column_count && !bad; ++c) {
@@ -352,6 +335,7 @@ static int append(ResultFile *file, const char *path, const Domain *d)
                         (hsize_t)((file->writes - 1) * file->particles), (hsize_t)file->particles, values);
   }
   int64_t fresh = d->broken_count - file->broken_written, *rows = calloc((size_t)fresh * 3 + 3, sizeof(int64_t));
+  if (!values || !rows) h5->error = ENOMEM;
   bad |= !rows;
   for (int64_t k = 0; !bad && k < fresh; ++k) {
     const BrokenBond *bond = &d->broken[file->broken_written + k];
@@ -359,18 +343,16 @@ static int append(ResultFile *file, const char *path, const Domain *d)
     rows[3 * k + 1] = bond->a;
     rows[3 * k + 2] = bond->b;
   }
-  hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
+  hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad = bad ||
         dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
-  bad = bad || create_state(h5, file, file->writes - 1);
-  bad = bad || H5Fflush(h5, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file, file->writes - 1);
-  if (own >= 0) H5Gclose(own);
-  if (data >= 0) H5Gclose(data);
-  if (root >= 0) H5Gclose(root);
-  bad |= H5Fclose(h5) < 0;
+  bad = bad || create_state(h5->id, file, file->writes - 1);
+  bad = bad || H5Fflush(h5->id, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file, file->writes - 1);
+  if (own >= 0 && H5Gclose(own) < 0) bad = 1;
+  if (data >= 0 && H5Gclose(data) < 0) bad = 1;
+  if (root >= 0 && H5Gclose(root) < 0) bad = 1;
   free(rows);
   free(values);
-  if (!bad) file->broken_written = d->broken_count;
   return bad;
 }
 
@@ -388,36 +370,37 @@ double result_file_state_bytes(const Domain *d, const ResultNames *names)
 static int show(ResultFile *file, Error *error)
 {
   const double start = clock_seconds();
-  errno = 0;
-  const int bad = (file->hidden && rename(file->part, file->path)) || write_xdmf(file);
-  if (bad) return file_error(file->path, error);
-  file->hidden = false;
+  int status = file->hidden ? put_in_place(file, error) : BRECCIA_OK;
+  if (!status) status = write_xdmf(file, error);
+  if (status) {
+    file->lost = true;
+    return status;
+  }
   file->list_seconds = clock_seconds() - start;
   return BRECCIA_OK;
 }
 
 int result_file_write(ResultFile *file, const Domain *d, int64_t step, double time, Error *error)
 {
-  if (grow_times(file)) return error_add(error, BRECCIA_FAILURE, "out of memory: result file");
+  if (file->lost) return BRECCIA_FAILURE; /* said when it was lost */
   if (file->writes && file->steps[file->writes - 1] == step) return BRECCIA_OK;
-  file->times[file->writes] = time;
-  file->steps[file->writes++] = step;
-  errno = 0;
+  if (grow_times(file)) return error_add(error, BRECCIA_FAILURE, "out of memory: result file");
   struct stat status;
-  int bad = 0;
-  const bool in_place = !file->hidden && !(bad = stat(file->path, &status)) && status.st_size >= COPY_LIMIT;
-  if (!file->hidden && !in_place && !bad) {
+  if (!file->hidden && stat(file->path, &status)) return give_up(file, strerror(errno), error);
+  const bool in_place = !file->hidden && status.st_size >= COPY_LIMIT;
+  if (!file->hidden && !in_place) {
     file->copied_at = clock_seconds();
-    bad = copy_file(file->path, file->part);
+    const int cause = whole_file_copy(file->path, file->part);
+    if (cause) return give_up(file, strerror(cause), error);
     file->copy_seconds = clock_seconds() - file->copied_at;
   }
-  bad = bad || append(file, in_place ? file->path : file->part, d);
-  if (bad) {
-    if (!in_place) remove(file->part);
-    file->hidden = false;
-    --file->writes;
-    return file_error(file->path, error);
-  }
+  file->times[file->writes] = time;
+  file->steps[file->writes++] = step;
+  Hdf5File h5;
+  int bad = hdf5_file_extend(&h5, in_place ? file->path : file->part) || append(file, &h5, d);
+  bad |= hdf5_file_close(&h5);
+  if (bad) return give_up(file, hdf5_file_reason(&h5), error);
+  file->broken_written = d->broken_count;
   file->hidden = !in_place;
   const bool soon = clock_seconds() - file->copied_at < SELDOM * (file->copy_seconds + file->list_seconds);
   return file->hidden && soon ? BRECCIA_OK : show(file, error);
@@ -425,7 +408,26 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
 
 int result_file_show(ResultFile *file, Error *error)
 {
+  if (file->lost) return BRECCIA_FAILURE; /* said when it was lost */
   return file->hidden ? show(file, error) : BRECCIA_OK;
+}
+
+/** Cuts what the file that is open holds to the states and broken bonds of `file`. */
+static int cut(ResultFile *file, Hdf5File *h5)
+{
+  hid_t root = H5Gopen2(h5->id, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
+  int bad = 0;
+  for (int c = 0; c < file->column_count; ++c)
+    bad |= dataset_write(data, file->columns[c].name, H5T_NATIVE_DOUBLE, file->columns[c].components,
+                         (hsize_t)(file->writes * file->particles), 0, NULL);
+  hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
+  bad |= dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, 0, NULL);
+  if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;
+  hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  for (int64_t k = 0; k < file->writes && !bad; ++k) bad = create_state(h5->id, file, k);
+  bad |= H5Gclose(states) < 0;
+  bad |= write_steps(root, file, file->writes);
+  return bad | (H5Gclose(own) < 0) | (H5Gclose(data) < 0) | (H5Gclose(root) < 0);
 }
 
 int result_file_resume(ResultFile **out, const char *folder, const Domain *d, const Units *units, const char *title,
@@ -446,29 +448,14 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   result_view_close(&view);
   if (!same)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds another number of particles than the deck", file->path);
-  errno = 0;
-  int bad = copy_file(file->path, file->part);
-  hid_t h5 = bad ? -1 : H5Fopen(file->part, H5F_ACC_RDWR, H5P_DEFAULT);
-  bad |= h5 < 0;
-  if (!bad) {
-    hid_t root = H5Gopen2(h5, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
-    for (int c = 0; c < file->column_count; ++c)
-      bad |= dataset_write(data, file->columns[c].name, H5T_NATIVE_DOUBLE, file->columns[c].components,
-                           (hsize_t)(file->writes * file->particles), 0, NULL);
-    hid_t own = H5Gopen2(h5, "Breccia", H5P_DEFAULT);
-    bad |= dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, 0, NULL);
-    if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;
-    hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    for (int64_t k = 0; k < file->writes && !bad; ++k) bad = create_state(h5, file, k);
-    H5Gclose(states);
-    bad |= write_steps(root, file, file->writes);
-    H5Gclose(own);
-    H5Gclose(data);
-    H5Gclose(root);
-    bad |= H5Fclose(h5) < 0;
-  }
-  bad = bad || rename(file->part, file->path) || write_xdmf(file);
-  return bad ? file_error(file->path, error) : BRECCIA_OK;
+  const int cause = whole_file_copy(file->path, file->part);
+  if (cause) return give_up(file, strerror(cause), error);
+  Hdf5File h5;
+  int bad = hdf5_file_extend(&h5, file->part) || cut(file, &h5);
+  bad |= hdf5_file_close(&h5);
+  if (bad) return give_up(file, hdf5_file_reason(&h5), error);
+  status = put_in_place(file, error);
+  return status ? status : write_xdmf(file, error);
 }
 
 void result_file_destroy(ResultFile **file)

@@ -29,7 +29,8 @@ int result_file_resume(ResultFile **file, const char *folder, const Domain *doma
                        const char *title, const ResultNames *names, int64_t last, Error *error);
 /** Bytes that one state takes in a file with these fields. */
 double result_file_state_bytes(const Domain *domain, const ResultNames *names);
-/** Adds the present state. It may stand only in the copy at first; result_file_show shows it. */
+/** Adds the present state. It may stand only in the copy at first; result_file_show shows it.
+ *  @return BRECCIA_OK; BRECCIA_FAILURE after a line with the cause, and from then on without one: states are lost, and no more are added */
 int result_file_write(ResultFile *file, const Domain *domain, int64_t step, double time, Error *error);
 /** Puts all states into the file that others read. */
 int result_file_show(ResultFile *file, Error *error);

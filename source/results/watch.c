@@ -482,6 +482,18 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
   return BRECCIA_OK;
 }
 
+int watches_close(Watches *watches, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < watches->count; ++k) {
+    Watch *w = &watches->items[k];
+    if (w->file && fclose(w->file) && !status)
+      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    w->file = NULL;
+  }
+  return status;
+}
+
 const char *watches_name(const Watches *watches, int k)
 {
   return watches->items[k].spec->head.name;

@@ -28,6 +28,8 @@ int watches_open(Watches *watches, const char *folder, const Units *units, int64
 int watches_settle(const Watches *watches, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */
 int watches_write(Watches *watches, const Solver *solver, bool last, Error *error);
+/** Closes the files. @return BRECCIA_OK, or BRECCIA_FAILURE after a line about the first that could not be written to its end */
+int watches_close(Watches *watches, Error *error);
 /** Names the c-th column of the k-th history; of one that could not be resolved only step and time are known.
  *  @return 0, or 1 after the last */
 int watches_column(const Watches *watches, int k, int c, char *name, size_t size);

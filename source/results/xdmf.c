@@ -1,8 +1,7 @@
 #include "results/xdmf.h"
 
 #include "base/text.h"
-#include <stdio.h>
-#include <stdlib.h>
+#include "base/whole_file.h"
 
 /** A field at one write: a dataset of its own, which the result file keeps as a view of the series. */
 static void add_field(Text *text, const XdmfSeries *series, const XdmfField *field, long long step)
@@ -17,7 +16,7 @@ static void add_field(Text *text, const XdmfSeries *series, const XdmfField *fie
   text_add(text, "\">results.vtkhdf:/Breccia/States/%lld/%s</DataItem></Attribute>\n", step, field->name);
 }
 
-int xdmf_write(const char *path, const XdmfSeries *series)
+int xdmf_write(const char *path, const XdmfSeries *series, Error *error)
 {
   Text text = {0};
   text_add(&text, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
@@ -36,12 +35,7 @@ int xdmf_write(const char *path, const XdmfSeries *series)
     text_add(&text, "   </Grid>\n");
   }
   text_add(&text, "  </Grid>\n </Domain>\n</Xdmf>\n");
-  char *temporary = text_format("%s.part", path);
-  FILE *out = temporary ? fopen(temporary, "w") : NULL;
-  int bad = !out || fwrite(text.characters, 1, text.length, out) != text.length;
-  if (out && fclose(out)) bad = 1;
-  bad = bad || rename(temporary, path);
-  free(temporary);
+  const int status = whole_file_write(path, &text, error);
   text_free(&text);
-  return bad;
+  return status;
 }

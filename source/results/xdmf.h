@@ -2,6 +2,7 @@
 #ifndef BRECCIA_RESULTS_XDMF_H
 #define BRECCIA_RESULTS_XDMF_H
 
+#include "base/error.h"
 #include <stdint.h>
 
 typedef struct XdmfField {
@@ -17,7 +18,7 @@ typedef struct XdmfSeries {
   int count, bytes; /* of fields; of each of their numbers */
 } XdmfSeries;
 
-/** Writes the whole series to `path` at once; 0, or 1 with errno when the disk or the memory refuses. */
-int xdmf_write(const char *path, const XdmfSeries *series);
+/** Writes the whole series to `path` at once. @return BRECCIA_OK, or BRECCIA_FAILURE after a line with the cause */
+int xdmf_write(const char *path, const XdmfSeries *series, Error *error);
 
 #endif

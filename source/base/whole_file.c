@@ -1,0 +1,48 @@
+#include "base/whole_file.h"
+
+#include "breccia/breccia.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+int whole_file_write(const char *path, const Text *words, Error *error)
+{
+  char *part = text_format("%s.part", path);
+  if (!part) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: out of memory", path);
+  FILE *file = fopen(part, "w");
+  int cause = file ? 0 : errno;
+  if (file && fwrite(text_words(words), 1, words->length, file) != words->length) cause = errno;
+  if (file && fclose(file) && !cause) cause = errno;
+  if (!cause && rename(part, path)) cause = errno;
+  if (cause) {
+    if (file) remove(part);
+    error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(cause));
+  }
+  free(part);
+  return cause ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+int whole_file_copy(const char *from, const char *to)
+{
+  const int in = open(from, O_RDONLY), out = in < 0 ? -1 : open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  int cause = out < 0 ? errno : 0;
+  char *buffer = malloc(1 << 20);
+  if (!buffer) cause = ENOMEM;
+  while (!cause) {
+    const ssize_t n = read(in, buffer, 1 << 20);
+    if (!n) break;
+    if (n < 0 && errno != EINTR) cause = errno;
+    for (ssize_t done = 0; done < n && !cause;) {
+      const ssize_t m = write(out, buffer + done, (size_t)(n - done));
+      if (m >= 0) done += m;
+      if (m < 0 && errno != EINTR) cause = errno;
+    }
+  }
+  free(buffer);
+  if (in >= 0) close(in);
+  if (out >= 0 && close(out) && !cause) cause = errno;
+  return cause;
+}

@@ -1,0 +1,14 @@
+/* Files that are written whole, or not at all. */
+#ifndef BRECCIA_BASE_WHOLE_FILE_H
+#define BRECCIA_BASE_WHOLE_FILE_H
+
+#include "base/error.h"
+#include "base/text.h"
+
+/** Writes `words` to <path>.part and puts it in the place of `path`. Where that fails, `path` is as it was and nothing is left beside it.
+ *  @return BRECCIA_OK, or BRECCIA_FAILURE after a line with the cause */
+int whole_file_write(const char *path, const Text *words, Error *error);
+/** Copies a file over another one, or into a new one. @return 0, or errno of what failed: then `to` is worth nothing */
+int whole_file_copy(const char *from, const char *to);
+
+#endif

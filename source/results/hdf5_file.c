@@ -1,0 +1,208 @@
+#include "results/hdf5_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct Driver {
+  H5FD_t shared;      /* first: HDF5's own part */
+  haddr_t end, there; /* of what HDF5 has allocated, and of the file as HDF5 believes it to be */
+  int descriptor;
+  int *error; /* of the Hdf5File */
+  dev_t device;
+  ino_t inode;
+} Driver;
+
+typedef struct Info { /* what the access properties carry to driver_open */
+  int *error;
+} Info;
+
+static void note(const Driver *driver)
+{
+  if (!*driver->error) *driver->error = errno ? errno : EIO;
+}
+
+static H5FD_t *driver_open(const char *path, unsigned flags, hid_t properties, haddr_t most)
+{
+  (void)most;
+  const Info *info = H5Pget_driver_info(properties);
+  Driver *driver = info ? calloc(1, sizeof *driver) : NULL;
+  if (!driver) return NULL;
+  int way = flags & H5F_ACC_RDWR ? O_RDWR : O_RDONLY;
+  if (flags & H5F_ACC_CREAT) way |= O_CREAT;
+  if (flags & H5F_ACC_TRUNC) way |= O_TRUNC;
+  if (flags & H5F_ACC_EXCL) way |= O_EXCL;
+  struct stat status;
+  driver->error = info->error;
+  driver->descriptor = open(path, way, 0666);
+  *info->error = 0; /* HDF5 tries first whether the file is there */
+  if (driver->descriptor < 0 || fstat(driver->descriptor, &status)) {
+    note(driver);
+    if (driver->descriptor >= 0) close(driver->descriptor);
+    free(driver);
+    return NULL;
+  }
+  driver->there = (haddr_t)status.st_size;
+  driver->device = status.st_dev;
+  driver->inode = status.st_ino;
+  return &driver->shared;
+}
+
+static herr_t driver_close(H5FD_t *shared)
+{
+  Driver *driver = (Driver *)shared;
+  if (close(driver->descriptor)) note(driver);
+  free(driver);
+  return 0;
+}
+
+static int driver_compare(const H5FD_t *a, const H5FD_t *b)
+{
+  const Driver *one = (const Driver *)a, *other = (const Driver *)b;
+  if (one->device != other->device) return one->device < other->device ? -1 : 1;
+  if (one->inode != other->inode) return one->inode < other->inode ? -1 : 1;
+  return 0;
+}
+
+/** The features of HDF5's own driver for ordinary files that change what it writes, or how fast. */
+static herr_t driver_query(const H5FD_t *shared, unsigned long *features)
+{
+  (void)shared;
+  *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+              H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  return 0;
+}
+
+static haddr_t driver_allocated(const H5FD_t *shared, H5FD_mem_t type)
+{
+  (void)type;
+  return ((const Driver *)shared)->end;
+}
+
+static herr_t driver_allocate(H5FD_t *shared, H5FD_mem_t type, haddr_t end)
+{
+  (void)type;
+  ((Driver *)shared)->end = end;
+  return 0;
+}
+
+static haddr_t driver_size(const H5FD_t *shared, H5FD_mem_t type)
+{
+  (void)type;
+  return ((const Driver *)shared)->there;
+}
+
+static herr_t driver_read(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr_t from, size_t size, void *buffer)
+{
+  (void)type, (void)transfer;
+  const Driver *driver = (const Driver *)shared;
+  for (char *at = buffer; size;) {
+    const ssize_t n = pread(driver->descriptor, at, size, (off_t)from);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      note(driver);
+      return -1;
+    }
+    if (!n) { /* behind the end of the file there are zeros */
+      memset(at, 0, size);
+      break;
+    }
+    at += n;
+    from += (haddr_t)n;
+    size -= (size_t)n;
+  }
+  return 0;
+}
+
+static herr_t driver_write(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr_t from, size_t size,
+                           const void *buffer)
+{
+  (void)type, (void)transfer;
+  Driver *driver = (Driver *)shared;
+  if (from + size > driver->there) driver->there = from + size;
+  for (const char *at = buffer; size && !*driver->error;) {
+    errno = 0;
+    const ssize_t n = pwrite(driver->descriptor, at, size, (off_t)from);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      note(driver);
+      break;
+    }
+    at += n;
+    from += (haddr_t)n;
+    size -= (size_t)n;
+  }
+  return 0;
+}
+
+static herr_t driver_truncate(H5FD_t *shared, hid_t transfer, hbool_t closing)
+{
+  (void)transfer, (void)closing;
+  Driver *driver = (Driver *)shared;
+  if (driver->end == driver->there) return 0;
+  if (!*driver->error && ftruncate(driver->descriptor, (off_t)driver->end)) note(driver);
+  driver->there = driver->end;
+  return 0;
+}
+
+static const H5FD_class_t driver_class = {
+#if H5_VERSION_GE(1, 13, 0)
+    .version = H5FD_CLASS_VERSION,
+    .value = 511, /* of those that need no registration */
+#endif
+    .name = "breccia",
+    .maxaddr = ((haddr_t)1 << 62) - 1,
+    .fc_degree = H5F_CLOSE_STRONG,
+    .fapl_size = sizeof(Info),
+    .open = driver_open,
+    .close = driver_close,
+    .cmp = driver_compare,
+    .query = driver_query,
+    .get_eoa = driver_allocated,
+    .set_eoa = driver_allocate,
+    .get_eof = driver_size,
+    .read = driver_read,
+    .write = driver_write,
+    .truncate = driver_truncate,
+    .fl_map = H5FD_FLMAP_DICHOTOMY,
+};
+
+static int open_file(Hdf5File *file, const char *path, bool create)
+{
+  *file = (Hdf5File){.id = -1};
+  const Info info = {&file->error};
+  /* For each file anew: a host may have ended and begun HDF5 in between. */
+  const hid_t driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
+  if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0)
+    file->id =
+        create ? H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
+  if (properties >= 0) H5Pclose(properties);
+  if (driver >= 0) H5FDunregister(driver);
+  return file->id < 0 || file->error;
+}
+
+int hdf5_file_create(Hdf5File *file, const char *path)
+{
+  return open_file(file, path, true);
+}
+
+int hdf5_file_extend(Hdf5File *file, const char *path)
+{
+  return open_file(file, path, false);
+}
+
+int hdf5_file_close(Hdf5File *file)
+{
+  const int bad = file->id >= 0 && H5Fclose(file->id) < 0;
+  file->id = -1;
+  return bad || file->error;
+}
+
+const char *hdf5_file_reason(const Hdf5File *file)
+{
+  return file->error ? strerror(file->error) : "HDF5 refused";
+}
