@@ -1,7 +1,7 @@
 # What people type. CMake does the work (CMakePresets.json); this says it in short.
 cores := $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan coverage clang clang-test fuzz install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan coverage clang clang-test fuzz torture install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -96,6 +96,13 @@ fuzz:
 	@cmake --preset fuzz > /dev/null
 	@cmake --build --preset fuzz --target fuzz_deck fuzz_server fuzz_client --parallel $(cores)
 	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
+
+# Faults by the thousand: what the tests do in short, in full.
+torture:
+	@sh scripts/setup.sh test
+	@cmake --preset test > /dev/null
+	@cmake --build --preset test --parallel $(cores)
+	@IO_FAULTS=all bash tests/command/io_faults.sh "$(CURDIR)/build/test/breccia" "$(CURDIR)" "$(CURDIR)/build/test"
 
 install: all
 	@cmake --install build/release $(if $(PREFIX),--prefix "$(PREFIX)")

@@ -319,6 +319,7 @@ static int finish(Run *run, int status, Error *error)
 {
   breccia_model *model = run->model;
   model->run_seconds = clock_seconds() - run->started;
+  const bool ended_early = status != BRECCIA_OK;
   char *problem = text_format("%s", breccia_error_text(error));
   if (!status) {
     status = write_histories(run, true, error);
@@ -334,6 +335,10 @@ static int finish(Run *run, int status, Error *error)
     write_histories(run, true, error);
   }
   if (close_files(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;
+  if (status && !ended_early) {
+    free(problem);
+    problem = text_format("%s", breccia_error_text(error));
+  }
   Text own = {0};
   text_add(&own, "  %s/deck.yaml (what was run)\n  %s/results.vtkhdf (and results.xdmf for older ParaView)\n",
            run->wish->folder, run->wish->folder);

@@ -171,28 +171,27 @@ static const H5FD_class_t driver_class = {
     .fl_map = H5FD_FLMAP_DICHOTOMY,
 };
 
-static int open_file(Hdf5File *file, const char *path, bool create)
+static int open_file(Hdf5File *file, const char *path, bool create, hid_t creation)
 {
   *file = (Hdf5File){.id = -1};
   const Info info = {&file->error};
   /* For each file anew: a host may have ended and begun HDF5 in between. */
   const hid_t driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
   if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0)
-    file->id =
-        create ? H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
+    file->id = create ? H5Fcreate(path, H5F_ACC_TRUNC, creation, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
   if (properties >= 0) H5Pclose(properties);
   if (driver >= 0) H5FDunregister(driver);
   return file->id < 0 || file->error;
 }
 
-int hdf5_file_create(Hdf5File *file, const char *path)
+int hdf5_file_create(Hdf5File *file, const char *path, hid_t creation)
 {
-  return open_file(file, path, true);
+  return open_file(file, path, true, creation);
 }
 
 int hdf5_file_extend(Hdf5File *file, const char *path)
 {
-  return open_file(file, path, false);
+  return open_file(file, path, false, H5P_DEFAULT);
 }
 
 int hdf5_file_close(Hdf5File *file)

@@ -14,8 +14,9 @@ typedef struct Hdf5File {
 } Hdf5File;
 
 /** Opens a file that is not there yet, or empties the one that is. `file` must stay where it is until the file is closed.
+ *  @param[in] creation  HDF5's properties of a new file, or H5P_DEFAULT
  *  @return 0, or 1 */
-int hdf5_file_create(Hdf5File *file, const char *path);
+int hdf5_file_create(Hdf5File *file, const char *path, hid_t creation);
 /** Opens a file to extend it. @return 0, or 1 */
 int hdf5_file_extend(Hdf5File *file, const char *path);
 /** Closes it with all that is still open in it. Accepts one that is not open.

@@ -215,7 +215,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
   ResultFile *file = *out = prepare(folder, d, units, title, names, error);
   if (!file) return BRECCIA_FAILURE;
   Hdf5File h5;
-  int bad = hdf5_file_create(&h5, file->part);
+  int bad = hdf5_file_create(&h5, file->part, H5P_DEFAULT);
   if (h5.id >= 0) {
     hid_t root = H5Gcreate2(h5.id, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     int64_t version[2] = {2, 0};

@@ -1,0 +1,75 @@
+# Every call by which a run writes into its folder fails in turn, once or for good, as a full or broken disk lets it fail. Whatever call it is:
+# one line says which file could not be written and why, the status is 1, nothing half written stays, and the run can be taken up, or begun
+# again, and ends in the same bits. IO_FAULTS=all walks all of them (make torture); else some are taken.
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+if [ -n "${BRECCIA_SANITIZED:-}" ]; then
+  echo "not under sanitizers, which want to be loaded first"
+  exit 0
+fi
+cat > bar.yaml <<'Y'
+title: Bar
+materials: {m: {model: elastic, Young modulus: 1 GPa, Poisson ratio: 0.2, density: 2000}}
+body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [12, 5]}}}}
+peridynamics: {space: plane strain}
+failure: {critical stretch: 0.002}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, free]}
+  - {on: {face: x+, layers: 3}, velocity: [5, free]}
+solve: {explicit: {time step: 2e-5, steps: 60}}
+watch: {end: {displacement of: {face: x+}, every: 5}, energy: {energy: yes, every: 20}}
+results: {number: 4, checkpoint steps: 25, precision: double, fields: [displacement, damage]}
+pictures: []
+Y
+run() { # run FOLDER [options]
+  "$breccia" run bar.yaml --quiet --threads 1 --output "$@" > out 2>&1
+}
+run whole || fail "the whole run failed: $(cat out)"
+[ "$(json whole/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks, the test is too tame"
+
+same() { # same FOLDER WHAT: all that a run leaves is as in the whole run
+  checks=$((checks + 1))
+  cmp -s whole/end.csv "$1/end.csv" && cmp -s whole/energy.csv "$1/energy.csv" || fail "$2: histories differ"
+  "$build/tests/compare_results" whole/results.vtkhdf "$1/results.vtkhdf" > out || fail "$2: results differ: $(cat out)"
+  "$build/tests/compare_results" whole/checkpoint.h5 "$1/checkpoint.h5" > out || fail "$2: checkpoints differ: $(cat out)"
+  cmp -s whole/results.xdmf "$1/results.xdmf" || fail "$2: results.xdmf differs"
+}
+
+# fault NUMBER ERROR WORDS LASTS: one run that meets it, and what follows
+fault() {
+  local what="call $1, $3$([ "$4" = 1 ] && echo ", for good")" status
+  rm -rf faulty
+  FAULT_FOLDER="$work/faulty" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" run faulty
+  status=$?
+  checks=$((checks + 5))
+  [ $status = 1 ] || fail "$what: status $status: $(cat out)"
+  [ "$(wc -l < out)" = 1 ] || fail "$what: expected one line, found: $(cat out)"
+  grep -q "^faulty/[a-z.]*[a-z0-9]: cannot be written: $3" out || fail "$what: the line does not say which file and why: $(cat out)"
+  [ -z "$(find faulty -name '*.part')" ] || fail "$what: left behind: $(find faulty -name '*.part')"
+  local again=
+  [ -e faulty/checkpoint.h5 ] && again=--restart
+  run faulty $again || fail "$what: cannot be taken up: $(cat out)"
+  same faulty "$what"
+}
+
+export FAULT_EXCEPT=checkpoint
+FAULT_FOLDER="$work/counted" FAULT_COUNT="$work/count" LD_PRELOAD="$build/tests/libio_faults.so" run counted
+calls=$(wc -c < count)
+[ "$calls" -gt 200 ] || fail "only $calls calls were seen: the walk does not see how files are written"
+same counted "no fault"
+if [ "${IO_FAULTS:-}" = all ]; then
+  for ((number = 1; number <= calls; ++number)); do
+    for lasts in 0 1; do
+      fault $number 5 "Input/output error" $lasts
+      fault $number 28 "No space left on device" $lasts
+    done
+  done
+else
+  # Primes to the numbers of calls that repeat, so that all kinds are met.
+  for ((number = 1; number <= calls; number += 11)); do
+    if [ $((number % 2)) = 0 ]; then fault $number 5 "Input/output error" $((number / 2 % 2))
+    else fault $number 28 "No space left on device" $((number / 2 % 2)); fi
+  done
+fi
+echo "$calls calls in a run"
+finish
