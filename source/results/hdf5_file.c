@@ -175,7 +175,7 @@ static int open_file(Hdf5File *file, const char *path, bool create, hid_t creati
 {
   *file = (Hdf5File){.id = -1};
   const Info info = {&file->error};
-  /* For each file anew: a host may have ended and begun HDF5 in between. */
+  /* Registered again for each file: H5close of a host forgets it. */
   const hid_t driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
   if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0)
     file->id = create ? H5Fcreate(path, H5F_ACC_TRUNC, creation, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);

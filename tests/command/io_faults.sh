@@ -38,9 +38,14 @@ same() { # same FOLDER WHAT: all that a run leaves is as in the whole run
 # fault NUMBER ERROR WORDS LASTS: one run that meets it, and what follows
 fault() {
   local what="call $1, $3$([ "$4" = 1 ] && echo ", for good")" status
-  rm -rf faulty
-  FAULT_FOLDER="$work/faulty" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" run faulty
+  rm -rf faulty count
+  FAULT_FOLDER="$work/faulty" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" run faulty
   status=$?
+  if [ "$(wc -c < count)" -lt "$1" ]; then # on a fast disk states are copied more often than on a slow one
+    equal "$what, which was not reached" $status 0
+    same faulty "$what, which was not reached"
+    return
+  fi
   checks=$((checks + 5))
   [ $status = 1 ] || fail "$what: status $status: $(cat out)"
   [ "$(wc -l < out)" = 1 ] || fail "$what: expected one line, found: $(cat out)"
@@ -65,8 +70,8 @@ if [ "${IO_FAULTS:-}" = all ]; then
     done
   done
 else
-  # Primes to the numbers of calls that repeat, so that all kinds are met.
-  for ((number = 1; number <= calls; number += 11)); do
+  # In steps of a prime, so that all kinds are met.
+  for ((number = 1; number <= calls; number += 13)); do
     if [ $((number % 2)) = 0 ]; then fault $number 5 "Input/output error" $((number / 2 % 2))
     else fault $number 28 "No space left on device" $((number / 2 % 2)); fi
   done
