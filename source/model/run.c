@@ -115,7 +115,10 @@ static int write_checkpoint(Run *run, Error *error)
   for (int r = 0; r < model->domain.region_count; ++r)
     if (!points_can_save(&model->domain.regions[r].points))
       return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
-  if (watches_settle(model->watches, error) || settle_results(run, error)) return BRECCIA_FAILURE;
+  if (watches_settle(model->watches, error) || settle_results(run, error)) {
+    run->unwritten = true;
+    return BRECCIA_FAILURE;
+  }
   StateList state = {0};
   model_state(model, &state);
   const CheckpointOf of = what_it_is_of(model);
