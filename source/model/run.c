@@ -2,6 +2,7 @@
 #include "model/run.h"
 
 #include "base/clock.h"
+#include "base/folder_lock.h"
 #include "base/tensor.h"
 #include "base/whole_file.h"
 #include "model/sized.h"
@@ -359,11 +360,13 @@ static int finish(Run *run, int status, Error *error)
 static int run_whole(breccia_model *model, const breccia_run *wish, Error *error)
 {
   Run run = {.model = model, .wish = wish, .checkpoint_step = -1};
+  FolderLock lock = {.descriptor = -1};
   Entry entry;
   model->run_steps = 0;
   int status = model_enter(model, &entry, error);
   if (status) return status;
   status = run_make_folder(wish->folder, error);
+  if (!status) status = folder_lock_take(&lock, wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
   if (!status && wish->progress) status = model_expect(model, error);
   if (!status && wish->restart) status = read_checkpoint(&run, error);
@@ -376,6 +379,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
     status = finish(&run, loop(&run, error), error);
   }
   result_file_destroy(&run.results);
+  folder_lock_return(&lock);
   free(run.names.items);
   text_free(&run.files);
   model_leave(&entry);

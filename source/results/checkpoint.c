@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "breccia/breccia.h"
+#include "results/hdf5_file.h"
 #include "results/seal.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -66,20 +67,20 @@ static char *path_of(const char *folder, CheckpointWhich which)
   return text_format("%s/checkpoint%s.h5", folder, which == CHECKPOINT_BEFORE ? "-before" : "");
 }
 
-/** Writes everything into a new file, behind the room for the seal. */
+/** Writes everything into a new file, behind the room for the seal. @return 0, or 1 with the cause in errno */
 static int save_all(const char *path, const StateList *state, const CheckpointOf *of)
 {
   const hid_t way = H5Pcreate(H5P_FILE_CREATE);
-  int bad = way < 0 || H5Pset_userblock(way, SEAL_BYTES) < 0;
-  const hid_t file = bad ? -1 : H5Fcreate(path, H5F_ACC_TRUNC, way, H5P_DEFAULT);
-  bad = file < 0;
-  bad = bad || save(file, "particles", H5T_NATIVE_INT64, 1, &of->particles);
-  bad = bad || save(file, "version", H5T_NATIVE_CHAR, strlen(BRECCIA_VERSION), BRECCIA_VERSION);
-  bad = bad || save(file, "deck", H5T_NATIVE_CHAR, strlen(of->deck), of->deck);
-  bad = bad || save(file, "files", H5T_NATIVE_CHAR, strlen(of->files), of->files);
-  for (int k = 0; !bad && k < state->count; ++k) bad = save_row(file, &state->rows[k]);
-  if (file >= 0 && H5Fclose(file) < 0) bad = 1;
+  Hdf5File file = {.id = -1};
+  int bad = way < 0 || H5Pset_userblock(way, SEAL_BYTES) < 0 || hdf5_file_create(&file, path, way);
+  bad = bad || save(file.id, "particles", H5T_NATIVE_INT64, 1, &of->particles);
+  bad = bad || save(file.id, "version", H5T_NATIVE_CHAR, strlen(BRECCIA_VERSION), BRECCIA_VERSION);
+  bad = bad || save(file.id, "deck", H5T_NATIVE_CHAR, strlen(of->deck), of->deck);
+  bad = bad || save(file.id, "files", H5T_NATIVE_CHAR, strlen(of->files), of->files);
+  for (int k = 0; !bad && k < state->count; ++k) bad = save_row(file.id, &state->rows[k]);
+  if (hdf5_file_close(&file)) bad = 1;
   if (way >= 0) H5Pclose(way);
+  if (bad) errno = file.error;
   return bad;
 }
 

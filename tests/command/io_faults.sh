@@ -57,7 +57,7 @@ fault() {
   same faulty "$what"
 }
 
-export FAULT_EXCEPT=checkpoint
+export FAULT_EXCEPT=run.lock # nobody needs what is in it
 FAULT_FOLDER="$work/counted" FAULT_COUNT="$work/count" LD_PRELOAD="$build/tests/libio_faults.so" run counted
 calls=$(wc -c < count)
 [ "$calls" -gt 200 ] || fail "only $calls calls were seen: the walk does not see how files are written"

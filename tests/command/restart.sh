@@ -168,6 +168,22 @@ for signal in INT HUP TERM KILL KILL KILL; do
   same killed
 done
 
+# one run, one folder: a second one is told who is there, and a run that was killed is in nobody's way
+sed 's/steps: 1500/steps: 1000000/' plate.yaml > long.yaml
+"$breccia" run long.yaml --output held > out 2>&1 &
+first=$!
+wait_for $first [ -e held/checkpoint.h5 ]
+"$breccia" run long.yaml --output held > /dev/null 2> second; equal "a held folder: status" $? 2
+contains "a held folder" "$(cat second)" "held: another run writes into this folder (process $first on $(uname -n) since 20"
+equal "a held folder: lines" "$(wc -l < second)" 1
+"$breccia" run long.yaml --output held --restart > /dev/null 2> second; equal "a held folder, restart: status" $? 2
+kill -KILL $first
+wait $first 2> /dev/null
+[ -e held/run.lock ] || fail "the lock of a killed run is gone, the test is too tame"
+"$breccia" run long.yaml --output held --restart --steps 200 > out 2>&1 || fail "after a kill: $(cat out)"
+[ -e held/run.lock ] && fail "a run that has ended leaves its lock"
+checks=$((checks + 2))
+
 # what does not fit is refused with the reason
 sed 's/steps: 1500/steps: 1600/' plate.yaml > other.yaml
 "$breccia" run other.yaml --output parts --restart > /dev/null 2> out; equal "another deck: status" $? 2
