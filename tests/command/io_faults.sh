@@ -71,7 +71,7 @@ if [ "${IO_FAULTS:-}" = all ]; then
   done
 else
   # In steps of a prime, so that all kinds are met.
-  for ((number = 1; number <= calls; number += 19)); do
+  for number in $(seq 1 19 "$calls") $((calls - 4)) $((calls - 3)); do # the last two: histories are closed
     if [ $((number % 2)) = 0 ]; then fault $number 5 "Input/output error" $((number / 2 % 2))
     else fault $number 28 "No space left on device" $((number / 2 % 2)); fi
   done
