@@ -141,6 +141,10 @@ void domain_linear_step(Domain *domain, double *const v[3], double *const change
 /** Rows of particles, points, bonds and forces. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
  *  deformations and force states follow to the same bits. */
 void domain_state(Domain *domain, StateList *list);
+/** Makes or frees the room for stresses of laws that remember as they were before a step. */
+int domain_keep_stresses(Domain *domain, bool keep, Error *error);
+/** Puts stresses by, so that laws write those of a step into other arrays; and takes them back if it fails. By one thread. Only where there is room. */
+void domain_put_stresses_by(Domain *domain);
 /** Forces, strains and stresses of the state that a step began with, after all rows that it had tried have come back. */
 void domain_follow(Domain *domain);
 

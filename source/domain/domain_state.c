@@ -126,3 +126,19 @@ void domain_state(Domain *d, StateList *list)
   state_add(list, &(StateRow){.unit = "1", .role = STATE_COMMITTED, .care = &broken, .owner = d}, "broken bonds", NULL);
   forces_state(&d->forces, list);
 }
+
+int domain_keep_stresses(Domain *d, bool keep, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int r = 0; r < d->region_count && !status; ++r)
+    status = points_keep_stresses(&d->regions[r].points, keep, error);
+  return status;
+}
+
+void domain_put_stresses_by(Domain *d)
+{
+  Points *points = &d->regions[0].points; /* those of several regions are one set of arrays, and are noted */
+  if (!points->stress_before[0]) return;
+  points_put_by(points);
+  for (int k = 0; k < 6; ++k) d->stress[k] = points->stress[k];
+}

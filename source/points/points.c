@@ -70,6 +70,7 @@ void points_destroy(Points *points)
   for (int k = 0; k < 6 && !points->shares; ++k) {
     places_free(&points->strain[k]);
     places_free(&points->stress[k]);
+    places_free(&points->stress_before[k]);
   }
   free(points->committed);
   free(points->trial);
@@ -158,7 +159,7 @@ void points_state(Points *points, const char *of, StateList *list)
     state_add(list, &row, "strain", component_names[k]);
     row.unit = "stress";
     row.values = points->stress[k];
-    row.role = points_are_linear(points) ? STATE_FOLLOWS : STATE_TRIED;
+    row.role = points_are_linear(points) ? STATE_FOLLOWS : STATE_COMMITTED; /* points_put_by */
     state_add(list, &row, "stress", component_names[k]);
   }
   row = (StateRow){.unit = "1", .kind = STATE_NUMBERS, .role = STATE_COMMITTED};
@@ -253,6 +254,27 @@ int64_t points_update(Points *points, int64_t first, int count, double *const st
   make_batch(&batch, points, first, count, strain, stress);
   update_one_by_one(points, m, &batch, first, strain);
   return -1;
+}
+
+int points_keep_stresses(Points *points, bool keep, Error *error)
+{
+  const bool wanted = keep && points->components == 6 && !points->shares && !points_are_linear(points);
+  for (int k = 0; k < 6; ++k) {
+    if (!wanted)
+      places_free(&points->stress_before[k]);
+    else if (!points->stress_before[k] && !(points->stress_before[k] = places_array(points->count, "stresses", error)))
+      return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+void points_put_by(Points *points)
+{
+  for (int k = 0; k < 6 && points->stress_before[5]; ++k) {
+    double *stress = points->stress[k];
+    points->stress[k] = points->stress_before[k];
+    points->stress_before[k] = stress;
+  }
 }
 
 /* ---- tangents ---- */

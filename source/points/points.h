@@ -29,6 +29,7 @@ typedef struct Points {
   int64_t count;
   double *strain[6], *stress[6]; /* [count] of points of six components */
   bool shares;                   /* these arrays, with other points */
+  double *stress_before[6];      /* [count] while points_put_by has room */
   double *committed, *trial;
   size_t history_size; /* numbers in each of them */
   Untouched *untouched;
@@ -79,6 +80,12 @@ const double *points_history(const Points *points, int64_t row);
  *  @param[in,out] strain, stress  [components][count]
  *  @return -1, or a row whose law could not be integrated */
 int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
+
+/** Makes or frees the room in which points_put_by leaves stresses. */
+int points_keep_stresses(Points *points, bool keep, Error *error);
+/** Puts stresses by before a step, whose updates then write into other arrays; and takes them back, with those of the step put by. Nothing happens
+ *  where there is no room for them. */
+void points_put_by(Points *points);
 
 /** Makes points keep the tangents of their next updates, or no longer. */
 int points_keep_tangents(Points *points, bool keep, Error *error);

@@ -125,6 +125,12 @@ static int create(Solver *run, Error *error)
   return BRECCIA_OK;
 }
 
+static void forget_before(Explicit *s)
+{
+  state_copy_destroy(&s->before);
+  domain_keep_stresses(s->domain, false, NULL);
+}
+
 /** Room for what a step tries; only while steps are taken, as pictures and the like need room afterwards. */
 static int keep_before(Solver *run, Error *error)
 {
@@ -133,9 +139,10 @@ static int keep_before(Solver *run, Error *error)
   StateList list = {0};
   domain_state(s->domain, &list);
   solver_state(run, &list);
-  const int status = state_keep(&s->before, &list, error);
+  int status = state_keep(&s->before, &list, error);
   state_list_destroy(&list);
-  if (status) state_copy_destroy(&s->before);
+  if (!status) status = domain_keep_stresses(s->domain, true, error);
+  if (status) forget_before(s);
   return status;
 }
 
@@ -146,7 +153,7 @@ static void destroy(Solver *run)
   free(s->sums);
   free(s->parts);
   free(s->motions);
-  state_copy_destroy(&s->before);
+  forget_before(s);
   free(s);
   run->own = NULL;
 }
@@ -319,6 +326,7 @@ static void take_step(void *context)
   }
   explicit_prescribe_displacements(s);
   domain_break(d, &(Moment){s->clock->step + 1, end, s->clock->time_step, sqrt(3) * s->motion});
+  TEAM_SINGLE domain_put_stresses_by(d);
   domain_forces(d);
   if (!is_sound(s)) return;
   domain_accept(d);
@@ -347,7 +355,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   domain_commit_points(s->domain);
   forces_commit(&s->domain->forces);
   const int looked = look_for_rest(run, warning, error);
-  if (run->clock.ended) state_copy_destroy(&s->before);
+  if (run->clock.ended) forget_before(s);
   return looked;
 }
 

@@ -58,6 +58,7 @@ int explicit_retreat(Explicit *s, Error *error)
         (long long)s->clock->step + 1, s->clock->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
         p->position[2][bad], cause, dt, s->clock->stable, s->ledger->kinetic);
   state_undo(&s->before);
+  domain_put_stresses_by(d);
   domain_mend(d);
   domain_follow(d);
   return BRECCIA_FAILURE;
