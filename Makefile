@@ -102,7 +102,7 @@ torture:
 	@sh scripts/setup.sh test
 	@cmake --preset test > /dev/null
 	@cmake --build --preset test --parallel $(cores)
-	@cd build/test/tests && BRECCIA_FLIPS=10000 ./test_checkpoint
+	@cd build/test/tests && BRECCIA_FLIPS=10000 ./test_checkpoint && BRECCIA_FLIPS=10000 ./test_result_file
 	@IO_FAULTS=all bash tests/command/io_faults.sh "$(CURDIR)/build/test/breccia" "$(CURDIR)" "$(CURDIR)/build/test"
 
 install: all

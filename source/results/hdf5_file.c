@@ -177,7 +177,8 @@ static int open_file(Hdf5File *file, const char *path, bool create, hid_t creati
   const Info info = {&file->error};
   /* Registered again for each file: H5close of a host forgets it. */
   const hid_t driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
-  if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0)
+  if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0 &&
+      H5Pset_libver_bounds(properties, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
     file->id = create ? H5Fcreate(path, H5F_ACC_TRUNC, creation, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
   if (properties >= 0) H5Pclose(properties);
   if (driver >= 0) H5FDunregister(driver);

@@ -2,7 +2,8 @@
  *
  * HDF5 keeps what is to be written until a file is closed. Where that fails, the file cannot be closed, and HDF5 1.10 crashes when the process
  * ends: ours, or that of a program that embeds the library. Here the first failure is noted with its cause, what follows is dropped, HDF5 closes
- * in peace, and the caller is told. The bytes of a file are those that HDF5's own driver would have written. */
+ * in peace, and the caller is told. The bytes of a file are those that HDF5's own driver would have written, in the format of HDF5 1.10: the
+ * first in which all that HDF5 notes about datasets has checksums. A flipped bit there led to other numbers before. */
 #ifndef BRECCIA_RESULTS_HDF5_FILE_H
 #define BRECCIA_RESULTS_HDF5_FILE_H
 

@@ -277,14 +277,11 @@ static int place_particles(Scene *scene, const ResultView *view, int step, const
 {
   double *u = NULL;
   int components = 3;
-  if (o->deformed != 0) {
-    Error *ignored = breccia_error_create();
-    u = result_view_read(view, "displacement", step, &components, NULL, ignored);
-    breccia_error_destroy(&ignored);
-    if (!u && o->deformed != 1)
-      return error_add(error, BRECCIA_USER_ERROR,
-                       "a deformed picture needs the field 'displacement' in the result file");
-  }
+  const bool moved = result_view_has(view, "displacement");
+  if (!moved && o->deformed != 0 && o->deformed != 1)
+    return error_add(error, BRECCIA_USER_ERROR, "a deformed picture needs the field 'displacement' in the result file");
+  if (moved && o->deformed != 0 && !(u = result_view_read(view, "displacement", step, &components, NULL, error)))
+    return BRECCIA_USER_ERROR;
   project(scene, view, NULL, 0);
   const double room = fmax(scene->x1 - scene->x0, scene->y1 - scene->y0);
   const double x0 = scene->x0 - room, x1 = scene->x1 + room, y0 = scene->y0 - room, y1 = scene->y1 + room;

@@ -1,5 +1,6 @@
 #include "results/result_view.h"
 
+#include <errno.h>
 #include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
@@ -20,58 +21,104 @@ static void attribute_read_text(hid_t where, const char *name, char *words, size
   H5Aclose(attribute);
 }
 
-static hsize_t dataset_rows(hid_t set)
+/** The file is ours, but what stands in it is not what was written. @param[in] what  of the file */
+static int say_damaged(const ResultView *view, const char *what, Error *error)
 {
-  hsize_t size[2] = {0, 1};
-  hid_t space = H5Dget_space(set);
-  H5Sget_simple_extent_dims(space, size, NULL);
-  H5Sclose(space);
-  return size[0];
+  char path[1024] = "";
+  H5Fget_name(view->file, path, sizeof path);
+  return error_add(error, BRECCIA_USER_ERROR,
+                   "%s: is damaged: %s cannot be read, or its bytes do not have the checksum written with them; put a "
+                   "whole copy in its place, or run again",
+                   path, what);
 }
 
-static void *read_all(hid_t where, const char *name, hid_t type, size_t size, hsize_t *rows)
+/** All numbers of a dataset, to be freed; NULL with a message. @param[out] rows  how many it has; may be NULL */
+static void *read_all(const ResultView *view, const char *name, hid_t type, size_t size, int64_t *rows, Error *error)
 {
-  hid_t set = H5Dopen2(where, name, H5P_DEFAULT);
-  if (set < 0) return NULL;
+  hsize_t extent[2] = {0, 1};
+  hid_t set = H5Dopen2(view->file, name, H5P_DEFAULT);
+  if (set < 0) {
+    say_damaged(view, name, error);
+    return NULL;
+  }
   hid_t space = H5Dget_space(set);
-  hssize_t count = H5Sget_simple_extent_npoints(space);
-  if (rows) *rows = dataset_rows(set);
-  void *values = calloc((size_t)(count > 0 ? count : 1), size);
-  if (values && count > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+  H5Sget_simple_extent_dims(space, extent, NULL);
+  H5Sclose(space);
+  const size_t count = (size_t)(extent[0] * extent[1]);
+  void *values = calloc(count ? count : 1, size);
+  if (!values) error_add(error, BRECCIA_FAILURE, "out of memory: %s", name);
+  if (values && count && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    say_damaged(view, name, error);
     free(values);
     values = NULL;
   }
-  H5Sclose(space);
+  if (rows) *rows = (int64_t)extent[0];
   H5Dclose(set);
   return values;
 }
 
 /** Which lattice each particle stands on: numbers in a list of names. Files of earlier versions tell none: square, as cells of cubic ones are
  *  seen too. */
-static void read_lattices(ResultView *view, hid_t own, int64_t particles)
+static int read_lattices(ResultView *view, Error *error)
 {
   const LatticeType *square = lattice_find("square");
   for (int k = 0; k < MOST_LATTICES; ++k) view->lattice_types[k] = square;
-  if (H5Lexists(own, "Lattice", H5P_DEFAULT) > 0) {
-    char names[512];
-    hsize_t rows = 0;
-    hid_t set = H5Dopen2(own, "Lattice", H5P_DEFAULT);
-    attribute_read_text(set, "names", names, sizeof names);
-    H5Dclose(set);
-    view->lattice_numbers = read_all(own, "Lattice", H5T_NATIVE_UINT8, 1, &rows);
-    int k = 0;
-    for (char *rest = names, *name; k < MOST_LATTICES && (name = strtok_r(rest, ";", &rest)); ++k)
-      if (lattice_find(name)) view->lattice_types[k] = lattice_find(name);
-    if ((int64_t)rows >= particles) return;
+  if (H5Lexists(view->file, "Breccia/Lattice", H5P_DEFAULT) <= 0) {
+    view->lattice_numbers = calloc((size_t)view->particles + 1, 1);
+    return view->lattice_numbers ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: Breccia/Lattice");
   }
-  free(view->lattice_numbers);
-  view->lattice_numbers = calloc((size_t)particles + 1, 1);
+  view->lattice_numbers = read_all(view, "Breccia/Lattice", H5T_NATIVE_UINT8, 1, NULL, error);
+  if (!view->lattice_numbers) return BRECCIA_USER_ERROR;
+  char names[512];
+  hid_t set = H5Dopen2(view->file, "Breccia/Lattice", H5P_DEFAULT);
+  attribute_read_text(set, "names", names, sizeof names);
+  H5Dclose(set);
+  int k = 0;
+  for (char *rest = names, *name; k < MOST_LATTICES && (name = strtok_r(rest, ";", &rest)); ++k)
+    if (lattice_find(name)) view->lattice_types[k] = lattice_find(name);
+  return BRECCIA_OK;
 }
 
 const LatticeType *result_view_lattice(const ResultView *view, int64_t particle)
 {
   const int number = view->lattice_numbers[particle];
   return view->lattice_types[number < MOST_LATTICES ? number : 0];
+}
+
+/** Title, units and shape. */
+static int read_heading(ResultView *view, Error *error)
+{
+  hid_t own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
+  if (own < 0) return say_damaged(view, "the group Breccia", error);
+  attribute_read_text(own, "title", view->title, sizeof view->title);
+  attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
+  attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
+  int plane = 0;
+  hid_t attribute = H5Aopen(own, "plane", H5P_DEFAULT);
+  if (attribute >= 0) {
+    H5Aread(attribute, H5T_NATIVE_INT, &plane);
+    H5Aclose(attribute);
+  }
+  view->plane = plane;
+  H5Gclose(own);
+  return BRECCIA_OK;
+}
+
+static int read_numbers(ResultView *view, Error *error)
+{
+  int64_t steps = 0;
+  view->positions = read_all(view, "VTKHDF/Points", H5T_NATIVE_DOUBLE, sizeof(double), &view->particles, error);
+  if (!view->positions) return BRECCIA_USER_ERROR;
+  view->times = read_all(view, "VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps, error);
+  if (!view->times) return BRECCIA_USER_ERROR;
+  view->steps = (int)steps;
+  view->step_numbers = read_all(view, "VTKHDF/Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL, error);
+  if (!view->step_numbers) return BRECCIA_USER_ERROR;
+  view->spacings = read_all(view, "Breccia/Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL, error);
+  if (!view->spacings) return BRECCIA_USER_ERROR;
+  for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
+  view->broken = read_all(view, "Breccia/BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &view->broken_count, error);
+  return view->broken ? read_lattices(view, error) : BRECCIA_USER_ERROR;
 }
 
 int result_view_open(ResultView *view, const char *path, Error *error)
@@ -81,38 +128,22 @@ int result_view_open(ResultView *view, const char *path, Error *error)
   view->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (view->file < 0) {
     struct stat status;
-    return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
-                     stat(path, &status) ? "there is no such file" : "is not a result file");
+    if (stat(path, &status))
+      return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
+                       errno == ENOENT || errno == ENOTDIR ? "there is no such file" : strerror(errno));
+    if (H5Fis_hdf5(path) <= 0) return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file", path);
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: is damaged: it is shorter than it was, or its beginning does not have the checksum written "
+                     "with it; put a whole copy in its place, or run again",
+                     path);
   }
-  hid_t root = H5Gopen2(view->file, "VTKHDF", H5P_DEFAULT), own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
-  hsize_t steps = 0, particles = 0;
-  if (root >= 0 && own >= 0) {
-    view->positions = read_all(root, "Points", H5T_NATIVE_DOUBLE, sizeof(double), &particles);
-    view->times = read_all(root, "Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps);
-    view->step_numbers = read_all(root, "Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL);
-    view->spacings = read_all(own, "Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL);
-    if (view->positions) read_lattices(view, own, (int64_t)particles);
-    attribute_read_text(own, "title", view->title, sizeof view->title);
-    attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
-    attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
-    int plane = 0;
-    hid_t attribute = H5Aopen(own, "plane", H5P_DEFAULT);
-    if (attribute >= 0) {
-      H5Aread(attribute, H5T_NATIVE_INT, &plane);
-      H5Aclose(attribute);
-    }
-    view->plane = plane;
-  }
-  if (root >= 0) H5Gclose(root);
-  if (own >= 0) H5Gclose(own);
-  if (!view->positions || !view->times || !view->step_numbers || !view->spacings || !view->lattice_numbers) {
-    result_view_close(view);
-    return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
-  }
-  view->particles = (int64_t)particles;
-  view->steps = (int)steps;
-  for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
-  return BRECCIA_OK;
+  const htri_t vtk = H5Lexists(view->file, "VTKHDF", H5P_DEFAULT), own = H5Lexists(view->file, "Breccia", H5P_DEFAULT);
+  int status = vtk < 0 || own < 0 ? say_damaged(view, "its list of groups", error)
+               : vtk && own       ? read_heading(view, error)
+                            : error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
+  if (!status) status = read_numbers(view, error);
+  if (status) result_view_close(view);
+  return status;
 }
 
 void result_view_close(ResultView *view)
@@ -123,6 +154,7 @@ void result_view_close(ResultView *view)
   free(view->step_numbers);
   free(view->spacings);
   free(view->lattice_numbers);
+  free(view->broken);
   *view = (ResultView){.file = -1};
 }
 
@@ -142,21 +174,28 @@ void result_view_fields(const ResultView *view, Text *names)
   H5Gclose(data);
 }
 
-double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error)
+bool result_view_has(const ResultView *view, const char *field)
 {
   char path[256];
   snprintf(path, sizeof path, "VTKHDF/PointData/%s", field);
-  hid_t data = H5Gopen2(view->file, "VTKHDF/PointData", H5P_DEFAULT);
-  hid_t set = data >= 0 && !strchr(field, '/') && H5Lexists(data, field, H5P_DEFAULT) > 0
-                  ? H5Dopen2(view->file, path, H5P_DEFAULT)
-                  : -1;
-  if (data >= 0) H5Gclose(data);
-  if (set < 0) {
+  return *field && !strchr(field, '/') && H5Lexists(view->file, path, H5P_DEFAULT) != 0;
+}
+
+double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error)
+{
+  char path[256], what[320];
+  snprintf(path, sizeof path, "VTKHDF/PointData/%s", field);
+  if (!result_view_has(view, field)) {
     Text names = {0};
     result_view_fields(view, &names);
     error_add(error, BRECCIA_USER_ERROR, "there is no field '%s' in the result file; it holds %s", field,
               names.length ? names.characters : "none");
     text_free(&names);
+    return NULL;
+  }
+  hid_t set = H5Dopen2(view->file, path, H5P_DEFAULT);
+  if (set < 0) {
+    say_damaged(view, path, error);
     return NULL;
   }
   hsize_t size[2] = {0, 1};
@@ -173,25 +212,24 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
   H5Sclose(memory);
   H5Sclose(space);
   H5Dclose(set);
-  if (bad) {
-    free(values);
-    error_add(error, BRECCIA_FAILURE, "field '%s' cannot be read for step %d", field, step);
-    return NULL;
-  }
-  return values;
+  if (!bad) return values;
+  snprintf(what, sizeof what, "%s at step %lld", path, (long long)view->step_numbers[step]);
+  if (values)
+    say_damaged(view, what, error);
+  else
+    error_add(error, BRECCIA_FAILURE, "out of memory: %s", what);
+  free(values);
+  return NULL;
 }
 
 int64_t *result_view_broken(const ResultView *view, int step, int64_t *count)
 {
-  hsize_t rows = 0;
-  hid_t own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
-  int64_t *all = own >= 0 ? read_all(own, "BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &rows) : NULL;
-  if (own >= 0) H5Gclose(own);
+  int64_t *pairs = calloc((size_t)view->broken_count * 2 + 1, sizeof(int64_t));
   *count = 0;
-  for (hsize_t k = 0; all && k < rows && all[3 * k] <= view->step_numbers[step]; ++k) {
-    all[2 * *count] = all[3 * k + 1];
-    all[2 * *count + 1] = all[3 * k + 2];
+  for (int64_t k = 0; pairs && k < view->broken_count && view->broken[3 * k] <= view->step_numbers[step]; ++k) {
+    pairs[2 * k] = view->broken[3 * k + 1];
+    pairs[2 * k + 1] = view->broken[3 * k + 2];
     ++*count;
   }
-  return all;
+  return pairs;
 }

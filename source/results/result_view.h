@@ -16,24 +16,29 @@ typedef struct ResultView {
   int64_t *step_numbers;
   double *times, *positions; /* [particles][3] */
   double spacing;
-  double *spacings;         /* [particles] */
+  double *spacings; /* [particles] */
+  int64_t *broken;  /* [broken_count][3]: step, and both particles, of bonds as they broke */
+  int64_t broken_count;
   uint8_t *lattice_numbers; /* [particles] of lattice_types */
   const LatticeType *lattice_types[MOST_LATTICES];
   bool plane;
   char title[256], length_unit[64], time_unit[64];
 } ResultView;
 
+/** @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that tells what of the file is missing or damaged */
 int result_view_open(ResultView *view, const char *path, Error *error);
 void result_view_close(ResultView *view);
 /** The lattice that a particle stands on. */
 const LatticeType *result_view_lattice(const ResultView *view, int64_t particle);
 /** Names of the fields, comma separated. */
 void result_view_fields(const ResultView *view, Text *names);
-/** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field.
+/** Whether the file holds a field of this name, be it damaged. */
+bool result_view_has(const ResultView *view, const char *field);
+/** One step of a field: [particles][components], to be freed; NULL with a message if there is no such field or it is damaged.
  *  @param[out] unit  64 bytes */
 double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit,
                          Error *error);
-/** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed. */
+/** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed; NULL: out of memory. */
 int64_t *result_view_broken(const ResultView *view, int step, int64_t *count);
 
 #endif

@@ -1,0 +1,159 @@
+/* Result files: what is read back is what was written, or is refused. */
+#include "support.h"
+
+#include "results/result_view.h"
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/breccia-results-XXXXXX", path[64], whole[64];
+
+/** A bar that is being torn, written six times. */
+static void write_results(void)
+{
+  breccia_model *model = model_of(
+      "units: {length: m, force: kN, time: s}\n" SOFT_SOLID "body:\n"
+      "  a: {material: m, spacing: 1, shape: {box: {particles: [12, 4, 3]}}}\n"
+      "  b: {material: m, lattice: face-centred cubic, spacing: 1, shape: {box: {particles: [4, 4, 4], first particle: "
+      "[20, 0, 0]}}}\n"
+      "failure: {critical stretch: 0.01}\n"
+      "loads: [{on: {face: x-, layers: 2}, velocity: [-3, 0, 0]}, {on: {face: x+, layers: 2}, velocity: [3, 0, 0]}]\n"
+      "solve: {explicit: {steps: 200}}\n"
+      "results: {number: 5, fields: [displacement, stress, damage]}\n"
+      "pictures: []\n");
+  Error *error = breccia_error_create();
+  const breccia_run run = {.size = sizeof run, .folder = folder};
+  if (breccia_model_run(model, &run, error)) fail_msg("%s", breccia_error_text(error));
+  assert_true(breccia_model_broken_bonds(model) > 0);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+}
+
+/** A number that other bytes are unlikely to have (Fowler, Noll and Vo's hash). */
+static void add_bits(Text *all, const char *what, const void *values, size_t bytes)
+{
+  uint64_t sum = 14695981039346656037u;
+  for (size_t k = 0; k < bytes; ++k) sum = (sum ^ ((const unsigned char *)values)[k]) * 1099511628211u;
+  text_add(all, "%s %zu bytes %016llx\n", what, bytes, (unsigned long long)sum);
+}
+
+static int add_fields(const ResultView *view, Text *all, Error *error)
+{
+  Text names = {0};
+  result_view_fields(view, &names);
+  text_add(all, "fields %s\n", text_words(&names));
+  for (char *rest = names.characters, *name; (name = strtok_r(rest, ",", &rest));) {
+    name += *name == ' '; /* "bond damage" is one name */
+    for (int k = 0; k < view->steps; ++k) {
+      char unit[64] = "";
+      int components;
+      double *values = result_view_read(view, name, k, &components, unit, error);
+      if (!values) {
+        text_free(&names);
+        return BRECCIA_USER_ERROR;
+      }
+      add_bits(all, unit, values, sizeof(double) * (size_t)(view->particles * components));
+      free(values);
+    }
+  }
+  text_free(&names);
+  return BRECCIA_OK;
+}
+
+/** All that can be read from the file, in words. @param[out] words  of a refusal, 512 bytes @return status */
+static int read_everything(Text *all, char *words)
+{
+  Error *error = breccia_error_create();
+  ResultView view;
+  int status = result_view_open(&view, path, error);
+  if (!status) {
+    const size_t n = (size_t)view.particles;
+    text_add(all, "%s %s %s %d %d %lld\n", view.title, view.length_unit, view.time_unit, view.plane, view.steps,
+             (long long)view.particles);
+    add_bits(all, "steps", view.step_numbers, sizeof(int64_t) * (size_t)view.steps);
+    add_bits(all, "times", view.times, sizeof(double) * (size_t)view.steps);
+    add_bits(all, "positions", view.positions, 3 * sizeof(double) * n);
+    add_bits(all, "spacings", view.spacings, sizeof(double) * n);
+    for (size_t k = 0; k < n; ++k) text_add(all, "%s ", result_view_lattice(&view, (int64_t)k)->name);
+    for (int k = 0; k < view.steps; ++k) {
+      int64_t count, *pairs = result_view_broken(&view, k, &count);
+      add_bits(all, "broken", pairs, 2 * sizeof(int64_t) * (size_t)count);
+      free(pairs);
+    }
+    status = add_fields(&view, all, error);
+    result_view_close(&view);
+  }
+  assert_int_equal(error_count(error), status != 0);
+  snprintf(words, 512, "%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  return status;
+}
+
+static int begin(void **state)
+{
+  (void)state;
+  if (!mkdtemp(folder)) return 1;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", folder);
+  snprintf(whole, sizeof whole, "%s/whole", folder);
+  write_results();
+  return 0;
+}
+
+static int end(void **state)
+{
+  (void)state;
+  static const char *const files[] = {"results.vtkhdf", "results.xdmf", "checkpoint.h5", "summary.json", "deck.yaml"};
+  for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
+    char name[96];
+    snprintf(name, sizeof name, "%s/%s", folder, files[k]);
+    unlink(name);
+  }
+  return rmdir(folder); /* nothing else is left there */
+}
+
+/** Any bit of any byte: either the numbers are those that were written, or the file is refused in a line that names what is damaged. */
+static void no_flipped_byte_is_believed(void **state)
+{
+  (void)state;
+  struct stat status;
+  assert_int_equal(stat(path, &status), 0);
+  const char *flips = getenv("BRECCIA_FLIPS");
+  const int64_t count = flips ? atoll(flips) : 120, bytes = status.st_size;
+  char words[512];
+  Text right = {0};
+  int64_t refused = 0;
+  assert_int_equal(read_everything(&right, words), 0);
+  assert_true(strstr(text_words(&right), "face-centred cubic"));
+  for (int64_t k = 0; k < count; ++k) {
+    const int64_t at = k * bytes / count + (k * 97) % (bytes / count);
+    const int file = open(path, O_RDWR);
+    unsigned char byte;
+    Text found = {0};
+    assert_int_equal(pread(file, &byte, 1, at), 1);
+    byte ^= (unsigned char)(1 << k % 8);
+    assert_int_equal(pwrite(file, &byte, 1, at), 1);
+    if (!read_everything(&found, words)) {
+      if (strcmp(text_words(&found), text_words(&right)))
+        fail_msg("byte %lld of %lld flipped and believed", (long long)at, (long long)bytes);
+    } else {
+      ++refused;
+      if (strncmp(words, path, strlen(path)) ||
+          (!strstr(words, "is damaged: ") && !strstr(words, "is not a result file")))
+        fail_msg("byte %lld of %lld: %s", (long long)at, (long long)bytes, words);
+    }
+    byte ^= (unsigned char)(1 << k % 8);
+    assert_int_equal(pwrite(file, &byte, 1, at), 1);
+    close(file);
+    text_free(&found);
+  }
+  print_message("%lld of %lld flipped bytes were refused, the others changed nothing\n", (long long)refused,
+                (long long)count);
+  assert_true(refused > count / 2);
+  text_free(&right);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_flipped_byte_is_believed)};
+  return cmocka_run_group_tests(tests, begin, end);
+}
