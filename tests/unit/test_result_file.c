@@ -1,7 +1,7 @@
 /* Result files: what is read back is what was written, or is refused. */
 #include "support.h"
 
-#include "results/result_view.h"
+#include "results/picture.h"
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -111,6 +111,17 @@ static int end(void **state)
   return rmdir(folder); /* nothing else is left there */
 }
 
+/** Flips a bit, or flips it back. */
+static void flip(int64_t at, int bit)
+{
+  const int file = open(path, O_RDWR);
+  unsigned char byte;
+  assert_int_equal(pread(file, &byte, 1, at), 1);
+  byte ^= (unsigned char)(1 << bit);
+  assert_int_equal(pwrite(file, &byte, 1, at), 1);
+  close(file);
+}
+
 /** Any bit of any byte: either the numbers are those that were written, or the file is refused in a line that names what is damaged. */
 static void no_flipped_byte_is_believed(void **state)
 {
@@ -126,12 +137,8 @@ static void no_flipped_byte_is_believed(void **state)
   assert_true(strstr(text_words(&right), "face-centred cubic"));
   for (int64_t k = 0; k < count; ++k) {
     const int64_t at = k * bytes / count + (k * 97) % (bytes / count);
-    const int file = open(path, O_RDWR);
-    unsigned char byte;
     Text found = {0};
-    assert_int_equal(pread(file, &byte, 1, at), 1);
-    byte ^= (unsigned char)(1 << k % 8);
-    assert_int_equal(pwrite(file, &byte, 1, at), 1);
+    flip(at, (int)(k % 8));
     if (!read_everything(&found, words)) {
       if (strcmp(text_words(&found), text_words(&right)))
         fail_msg("byte %lld of %lld flipped and believed", (long long)at, (long long)bytes);
@@ -141,9 +148,7 @@ static void no_flipped_byte_is_believed(void **state)
           (!strstr(words, "is damaged: ") && !strstr(words, "is not a result file")))
         fail_msg("byte %lld of %lld: %s", (long long)at, (long long)bytes, words);
     }
-    byte ^= (unsigned char)(1 << k % 8);
-    assert_int_equal(pwrite(file, &byte, 1, at), 1);
-    close(file);
+    flip(at, (int)(k % 8));
     text_free(&found);
   }
   print_message("%lld of %lld flipped bytes were refused, the others changed nothing\n", (long long)refused,
@@ -152,8 +157,44 @@ static void no_flipped_byte_is_believed(void **state)
   text_free(&right);
 }
 
+/** A picture of another field shows displacements too: damaged ones do not turn into the shape at the start. */
+static void a_picture_does_not_leave_out_a_damaged_displacement(void **state)
+{
+  (void)state;
+  struct stat status;
+  assert_int_equal(stat(path, &status), 0);
+  char words[512] = "", picture[96];
+  snprintf(picture, sizeof picture, "%s/damage.png", folder);
+  int64_t at = 0;
+  for (; at < status.st_size; at += 1000) {
+    Text found = {0};
+    flip(at, 0);
+    read_everything(&found, words);
+    text_free(&found);
+    if (strstr(words, "is damaged: VTKHDF/PointData/displacement at step 0 ")) break;
+    flip(at, 0);
+  }
+  assert_true(at < status.st_size);
+  ResultView view;
+  Error *error = breccia_error_create();
+  assert_int_equal(result_view_open(&view, path, error), 0);
+  const PictureOptions damage = {
+      .field = "damage", .deformed = 1, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+  assert_int_equal(picture_draw(&view, 0, &damage, NULL, picture, error), BRECCIA_USER_ERROR);
+  assert_non_null(strstr(breccia_error_text(error), "is damaged: VTKHDF/PointData/displacement at step 0 "));
+  assert_int_equal(access(picture, F_OK), -1);
+  flip(at, 0);
+  breccia_error_destroy(&error);
+  error = breccia_error_create();
+  assert_int_equal(picture_draw(&view, 0, &damage, NULL, picture, error), 0);
+  unlink(picture);
+  result_view_close(&view);
+  breccia_error_destroy(&error);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(no_flipped_byte_is_believed)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(no_flipped_byte_is_believed),
+                                     cmocka_unit_test(a_picture_does_not_leave_out_a_damaged_displacement)};
   return cmocka_run_group_tests(tests, begin, end);
 }
