@@ -104,6 +104,8 @@ torture:
 	@cmake --build --preset test --parallel $(cores)
 	@cd build/test/tests && BRECCIA_FLIPS=10000 ./test_checkpoint && BRECCIA_FLIPS=10000 ./test_result_file
 	@IO_FAULTS=all bash tests/command/io_faults.sh "$(CURDIR)/build/test/breccia" "$(CURDIR)" "$(CURDIR)/build/test"
+	@python3 -B tests/faults/memory.py build/test/breccia build/test/tests/libfailing_memory.so build/test/tests/compare_results
+	@python3 -B tests/faults/memory.py build/test/breccia build/test/tests/libfailing_memory.so build/test/tests/compare_results --libraries --every 1009
 
 install: all
 	@cmake --install build/release $(if $(PREFIX),--prefix "$(PREFIX)")

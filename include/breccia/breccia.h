@@ -165,10 +165,10 @@ typedef struct breccia_run {
  *  show what went wrong, and the checkpoint written before stays. */
 BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, breccia_error *error);
 
-/** What a run would do, in some lines; warnings about the deck, one per line; what a run did and which files it wrote.
+/** What a run would do, in some lines (NULL when memory is out); warnings about the deck, one per line; what a run did and which files it wrote.
  *  Valid until the model is next used. */
 BRECCIA_API const char *breccia_model_overview(breccia_model *model);
-/** What the deck's numbers mean in SI units: materials, body, waves, loads; some lines. */
+/** What the deck's numbers mean in SI units: materials, body, waves, loads; some lines. NULL when memory is out. */
 BRECCIA_API const char *breccia_model_plausibility(breccia_model *model);
 /** The deck as it is run, in YAML: settings, included files, aliases and expressions are worked out in it. */
 BRECCIA_API const char *breccia_model_deck(const breccia_model *model);
@@ -225,7 +225,7 @@ BRECCIA_API char *breccia_describe_law(const char *law, breccia_error *error);
 /** The laws that the installed OpenSees offers to a deck, laid out for people.
  *  @param[out] text  for breccia_text_free; NULL after a failure */
 BRECCIA_API int breccia_describe_opensees(char **text, breccia_error *error);
-/** The title of a deck or of a laboratory test, for breccia_text_free; "" if it has none.
+/** The title of a deck or of a laboratory test, for breccia_text_free; "" if it has none, NULL when memory is out.
  *  @param[out] is_test  1 for a laboratory test; may be NULL */
 BRECCIA_API char *breccia_deck_title(const char *deck, int *is_test);
 /** The one among some words that was probably meant by another; NULL if none is near. */
@@ -340,7 +340,7 @@ typedef struct breccia_fitted {
 /** Chooses the parameters under `fit` in the test's file such that measured points lie nearest to the curve, and leaves the material with them.
  *  @param[in] path  as for breccia_test_compare */
 BRECCIA_API int breccia_test_fit(breccia_test *test, const char *path, breccia_fit *fit, breccia_error *error);
-/** @return 1; 0 after the last of the fitted parameters */
+/** @return 1; 0 after the last of the fitted parameters; -1 when memory is out */
 BRECCIA_API int breccia_test_fitted_at(breccia_test *test, int k, breccia_fitted *parameter);
 
 /* ---- studies: one deck with several values of some of its keys ---- */

@@ -1,5 +1,7 @@
 #include "base/checksum.h"
 
+#include "base/memory.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -10,7 +12,7 @@ int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *byt
 {
   enum { PIECE = 1 << 18 }; /* stays in the cache */
   const int file = open(path, O_RDONLY);
-  unsigned char *piece = file < 0 ? NULL : malloc(PIECE);
+  unsigned char *piece = file < 0 ? NULL : memory_plain(PIECE, 1);
   ssize_t n = piece ? 0 : -1;
   uLong crc = crc32(0, NULL, 0);
   *bytes = 0;

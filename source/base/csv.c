@@ -1,5 +1,6 @@
 #include "base/csv.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 #include <errno.h>
 #include <math.h>
@@ -101,7 +102,7 @@ double *csv_column(const char *path, const char *column, CsvState state, int *co
     free(table.text);
     return NULL;
   }
-  double *values = malloc(sizeof(double) * most_rows(&table));
+  double *values = memory_plain(most_rows(&table), sizeof(double));
   char *at = table.rows, *cell, *end;
   while (values && (cell = next_cell(&at, index, state, &end))) values[(*count)++] = cell < end ? number_of(cell) : NAN;
   free(table.text);
@@ -118,7 +119,7 @@ int csv_words(CsvWords *words, const char *path, const char *column, Error *erro
   const int index = table.rows ? column_index(table.heading, column, NULL) : -1;
   words->text = table.text;
   if (index < 0) return BRECCIA_OK;
-  words->cells = malloc(sizeof(char *) * most_rows(&table));
+  words->cells = memory_plain(most_rows(&table), sizeof(char *));
   if (!words->cells) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
   char *at = table.rows, *cell, *end;
   while ((cell = next_cell(&at, index, CSV_FINISHED, &end))) {

@@ -1,5 +1,6 @@
 #include "base/error.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 #include <stdarg.h>
 #include <stdlib.h>
@@ -14,7 +15,7 @@ struct breccia_error {
 
 breccia_error *breccia_error_create(void)
 {
-  return calloc(1, sizeof(breccia_error));
+  return memory_plain(1, sizeof(breccia_error));
 }
 
 void breccia_error_destroy(breccia_error **error)
@@ -27,6 +28,7 @@ void breccia_error_destroy(breccia_error **error)
 
 const char *breccia_error_text(const breccia_error *error)
 {
+  if (error && error->text.failed) return "out of memory: not even the message about it could be written";
   return error && error->text.characters ? error->text.characters : "";
 }
 
@@ -57,6 +59,24 @@ int error_add(Error *error, int status, const char *format, ...)
   }
   text_free(&line);
   return status;
+}
+
+int error_out_of_memory(Error *error)
+{
+  if (!error || error->text.failed) return BRECCIA_FAILURE;
+  Text *text = &error->text;
+  char *told = text->characters ? strstr(text->characters, "out of memory") : NULL;
+  if (told) { /* its line alone */
+    while (told > text->characters && told[-1] != '\n') --told;
+    text->length = strcspn(told, "\n");
+    memmove(text->characters, told, text->length);
+    text->characters[text->length] = 0;
+    error->count = 1;
+    return BRECCIA_FAILURE;
+  }
+  text_free(text);
+  error->count = 0;
+  return error_add(error, BRECCIA_FAILURE, "out of memory: close other programs, or take fewer particles or threads");
 }
 
 int error_count(const Error *error)

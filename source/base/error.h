@@ -13,6 +13,10 @@ typedef struct breccia_error Error;
  *  @return `status`, so that a caller can write `return error_add(error, BRECCIA_USER_ERROR, "...")` */
 int error_add(Error *error, int status, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/** Leaves of all lines the first that says that memory was out, or says so itself: what else was found may be only for the lack of it.
+ *  @return BRECCIA_FAILURE */
+int error_out_of_memory(Error *error);
+
 /** @return the number of lines added so far */
 int error_count(const Error *error);
 

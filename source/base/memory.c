@@ -4,8 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+static _Thread_local long refusals;
+
+long memory_refusals(void)
+{
+  return refusals;
+}
+
+void *memory_noted(void *memory)
+{
+  refusals += !memory;
+  return memory;
+}
+
 static void *out_of_memory(size_t count, size_t size, const char *label, Error *error)
 {
+  memory_noted(NULL);
   error_add(error, BRECCIA_FAILURE, "out of memory: %s needs %.1f MB", label, (double)count * (double)size / 1e6);
   return NULL;
 }
@@ -26,6 +40,17 @@ void *memory_reserved(size_t count, size_t size, const char *label, Error *error
   return memory ? memory : out_of_memory(count, size, label, error);
 }
 
+void *memory_plain(size_t count, size_t size)
+{
+  return memory_noted(calloc(count ? count : 1, size));
+}
+
+void *memory_grown(void *old, size_t count, size_t size)
+{
+  size_t bytes = 0;
+  return memory_noted(__builtin_mul_overflow(count, size, &bytes) ? NULL : realloc(old, bytes ? bytes : 1));
+}
+
 typedef struct Chunk {
   struct Chunk *next;
   size_t used, size;
@@ -38,7 +63,7 @@ struct Arena {
 
 Arena *arena_create(void)
 {
-  return calloc(1, sizeof(Arena));
+  return memory_plain(1, sizeof(Arena));
 }
 
 void *arena_zeroed(Arena *arena, size_t size)
@@ -48,7 +73,7 @@ void *arena_zeroed(Arena *arena, size_t size)
   Chunk *chunk = arena->chunks;
   if (!chunk || chunk->size - chunk->used < size) {
     size_t room = size > CHUNK ? size : CHUNK;
-    chunk = calloc(1, sizeof(Chunk) + room);
+    chunk = memory_plain(1, sizeof(Chunk) + room);
     if (!chunk) return NULL;
     chunk->size = room;
     chunk->next = arena->chunks;

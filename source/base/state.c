@@ -9,7 +9,7 @@ void state_add(StateList *list, const StateRow *row, const char *name, const cha
 {
   if (list->count == list->capacity) {
     const int capacity = list->capacity ? 2 * list->capacity : 64;
-    StateRow *grown = realloc(list->rows, sizeof *grown * (size_t)capacity);
+    StateRow *grown = memory_grown(list->rows, (size_t)capacity, sizeof *grown);
     if (!grown) {
       list->failed = true;
       return;

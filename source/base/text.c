@@ -1,5 +1,7 @@
 #include "base/text.h"
 
+#include "base/memory.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +9,7 @@
 
 void text_add_list(Text *text, const char *format, va_list arguments)
 {
+  if (text->failed) return;
   va_list again;
   va_copy(again, arguments);
   int needed = vsnprintf(NULL, 0, format, again);
@@ -15,8 +18,11 @@ void text_add_list(Text *text, const char *format, va_list arguments)
   size_t wanted = text->length + (size_t)needed + 1;
   if (wanted > text->capacity) {
     size_t capacity = wanted > 2 * text->capacity ? wanted : 2 * text->capacity;
-    char *grown = realloc(text->characters, capacity);
-    if (!grown) return;
+    char *grown = memory_grown(text->characters, capacity, 1);
+    if (!grown) {
+      text->failed = true;
+      return;
+    }
     text->characters = grown;
     text->capacity = capacity;
   }
@@ -51,6 +57,17 @@ const char *text_words(const Text *text)
   return text->characters ? text->characters : "";
 }
 
+char *text_take(Text *text)
+{
+  char *taken = text->characters;
+  if (text->failed) {
+    free(taken);
+    taken = NULL;
+  }
+  *text = (Text){0};
+  return taken;
+}
+
 void text_free(Text *text)
 {
   free(text->characters);
@@ -64,7 +81,7 @@ char *text_format(const char *format, ...)
   va_start(arguments, format);
   text_add_list(&text, format, arguments);
   va_end(arguments);
-  return text.characters;
+  return text_take(&text);
 }
 
 /** Letters without their case, and all signs that part words as a blank. */
@@ -123,11 +140,11 @@ char *text_read_file(const char *path, size_t *length)
   FILE *file = fopen(path, "rb");
   if (!file) return NULL;
   size_t capacity = 1 << 16, n = 0;
-  char *content = malloc(capacity);
+  char *content = memory_plain(capacity, 1);
   while (content) {
     n += fread(content + n, 1, capacity - 1 - n, file);
     if (n < capacity - 1) break;
-    char *grown = realloc(content, capacity *= 2);
+    char *grown = memory_grown(content, capacity *= 2, 1);
     if (!grown) free(content);
     content = grown;
   }

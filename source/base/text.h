@@ -9,17 +9,21 @@
 typedef struct Text {
   char *characters; /* ends in a zero byte once something was added; owned */
   size_t length, capacity;
+  bool failed; /* memory was out: something is missing, and nothing is appended any more */
 } Text;
 
-/** Appends formatted text. When memory is out the text stays as it is. */
+/** Appends formatted text. When memory is out the text has failed, and stays as it is from then on. */
 void text_add(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_add_list(Text *text, const char *format, va_list arguments);
 
 /** Appends `words` as a JSON string, quotes included. */
 void text_add_json(Text *text, const char *words);
 
-/** @return what was added so far, "" if nothing was */
+/** @return what was added so far, "" if nothing was. Whoever keeps or shows it looks at `failed` */
 const char *text_words(const Text *text);
+
+/** Gives the characters away, to be freed. @return NULL if the text has failed, or nothing was added */
+char *text_take(Text *text);
 
 void text_free(Text *text);
 

@@ -1,5 +1,6 @@
 #include "base/whole_file.h"
 
+#include "base/memory.h"
 #include "breccia/breccia.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -10,7 +11,7 @@
 
 int whole_file_write(const char *path, const Text *words, Error *error)
 {
-  char *part = text_format("%s.part", path);
+  char *part = words->failed ? NULL : text_format("%s.part", path);
   if (!part) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: out of memory", path);
   FILE *file = fopen(part, "w");
   int cause = file ? 0 : errno;
@@ -29,7 +30,7 @@ int whole_file_copy(const char *from, const char *to)
 {
   const int in = open(from, O_RDONLY), out = in < 0 ? -1 : open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   int cause = out < 0 ? errno : 0;
-  char *buffer = malloc(1 << 20);
+  char *buffer = memory_plain(1 << 20, 1);
   if (!buffer) cause = ENOMEM;
   while (!cause) {
     const ssize_t n = read(in, buffer, 1 << 20);

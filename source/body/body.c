@@ -1,4 +1,6 @@
 #include "body/body.h"
+
+#include "base/memory.h"
 #include "base/team.h"
 #include "body/cloud.h"
 
@@ -222,7 +224,7 @@ static int32_t group_number(Body *body, const char *name)
 {
   for (int g = 0; g < body->group_count; ++g)
     if (!strcmp(body->groups[g], name)) return g;
-  char **grown = realloc(body->groups, sizeof(char *) * (size_t)(body->group_count + 1));
+  char **grown = memory_grown(body->groups, (size_t)(body->group_count + 1), sizeof(char *));
   if (!grown) return -1;
   body->groups = grown;
   char *copy = text_format("%s", name);

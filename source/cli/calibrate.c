@@ -11,7 +11,8 @@ static const Option options[] = {
     {0},
 };
 
-static void print_fit(breccia_test *test, const breccia_fit *f)
+/** @return a status */
+static int print_fit(breccia_test *test, const breccia_fit *f)
 {
   printf("%d points lie %.2f %% of their range from the curve (rms) and %.2f %% at most; with the file's values it was "
          "%.2f %%.\n",
@@ -21,9 +22,11 @@ static void print_fit(breccia_test *test, const breccia_fit *f)
   if (2 * f->agreeing < f->starts) printf(": there are several minima; hold the values against what else you know");
   printf(". %d runs of the test.\n", f->runs);
   breccia_fitted p = {.size = sizeof p};
-  for (int k = 0; breccia_test_fitted_at(test, k, &p); ++k)
+  int more = 0;
+  for (int k = 0; (more = breccia_test_fitted_at(test, k, &p)) > 0; ++k)
     printf("  %s: %.6g%s%s   (between %g and %g; %s)\n", p.name, p.value, *p.unit ? " " : "", p.unit, p.from, p.to,
            p.judgement);
+  return more < 0 ? show(NULL, stderr) : BRECCIA_OK;
 }
 
 static int draw(breccia_test *test, const char *path, breccia_error *error)
@@ -53,7 +56,7 @@ static int run(int argc, char **argv, const Verb *verb)
   int status = breccia_test_load(argv[first], &test, error);
   if (!status) status = breccia_test_fit(test, values[AGAINST], &fit, error);
   if (test) warn(breccia_test_doubts(test));
-  if (!status) print_fit(test, &fit);
+  if (!status) status = print_fit(test, &fit);
   if (!status && values[PICTURE]) status = draw(test, values[PICTURE], error);
   breccia_test_destroy(&test);
   return fail(error, status);

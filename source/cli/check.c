@@ -29,7 +29,8 @@ static int run(int argc, char **argv, const Verb *verb)
   int status = breccia_model_load_file(argv[first], &wishes, &model, error);
   if (!status) {
     if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
-    printf("%s\n%s\n", breccia_model_overview(model), breccia_model_plausibility(model));
+    status = show(breccia_model_overview(model), stdout);
+    if (!status) status = show(breccia_model_plausibility(model), stdout);
     breccia_model_destroy(&model);
   }
   free(settings.items);

@@ -20,10 +20,24 @@ enum { MOST_VERBS = sizeof verbs / sizeof *verbs, MOST_OPTIONS = 32 };
 
 int fail(breccia_error *error, int status)
 {
-  const char *words = breccia_error_text(error);
+  const char *words = status && !error ? "breccia: out of memory: messages" : breccia_error_text(error);
   if (*words) fprintf(stderr, "%s\n", words);
   breccia_error_destroy(&error);
   return status;
+}
+
+int print_page(const char *page)
+{
+  if (page) return fputs(page, stdout) < 0 ? BRECCIA_FAILURE : BRECCIA_OK;
+  fprintf(stderr, "breccia: out of memory: a page of words\n");
+  return BRECCIA_FAILURE;
+}
+
+int show(const char *words, FILE *out)
+{
+  if (words) return fprintf(out, "%s\n", words) < 0 ? BRECCIA_FAILURE : BRECCIA_OK;
+  fprintf(stderr, "breccia: out of memory: words about the model\n");
+  return BRECCIA_FAILURE;
 }
 
 void warn(const char *lines)

@@ -115,8 +115,8 @@ static int run_test(breccia_test *test, const char **values, breccia_error *erro
     return BRECCIA_USER_ERROR;
   }
   int status = breccia_test_run(test, values[TANGENT] != NULL, error);
-  if (out && breccia_test_rows(test)) print_rows(test, out);
-  if (breccia_test_rows(test) > 1 && !values[STRAIN]) {
+  if (out && breccia_test_rows(test) && breccia_test_heading(test, 0)) print_rows(test, out);
+  if (breccia_test_rows(test) > 1 && breccia_test_heading(test, 0) && !values[STRAIN]) {
     const int shown = show_curve(test, values, out == stdout ? stderr : stdout, error);
     if (!status) status = shown;
   }

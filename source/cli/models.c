@@ -1,9 +1,18 @@
 #include "verbs.h"
 
+#include <string.h>
+
 enum { MARKDOWN, OPENSEES };
 static const Option options[] = {{"markdown", NULL, "the page of models instead (docs/models.md)"},
                                  {"opensees", NULL, "the laws that the installed OpenSees offers to a deck"},
                                  {0}};
+
+static bool is_law(const char *name)
+{
+  for (int k = 0; breccia_law_at(k); ++k)
+    if (!strcmp(breccia_law_at(k)->name, name)) return true;
+  return false;
+}
 
 static int run(int argc, char **argv, const Verb *verb)
 {
@@ -11,15 +20,16 @@ static int run(int argc, char **argv, const Verb *verb)
   int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
   breccia_error *error = breccia_error_create();
+  const char *name = first < argc ? argv[first] : NULL;
   char *text = NULL;
   int status = BRECCIA_OK;
   if (values[OPENSEES])
     status = breccia_describe_opensees(&text, error);
   else if (values[MARKDOWN])
     text = breccia_page(BRECCIA_PAGE_LAWS);
-  else if (!(text = breccia_describe_law(first < argc ? argv[first] : NULL, error)))
-    status = BRECCIA_USER_ERROR;
-  if (text) fputs(text, stdout);
+  else if (!(text = breccia_describe_law(name, error)))
+    status = name && !is_law(name) ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
+  if (!status) status = print_page(text);
   breccia_text_free(text);
   return fail(error, status);
 }

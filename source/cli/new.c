@@ -91,18 +91,27 @@ static const char *short_name(const Example *example)
   return strrchr(example->name, '/') + 1;
 }
 
-static bool is_test(const Example *example)
+/** Ends the command when memory is out. @param[out] title  to be freed; may be NULL */
+static bool is_test(const Example *example, char **title)
 {
   int test;
-  breccia_text_free(breccia_deck_title((const char *)example->files[0].bytes, &test));
+  char *words = breccia_deck_title((const char *)example->files[0].bytes, &test);
+  if (!words) {
+    fprintf(stderr, "breccia: out of memory: the title of an example\n");
+    exit(BRECCIA_FAILURE);
+  }
+  if (title)
+    *title = words;
+  else
+    breccia_text_free(words);
   return test;
 }
 
 static void list_examples(bool tests)
 {
   for (const Example *e = examples; e->name; ++e) {
-    char *title = breccia_deck_title((const char *)e->files[0].bytes, NULL);
-    if (is_test(e) == tests) printf("  %-41s %s\n", e->name, title ? title : "");
+    char *title;
+    if (is_test(e, &title) == tests) printf("  %-41s %s\n", e->name, title);
     breccia_text_free(title);
   }
 }
@@ -158,7 +167,7 @@ static int write_example(const Example *example, const char *path)
   if (!status) {
     printf("%s is written", path);
     for (int k = 0; k < count; ++k) printf("%s %s", k ? "," : ", and", written[k]);
-    printf("; 'breccia %s %s' runs it\n", is_test(example) ? "material" : "run", path);
+    printf("; 'breccia %s %s' runs it\n", is_test(example, NULL) ? "material" : "run", path);
   }
   for (int k = 0; k < count; ++k) {
     if (status) remove(written[k]);

@@ -28,7 +28,7 @@ static void on_signal(int number)
   signal(number, SIG_DFL);
 }
 
-static void show(void *context, int64_t step, int64_t steps, double left)
+static void show_progress(void *context, int64_t step, int64_t steps, double left)
 {
   breccia_model *model = *(breccia_model **)context;
   char time[32];
@@ -77,8 +77,12 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   bool quiet = values[QUIET] != NULL, terminal = isatty(STDERR_FILENO);
   if (!quiet) {
     if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
-    printf("%s\n", breccia_model_overview(model));
+    status = show(breccia_model_overview(model), stdout);
     fflush(stdout);
+  }
+  if (status) {
+    breccia_model_destroy(&model);
+    return fail(error, status);
   }
   size_t told = strlen(breccia_model_warnings(model));
   char *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : result_folder(deck);
@@ -89,7 +93,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
                                                               : BRECCIA_RESTART_NO,
                             .steps = steps,
                             .interrupted = &interrupted,
-                            .progress = !quiet && terminal ? show : NULL,
+                            .progress = !quiet && terminal ? show_progress : NULL,
                             .context = &model};
   status = breccia_model_run(model, &wish, error);
   if (!quiet && terminal) fprintf(stderr, "\r\033[K");

@@ -12,9 +12,9 @@ static int run(int argc, char **argv, const Verb *verb)
     return 2;
   }
   char *page = breccia_page(values[0] ? BRECCIA_PAGE_DECK : BRECCIA_PAGE_SCHEMA);
-  if (page) fputs(page, stdout);
+  const int status = print_page(page);
   breccia_text_free(page);
-  return 0;
+  return status;
 }
 
 const Verb verb_schema = {.name = "schema",

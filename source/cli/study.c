@@ -69,11 +69,11 @@ static int run_case(const Work *work, const breccia_case *one, bool restart)
   breccia_model *model;
   int status = breccia_model_load_file(work->deck, &wishes, &model, error);
   if (!status) {
-    fprintf(log, "%s\n", breccia_model_overview(model));
+    status = show(breccia_model_overview(model), log);
     fflush(log);
     const breccia_run wish = {
         .size = sizeof wish, .folder = one->folder, .restart = restart, .interrupted = &interrupted};
-    status = breccia_model_run(model, &wish, error);
+    if (!status) status = breccia_model_run(model, &wish, error);
     fprintf(log, "%s\n%s\n", breccia_model_warnings(model), breccia_model_outcome(model));
     breccia_model_destroy(&model);
   }
@@ -221,7 +221,7 @@ static int study_deck(const breccia_study_plan *plan, const char **values, brecc
   else if (work.jobs)
     status = run_study(&work, plan->folder, error);
   else
-    status = BRECCIA_FAILURE;
+    status = show(NULL, stderr);
   free(work.jobs);
   breccia_study_destroy(&work.study);
   return status;
@@ -233,16 +233,20 @@ static int run(int argc, char **argv, const Verb *verb)
   Lists lists = {0};
   bool full = false;
   for (int k = 0; k < COUNT; ++k) full |= !(lists.items[k] = calloc((size_t)argc + 1, sizeof(char *)));
+  if (full) {
+    fprintf(stderr, "breccia: out of memory: options\n");
+    for (int k = 0; k < COUNT; ++k) free(lists.items[k]);
+    return BRECCIA_FAILURE;
+  }
   breccia_error *error = breccia_error_create();
-  int status = full ? BRECCIA_FAILURE : BRECCIA_OK;
-  if (full) fprintf(stderr, "breccia: out of memory: options\n");
-  const int first = status ? -1 : read_options(argc, argv, verb, values, note, &lists);
-  if (!status && first < 0)
+  int status = BRECCIA_OK;
+  const int first = read_options(argc, argv, verb, values, note, &lists);
+  if (first < 0)
     status = first == -2 ? 0 : 2;
-  else if (!status && argc - first != 1) {
+  else if (argc - first != 1) {
     fprintf(stderr, "breccia study: give one deck; see 'breccia study --help'\n");
     status = BRECCIA_USER_ERROR;
-  } else if (!status) {
+  } else {
     struct sigaction action = {.sa_handler = on_signal};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

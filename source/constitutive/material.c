@@ -115,8 +115,8 @@ const Section material_section = {.name = "material",
 
 int material_prepare(Material *material, const breccia_law *law, const double *values, char *reason, size_t size)
 {
-  *material =
-      (Material){.name = law->name, .law = law, .law_name = law->name, .constants = calloc(1, law->constants_size + 1)};
+  *material = (Material){
+      .name = law->name, .law = law, .law_name = law->name, .constants = memory_plain(1, law->constants_size + 1)};
   if (!material->constants) {
     snprintf(reason, size, "out of memory");
     return BRECCIA_FAILURE;

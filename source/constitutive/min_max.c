@@ -1,5 +1,6 @@
 #include "constitutive/min_max.h"
 
+#include "base/memory.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,7 +106,7 @@ int material_limit(Material *material, double smallest, double largest, char *re
 {
   if (isnan(smallest) && isnan(largest)) return BRECCIA_OK;
   const bool uniaxial = material->law->components == 1;
-  MinMax *c = uniaxial ? calloc(1, sizeof *c) : NULL;
+  MinMax *c = uniaxial ? memory_plain(1, sizeof *c) : NULL;
   if (!c) {
     snprintf(reason, size, "%s",
              uniaxial ? "out of memory" : "'smallest strain' and 'largest strain' are for laws of one strain");

@@ -1,3 +1,4 @@
+#include "base/memory.h"
 #include "contact/contact_parts.h"
 
 #include "base/team.h"
@@ -140,7 +141,7 @@ ContactRow *contact_row_for(Contact *c, int32_t place)
   if (c->row_of[place] >= 0) return &c->rows[c->row_of[place]];
   if (c->row_count == c->row_capacity) {
     int32_t capacity = c->row_capacity ? 2 * c->row_capacity : 64;
-    ContactRow *grown = realloc(c->rows, sizeof *grown * (size_t)capacity);
+    ContactRow *grown = memory_grown(c->rows, (size_t)capacity, sizeof *grown);
     if (!grown) return NULL;
     c->rows = grown;
     c->row_capacity = capacity;
@@ -154,11 +155,11 @@ static bool row_grows(const Contact *c, ContactRow *row)
 {
   if (row->count < row->capacity) return true;
   const int32_t capacity = row->capacity ? 2 * row->capacity : 8;
-  ContactPair *pairs = realloc(row->pairs, sizeof *pairs * (size_t)capacity);
+  ContactPair *pairs = memory_grown(row->pairs, (size_t)capacity, sizeof *pairs);
   if (!pairs) return false;
   row->pairs = pairs;
   if (c->spec->friction > 0) {
-    Grip *grips = realloc(row->grips, 2 * sizeof *grips * (size_t)capacity);
+    Grip *grips = memory_grown(row->grips, 2 * (size_t)capacity, sizeof *grips);
     if (!grips) return false;
     row->grips = grips;
   }
@@ -200,7 +201,7 @@ static int32_t act_for(Contact *c, int32_t place, int32_t neighbour)
   } else {
     if (c->act_count == c->act_capacity) {
       const int32_t capacity = c->act_capacity ? 2 * c->act_capacity : 256;
-      PairAct *grown = realloc(c->acts, sizeof *grown * (size_t)capacity);
+      PairAct *grown = memory_grown(c->acts, (size_t)capacity, sizeof *grown);
       if (!grown) return -1;
       c->acts = grown;
       c->act_capacity = capacity;

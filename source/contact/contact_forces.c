@@ -1,4 +1,5 @@
 /* Contact as a kind of forces: its table entry. */
+#include "base/memory.h"
 #include "contact/contact.h"
 
 #include <stdlib.h>
@@ -11,7 +12,7 @@ static void destroy(void *forces)
 
 static void *create(const void *spec, const ForcesParts *parts, Error *error)
 {
-  Contact *c = malloc(sizeof *c);
+  Contact *c = memory_plain(1, sizeof *c);
   if (!c) {
     error_add(error, BRECCIA_FAILURE, "out of memory: contact");
     return NULL;

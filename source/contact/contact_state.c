@@ -1,5 +1,6 @@
 /* What contact remembers, as numbers for a checkpoint: work of friction, travel since the last search, and every pair once. Broken bonds are made
  * again from their list before, and pairs that cuts part from the body. */
+#include "base/memory.h"
 #include "contact/contact_parts.h"
 
 #include <stdlib.h>
@@ -54,7 +55,7 @@ int64_t contact_save(const Contact *c, double **out)
   *out = NULL;
   if (!c->spec) return 0;
   const int64_t count = SAVED_START + write_pairs(c, NULL) * saved_length(c);
-  if (!(*out = malloc(sizeof(double) * (size_t)count))) return -1;
+  if (!(*out = memory_plain((size_t)count, sizeof(double)))) return -1;
   (*out)[0] = c->friction_work;
   (*out)[1] = c->travelled;
   write_pairs(c, *out + SAVED_START);

@@ -3,6 +3,7 @@
  * are hidden before the library reads the text, each by one character, so that columns stay. */
 #include "deck/document.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 #include <errno.h>
 #include <libfyaml.h>
@@ -28,7 +29,7 @@ static const char hidden[] = "{}[],:#"; /* characters of expressions; the k-th i
 /** The text with the characters of expressions hidden. To be freed. @return NULL when memory is out */
 static char *hide_expressions(const char *text, size_t length, size_t *hidden_length)
 {
-  char *copy = malloc(3 * length + 1);
+  char *copy = memory_plain(3 * length + 1, 1);
   size_t n = 0;
   for (size_t k = 0; copy && k < length;) {
     const char *end = text[k] == '$' && k + 1 < length && text[k + 1] == '{' ? text + k + 1 : NULL;
@@ -314,7 +315,7 @@ static int parse_into(Builder *builder, Node *root, const char *text, size_t len
 
 Document *document_parse(const char *text, size_t length, const char *name, Error *error)
 {
-  Document *document = calloc(1, sizeof *document);
+  Document *document = memory_plain(1, sizeof *document);
   Arena *arena = arena_create();
   if (!document || !arena || !(document->root = arena_zeroed(arena, sizeof(Node)))) {
     error_add(error, BRECCIA_FAILURE, "out of memory: deck");

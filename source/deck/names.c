@@ -1,5 +1,6 @@
 #include "deck/names.h"
 
+#include "base/memory.h"
 #include "deck/spelling.h"
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +32,7 @@ void name_check(const DeckReader *reader, const Node *node, const char *what, co
   const Node *all = node_get(root, definitions[k].key);
   if (all && all->kind == NODE_SCALAR) return;
   if (!strcmp(what, "selection") && has_files(node_get(root, "body"))) return;
-  const char **names = malloc(sizeof(char *) * (size_t)((all ? all->count : 0) + 1));
+  const char **names = memory_plain((size_t)((all ? all->count : 0) + 1), sizeof(char *));
   if (!names) {
     error_add(reader->error, BRECCIA_FAILURE, "out of memory: names of the deck");
     return;

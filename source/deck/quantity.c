@@ -2,6 +2,7 @@
  * ("ton" is the US short ton, 6" an angle, MPa*m^0.5 a multiple) is refused with a hint. */
 #include "deck/quantity.h"
 
+#include "base/memory.h"
 #include "deck/units.h"
 #include <ctype.h>
 #include <math.h>
@@ -135,7 +136,7 @@ static ut_unit *unit_of(const Units *units, const Dimension *dimension)
 
 Units *units_create(const char *length, const char *force, const char *time, Error *error)
 {
-  Units *units = calloc(1, sizeof *units);
+  Units *units = memory_plain(1, sizeof *units);
   if (!units) {
     error_add(error, BRECCIA_FAILURE, "out of memory: units");
     return NULL;

@@ -1,6 +1,7 @@
 /* Expressions ${...} and the variables that they name. */
 #include "deck/resolve.h"
 
+#include "base/memory.h"
 #include "deck/expression.h"
 #include "deck/spelling.h"
 
@@ -38,7 +39,7 @@ static bool knows(void *context, const char *name)
 static void say_no_variable(const Resolver *r, const char *name, Text *reason)
 {
   const int count = r->variables ? r->variables->count : 0;
-  const char **names = calloc((size_t)count + 1, sizeof *names);
+  const char **names = memory_plain((size_t)count + 1, sizeof *names);
   for (int k = 0; names && k < count; ++k) names[k] = r->variables->items[k].key;
   text_add(reason, "there is no variable '%s'; ", name);
   if (names && count)
@@ -186,7 +187,7 @@ int deck_resolve(Document *document, const Section *section, const Units *units,
   if (status) return status;
   Resolver r = {document, units, error, (Node *)(uintptr_t)node_get(document->root, "variables"), NULL};
   if (r.variables && (status = check_variables(&r))) return status;
-  r.states = calloc((size_t)(r.variables ? r.variables->count : 0) + 1, sizeof *r.states);
+  r.states = memory_plain((size_t)(r.variables ? r.variables->count : 0) + 1, sizeof *r.states);
   if (!r.states) return error_add(error, BRECCIA_FAILURE, "out of memory: variables");
   for (int k = 0; r.variables && k < r.variables->count; ++k) {
     Text ignored = {0}; /* said where the variable stands */

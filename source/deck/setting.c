@@ -1,4 +1,5 @@
 /* One value of a deck changed from outside: "body.beam.spacing=2 mm". */
+#include "base/memory.h"
 #include "deck/resolve.h"
 #include "deck/spelling.h"
 
@@ -42,7 +43,7 @@ static int refuse(const Path *path, const char *format, ...)
 static int refuse_key(const Path *path, const Node *map, const Section *section, const char *key, size_t length)
 {
   const int most = map->count + (section ? section->field_count : 0);
-  const char **names = calloc((size_t)most + 1, sizeof *names);
+  const char **names = memory_plain((size_t)most + 1, sizeof *names);
   char *given = text_format("%.*s", (int)length, key);
   if (!names || !given) {
     free(names);

@@ -4,6 +4,7 @@
  * less what is stored without it, less half of what its force would have done along the step, because the trapezium rule that sums the
  * works (solver/explicit.c) finds the bond gone at the end of the step. Where families share energies, as in correspondence, a place that
  * loses bonds stores another energy with those that are left; never more than before (docs/theory.md 4). */
+#include "base/memory.h"
 #include "base/team.h"
 #include "domain/domain.h"
 
@@ -19,7 +20,7 @@ static bool make_room(void **array, size_t size, int64_t count, int64_t *capacit
 {
   if (count < *capacity) return true;
   const int64_t wanted = *capacity ? 2 * *capacity : 256;
-  void *grown = realloc(*array, size * (size_t)wanted);
+  void *grown = memory_grown(*array, (size_t)wanted, size);
   if (!grown) return false;
   *array = grown;
   *capacity = wanted;

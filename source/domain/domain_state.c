@@ -1,4 +1,5 @@
 /* The state of a domain: its rows, and how what follows from them is made again. */
+#include "base/memory.h"
 #include "domain/domain.h"
 
 #include "base/check.h"
@@ -24,7 +25,7 @@ static void renew_ends(Domain *d, const BrokenBond *bond)
 static int64_t save_broken(const void *owner, double **numbers)
 {
   const Domain *d = owner;
-  double *rows = *numbers = malloc(sizeof(double) * (size_t)(NUMBERS_PER_BOND * d->broken_count + 1));
+  double *rows = *numbers = memory_plain((size_t)(NUMBERS_PER_BOND * d->broken_count + 1), sizeof(double));
   if (!rows) return -1;
   for (int64_t n = 0; n < d->broken_count; ++n) {
     const BrokenBond *bond = &d->broken[n];

@@ -1,4 +1,5 @@
 /* Points of a region: on its particles or on its bonds, in runs of one material. */
+#include "base/memory.h"
 #include "domain/regions.h"
 
 #include <stdlib.h>
@@ -16,7 +17,7 @@ static int add_rows(Runs *r, int material, int64_t rows, Error *error)
   if (!last || last->material != material || last->first + last->count != r->rows) {
     if (r->count == r->capacity) {
       r->capacity = 2 * r->capacity + 16;
-      PointsRun *grown = realloc(r->runs, sizeof *grown * (size_t)r->capacity);
+      PointsRun *grown = memory_grown(r->runs, (size_t)r->capacity, sizeof *grown);
       if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: runs of points");
       r->runs = grown;
     }

@@ -1,5 +1,6 @@
 #include "family/family.h"
 
+#include "base/memory.h"
 #include "base/team.h"
 #include "family/search.h"
 #include <math.h>
@@ -61,7 +62,7 @@ static int add_patterns(Family *family, const Lattice *lattice, const FamilySpec
         if (!make_pattern(&pattern, family, lattice, spec, reach, offset)) continue;
         pattern.row = row_begins;
         if (family->pattern_count == room) {
-          Pattern *grown = realloc(family->patterns, sizeof(Pattern) * (size_t)(room = 2 * room + 64));
+          Pattern *grown = memory_grown(family->patterns, (size_t)(room = 2 * room + 64), sizeof(Pattern));
           if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: bond patterns");
           family->patterns = grown;
         }

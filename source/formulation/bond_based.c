@@ -3,6 +3,8 @@
  * With y = xi + eta and the stretch s = (|y| - |xi|) / |xi|, the force on a particle per volume is sum c w s y / |y|, where
  * w = omega beta V_j and c follows from Young's modulus. */
 #include "formulation/bond_based.h"
+
+#include "base/memory.h"
 #include "base/tensor.h"
 #include "formulation/shape_tensor.h"
 
@@ -75,7 +77,7 @@ const Material *bond_material(const BondBased *b, int block)
 
 static void *create(const FormulationParts *parts, Error *error)
 {
-  BondBased *b = calloc(1, sizeof *b);
+  BondBased *b = memory_plain(1, sizeof *b);
   if (!b) {
     error_add(error, BRECCIA_FAILURE, "out of memory: bond-based");
     return NULL;

@@ -1,3 +1,4 @@
+#include "base/memory.h"
 #include "formulation/correspondence.h"
 
 #include "base/team.h"
@@ -195,7 +196,7 @@ static int check_shapes(const Correspondence *c, Error *error)
 
 void *correspondence_create(const FormulationParts *parts, Error *error)
 {
-  Correspondence *c = calloc(1, sizeof *c);
+  Correspondence *c = memory_plain(1, sizeof *c);
   if (!c) {
     error_add(error, BRECCIA_FAILURE, "out of memory: correspondence");
     return NULL;

@@ -1,5 +1,6 @@
 #include "formulation/operator.h"
 
+#include "base/memory.h"
 #include "base/tensor.h"
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,7 @@ OperatorPlace *operator_add(Operator *point, int64_t place, Error *error)
 {
   if (point->count == point->capacity) {
     const int wanted = point->capacity ? 2 * point->capacity : 128;
-    OperatorPlace *grown = realloc(point->places, sizeof *grown * (size_t)wanted);
+    OperatorPlace *grown = memory_grown(point->places, (size_t)wanted, sizeof *grown);
     if (!grown) {
       error_add(error, BRECCIA_FAILURE, "out of memory: operator of a point");
       return NULL;

@@ -4,6 +4,7 @@
  * Perfectly plastic (Mitchell 2011; docs/theory.md 3): with the trial e_d - s and N^2 = sum w (e_d - s)^2, the deviator stores b N^2 / 2, which is
  * q^2 / (6 G) for the stress q of von Mises; beyond the yield stress the trial is scaled back, and s takes the rest. Viscoelastic: s = lambda e_v,
  * de_v/dt = (e_d - e_v) / tau, exact for elongations that grow evenly in a step. */
+#include "base/memory.h"
 #include "formulation/ordinary.h"
 
 #include "base/team.h"
@@ -38,7 +39,7 @@ static int create_flow(Ordinary *o, Error *error)
   const size_t bonds = (size_t)o->family->slots * SLICE;
   bool relaxes = false;
   for (int64_t slice = 0; slice < o->particles->slices; ++slice) relaxes |= deviator_at(o, slice)->relaxing > 0;
-  Flow *flow = o->flow = calloc(1, sizeof *flow);
+  Flow *flow = o->flow = memory_plain(1, sizeof *flow);
   if (!flow) return error_add(error, BRECCIA_FAILURE, "out of memory: force states");
   int failed = !(flow->back = memory_zeroed(bonds, sizeof *flow->back, "force states", error));
   failed |=

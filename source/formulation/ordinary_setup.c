@@ -1,3 +1,4 @@
+#include "base/memory.h"
 #include "formulation/ordinary.h"
 
 #include "base/team.h"
@@ -168,7 +169,7 @@ static int allocate(Ordinary *o, Error *error)
 void *ordinary_create(const FormulationParts *parts, Error *error)
 {
   const OrdinarySpec *spec = parts->keys;
-  Ordinary *o = calloc(1, sizeof *o);
+  Ordinary *o = memory_plain(1, sizeof *o);
   if (!o) {
     error_add(error, BRECCIA_FAILURE, "out of memory: ordinary");
     return NULL;

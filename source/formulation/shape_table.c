@@ -121,7 +121,7 @@ int shape_table_create(ShapeTable *table, const Family *family, bool plane, Erro
   SliceShape *shapes = memory_zeroed(PORTION, sizeof *shapes, "shape tensors", error);
   int32_t *slots = memory_zeroed(slots_count, sizeof *slots, "shape tensors", error);
   /* Not zeroed: pages that no entry ever needs are never touched, and so take no memory. */
-  table->entries = aligned_alloc(64, (capacity * sizeof(SliceShape) + 63) / 64 * 64);
+  table->entries = memory_noted(aligned_alloc(64, (capacity * sizeof(SliceShape) + 63) / 64 * 64));
   int failed = !table->entry_of || !table->shared || !table->roundness || !table->allowed || !table->kept ||
                !table->mode || !whole || !shapes || !slots;
   for (int64_t place = 0; table->kept && place < family->particles->places; ++place) table->kept[place] = 1;

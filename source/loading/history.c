@@ -115,7 +115,7 @@ static void keep(History *h, const Panel *panel)
 {
   if (h->panel_count == h->panel_capacity) {
     const int64_t more = h->panel_capacity ? 2 * h->panel_capacity : 64;
-    Panel *grown = realloc(h->panels, sizeof(Panel) * (size_t)more);
+    Panel *grown = memory_grown(h->panels, (size_t)more, sizeof(Panel));
     if (!grown) return; /* it is found again the next time */
     h->panels = grown;
     h->panel_capacity = more;

@@ -1,5 +1,6 @@
 #include "model/deck_layout.h"
 
+#include "base/memory.h"
 #include "deck/resolve.h"
 
 #include <stdlib.h>
@@ -147,9 +148,11 @@ const Section deck_section = {.name = "deck",
 ParameterTable *law_tables(const LawList *laws, int *count)
 {
   *count = 0;
-  while (law_at(laws, *count)) ++*count;
-  ParameterTable *tables = calloc((size_t)*count + 1, sizeof *tables);
-  for (int k = 0; tables && k < *count; ++k) {
+  int all = 0;
+  while (law_at(laws, all)) ++all;
+  ParameterTable *tables = memory_plain((size_t)all + 1, sizeof *tables);
+  if (tables) *count = all;
+  for (int k = 0; k < *count; ++k) {
     const breccia_law *law = law_at(laws, k);
     tables[k] = (ParameterTable){law->name, law->about, law->parameters, law->parameter_count};
   }

@@ -1,6 +1,7 @@
 /* Tests on one material point for programs: run, looked at, held against measured points, drawn. */
 #include "model/laboratory.h"
 
+#include "base/memory.h"
 #include "base/tensor.h"
 #include "model/host.h"
 #include "model/sized.h"
@@ -11,7 +12,7 @@
 
 breccia_test *laboratory_begin(Error *error)
 {
-  breccia_test *test = calloc(1, sizeof *test);
+  breccia_test *test = memory_plain(1, sizeof *test);
   if (test) test->doubts = breccia_error_create();
   if (test && test->doubts) return test;
   error_add(error, BRECCIA_FAILURE, "out of memory: test");
@@ -28,10 +29,10 @@ int breccia_test_load(const char *path, breccia_test **out, breccia_error *error
     test->where = test->deck.document->name;
     test->title = text_format("%s", test->deck.spec->title ? test->deck.spec->title : test->deck.law->name);
     units_name(test->deck.units, dimension_find("stress"), test->unit, sizeof test->unit);
-  } else
-    breccia_test_destroy(&test);
+  }
+  status = host_leave(&host, status, error);
+  if (status) breccia_test_destroy(&test);
   *out = test;
-  host_leave(&host);
   return status;
 }
 
@@ -76,9 +77,9 @@ static int follow_path(const breccia_test *test, ElementCurve *curve, Error *err
   if (status) return status;
   const int n = d.components, rows = test->path_rows;
   *curve = (ElementCurve){.components = n};
-  curve->strain = calloc(6 * (size_t)rows, sizeof(double));
-  curve->stress = calloc(6 * (size_t)rows, sizeof(double));
-  curve->tangent = calloc((size_t)(n * n) * (size_t)rows, sizeof(double));
+  curve->strain = memory_plain(6 * (size_t)rows, sizeof(double));
+  curve->stress = memory_plain(6 * (size_t)rows, sizeof(double));
+  curve->tangent = memory_plain((size_t)(n * n) * (size_t)rows, sizeof(double));
   if (!curve->strain || !curve->stress || !curve->tangent)
     status = error_add(error, BRECCIA_FAILURE, "out of memory: strain path");
   for (int i = 0; i < rows && !status; ++i) {
@@ -103,7 +104,7 @@ static int add_column(breccia_test *test, char *heading, const double *values, i
 {
   const int k = test->column_count, rows = test->curve.count;
   test->headings[k] = heading;
-  test->columns[k] = calloc((size_t)rows + 1, sizeof(double));
+  test->columns[k] = memory_plain((size_t)rows + 1, sizeof(double));
   ++test->column_count;
   if (!heading || !test->columns[k]) return BRECCIA_FAILURE;
   for (int i = 0; values && i < rows; ++i) test->columns[k][i] = values[(ptrdiff_t)stride * i];
@@ -116,9 +117,9 @@ static int make_columns(breccia_test *test, bool tangents, Error *error)
   const int n = c->components, most = 2 * n + 1 + n * n;
   int bad = BRECCIA_OK;
   forget_columns(test);
-  test->headings = calloc((size_t)most, sizeof *test->headings);
-  test->columns = calloc((size_t)most, sizeof *test->columns);
-  if (!test->headings || !test->columns) return error_add(error, BRECCIA_FAILURE, "out of memory: columns");
+  test->headings = memory_plain((size_t)most, sizeof *test->headings);
+  test->columns = memory_plain((size_t)most, sizeof *test->columns);
+  bad = !test->headings || !test->columns;
   for (int k = 0; k < n && !bad; ++k)
     bad = add_column(test, text_format("strain %s", component_names[k]), c->strain + k, 6);
   for (int k = 0; k < n && !bad; ++k)
@@ -134,7 +135,9 @@ static int make_columns(breccia_test *test, bool tangents, Error *error)
     bad =
         add_column(test, text_format("tangent %s %s (%s)", component_names[k / n], component_names[k % n], test->unit),
                    c->tangent + k, n * n);
-  return bad ? error_add(error, BRECCIA_FAILURE, "out of memory: columns") : BRECCIA_OK;
+  if (!bad) return BRECCIA_OK;
+  forget_columns(test);
+  return error_add(error, BRECCIA_FAILURE, "out of memory: columns");
 }
 
 /** Laws that take time answer a test without any by their stiffness of the first moment. */
@@ -160,8 +163,7 @@ int breccia_test_run(breccia_test *test, int tangents, breccia_error *error)
   int status = test->path ? follow_path(test, &test->curve, error)
                           : element_test_run(&test->deck.test, &test->deck.material, &test->curve, error);
   const int bad = make_columns(test, tangents != 0, error);
-  host_leave(&host);
-  return status ? status : bad;
+  return host_leave(&host, status ? status : bad, error);
 }
 
 const char *breccia_test_doubts(const breccia_test *test)
@@ -210,8 +212,7 @@ int breccia_test_compare(breccia_test *test, const char *path, breccia_compariso
   breccia_comparison found = {0};
   const int status = compare(test, path, &found, error);
   if (comparison) sized_give(comparison, &found, sizeof found);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }
 
 int breccia_test_draw(const breccia_test *test, const char *path, breccia_error *error)
@@ -229,6 +230,5 @@ int breccia_test_draw(const breccia_test *test, const char *path, breccia_error 
                             .low = NAN,
                             .high = NAN};
   const int status = plot_draw(lines, points->count ? 2 : 1, &plot, path, error);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }

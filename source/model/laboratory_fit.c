@@ -55,8 +55,7 @@ int breccia_test_fit(breccia_test *test, const char *path, breccia_fit *fit, bre
                              .most = f->most,
                              .next = f->next};
   if (fit && !status) sized_give(fit, &found, sizeof found);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }
 
 static const char *parameter_name(const breccia_test *test, const FittedParameter *p)
@@ -119,6 +118,5 @@ int breccia_test_fitted_at(breccia_test *test, int k, breccia_fitted *parameter)
                                 .to = p->to,
                                 .deviation = p->deviation,
                                 .margin = p->margin};
-  host_leave(&host);
-  return sized_give(parameter, &found, sizeof found);
+  return host_leave(&host, BRECCIA_OK, NULL) ? -1 : sized_give(parameter, &found, sizeof found);
 }

@@ -1,4 +1,5 @@
 /* A test on one material point, or a path of strains, from words. */
+#include "base/memory.h"
 #include "model/laboratory.h"
 
 #include "base/csv.h"
@@ -42,7 +43,7 @@ int laboratory_read_path(breccia_test *test, const char *path, Error *error)
       free(rows);
       return BRECCIA_USER_ERROR;
     }
-    if (!k) rows = calloc(6 * (size_t)(n + 1), sizeof(double));
+    if (!k) rows = memory_plain(6 * (size_t)(n + 1), sizeof(double));
     int bad = 0;
     while (bad < n && isfinite(column[bad])) ++bad;
     for (int i = 0; rows && i < n && (!k || i < count); ++i) rows[6 * i + k] = column[i];
@@ -156,8 +157,8 @@ int breccia_test_make(const breccia_test_words *given, breccia_test **out, brecc
   int status = sized_take(&words, sizeof words, given, "breccia_test_words", error);
   breccia_test *test = status ? NULL : laboratory_begin(error);
   if (!status) status = test ? make(test, &words, error) : BRECCIA_FAILURE;
+  status = host_leave(&host, status, error);
   if (status) breccia_test_destroy(&test);
   *out = test;
-  host_leave(&host);
   return status;
 }

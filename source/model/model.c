@@ -21,10 +21,10 @@ int model_enter(breccia_model *model, Entry *entry, Error *error)
   return BRECCIA_OK;
 }
 
-void model_leave(const Entry *entry)
+int model_leave(const Entry *entry, int status, Error *error)
 {
   team_use(entry->team);
-  host_leave(&entry->host);
+  return host_leave(&entry->host, status, error);
 }
 
 /* ---- loading ---- */
@@ -213,7 +213,7 @@ static int load(breccia_model *model, const char *deck, const char *name, const 
     if (!status) status = build(model, options->force, error);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
     if (ignored.length) text_add(&model->warnings, "%s%s", model->warnings.length ? "\n" : "", ignored.characters);
-    model_leave(&entry);
+    status = model_leave(&entry, status, error);
   }
   text_free(&ignored);
   return status;
@@ -224,7 +224,7 @@ int breccia_model_load_string(const char *deck, const char *name, const breccia_
 {
   breccia_options options;
   Error *error = given ? given : breccia_error_create();
-  breccia_model *model = calloc(1, sizeof *model);
+  breccia_model *model = memory_plain(1, sizeof *model);
   if (model) model->peaks = (Peaks){.mean_low = INFINITY, .mean_high = -INFINITY};
   int status = sized_take(&options, sizeof options, given_options, "breccia_options", error);
   if (!status && (!model || !error)) status = error_add(error, BRECCIA_FAILURE, "out of memory: model");
@@ -243,8 +243,10 @@ int breccia_model_load_file(const char *path, const breccia_options *options, br
 {
   *model = NULL;
   size_t length;
+  const Host host = host_enter();
   char *text = document_text(path, &length, error);
-  if (!text) return BRECCIA_USER_ERROR;
+  if (!text) return host_leave(&host, BRECCIA_USER_ERROR, error);
+  host_leave(&host, BRECCIA_OK, NULL);
   int status = breccia_model_load_string(text, path, options, model, error);
   free(text);
   return status;
@@ -308,8 +310,7 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   int status = model_begin(model, error);
   for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
     status = model_advance(model, error);
-  model_leave(&entry);
-  return status;
+  return model_leave(&entry, status, error);
 }
 
 /* ---- looking ---- */
@@ -366,8 +367,7 @@ const char *breccia_model_plausibility(breccia_model *model)
   const Host host = host_enter();
   text_free(&model->plausibility);
   plausibility_describe(model, &model->plausibility);
-  host_leave(&host);
-  return text_words(&model->plausibility);
+  return host_leave(&host, BRECCIA_OK, NULL) ? NULL : text_words(&model->plausibility);
 }
 
 const char *breccia_model_deck(const breccia_model *model)

@@ -52,7 +52,8 @@ typedef struct Entry { /* what a public function that computes gives back at its
 
 /** Lets team_run of this thread use the model's threads. @return BRECCIA_OK, and then model_leave is due */
 int model_enter(breccia_model *model, Entry *entry, Error *error);
-void model_leave(const Entry *entry);
+/** @return host_status of the function that ends here */
+int model_leave(const Entry *entry, int status, Error *error);
 
 /** Prepares forces and accelerations of the first state, once. */
 int model_begin(breccia_model *model, Error *error);

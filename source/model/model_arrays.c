@@ -48,8 +48,7 @@ static int list_state(breccia_model *model, StateList *list)
 {
   Entry entry;
   if (model_enter(model, &entry, NULL)) return BRECCIA_FAILURE;
-  const int status = domain_observe(&model->domain, NULL);
-  model_leave(&entry);
+  const int status = model_leave(&entry, domain_observe(&model->domain, NULL), NULL);
   if (!status) model_state(model, list);
   return status;
 }

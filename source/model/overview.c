@@ -66,8 +66,7 @@ int model_expect(breccia_model *model, Error *error)
                    (double)(domain_particle_bytes(d)), d->particles->count);
     free(list.items);
   }
-  model_leave(&entry);
-  return status;
+  return model_leave(&entry, status, error);
 }
 
 static void add_duration(Text *text, double seconds)
@@ -185,6 +184,5 @@ const char *breccia_model_overview(breccia_model *model)
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (domain_has_servers(d)) text_add(text, " and what its material servers take");
-  host_leave(&host);
-  return text_words(text);
+  return host_leave(&host, BRECCIA_OK, NULL) ? NULL : text_words(text);
 }

@@ -37,6 +37,7 @@ const char *breccia_nearest_word(const char *given, const char *const *words, in
 
 char *breccia_deck_title(const char *deck, int *is_test)
 {
+  const Host host = host_enter();
   Error *ignored = breccia_error_create();
   Document *document = document_parse(deck, strlen(deck), "deck", ignored);
   const Node *title = document ? node_get(document->root, "title") : NULL;
@@ -44,7 +45,9 @@ char *breccia_deck_title(const char *deck, int *is_test)
   char *words = text_format("%s", title && title->kind == NODE_SCALAR ? title->text : "");
   document_destroy(&document);
   breccia_error_destroy(&ignored);
-  return words;
+  if (!host_leave(&host, BRECCIA_OK, NULL)) return words;
+  free(words);
+  return NULL;
 }
 
 /* ---- pages ---- */
@@ -178,6 +181,13 @@ static void add_deck(Text *page, bool schema)
   free(tables);
 }
 
+/** At the end of a function that makes a page. @return the page, or NULL if memory was out */
+static char *give_page(const Host *host, Text *page, Error *error)
+{
+  if (host_leave(host, BRECCIA_OK, error)) text_free(page);
+  return text_take(page);
+}
+
 char *breccia_page(int which)
 {
   const Host host = host_enter();
@@ -187,8 +197,7 @@ char *breccia_page(int which)
     add_tests(&page);
   } else
     add_deck(&page, which == BRECCIA_PAGE_SCHEMA);
-  host_leave(&host);
-  return page.characters;
+  return give_page(&host, &page, NULL);
 }
 
 char *breccia_describe_law(const char *name, breccia_error *error)
@@ -215,18 +224,17 @@ char *breccia_describe_law(const char *name, breccia_error *error)
       text_add(&page, "%s: %s\n  source: %s\n  %s\n", f->name, f->about, f->source, f->maturity);
     }
   }
-  host_leave(&host);
-  return page.characters;
+  return give_page(&host, &page, error);
 }
 
 int breccia_describe_opensees(char **text, breccia_error *error)
 {
   const Host host = host_enter();
   Text lines = {0}, page = {0};
-  const int status = remote_list_laws(&lines, error);
+  int status = remote_list_laws(&lines, error);
   if (!status) add_opensees(text_words(&lines), &page);
-  *text = page.characters;
   text_free(&lines);
-  host_leave(&host);
+  status = host_leave(&host, status, error);
+  *text = text_take(&page);
   return status;
 }

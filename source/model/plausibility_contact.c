@@ -1,4 +1,5 @@
 /* Blocks that overlap or that a gap parts, and contact: what a deck says of them, and what comes of it. */
+#include "base/memory.h"
 #include "model/plausibility_parts.h"
 
 #include "contact/contact.h"
@@ -106,7 +107,7 @@ void plausibility_warn_of_blocks(breccia_model *model)
 {
   const Body *body = &model->domain.body;
   const int blocks = body->block_count;
-  double *least = blocks > 1 ? calloc((size_t)blocks * (size_t)blocks, sizeof *least) : NULL;
+  double *least = blocks > 1 ? memory_plain((size_t)blocks * (size_t)blocks, sizeof *least) : NULL;
   if (!least) return;
   find_joints(&model->domain, least);
   for (int one = 0; one < blocks; ++one)

@@ -172,8 +172,7 @@ int breccia_plot_field(const char *result, const breccia_plot *given, breccia_er
   int status = take_plot(&plot, given, error);
   if (!status) status = check_ending(plot.path, error);
   if (!status) status = draw_fields(result, &plot, false, error);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }
 
 int breccia_plot_movie(const char *result, const breccia_plot *given, breccia_error *error)
@@ -183,8 +182,7 @@ int breccia_plot_movie(const char *result, const breccia_plot *given, breccia_er
   int status = take_plot(&plot, given, error);
   if (!status && !plot.path) status = error_add(error, BRECCIA_USER_ERROR, "a movie needs the path of an .mp4 file");
   if (!status) status = draw_fields(result, &plot, true, error);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }
 
 /** Curves of one result lie with its pictures, those of several in the present folder. To be freed. */
@@ -239,6 +237,5 @@ int breccia_plot_curve(const char *const *folders, int count, const breccia_plot
   if (!status) tell(&plot, path);
   free(path);
   free(curve);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }

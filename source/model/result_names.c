@@ -123,7 +123,7 @@ int model_field_names(const breccia_model *model, TextList *names, Error *error)
 {
   const DeckSpec *spec = model->spec;
   const TextList *asked = &spec->results->fields;
-  names->items = calloc((size_t)(asked->count + spec->pictures.count + 16), sizeof(char *));
+  names->items = memory_plain((size_t)(asked->count + spec->pictures.count + 16), sizeof(char *));
   names->count = 0;
   if (!names->items) return error_add(error, BRECCIA_FAILURE, "out of memory: fields");
   for (int pass = 0; pass < 3; ++pass) {

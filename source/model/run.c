@@ -308,7 +308,7 @@ static int loop(Run *run, Error *error)
     /* Where energy comes from nothing, a step or two more show whether it goes on. */
     if (run->wish->interrupted && *run->wish->interrupted && !s->ledger.unsound_steps) return BRECCIA_INTERRUPTED;
     const int64_t stage = s->clock.stage, step = s->clock.step;
-    status = model_advance(model, error);
+    status = host_status(run->host, model_advance(model, error), error);
     if (s->clock.stage != stage) begin_stage(model);
     if (status) break;
     model->run_steps += s->clock.step - step;
@@ -323,6 +323,7 @@ static int finish(Run *run, int status, Error *error)
 {
   breccia_model *model = run->model;
   model->run_seconds = clock_seconds() - run->started;
+  status = host_status(run->host, status, error);
   const bool ended_early = status != BRECCIA_OK;
   char *problem = text_format("%s", breccia_error_text(error));
   if (!status) {
@@ -349,6 +350,7 @@ static int finish(Run *run, int status, Error *error)
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
   text_free(&run->files);
   run->files = own;
+  status = host_status(run->host, status, error);
   int bad = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
   if (bad && !status) status = bad;
   if (!run->unwritten) run_draw_pictures(run);
@@ -365,6 +367,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   model->run_steps = 0;
   int status = model_enter(model, &entry, error);
   if (status) return status;
+  run.host = &entry.host;
   status = run_make_folder(wish->folder, error);
   if (!status) status = folder_lock_take(&lock, wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
@@ -382,8 +385,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   folder_lock_return(&lock);
   free(run.names.items);
   text_free(&run.files);
-  model_leave(&entry);
-  return status;
+  return model_leave(&entry, status, error);
 }
 
 int breccia_model_run(breccia_model *model, const breccia_run *given_wish, breccia_error *given)

@@ -8,6 +8,7 @@
 typedef struct Run {
   breccia_model *model;
   const breccia_run *wish;
+  const Host *host;
   ResultFile *results;
   int64_t steps;           /* where to stop */
   int64_t checkpoint_step; /* of the last one in the folder; -1: none, or not of this run */

@@ -33,6 +33,5 @@ int breccia_serve(const breccia_service *given, breccia_error *error)
                           .listening = service.listening};
   if (!status) status = serve_materials(&spec, error);
   free(secret);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }

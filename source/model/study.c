@@ -1,5 +1,6 @@
 #include "model/study.h"
 
+#include "base/memory.h"
 #include "deck/resolve.h"
 #include "model/deck_layout.h"
 #include "model/host.h"
@@ -18,7 +19,7 @@ static int add_value(Varied *varied, const char *words, size_t length, Error *er
   while (length && isspace((unsigned char)*words)) ++words, --length;
   while (length && isspace((unsigned char)words[length - 1])) --length;
   char **values =
-      varied->count < MOST_CASES ? realloc(varied->values, sizeof(char *) * (size_t)(varied->count + 1)) : NULL;
+      varied->count < MOST_CASES ? memory_grown(varied->values, (size_t)(varied->count + 1), sizeof(char *)) : NULL;
   if (!values)
     return error_add(error, varied->count < MOST_CASES ? BRECCIA_FAILURE : BRECCIA_USER_ERROR,
                      "--vary %s: more than %d values", varied->key, MOST_CASES);
@@ -141,9 +142,9 @@ static int name_case(const Study *study, StudyCase *one, const char *folder, Err
 static int make_case(Study *study, StudyCase *one, int number, Error *error)
 {
   const breccia_study_plan *plan = &study->plan;
-  one->which = calloc((size_t)study->varied_count + 1, sizeof(int));
-  one->own = calloc((size_t)study->varied_count + 1, sizeof(char *));
-  one->settings = calloc((size_t)study->setting_count + 1, sizeof(char *));
+  one->which = memory_plain((size_t)study->varied_count + 1, sizeof(int));
+  one->own = memory_plain((size_t)study->varied_count + 1, sizeof(char *));
+  one->settings = memory_plain((size_t)study->setting_count + 1, sizeof(char *));
   if (!one->which || !one->own || !one->settings) return error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int v = study->varied_count - 1, rest = number; v >= 0; --v) { /* the last key changes fastest */
     one->which[v] = plan->together ? number : rest % study->varied[v].count;
@@ -197,7 +198,7 @@ static int make_cases(Study *study, Error *error)
 {
   const breccia_study_plan *plan = &study->plan;
   study->setting_count = plan->setting_count + plan->varied_count;
-  study->varied = calloc((size_t)plan->varied_count + 1, sizeof *study->varied);
+  study->varied = memory_plain((size_t)plan->varied_count + 1, sizeof *study->varied);
   if (!study->varied) return error_add(error, BRECCIA_FAILURE, "out of memory: study");
   if (!plan->varied_count)
     return error_add(error, BRECCIA_USER_ERROR, "give what is varied, like --vary 'body.beam.spacing=2 mm:8 mm:4'");
@@ -209,7 +210,7 @@ static int make_cases(Study *study, Error *error)
   size_t length;
   char *text = document_text(plan->deck, &length, error);
   if (!text) return BRECCIA_USER_ERROR;
-  study->cases = calloc((size_t)count, sizeof *study->cases);
+  study->cases = memory_plain((size_t)count, sizeof *study->cases);
   if (!study->cases) status = error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int k = 0; study->cases && k < count; ++k, ++study->count) {
     int bad = make_case(study, &study->cases[k], k, error);
@@ -223,15 +224,15 @@ static int make_cases(Study *study, Error *error)
 int breccia_study_create(const breccia_study_plan *plan, breccia_study **out, breccia_error *error)
 {
   const Host host = host_enter();
-  Study *study = calloc(1, sizeof *study);
+  Study *study = memory_plain(1, sizeof *study);
   int status = study ? sized_take(&study->plan, sizeof study->plan, plan, "breccia_study_plan", error)
                      : error_add(error, BRECCIA_FAILURE, "out of memory: study");
   if (!status && (!study->plan.deck || !study->plan.folder))
     status = error_add(error, BRECCIA_USER_ERROR, "a study needs a deck and a folder");
   if (!status) status = make_cases(study, error);
+  status = host_leave(&host, status, error);
   if (status) breccia_study_destroy(&study);
   *out = study;
-  host_leave(&host);
   return status;
 }
 

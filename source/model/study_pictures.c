@@ -1,4 +1,5 @@
 /* What the cases of a study gave, drawn: their curves in one picture, and results over the first varied key. */
+#include "base/memory.h"
 #include "model/study_report.h"
 #include "results/curve.h"
 #include "results/plot.h"
@@ -9,7 +10,7 @@
 
 int study_draw_curves(StudyReport *report, Error *error)
 {
-  const char **folders = calloc((size_t)report->study->count + 1, sizeof *folders);
+  const char **folders = memory_plain((size_t)report->study->count + 1, sizeof *folders);
   int done = 0, status = folders ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int k = 0; folders && k < report->study->count; ++k)
     if (report->states[k] == BRECCIA_CASE_DONE) folders[done++] = report->study->cases[k].folder;
@@ -57,9 +58,9 @@ static bool same_line(const Study *study, const StudyCase *a, const StudyCase *b
 static int draw_result(StudyReport *report, const StudyResult *result, const char *unit, Error *error)
 {
   const Study *study = report->study;
-  PlotLine *lines = calloc((size_t)study->count, sizeof *lines);
-  double *x = calloc((size_t)study->count * 2 + 1, sizeof *x), *y = x + study->count;
-  char **titles = calloc((size_t)study->count, sizeof *titles);
+  PlotLine *lines = memory_plain((size_t)study->count, sizeof *lines);
+  double *x = memory_plain((size_t)study->count * 2 + 1, sizeof *x), *y = x + study->count;
+  char **titles = memory_plain((size_t)study->count, sizeof *titles);
   int count = 0, used = 0, status = BRECCIA_OK;
   if (!lines || !x || !titles) status = error_add(error, BRECCIA_FAILURE, "out of memory: study");
   for (int first = 0; first < study->count && !status; ++first) {

@@ -1,5 +1,6 @@
 /* What the cases of a study gave, side by side. */
 #include "base/csv.h"
+#include "base/memory.h"
 #include "base/whole_file.h"
 #include "deck/document.h"
 #include "model/host.h"
@@ -69,7 +70,7 @@ static int add_result(StudyReport *report, const char *words, Error *error)
     snprintf(r->watch, sizeof r->watch, "%.*s", (int)(dot - name), name);
     snprintf(r->column, sizeof r->column, "%s", dot + 1);
   }
-  r->values = calloc((size_t)report->study->count + 1, sizeof(double));
+  r->values = memory_plain((size_t)report->study->count + 1, sizeof(double));
   if (!r->values) return error_add(error, BRECCIA_FAILURE, "out of memory: study");
   ++report->result_count;
   return BRECCIA_OK;
@@ -327,7 +328,7 @@ static int write_table(StudyReport *report, Text *text, Error *error)
 static int make_report(Study *study, Error *error)
 {
   StudyReport report = {.study = study, .plan = &study->plan, .files = &study->files};
-  report.states = calloc((size_t)study->count + 1, sizeof *report.states);
+  report.states = memory_plain((size_t)study->count + 1, sizeof *report.states);
   int status =
       report.states ? choose_results(&report, error) : error_add(error, BRECCIA_FAILURE, "out of memory: study");
   if (!status) status = read_values(&report, error);
@@ -347,6 +348,5 @@ int breccia_study_report(breccia_study *study, breccia_error *error)
   text_free(&study->table);
   text_free(&study->files);
   const int status = make_report(study, error);
-  host_leave(&host);
-  return status;
+  return host_leave(&host, status, error);
 }

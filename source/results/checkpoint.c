@@ -1,5 +1,6 @@
 #include "results/checkpoint.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "breccia/breccia.h"
 #include "results/hdf5_file.h"
@@ -132,7 +133,7 @@ static int same_text(hid_t file, const char *name, const char *words)
 {
   int64_t count = load_count(file, name);
   if (count != (int64_t)strlen(words)) return 0;
-  char *saved = malloc((size_t)count + 1);
+  char *saved = memory_plain((size_t)count + 1, 1);
   int same = saved && !load(file, name, H5T_NATIVE_CHAR, (size_t)count, saved) && !memcmp(saved, words, (size_t)count);
   free(saved);
   return same;
@@ -146,7 +147,7 @@ static int load_row(hid_t file, const StateRow *row, Error *error)
   const int64_t count = listed ? load_count(file, row->name) : row->count;
   double *numbers = NULL;
   if (count < 0) return STATE_MISFIT;
-  if (listed && !(numbers = malloc(sizeof(double) * (size_t)(count + 1))))
+  if (listed && !(numbers = memory_plain((size_t)(count + 1), sizeof(double))))
     return error_add(error, BRECCIA_FAILURE, "out of memory: %s", row->name);
   int status =
       load(file, row->name, type_of(row), (size_t)count, listed ? numbers : row->values) ? STATE_MISFIT : BRECCIA_OK;
@@ -160,7 +161,7 @@ static int check_files(hid_t file, const char *path, const char *now, Error *err
 {
   const int64_t count = load_count(file, "files");
   if (count < 0) return STATE_MISFIT;
-  char *saved = calloc((size_t)count + 1, 1);
+  char *saved = memory_plain((size_t)count + 1, 1);
   int status = !saved                                                       ? BRECCIA_FAILURE
                : load(file, "files", H5T_NATIVE_CHAR, (size_t)count, saved) ? STATE_MISFIT
                                                                             : BRECCIA_OK;

@@ -1,6 +1,7 @@
 #include "results/curve.h"
 
 #include "base/csv.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "results/curve_names.h"
 #include "results/plot.h"
@@ -103,8 +104,8 @@ int curve_points(const char *path, double **x, double **y, int *count, Error *er
   if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
   size_t rows = 1;
   for (const char *c = text; *c; ++c) rows += *c == '\n';
-  *x = malloc(sizeof(double) * rows);
-  *y = malloc(sizeof(double) * rows);
+  *x = memory_plain(rows, sizeof(double));
+  *y = memory_plain(rows, sizeof(double));
   char *rest = NULL;
   for (char *row = strtok_r(text, "\n", &rest); *x && *y && row; row = strtok_r(NULL, "\n", &rest))
     if (sscanf(row, "%lf ,%lf", &(*x)[*count], &(*y)[*count]) == 2) ++*count;
@@ -157,9 +158,9 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
   int status = read_curve(words, &names, error), count = 0;
   if (status) return status;
   const int columns_each = names.count - 1, most = folder_count * columns_each + 1;
-  PlotLine *lines = calloc((size_t)most, sizeof *lines);
-  Columns *columns = calloc((size_t)most, sizeof *columns);
-  char **titles = calloc((size_t)most, sizeof *titles);
+  PlotLine *lines = memory_plain((size_t)most, sizeof *lines);
+  Columns *columns = memory_plain((size_t)most, sizeof *columns);
+  char **titles = memory_plain((size_t)most, sizeof *titles);
   if (!lines || !columns || !titles) status = error_add(error, BRECCIA_FAILURE, "out of memory: curves");
   for (int k = 0; k < folder_count && !status; ++k)
     for (int c = 1; c < names.count && !status; ++c, ++count) {

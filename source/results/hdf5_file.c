@@ -1,5 +1,7 @@
 #include "results/hdf5_file.h"
 
+#include "base/memory.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -30,7 +32,7 @@ static H5FD_t *driver_open(const char *path, unsigned flags, hid_t properties, h
 {
   (void)most;
   const Info *info = H5Pget_driver_info(properties);
-  Driver *driver = info ? calloc(1, sizeof *driver) : NULL;
+  Driver *driver = info ? memory_plain(1, sizeof *driver) : NULL;
   if (!driver) return NULL;
   int way = flags & H5F_ACC_RDWR ? O_RDWR : O_RDONLY;
   if (flags & H5F_ACC_CREAT) way |= O_CREAT;

@@ -1,5 +1,6 @@
 #include "results/picture.h"
 
+#include "base/memory.h"
 #include "results/colours.h"
 #include "results/fields.h"
 #include "results/scene.h"
@@ -303,7 +304,7 @@ static int scene_create(Scene *scene, const ResultView *view, const PictureOptio
   *scene = (Scene){.count = view->particles};
   double **arrays[] = {&scene->x, &scene->y, &scene->depth, &scene->value};
   for (int k = 0; k < 4; ++k) {
-    *arrays[k] = malloc(sizeof(double) * (size_t)(scene->count + 1));
+    *arrays[k] = memory_plain((size_t)(scene->count + 1), sizeof(double));
     if (!*arrays[k]) return error_add(error, BRECCIA_FAILURE, "out of memory: picture");
   }
   look(scene, view, o);
@@ -438,7 +439,7 @@ unsigned char *picture_pixels(const ResultView *view, int step, const PictureOpt
   *wide = cairo_image_surface_get_width(surface);
   *high = cairo_image_surface_get_height(surface);
   const int stride = cairo_image_surface_get_stride(surface);
-  unsigned char *rows = cairo_surface_status(surface) ? NULL : malloc((size_t)*wide * (size_t)*high * 4);
+  unsigned char *rows = cairo_surface_status(surface) ? NULL : memory_plain((size_t)*wide * (size_t)*high * 4, 1);
   for (int y = 0; rows && y < *high; ++y)
     memcpy(rows + (size_t)y * (size_t)*wide * 4, cairo_image_surface_get_data(surface) + (size_t)y * (size_t)stride,
            (size_t)*wide * 4);

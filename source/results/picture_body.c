@@ -1,4 +1,5 @@
 /* The particles of a picture. */
+#include "base/memory.h"
 #include "results/scene.h"
 
 #include <math.h>
@@ -50,7 +51,7 @@ static void shorter(const Scene *scene, int64_t from, int64_t to, double vector[
  *  two, because what tears grows longer; as in the reference shape where there is none or where both are torn. */
 static int neighbour_vectors(const Scene *scene, const ResultView *view, int axis, double (*vectors)[2])
 {
-  Order *order = malloc(sizeof(Order) * (size_t)(scene->count + 1));
+  Order *order = memory_plain((size_t)(scene->count + 1), sizeof(Order));
   if (!order) return 1;
   for (int64_t n = 0; n < scene->count; ++n) {
     const double *p = view->positions + 3 * n, unit = 1e-3 * view->spacings[n];
@@ -125,9 +126,9 @@ static void draw_square(cairo_t *cr, const Page *page, double x, double y, doubl
 /** The nearest last: plane bodies, and plates seen from the front. */
 static int draw_flat(cairo_t *cr, const Page *page, const Scene *scene, const ResultView *view, bool deformed)
 {
-  Depth *order = malloc(sizeof(Depth) * (size_t)(scene->count + 1));
-  double(*a)[2] = malloc(sizeof *a * (size_t)(scene->count + 1)),
-  (*b)[2] = malloc(sizeof *b * (size_t)(scene->count + 1));
+  Depth *order = memory_plain((size_t)(scene->count + 1), sizeof(Depth));
+  double(*a)[2] = memory_plain((size_t)(scene->count + 1), sizeof *a),
+  (*b)[2] = memory_plain((size_t)(scene->count + 1), sizeof *b);
   int bad = !order || !a || !b;
   const bool cells = deformed && page->thick == 0;
   if (!bad && cells) bad = neighbour_vectors(scene, view, 0, a) || neighbour_vectors(scene, view, 1, b);
@@ -173,7 +174,7 @@ static int draw_spheres(cairo_t *cr, const Page *page, const Scene *scene, const
   const int fine = 2;
   int wide = (int)ceil(page->wide) * fine + 1, high = (int)ceil(page->high) * fine + 1;
   cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, wide, high);
-  double *depth = malloc(sizeof(double) * (size_t)wide * (size_t)high);
+  double *depth = memory_plain((size_t)wide * (size_t)high, sizeof(double));
   if (!depth || cairo_surface_status(image)) {
     free(depth);
     cairo_surface_destroy(image);

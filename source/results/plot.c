@@ -153,7 +153,8 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
     text_add(&script, " noenhanced");
   }
   text_add(&script, "\n");
-  int status = run_gnuplot(&script, part, path, error);
+  int status = script.failed ? error_add(error, BRECCIA_FAILURE, "out of memory: %s", path)
+                             : run_gnuplot(&script, part, path, error);
   text_free(&script);
   free(part);
   return status;

@@ -1,6 +1,7 @@
 #include "results/result_file.h"
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include "base/team.h"
 #include "base/whole_file.h"
 #include "results/dataset.h"
@@ -43,7 +44,7 @@ static int write_cells(hid_t root, int64_t particles)
 {
   int bad = 0;
   for (int k = 0; k < 4; ++k) {
-    int64_t cells = k ? 0 : particles, *numbers = calloc((size_t)cells + 2, sizeof(int64_t));
+    int64_t cells = k ? 0 : particles, *numbers = memory_plain((size_t)cells + 2, sizeof(int64_t));
     hid_t group = H5Gcreate2(root, cell_kinds[k], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     const char *const names[] = {"NumberOfCells", "NumberOfConnectivityIds", "Offsets", "Connectivity"};
     const hsize_t rows[] = {1, 1, (hsize_t)cells + 1, (hsize_t)cells};
@@ -126,9 +127,9 @@ static int create_sets(hid_t root, const ResultFile *file)
 static int write_geometry(hid_t root, const Domain *d)
 {
   const Particles *p = d->particles;
-  double *positions = malloc(sizeof(double) * 3 * (size_t)p->count),
-         *spacings = malloc(sizeof(double) * (size_t)p->count);
-  uint8_t *lattices = malloc((size_t)p->count);
+  double *positions = memory_plain(3 * (size_t)p->count, sizeof(double)),
+         *spacings = memory_plain((size_t)p->count, sizeof(double));
+  uint8_t *lattices = memory_plain((size_t)p->count, 1);
   int bad = !positions || !spacings || !lattices;
   for (int64_t n = 0; !bad && n < p->count; ++n) {
     for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
@@ -184,7 +185,7 @@ static int put_in_place(ResultFile *file, Error *error)
 static ResultFile *prepare(const char *folder, const Domain *d, const Units *units, const char *title,
                            const ResultNames *names, Error *error)
 {
-  ResultFile *file = calloc(1, sizeof *file);
+  ResultFile *file = memory_plain(1, sizeof *file);
   if (!file) return NULL;
   file->path = text_format("%s/results.vtkhdf", folder);
   file->part = text_format("%s/results.vtkhdf.part", folder);
@@ -192,7 +193,7 @@ static ResultFile *prepare(const char *folder, const Domain *d, const Units *uni
   file->particles = d->particles->count;
   file->single = names->single;
   file->title = title;
-  file->columns = calloc((size_t)names->count + 1, sizeof(Column));
+  file->columns = memory_plain((size_t)names->count + 1, sizeof(Column));
   if (!file->path || !file->part || !file->xdmf || !file->columns) {
     result_file_destroy(&file);
     error_add(error, BRECCIA_FAILURE, "out of memory: result file");
@@ -245,9 +246,9 @@ static int grow_times(ResultFile *file)
 {
   if (file->writes < file->capacity) return 0;
   int64_t capacity = file->capacity ? 2 * file->capacity : 64;
-  double *times = realloc(file->times, sizeof(double) * (size_t)capacity);
+  double *times = memory_grown(file->times, (size_t)capacity, sizeof(double));
   if (times) file->times = times;
-  int64_t *steps = realloc(file->steps, sizeof(int64_t) * (size_t)capacity);
+  int64_t *steps = memory_grown(file->steps, (size_t)capacity, sizeof(int64_t));
   if (steps) file->steps = steps;
   if (times && steps) file->capacity = capacity;
   return !times || !steps;
@@ -255,7 +256,7 @@ static int grow_times(ResultFile *file)
 
 static int write_xdmf(const ResultFile *file, Error *error)
 {
-  XdmfField *fields = calloc((size_t)file->column_count + 1, sizeof *fields);
+  XdmfField *fields = memory_plain((size_t)file->column_count + 1, sizeof *fields);
   if (!fields) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", file->xdmf);
   for (int c = 0; c < file->column_count; ++c)
     fields[c] = (XdmfField){file->columns[c].name, file->columns[c].components};
@@ -276,8 +277,9 @@ static int write_steps(hid_t root, const ResultFile *file, int64_t from)
 {
   hid_t steps = H5Gopen2(root, "Steps", H5P_DEFAULT), offsets = H5Gopen2(steps, "PointDataOffsets", H5P_DEFAULT);
   const hsize_t first = (hsize_t)from, n = (hsize_t)(file->writes - from);
-  int64_t *zeros = calloc((size_t)n * 4 + 4, sizeof(int64_t)), *ones = calloc((size_t)n + 1, sizeof(int64_t));
-  int64_t *starts = calloc((size_t)n + 1, sizeof(int64_t));
+  int64_t *zeros = memory_plain((size_t)n * 4 + 4, sizeof(int64_t)),
+          *ones = memory_plain((size_t)n + 1, sizeof(int64_t));
+  int64_t *starts = memory_plain((size_t)n + 1, sizeof(int64_t));
   int bad = !zeros || !ones || !starts || steps < 0 || offsets < 0;
   for (hsize_t k = 0; !bad && k < n; ++k) {
     ones[k] = 1;
@@ -326,7 +328,7 @@ static int create_state(hid_t h5, const ResultFile *file, int64_t k)
 static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
 {
   hid_t root = H5Gopen2(h5->id, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
-  double *values = malloc(sizeof(double) * MOST_COMPONENTS * (size_t)file->particles);
+  double *values = memory_plain(MOST_COMPONENTS * (size_t)file->particles, sizeof(double));
   int bad = !values || root < 0 || data < 0;
   for (int c = 0; c < file->column_count && !bad; ++c) {
     const Column *column = &file->columns[c];
@@ -334,7 +336,7 @@ static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
     bad = dataset_write(data, column->name, H5T_NATIVE_DOUBLE, column->components,
                         (hsize_t)((file->writes - 1) * file->particles), (hsize_t)file->particles, values);
   }
-  int64_t fresh = d->broken_count - file->broken_written, *rows = calloc((size_t)fresh * 3 + 3, sizeof(int64_t));
+  int64_t fresh = d->broken_count - file->broken_written, *rows = memory_plain((size_t)fresh * 3 + 3, sizeof(int64_t));
   if (!values || !rows) h5->error = ENOMEM;
   bad |= !rows;
   for (int64_t k = 0; !bad && k < fresh; ++k) {

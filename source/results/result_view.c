@@ -1,5 +1,6 @@
 #include "results/result_view.h"
 
+#include "base/memory.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <math.h>
@@ -14,7 +15,7 @@ static void attribute_read_text(hid_t where, const char *name, char *words, size
   if (H5Aexists(where, name) <= 0) return;
   hid_t attribute = H5Aopen(where, name, H5P_DEFAULT), type = H5Aget_type(attribute);
   size_t length = H5Tget_size(type);
-  char *whole = calloc(1, length + 1);
+  char *whole = memory_plain(1, length + 1);
   if (whole && !H5Tis_variable_str(type) && H5Aread(attribute, type, whole) >= 0) snprintf(words, size, "%s", whole);
   free(whole);
   H5Tclose(type);
@@ -45,7 +46,7 @@ static void *read_all(const ResultView *view, const char *name, hid_t type, size
   H5Sget_simple_extent_dims(space, extent, NULL);
   H5Sclose(space);
   const size_t count = (size_t)(extent[0] * extent[1]);
-  void *values = calloc(count ? count : 1, size);
+  void *values = memory_plain(count ? count : 1, size);
   if (!values) error_add(error, BRECCIA_FAILURE, "out of memory: %s", name);
   if (values && count && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
     say_damaged(view, name, error);
@@ -64,7 +65,7 @@ static int read_lattices(ResultView *view, Error *error)
   const LatticeType *square = lattice_find("square");
   for (int k = 0; k < MOST_LATTICES; ++k) view->lattice_types[k] = square;
   if (H5Lexists(view->file, "Breccia/Lattice", H5P_DEFAULT) <= 0) {
-    view->lattice_numbers = calloc((size_t)view->particles + 1, 1);
+    view->lattice_numbers = memory_plain((size_t)view->particles + 1, 1);
     return view->lattice_numbers ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: Breccia/Lattice");
   }
   view->lattice_numbers = read_all(view, "Breccia/Lattice", H5T_NATIVE_UINT8, 1, NULL, error);
@@ -203,7 +204,7 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
   int rank = H5Sget_simple_extent_dims(space, size, NULL);
   *components = rank > 1 ? (int)size[1] : 1;
   hsize_t start[2] = {(hsize_t)step * (hsize_t)view->particles, 0}, count[2] = {(hsize_t)view->particles, size[1]};
-  double *values = calloc((size_t)view->particles * (size_t)*components, sizeof(double));
+  double *values = memory_plain((size_t)view->particles * (size_t)*components, sizeof(double));
   hid_t memory = H5Screate_simple(rank, count, NULL);
   int bad = !values || start[0] + count[0] > size[0] ||
             H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
@@ -224,7 +225,7 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
 
 int64_t *result_view_broken(const ResultView *view, int step, int64_t *count)
 {
-  int64_t *pairs = calloc((size_t)view->broken_count * 2 + 1, sizeof(int64_t));
+  int64_t *pairs = memory_plain((size_t)view->broken_count * 2 + 1, sizeof(int64_t));
   *count = 0;
   for (int64_t k = 0; pairs && k < view->broken_count && view->broken[3 * k] <= view->step_numbers[step]; ++k) {
     pairs[2 * k] = view->broken[3 * k + 1];

@@ -1,5 +1,6 @@
 #include "results/watch.h"
 
+#include "base/memory.h"
 #include "base/tensor.h"
 #include <errno.h>
 #include <stdio.h>
@@ -353,8 +354,8 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
 int watches_create(Watches **out, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *specs, const SectionList *selections)
 {
-  Watches *watches = *out = calloc(1, sizeof *watches);
-  if (!watches || !(watches->items = calloc((size_t)specs->count + 1, sizeof(Watch))))
+  Watches *watches = *out = memory_plain(1, sizeof *watches);
+  if (!watches || !(watches->items = memory_plain((size_t)specs->count + 1, sizeof(Watch))))
     return error_add(reader->error, BRECCIA_FAILURE, "out of memory: watches");
   int status = BRECCIA_OK;
   for (int k = 0; k < specs->count; ++k) {

@@ -1,6 +1,7 @@
 #include "constitutive/remote/channel.h"
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include "constitutive/remote/address.h"
 
 #include <errno.h>
@@ -30,7 +31,7 @@ struct Channel {
 
 Channel *channel_over(int s, bool datagrams, bool borrowed)
 {
-  Channel *c = calloc(1, sizeof *c);
+  Channel *c = memory_plain(1, sizeof *c);
   if (!c) {
     if (!borrowed) close(s);
     return NULL;
@@ -121,7 +122,7 @@ void channel_bytes(const Channel *channel, double bytes[2])
 static int reserve(Buffer *b, size_t size)
 {
   if (size <= b->size) return 0;
-  uint8_t *bytes = realloc(b->bytes, size);
+  uint8_t *bytes = memory_grown(b->bytes, size, 1);
   if (!bytes) return 1;
   b->bytes = bytes;
   b->size = size;

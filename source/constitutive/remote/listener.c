@@ -1,6 +1,7 @@
 #include "constitutive/remote/listener.h"
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include "constitutive/remote/address.h"
 #include "constitutive/remote/guests.h"
 
@@ -92,7 +93,7 @@ Listener *listener_open(const ListenerSpec *spec, Text *reason)
   if (!strncmp(spec->address, "unix:", 5)) remove_stale(spec->address + 5);
   const int s = address_open(spec->address, true, spec->open, &transport, reason);
   if (s < 0) return NULL;
-  Listener *l = calloc(1, sizeof *l);
+  Listener *l = memory_plain(1, sizeof *l);
   if (!l) {
     text_add(reason, "out of memory");
     close(s);

@@ -1,3 +1,4 @@
+#include "base/memory.h"
 #include "constitutive/remote/remote_parts.h"
 
 #include <math.h>
@@ -113,11 +114,11 @@ static char *name_law(const char *command)
 static int reach(Remote **out, const RemoteSpec *spec, Error *error)
 {
   const bool own = spec->server_count == 0;
-  Remote *r = *out = calloc(1, sizeof *r);
+  Remote *r = *out = memory_plain(1, sizeof *r);
   if (!r) return error_add(error, BRECCIA_FAILURE, "out of memory: material server");
   pthread_mutex_init(&r->lock, NULL);
   r->count = own ? spec->processes : spec->server_count;
-  r->servers = calloc((size_t)r->count, sizeof *r->servers);
+  r->servers = memory_plain((size_t)r->count, sizeof *r->servers);
   r->material = text_format("%s", spec->material);
   r->command = text_format("%s", spec->command);
   r->name = name_law(spec->command);

@@ -1,4 +1,5 @@
 /* What servers remember: commits, saved states, and how a restart finds them again. */
+#include "base/memory.h"
 #include "constitutive/remote/remote_parts.h"
 
 #include <math.h>
@@ -41,7 +42,7 @@ static int move_states(Remote *r, RemoteServer *s, Operation operation, double *
     const int64_t count = s->count - first < most ? s->count - first : most;
     const size_t size = row * (size_t)count;
     const uint32_t from[2] = {(uint32_t)first, 0};
-    Text piece = {.characters = malloc(TRIAL_HEAD + size)}; /* bytes, not words */
+    Text piece = {.characters = memory_plain(TRIAL_HEAD + size, 1)}; /* bytes, not words */
     Frame frame;
     uint8_t *reply;
     if (!piece.characters) {

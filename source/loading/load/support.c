@@ -2,6 +2,7 @@
  * as these do, mirrored: the other way in the directions that are held, u = 2 g(t) - u of the particle inside, and the same way in the others. Between
  * two images the displacement is g(t) at the face; and families there find the strain going on beyond it. */
 #include "loading/support.h"
+#include "base/memory.h"
 
 #include "loading/load/load_parts.h"
 #include <math.h>
@@ -96,7 +97,7 @@ static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList 
     if (list->items[m].block == b && list->items[m].axis == axis && list->items[m].high == margin.high)
       return node_error(reader->document, node, reader->error, "support: this face has one already, of line %d",
                         ((const LoadSpec *)list->items[m].owner)->head.node->line);
-  Margin *grown = realloc(list->items, sizeof *grown * (size_t)(list->count + 1));
+  Margin *grown = memory_grown(list->items, (size_t)(list->count + 1), sizeof *grown);
   if (!grown) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: supports");
   list->items = grown;
   list->items[list->count++] = margin;
