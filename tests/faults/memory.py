@@ -265,7 +265,7 @@ class Walk:
         # neighbours in time are alike: every K-th, of verbs with few calls some at least, from a first that differs from verb to verb
         if not calls:
             sys.exit(f"{self.verb}: asks for no memory: is the command the right one?")
-        every = min(self.options.every, max(1, calls // 5))
+        every = min(self.options.every, max(1, calls // 3))
         chosen = range(1 + sum(map(ord, self.verb)) % every, calls + 1, every)
         problems = [p for p in pool.map(lambda n: self.judge(n, n % 2 == 0), chosen) if p]
         shutil.rmtree(self.folder)
