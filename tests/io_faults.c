@@ -20,6 +20,7 @@
 #include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -110,6 +111,10 @@ int ftruncate64(int descriptor, off64_t size)
 int truncate(const char *path, off_t size)
 {
   return fails(path) ? -1 : NEXT(truncate)(path, size);
+}
+int mkdir(const char *path, mode_t mode)
+{
+  return fails(path) ? -1 : NEXT(mkdir)(path, mode);
 }
 int rename(const char *from, const char *to)
 {

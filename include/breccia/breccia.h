@@ -162,7 +162,8 @@ typedef struct breccia_run {
 /** Runs to the end and writes results, histories, checkpoints, pictures and summary.json.
  *  @return BRECCIA_INTERRUPTED after a clean stop on request; BRECCIA_FAILURE otherwise. After a step that failed the state before it is
  *  written, and a checkpoint of it. After "energy from nothing" results and histories hold the state at which the run stopped, to
- *  show what went wrong, and the checkpoint written before stays. */
+ *  show what went wrong, and the checkpoint written before stays. A picture that cannot be written is a failure, after which all else is there;
+ *  one that cannot be drawn (results do not hold it, gnuplot is not installed) a warning. */
 BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, breccia_error *error);
 
 /** What a run would do, in some lines (NULL when memory is out); warnings about the deck, one per line; what a run did and which files it wrote.

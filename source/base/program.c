@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -23,7 +24,9 @@ static void add_last_line(FILE *file, Text *reason)
   char *last = NULL, *rest = NULL;
   for (char *line = strtok_r(words, "\r\n", &rest); line; line = strtok_r(NULL, "\r\n", &rest)) {
     line += strspn(line, " \t");
-    if (strcspn(line, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ") < strlen(line)) last = line;
+    bool words_only = true; /* and not a picture, which gnuplot pours out where it cannot write its file */
+    for (const char *c = line; *c; ++c) words_only &= (unsigned char)*c >= ' ' || *c == '\t';
+    if (words_only && strcspn(line, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ") < strlen(line)) last = line;
   }
   if (last) text_add(reason, ": %.*s", (int)(strlen(last) - (last[strlen(last) - 1] == ' ')), last);
 }

@@ -62,7 +62,8 @@ static void print_man(void)
       printf("\n");
     }
   }
-  printf(".SH EXIT STATUS\n0 done; 1 the computation failed; 2 the deck or the arguments are wrong; 130 stopped by a "
+  printf(".SH EXIT STATUS\n0 done; 1 the computation failed or a file could not be written; 2 the deck or the "
+         "arguments are wrong; 130 stopped by a "
          "signal.\n");
 }
 

@@ -129,5 +129,6 @@ const Verb verb_run = {
     .about = "run a deck and write its results, histories and pictures",
     .options = options,
     .more = "Ctrl-C stops cleanly: files are closed and a checkpoint is written, from which --restart goes on.\n"
-            "Exit status: 0 done, 1 the computation failed, 2 the deck or the arguments are wrong, 130 stopped.",
+            "Exit status: 0 done, 1 the computation failed or a file could not be written, 2 the deck or the arguments "
+            "are wrong, 130 stopped.",
     .run = run};

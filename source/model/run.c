@@ -28,9 +28,12 @@ int run_make_folder(const char *path, Error *error)
     int bad = mkdir(part, 0777);
     struct stat status;
     if (bad && (errno != EEXIST || stat(part, &status) || !S_ISDIR(status.st_mode))) {
-      error_add(error, BRECCIA_USER_ERROR, "%s: the folder cannot be made: %s", part, strerror(errno));
+      const int cause = errno;
+      const bool machine = cause == ENOSPC || cause == EDQUOT || cause == EIO || cause == ENOMEM || cause == EMLINK;
+      const int why = error_add(error, machine ? BRECCIA_FAILURE : BRECCIA_USER_ERROR,
+                                "%s: the folder cannot be made: %s", part, strerror(cause));
       free(part);
-      return BRECCIA_USER_ERROR;
+      return why;
     }
     if (!slash) break;
     *slash = '/';
@@ -353,10 +356,10 @@ static int finish(Run *run, int status, Error *error)
   status = host_status(run->host, status, error);
   int bad = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
   if (bad && !status) status = bad;
-  if (!run->unwritten) run_draw_pictures(run);
+  bad = run->unwritten ? BRECCIA_OK : run_draw_pictures(run, error);
   run_tell_outcome(run, status);
   free(problem);
-  return status;
+  return status ? status : bad;
 }
 
 static int run_whole(breccia_model *model, const breccia_run *wish, Error *error)

@@ -25,8 +25,9 @@ int run_make_folder(const char *path, Error *error);
 /** Writes a small file whole, or not at all. */
 int run_write_file(Run *run, const char *name, const Text *words, Error *error);
 
-/** Pictures are made from the files, as `breccia plot` does. What cannot be drawn is a warning: the results are there. */
-void run_draw_pictures(Run *run);
+/** Pictures are made from the files, as `breccia plot` does.
+ *  @return BRECCIA_OK, also after a warning about what cannot be drawn; BRECCIA_FAILURE after a line about each that could not be written */
+int run_draw_pictures(Run *run, Error *error);
 
 /** Writes summary.json. @param[in] problem  why the run ended early; may be empty */
 int run_write_summary(Run *run, int status, const char *problem, Error *error);

@@ -82,7 +82,8 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
   return status;
 }
 
-static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
+/** @param[out] no_gnuplot  whether that is why it could not be drawn */
+static int draw_curve(Run *run, const PictureSpec *spec, bool *no_gnuplot, Error *error)
 {
   char name[160];
   const char *folder = run->wish->folder;
@@ -95,7 +96,8 @@ static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
                           .y_label = spec->y_label,
                           .log_axes = spec->log_axes,
                           .low = spec->range[0],
-                          .high = spec->range[1]};
+                          .high = spec->range[1],
+                          .no_gnuplot = no_gnuplot};
   int status = path ? curve_draw(&folder, 1, curve, &o, path, error) : BRECCIA_FAILURE;
   if (!status) note_file(run, path);
   free(path);
@@ -103,39 +105,59 @@ static int draw_curve(Run *run, const PictureSpec *spec, Error *error)
   return status;
 }
 
-/** Pictures are made from the files, as `breccia plot` does. What cannot be drawn is a warning: the results are there. */
-void run_draw_pictures(Run *run)
+typedef struct Outcome { /* of several pictures */
+  int status;
+  Error *warnings, *error;
+} Outcome;
+
+/** One picture of the deck. What could not be written is an error; what cannot be drawn, because the results do not hold it or there is no
+ *  gnuplot, is a warning. */
+static void draw(Run *run, const ResultView *view, const PictureSpec *spec, Outcome *outcome)
+{
+  Error *own = breccia_error_create();
+  bool no_gnuplot = false;
+  const int status = spec->field ? draw_field(run, view, spec, own) : draw_curve(run, spec, &no_gnuplot, own);
+  const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
+  if (unwritten) outcome->status = BRECCIA_FAILURE;
+  if (status) error_add(unwritten ? outcome->error : outcome->warnings, status, "%s", breccia_error_text(own));
+  breccia_error_destroy(&own);
+}
+
+static void draw_all(Run *run, const ResultView *view, Outcome *outcome)
+{
+  static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
+  const SectionList *own = &run->model->spec->pictures;
+  for (int k = 0; deck_usual_pictures(run->model->spec) && k < 3; ++k) {
+    bool written = false;
+    for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
+    const PictureSpec spec = {
+        .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
+    if (written) draw(run, view, &spec, outcome);
+  }
+  for (int k = 0; k < own->count; ++k) draw(run, view, own->items[k], outcome);
+}
+
+int run_draw_pictures(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  const bool usual_ones = deck_usual_pictures(model->spec);
-  if (!usual_ones && !model->spec->pictures.count) return;
-  Error *error = breccia_error_create();
+  if (!deck_usual_pictures(model->spec) && !model->spec->pictures.count) return BRECCIA_OK;
+  Outcome outcome = {BRECCIA_OK, breccia_error_create(), error};
   char *path = text_format("%s/results.vtkhdf", run->wish->folder),
        *folder = text_format("%s/pictures", run->wish->folder);
   ResultView view;
-  int status = path && folder ? run_make_folder(folder, error) : BRECCIA_FAILURE;
-  const bool open = !status && !result_view_open(&view, path, error);
-  if (open && view.steps) {
-    static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
-    for (int k = 0; usual_ones && k < 3; ++k) {
-      bool written = false;
-      for (int n = 0; n < run->names.count; ++n) written |= !strcmp(run->names.items[n], usual[k]);
-      const PictureSpec spec = {
-          .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
-      if (written) draw_field(run, &view, &spec, error);
-    }
-    for (int k = 0; k < model->spec->pictures.count; ++k) {
-      const PictureSpec *spec = model->spec->pictures.items[k];
-      if (spec->field)
-        draw_field(run, &view, spec, error);
-      else
-        draw_curve(run, spec, error);
-    }
+  if (!path || !folder)
+    outcome.status = error_add(error, BRECCIA_FAILURE, "out of memory: pictures");
+  else if (run_make_folder(folder, error) || result_view_open(&view, path, error))
+    outcome.status = BRECCIA_FAILURE;
+  else {
+    if (view.steps) draw_all(run, &view, &outcome);
+    result_view_close(&view);
   }
-  if (open) result_view_close(&view);
-  if (error_count(error))
-    text_add(&model->warnings, "%swarning: %s", model->warnings.length ? "\n" : "", breccia_error_text(error));
-  breccia_error_destroy(&error);
+  if (error_count(outcome.warnings))
+    text_add(&model->warnings, "%swarning: %s", model->warnings.length ? "\n" : "",
+             breccia_error_text(outcome.warnings));
+  breccia_error_destroy(&outcome.warnings);
   free(path);
   free(folder);
+  return outcome.status;
 }

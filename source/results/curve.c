@@ -206,7 +206,8 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
                               .x = {x_words, columns->x_unit, o->x_label, strchr(logarithmic, 'x') != NULL},
                               .y = {y_words, columns->y_unit, o->y_label, strchr(logarithmic, 'y') != NULL},
                               .low = o->low,
-                              .high = o->high};
+                              .high = o->high,
+                              .no_gnuplot = o->no_gnuplot};
     status = plot_draw(lines, count, &plot, path, error);
   }
   for (int k = 0; columns && titles && k < most; ++k) {

@@ -3,6 +3,7 @@
 #define BRECCIA_RESULTS_CURVE_H
 
 #include "base/error.h"
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct CurveOptions {
@@ -10,6 +11,7 @@ typedef struct CurveOptions {
   const char *x_label, *y_label; /* NULL: what the axis shows, and its unit */
   const char *log_axes;          /* of x and y those that are logarithmic; NULL: none */
   double low, high;              /* ends of the horizontal axis; NaN: from the data */
+  bool *no_gnuplot;              /* as in PlotOptions */
 } CurveOptions;
 
 /** Columns of CSV files against each other; several folders give several lines, named after them.

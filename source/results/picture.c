@@ -6,6 +6,7 @@
 #include "results/scene.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -384,17 +385,17 @@ static int paint(cairo_surface_t *surface, const Page *page, const Scene *scene,
   return bad;
 }
 
-static cairo_surface_t *open_surface(const char *path, const Page *page)
+/** @param[in] ending  of the picture's name, which tells what it is; "": an image in memory */
+static cairo_surface_t *open_surface(const char *path, const char *ending, const Page *page)
 {
-  const char *dot = path ? strrchr(path, '.') : "";
-  if (!strcmp(dot, ".svg")) return cairo_svg_surface_create(path, page->width, page->height);
-  if (!strcmp(dot, ".pdf")) return cairo_pdf_surface_create(path, page->width, page->height);
+  if (!strcmp(ending, ".svg")) return cairo_svg_surface_create(path, page->width, page->height);
+  if (!strcmp(ending, ".pdf")) return cairo_pdf_surface_create(path, page->width, page->height);
   return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)page->width, (int)page->height);
 }
 
-/** One step on a surface that belongs to the file `path`, or on an image in memory (NULL). */
+/** One step on a surface that belongs to the file `path`, or on an image in memory (NULL, ""). */
 static int render(cairo_surface_t **surface, const ResultView *view, int step, const PictureOptions *o,
-                  const PictureSurvey *given, const char *path, Error *error)
+                  const PictureSurvey *given, const char *path, const char *ending, Error *error)
 {
   Scene scene;
   PictureSurvey own;
@@ -403,7 +404,7 @@ static int render(cairo_surface_t **surface, const ResultView *view, int step, c
   if (!status) status = scene_fill(&scene, view, step, o, given ? given : &own, error);
   if (!status) {
     const Page page = page_lay_out(&scene, view, step, o);
-    *surface = open_surface(path, &page);
+    *surface = open_surface(path, ending, &page);
     if (paint(*surface, &page, &scene, view, step, o)) {
       status = error_add(error, BRECCIA_FAILURE, "out of memory: picture");
       cairo_surface_destroy(*surface);
@@ -418,23 +419,33 @@ int picture_draw(const ResultView *view, int step, const PictureOptions *o, cons
 {
   if (!picture_format(path))
     return error_add(error, BRECCIA_USER_ERROR, "%s: pictures end in .png, .svg or .pdf", path);
+  char *part = text_format("%s.part", path);
+  if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
+  const char *ending = strrchr(path, '.');
   cairo_surface_t *surface;
-  int bad = render(&surface, view, step, o, survey, path, error);
-  if (bad) return bad;
-  cairo_status_t status = cairo_surface_status(surface);
-  if (!status && !strcmp(strrchr(path, '.'), ".png")) status = cairo_surface_write_to_png(surface, path);
-  cairo_surface_finish(surface);
-  if (!status) status = cairo_surface_status(surface);
-  cairo_surface_destroy(surface);
-  if (!status) return BRECCIA_OK;
-  return error_add(error, BRECCIA_FAILURE, "%s: cannot be drawn: %s", path, cairo_status_to_string(status));
+  int status = render(&surface, view, step, o, survey, part, ending, error);
+  if (!status) {
+    errno = 0;
+    cairo_status_t end = cairo_surface_status(surface);
+    if (!end && !strcmp(ending, ".png")) end = cairo_surface_write_to_png(surface, part);
+    cairo_surface_finish(surface);
+    if (!end) end = cairo_surface_status(surface);
+    if (end && !(end == CAIRO_STATUS_WRITE_ERROR && errno))
+      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be drawn: %s", path, cairo_status_to_string(end));
+    else if (end || rename(part, path))
+      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
+    cairo_surface_destroy(surface);
+  }
+  if (status) remove(part);
+  free(part);
+  return status;
 }
 
 unsigned char *picture_pixels(const ResultView *view, int step, const PictureOptions *o, const PictureSurvey *survey,
                               int *wide, int *high, Error *error)
 {
   cairo_surface_t *surface;
-  if (render(&surface, view, step, o, survey, NULL, error)) return NULL;
+  if (render(&surface, view, step, o, survey, NULL, "", error)) return NULL;
   cairo_surface_flush(surface);
   *wide = cairo_image_surface_get_width(surface);
   *high = cairo_image_surface_get_height(surface);

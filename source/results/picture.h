@@ -36,7 +36,7 @@ typedef struct PictureSurvey {
 int picture_survey(const ResultView *view, int first, int last, bool framing, const PictureOptions *options,
                    PictureSurvey *survey, Error *error);
 
-/** Draws one step of a result file to a .png, .svg or .pdf file. */
+/** Draws one step of a result file to a .png, .svg or .pdf file, whole or not at all. */
 int picture_draw(const ResultView *view, int step, const PictureOptions *options, const PictureSurvey *survey,
                  const char *path, Error *error);
 

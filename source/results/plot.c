@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /** In single quotes, between which gnuplot reads no escapes and runs no commands. */
 static void quote(Text *script, const char *words)
@@ -16,22 +17,51 @@ static void quote(Text *script, const char *words)
   text_add(script, "'");
 }
 
+/** Whether a picture has its end. gnuplot does not look whether closing it succeeded. */
+static bool is_whole(const char *picture, const char *path)
+{
+  char tail[65] = "";
+  FILE *file = fopen(picture, "rb");
+  if (!file) return false;
+  const char *ending = strrchr(path, '.');
+  const char *last = !ending || !strcmp(ending, ".png") ? "IEND" : !strcmp(ending, ".svg") ? "</svg>" : "%%EOF";
+  if (!fseek(file, 0, SEEK_END) && !fseek(file, ftell(file) > 64 ? -64 : -ftell(file), SEEK_END)) {
+    const size_t bytes = fread(tail, 1, 64, file);
+    for (size_t k = 0; k < bytes; ++k)
+      if (!tail[k]) tail[k] = ' ';
+  }
+  fclose(file);
+  return strstr(tail, last) != NULL;
+}
+
 /** Runs a script that draws into `part`, which becomes the picture once it is whole. */
-static int run_gnuplot(const Text *script, const char *part, const char *path, Error *error)
+static int run_gnuplot(const Text *script, const char *part, const char *path, bool *missing, Error *error)
 {
   static const char *const words[] = {"gnuplot", NULL};
   Text reason = {0};
+  struct stat empty;
   int status = BRECCIA_OK;
+  FILE *file = fopen(part, "w"); /* gnuplot would not tell why it cannot */
+  if (!file || fclose(file)) {
+    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
+    if (file) remove(part);
+    return status;
+  }
   const ProgramEnd end = program_run(words, script->characters, script->length, &reason);
+  if (missing) *missing |= end == PROGRAM_MISSING;
   if (end == PROGRAM_MISSING)
     status = error_add(error, BRECCIA_FAILURE,
                        "curves are drawn by gnuplot, which is not installed: install it (Debian: apt install "
                        "gnuplot-nox) and draw again; all other files are written");
   else if (end == PROGRAM_FAILED)
     status = error_add(error, BRECCIA_FAILURE, "%s: not drawn: %s", path, reason.characters);
+  else if (!stat(part, &empty) && !empty.st_size)
+    status = error_add(error, BRECCIA_FAILURE, "%s: not drawn: gnuplot ended without a picture", path);
+  else if (!is_whole(part, path))
+    status = error_add(error, BRECCIA_FAILURE,
+                       "%s: cannot be written: gnuplot ended with half a picture; is the disk full?", path);
   else if (rename(part, path))
-    status = error_add(error, BRECCIA_FAILURE, "%s: not drawn: %s", path,
-                       errno == ENOENT ? "gnuplot ended without a picture" : strerror(errno));
+    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
   if (status) remove(part);
   text_free(&reason);
   return status;
@@ -154,7 +184,7 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
   }
   text_add(&script, "\n");
   int status = script.failed ? error_add(error, BRECCIA_FAILURE, "out of memory: %s", path)
-                             : run_gnuplot(&script, part, path, error);
+                             : run_gnuplot(&script, part, path, o->no_gnuplot, error);
   text_free(&script);
   free(part);
   return status;

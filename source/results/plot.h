@@ -23,9 +23,10 @@ typedef struct PlotOptions {
   const char *title;
   PlotAxis x, y;
   double low, high; /* ends of the horizontal axis; NaN: from the data */
+  bool *no_gnuplot; /* set where it is not installed, which is said as well; may be NULL */
 } PlotOptions;
 
-/** @param[in] path  .png, .svg or .pdf */
+/** Draws a picture, whole or not at all. @param[in] path  .png, .svg or .pdf */
 int plot_draw(const PlotLine *lines, int count, const PlotOptions *options, const char *path, Error *error);
 
 #endif

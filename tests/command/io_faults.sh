@@ -76,5 +76,38 @@ else
     else fault $number 28 "No space left on device" $((number / 2 % 2)); fi
   done
 fi
-echo "$calls calls in a run"
+
+# A folder that cannot be made: by a full disk it is a failure, by its name the user's mistake.
+FAULT_FOLDER="$work/deep" FAULT_AT=1 FAULT_ERROR=28 LD_PRELOAD="$build/tests/libio_faults.so" run deep/inner; equal "no folder: status" $? 1
+equal "no folder" "$(cat out)" "deep/inner: the folder cannot be made: No space left on device"
+run bar.yaml/inner; equal "no folder in a file: status" $? 2
+
+# A picture that cannot be written: the others and all else are, and the status tells.
+sed 's/^pictures: .*/pictures: [{field: damage}, {curve: "end.time : end.x"}]/' bar.yaml > drawn.yaml
+pictures() { # pictures [NUMBER]: one run whose NUMBERth call on a picture fails, in each process
+  rm -rf drawn drawn-count
+  FAULT_FOLDER="$work/drawn/pictures" FAULT_COUNT="$work/drawn-count" FAULT_AT=$1 FAULT_ERROR=28 LD_PRELOAD="$build/tests/libio_faults.so" \
+    "$breccia" run drawn.yaml --quiet --threads 1 --output drawn > out 2>&1
+}
+pictures 0; equal "pictures: status" $? 0
+equal "pictures" "$(ls drawn/pictures | tr '\n' ' ')" "damage.png end.png "
+drawn=$(wc -c < drawn-count)
+[ "$drawn" -ge 5 ] || fail "only $drawn calls on pictures were seen"
+for number in $(seq 1 "$drawn"); do
+  pictures "$number"
+  status=$?
+  if [ $status = 0 ]; then # each process counts for itself, and none came so far
+    equal "pictures, call $number: made" "$(ls drawn/pictures | tr '\n' ' ')" "damage.png end.png "
+    break
+  fi
+  checks=$((checks + 4))
+  [ $status = 1 ] || fail "pictures, call $number: status $status: $(cat out)"
+  [ "$(grep -Ec '^drawn/pictures/[a-z]*.png: (cannot be written|not drawn): ' out)" = "$(wc -l < out)" ] || fail "pictures, call $number: $(cat out)"
+  [ "$(find drawn/pictures -name '*.png' | wc -l)" = $((2 - $(wc -l < out))) ] || fail "pictures, call $number: $(ls drawn/pictures), though $(cat out)"
+  [ -z "$(find drawn -name '*.part')" ] || fail "pictures, call $number: left behind: $(find drawn -name '*.part')"
+  cmp -s whole/end.csv drawn/end.csv && "$build/tests/compare_results" whole/results.vtkhdf drawn/results.vtkhdf ||
+    fail "pictures, call $number: histories or results differ"
+  contains "pictures, call $number" "$(cat drawn/summary.json)" '"completed": true'
+done
+echo "$calls calls in a run, $drawn on pictures"
 finish
