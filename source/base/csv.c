@@ -47,7 +47,7 @@ static bool read_table(Table *table, const char *path, Error *error)
 {
   *table = (Table){.text = text_read_file(path, NULL)};
   if (!table->text) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
+    error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, text_why_unread(errno));
     return false;
   }
   table->heading = table->text;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LINES = 30 }; /* more are no help; the first are to be mended first */
+enum { MOST_LINES = 30, LONGEST_LINE = 4000, END_KEPT = 400 }; /* more are no help; the first are to be mended first */
 
 struct breccia_error {
   Text text;
@@ -42,6 +42,19 @@ static bool holds_line(const Error *error, const char *line)
   return false;
 }
 
+/** Takes out the middle of a line that nobody would read, between two letters. */
+static void cut_line(Text *line)
+{
+  char *words = line->characters;
+  size_t from = LONGEST_LINE - END_KEPT, to = line->length - END_KEPT;
+  if (line->length <= LONGEST_LINE) return;
+  while (((unsigned char)words[from] & 0xc0) == 0x80) --from;
+  while (((unsigned char)words[to] & 0xc0) == 0x80) ++to;
+  memcpy(words + from, " ... ", 5);
+  memmove(words + from + 5, words + to, line->length - to + 1);
+  line->length = from + 5 + line->length - to;
+}
+
 int error_add(Error *error, int status, const char *format, ...)
 {
   if (!error) return status;
@@ -50,6 +63,7 @@ int error_add(Error *error, int status, const char *format, ...)
   va_start(arguments, format);
   text_add_list(&line, format, arguments);
   va_end(arguments);
+  cut_line(&line);
   if (!line.characters || !holds_line(error, line.characters)) {
     if (error->count < MOST_LINES)
       text_add(&error->text, "%s%s", error->count ? "\n" : "", line.characters ? line.characters : format);

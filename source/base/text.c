@@ -3,9 +3,16 @@
 #include "base/memory.h"
 
 #include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const int64_t largest = (int64_t)4 << 30; /* bytes of a file; more would only fill the memory */
 
 void text_add_list(Text *text, const char *format, va_list arguments)
 {
@@ -135,9 +142,34 @@ char *text_beside(const char *path, const char *file)
   return text_format("%.*s/%s", (int)(slash - path), path, file);
 }
 
+/** Opens a file that ends: reading a device or a pipe may take for ever. @return NULL, with the reason in errno */
+static FILE *open_whole(const char *path)
+{
+  const int number = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe without a writer would wait for one */
+  struct stat status;
+  if (number < 0) return NULL;
+  int bad = fstat(number, &status) ? errno : 0;
+  if (!bad && S_ISDIR(status.st_mode)) bad = EISDIR;
+  if (!bad && !S_ISREG(status.st_mode)) bad = ESPIPE;
+  if (!bad && status.st_size > largest) bad = EFBIG;
+  FILE *file = bad ? NULL : fdopen(number, "rb");
+  if (file) return file;
+  if (!bad) bad = errno;
+  close(number);
+  errno = bad;
+  return NULL;
+}
+
+const char *text_why_unread(int number)
+{
+  if (number == ESPIPE) return "it is a pipe or a device; expected a file";
+  if (number == EFBIG) return "it is larger than 4 GB";
+  return strerror(number);
+}
+
 char *text_read_file(const char *path, size_t *length)
 {
-  FILE *file = fopen(path, "rb");
+  FILE *file = open_whole(path);
   if (!file) return NULL;
   size_t capacity = 1 << 16, n = 0;
   char *content = memory_plain(capacity, 1);

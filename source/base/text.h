@@ -43,7 +43,10 @@ void text_file_name(const char *words, char *name, size_t size);
 /** Path of a file whose name, unless it begins at the root, is relative to the folder of another. To be freed. */
 char *text_beside(const char *path, const char *file);
 
-/** Reads a whole file. @return its content, zero-terminated, to be freed; NULL with errno set on failure */
+/** Reads a whole file, no pipe or device. @return its content, zero-terminated, to be freed; NULL with errno set on failure */
 char *text_read_file(const char *path, size_t *length);
+
+/** Why text_read_file has read nothing. @param[in] number  what it left in errno */
+const char *text_why_unread(int number);
 
 #endif

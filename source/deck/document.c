@@ -10,8 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-enum { DEEPEST = 40, MOST_COPIES = 100000 };
+/* Names are compared each with each, which 10000 of them take some tenths of a second for. */
+enum { DEEPEST = 40, MOST_COPIES = 100000, MOST_KEYS = 10000, LONGEST_VALUE = 60 };
 
 typedef struct Builder {
   Document *document;
@@ -196,6 +198,12 @@ static void build(Builder *builder, struct fy_node *from, Node *node, int depth)
   const bool map = fy_node_is_mapping(from);
   const int count = map ? fy_node_mapping_item_count(from) : fy_node_sequence_item_count(from);
   node->kind = map ? NODE_MAP : NODE_LIST;
+  if (map && count > MOST_KEYS) {
+    char words[80];
+    snprintf(words, sizeof words, "%d keys in one map are too many; it may hold %d", count, MOST_KEYS);
+    refuse(builder, node, words);
+    return;
+  }
   node->items = arena_zeroed(arena, sizeof(Node) * (size_t)(count > 0 ? count : 1));
   Node *merged = map ? arena_zeroed(arena, sizeof(Node) * (size_t)(count > 0 ? count : 1)) : NULL;
   if (!node->items || (map && !merged)) {
@@ -382,6 +390,19 @@ Node node_of_key(const Node *item)
   return where;
 }
 
+/** Cuts a long value of the deck wherever a message says it. */
+static void cut_value(Text *words, const char *value)
+{
+  size_t length = value ? strlen(value) : 0, kept = LONGEST_VALUE;
+  if (length <= 2 * LONGEST_VALUE) return;
+  while (kept > 0 && ((unsigned char)value[kept] & 0xc0) == 0x80) --kept; /* no half of a letter */
+  for (char *at = words->characters; at && (at = strstr(at, value)); at += kept) {
+    memcpy(at + kept, "...", 3);
+    memmove(at + kept + 3, at + length, words->length - (size_t)(at + length - words->characters) + 1);
+    words->length -= length - kept - 3;
+  }
+}
+
 int node_error(const Document *document, const Node *node, Error *error, const char *format, ...)
 {
   Text words = {0};
@@ -391,17 +412,26 @@ int node_error(const Document *document, const Node *node, Error *error, const c
   va_start(arguments, format);
   text_add_list(&words, format, arguments);
   va_end(arguments);
-  error_add(error, BRECCIA_USER_ERROR, "%s: %s%s%s%s", where, text_words(&words), node->written ? " (written '" : "",
-            node->written ? node->written : "", node->written ? "')" : "");
+  text_add(&words, "%s%s%s", node->written ? " (written '" : "", node->written ? node->written : "",
+           node->written ? "')" : "");
+  cut_value(&words, node->text);
+  cut_value(&words, node->written);
+  cut_value(&words, node->key);
+  error_add(error, BRECCIA_USER_ERROR, "%s: %s", where, text_words(&words));
   text_free(&words);
   return BRECCIA_USER_ERROR;
 }
 
 char *document_text(const char *path, size_t *length, Error *error)
 {
+  struct stat status;
+  if (!stat(path, &status) && S_ISREG(status.st_mode) && status.st_size > DOCUMENT_LARGEST) {
+    error_add(error, BRECCIA_USER_ERROR, "%s: is larger than %d MB, which no deck is", path, DOCUMENT_LARGEST >> 20);
+    return NULL;
+  }
   char *text = text_read_file(path, length);
   if (!text) {
-    error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+    error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", path, text_why_unread(errno));
   } else if (strlen(text) != *length) {
     error_add(error, BRECCIA_USER_ERROR, "%s:1:1: is not text: it holds a zero byte", path);
     free(text);

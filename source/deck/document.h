@@ -35,6 +35,8 @@ Document *document_parse(const char *text, size_t length, const char *name, Erro
  *  @return its root, or NULL after saying what is wrong */
 Node *document_parse_more(Document *document, const char *text, size_t length, const char *name, bool setting,
                           Error *error);
+enum { DOCUMENT_LARGEST = 64 << 20 }; /* bytes of a deck's file, or of one that it includes */
+
 /** The characters of a deck's file, to be freed; NULL with a message if it cannot be read or is not text. */
 char *document_text(const char *path, size_t *length, Error *error);
 void document_destroy(Document **document);

@@ -9,6 +9,11 @@
 #include <string.h>
 #include <strings.h>
 
+enum { MOST_SECTIONS = 20000 }; /* of one list: what they name is looked for among all, which takes seconds */
+
+/* Powers of six of lengths are still numbers. */
+static const double largest_number = 1e50;
+
 /* ---- scalars ---- */
 
 static const char *kind_words(FieldKind kind)
@@ -42,7 +47,12 @@ int deck_number(const DeckReader *reader, const Node *node, const char *label, c
   int failed = units_read(reader->units, dimension, node->text, value, &reason);
   if (failed)
     node_error(reader->document, node, reader->error, "%s: %s", label, text_words(&reason));
-  else if (!interval_contains(range, *value)) {
+  else if (fabs(*value) > largest_number || (*value != 0 && fabs(*value) < 1 / largest_number)) {
+    node_error(reader->document, node, reader->error,
+               "%s: %s is too %s to reckon with; in the deck's units numbers lie between %g and %g", label, node->text,
+               fabs(*value) > largest_number ? "large" : "small", 1 / largest_number, largest_number);
+    failed = 1;
+  } else if (!interval_contains(range, *value)) {
     char words[128];
     interval_describe(range, words, sizeof words);
     node_error(reader->document, node, reader->error, "%s: %s is out of range; it must be %s", label, node->text,
@@ -185,6 +195,11 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
   if (node->kind != wanted) {
     node_error(reader->document, node, reader->error, "%s: expected %s%s", label, kind_words(field->kind),
                node->kind == NODE_LIST ? "; found a list: leave out the '- '" : "");
+    return 1;
+  }
+  if (node->count > MOST_SECTIONS) {
+    node_error(reader->document, node, reader->error, "%s: %d are too many; there may be %d", label, node->count,
+               MOST_SECTIONS);
     return 1;
   }
   list->items = field_room(reader, sizeof(void *) * (size_t)(node->count ? node->count : 1));

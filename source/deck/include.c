@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { DEEPEST = 16, MOST_FILES = 200, LARGEST = 64 << 20 };
+enum { DEEPEST = 16, MOST_FILES = 200 };
 
 typedef struct Files {
   Document *document;
@@ -66,8 +66,9 @@ static int take_file(Files *files, Node *map, const Node *name)
     bad = out_of_memory(files);
   else if (stat(path, &status))
     bad = node_error(document, name, files->error, "include: %s: %s", path, strerror(errno));
-  else if (!S_ISREG(status.st_mode) || status.st_size > LARGEST)
-    bad = node_error(document, name, files->error, "include: %s: is not a file of at most 64 MB", path);
+  else if (!S_ISREG(status.st_mode) || status.st_size > DOCUMENT_LARGEST)
+    bad = node_error(document, name, files->error, "include: %s: is not a file of at most %d MB", path,
+                     DOCUMENT_LARGEST >> 20);
   else if (files->depth == DEEPEST || files->read == MOST_FILES)
     bad = node_error(document, name, files->error, "include: %s: too many files include each other", path);
   for (int k = 0; k < files->depth && !bad; ++k)

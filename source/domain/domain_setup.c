@@ -187,6 +187,17 @@ static bool forgets_spacings(const PeridynamicsSpec *spec, const Body *body)
   return !spec->horizon.in_spacings && plain && number >= 1.4 && number <= 8 && odd;
 }
 
+/** Adds what was told without a place, at the one of a node. @return the status */
+static int tell_at(const DeckReader *reader, const Node *node, int status, Error **told)
+{
+  if (status == BRECCIA_USER_ERROR)
+    node_error(reader->document, node, reader->error, "%s", breccia_error_text(*told));
+  else if (status)
+    error_add(reader->error, status, "%s", breccia_error_text(*told));
+  breccia_error_destroy(told);
+  return status;
+}
+
 int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Error *error = reader->error;
@@ -227,7 +238,9 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     family.row_sums |= d->regions[r].type->row_sums;
     family.bond_lengths |= d->regions[r].type->bond_lengths;
   }
-  if ((status = family_create(&d->family, &d->body, &family, error))) return status;
+  Error *told = breccia_error_create();
+  status = family_create(&d->family, &d->body, &family, told);
+  if (tell_at(reader, section_node(pd, "horizon"), status, &told)) return status;
   CHECK(family_is_valid(&d->family));
   team_each(d->particles->places, weigh_family, d);
 
@@ -256,7 +269,10 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                                     .material_count = d->material_count,
                                     .material = d->material,
                                     .foreign = region->foreign};
-    if (!(region->formulation = region->type->create(&parts, error))) return BRECCIA_USER_ERROR;
+    told = breccia_error_create();
+    region->formulation = region->type->create(&parts, told);
+    status = region->formulation ? BRECCIA_OK : BRECCIA_USER_ERROR;
+    if (tell_at(reader, region->name ? region->node : section_node(pd, "formulation"), status, &told)) return status;
   }
   status = create_failure(d, reader, spec->failure, &of);
   return status ? status : create_forces(d, spec, space, error);

@@ -62,7 +62,7 @@ int measured_points_read(MeasuredPoints *p, const char *path, const Units *units
 {
   char *text = text_read_file(path, NULL);
   *p = (MeasuredPoints){.path = text_format("%s", path)};
-  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: measured points: %s", path, strerror(errno));
+  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: measured points: %s", path, text_why_unread(errno));
   size_t rows = 1;
   for (const char *c = text; *c; ++c) rows += *c == '\n';
   p->x = memory_zeroed(rows, sizeof(double), "points", error);

@@ -111,6 +111,7 @@ static int create(Solver *run, Error *error)
                   .clock = &run->clock,
                   .ledger = &run->ledger,
                   .force = run->force};
+  run->ledger.wave = ledger_wave_speed(d);
   int failed = 0;
   for (int k = 0; k < 3; ++k)
     failed |= !(s->acceleration[k] = places_array(d->particles->places, "accelerations", error));
@@ -304,6 +305,7 @@ static int begin(Solver *run, Error *error)
     for (int64_t i = 0; i < p->places; ++i) {
       s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->density[i];
       s->ledger->kinetic += 0.5 * p->density[i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
+      s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
     }
   return BRECCIA_OK;
 }
@@ -349,9 +351,11 @@ static int advance(Solver *run, Text *warning, Error *error)
   state_note_others(&s->before); /* first, so that a step that fails gives back the plan and the stable step too */
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
+  const double start = s->clock->time;
   explicit_foresee_motions(s);
   team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);
+  s->ledger->fastest = s->motion / (s->clock->time - start);
   domain_commit_points(s->domain);
   forces_commit(&s->domain->forces);
   const int looked = look_for_rest(run, warning, error);

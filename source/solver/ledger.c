@@ -2,18 +2,81 @@
 
 #include <math.h>
 
+/* Steps: when a load sets in, all energies are next to nothing. */
+enum { LASTING = 3, LASTING_FAST = 10 };
+/* Times the speed that can be explained. Fragments leave a blow at up to twice its speed, and waves add up where they meet. */
+static const double most_of_speed = 10;
+
+double ledger_wave_speed(const Domain *d)
+{
+  double fastest = 0;
+  for (int k = 0; k < d->material_count; ++k) {
+    const Material *m = &d->materials[k];
+    fastest = fmax(fastest, sqrt((m->bulk + 4 * m->shear / 3) / m->density));
+  }
+  return fastest;
+}
+
+static int64_t fastest_place(const Particles *p)
+{
+  int64_t place = 0;
+  double most = -1;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    for (int k = 0; k < 3; ++k) {
+      if (fabs(p->velocity[k][i]) <= most) continue;
+      most = fabs(p->velocity[k][i]);
+      place = i;
+    }
+  }
+  return place;
+}
+
+/** Whether particles have become too fast: beyond the bound, and twice as fast within LASTING_FAST steps, which no steady load makes a free
+ *  fragment; or beyond all bounds. */
+static bool is_too_fast(Ledger *l)
+{
+  const double explained = l->wave + l->given;
+  if (!(l->fastest > most_of_speed * explained)) {
+    l->fast_steps = 0;
+    return false;
+  }
+  if (l->fast_steps++ % LASTING_FAST == 0) l->fast_from = l->fastest;
+  return l->fastest > 2 * l->fast_from || l->fastest > 100 * most_of_speed * explained;
+}
+
+static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, Error *error)
+{
+  const Particles *p = d->particles;
+  const int64_t i = fastest_place(p);
+  return error_add(
+      error, BRECCIA_FAILURE,
+      "step %lld (time %g): the computation has blown up: particle %d at [%g, %g, %g] moves at %.3g, more than %g "
+      "times "
+      "the waves of the materials (%.4g) and the speeds at the start and prescribed (%.4g) together; the time step of "
+      "%.4g "
+      "(stable step %.4g) is too long for what happens, or bonds that break or close give more than they got: "
+      "choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
+      (long long)clock->step, clock->time, p->number[i], p->position[0][i], p->position[1][i], p->position[2][i],
+      l->fastest, most_of_speed, l->wave, l->given, clock->time_step, clock->stable);
+}
+
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.
- *  The second bound is wide, because a step close to the stable one hardly follows the shortest waves. */
+ *  The second bound is wide, because a step close to the stable one hardly follows the shortest waves. Works that have grown beyond all numbers
+ *  say nothing, and speeds explode long before; so they are looked at by themselves. */
 int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
-  /* Steps: when a load sets in, all energies are next to nothing. */
-  const int64_t lasting = 3;
   const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
   const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_dissipated(&d->forces);
   l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
-  const bool sound = fmin(internal, fracture) >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
+  const bool sound = isfinite(l->paid) && internal >= -most_given * l->paid && fracture >= -most_given * l->paid &&
+                     l->between <= most_unexplained * l->paid;
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;
-  if (l->unsound_steps < lasting) return BRECCIA_OK;
+  if (is_too_fast(l)) {
+    l->unsound_steps = LASTING;
+    return tell_too_fast(l, d, clock, error);
+  }
+  if (l->unsound_steps < LASTING) return BRECCIA_OK;
   return error_add(
       error, BRECCIA_FAILURE,
       "step %lld (time %g): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
@@ -54,6 +117,9 @@ void ledger_state(Ledger *l, StateList *list)
               {"energy between steps", &l->between},
               {"kinetic energy at the start", &l->kinetic_at_start},
               {"paid energy", &l->paid}};
+  state_add_number(list, "largest speed given", "velocity", STATE_TRIED, &l->given);
+  state_add_number(list, "speed beyond the bound", "velocity", STATE_TRIED, &l->fast_from);
+  state_add_count(list, "steps beyond the bound of speeds", STATE_TRIED, &l->fast_steps);
   for (size_t k = 0; k < sizeof sums / sizeof *sums; ++k)
     state_add_number(list, sums[k].name, "energy", STATE_TRIED, sums[k].value);
   state_add_count(list, "damped", STATE_TRIED, &l->damped);

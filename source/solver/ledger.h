@@ -12,6 +12,11 @@ typedef struct Ledger {
   double between; /* kinetic energy at full steps exceeds what the works say by the sum of this (explicit.c) */
   double kinetic_at_start;
   double paid;           /* the most that loads, motions and speeds at the start have put in so far */
+  double wave;           /* fastest waves of its materials, as they are unharmed */
+  double given;          /* largest speed that the start and prescribed motions have given any particle so far */
+  double fastest;        /* largest component of any velocity in the middle of the last step */
+  double fast_from;      /* that some steps ago, where it is beyond its bound */
+  int64_t fast_steps;    /* up to now, in each of which it was beyond */
   int64_t damped;        /* there has been damping: its work is more than roundings */
   int64_t unsound_steps; /* up to now, in each of which energy has come from nothing */
 } Ledger;
@@ -35,8 +40,11 @@ typedef struct Energy {
 
 Energy ledger_energy(const Ledger *ledger, Domain *domain);
 
+/** Speed of the fastest waves of the materials of a body, as they are unharmed. */
+double ledger_wave_speed(const Domain *domain);
+
 /** After a step: fails if energy has come from nothing for some steps: bonds gave back more than they had received, or no work explains
- *  the speeds. */
+ *  the speeds; or if particles have become faster than anything explains (docs/theory.md 7). */
 int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, Error *error);
 
 /** Rows of the sums. */

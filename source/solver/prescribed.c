@@ -115,6 +115,7 @@ void explicit_foresee_motions(Explicit *s)
     s->motions[n] = (struct Motion){.target = constraint_displacement(constraint, s->clock->time + dt),
                                     .moved = constraint_displacement(constraint, end) - (first ? 0 : before),
                                     .rate = (constraint_displacement(constraint, end + dt) - before) / (2 * dt)};
+    s->ledger->given = fmax(s->ledger->given, fmax(fabs(s->motions[n].moved / dt), fabs(s->motions[n].rate)));
   }
 }
 

@@ -355,6 +355,33 @@ for content in '' '- a' 'words' '42' '%' '%TAG'; do
   equal "deck «$content»: exit status" $? 2
   contains "deck «$content»" "$(cat "$work/errors")" "deck.yaml:1:"
 done
+# Files without an end, folders, and more than anybody writes: refused soon, with their place
+mkfifo "$work/pipe"
+for file in /dev/zero pipe .; do
+  case $file in .) what='a directory' ;; *) what='a pipe or a device' ;; esac
+  (cd "$work" && timeout 60 "$breccia" check $file > out 2> errors)
+  equal "$file as deck: status" $? 2
+  contains "$file as deck" "$(cat "$work/errors")" "$file: cannot be read: "
+  refuse "s#^title: .*#include: $file#" 1:10 'is not a file of at most 64 MB'
+  refuse "s#ramp to: 0.1 s#file: {name: $file}#" 18:73 "$file: "
+  refuse "s#shape: .*#file: $file#" 10:11 "$file: "
+done
+many() { seq "$1" | sed "s/.*/$2/"; }
+{ cat "$work/good.yaml"; echo 'variables:'; many 10001 '  v&: 1'; } > "$work/deck.yaml"
+(cd "$work" && timeout 120 "$breccia" check deck.yaml > out 2> errors)
+equal "10001 keys" "$? $(cat "$work/errors")" "2 deck.yaml:25:1: 10001 keys in one map are too many; it may hold 10000"
+{ grep -v '^loads\|name: pull\|^watch\|^  tip' "$work/good.yaml"; echo 'loads:'; many 20001 '  - {on: end, force: [1, 0, 0]}'; } > "$work/deck.yaml"
+(cd "$work" && timeout 120 "$breccia" check deck.yaml > out 2> errors)
+equal "20001 loads" "$? $(cat "$work/errors")" "2 deck.yaml:21:1: loads: 20001 are too many; there may be 20000"
+long=$(printf '%4000s' '' | tr ' ' a)
+refuse "s/spacing: 0.1\$/spacing: $long/" 9:14 'aaaa...'"'"' is not a number'
+equal "a long value: letters" "$(($(wc -c < "$work/errors") < 300))" 1
+refuse "s/titl/$long/" 1:1 'aaaa...'"'"'; '
+refuse 's/horizon: 3.015 spacings/horizon: 31 spacings/' 15:25 'would have more than 65535 bonds'
+refuse 's/density: 1.5/density: 1e-320/' 4:42 "density: 1e-320 is too small to reckon with; in the deck's units numbers lie between 1e-50 and 1e+50"
+refuse 's/210 GPa/1e52/' 5:57 'is too large to reckon with'
+refuse 's/spacing: 0.1$/spacing: 1e-60/' 9:14 'is too small'
+
 cat > "$work/test.yaml" <<'Y'
 material: {model: elastic, density: 1, Young modulus: 1, Poisson ratio: 0}
 test: {kind: uniaxial, strain: 0.01}

@@ -320,6 +320,51 @@ static void energy_from_nothing_stops_the_run(void **state)
   breccia_error_destroy(&error);
 }
 
+/** A spring that is too stiff for the step takes from itself what it gives, so that works say nothing; speeds do. */
+static void a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed(void **state)
+{
+  (void)state;
+  breccia_error *error = breccia_error_create();
+  breccia_model *m;
+  const breccia_options force = {.size = sizeof(breccia_options), .force = 1};
+  const char *deck =
+      SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+                 "loads: [{on: {face: x-}, spring: {stiffness: 1e6}}, {on: {all: yes}, body force: [1, 0, 0]}]\n"
+                 "solve: {explicit: {time step: 5e-4, steps: 100000}}\n";
+  assert_int_equal(breccia_model_load_string(deck, "deck", &force, &m, error), 0);
+  const double wave = sqrt((m->domain.materials[0].bulk + 4 * m->domain.materials[0].shear / 3) / 2);
+  int64_t absurd = -1;
+  int status = BRECCIA_OK;
+  while (!status && m->solver.clock.step < 5000) {
+    status = breccia_model_step(m, 1, error);
+    if (absurd < 0 && m->solver.ledger.fastest > 10 * wave) absurd = m->solver.clock.step;
+  }
+  assert_int_equal(status, BRECCIA_FAILURE);
+  assert_non_null(strstr(breccia_error_text(error), "has blown up: particle"));
+  assert_true(absurd > 0 && m->solver.clock.step <= absurd + 10);
+  assert_true(m->solver.ledger.unsound_steps > 0); /* so that the checkpoint before is kept */
+  breccia_model_destroy(&m);
+  breccia_error_destroy(&error);
+}
+
+/** Fast for its material is no mistake: a shot, a body that is pulled away, and one that falls for long. */
+static void speeds_that_the_deck_gives_stop_nothing(void **state)
+{
+  (void)state;
+  static const char *const loads[] = {"{on: {all: yes}, initial velocity: [1e5, 0, 0]}",
+                                      "{on: {all: yes}, velocity: [1e5, 0, 0]}",
+                                      "{on: {all: yes}, body force: [2e5, 0, 0]}"};
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m =
+        model_of(SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+                            "loads: [%s]\nsolve: {explicit: {steps: 200}}\n",
+                 loads[k]);
+    step_surely(m, 200);
+    assert_true(m->solver.ledger.fastest > 12 * ledger_wave_speed(&m->domain));
+    breccia_model_destroy(&m);
+  }
+}
+
 static void a_force_that_is_no_number_is_reported_with_place_step_and_cause(void **state)
 {
   (void)state;
@@ -411,6 +456,8 @@ int main(void)
       cmocka_unit_test(looking_only_where_bonds_may_break_misses_none),
       cmocka_unit_test(prescribed_particles_go_where_they_are_told),
       cmocka_unit_test(energy_from_nothing_stops_the_run),
+      cmocka_unit_test(a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed),
+      cmocka_unit_test(speeds_that_the_deck_gives_stop_nothing),
       cmocka_unit_test(a_load_that_sets_in_late_stops_nothing),
       cmocka_unit_test(a_force_that_is_no_number_is_reported_with_place_step_and_cause),
       cmocka_unit_test(a_step_above_the_stable_one_is_refused),

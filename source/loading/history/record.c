@@ -11,7 +11,7 @@
 static char *read_text(const char *path, Error *error)
 {
   char *text = text_read_file(path, NULL);
-  if (!text) error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
+  if (!text) error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, text_why_unread(errno));
   return text;
 }
 
