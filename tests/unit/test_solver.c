@@ -351,9 +351,9 @@ static void a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed
 static void speeds_that_the_deck_gives_stop_nothing(void **state)
 {
   (void)state;
-  static const char *const loads[] = {"{on: {all: yes}, initial velocity: [1e5, 0, 0]}",
+  static const char *const loads[] = {"{on: {all: yes}, initial velocity: {translation: [1e5, 0, 0]}}",
                                       "{on: {all: yes}, velocity: [1e5, 0, 0]}",
-                                      "{on: {all: yes}, body force: [2e5, 0, 0]}"};
+                                      "{on: {all: yes}, body force: [4e4, 0, 0]}"};
   for (int k = 0; k < 3; ++k) {
     breccia_model *m =
         model_of(SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}}\n"
