@@ -109,8 +109,8 @@ static int write_histories(Run *run, bool last, Error *error)
 static int write_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  /* Of energy from nothing the checkpoint before is the better one; of this very step it need not be written twice. */
-  if (model->solver.ledger.unsound_steps || run->checkpoint_step == model->solver.clock.step) return BRECCIA_OK;
+  /* Where things go wrong the checkpoint before is the better one; of this very step it need not be written twice. */
+  if (ledger_is_doubtful(&model->solver.ledger) || run->checkpoint_step == model->solver.clock.step) return BRECCIA_OK;
   if (result_file_show(run->results, error)) { /* a restart takes them up from there */
     run->unwritten = true;
     return BRECCIA_FAILURE;
@@ -308,8 +308,9 @@ static int loop(Run *run, Error *error)
   Solver *s = &model->solver;
   int status = run->wish->restart ? BRECCIA_OK : due(run, error);
   while (!status && !solver_is_done(s) && s->clock.step < run->steps) {
-    /* Where energy comes from nothing, a step or two more show whether it goes on. */
-    if (run->wish->interrupted && *run->wish->interrupted && !s->ledger.unsound_steps) return BRECCIA_INTERRUPTED;
+    /* Where energy comes from nothing or speeds are absurd, some steps more show whether it goes on. */
+    if (run->wish->interrupted && *run->wish->interrupted && !ledger_is_doubtful(&s->ledger))
+      return BRECCIA_INTERRUPTED;
     const int64_t stage = s->clock.stage, step = s->clock.step;
     status = host_status(run->host, model_advance(model, error), error);
     if (s->clock.stage != stage) begin_stage(model);

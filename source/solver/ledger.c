@@ -52,13 +52,16 @@ static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, E
   return error_add(
       error, BRECCIA_FAILURE,
       "step %lld (time %g): the computation has blown up: particle %d at [%g, %g, %g] moves at %.3g, more than %g "
-      "times "
-      "the waves of the materials (%.4g) and the speeds at the start and prescribed (%.4g) together; the time step of "
-      "%.4g "
-      "(stable step %.4g) is too long for what happens, or bonds that break or close give more than they got: "
-      "choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
+      "times the waves of the materials (%.4g) and the speeds at the start and prescribed (%.4g) together; the time "
+      "step of %.4g (stable step %.4g) is too long for what happens, or bonds that break or close give more than they "
+      "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
       (long long)clock->step, clock->time, p->number[i], p->position[0][i], p->position[1][i], p->position[2][i],
       l->fastest, most_of_speed, l->wave, l->given, clock->time_step, clock->stable);
+}
+
+bool ledger_is_doubtful(const Ledger *l)
+{
+  return l->unsound_steps > 0 || (l->fast_steps > 0 && l->fast_steps <= LASTING_FAST);
 }
 
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.

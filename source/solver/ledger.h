@@ -47,6 +47,9 @@ double ledger_wave_speed(const Domain *domain);
  *  the speeds; or if particles have become faster than anything explains (docs/theory.md 7). */
 int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, Error *error);
 
+/** Whether the next few steps will show that the last one has gone wrong: of such a state no checkpoint is written. */
+bool ledger_is_doubtful(const Ledger *ledger);
+
 /** Rows of the sums. */
 void ledger_state(Ledger *ledger, StateList *list);
 
