@@ -7,8 +7,8 @@
  * A struct of this header begins with its size, which whoever makes it sets: `breccia_run run = {.size = sizeof run, ...}`. So a
  * program and a library of different versions understand each other: what the older one does not know of is zero.
  *
- * The process that embeds the library stays as it is: threads of the library take no signals, no handler is set, and the locale of
- * the calling thread and what HDF5 does with errors are given back at the end of each call. */
+ * The process that embeds the library stays as it is: threads of the library take no signals, no handler is set (but for
+ * `trap` of breccia_options), and the locale of the calling thread and what HDF5 does with errors are given back at the end of each call. */
 #ifndef BRECCIA_H
 #define BRECCIA_H
 
@@ -127,6 +127,8 @@ typedef struct breccia_options {
   int force;                   /* 1: accept a time step above the stable one */
   const char *const *settings; /* "key.path=value" each, instead of what the deck says; borrowed for the model's life */
   int setting_count;
+  int trap; /* 1: the first division by zero, overflow or invalid operation in a step stops the run and is told with its place in the
+             * program. Meanwhile the process has a handler for SIGFPE, which hands on what is not of the model's threads */
 } breccia_options;
 
 /** Reads and checks a deck and builds the body, its families and its material points. Nothing is written.
@@ -161,9 +163,9 @@ typedef struct breccia_run {
 
 /** Runs to the end and writes results, histories, checkpoints, pictures and summary.json.
  *  @return BRECCIA_INTERRUPTED after a clean stop on request; BRECCIA_FAILURE otherwise. After a step that failed the state before it is
- *  written, and a checkpoint of it. After "energy from nothing" results and histories hold the state at which the run stopped, to
- *  show what went wrong, and the checkpoint written before stays. A picture that cannot be written is a failure, after which all else is there;
- *  one that cannot be drawn (results do not hold it, gnuplot is not installed) a warning. */
+ *  written, and a checkpoint of it. After "energy from nothing", absurd speeds or a trap results and histories hold the state
+ *  at which the run stopped, to show what went wrong, and the checkpoint written before stays. A picture that cannot be written is a failure,
+ *  after which all else is there; one that cannot be drawn (results do not hold it, gnuplot is not installed) a warning. */
 BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, breccia_error *error);
 
 /** What a run would do, in some lines (NULL when memory is out); warnings about the deck, one per line; what a run did and which files it wrote.

@@ -1,9 +1,8 @@
 #include "base/checksum.h"
 
 #include "base/memory.h"
-
+#include "base/text.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -11,7 +10,7 @@
 int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *bytes)
 {
   enum { PIECE = 1 << 18 }; /* stays in the cache */
-  const int file = open(path, O_RDONLY);
+  const int file = text_open_file(path);
   unsigned char *piece = file < 0 ? NULL : memory_plain(PIECE, 1);
   ssize_t n = piece ? 0 : -1;
   uLong crc = crc32(0, NULL, 0);

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 /** CRC-32 of a file's bytes from `from` on: that of ISO 3309, which zlib computes. It tells any change that lies within 32 bits from all others.
- *  @param[in] path  a file that can be read and sought in
+ *  @param[in] path  a file, no pipe or device
  *  @param[out] bytes  how many they are
  *  @return 0, or 1 with errno set */
 int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *bytes);

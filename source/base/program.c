@@ -53,7 +53,19 @@ static int start(const char *const *words, FILE *in, FILE *out, pid_t *number)
   return code;
 }
 
-ProgramEnd program_feed(const char *const *words, FILE *in, Text *reason)
+/** All lines of a file, joined by blanks. */
+static void add_lines(FILE *file, Text *answer)
+{
+  char words[LAST_WORDS];
+  rewind(file);
+  while (fgets(words, sizeof words, file)) {
+    words[strcspn(words, "\r\n")] = 0;
+    text_add(answer, "%s%s", answer->length ? " " : "", words + strspn(words, " \t"));
+  }
+}
+
+/** @param[out] answer  what it printed, in one line; NULL: nobody asks */
+static ProgramEnd feed(const char *const *words, FILE *in, Text *answer, Text *reason)
 {
   ProgramEnd end = PROGRAM_FAILED;
   FILE *out = tmpfile();
@@ -77,8 +89,23 @@ ProgramEnd program_feed(const char *const *words, FILE *in, Text *reason)
     else
       end = PROGRAM_DONE;
     if (end == PROGRAM_FAILED) add_last_line(out, reason);
+    if (end == PROGRAM_DONE && answer) add_lines(out, answer);
   }
   if (out) fclose(out);
+  return end;
+}
+
+ProgramEnd program_feed(const char *const *words, FILE *in, Text *reason)
+{
+  return feed(words, in, NULL, reason);
+}
+
+ProgramEnd program_ask(const char *const *words, Text *answer, Text *reason)
+{
+  FILE *nothing = fopen("/dev/null", "rb");
+  if (!nothing) return PROGRAM_FAILED;
+  const ProgramEnd end = feed(words, nothing, answer, reason);
+  fclose(nothing);
   return end;
 }
 

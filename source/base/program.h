@@ -21,4 +21,7 @@ ProgramEnd program_run(const char *const *words, const char *script, size_t leng
 /** The same with a file as standard input, read from its beginning. */
 ProgramEnd program_feed(const char *const *words, FILE *in, Text *reason);
 
+/** The same without input. @param[out] answer  what it printed, its lines joined by blanks; only of PROGRAM_DONE */
+ProgramEnd program_ask(const char *const *words, Text *answer, Text *reason);
+
 #endif

@@ -4,6 +4,7 @@
 #include "base/cores.h"
 #include "base/memory.h"
 #include "base/plain_locale.h"
+#include "base/trap.h"
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -23,6 +24,7 @@ struct Team {
   bool patient; /* there is a core for each: looking takes nothing from anybody */
   void (*work)(void *context);
   void *context;
+  Trap *trap; /* that work is done under; NULL: none */
   bool ends;
   pthread_mutex_t lock;
   pthread_cond_t changed;
@@ -118,7 +120,9 @@ static void *serve(void *given)
   for (unsigned round = 0;; ++round) {
     wait_for_change(team, &team->round, round);
     if (team->ends) return NULL;
+    if (team->trap) trap_join(team->trap);
     team->work(team->context);
+    if (team->trap) trap_leave();
     team_wait();
   }
 }
@@ -195,6 +199,7 @@ void team_run(void (*work)(void *context), void *context)
   if (!alone) {
     team->work = work;
     team->context = context;
+    team->trap = trap_of_thread();
     change(team, &team->round);
   }
   work(context);

@@ -29,7 +29,7 @@ int team_threads(const Team *team);
 /** Makes `team` the one that team_run of this thread uses; NULL: none, this thread alone. @return the one before */
 Team *team_use(Team *team);
 
-/** Calls `work` on every thread of the team in use, and returns when all are through. */
+/** Calls `work` on every thread of the team in use, and returns when all are through. A trap of this thread (base/trap.h) is theirs too. */
 void team_run(void (*work)(void *context), void *context);
 /** Calls `work` for 0 .. count - 1, shared out among the team in use. */
 void team_each(int64_t count, void (*work)(void *context, int64_t index), void *context);

@@ -142,16 +142,28 @@ char *text_beside(const char *path, const char *file)
   return text_format("%.*s/%s", (int)(slash - path), path, file);
 }
 
-/** Opens a file that ends: reading a device or a pipe may take for ever. @return NULL, with the reason in errno */
-static FILE *open_whole(const char *path)
+int text_open_file(const char *path)
 {
   const int number = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe without a writer would wait for one */
   struct stat status;
+  if (number < 0) return -1;
+  const int bad = fstat(number, &status)    ? errno
+                  : S_ISDIR(status.st_mode) ? EISDIR
+                  : S_ISREG(status.st_mode) ? 0
+                                            : ESPIPE;
+  if (!bad) return number;
+  close(number);
+  errno = bad;
+  return -1;
+}
+
+/** Opens a file that is small enough to be read whole. @return NULL, with the reason in errno */
+static FILE *open_whole(const char *path)
+{
+  const int number = text_open_file(path);
+  struct stat status;
   if (number < 0) return NULL;
-  int bad = fstat(number, &status) ? errno : 0;
-  if (!bad && S_ISDIR(status.st_mode)) bad = EISDIR;
-  if (!bad && !S_ISREG(status.st_mode)) bad = ESPIPE;
-  if (!bad && status.st_size > largest) bad = EFBIG;
+  int bad = fstat(number, &status) ? errno : status.st_size > largest ? EFBIG : 0;
   FILE *file = bad ? NULL : fdopen(number, "rb");
   if (file) return file;
   if (!bad) bad = errno;

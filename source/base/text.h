@@ -43,6 +43,9 @@ void text_file_name(const char *words, char *name, size_t size);
 /** Path of a file whose name, unless it begins at the root, is relative to the folder of another. To be freed. */
 char *text_beside(const char *path, const char *file);
 
+/** Opens a file for reading, but no pipe, device or folder: those may never end. @return -1, with the reason in errno */
+int text_open_file(const char *path);
+
 /** Reads a whole file, no pipe or device. @return its content, zero-terminated, to be freed; NULL with errno set on failure */
 char *text_read_file(const char *path, size_t *length);
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SET, OUTPUT, STEPS, THREADS, RESTART, RESTART_BEFORE, FORCE, QUIET, COUNT };
+enum { SET, OUTPUT, STEPS, THREADS, RESTART, RESTART_BEFORE, FORCE, TRAP, QUIET, COUNT };
 
 static const Option options[] = {
     SET_OPTION,
@@ -15,6 +15,7 @@ static const Option options[] = {
     {"restart", NULL, "go on from the checkpoint in the folder"},
     {"restart-before", NULL, "go on from the checkpoint before that, which takes its place"},
     {"force", NULL, "accept a time step above the stable one"},
+    {"trap", NULL, "fail at the first division by zero, overflow or invalid operation, and say where it is"},
     {"quiet", NULL, "print nothing but errors"},
     {0},
 };
@@ -69,6 +70,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   const breccia_options wishes = {.size = sizeof wishes,
                                   .threads = (int)(threads > 4096 ? 4096 : threads),
                                   .force = values[FORCE] != NULL,
+                                  .trap = values[TRAP] != NULL,
                                   .settings = settings->items,
                                   .setting_count = settings->count};
   breccia_model *model;

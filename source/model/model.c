@@ -2,6 +2,7 @@
 
 #include "base/cores.h"
 #include "base/memory.h"
+#include "base/trap.h"
 #include "deck/resolve.h"
 #include "loading/support.h"
 #include "model/plausibility.h"
@@ -123,7 +124,7 @@ static int create_loading(breccia_model *model, Error *error)
   return status;
 }
 
-static int build(breccia_model *model, bool force, Error *error)
+static int build(breccia_model *model, const breccia_options *options, Error *error)
 {
   if (looks_like_test(model->document->root))
     return error_add(error, BRECCIA_USER_ERROR, "%s: is a laboratory test; 'breccia material %s' runs it",
@@ -167,7 +168,8 @@ static int build(breccia_model *model, bool force, Error *error)
                            .loading = &model->loading,
                            .stages = &spec->solve,
                            .reader = &model->reader,
-                           .force = force};
+                           .force = options->force,
+                           .trap = options->trap};
   status = solver_create(&model->solver, &model->warnings, error);
   if (!status) status = model_make_schedule(model, true, error);
   for (int p = 0; !status && p < spec->pictures.count; ++p) {
@@ -205,12 +207,15 @@ static int load(breccia_model *model, const char *deck, const char *name, const 
   Entry entry;
   model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
   int status = take_laws(model, options, error);
+  if (options->trap && !trap_is_possible())
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "floating-point traps: there are none here; expected Linux on x86-64 with the GNU C library");
   if (!status && !(status = model_enter(model, &entry, error))) {
     model->settings = options->settings;
     model->setting_count = options->setting_count;
     const DeckText words = {deck, name, options->settings, options->setting_count};
     status = open_deck(model, &words, error);
-    if (!status) status = build(model, options->force, error);
+    if (!status) status = build(model, options, error);
     if (!status && error_count(error)) status = BRECCIA_USER_ERROR;
     if (ignored.length) text_add(&model->warnings, "%s%s", model->warnings.length ? "\n" : "", ignored.characters);
     status = model_leave(&entry, status, error);

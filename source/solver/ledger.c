@@ -61,7 +61,7 @@ static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, E
 
 bool ledger_is_doubtful(const Ledger *l)
 {
-  return l->unsound_steps > 0 || (l->fast_steps > 0 && l->fast_steps <= LASTING_FAST);
+  return l->trapped || l->unsound_steps > 0 || (l->fast_steps > 0 && l->fast_steps <= LASTING_FAST);
 }
 
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.

@@ -19,6 +19,7 @@ typedef struct Ledger {
   int64_t fast_steps;    /* up to now, in each of which it was beyond */
   int64_t damped;        /* there has been damping: its work is more than roundings */
   int64_t unsound_steps; /* up to now, in each of which energy has come from nothing */
+  bool trapped;          /* a floating-point trap has sprung in the last step */
 } Ledger;
 
 /** Where the work went: external + kinetic at the start + between = kinetic + stored + dissipated + fracture + friction + damping + error. */

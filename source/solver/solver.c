@@ -1,5 +1,6 @@
 #include "solver/solver.h"
 
+#include "base/trap.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -241,14 +242,33 @@ int solver_begin(Solver *s, Error *error)
   return status;
 }
 
+/** @param[in] step, time  at the end of the step in which the trap has sprung, if it has */
+static int tell_trap(const Trap *trap, int64_t step, double time, Error *error)
+{
+  Text words = {0};
+  int status = BRECCIA_OK;
+  if (trap_tell(trap, &words))
+    status = error_add(error, BRECCIA_FAILURE, "step %lld (time %g): floating-point trap: %s", (long long)step, time,
+                       text_words(&words));
+  text_free(&words);
+  return status;
+}
+
 int solver_advance(Solver *s, Text *warning, Error *error)
 {
-  const int status = s->type->advance(s, warning, error);
-  if (status) return status;
+  Trap trap = {0};
+  const int64_t step = s->clock.step + 1;
+  const double time = s->clock.time;
+  if (s->trap) trap_begin(&trap);
+  const int failed = s->type->advance(s, warning, error);
+  if (s->trap) trap_end();
+  const int trapped = tell_trap(&trap, step, time + s->clock.time_step, error);
+  if (failed) return failed; /* and the state is a good one, even if a trap has sprung */
   foresee(s);
   s->records[s->clock.stage].last_step = (double)s->clock.step;
   s->records[s->clock.stage].end = s->clock.time;
-  return ledger_watch(&s->ledger, s->domain, &s->clock, error);
+  s->ledger.trapped = trapped;
+  return trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, error);
 }
 
 Energy solver_energy(const Solver *s)

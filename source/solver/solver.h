@@ -40,6 +40,7 @@ typedef struct Solver {
   const SectionList *stages; /* of SolveSpec, one at least */
   const DeckReader *reader;  /* for messages that point into the deck */
   bool force;                /* accept a chosen step above the stable one */
+  bool trap;                 /* fail where a step divides by zero, overflows or does what is not defined */
   Clock clock;
   Ledger ledger;
   const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */
@@ -79,7 +80,7 @@ struct SolverType {
   void (*describe_stage)(const void *spec, const char *time, Text *text);
 };
 
-/** Sets up the first stage and plans its steps. `solver` has domain, loading, stages, reader and force, and is zero beyond; destroy it in any
+/** Sets up the first stage and plans its steps. `solver` has domain, loading, stages, reader, force and trap, and is zero beyond; destroy it in any
  *  case. Mistakes in later stages are told as far as they can be seen beforehand. */
 int solver_create(Solver *solver, Text *warning, Error *error);
 void solver_destroy(Solver *solver);
@@ -107,8 +108,8 @@ void solver_stop_at(Solver *solver, const double *times, int64_t count, bool aga
 /** Before the first step. */
 int solver_begin(Solver *solver, Error *error);
 
-/** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit; where energies give the reason
- *  the step has been taken.
+/** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit; where energies or
+ *  a trap give the reason the step has been taken.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int solver_advance(Solver *solver, Text *warning, Error *error);
 

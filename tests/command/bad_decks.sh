@@ -34,7 +34,7 @@ Y
 refuse() {
   sed "$1" "$work/good.yaml" > "$work/deck.yaml"
   cmp -s "$work/good.yaml" "$work/deck.yaml" && fail "the edit $1 changes nothing"
-  (cd "$work" && "$breccia" run deck.yaml > out 2> errors)
+  (cd "$work" && timeout 120 "$breccia" run deck.yaml > out 2> errors)
   equal "$1: exit status" $? 2
   contains "$1" "$(cat "$work/errors")" "deck.yaml:${2:+$2: }"
   contains "$1" "$(cat "$work/errors")" "$3"
