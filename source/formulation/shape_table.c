@@ -38,8 +38,10 @@ static SliceShape slice_shape(ShapeTable *table, const Family *family, int64_t s
       table->roundness[place] = (float)shape.roundness;
       table->allowed[place] = (float)poverty(&shape);
       *whole = fmin(*whole, shape.alone * (shape.bonds + 1));
-    } else
-      shapes.share[lane] = table->kept[place] * fmin(1, (double)table->allowed[place] / poverty(&shape));
+    } else {
+      const double allowed = table->allowed[place], needed = poverty(&shape); /* none where no bond is left */
+      shapes.share[lane] = table->kept[place] * (needed > allowed ? allowed / needed : 1);
+    }
   }
   return shapes;
 }

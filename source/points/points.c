@@ -393,6 +393,6 @@ double points_elastic_share(const Points *points, int64_t row, double strain)
   double here[MOST_VALUES], scratch[MOST_VALUES];
   const double back = 1e-3, stress = stress_from(points, row, points_history(points, row), strain, here, NULL);
   const double drop = stress - stress_from(points, row, here, strain - back * strain, scratch, NULL);
-  const double share = back * stress / drop;
+  const double share = drop != 0 ? back * stress / drop : 0;
   return share > 0 ? fmin(1, share) : stress == 0 ? 0 : 1;
 }

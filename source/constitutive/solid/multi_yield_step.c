@@ -234,7 +234,8 @@ LANES_INLINE void advance(Four *f, const Tensors *step, Lanes twice, LaneMask ru
   LaneMask ends = run;
   for (int pass = 0; any(run); ++pass) {
     const Tensors d = difference(&f->s, &f->centre);
-    const Lanes length = lanes_root(product(&d, &d)), inverse = lanes_where(length > zero, one / length);
+    const Lanes length = lanes_root(product(&d, &d));
+    const Lanes inverse = lanes_where(length > zero, one / lanes_choose(length > zero, length, one));
     Lanes flow = look_up(f->law->flow, f->active);
     if (pass) flow *= look_up(f->law->step_down, f->active);
     const Lanes back = (length - f->radius) * flow * inverse;
