@@ -28,3 +28,8 @@ int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *byt
   errno = problem;
   return n != 0;
 }
+
+uint32_t checksum_of(const void *bytes, size_t size)
+{
+  return (uint32_t)crc32_z(crc32_z(0, NULL, 0), bytes, size);
+}

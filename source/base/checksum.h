@@ -2,6 +2,7 @@
 #ifndef BRECCIA_BASE_CHECKSUM_H
 #define BRECCIA_BASE_CHECKSUM_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /** CRC-32 of a file's bytes from `from` on: that of ISO 3309, which zlib computes. It tells any change that lies within 32 bits from all others.
@@ -9,5 +10,8 @@
  *  @param[out] bytes  how many they are
  *  @return 0, or 1 with errno set */
 int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *bytes);
+
+/** The same of bytes in memory. */
+uint32_t checksum_of(const void *bytes, size_t size);
 
 #endif

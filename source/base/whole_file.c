@@ -47,3 +47,22 @@ int whole_file_copy(const char *from, const char *to)
   if (out >= 0 && close(out) && !cause) cause = errno;
   return cause;
 }
+
+int folder_settle(const char *folder)
+{
+  const int file = open(folder, O_RDONLY);
+  const int bad = file < 0 || (fsync(file) && errno != EINVAL && errno != ENOTSUP);
+  const int cause = errno;
+  if (file >= 0) close(file);
+  errno = cause;
+  return bad;
+}
+
+int folder_of_file_settle(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  char *folder = slash ? text_format("%.*s", (int)(slash - path) + 1, path) : text_format(".");
+  const int bad = !folder || folder_settle(folder);
+  free(folder);
+  return bad;
+}

@@ -7,6 +7,7 @@
 #include "base/whole_file.h"
 #include "model/sized.h"
 #include "results/checkpoint.h"
+#include "results/journal.h"
 #include "results/result_view.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -197,14 +198,14 @@ static int read_checkpoint(Run *run, Error *error)
   return status ? status : model_make_schedule(model, false, error);
 }
 
-/** The states that were written before the checkpoint must be there. */
+/** The states that were written before the checkpoint must be there, the last of them perhaps in a journal. */
 static int check_states(const Run *run, Error *error)
 {
   const breccia_model *model = run->model;
   ResultView view;
   char *path = text_format("%s/results.vtkhdf", run->wish->folder);
-  int status =
-      path ? result_view_open(&view, path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: results");
+  int status = path ? journal_finish(path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: results");
+  if (!status) status = result_view_open(&view, path, error);
   if (!status) {
     bool there = model->last_due < 0;
     for (int k = 0; k < view.steps && !there; ++k) there = view.step_numbers[k] == model->last_due;

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
+#include "base/whole_file.h"
 #include "breccia/breccia.h"
 #include "results/hdf5_file.h"
 #include "results/seal.h"
@@ -85,22 +86,13 @@ static int save_all(const char *path, const StateList *state, const CheckpointOf
   return bad;
 }
 
-/** Brings the names in a folder to the disk; file systems that cannot do that for folders keep them in order themselves. */
-static int settle_folder(const char *folder)
-{
-  const int file = open(folder, O_RDONLY);
-  const int bad = file < 0 || (fsync(file) && errno != EINVAL && errno != ENOTSUP);
-  if (file >= 0) close(file);
-  return bad;
-}
-
 /** Gives a new, whole file its name, and the one of that name the name of the one before. */
 static int put_in_place(const char *folder, const char *part, const char *path, const char *before)
 {
   int bad = access(path, F_OK) ? errno != ENOENT : (unlink(before) && errno != ENOENT) != 0;
   /* A second name first, so that there is no moment without a file at `path`; where files have one name only, there is a short one. */
   if (!bad && link(path, before) && errno != ENOENT) bad = rename(path, before) != 0;
-  return bad || rename(part, path) || settle_folder(folder);
+  return bad || rename(part, path) || folder_settle(folder);
 }
 
 int checkpoint_write(const char *folder, const StateList *state, const CheckpointOf *of, Error *error)
@@ -262,7 +254,7 @@ int checkpoint_return_to_before(const char *folder, Error *error)
 {
   char *last = path_of(folder, CHECKPOINT_LAST), *before = path_of(folder, CHECKPOINT_BEFORE);
   int status = BRECCIA_OK;
-  if (!last || !before || rename(before, last) || settle_folder(folder))
+  if (!last || !before || rename(before, last) || folder_settle(folder))
     status = error_add(error, BRECCIA_FAILURE, "%s: cannot be renamed: %s", before ? before : folder, strerror(errno));
   free(last);
   free(before);

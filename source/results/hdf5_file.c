@@ -1,6 +1,7 @@
 #include "results/hdf5_file.h"
 
 #include "base/memory.h"
+#include "results/journal.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,13 +15,15 @@ typedef struct Driver {
   H5FD_t shared;      /* first: HDF5's own part */
   haddr_t end, there; /* of what HDF5 has allocated, and of the file as HDF5 believes it to be */
   int descriptor;
-  int *error; /* of the Hdf5File */
+  int *error;       /* of the Hdf5File */
+  Journal *journal; /* NULL: what is written goes into the file at once */
   dev_t device;
   ino_t inode;
 } Driver;
 
 typedef struct Info { /* what the access properties carry to driver_open */
   int *error;
+  bool whole; /* with a journal */
 } Info;
 
 static void note(const Driver *driver)
@@ -49,6 +52,12 @@ static H5FD_t *driver_open(const char *path, unsigned flags, hid_t properties, h
     return NULL;
   }
   driver->there = (haddr_t)status.st_size;
+  if (info->whole && way != O_RDONLY && !(driver->journal = journal_create(path, status.st_size))) {
+    *info->error = ENOMEM;
+    close(driver->descriptor);
+    free(driver);
+    return NULL;
+  }
   driver->device = status.st_dev;
   driver->inode = status.st_ino;
   return &driver->shared;
@@ -57,6 +66,10 @@ static H5FD_t *driver_open(const char *path, unsigned flags, hid_t properties, h
 static herr_t driver_close(H5FD_t *shared)
 {
   Driver *driver = (Driver *)shared;
+  if (driver->journal && *driver->error) journal_drop(driver->journal, driver->descriptor);
+  if (driver->journal && !*driver->error)
+    *driver->error = journal_commit(driver->journal, driver->descriptor, (int64_t)driver->end);
+  journal_destroy(&driver->journal);
   if (close(driver->descriptor)) note(driver);
   free(driver);
   return 0;
@@ -102,6 +115,8 @@ static herr_t driver_read(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr
 {
   (void)type, (void)transfer;
   const Driver *driver = (const Driver *)shared;
+  const haddr_t first = from;
+  const size_t all = size;
   for (char *at = buffer; size;) {
     const ssize_t n = pread(driver->descriptor, at, size, (off_t)from);
     if (n < 0 && errno == EINTR) continue;
@@ -117,6 +132,7 @@ static herr_t driver_read(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr
     from += (haddr_t)n;
     size -= (size_t)n;
   }
+  if (driver->journal) journal_overlay(driver->journal, (int64_t)first, all, buffer);
   return 0;
 }
 
@@ -126,7 +142,12 @@ static herr_t driver_write(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, hadd
   (void)type, (void)transfer;
   Driver *driver = (Driver *)shared;
   if (from + size > driver->there) driver->there = from + size;
-  for (const char *at = buffer; size && !*driver->error;) {
+  const size_t old = driver->journal ? journal_share(driver->journal, (int64_t)from, size) : 0;
+  if (old && !*driver->error)
+    *driver->error = journal_write(driver->journal, driver->descriptor, (int64_t)from, old, buffer);
+  from += old;
+  size -= old;
+  for (const char *at = (const char *)buffer + old; size && !*driver->error;) {
     errno = 0;
     const ssize_t n = pwrite(driver->descriptor, at, size, (off_t)from);
     if (n < 0 && errno == EINTR) continue;
@@ -146,8 +167,16 @@ static herr_t driver_truncate(H5FD_t *shared, hid_t transfer, hbool_t closing)
   (void)transfer, (void)closing;
   Driver *driver = (Driver *)shared;
   if (driver->end == driver->there) return 0;
-  if (!*driver->error && ftruncate(driver->descriptor, (off_t)driver->end)) note(driver);
+  if (!driver->journal && !*driver->error && ftruncate(driver->descriptor, (off_t)driver->end)) note(driver);
   driver->there = driver->end;
+  return 0;
+}
+
+/** The driver itself: for open_file only. */
+static herr_t driver_handle(H5FD_t *shared, hid_t properties, void **handle)
+{
+  (void)properties;
+  *handle = shared;
   return 0;
 }
 
@@ -168,20 +197,24 @@ static const H5FD_class_t driver_class = {
     .set_eoa = driver_allocate,
     .get_eof = driver_size,
     .read = driver_read,
+    .get_handle = driver_handle,
     .write = driver_write,
     .truncate = driver_truncate,
     .fl_map = H5FD_FLMAP_DICHOTOMY,
 };
 
-static int open_file(Hdf5File *file, const char *path, bool create, hid_t creation)
+static int open_file(Hdf5File *file, const char *path, bool create, bool whole, hid_t creation)
 {
   *file = (Hdf5File){.id = -1};
-  const Info info = {&file->error};
+  const Info info = {&file->error, whole};
   /* Registered again for each file: H5close of a host forgets it. */
   const hid_t driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
   if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0 &&
       H5Pset_libver_bounds(properties, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
     file->id = create ? H5Fcreate(path, H5F_ACC_TRUNC, creation, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
+  Driver *own = NULL;
+  if (whole && file->id >= 0 && H5Fget_vfd_handle(file->id, properties, (void **)&own) >= 0)
+    journal_keep(own->journal, (int64_t)own->end); /* only now it is known where HDF5's own bytes end */
   if (properties >= 0) H5Pclose(properties);
   if (driver >= 0) H5FDunregister(driver);
   return file->id < 0 || file->error;
@@ -189,12 +222,17 @@ static int open_file(Hdf5File *file, const char *path, bool create, hid_t creati
 
 int hdf5_file_create(Hdf5File *file, const char *path, hid_t creation)
 {
-  return open_file(file, path, true, creation);
+  return open_file(file, path, true, false, creation);
 }
 
 int hdf5_file_extend(Hdf5File *file, const char *path)
 {
-  return open_file(file, path, false, H5P_DEFAULT);
+  return open_file(file, path, false, false, H5P_DEFAULT);
+}
+
+int hdf5_file_extend_in_place(Hdf5File *file, const char *path)
+{
+  return open_file(file, path, false, true, H5P_DEFAULT);
 }
 
 int hdf5_file_close(Hdf5File *file)

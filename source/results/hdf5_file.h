@@ -20,6 +20,9 @@ typedef struct Hdf5File {
 int hdf5_file_create(Hdf5File *file, const char *path, hid_t creation);
 /** Opens a file to extend it. @return 0, or 1 */
 int hdf5_file_extend(Hdf5File *file, const char *path);
+/** The same, but the file keeps its old bytes until hdf5_file_close, and then has all that was written, or nothing of it; also where the process is
+ *  killed (journal.h: journal_finish is to be called before the file is read or extended). */
+int hdf5_file_extend_in_place(Hdf5File *file, const char *path);
 /** Closes it with all that is still open in it. Accepts one that is not open.
  *  @return 0, or 1 where any call since it was opened failed, or closing itself */
 int hdf5_file_close(Hdf5File *file);

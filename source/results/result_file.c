@@ -6,6 +6,7 @@
 #include "base/whole_file.h"
 #include "results/dataset.h"
 #include "results/hdf5_file.h"
+#include "results/journal.h"
 #include "results/result_view.h"
 #include "results/xdmf.h"
 #include <errno.h>
@@ -239,7 +240,9 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     bad |= H5Gclose(own) < 0;
   }
   bad |= hdf5_file_close(&h5);
-  return bad ? give_up(file, hdf5_file_reason(&h5), error) : put_in_place(file, error);
+  if (bad) return give_up(file, hdf5_file_reason(&h5), error);
+  const int cause = journal_forget(file->path); /* of the file that is replaced */
+  return cause ? give_up(file, strerror(cause), error) : put_in_place(file, error);
 }
 
 static int grow_times(ResultFile *file)
@@ -399,7 +402,8 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
   file->times[file->writes] = time;
   file->steps[file->writes++] = step;
   Hdf5File h5;
-  int bad = hdf5_file_extend(&h5, in_place ? file->path : file->part) || append(file, &h5, d);
+  int bad = in_place ? hdf5_file_extend_in_place(&h5, file->path) : hdf5_file_extend(&h5, file->part);
+  bad = bad || append(file, &h5, d);
   bad |= hdf5_file_close(&h5);
   if (bad) return give_up(file, hdf5_file_reason(&h5), error);
   file->broken_written = d->broken_count;

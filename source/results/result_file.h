@@ -3,7 +3,7 @@
  * Components of tensors stand in VTK's order, xx yy zz xy yz xz. Breccia/States/<step>/<field> shows one step of one field, for readers that
  * cannot take a part of a dataset (meshio). Positions are the reference positions, written once; every write adds one step of each field.
  * Small files are copied, extended and renamed into place, so that a run killed at any moment leaves a whole one; above COPY_LIMIT bytes
- * they are extended in place. A copy takes further states until the time since it was made is SELDOM times what copying took: else a
+ * they are extended in place, with a journal (journal.h) that keeps them whole too. A copy takes further states until the time since it was made is SELDOM times what copying took: else a
  * thousand states would cost a thousand copies, each longer than the one before. */
 #ifndef BRECCIA_RESULTS_RESULT_FILE_H
 #define BRECCIA_RESULTS_RESULT_FILE_H

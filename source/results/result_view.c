@@ -1,6 +1,8 @@
 #include "results/result_view.h"
 
+#include "base/folder_lock.h"
 #include "base/memory.h"
+#include "results/journal.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <math.h>
@@ -122,9 +124,31 @@ static int read_numbers(ResultView *view, Error *error)
   return view->broken ? read_lattices(view, error) : BRECCIA_USER_ERROR;
 }
 
+/** Finishes what a killed run had begun to put into the file; where another run is at it now, it says so. */
+static int finish_rest(const char *path, Error *error)
+{
+  if (!journal_is_there(path)) return BRECCIA_OK;
+  const char *slash = strrchr(path, '/');
+  char *folder = slash ? text_format("%.*s", (int)(slash - path) + 1, path) : text_format(".");
+  if (!folder) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
+  Error *ignored = breccia_error_create();
+  FolderLock lock;
+  const int status = !folder_lock_take(&lock, folder, ignored)
+                         ? journal_finish(path, error)
+                         : error_add(error, BRECCIA_USER_ERROR,
+                                     "%s: its last state is only in the journal beside it; a run that writes now puts "
+                                     "it in at once: try again; else let this folder be written to",
+                                     path);
+  folder_lock_return(&lock);
+  breccia_error_destroy(&ignored);
+  free(folder);
+  return status;
+}
+
 int result_view_open(ResultView *view, const char *path, Error *error)
 {
   *view = (ResultView){.file = -1};
+  if (finish_rest(path, error)) return BRECCIA_USER_ERROR;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   view->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (view->file < 0) {

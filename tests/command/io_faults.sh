@@ -51,6 +51,13 @@ fault() {
   [ "$(wc -l < out)" = 1 ] || fail "$what: expected one line, found: $(cat out)"
   grep -q "^faulty/[a-z.]*[a-z0-9]: cannot be written: $3" out || fail "$what: the line does not say which file and why: $(cat out)"
   [ -z "$(find faulty -name '*.part')" ] || fail "$what: left behind: $(find faulty -name '*.part')"
+  if [ -e faulty/results.vtkhdf.journal ]; then # large results: the last state is in there, and whoever looks at them puts it in
+    journals=$((journals + 1))
+    rm -rf looked
+    cp -r faulty looked
+    "$breccia" plot looked --field damage > out 2>&1 || fail "$what: cannot be looked at: $(cat out)"
+    [ ! -e looked/results.vtkhdf.journal ] || fail "$what: the journal stays"
+  fi
   local again=
   [ -e faulty/checkpoint.h5 ] && again=--restart
   run faulty $again || fail "$what: cannot be taken up: $(cat out)"
@@ -76,6 +83,23 @@ else
     else fault $number 28 "No space left on device" $((number / 2 % 2)); fi
   done
 fi
+
+# The same where results are large, and are written in place with a journal beside them.
+export FAULT_LARGER=300000000
+journals=0
+rm -f count
+FAULT_FOLDER="$work/large" FAULT_COUNT="$work/count" LD_PRELOAD="$build/tests/libio_faults.so" run large
+large=$(wc -c < count)
+same large "large results"
+if [ "${IO_FAULTS:-}" = all ]; then
+  for ((number = 1; number <= large; ++number)); do
+    for lasts in 0 1; do fault $number 5 "Input/output error" $lasts; done
+  done
+else
+  for number in $(seq 60 9 150); do fault $number 5 "Input/output error" $((number % 2)); done # the first two states
+fi
+[ $journals -gt 0 ] || fail "no journal was left, the test is too tame"
+unset FAULT_LARGER
 
 # A folder that cannot be made: by a full disk it is a failure, by its name the user's mistake.
 FAULT_FOLDER="$work/deep" FAULT_AT=1 FAULT_ERROR=28 LD_PRELOAD="$build/tests/libio_faults.so" run deep/inner; equal "no folder: status" $? 1
@@ -109,5 +133,5 @@ for number in $(seq 1 "$drawn"); do
     fail "pictures, call $number: histories or results differ"
   contains "pictures, call $number" "$(cat drawn/summary.json)" '"completed": true'
 done
-echo "$calls calls in a run, $drawn on pictures"
+echo "$calls calls in a run, $large with a journal, $drawn on pictures"
 finish
