@@ -109,6 +109,8 @@ struct LoadType {
   void (*force)(const Load *load, Particles *particles, double factor);
   /** When it begins. @return whether it has changed velocities. May be NULL. */
   bool (*begin)(Load *load, Particles *particles);
+  /** Adds to changes of external forces per volume what they change with changes v of displacements. NULL: nothing. */
+  void (*change)(const Load *load, const Particles *particles, double *const v[3], double *const change[3]);
   /** Energy that it holds and gives back. May be NULL. */
   double (*energy)(const Load *load, const Particles *particles);
   /** The most that it adds to an eigenvalue of stiffness over mass. May be NULL. */
@@ -151,6 +153,12 @@ double load_factor(const Load *load, double time);
 
 /** Sets the external force per volume of all particles to what the loads say at a time, by all threads; with ties, at the internal forces held. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
+
+/** The same without what ties make of it, for those who give tied particles one displacement; by all threads. */
+void loading_apply_untied(const Loading *loading, Particles *particles, double time);
+/** Adds changes of external forces per volume with changes v of displacements: of springs. By one thread.
+ *  @param[in,out] change  [3][places] */
+void loading_change(const Loading *loading, const Particles *particles, double *const v[3], double *const change[3]);
 
 /** By all threads: gives tied particles one velocity and acceleration, where roundings or prescribed motions part them. */
 void loading_keep_ties(const Loading *loading, Particles *particles, double *const acceleration[3]);

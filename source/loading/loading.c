@@ -177,7 +177,7 @@ static void clear(const Selection *selection, Particles *p)
     for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
 }
 
-void loading_apply(const Loading *loading, Particles *p, double time)
+void loading_apply_untied(const Loading *loading, Particles *p, double time)
 {
   for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
     const Load *load = &loading->loads[l];
@@ -189,7 +189,20 @@ void loading_apply(const Loading *loading, Particles *p, double time)
     const Load *load = &loading->loads[l];
     if (load->type->force && load_acts(loading, load)) load->type->force(load, p, load_factor(load, time));
   }
+}
+
+void loading_apply(const Loading *loading, Particles *p, double time)
+{
+  loading_apply_untied(loading, p, time);
   tie_groups_push(loading->ties, p);
+}
+
+void loading_change(const Loading *loading, const Particles *p, double *const v[3], double *const change[3])
+{
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (load->type->change && load_acts(loading, load)) load->type->change(load, p, v, change);
+  }
 }
 
 void loading_keep_ties(const Loading *loading, Particles *p, double *const acceleration[3])

@@ -166,6 +166,28 @@ static void force(const Load *load, Particles *p, double factor)
   }
 }
 
+static void add_change(const Load *load, const Particles *p, double *const v[3], double *const change[3])
+{
+  const Spring *spring = load->own;
+  double moved[3];
+  for (int64_t n = 0; !joins(load) && n < load->selection.count; ++n) {
+    const int32_t i = load->selection.places[n];
+    for (int k = 0; k < 3; ++k) moved[k] = v[k][i];
+    project(spring, moved);
+    for (int k = 0; k < 3; ++k) change[k][i] -= spring->stiffness / load->volume * moved[k];
+  }
+  if (!joins(load)) return;
+  for (int k = 0; k < 3; ++k)
+    moved[k] = mean(p, &load->selection, load->volume, v[k]) - mean(p, &load->other, spring->other_volume, v[k]);
+  project(spring, moved);
+  for (int k = 0; k < 3; ++k) {
+    for (int64_t n = 0; n < load->selection.count; ++n)
+      change[k][load->selection.places[n]] -= spring->stiffness / load->volume * moved[k];
+    for (int64_t n = 0; n < load->other.count; ++n)
+      change[k][load->other.places[n]] += spring->stiffness / spring->other_volume * moved[k];
+  }
+}
+
 static bool begin(Load *load, Particles *p)
 {
   Spring *spring = load->own;
@@ -261,6 +283,7 @@ const LoadType spring_load = {.timeless = true,
                               .vector = vector,
                               .force = force,
                               .begin = begin,
+                              .change = add_change,
                               .energy = energy,
                               .tell = tell,
                               .eigenvalue = eigenvalue,

@@ -1,0 +1,96 @@
+#include "solver/linear_solver.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <string.h>
+
+#define LINEAR(word, name, about) extern const LinearType name##_linear;
+#include "solver/linear_types.h"
+#undef LINEAR
+
+static const LinearType *const types[] = {
+#define LINEAR(word, name, about) &name##_linear,
+#include "solver/linear_types.h"
+#undef LINEAR
+};
+
+static const char *const words[] = {"automatic",
+#define LINEAR(word, name, about) word,
+#include "solver/linear_types.h"
+#undef LINEAR
+                                    NULL};
+
+enum { TYPES = sizeof types / sizeof *types };
+
+const char *linear_word(int k)
+{
+  return words[k];
+}
+
+const char *linear_solver_name(const LinearSolver *s)
+{
+  int k = 0;
+  while (types[k] != s->type) ++k;
+  return words[k + 1];
+}
+
+int linear_solver_create(LinearSolver *s, const char *word, Error *error)
+{
+  for (int k = 0; k < TYPES; ++k) {
+    if (!strcmp(word, words[k + 1])) s->type = types[k];
+    if (!strcmp(word, "automatic") && (!s->type || types[k]->suits(s) > s->type->suits(s))) s->type = types[k];
+  }
+  return s->type->create(s, error);
+}
+
+void linear_solver_destroy(LinearSolver *s)
+{
+  if (s->type) s->type->destroy(s);
+  *s = (LinearSolver){0};
+}
+
+int linear_solver_prepare(LinearSolver *s, Error *error)
+{
+  return s->type->prepare(s, error);
+}
+
+int linear_solver_solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
+                        Error *error)
+{
+  *record = (LinearRecord){0};
+  return s->type->solve(s, f, v, tolerance, record, error);
+}
+
+typedef struct Weighing {
+  const LinearSolver *solver;
+  double *const *v, *const *kv;
+} Weighing;
+
+/** Changes of forces per volume to forces against them. */
+BRECCIA_CLONES
+static void weigh(const LinearSolver *s, double *const v[3], double *const kv[3], int64_t first, int64_t last)
+{
+  const Particles *p = s->domain->particles;
+  const Lanes factor = lanes_set(s->mass_factor);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = first; i < last; i += LANES) {
+      const Lanes mass = factor * lanes_load(p->density + i);
+      lanes_store(kv[k] + i, lanes_load(p->volume + i) * (mass * lanes_load(v[k] + i) - lanes_load(kv[k] + i)));
+    }
+}
+
+static void weigh_batch(void *context, int64_t b)
+{
+  const Weighing *w = context;
+  const Batch *batch = &w->solver->domain->batches[b];
+  weigh(w->solver, w->v, w->kv, batch->first * SLICE, batch->last * SLICE);
+}
+
+void linear_solver_apply(LinearSolver *s, double *const v[3], double *const kv[3])
+{
+  unknowns_spread(&s->unknowns, NAN, v);
+  domain_linear_step(s->domain, v, kv);
+  loading_change(s->loading, s->domain->particles, v, kv);
+  team_each(s->domain->batch_count, weigh_batch, &(Weighing){s, v, kv});
+  unknowns_gather(&s->unknowns, kv);
+}

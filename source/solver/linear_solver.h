@@ -1,0 +1,58 @@
+/* Solves K v = f for changes of the unknowns, at the state at which the domain was linearised (domain_linearise). */
+#ifndef BRECCIA_SOLVER_LINEAR_SOLVER_H
+#define BRECCIA_SOLVER_LINEAR_SOLVER_H
+
+#include "solver/unknowns.h"
+
+typedef struct LinearSolver LinearSolver;
+
+/** How a solution went. */
+typedef struct LinearRecord {
+  int64_t iterations; /* products with K; 0 of a direct solver */
+  double residual;    /* what is left of the right-hand side, over all of it */
+  bool indefinite;    /* K has a direction against which the body does not resist */
+} LinearRecord;
+
+/** A way to solve; the list is in linear_types.h. */
+typedef struct LinearType {
+  /** How well it suits the body: the way with the highest number is taken where the deck does not say. */
+  double (*suits)(const LinearSolver *solver);
+  int (*create)(LinearSolver *solver, Error *error);
+  void (*destroy)(LinearSolver *solver);
+  /** The domain was linearised anew. */
+  int (*prepare)(LinearSolver *solver, Error *error);
+  /** @param[in] f  forces, a vector of unknowns; @param[out] v  a vector of unknowns; 0 before; @param[in] tolerance  of the residual over f */
+  int (*solve)(LinearSolver *solver, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
+               Error *error);
+  size_t (*bytes)(const LinearSolver *solver);
+} LinearType;
+
+struct LinearSolver {
+  const LinearType *type;
+  Domain *domain;
+  const Loading *loading;
+  Unknowns unknowns;
+  double mass_factor; /* K + mass_factor M is solved instead: of implicit dynamics; 0 in statics */
+  void *own;          /* what the type keeps */
+};
+
+/** Words of a choice in a deck: "automatic" and the ways there are, then NULL. */
+const char *linear_word(int k);
+
+/** `solver` has domain, loading and unknowns, and is zero beyond; destroy it in any case.
+ *  @param[in] word  one of linear_word */
+int linear_solver_create(LinearSolver *solver, const char *word, Error *error);
+void linear_solver_destroy(LinearSolver *solver);
+int linear_solver_prepare(LinearSolver *solver, Error *error);
+int linear_solver_solve(LinearSolver *solver, double *const f[3], double *const v[3], double tolerance,
+                        LinearRecord *record, Error *error);
+
+/** Forces K v, with loads that follow displacements and the mass factor, on the unknowns.
+ *  @param[in,out] v  a change of displacements: what is not free is made to follow, without motions that are prescribed
+ *  @param[out] kv    a vector of unknowns */
+void linear_solver_apply(LinearSolver *solver, double *const v[3], double *const kv[3]);
+
+/** Name of the way that is taken. */
+const char *linear_solver_name(const LinearSolver *solver);
+
+#endif

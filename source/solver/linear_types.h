@@ -1,0 +1,4 @@
+/* The ways to solve linearised equations, as LINEAR(key of the deck, C name, what it is). A new one is a file and a line here: the file has
+ * `NAME_linear`, its table entry. */
+LINEAR("conjugate gradients", gradients,
+       "step by step with products K v, at the price of an evaluation of forces each; nothing is assembled")

@@ -1,0 +1,278 @@
+#include "solver/unknowns.h"
+
+#include "base/team.h"
+#include "loading/constraint.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+Unknowns unknowns_of(const Domain *domain, const Loading *loading)
+{
+  Unknowns u = {.domain = domain, .loading = loading};
+  for (int k = 0; k < 3; ++k) u.flat[k] = k >= domain->body.dimensions;
+  return u;
+}
+
+static double along(double *const v[3], const double direction[3], int32_t i)
+{
+  return v[0][i] * direction[0] + v[1][i] * direction[1] + v[2][i] * direction[2];
+}
+
+static void add_along(double *const v[3], const double direction[3], int32_t i, double amount)
+{
+  for (int k = 0; k < 3; ++k)
+    if (direction[k] != 0) v[k][i] += amount * direction[k];
+}
+
+static void clear_flat(const Unknowns *u, double *const v[3])
+{
+  for (int k = 0; k < 3; ++k)
+    if (u->flat[k]) memset(v[k], 0, sizeof(double) * (size_t)u->domain->particles->places);
+}
+
+/** Calls `one` for each particle of each motion that acts: of those that follow images, or of the others. */
+static void each_row(const Unknowns *u, bool with_images, void (*one)(const Constraint *, int64_t n, void *context),
+                     void *context)
+{
+  for (int c = 0; c < u->loading->constraint_count; ++c) {
+    const Constraint *constraint = &u->loading->constraints[c];
+    if (!load_acts(u->loading, constraint->load) || (constraint->images != NULL) != with_images) continue;
+    for (int64_t n = 0; n < constraint->load->selection.count; ++n) one(constraint, n, context);
+  }
+}
+
+/* ---- T ---- */
+
+typedef struct Spreading {
+  const Unknowns *unknowns;
+  double time;
+  double *const *v;
+} Spreading;
+
+static void spread_row(const Constraint *c, int64_t n, void *context)
+{
+  const Spreading *s = context;
+  const int32_t i = c->load->selection.places[n];
+  double *const *u = s->unknowns->domain->particles->displacement;
+  double wanted = 0;
+  if (c->images) wanted = c->share * along(s->v, c->direction, c->images[n]);
+  if (!isnan(s->time)) {
+    wanted += constraint_displacement(c, s->time) + (c->from ? c->from[n] : 0) - along(u, c->direction, i);
+    if (c->images) wanted += c->share * along(u, c->direction, c->images[n]);
+  }
+  add_along(s->v, c->direction, i, wanted - along(s->v, c->direction, i));
+}
+
+void unknowns_spread(const Unknowns *u, double time, double *const v[3])
+{
+  Spreading s = {u, time, v};
+  clear_flat(u, v);
+  for (int k = 0; k < 3; ++k) {
+    const TieGroups *ties = &u->loading->ties[k];
+    for (int64_t g = 0; g < ties->count; ++g)
+      for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n)
+        v[k][ties->places[n]] = v[k][ties->places[ties->first[g]]];
+  }
+  each_row(u, false, spread_row, &s);
+  each_row(u, true, spread_row, &s);
+}
+
+/* ---- its transpose ---- */
+
+static void gather_row(const Constraint *c, int64_t n, void *context)
+{
+  double *const *f = context;
+  const int32_t i = c->load->selection.places[n];
+  const double carried = along(f, c->direction, i);
+  if (c->images) add_along(f, c->direction, c->images[n], c->share * carried);
+  add_along(f, c->direction, i, -carried);
+}
+
+static void clear_row(const Constraint *c, int64_t n, void *context)
+{
+  double *const *v = context;
+  const int32_t i = c->load->selection.places[n];
+  add_along(v, c->direction, i, -along(v, c->direction, i));
+}
+
+/** Ties hand on what all particles of a group get, or nothing. */
+static void close_ties(const Unknowns *u, double *const f[3], bool hand_on)
+{
+  for (int k = 0; k < 3; ++k) {
+    const TieGroups *ties = &u->loading->ties[k];
+    for (int64_t g = 0; g < ties->count; ++g) {
+      const int32_t first = ties->places[ties->first[g]];
+      for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n) {
+        if (hand_on) f[k][first] += f[k][ties->places[n]];
+        f[k][ties->places[n]] = 0;
+      }
+    }
+  }
+}
+
+void unknowns_gather(const Unknowns *u, double *const f[3])
+{
+  double *vector[3] = {f[0], f[1], f[2]};
+  each_row(u, true, gather_row, vector);
+  each_row(u, false, gather_row, vector);
+  close_ties(u, f, true);
+  clear_flat(u, f);
+}
+
+void unknowns_clear_rest(const Unknowns *u, double *const v[3])
+{
+  double *vector[3] = {v[0], v[1], v[2]};
+  each_row(u, true, clear_row, vector);
+  each_row(u, false, clear_row, vector);
+  close_ties(u, v, false);
+  clear_flat(u, v);
+}
+
+int64_t unknowns_count(const Unknowns *u, Error *error)
+{
+  const Particles *p = u->domain->particles;
+  double *ones[3] = {0}, sum = 0;
+  int failed = 0;
+  for (int k = 0; k < 3; ++k) failed |= !(ones[k] = places_array(p->places, "unknowns", error));
+  /* The trace of a projection is the number of directions that it leaves: axis by axis. */
+  for (int axis = 0; axis < 3 && !failed; ++axis) {
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) ones[k][i] = k == axis && p->number[i] >= 0;
+    unknowns_clear_rest(u, ones);
+    for (int64_t i = 0; i < p->places; ++i) sum += ones[axis][i];
+  }
+  for (int k = 0; k < 3; ++k) places_free(&ones[k]);
+  return failed ? -1 : (int64_t)(sum + 0.5);
+}
+
+/* ---- products ---- */
+
+typedef struct Product {
+  const Unknowns *unknowns;
+  double *const *a, *const *b;
+  double *parts; /* [batches] */
+} Product;
+
+BRECCIA_CLONES
+static double product_of(double *const a[3], double *const b[3], int64_t first, int64_t last)
+{
+  Lanes sum = {0};
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = first; i < last; i += LANES) sum += lanes_load(a[k] + i) * lanes_load(b[k] + i);
+  return lanes_total(sum);
+}
+
+static void multiply(void *context, int64_t batch)
+{
+  const Product *m = context;
+  const Batch *slices = &m->unknowns->domain->batches[batch];
+  m->parts[batch] = product_of(m->a, m->b, slices->first * SLICE, slices->last * SLICE);
+}
+
+double unknowns_product(const Unknowns *u, double *const a[3], double *const b[3])
+{
+  Product m = {u, a, b, u->domain->batch_sum};
+  double sum = 0;
+  team_each(u->domain->batch_count, multiply, &m);
+  for (int64_t n = 0; n < u->domain->batch_count; ++n) sum += m.parts[n];
+  return sum;
+}
+
+/* ---- the body as a whole ---- */
+
+enum { RIGID = 6 };
+
+/** How the body is held against motions as a whole: moment[a][b] = sum over rows of what a and b do to them. */
+typedef struct Hold {
+  const Particles *particles;
+  double centre[3], size;
+  double moment[RIGID][RIGID];
+} Hold;
+
+/** Displacements of a particle in the motions as a whole, along a direction: three shifts, and three turns of the edge of the body by 1. */
+static void rigid(const Hold *h, const double direction[3], int32_t i, double share, double moved[RIGID])
+{
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3, last = (k + 2) % 3;
+    const double y = (h->particles->position[next][i] - h->centre[next]) / h->size;
+    const double z = (h->particles->position[last][i] - h->centre[last]) / h->size;
+    moved[k] += share * direction[k];
+    moved[3 + k] += share * (direction[last] * y - direction[next] * z);
+  }
+}
+
+static void add_row(Hold *h, const double moved[RIGID])
+{
+  for (int a = 0; a < RIGID; ++a)
+    for (int b = 0; b < RIGID; ++b) h->moment[a][b] += moved[a] * moved[b];
+}
+
+static void hold_row(const Constraint *c, int64_t n, void *context)
+{
+  double moved[RIGID] = {0};
+  rigid(context, c->direction, c->load->selection.places[n], 1, moved);
+  if (c->images) rigid(context, c->direction, c->images[n], -c->share, moved);
+  add_row(context, moved);
+}
+
+static void hold_ties(Hold *h, const Unknowns *u)
+{
+  for (int k = 0; k < 3; ++k) {
+    const TieGroups *ties = &u->loading->ties[k];
+    const double axis[3] = {k == 0, k == 1, k == 2};
+    for (int64_t g = 0; g < ties->count; ++g)
+      for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n) {
+        double moved[RIGID] = {0};
+        rigid(h, axis, ties->places[n], 1, moved);
+        rigid(h, axis, ties->places[ties->first[g]], -1, moved);
+        add_row(h, moved);
+      }
+  }
+}
+
+/** Takes from the others what one motion shares with them, the most held first. @return the first that nothing holds, or -1 */
+static int find_loose(Hold *h, const bool wanted[RIGID])
+{
+  bool done[RIGID];
+  double largest = 0;
+  for (int a = 0; a < RIGID; ++a) {
+    done[a] = !wanted[a];
+    largest = fmax(largest, h->moment[a][a]);
+  }
+  for (;;) {
+    int pivot = -1;
+    for (int a = 0; a < RIGID; ++a)
+      if (!done[a] && (pivot < 0 || h->moment[a][a] > h->moment[pivot][pivot])) pivot = a;
+    if (pivot < 0) return -1;
+    if (!(h->moment[pivot][pivot] > 1e-10 * largest)) return pivot;
+    done[pivot] = true;
+    for (int a = 0; a < RIGID; ++a)
+      for (int b = 0; b < RIGID && !done[a]; ++b)
+        if (!done[b]) h->moment[a][b] -= h->moment[a][pivot] * h->moment[pivot][b] / h->moment[pivot][pivot];
+  }
+}
+
+bool unknowns_are_loose(const Unknowns *u, char *motion, size_t size)
+{
+  const Particles *p = u->domain->particles;
+  const int dimensions = u->domain->body.dimensions;
+  double low[3], high[3];
+  Hold h = {.particles = p};
+  for (int l = 0; l < u->loading->count; ++l) { /* springs hold */
+    const Load *load = &u->loading->loads[l];
+    if (load->type->eigenvalue && load_acts(u->loading, load) && load->type->eigenvalue(load, p) > 0) return false;
+  }
+  particles_bounds(p, low, high);
+  for (int k = 0; k < 3; ++k) {
+    h.centre[k] = (low[k] + high[k]) / 2;
+    h.size = fmax(h.size, (high[k] - low[k]) / 2);
+  }
+  if (!(h.size > 0)) h.size = 1;
+  each_row(u, false, hold_row, &h);
+  each_row(u, true, hold_row, &h);
+  hold_ties(&h, u);
+  const bool wanted[RIGID] = {true, dimensions > 1, dimensions > 2, dimensions > 2, dimensions > 2, dimensions > 1};
+  const int loose = find_loose(&h, wanted);
+  if (loose >= 0) snprintf(motion, size, "%s %c", loose < 3 ? "along" : "about", "xyz"[loose % 3]);
+  return loose >= 0;
+}

@@ -1,0 +1,43 @@
+/* Which displacements are free in a stage, for solvers that solve for them.
+ *
+ * Vectors are arrays over places, x, y, z, as displacements are. Prescribed motions, ties and the space of the body make rows that say how some
+ * changes of displacements follow from others: v = T q + g. T is never made: `unknowns_spread` is T and `unknowns_gather` its transpose, both in place. A vector
+ * of unknowns q is 0 wherever a displacement is not free. Of a particle that is held in a direction along no axis what is left of
+ * the vector in the plane across it is free. Ties have their unknown at the first particle of each group. */
+#ifndef BRECCIA_SOLVER_UNKNOWNS_H
+#define BRECCIA_SOLVER_UNKNOWNS_H
+
+#include "domain/domain.h"
+#include "loading/load.h"
+
+typedef struct Unknowns {
+  const Domain *domain;
+  const Loading *loading;
+  bool flat[3]; /* the body does not extend along this axis and nothing moves along it */
+} Unknowns;
+
+/** Those of the stage under way. Nothing is kept but what is pointed to. */
+Unknowns unknowns_of(const Domain *domain, const Loading *loading);
+
+/** How many there are. */
+int64_t unknowns_count(const Unknowns *unknowns, Error *error);
+
+/** Gives a change of displacements its values where it is not free, by those that are: T. By one thread.
+ *  @param[in] time  displacements held and change together are then as prescribed at this time of the run; NaN: nothing prescribed moves */
+void unknowns_spread(const Unknowns *unknowns, double time, double *const v[3]);
+
+/** Forces on all displacements to forces on the free ones: those on others are handed on to what they follow, or taken off.
+ *  @param[in,out] f  forces, not forces per volume */
+void unknowns_gather(const Unknowns *unknowns, double *const f[3]);
+
+/** Sets what is not free to 0: the projection on vectors of unknowns. */
+void unknowns_clear_rest(const Unknowns *unknowns, double *const v[3]);
+
+/** Sum of products, the same bits for any number of threads. */
+double unknowns_product(const Unknowns *unknowns, double *const a[3], double *const b[3]);
+
+/** Says along which axis, or about which, the body can move as a whole because nothing holds it.
+ *  @param[out] motion  words like "along y"; untouched when all six (in the plane three) are held */
+bool unknowns_are_loose(const Unknowns *unknowns, char *motion, size_t size);
+
+#endif
