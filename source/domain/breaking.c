@@ -85,11 +85,15 @@ static bool was_squeezed(const Domain *d, const Moment *moment, const Bond *bond
   return square < (1 - 1e-9) * bond->length * bond->length;
 }
 
-/** Goes through the bonds of the suspect slices in order, and notes the ends of those that break, or breaks them. */
-static void judge(Domain *d, const Moment *moment, bool only_note)
+/** What to do with the bonds that break. */
+typedef enum Deed { COUNT_THEM, NOTE_THEM, BREAK_THEM } Deed;
+
+/** Goes through the bonds of the suspect slices in order. @return how many break; each may be met from both its ends */
+static int64_t judge(Domain *d, const Moment *moment, Deed deed)
 {
   const Family *f = &d->family;
   const uint8_t *gave_up = d->gave_up;
+  int64_t count = 0;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
     for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
@@ -101,18 +105,45 @@ static void judge(Domain *d, const Moment *moment, bool only_note)
             !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, slot, &bond, lane) &&
               !was_squeezed(d, moment, &bond, place)))
           continue;
-        if (only_note) {
+        ++count;
+        if (deed == NOTE_THEM) {
           note_torn(d, place);
           note_torn(d, bond.neighbour);
-        } else
-          break_bond(d, s, slot, lane, bond.neighbour, moment);
+        }
+        if (deed == BREAK_THEM) break_bond(d, s, slot, lane, bond.neighbour, moment);
       }
   }
+  return count;
+}
+
+/** Raises all limits such that no more bonds than wanted are beyond them; bonds that are loaded alike break together. */
+static void raise_limits(Domain *d, const Moment *moment)
+{
+  const double close = 1e-6;
+  const int64_t most = 2 * moment->most; /* each bond may count twice */
+  double *beyond = &d->failure.beyond, low = 0, high = 0.5;
+  int64_t above;
+  if (!moment->most || !d->failure.criterion || judge(d, moment, COUNT_THEM) <= most) return;
+  while (*beyond = high, (above = judge(d, moment, COUNT_THEM)) > most) {
+    low = high;
+    high *= 2;
+  }
+  while (high - low > close * (1 + high)) {
+    *beyond = (low + high) / 2;
+    const int64_t count = judge(d, moment, COUNT_THEM);
+    if (count > most) {
+      low = *beyond;
+      continue;
+    }
+    high = *beyond;
+    above = count;
+  }
+  *beyond = above ? high : low;
 }
 
 static void break_suspects(Domain *d, const Moment *moment)
 {
-  judge(d, moment, false);
+  judge(d, moment, BREAK_THEM);
   uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;
@@ -237,7 +268,8 @@ void domain_break(Domain *d, const Moment *moment)
     d->any_suspect = memchr(d->suspects, 1, (size_t)d->particles->slices) != NULL;
     bool shared = false; /* energies of bonds */
     for (int r = 0; r < d->region_count; ++r) shared |= !d->regions[r].type->bond_energy;
-    if (d->any_suspect && shared) judge(d, moment, true);
+    if (d->any_suspect) raise_limits(d, moment);
+    if (d->any_suspect && shared) judge(d, moment, NOTE_THEM);
   }
   if (!d->any_suspect) return;
   find_received(d);
@@ -245,6 +277,7 @@ void domain_break(Domain *d, const Moment *moment)
   TEAM_SINGLE
   {
     break_suspects(d, moment);
+    d->failure.beyond = 0;
     CHECK(family_is_valid(&d->family));
   }
 }

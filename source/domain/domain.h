@@ -49,6 +49,7 @@ typedef struct Moment {
   double time;      /* at its end */
   double time_step; /* displacement increments are this times the velocities held */
   double motion;    /* largest displacement increment of any particle */
+  int64_t most;     /* of the bonds beyond their limit about so many break, the most loaded first; 0: all */
 } Moment;
 
 /** A place whose family has lost bonds in the step under way. */

@@ -76,6 +76,7 @@ struct Failure {
   const int32_t *region;      /* [slices] */
   const Influence *influence; /* of bonds */
   double *weights;            /* [patterns] its values, where a criterion has made them */
+  double beyond;              /* limits of single bonds count (1 + beyond)-fold, while the most loaded are looked for */
   double moved;               /* largest displacement increment of any particle in the step under way */
   uint8_t *
       kept; /* [places] sets that a place belongs to, a bit each: bonds between two of one set do not break; NULL: all may */
@@ -88,7 +89,7 @@ static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
 {
   if (failure->kept && (failure->kept[a] & failure->kept[b])) return __builtin_inf();
   double one = failure->limit[failure->material[a / SLICE]], other = failure->limit[failure->material[b / SLICE]];
-  return one < other ? one : other;
+  return (one < other ? one : other) * (1 + failure->beyond);
 }
 
 #endif

@@ -315,10 +315,15 @@ static int loop(Run *run, Error *error)
     const int64_t stage = s->clock.stage, step = s->clock.step;
     status = host_status(run->host, model_advance(model, error), error);
     if (s->clock.stage != stage) begin_stage(model);
-    if (status) break;
+    if (status) {
+      run_log_write(run, NULL); /* how it failed */
+      break;
+    }
     model->run_steps += s->clock.step - step;
     run->steps = steps_wanted(run);
-    status = due(run, error);
+    status = run_log_write(run, error);
+    run->unwritten |= status != 0;
+    if (!status) status = due(run, error);
     show_progress(run, false);
   }
   return status;
@@ -345,6 +350,7 @@ static int finish(Run *run, int status, Error *error)
     write_histories(run, true, error);
   }
   if (close_files(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;
+  if (run_log_close(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;
   if (status && !ended_early) {
     free(problem);
     problem = text_format("%s", breccia_error_text(error));
@@ -353,6 +359,7 @@ static int finish(Run *run, int status, Error *error)
   text_add(&own, "  %s/deck.yaml (what was run)\n  %s/results.vtkhdf (and results.xdmf for older ParaView)\n",
            run->wish->folder, run->wish->folder);
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
+  text_add(&own, "%s", text_words(&run->logs));
   text_free(&run->files);
   run->files = own;
   status = host_status(run->host, status, error);
@@ -390,6 +397,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   folder_lock_return(&lock);
   free(run.names.items);
   text_free(&run.files);
+  text_free(&run.logs);
   return model_leave(&entry, status, error);
 }
 

@@ -4,6 +4,7 @@
 
 #include "model/model.h"
 #include "results/result_file.h"
+#include <stdio.h>
 
 typedef struct Run {
   breccia_model *model;
@@ -18,12 +19,18 @@ typedef struct Run {
   bool unwritten;  /* a file lacks what was due: said, and no checkpoint may stand behind the gap */
   TextList names;
   Text files;
+  FILE *log; /* solution.txt; NULL: there was nothing to tell yet */
+  Text logs; /* its line among the files that were written */
 } Run;
 
 /** Makes a folder and those above it. */
 int run_make_folder(const char *path, Error *error);
 /** Writes a small file whole, or not at all. */
 int run_write_file(Run *run, const char *name, const Text *words, Error *error);
+
+/** Adds what the solver tells of its last step to solution.txt. */
+int run_log_write(Run *run, Error *error);
+int run_log_close(Run *run, Error *error);
 
 /** Pictures are made from the files, as `breccia plot` does.
  *  @return BRECCIA_OK, also after a warning about what cannot be drawn; BRECCIA_FAILURE after a line about each that could not be written */

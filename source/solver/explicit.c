@@ -327,7 +327,9 @@ static void take_step(void *context)
     kick_and_drift(s, b);
   }
   explicit_prescribe_displacements(s);
-  domain_break(d, &(Moment){s->clock->step + 1, end, s->clock->time_step, sqrt(3) * s->motion});
+  domain_break(
+      d, &(Moment){
+             .step = s->clock->step + 1, .time = end, .time_step = s->clock->time_step, .motion = sqrt(3) * s->motion});
   TEAM_SINGLE domain_put_stresses_by(d);
   domain_forces(d);
   if (!is_sound(s)) return;

@@ -178,6 +178,7 @@ void solver_destroy(Solver *s)
 {
   if (s->own) s->type->destroy(s);
   free(s->records);
+  text_free(&s->log);
   *s = (Solver){0};
 }
 
@@ -259,6 +260,7 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   Trap trap = {0};
   const int64_t step = s->clock.step + 1;
   const double time = s->clock.time;
+  text_free(&s->log);
   if (s->trap) trap_begin(&trap);
   const int failed = s->type->advance(s, warning, error);
   if (s->trap) trap_end();

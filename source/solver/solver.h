@@ -46,6 +46,7 @@ typedef struct Solver {
   const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */
   int64_t stop_count;
   StageRecord *records;   /* [stages] */
+  Text log;               /* how the equations of the last step were solved, a line each; empty where there were none */
   const SolverType *type; /* of the stage under way */
   const SolveSpec *stage;
   const void *spec; /* the type's section */

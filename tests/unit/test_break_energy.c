@@ -28,7 +28,7 @@ static void a_family_that_loses_a_bond_never_stores_more(void **state)
   StoredEnergy before, after;
   d->regions[0].type->stored_energy(d->regions[0].formulation, middle, 0, &before);
   Team *team = team_use(m->team);
-  domain_break(d, &(Moment){1, 0.1, 0, 1});
+  domain_break(d, &(Moment){.step = 1, .time = 0.1, .motion = 1});
   team_use(team);
   assert_int_equal(d->broken_count, 1);
   compute_forces(m); /* laws answer to what is left */

@@ -1,0 +1,202 @@
+#include "solver/newton.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <string.h>
+
+int newton_create(Newton *n, Error *error)
+{
+  const int64_t places = n->domain->particles->places;
+  n->linear.domain = n->domain;
+  n->linear.loading = n->loading;
+  n->linear.unknowns = unknowns_of(n->domain, n->loading);
+  bool failed = false;
+  for (int k = 0; k < 3; ++k) {
+    failed |= !(n->force[k] = places_array(places, "forces out of balance", error));
+    failed |= !(n->change[k] = places_array(places, "corrections", error));
+    failed |= !(n->moved[k] = places_array(places, "increments", error));
+  }
+  return failed ? BRECCIA_FAILURE : linear_solver_create(&n->linear, n->spec->linear, error);
+}
+
+void newton_destroy(Newton *n)
+{
+  for (int k = 0; k < 3; ++k) {
+    places_free(&n->force[k]);
+    places_free(&n->change[k]);
+    places_free(&n->moved[k]);
+  }
+  linear_solver_destroy(&n->linear);
+}
+
+static void apply_loads(void *context)
+{
+  const struct {
+    const Loading *loading;
+    Particles *particles;
+    double time;
+  } *of = context;
+  loading_apply_untied(of->loading, of->particles, of->time);
+}
+
+/** Forces on particles, and the most of them that supports and loads exert. @return that the laws could be asked */
+static NewtonOutcome find_forces(Newton *n, double time, Error *error)
+{
+  Domain *d = n->domain;
+  const Particles *p = d->particles;
+  struct {
+    const Loading *loading;
+    Particles *particles;
+    double time;
+  } of = {n->loading, d->particles, time};
+  if (domain_linearise(d, error)) return NEWTON_FAILED;
+  if (*domain_server_problem(d)) {
+    error_add(error, BRECCIA_FAILURE, "%s", domain_server_problem(d));
+    return NEWTON_FAILED;
+  }
+  if (d->failed_place >= 0) return NEWTON_LAW;
+  if (!isfinite(d->force_sum)) return NEWTON_DIVERGED;
+  team_run(apply_loads, &of);
+  double exerted = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      n->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
+      exerted += p->volume[i] * p->external[k][i] * p->volume[i] * p->external[k][i];
+    }
+  const double all = unknowns_product(&n->linear.unknowns, n->force, n->force);
+  unknowns_gather(&n->linear.unknowns, n->force);
+  const double free = unknowns_product(&n->linear.unknowns, n->force, n->force);
+  n->reference = fmax(n->reference, sqrt(fmax(exerted, all - free)));
+  return NEWTON_CONVERGED;
+}
+
+/** What motions that are prescribed up to a time do to forces by themselves. @return whether anything moves */
+static bool add_motions(Newton *n, double time)
+{
+  const Particles *p = n->domain->particles;
+  const Unknowns *u = &n->linear.unknowns;
+  for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
+  unknowns_spread(u, time, n->change);
+  if (unknowns_product(u, n->change, n->change) == 0) return false;
+  /* Forces before they are gathered: those of the motions belong to the same sum. */
+  domain_linear_step(n->domain, n->change, n->moved);
+  loading_change(n->loading, p, n->change, n->moved);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) n->moved[k][i] *= p->volume[i];
+  unknowns_gather(u, n->moved);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) n->force[k][i] += n->moved[k][i];
+  return true;
+}
+
+/** Adds a share of the change to the displacements. */
+static void move(Newton *n, double share)
+{
+  const Particles *p = n->domain->particles;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      p->displacement[k][i] += share * n->change[k][i];
+      n->moved[k][i] += share * n->change[k][i];
+    }
+}
+
+/** How closely the next linear equations are to be solved: no closer than what their linearity is worth, but for bodies that are elastic. */
+static double wanted_accuracy(const Newton *n, double force, double before)
+{
+  const double enough = 0.3 * n->spec->residual * n->reference / force;
+  double worth = 1e-3;
+  if (before > 0) worth = fmin(1e-2, force / before * force / before);
+  if (domain_is_elastic(n->domain)) worth = 0;
+  return fmin(0.1, fmax(fmax(enough, worth), 1e-12));
+}
+
+static void tell(const Newton *n, double correction, double work, double share, const LinearRecord *linear)
+{
+  if (!n->log) return;
+  text_add(n->log, "    iteration %lld: residual %.2e, correction %.2e, energy %.2e", (long long)n->iterations,
+           n->unbalanced, correction, work);
+  if (share != 1) text_add(n->log, ", %.2g of it taken", share);
+  if (linear->iterations) text_add(n->log, "; %lld products", (long long)linear->iterations);
+  if (linear->indefinite) text_add(n->log, ", the body does not resist some motion");
+  text_add(n->log, "\n");
+}
+
+/** Size of a vector over places. */
+static double size_of(const Newton *n, double *const v[3])
+{
+  return sqrt(unknowns_product(&n->linear.unknowns, v, v));
+}
+
+/** Goes on along the change, or back, to where the forces out of balance do no work along it any more, if they still do much.
+ *  @param[in] whole      prescribed motions are part of the change: it must be taken whole
+ *  @param[in,out] share  of the change that has been taken */
+static NewtonOutcome search_line(Newton *n, double time, bool whole, double first_work, double *work, double *share,
+                                 Error *error)
+{
+  enum { MOST = 6 };
+  const double enough = 0.8;
+  NewtonOutcome outcome = find_forces(n, time, error);
+  *work = unknowns_product(&n->linear.unknowns, n->change, n->force);
+  for (int k = 0; k < MOST && !whole; ++k) {
+    const bool bad = outcome == NEWTON_LAW || outcome == NEWTON_DIVERGED;
+    if (outcome == NEWTON_FAILED || (!bad && fabs(*work) <= enough * fabs(first_work))) break;
+    double wanted = *share / 2;
+    if (!bad && (*work < 0) != (first_work < 0)) wanted = *share * fmax(0.1, first_work / (first_work - *work));
+    if (!bad && (*work < 0) == (first_work < 0)) break; /* it goes on down: the next iteration will see to that */
+    move(n, wanted - *share);
+    *share = wanted;
+    outcome = find_forces(n, time, error);
+    *work = unknowns_product(&n->linear.unknowns, n->change, n->force);
+  }
+  return outcome;
+}
+
+static bool has_converged(const Newton *n, double correction, double work, double first_work)
+{
+  if (!(n->unbalanced <= n->spec->residual)) return false;
+  if (!isnan(n->spec->displacement) && !(correction <= n->spec->displacement)) return false;
+  return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
+}
+
+NewtonOutcome newton_solve(Newton *n, double time, Error *error)
+{
+  const Particles *p = n->domain->particles;
+  n->iterations = n->products = 0;
+  n->indefinite = false;
+  NewtonOutcome outcome = find_forces(n, time, error);
+  if (outcome != NEWTON_CONVERGED) return outcome;
+  const bool moves = add_motions(n, time);
+  double before = 0, first_work = 0;
+  for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
+  double force = size_of(n, n->force);
+  if (!moves && (force == 0 || force <= n->spec->residual * n->reference)) {
+    n->unbalanced = n->reference > 0 ? force / n->reference : 0;
+    return NEWTON_CONVERGED;
+  }
+  for (n->iterations = 1; n->iterations <= n->spec->iterations; ++n->iterations) {
+    LinearRecord linear;
+    if (linear_solver_prepare(&n->linear, error)) return NEWTON_FAILED;
+    for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
+    const double accuracy = n->reference > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
+    if (linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error)) return NEWTON_FAILED;
+    n->products += linear.iterations;
+    n->indefinite |= linear.indefinite;
+    const double start = unknowns_product(&n->linear.unknowns, n->change, n->force);
+    if (!isfinite(start)) return NEWTON_SINGULAR;
+    unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
+    double share = 1, work;
+    move(n, 1);
+    outcome = search_line(n, time, moves && n->iterations == 1, start, &work, &share, error);
+    if (outcome != NEWTON_CONVERGED) return outcome;
+    before = force;
+    force = size_of(n, n->force);
+    n->unbalanced = n->reference > 0 ? force / n->reference : force > 0 ? INFINITY : 0;
+    if (n->iterations == 1) first_work = start;
+    const double all = size_of(n, n->moved), correction = all > 0 ? share * size_of(n, n->change) / all : 0;
+    const double energy = first_work != 0 ? fabs(work / first_work) : 0;
+    tell(n, correction, energy, share, &linear);
+    if (has_converged(n, correction, work, first_work)) return NEWTON_CONVERGED;
+    if (!isfinite(force)) return NEWTON_DIVERGED;
+  }
+  return NEWTON_SLOW;
+}

@@ -1,0 +1,82 @@
+/* Equilibrium by Newton's method: displacements at which forces of bonds and loads cancel on all unknowns (docs/theory.md 7).
+ *
+ * Every iteration starts at the committed state of the points: laws are asked for the whole way from there, so that what they remember does not
+ * depend on how the iteration came to its end. */
+#ifndef BRECCIA_SOLVER_NEWTON_H
+#define BRECCIA_SOLVER_NEWTON_H
+
+#include "solver/linear_solver.h"
+
+/** Keys of solvers that iterate, to be put among theirs; each begins where the struct begins in theirs. */
+typedef struct NewtonSpec {
+  double residual, displacement, energy; /* tolerances; NaN: not asked */
+  int64_t iterations;
+  const char *linear;
+} NewtonSpec;
+
+#define NEWTON_FIELDS(type, member)                                                                                    \
+  {.key = "residual",                                                                                                  \
+   .kind = FIELD_NUMBER,                                                                                               \
+   .offset = offsetof(type, member.residual),                                                                          \
+   .dimension = "1",                                                                                                   \
+   .standard = "1e-8",                                                                                                 \
+   .range = "(0, 0.1]",                                                                                                \
+   .meaning = "equilibrium: forces out of balance are below this share of those that loads and supports exert"},       \
+      {.key = "displacement tolerance",                                                                                \
+       .kind = FIELD_NUMBER,                                                                                           \
+       .offset = offsetof(type, member.displacement),                                                                  \
+       .dimension = "1",                                                                                               \
+       .standard = "",                                                                                                 \
+       .range = "(0, 1)",                                                                                              \
+       .meaning = "besides, the last correction of displacements is below this share of what they have changed by"},   \
+      {.key = "energy tolerance",                                                                                      \
+       .kind = FIELD_NUMBER,                                                                                           \
+       .offset = offsetof(type, member.energy),                                                                        \
+       .dimension = "1",                                                                                               \
+       .standard = "",                                                                                                 \
+       .range = "(0, 1)",                                                                                              \
+       .meaning = "besides, the work of forces out of balance along it is below this share of that of the first one"}, \
+      {.key = "iterations",                                                                                            \
+       .kind = FIELD_COUNT,                                                                                            \
+       .offset = offsetof(type, member.iterations),                                                                    \
+       .standard = "20",                                                                                               \
+       .range = "[1, 1000]",                                                                                           \
+       .meaning = "an increment that takes more is tried again with half of its length"},                              \
+  {                                                                                                                    \
+    .key = "equations", .kind = FIELD_CHOICE, .offset = offsetof(type, member.linear), .standard = "automatic",        \
+    .meaning = "how linearised equations are solved", .choice = linear_word                                            \
+  }
+
+typedef enum NewtonOutcome {
+  NEWTON_CONVERGED,
+  NEWTON_SLOW,     /* too many iterations */
+  NEWTON_DIVERGED, /* forces that are no numbers, or grow beyond all bounds */
+  NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
+  NEWTON_SINGULAR, /* the linearised equations have no solution */
+  NEWTON_FAILED,   /* the reason is in the error */
+} NewtonOutcome;
+
+typedef struct Newton {
+  Domain *domain;
+  const Loading *loading;
+  const NewtonSpec *spec;
+  LinearSolver linear;
+  double *force[3];  /* out of balance, on the unknowns */
+  double *change[3]; /* of displacements in an iteration */
+  double *moved[3];  /* in all iterations of an increment */
+  double reference;  /* the most that loads and supports have exerted in the stage so far */
+  /* of the last increment */
+  int64_t iterations, products;
+  double unbalanced; /* forces out of balance over the reference */
+  bool indefinite;   /* the body did not resist some change of displacements */
+  Text *log;         /* a line per iteration is added; NULL: nobody wants it */
+} Newton;
+
+/** `newton` has domain, loading and spec, and is zero beyond; destroy it in any case. */
+int newton_create(Newton *newton, Error *error);
+void newton_destroy(Newton *newton);
+
+/** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
+NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
+
+#endif
