@@ -134,33 +134,78 @@ static void against_first(const Operator *point, int l, double k[9])
   }
 }
 
-void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9])
+/** What the stiffness of a place needs. */
+typedef struct Prepared {
+  double b[6][3], tangent_b[6][3]; /* from its displacement to strain, and to stress */
+  double stress_g[3], kg[3];
+} Prepared;
+
+static void prepare(const Operator *point, const double f[9], int l, Prepared *p)
 {
-  const OperatorPlace *pa = &point->places[a], *pb = &point->places[b];
-  double f[9], ba[6][3], bb[6][3], kg[3], part[9], along = 0, across = 0;
-  memset(k, 0, 9 * sizeof *k);
-  deformation(point, u, f);
-  strain_matrix(point, f, a, ba);
-  strain_matrix(point, f, b, bb);
+  const int n = point->components;
+  memset(p, 0, sizeof *p);
+  strain_matrix(point, f, l, p->b);
+  for (int r = 0; r < n; ++r)
+    for (int s = 0; s < n; ++s)
+      for (int i = 0; i < 3; ++i) p->tangent_b[r][i] += point->tangent[n * r + s] * p->b[s][i];
+  shaped(point, l, p->kg);
+  for (int i = 0; i < 3 && n == 6 && point->finite; ++i)
+    for (int j = 0; j < 3; ++j) p->stress_g[i] += point->stress[symmetric_place[3 * i + j]] * point->places[l].g[j];
+}
+
+/** Through the point: by its law, its stress and the control. */
+static void through_point(const Operator *point, const Prepared *a, const double g[3], const Prepared *b, double k[9])
+{
+  double along = 0, across = 0;
+  for (int i = 0; i < 3; ++i) {
+    along += g[i] * b->stress_g[i];
+    across += g[i] * b->kg[i];
+  }
   for (int c = 0; c < 9; ++c) {
     double sum = 0;
-    for (int r = 0; r < point->components; ++r)
-      for (int s = 0; s < point->components; ++s)
-        sum += ba[r][c / 3] * point->tangent[point->components * r + s] * bb[s][c % 3];
-    k[c] -= point->volume * sum;
+    for (int r = 0; r < point->components; ++r) sum += a->b[r][c / 3] * b->tangent_b[r][c % 3];
+    k[c] = point->volume * (point->hold[symmetric_place[c]] * across - (c % 4 == 0 ? along : 0) - sum);
   }
-  shaped(point, b, kg);
-  for (int i = 0; i < 3; ++i) {
-    across += pa->g[i] * kg[i];
-    for (int j = 0; j < 3 && point->components == 6 && point->finite; ++j)
-      along += pa->g[i] * point->stress[symmetric_place[3 * i + j]] * pb->g[j];
-  }
-  for (int c = 0; c < 9; ++c)
-    k[c] += point->volume * (point->hold[symmetric_place[c]] * across - (c % 4 == 0 ? along : 0));
+}
+
+static void add(double *to, const double *from, double factor)
+{
+  for (int c = 0; c < 9; ++c) to[c] += factor * from[c];
+}
+
+void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9])
+{
+  Prepared pa, pb;
+  double f[9], part[9];
+  deformation(point, u, f);
+  prepare(point, f, a, &pa);
+  prepare(point, f, b, &pb);
+  through_point(point, &pa, point->places[a].g, &pb, k);
   for (int l = 1; l < point->count; ++l) {
     const bool both = (a == l || !a) && (b == l || !b);
     if (!both) continue;
     against_first(point, l, part);
-    for (int c = 0; c < 9; ++c) k[c] += a == b ? -part[c] : part[c];
+    add(k, part, a == b ? -1 : 1);
   }
+}
+
+int operator_matrix(const Operator *point, double *const u[3], double *k, Error *error)
+{
+  const int count = point->count;
+  double f[9], part[9];
+  Prepared *all = malloc(sizeof *all * (size_t)(count + 1));
+  if (!all) return error_add(error, BRECCIA_FAILURE, "out of memory: operator of a point");
+  deformation(point, u, f);
+  for (int l = 0; l < count; ++l) prepare(point, f, l, &all[l]);
+  for (int a = 0; a < count; ++a)
+    for (int b = 0; b < count; ++b) through_point(point, &all[a], point->places[a].g, &all[b], k + 9 * (count * a + b));
+  for (int l = 1; l < count; ++l) {
+    against_first(point, l, part);
+    add(k, part, -1);
+    add(k + 9 * (count * l + l), part, -1);
+    add(k + 9 * l, part, 1);
+    add(k + 9 * (count * l), part, 1);
+  }
+  free(all);
+  return BRECCIA_OK;
 }

@@ -48,4 +48,7 @@ void operator_add_forces(const Operator *point, double *const u[3], double *cons
  *  tangent stiffness, from the tangent of the law, its stress and the springs. */
 void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9]);
 
+/** The same of all its places at once, which is quicker. @param[out] k  [count][count][9] */
+int operator_matrix(const Operator *point, double *const u[3], double *k, Error *error);
+
 #endif

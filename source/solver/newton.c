@@ -66,7 +66,7 @@ static NewtonOutcome find_forces(Newton *n, double time, Error *error)
   const double all = unknowns_product(&n->linear.unknowns, n->force, n->force);
   unknowns_gather(&n->linear.unknowns, n->force);
   const double free = unknowns_product(&n->linear.unknowns, n->force, n->force);
-  n->reference = fmax(n->reference, sqrt(fmax(exerted, all - free)));
+  n->exerted = fmax(n->reference, sqrt(fmax(exerted, all - free)));
   return NEWTON_CONVERGED;
 }
 
@@ -103,7 +103,7 @@ static void move(Newton *n, double share)
 /** How closely the next linear equations are to be solved: no closer than what their linearity is worth, but for bodies that are elastic. */
 static double wanted_accuracy(const Newton *n, double force, double before)
 {
-  const double enough = 0.3 * n->spec->residual * n->reference / force;
+  const double enough = 0.3 * n->spec->residual * n->exerted / force;
   double worth = 1e-3;
   if (before > 0) worth = fmin(1e-2, force / before * force / before);
   if (domain_is_elastic(n->domain)) worth = 0;
@@ -169,15 +169,16 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
   double before = 0, first_work = 0;
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   double force = size_of(n, n->force);
-  if (!moves && (force == 0 || force <= n->spec->residual * n->reference)) {
-    n->unbalanced = n->reference > 0 ? force / n->reference : 0;
+  if (!moves && (force == 0 || force <= n->spec->residual * n->exerted)) {
+    n->unbalanced = n->exerted > 0 ? force / n->exerted : 0;
+    n->reference = n->exerted;
     return NEWTON_CONVERGED;
   }
   for (n->iterations = 1; n->iterations <= n->spec->iterations; ++n->iterations) {
     LinearRecord linear;
     if (linear_solver_prepare(&n->linear, error)) return NEWTON_FAILED;
     for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
-    const double accuracy = n->reference > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
+    const double accuracy = n->exerted > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
     if (linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error)) return NEWTON_FAILED;
     n->products += linear.iterations;
     n->indefinite |= linear.indefinite;
@@ -190,12 +191,15 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
     if (outcome != NEWTON_CONVERGED) return outcome;
     before = force;
     force = size_of(n, n->force);
-    n->unbalanced = n->reference > 0 ? force / n->reference : force > 0 ? INFINITY : 0;
+    n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
     if (n->iterations == 1) first_work = start;
     const double all = size_of(n, n->moved), correction = all > 0 ? share * size_of(n, n->change) / all : 0;
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     tell(n, correction, energy, share, &linear);
-    if (has_converged(n, correction, work, first_work)) return NEWTON_CONVERGED;
+    if (has_converged(n, correction, work, first_work)) {
+      n->reference = n->exerted;
+      return NEWTON_CONVERGED;
+    }
     if (!isfinite(force)) return NEWTON_DIVERGED;
   }
   return NEWTON_SLOW;

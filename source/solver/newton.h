@@ -64,7 +64,8 @@ typedef struct Newton {
   double *force[3];  /* out of balance, on the unknowns */
   double *change[3]; /* of displacements in an iteration */
   double *moved[3];  /* in all iterations of an increment */
-  double reference;  /* the most that loads and supports have exerted in the stage so far */
+  double reference;  /* the most that loads and supports have exerted at any equilibrium of the stage so far */
+  double exerted;    /* the same, or what they exert now if that is more */
   /* of the last increment */
   int64_t iterations, products;
   double unbalanced; /* forces out of balance over the reference */

@@ -62,11 +62,10 @@ typedef struct Static {
   Newton newton;
   StateCopy before;
   /* at the beginning of an increment: */
-  double *internal[3];   /* forces of bonds per volume */
-  double *unbalanced[3]; /* forces on the unknowns that loads of that time leave */
-  double increment;      /* to be tried next */
-  double moved;          /* largest motion since bonds were judged */
-  int64_t cuts;          /* in the stage */
+  double *internal[3], *external[3]; /* forces per volume of bonds and of loads */
+  double increment;                  /* to be tried next */
+  double moved;                      /* largest motion since bonds were judged */
+  int64_t cuts;                      /* in the stage */
 } Static;
 
 static void list_state(Solver *run, StateList *list)
@@ -89,7 +88,7 @@ static void destroy(Solver *run)
   newton_destroy(&s->newton);
   for (int k = 0; k < 3; ++k) {
     places_free(&s->internal[k]);
-    places_free(&s->unbalanced[k]);
+    places_free(&s->external[k]);
   }
   forget_before(s);
   free(s);
@@ -109,8 +108,8 @@ static int create(Solver *run, Error *error)
   s->newton.spec = &s->spec->newton;
   for (int k = 0; k < 3; ++k) {
     s->internal[k] = places_array(run->domain->particles->places, "forces", error);
-    s->unbalanced[k] = places_array(run->domain->particles->places, "forces", error);
-    if (!s->internal[k] || !s->unbalanced[k]) return BRECCIA_FAILURE;
+    s->external[k] = places_array(run->domain->particles->places, "forces", error);
+    if (!s->internal[k] || !s->external[k]) return BRECCIA_FAILURE;
   }
   return newton_create(&s->newton, error);
 }
@@ -244,17 +243,20 @@ static double end_of_increment(const Solver *run, double increment)
 static void book(Static *s)
 {
   const Particles *p = s->domain->particles;
-  double bonds = 0, given_off = 0, *const *moved = s->newton.moved;
+  double *const *moved = s->newton.moved, bonds = 0;
   for (int64_t b = 0; b < s->domain->batch_count; ++b) {
-    double part = 0, off = 0;
+    double part = 0;
     for (int k = 0; k < 3; ++k)
       for (int64_t i = s->domain->batches[b].first * SLICE; i < s->domain->batches[b].last * SLICE; ++i) {
         part -= 0.5 * p->volume[i] * (s->internal[k][i] + p->internal[k][i]) * moved[k][i];
-        off += 0.5 * (s->unbalanced[k][i] + s->newton.force[k][i]) * moved[k][i];
+        s->internal[k][i] = p->volume[i] * (s->internal[k][i] + s->external[k][i]);
       }
     bonds += part;
-    given_off += off;
   }
+  unknowns_gather(&s->newton.linear.unknowns,
+                  s->internal); /* what was out of balance: nobody needs the forces any more */
+  const double given_off = 0.5 * (unknowns_product(&s->newton.linear.unknowns, s->internal, moved) +
+                                  unknowns_product(&s->newton.linear.unknowns, s->newton.force, moved));
   s->ledger->bond_work += bonds;
   s->ledger->damping_work += given_off;
   s->ledger->external_work += bonds + given_off;
@@ -286,7 +288,9 @@ static const char *describe_outcome(const Static *s, NewtonOutcome outcome, char
 /** The state as it was before an increment that has failed. */
 static void retreat(Static *s)
 {
+  const Particles *p = s->domain->particles;
   state_undo(&s->before);
+  for (int k = 0; k < 3; ++k) memcpy(p->external[k], s->external[k], sizeof(double) * (size_t)p->places);
   domain_put_stresses_by(s->domain);
   domain_follow(s->domain);
 }
@@ -299,11 +303,10 @@ static void note_places(void *context)
   TEAM_FOR (b, d->batch_count) {
     const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
     state_note_places(&s->before, first, last);
-    for (int k = 0; k < 3; ++k)
-      for (int64_t i = first; i < last; ++i) {
-        s->internal[k][i] = p->internal[k][i];
-        s->unbalanced[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
-      }
+    for (int k = 0; k < 3; ++k) {
+      memcpy(s->internal[k] + first, p->internal[k] + first, sizeof(double) * (size_t)(last - first));
+      memcpy(s->external[k] + first, p->external[k] + first, sizeof(double) * (size_t)(last - first));
+    }
   }
 }
 
@@ -318,7 +321,6 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
   Domain *d = s->domain;
   state_note_others(&s->before);
   team_run(note_places, s);
-  unknowns_gather(&s->newton.linear.unknowns, s->unbalanced);
   domain_put_stresses_by(d);
   domain_tell_time(d, end, end - s->clock->time);
   const NewtonOutcome outcome = newton_solve(&s->newton, end, error);

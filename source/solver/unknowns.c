@@ -30,13 +30,13 @@ static void clear_flat(const Unknowns *u, double *const v[3])
     if (u->flat[k]) memset(v[k], 0, sizeof(double) * (size_t)u->domain->particles->places);
 }
 
-/** Calls `one` for each particle of each motion that acts: of those that follow images, or of the others. */
-static void each_row(const Unknowns *u, bool with_images, void (*one)(const Constraint *, int64_t n, void *context),
-                     void *context)
+void unknowns_each_row(const Unknowns *u, void (*one)(const Constraint *constraint, int64_t n, void *context),
+                       void *context)
 {
-  for (int c = 0; c < u->loading->constraint_count; ++c) {
-    const Constraint *constraint = &u->loading->constraints[c];
-    if (!load_acts(u->loading, constraint->load) || (constraint->images != NULL) != with_images) continue;
+  const int count = u->loading->constraint_count;
+  for (int turn = 0; turn < 2 * count; ++turn) {
+    const Constraint *constraint = &u->loading->constraints[turn % count];
+    if (!load_acts(u->loading, constraint->load) || (constraint->images != NULL) != (turn >= count)) continue;
     for (int64_t n = 0; n < constraint->load->selection.count; ++n) one(constraint, n, context);
   }
 }
@@ -73,20 +73,10 @@ void unknowns_spread(const Unknowns *u, double time, double *const v[3])
       for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n)
         v[k][ties->places[n]] = v[k][ties->places[ties->first[g]]];
   }
-  each_row(u, false, spread_row, &s);
-  each_row(u, true, spread_row, &s);
+  unknowns_each_row(u, spread_row, &s);
 }
 
 /* ---- its transpose ---- */
-
-static void gather_row(const Constraint *c, int64_t n, void *context)
-{
-  double *const *f = context;
-  const int32_t i = c->load->selection.places[n];
-  const double carried = along(f, c->direction, i);
-  if (c->images) add_along(f, c->direction, c->images[n], c->share * carried);
-  add_along(f, c->direction, i, -carried);
-}
 
 static void clear_row(const Constraint *c, int64_t n, void *context)
 {
@@ -113,8 +103,7 @@ static void close_ties(const Unknowns *u, double *const f[3], bool hand_on)
 void unknowns_gather(const Unknowns *u, double *const f[3])
 {
   double *vector[3] = {f[0], f[1], f[2]};
-  each_row(u, true, gather_row, vector);
-  each_row(u, false, gather_row, vector);
+  unknowns_each_row(u, clear_row, vector);
   close_ties(u, f, true);
   clear_flat(u, f);
 }
@@ -122,8 +111,7 @@ void unknowns_gather(const Unknowns *u, double *const f[3])
 void unknowns_clear_rest(const Unknowns *u, double *const v[3])
 {
   double *vector[3] = {v[0], v[1], v[2]};
-  each_row(u, true, clear_row, vector);
-  each_row(u, false, clear_row, vector);
+  unknowns_each_row(u, clear_row, vector);
   close_ties(u, v, false);
   clear_flat(u, v);
 }
@@ -268,8 +256,7 @@ bool unknowns_are_loose(const Unknowns *u, char *motion, size_t size)
     h.size = fmax(h.size, (high[k] - low[k]) / 2);
   }
   if (!(h.size > 0)) h.size = 1;
-  each_row(u, false, hold_row, &h);
-  each_row(u, true, hold_row, &h);
+  unknowns_each_row(u, hold_row, &h);
   hold_ties(&h, u);
   const bool wanted[RIGID] = {true, dimensions > 1, dimensions > 2, dimensions > 2, dimensions > 2, dimensions > 1};
   const int loose = find_loose(&h, wanted);

@@ -1,9 +1,10 @@
 /* Which displacements are free in a stage, for solvers that solve for them.
  *
  * Vectors are arrays over places, x, y, z, as displacements are. Prescribed motions, ties and the space of the body make rows that say how some
- * changes of displacements follow from others: v = T q + g. T is never made: `unknowns_spread` is T and `unknowns_gather` its transpose, both in place. A vector
- * of unknowns q is 0 wherever a displacement is not free. Of a particle that is held in a direction along no axis what is left of
- * the vector in the plane across it is free. Ties have their unknown at the first particle of each group. */
+ * changes of displacements follow from others: v = T q + g. T is never made: `unknowns_spread` is T and `unknowns_gather` its transpose, both in
+ * place. A vector of unknowns q is 0 wherever a displacement is not free. Of a particle that is held in a direction along no axis what is left of
+ * the vector in the plane across it is free. Ties have their unknown at the first particle of each group. Mirror images outside a support move with
+ * particles inside and take no part in their equilibrium: by symmetry it is that of one half, and their forces are dropped, not handed on. */
 #ifndef BRECCIA_SOLVER_UNKNOWNS_H
 #define BRECCIA_SOLVER_UNKNOWNS_H
 
@@ -19,6 +20,11 @@ typedef struct Unknowns {
 /** Those of the stage under way. Nothing is kept but what is pointed to. */
 Unknowns unknowns_of(const Domain *domain, const Loading *loading);
 
+/** Calls `one` for the n-th particle of each motion that acts. Particles that follow images come behind all others; where two motions say what one
+ *  particle does the later one holds. */
+void unknowns_each_row(const Unknowns *unknowns, void (*one)(const Constraint *constraint, int64_t n, void *context),
+                       void *context);
+
 /** How many there are. */
 int64_t unknowns_count(const Unknowns *unknowns, Error *error);
 
@@ -26,7 +32,7 @@ int64_t unknowns_count(const Unknowns *unknowns, Error *error);
  *  @param[in] time  displacements held and change together are then as prescribed at this time of the run; NaN: nothing prescribed moves */
 void unknowns_spread(const Unknowns *unknowns, double time, double *const v[3]);
 
-/** Forces on all displacements to forces on the free ones: those on others are handed on to what they follow, or taken off.
+/** Forces on all displacements to forces on the free ones: those on tied ones are handed on, all others taken off.
  *  @param[in,out] f  forces, not forces per volume */
 void unknowns_gather(const Unknowns *unknowns, double *const f[3]);
 

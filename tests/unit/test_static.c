@@ -1,0 +1,267 @@
+/* Bodies at rest: the static solver, and the equations that it solves. */
+#include "support.h"
+
+#include "base/random.h"
+#include "solver/linear_solver.h"
+#include "solver/matrix.h"
+#include "solver/newton.h"
+
+static void run_all(breccia_model *model)
+{
+  Error *error = breccia_error_create();
+  if (breccia_model_step(model, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+}
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define ELASTIC "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+#define SPRINGS "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+#define BLOCK "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
+#define PLATE                                                                                                          \
+  "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, 6]}}}}\n"
+
+/** Bodies of each formulation, held and loaded in different ways. */
+static const struct Case {
+  const char *name, *deck;
+} cases[] = {
+    {"correspondence in space", ELASTIC BLOCK "peridynamics: {formulation: correspondence, space: 3-D}\n"
+                                              "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]},"
+                                              " {on: {face: x+, layers: 1}, traction: [1, 2, -0.5]}]\n"},
+    {"ordinary in space", ELASTIC BLOCK "peridynamics: {formulation: ordinary, space: 3-D}\n"
+                                        "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]},"
+                                        " {on: {face: x+, layers: 1}, displacement: [0.001, free, free]},"
+                                        " {on: {nearest: [0.35, 0.25, 0.35]}, roller: [0, 1, 1]}]\n"},
+    {"bonds in the plane", SPRINGS PLATE "peridynamics: {formulation: bond-based, space: plane stress}\n"
+                                         "loads: [{on: {face: x-, layers: 2}, roller: [1, 0]},"
+                                         " {on: {nearest: [0.75, 0.05]}, roller: [0.6, 0.8]},"
+                                         " {on: {face: x+, layers: 1}, traction: [1, 0.5]}]\n"},
+    {"correspondence in plane stress",
+     ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane stress}\n"
+                   "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]},"
+                   " {on: {face: x+, layers: 1}, tie: {directions: x}},"
+                   " {on: {face: x+, layers: 1}, traction: [1, 0.5]}]\n"},
+    {"correspondence in plane strain",
+     ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane strain}\n"
+                   "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}},"
+                   " {on: {face: x+, layers: 1}, traction: [1, 0.5]}]\n"},
+};
+enum { CASES = sizeof cases / sizeof *cases };
+
+static void fill_randomly(const Particles *p, double *const v[3], uint64_t seed)
+{
+  for (int k = 0; k < 3; ++k)
+    for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+}
+
+static void make_vectors(const Particles *p, double *v[3])
+{
+  for (int k = 0; k < 3; ++k) assert_non_null(v[k] = places_array(p->places, "test", NULL));
+}
+
+static void free_vectors(double *v[3])
+{
+  for (int k = 0; k < 3; ++k) places_free(&v[k]);
+}
+
+static void gathering_is_spreading_transposed(void **state)
+{
+  (void)state;
+  for (int c = 0; c < CASES; ++c) {
+    breccia_model *model = model_of(UNITS "%ssolve: {static: {increments: 1}}\n", cases[c].deck);
+    const Particles *p = model->domain.particles;
+    const Unknowns u = unknowns_of(&model->domain, &model->loading);
+    const bool mirrored = strstr(cases[c].deck, "support") != NULL; /* forces on images are dropped */
+    double *v[3], *f[3], *q[3];
+    make_vectors(p, v), make_vectors(p, f), make_vectors(p, q);
+    fill_randomly(p, q, 1);
+    fill_randomly(p, f, 2);
+    unknowns_clear_rest(&u, q);
+    for (int k = 0; k < 3; ++k) memcpy(v[k], q[k], sizeof(double) * (size_t)p->places);
+    unknowns_spread(&u, NAN, v);
+    const double there = unknowns_product(&u, v, f);
+    unknowns_gather(&u, f);
+    if (!mirrored) assert_near(unknowns_product(&u, q, f), there, 1e-12 * (1 + fabs(there)));
+    unknowns_clear_rest(&u, v); /* what was spread from is there still */
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) assert_near(v[k][i], q[k][i], 1e-15);
+    free_vectors(v), free_vectors(f), free_vectors(q);
+    breccia_model_destroy(&model);
+  }
+}
+
+static void the_matrix_does_what_a_linearised_step_does(void **state)
+{
+  (void)state;
+  for (int c = 0; c < CASES; ++c) {
+    breccia_model *model = model_of(UNITS "%ssolve: {static: {increments: 1}}\n", cases[c].deck);
+    Domain *d = &model->domain;
+    const Particles *p = d->particles;
+    LinearSolver solver = {
+        .domain = d, .loading = &model->loading, .unknowns = unknowns_of(d, &model->loading), .mass_factor = 7};
+    Matrix m = {0};
+    double *v[3], *kv[3], *x, *y;
+    make_vectors(p, v), make_vectors(p, kv);
+    fill_randomly(p, p->displacement, 5);
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] *= k < d->body.dimensions ? 0.01 : 0;
+    assert_int_equal(domain_linearise(d, NULL), 0);
+    assert_int_equal(matrix_create(&m, &solver.unknowns, NULL), 0);
+    assert_int_equal(matrix_fill(&m, &solver.unknowns, solver.mass_factor, NULL), 0);
+    assert_int_equal(m.size, unknowns_count(&solver.unknowns, NULL));
+    fill_randomly(p, v, 3);
+    unknowns_clear_rest(&solver.unknowns, v);
+    x = calloc((size_t)m.size, sizeof *x);
+    y = calloc((size_t)m.size, sizeof *y);
+    matrix_pack(&m, &solver.unknowns, v, x);
+    linear_solver_apply(&solver, v, kv);
+    matrix_pack(&m, &solver.unknowns, kv, y);
+    double largest = 0, most = 0;
+    for (int64_t row = 0; row < m.size; ++row) {
+      double sum = 0;
+      for (int64_t t = m.first[row]; t < m.first[row + 1]; ++t) sum += m.value[t] * x[m.column[t]];
+      largest = fmax(largest, fabs(y[row]));
+      most = fmax(most, fabs(sum - y[row]));
+    }
+    if (!(most <= 1e-9 * largest)) fail_msg("%s: K v is off by %g of %g", cases[c].name, most, largest);
+    assert_true(largest > 0);
+    free(x), free(y);
+    matrix_destroy(&m);
+    free_vectors(v), free_vectors(kv);
+    breccia_model_destroy(&model);
+  }
+}
+
+static void both_ways_find_the_same_rest_and_reactions_are_the_loads(void **state)
+{
+  (void)state;
+  static const char *const ways[] = {"direct", "conjugate gradients"};
+  for (int c = 0; c < CASES; ++c) {
+    double *found[2][3], largest = 0, most = 0;
+    for (int way = 0; way < 2; ++way) {
+      breccia_model *model = model_of(UNITS "%ssolve: {static: {increments: 2, residual: 1e-10, equations: %s}}\n",
+                                      cases[c].deck, ways[way]);
+      const Particles *p = model->domain.particles;
+      run_all(model);
+      make_vectors(p, found[way]);
+      double forces[3] = {0}, size = 0;
+      for (int k = 0; k < 3; ++k)
+        for (int64_t i = 0; i < p->places; ++i) {
+          found[way][k][i] = p->displacement[k][i];
+          largest = fmax(largest, fabs(p->displacement[k][i]));
+          forces[k] += p->volume[i] * p->internal[k][i];
+          size = fmax(size, fabs(p->volume[i] * p->internal[k][i]));
+        }
+      for (int k = 0; k < 3; ++k) assert_near(forces[k], 0, 1e-10 * size * 100);
+      assert_balanced(model, 2e-3); /* two increments, and strains that are not quite linear */
+      assert_true(model->solver.clock.time == 1 && model->solver.clock.step == 2);
+      breccia_model_destroy(&model);
+    }
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < 120; ++i) most = fmax(most, fabs(found[0][k][i] - found[1][k][i]));
+    if (!(most <= 1e-7 * largest)) fail_msg("%s: displacements differ by %g of %g", cases[c].name, most, largest);
+    assert_true(largest > 0);
+    free_vectors(found[0]), free_vectors(found[1]);
+  }
+}
+
+/** Shares of forces out of balance after each iteration of the last increment, from what the solver tells. @return how many */
+static int residuals_of(const breccia_model *model, double *residual, int most)
+{
+  int count = 0;
+  for (const char *at = text_words(&model->solver.log); (at = strstr(at, "residual ")) && count < most; ++at)
+    residual[count++] = atof(at + strlen("residual "));
+  return count;
+}
+
+static void laws_with_tangents_converge_quadratically(void **state)
+{
+  (void)state;
+  static const char *const laws[] = {
+      "j2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening modulus: 1e3",
+      "drucker-prager, Young modulus: 1e4, Poisson ratio: 0.25, cohesion: 6, friction angle: 20 deg, dilation angle: "
+      "20 deg",
+      "multi-yield-j2, shear modulus: 4e3, bulk modulus: 6e3, octahedral strength: 12"};
+  for (size_t l = 0; l < sizeof laws / sizeof *laws; ++l) {
+    char deck[1024];
+    snprintf(deck, sizeof deck,
+             UNITS "materials: {m: {model: %s, density: 2}}\n"
+                   "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
+                   "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings}\n"
+                   "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]},"
+                   " {on: {face: x+, layers: 1}, traction: [0, 0, 2.2], history: {ramp to: 1}}]\n"
+                   "solve: {static: {increments: 4, residual: 1e-11, equations: direct}}\n",
+             laws[l]);
+    breccia_model *model = model_of("%s", deck);
+    run_all(model);
+    double residual[20];
+    const int count = residuals_of(model, residual, 20);
+    bool plastic = false, quick = false;
+    for (int n = 1; n < count; ++n) {
+      plastic |= residual[n - 1] > 1e-6;
+      quick |= residual[n - 1] < 0.1 && residual[n] < 30 * residual[n - 1] * residual[n - 1] + 1e-12 &&
+               residual[n - 1] > 1e-7;
+    }
+    if (!plastic || !quick || count > 8) fail_msg("%s:\n%s", laws[l], text_words(&model->solver.log));
+    breccia_model_destroy(&model);
+  }
+}
+
+static void a_bar_that_flows_carries_its_strength_and_no_more(void **state)
+{
+  (void)state;
+  /* 10 kPa of strength, by a pull that grows to 12: beyond that it finds no equilibrium, and the last one found stays as it was. */
+  breccia_model *model = model_of(
+      UNITS "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, "
+            "hardening modulus: 0}}\n"
+            "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
+            "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
+            "loads: [{on: {face: x-, layers: 1}, roller: [1, 0, 0]}, {on: {face: y-, layers: 1}, roller: [0, 1, 0]},"
+            " {on: {face: z-, layers: 1}, roller: [0, 0, 1]},"
+            " {on: {face: x+, layers: 1}, traction: [12, 0, 0], history: {ramp to: 1}}]\n"
+            "solve: {static: {increments: 12}}\n");
+  const Particles *p = model->domain.particles;
+  Error *error = breccia_error_create();
+  assert_int_equal(breccia_model_step(model, INT64_MAX, error), BRECCIA_FAILURE);
+  assert_non_null(strstr(breccia_error_text(error), "no equilibrium beyond time 0.9"));
+  /* A pull on one layer alone is spread over a horizon, where the bar is confined and a little stronger. */
+  assert_near(model->solver.clock.time, 11.25 / 12, 0.01);
+  double pull = 0, carried = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    if (p->position[0][i] > 0.8) pull += p->volume[i] * p->external[0][i];
+    if (p->position[0][i] < 0.1) carried += p->volume[i] * p->internal[0][i];
+  }
+  assert_near(pull, 12 * model->solver.clock.time * 0.09, 1e-9);
+  assert_near(carried, pull, 1e-6 * pull);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+}
+
+static void a_loose_body_is_refused(void **state)
+{
+  (void)state;
+  char *words = refusal_of(UNITS ELASTIC BLOCK "peridynamics: {formulation: correspondence, space: 3-D}\n"
+                                               "loads: [{on: {face: x-, layers: 1}, roller: [1, 0, 0]},"
+                                               " {on: {face: x+, layers: 1}, traction: [1, 0, 0]}]\n"
+                                               "solve: {static: {increments: 1}}\n");
+  assert_non_null(strstr(words, "nothing holds the body against moving"));
+  free(words);
+  words = refusal_of(UNITS ELASTIC BLOCK "peridynamics: {formulation: correspondence, space: 3-D}\n"
+                                         "loads: [{on: {nearest: [0, 0, 0]}, displacement: [0, 0, 0]}]\n"
+                                         "solve: {static: {increments: 1}}\n");
+  assert_non_null(strstr(words, "about"));
+  free(words);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(gathering_is_spreading_transposed),
+      cmocka_unit_test(the_matrix_does_what_a_linearised_step_does),
+      cmocka_unit_test(both_ways_find_the_same_rest_and_reactions_are_the_loads),
+      cmocka_unit_test(laws_with_tangents_converge_quadratically),
+      cmocka_unit_test(a_bar_that_flows_carries_its_strength_and_no_more),
+      cmocka_unit_test(a_loose_body_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
