@@ -94,9 +94,10 @@ static void describe_stages(const breccia_model *model, const char *time, Text *
     if (stage->loads.count) text_add(text, ", %d new load%s", stage->loads.count, stage->loads.count > 1 ? "s" : "");
     text_add(text, "\n");
   }
-  text_add(text, "%lld steps at most, the first of %.4g %s (%.2f of the stable %.4g)",
-           (long long)(s->clock.steps - begin), s->clock.time_step, time, s->clock.time_step / s->clock.stable,
-           s->clock.stable);
+  text_add(text, "%lld steps at most, the first of %.4g %s", (long long)(s->clock.steps - begin), s->clock.time_step,
+           time);
+  if (isfinite(s->clock.stable))
+    text_add(text, " (%.2f of the stable %.4g)", s->clock.time_step / s->clock.stable, s->clock.stable);
 }
 
 /** Each with its particles, where there are several. */

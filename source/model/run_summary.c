@@ -110,8 +110,8 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   }
   text_add(&t, "  \"particles\": %lld,\n  \"bonds\": %lld,\n  \"steps\": %lld,\n", (long long)d->particles->count,
            (long long)d->family.bonds / 2, (long long)s->clock.step);
-  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n  \"stable_time_step\": %.10g,\n", s->clock.time,
-           s->clock.time_step, s->clock.stable);
+  text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n", s->clock.time, s->clock.time_step);
+  if (isfinite(s->clock.stable)) text_add(&t, "  \"stable_time_step\": %.10g,\n", s->clock.stable);
   add_stages(s, &t);
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
