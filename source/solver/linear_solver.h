@@ -19,7 +19,7 @@ typedef struct LinearType {
   double (*suits)(const LinearSolver *solver);
   int (*create)(LinearSolver *solver, Error *error);
   void (*destroy)(LinearSolver *solver);
-  /** The domain was linearised anew. */
+  /** The domain was linearised again. */
   int (*prepare)(LinearSolver *solver, Error *error);
   /** @param[in] f  forces, a vector of unknowns; @param[out] v  a vector of unknowns; 0 before; @param[in] tolerance  of the residual over f */
   int (*solve)(LinearSolver *solver, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,

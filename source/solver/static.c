@@ -168,7 +168,7 @@ static int plan(Solver *run, Text *warning, Error *error)
 
 static void plan_again(Solver *run)
 {
-  (void)run; /* every increment looks at the times anew */
+  (void)run; /* every increment looks at the times again */
 }
 
 static void foresee(const void *section, const Clock *clock, double *steps, double *time)
