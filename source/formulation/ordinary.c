@@ -79,7 +79,7 @@ LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int64_t slice, 
   const StretchEnds ends = stretch_ends(o->family, o->shown, slice, slot, half, own);
   const LaneMask intact = lanes_half(o->family->intact[slot], half);
   sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
-  sum->sum += lanes_where(intact, ends.weight * stretch_of(ends.d, range) / (ends.by_length * ends.by_length));
+  sum->sum += lanes_where(intact, ends.weight * stretch_of(ends.d, range) * ends.square);
 }
 
 /** Sums of a slice, all bonds by one way. @return the way that they should go */

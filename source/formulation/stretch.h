@@ -66,7 +66,7 @@ enum { STRETCH_SHOWN = 8 };
 
 /** Half a stored slot: y, d, 1 / |xi| (0 where there is no intact bond), influence x correction x V, and the neighbours' last number. */
 typedef struct StretchEnds {
-  Lanes y[3], d, by_length, weight, last;
+  Lanes y[3], d, square, by_length, weight, last; /* square: |xi|^2 */
 } StretchEnds;
 
 /** A slice can be gone through by whole slots on long vectors (base/wide.h): all its bonds are along a lattice. */
@@ -81,19 +81,19 @@ LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int6
                                       const Lanes own[3])
 {
   const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
-  Lanes x[LANES], u[LANES], square = {0};
-  StretchEnds ends = {.d = {0}};
+  Lanes x[LANES], u[LANES];
+  StretchEnds ends = {.d = {0}, .square = {0}};
   lanes_gather_rows(shown, STRETCH_SHOWN, f->neighbour + at, x);
   lanes_gather_rows(shown + LANES, STRETCH_SHOWN, f->neighbour + at, u);
   for (int k = 0; k < 3; ++k) {
     Lanes xi = x[k] - lanes_load(f->particles->position[k] + here), eta = u[k] - own[k];
     ends.y[k] = xi + eta;
     ends.d += eta * (xi + ends.y[k]);
-    square += xi * xi;
+    ends.square += xi * xi;
   }
   /* 1 / |xi| from its value to single precision by one step of third order */
   Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(f->inverse_length + at));
-  Lanes off = lanes_set(1) - square * r * r;
+  Lanes off = lanes_set(1) - ends.square * r * r;
   r += r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
   ends.d *= r * r;
   ends.by_length = r;

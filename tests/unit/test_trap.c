@@ -8,7 +8,8 @@
 #include <signal.h>
 #include <stdatomic.h>
 
-static volatile double zero, large = DBL_MAX, small = DBL_MIN, sink;
+static volatile double zero, large = DBL_MAX, small = DBL_MIN;
+static _Thread_local volatile double sink;
 
 static __attribute__((noinline)) void do_what_is_wrong(int what)
 {

@@ -151,7 +151,8 @@ LANES_INLINE void translate(Four *f, LaneMask where)
   const Tensors r = difference(&f->s, &f->centre), d = difference(&f->centre, &f->next);
   /* x >= 1: where the ray from the centre through s meets the next surface. */
   const Lanes A = product(&r, &r), B = two * product(&r, &d), C = product(&d, &d) - f->larger * f->larger;
-  const Lanes ray = lanes_root(lanes_greatest(B * B - lanes_set(4) * A * C, zero)), far = (ray - B) / (two * A);
+  const Lanes ray = lanes_root(lanes_greatest(B * B - lanes_set(4) * A * C, zero)),
+              far = (ray - B) / lanes_choose(A > zero, two * A, one);
   const LaneMask ahead = far > one;
   const Lanes x = lanes_choose(ahead, far, one), along = x * (one - ratio);
   const Tensors mu = combine(along, &r, -ratio, &d);
@@ -162,7 +163,8 @@ LANES_INLINE void translate(Four *f, LaneMask where)
   const LaneMask still =
       (length <= lanes_set(1e-30) * square) | ((lanes_absolute(linear) < tiny) & (lanes_absolute(gap) < tiny));
   const Lanes root = lanes_root(lanes_greatest(linear * linear - lanes_set(4) * length * gap, zero)),
-              half = lanes_set(0.5) / length, small = half * (-linear - root), large = half * (root - linear);
+              half = lanes_set(0.5) / lanes_choose(length > zero, length, one), small = half * (-linear - root),
+              large = half * (root - linear);
   const Lanes y = lanes_choose(small < zero, large, small);
   where &= ~still & (y >= zero);
   Tensors to = combine(one, &f->centre, y, &mu);
@@ -192,7 +194,8 @@ LANES_INLINE void translate(Four *f, LaneMask where)
 LANES_INLINE void pull_to(Four *f, LaneMask where, const Tensors *centre, Lanes distance)
 {
   const Tensors u = difference(&f->s, centre);
-  const Tensors to = combine(lanes_set(1), centre, distance / lanes_root(product(&u, &u)), &u);
+  const Lanes length = lanes_root(product(&u, &u)), one = lanes_set(1);
+  const Tensors to = combine(one, centre, distance / lanes_choose(length > lanes_set(0), length, one), &u);
   assign(where, &f->s, &to);
 }
 

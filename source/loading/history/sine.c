@@ -72,7 +72,7 @@ static double factor(const History *h, double time)
 {
   const SineSpec *s = h->value->section;
   const double pi = acos(-1);
-  if (time < s->from || time > s->until) return 0;
+  if (isless(time, s->from) || isgreater(time, s->until)) return 0; /* also where they are not given */
   const double wave = sin(2 * pi * s->frequency * (time - begin_of(s)) + s->phase * pi / 180);
   return h->line.count ? wave * polyline_value(&h->line, time) : wave;
 }
