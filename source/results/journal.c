@@ -256,8 +256,10 @@ bool journal_is_there(const char *path)
 
 int journal_forget(const char *path)
 {
-  char *beside = text_format("%s.journal", path);
-  const int cause = !beside ? ENOMEM : unlink(beside) && errno != ENOENT ? errno : 0;
+  char *beside = text_format("%s.journal", path), *part = text_format("%s.journal.part", path);
+  int cause = beside && part ? 0 : ENOMEM;
+  if (!cause && ((unlink(beside) && errno != ENOENT) || (unlink(part) && errno != ENOENT))) cause = errno;
+  free(part);
   free(beside);
   return cause;
 }

@@ -37,7 +37,7 @@ void journal_destroy(Journal **journal);
 int journal_finish(const char *path, Error *error);
 /** Whether a journal lies beside a file. */
 bool journal_is_there(const char *path);
-/** Forgets the journal of a file that is given up. @return 0, or errno */
+/** Removes the journal of a file that is given up, whole or half written. @return 0, or errno */
 int journal_forget(const char *path);
 
 #endif

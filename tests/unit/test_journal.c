@@ -128,7 +128,11 @@ static void no_damaged_journal_is_believed(void **state)
   Error *error = breccia_error_create();
   assert_int_equal(journal_finish(path, error), BRECCIA_USER_ERROR);
   assert_file_is(path, there, NEW - 1);
+  char part[128];
+  snprintf(part, sizeof part, "%s.part", beside);
+  put(part, whole, size / 2); /* of a run that was killed */
   assert_int_equal(journal_forget(path), 0);
+  assert_int_equal(access(part, F_OK), -1);
   assert_int_equal(journal_forget(path), 0);
   breccia_error_destroy(&error);
   free(whole);

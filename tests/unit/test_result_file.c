@@ -42,6 +42,11 @@ static int add_fields(const ResultView *view, Text *all, Error *error)
   Text names = {0};
   result_view_fields(view, &names);
   text_add(all, "fields %s\n", text_words(&names));
+  if (!names.length) { /* their list is damaged: that is told of a field that is asked for */
+    int components;
+    assert_null(result_view_read(view, "damage", 0, &components, NULL, error));
+    return BRECCIA_USER_ERROR;
+  }
   for (char *rest = names.characters, *name; (name = strtok_r(rest, ",", &rest));) {
     name += *name == ' '; /* "bond damage" is one name */
     for (int k = 0; k < view->steps; ++k) {
