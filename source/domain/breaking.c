@@ -298,7 +298,6 @@ void domain_mend(Domain *d)
     const Region *region = domain_region(d, d->torn[n].place);
     region->type->shares(region->formulation)[d->torn[n].place] = d->torn[n].share;
   }
-  forget_torn(d);
   for (int64_t n = d->broken_before; n < d->broken_count; ++n) {
     const int32_t a = d->particles->place_of[d->broken[n].a], b = d->particles->place_of[d->broken[n].b];
     family_mend(&d->family, a, b);
@@ -308,6 +307,11 @@ void domain_mend(Domain *d)
       if (region->type->renew) region->type->renew(region->formulation, (end ? b : a) / SLICE);
     }
   }
+  for (int64_t n = 0; n < d->torn_count; ++n) { /* where memory was out, bonds did not break that were to */
+    const Region *region = domain_region(d, d->torn[n].place);
+    if (region->type->renew) region->type->renew(region->formulation, d->torn[n].place / SLICE);
+  }
+  forget_torn(d);
   d->broken_count = d->broken_before;
   d->out_of_memory = false;
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);

@@ -388,6 +388,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   run.steps = steps_wanted(&run); /* only now: a checkpoint may know of more */
   if (!status) status = model_begin(model, error);
   if (!status) status = open_files(&run, error);
+  status = host_status(run.host, status, error); /* headings are whole, or nothing is written below them */
   if (!status) {
     run.started = run.last_checkpoint = run.last_progress = clock_seconds();
     run.told_at = model->solver.clock.step;

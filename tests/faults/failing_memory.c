@@ -1,12 +1,11 @@
-/* Makes one of a command's calls for memory fail, or all from that one on. Either preloaded before the command, or, where a sanitizer has
- * functions for memory of its own, linked into it with WRAPPED defined and --wrap for each of the functions: then only calls of the program
- * itself come here.
+/* Preloaded before the command: makes one of its calls for memory fail, or all from that one on.
  * BRECCIA_FAIL_AT=N      the N-th call from 1; 0 only counts
  * BRECCIA_FAIL_ON=1      and all that come after it
  * BRECCIA_FAIL_WHOSE=all calls of the libraries too; otherwise those of the program itself, by the address they return to
  * BRECCIA_FAIL_COUNT=F   file that takes the number of calls when the program ends
- * A preloaded one ends a command that does not come to an end, and says in whose code that was, or a crash. What the program starts in its turn is left alone. For glibc, whose own names for
- * the functions are used, so that nothing must be looked up while memory is being given. */
+ * At the end of the program a line tells what the program itself was given and has not given back; after a crash, or when there is no end, in
+ * whose code that was. What the program starts in its turn is left alone. For glibc, whose own names for the functions are used, so that
+ * nothing must be looked up while memory is being given. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -23,30 +22,85 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#ifdef WRAPPED
-#define OURS(name) __wrap_##name
-#define GIVE_MALLOC __real_malloc
-#define GIVE_CALLOC __real_calloc
-#define GIVE_REALLOC __real_realloc
-#define GIVE_ALIGNED __real_aligned_alloc
-#else
-#define OURS(name) name
-#define GIVE_MALLOC __libc_malloc
-#define GIVE_CALLOC __libc_calloc
-#define GIVE_REALLOC __libc_realloc
-#define GIVE_ALIGNED __libc_memalign
-#endif
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+void __libc_free(void *memory);
 
-void *GIVE_MALLOC(size_t size);
-void *GIVE_CALLOC(size_t count, size_t size);
-void *GIVE_REALLOC(void *memory, size_t size);
-void *GIVE_ALIGNED(size_t alignment, size_t size);
+enum { LONGEST = 30 }; /* s that the processor may work; a run takes a tenth of one */
 
 static uintptr_t first_byte, last_byte; /* of the program */
 static atomic_long calls;
 static long fail_at;
 static bool counting, all_from_there, everybody;
 static char count_file[4096];
+
+static bool is_program(const void *caller)
+{
+  return (uintptr_t)caller >= first_byte && (uintptr_t)caller < last_byte;
+}
+
+/* ---- what the program was given and has not given back ---- */
+
+enum { PLACES = 1 << 16, DEPTH = 6 };
+
+static struct {
+  const void *memory; /* NULL: free for ever; &gone: was given back */
+  void *callers[DEPTH];
+} given[PLACES];
+static const char gone;
+static long noted;
+static atomic_flag busy = ATOMIC_FLAG_INIT;
+
+/** Where a piece stands, or the first free place. */
+static size_t place_of(const void *memory)
+{
+  size_t at = ((uintptr_t)memory >> 4) * 0x9e3779b97f4a7c15u >> 48;
+  while (given[at].memory && given[at].memory != memory) at = (at + 1) % PLACES;
+  return at;
+}
+
+static void *note(void *memory, const void *caller)
+{
+  if (!counting || everybody || !memory || !is_program(caller)) return memory;
+  void *callers[DEPTH + 2] = {NULL};
+  backtrace(callers, DEPTH + 2);
+  while (atomic_flag_test_and_set(&busy)) {
+  }
+  if (++noted > PLACES / 2) abort();
+  const size_t at = place_of(memory);
+  given[at].memory = memory;
+  memcpy(given[at].callers, callers + 2, sizeof given[at].callers);
+  atomic_flag_clear(&busy);
+  return memory;
+}
+
+static void forget(const void *memory)
+{
+  if (!counting || everybody || !memory) return;
+  while (atomic_flag_test_and_set(&busy)) {
+  }
+  const size_t at = place_of(memory);
+  if (given[at].memory) given[at].memory = &gone;
+  atomic_flag_clear(&busy);
+}
+
+static void tell_kept(void)
+{
+  int kept = 0;
+  char words[256];
+  for (size_t at = 0; at < PLACES; ++at) {
+    if (!given[at].memory || given[at].memory == &gone || kept++) continue;
+    int n = snprintf(words, sizeof words, "kept: a piece asked for at");
+    for (int k = 0; k < DEPTH && is_program(given[at].callers[k]); ++k)
+      n += snprintf(words + n, sizeof words - (size_t)n, " %lx",
+                    (unsigned long)((uintptr_t)given[at].callers[k] - first_byte));
+  }
+  if (kept) fprintf(stderr, "%s, of %d pieces\n", words, kept);
+}
+
+/* ---- beginning and end ---- */
 
 /** The program is the first of all that is loaded. */
 static int find_program(struct dl_phdr_info *info, size_t size, void *context)
@@ -61,9 +115,6 @@ static int find_program(struct dl_phdr_info *info, size_t size, void *context)
   }
   return 1;
 }
-
-#ifndef WRAPPED
-enum { LONGEST = 30 }; /* s that the processor may work; a run takes a tenth of one */
 
 /** Says in whose code the program crashes or stays: the innermost that is neither the system's nor here. */
 static void tell_end(int number)
@@ -87,23 +138,11 @@ static void tell_end(int number)
   raise(number);
 }
 
-static void watch(void)
-{
-  void *frame;
-  backtrace(&frame, 1); /* loads what it needs */
-  for (int k = 0; k < 5; ++k) signal((const int[]){SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGVTALRM}[k], tell_end);
-  setitimer(ITIMER_VIRTUAL, &(struct itimerval){.it_value.tv_sec = LONGEST}, NULL);
-}
-#else
-static void watch(void)
-{
-}
-#endif
-
 __attribute__((constructor)) static void begin(void)
 {
   const char *at = getenv("BRECCIA_FAIL_AT"), *on = getenv("BRECCIA_FAIL_ON"), *whose = getenv("BRECCIA_FAIL_WHOSE"),
              *file = getenv("BRECCIA_FAIL_COUNT");
+  void *frame;
   if (!at) return;
   dl_iterate_phdr(find_program, NULL);
   fail_at = atol(at);
@@ -111,14 +150,16 @@ __attribute__((constructor)) static void begin(void)
   everybody = whose && !strcmp(whose, "all");
   if (file) snprintf(count_file, sizeof count_file, "%s", file);
   unsetenv("LD_PRELOAD");
-  watch();
+  backtrace(&frame, 1); /* loads what it needs */
+  for (int k = 0; k < 5; ++k) signal((const int[]){SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGVTALRM}[k], tell_end);
+  setitimer(ITIMER_VIRTUAL, &(struct itimerval){.it_value.tv_sec = LONGEST}, NULL);
   counting = true;
 }
 
-/** The number of calls, for those who walk them. */
 __attribute__((destructor)) static void end(void)
 {
   char words[32];
+  if (counting) tell_kept();
   if (!*count_file) return;
   const int file = open(count_file, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   const int length = snprintf(words, sizeof words, "%ld\n", atomic_load(&calls));
@@ -126,36 +167,42 @@ __attribute__((destructor)) static void end(void)
   close(file);
 }
 
+/* ---- the functions ---- */
+
 static bool refuses(const void *caller)
 {
-  if (!counting || (!everybody && ((uintptr_t)caller < first_byte || (uintptr_t)caller >= last_byte))) return false;
+  if (!counting || (!everybody && !is_program(caller))) return false;
   const long call = atomic_fetch_add(&calls, 1) + 1;
   if (!fail_at || call < fail_at || (call > fail_at && !all_from_there)) return false;
   errno = ENOMEM;
   return true;
 }
 
-void *OURS(malloc)(size_t size)
+void *malloc(size_t size)
 {
-  return refuses(__builtin_return_address(0)) ? NULL : GIVE_MALLOC(size);
+  const void *caller = __builtin_return_address(0);
+  return refuses(caller) ? NULL : note(__libc_malloc(size), caller);
 }
 
-void *OURS(calloc)(size_t count, size_t size)
+void *calloc(size_t count, size_t size)
 {
-  return refuses(__builtin_return_address(0)) ? NULL : GIVE_CALLOC(count, size);
+  const void *caller = __builtin_return_address(0);
+  return refuses(caller) ? NULL : note(__libc_calloc(count, size), caller);
 }
 
-void *OURS(realloc)(void *memory, size_t size)
+void *realloc(void *memory, size_t size)
 {
-  return refuses(__builtin_return_address(0)) ? NULL : GIVE_REALLOC(memory, size);
+  const void *caller = __builtin_return_address(0);
+  if (refuses(caller)) return NULL;
+  forget(memory);
+  return note(__libc_realloc(memory, size), caller);
 }
 
-void *OURS(aligned_alloc)(size_t alignment, size_t size)
+void *aligned_alloc(size_t alignment, size_t size)
 {
-  return refuses(__builtin_return_address(0)) ? NULL : GIVE_ALIGNED(alignment, size);
+  const void *caller = __builtin_return_address(0);
+  return refuses(caller) ? NULL : note(__libc_memalign(alignment, size), caller);
 }
-
-#ifndef WRAPPED
 
 int posix_memalign(void **memory, size_t alignment, size_t size)
 {
@@ -181,4 +228,8 @@ char *strdup(const char *words)
   return copy ? memcpy(copy, words, length) : NULL;
 }
 
-#endif
+void free(void *memory)
+{
+  forget(memory);
+  __libc_free(memory);
+}

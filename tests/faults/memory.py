@@ -2,16 +2,15 @@
 """Refuses the command one call for memory after the other.
 
 Every verb is run once to count its calls, then once for each call that is refused (failing_memory.c does it). It must never end by a
-signal, and either end with status 1 and one line "out of memory: ...", or, where it could do without, with the same output and files as
-with all its memory. What a run leaves that ended so can be taken up with all memory, to the same results, unless it says that there is
-nothing to take up.
+signal or keep memory that it was given, and either end with status 1 and one line "out of memory: ...", or, where it could do without, with
+the same output and files as with all its memory. What a run leaves that ended so can be taken up with all memory, to the same results,
+unless it says that there is nothing to take up.
 
 usage: memory.py COMMAND SHIM COMPARE_RESULTS [--every K] [--verb NAME] [--libraries]
-  SHIM         failing_memory.c to be preloaded; 'none' where it is in the command already (a sanitizer then looks for leaks and worse)
   --every K    one call in K only (1: all)
   --verb NAME  one verb only
-  --libraries  calls of the libraries too: these may say it in their own way, and some of them crash or never end (KNOWN_ENDS), but none may let the
-               program end with status 0 and wrong files, and the program's own code may not crash
+  --libraries  calls of the libraries too: these may say it in their own way, and some of them crash or never end (KNOWN_ENDS), but none may
+               let the program end with status 0 and wrong files, and the program's own code may not crash
 """
 import argparse
 import collections
@@ -145,6 +144,7 @@ TOLD = re.compile("out of memory|Cannot allocate memory")
 
 # what crashes by itself when it is refused memory, or tries again without end
 KNOWN_ENDS = ("crash in libhdf5", "crash in libudunits2", "no end in libfontconfig")
+KEPT = re.compile("^kept: .*$", re.M)
 END = re.compile("^(?:crash|no end) in .*$", re.M)
 
 
@@ -166,11 +166,9 @@ class Walk:
 
     def run(self, folder, command, call, on=False, must=True):
         """One run of the command in a folder. call None: with nothing in the way; must: it is to go well then"""
-        environment = dict(os.environ, OMP_NUM_THREADS="1", ASAN_OPTIONS="exitcode=99:allocator_may_return_null=1")
+        environment = dict(os.environ, OMP_NUM_THREADS="1")
         if call is not None:
-            if self.options.shim:
-                environment.update(LD_PRELOAD=self.options.shim)
-            environment.update(BRECCIA_FAIL_AT=str(call), BRECCIA_FAIL_ON="1" if on else "0",
+            environment.update(LD_PRELOAD=self.options.shim, BRECCIA_FAIL_AT=str(call), BRECCIA_FAIL_ON="1" if on else "0",
                                BRECCIA_FAIL_WHOSE="all" if self.options.libraries else "program",
                                BRECCIA_FAIL_COUNT=os.path.join(self.folder, "count") if call == 0 else "")
         done = subprocess.run([self.options.command] + words_of(command), cwd=folder, env=environment, stdin=subprocess.DEVNULL,
@@ -231,8 +229,12 @@ class Walk:
         folder = self.fresh(f"{call}-{int(on)}")
         done = self.run(folder, self.command, call, on)
         words = done.stderr.decode(errors="replace").strip()
+        kept = KEPT.search(words)
+        words = KEPT.sub("", words).strip()
         problem = None
-        if done.returncode < 0:
+        if kept:
+            problem = kept.group()
+        elif done.returncode < 0:
             problem = self.ended(-done.returncode, words)
         elif done.returncode == 0:
             wrong = self.differs(folder)
@@ -289,7 +291,7 @@ def main():
     parser.add_argument("--libraries", action="store_true")
     options = parser.parse_args()
     for name in ("command", "shim", "compare"):
-        setattr(options, name, os.path.abspath(getattr(options, name)) if getattr(options, name) != "none" else None)
+        setattr(options, name, os.path.abspath(getattr(options, name)))
     refused, problems, ends = 0, [], collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for verb in [options.verb] if options.verb else WALKS:
