@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LINES = 30, LONGEST_LINE = 4000, END_KEPT = 400 }; /* more are no help; the first are to be mended first */
+enum { MOST_LINES = 30, LONGEST_LINE = 4000, END_KEPT = 400 };
 
 struct breccia_error {
   Text text;
@@ -91,6 +91,11 @@ int error_out_of_memory(Error *error)
   text_free(text);
   error->count = 0;
   return error_add(error, BRECCIA_FAILURE, "out of memory: close other programs, or take fewer particles or threads");
+}
+
+bool error_is_full(const Error *error)
+{
+  return error && error->count > MOST_LINES;
 }
 
 int error_count(const Error *error)

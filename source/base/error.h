@@ -4,6 +4,7 @@
 #define BRECCIA_BASE_ERROR_H
 
 #include "breccia/breccia.h"
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct breccia_error Error;
@@ -19,5 +20,8 @@ int error_out_of_memory(Error *error);
 
 /** @return the number of lines added so far */
 int error_count(const Error *error);
+
+/** Whether further lines are only counted: more are no help, the first are to be mended first. */
+bool error_is_full(const Error *error);
 
 #endif

@@ -147,13 +147,13 @@ static void merge_into(Builder *builder, Node *node, const Node *merged)
     return;
   }
   if (node->count) memcpy(items, node->items, sizeof(Node) * (size_t)node->count);
-  const int own = node->count;
-  for (int k = 0; k < merged->count; ++k) {
-    bool known = false;
-    for (int j = 0; j < own; ++j) known |= !strcmp(items[j].key, merged->items[k].key);
-    if (!known) items[node->count++] = merged->items[k];
-  }
+  int count = node->count;
+  node_order(builder->document, node);
+  for (int k = 0; k < merged->count; ++k)
+    if (!node_get(node, merged->items[k].key)) items[count++] = merged->items[k];
+  node->by_key = NULL;
   node->items = items;
+  node->count = count;
 }
 
 static void build_entry(Builder *builder, struct fy_node_pair *pair, Node *item, bool *merges, int depth)
@@ -360,9 +360,58 @@ void document_destroy(Document **document)
   *document = NULL;
 }
 
+/** In the order of their keys; where these are the same, in the order of the deck. */
+static int compare_keys(const void *a, const void *b)
+{
+  const Node *one = *(const Node *const *)a, *other = *(const Node *const *)b;
+  const int order = strcmp(one->key, other->key);
+  return order ? order : one < other ? -1 : one > other;
+}
+
+void node_order(const Document *document, Node *map)
+{
+  enum { FEW = 16 };
+  map->by_key = NULL;
+  if (map->kind != NODE_MAP || map->count <= FEW) return;
+  const Node **order = arena_zeroed(document->arena, sizeof(Node *) * (size_t)map->count);
+  if (!order) return;
+  for (int k = 0; k < map->count; ++k) order[k] = &map->items[k];
+  qsort(order, (size_t)map->count, sizeof(Node *), compare_keys);
+  map->by_key = order;
+}
+
+static void order_all(const Document *document, Node *node)
+{
+  node_order(document, node);
+  for (int k = 0; k < node->count; ++k) order_all(document, &node->items[k]);
+}
+
+void document_order(Document *document)
+{
+  order_all(document, document->root);
+}
+
+/** The first of a map's items, in order, whose key does not come before another. */
+static const Node *find_key(const Node *map, const char *key)
+{
+  int first = 0, behind = map->count;
+  while (first < behind) {
+    const int middle = first + (behind - first) / 2;
+    if (strcmp(map->by_key[middle]->key, key) < 0)
+      first = middle + 1;
+    else
+      behind = middle;
+  }
+  return first < map->count ? map->by_key[first] : NULL;
+}
+
 const Node *node_get(const Node *map, const char *key)
 {
   if (!map || map->kind != NODE_MAP) return NULL;
+  if (map->by_key) {
+    const Node *found = find_key(map, key);
+    return found && !strcmp(found->key, key) ? found : NULL;
+  }
   for (int k = 0; k < map->count; ++k)
     if (!strcmp(map->items[k].key, key)) return &map->items[k];
   return NULL;

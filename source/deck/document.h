@@ -18,6 +18,9 @@ typedef struct Node {
   int key_line, key_column;
   int count; /* of a list or a map */
   struct Node *items;
+  const struct Node *
+      *by_key; /* the items of a large map in the order of their keys, for node_get; NULL: look through them. Whoever
+                                 changes the items takes it away */
 } Node;
 
 typedef struct Document {
@@ -43,6 +46,11 @@ void document_destroy(Document **document);
 
 /** @return the value of the first entry with that key, or NULL */
 const Node *node_get(const Node *map, const char *key);
+
+/** Lets node_get find a key of a map quickly, if the map is large. */
+void node_order(const Document *document, Node *map);
+/** The same for all maps of a document that nobody changes any more. */
+void document_order(Document *document);
 
 enum { WHERE_SIZE = 4200 }; /* room for a path and its line and column */
 

@@ -6,6 +6,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -188,6 +189,20 @@ static int read_rows(const DeckReader *reader, const Node *node, const char *lab
   return failed;
 }
 
+static int compare_names(const void *a, const void *b)
+{
+  return strcmp((*(SectionHead *const *)a)->name, (*(SectionHead *const *)b)->name);
+}
+
+static int order_names(const DeckReader *reader, SectionList *list)
+{
+  list->by_name = field_room(reader, sizeof(SectionHead *) * (size_t)(list->count + 1));
+  if (!list->by_name) return 1;
+  for (int k = 0; k < list->count; ++k) list->by_name[k] = list->items[k];
+  qsort(list->by_name, (size_t)list->count, sizeof(SectionHead *), compare_names);
+  return 0;
+}
+
 static int read_sections(const DeckReader *reader, const Node *node, const char *label, const Field *field,
                          SectionList *list)
 {
@@ -207,18 +222,18 @@ static int read_sections(const DeckReader *reader, const Node *node, const char 
   list->count = 0;
   for (int k = 0; k < node->count; ++k) {
     const Node *item = &node->items[k];
-    for (int other = 0; wanted == NODE_MAP && other < k; ++other)
-      if (!strcmp(node->items[other].key, item->key)) {
-        const Node where = node_of_key(item);
-        node_error(reader->document, &where, reader->error, "%s: '%s' is defined twice (first in line %d)", label,
-                   item->key, node->items[other].key_line);
-      }
+    const Node *first = wanted == NODE_MAP ? node_get(node, item->key) : item;
+    if (first != item) {
+      const Node where = node_of_key(item);
+      node_error(reader->document, &where, reader->error, "%s: '%s' is defined twice (first in line %d)", label,
+                 item->key, first->key_line);
+    }
     SectionHead *head = section_read(reader, item, field->section);
     if (!head) continue;
     head->name = wanted == NODE_MAP ? item->key : NULL;
     list->items[list->count++] = head;
   }
-  return 0;
+  return wanted == NODE_MAP ? order_names(reader, list) : 0;
 }
 
 static void read_one_or_sections(const DeckReader *reader, const Node *node, const char *label, const Field *field,

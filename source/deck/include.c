@@ -26,6 +26,7 @@ static void drop(Node *map, int k)
 {
   memmove(&map->items[k], &map->items[k + 1], sizeof(Node) * (size_t)(map->count - k - 1));
   --map->count;
+  map->by_key = NULL;
 }
 
 /** Adds to a map what another has under keys that it lacks, and joins maps that both have. */
@@ -35,18 +36,19 @@ static int join(Files *files, Node *map, const Node *other)
   if (!items) return out_of_memory(files);
   if (map->count) memcpy(items, map->items, sizeof(Node) * (size_t)map->count);
   map->items = items;
-  const int own = map->count;
-  for (int k = 0; k < other->count; ++k) {
-    const Node *theirs = &other->items[k];
-    Node *mine = NULL;
-    for (int j = 0; j < own && !mine; ++j)
-      if (!strcmp(items[j].key, theirs->key)) mine = &items[j];
+  node_order(files->document, map);
+  int count = map->count, status = BRECCIA_OK;
+  for (int k = 0; k < other->count && !status; ++k) {
+    const Node *theirs = &other->items[k], *known = node_get(map, theirs->key);
+    Node *mine = known ? &items[known - items] : NULL;
     if (!mine)
-      items[map->count++] = *theirs;
-    else if (mine->kind == NODE_MAP && theirs->kind == NODE_MAP && join(files, mine, theirs))
-      return BRECCIA_FAILURE;
+      items[count++] = *theirs;
+    else if (mine->kind == NODE_MAP && theirs->kind == NODE_MAP)
+      status = join(files, mine, theirs);
   }
-  return BRECCIA_OK;
+  map->by_key = NULL;
+  map->count = count;
+  return status;
 }
 
 static int take_in(Files *files, Node *map);

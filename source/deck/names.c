@@ -32,6 +32,7 @@ void name_check(const DeckReader *reader, const Node *node, const char *what, co
   const Node *all = node_get(root, definitions[k].key);
   if (all && all->kind == NODE_SCALAR) return;
   if (!strcmp(what, "selection") && has_files(node_get(root, "body"))) return;
+  if (all && all->kind == NODE_MAP && node_get(all, name)) return;
   const char **names = memory_plain((size_t)((all ? all->count : 0) + 1), sizeof(char *));
   if (!names) {
     error_add(reader->error, BRECCIA_FAILURE, "out of memory: names of the deck");
@@ -51,6 +52,10 @@ void name_check(const DeckReader *reader, const Node *node, const char *what, co
 void name_unknown(const DeckReader *reader, const Node *node, const char *what, const char *name,
                   const char *const *names, int count)
 {
+  if (error_is_full(reader->error)) { /* thousands of names, each looked for among thousands, would take minutes */
+    node_error(reader->document, node, reader->error, "there is no %s '%s'", what, name);
+    return;
+  }
   Text words = {0};
   for (int k = 0; k < count; ++k) text_add(&words, "%s'%s'", k ? ", " : "", names[k]);
   const char *nearest = spelling_nearest(name, names, count);

@@ -26,9 +26,8 @@ static int resolve_scalar(Resolver *r, Node *node);
 
 static int variable_index(const Resolver *r, const char *name)
 {
-  for (int k = 0; r->variables && k < r->variables->count; ++k)
-    if (!strcmp(r->variables->items[k].key, name)) return k;
-  return -1;
+  const Node *found = node_get(r->variables, name);
+  return found ? (int)(found - r->variables->items) : -1;
 }
 
 static bool knows(void *context, const char *name)
@@ -185,6 +184,7 @@ int deck_resolve(Document *document, const Section *section, const Units *units,
   int status = deck_include(document, error);
   for (int k = 0; k < count && !status; ++k) status = deck_set(document, section, settings[k], error);
   if (status) return status;
+  document_order(document);
   Resolver r = {document, units, error, (Node *)(uintptr_t)node_get(document->root, "variables"), NULL};
   if (r.variables && (status = check_variables(&r))) return status;
   r.states = memory_plain((size_t)(r.variables ? r.variables->count : 0) + 1, sizeof *r.states);

@@ -250,13 +250,12 @@ void *section_read(const DeckReader *reader, const Node *node, const Section *se
     if (!known && (chosen || meant) && !(more && say_other_choice(reader, item, choosing, choice)))
       say_unknown_key(reader, item, section, more, parameters, parameter_count);
     told |= !known && (chosen || meant);
-    for (int other = 0; other < k; ++other)
-      if (!strcmp(node->items[other].key, item->key)) {
-        const Node where = node_of_key(item);
-        node_error(reader->document, &where, reader->error, "%s: key '%s' stands here twice (first in line %d)",
-                   section->name, item->key, node->items[other].key_line);
-        break;
-      }
+    const Node *first = node_get(node, item->key);
+    if (first != item) {
+      const Node where = node_of_key(item);
+      node_error(reader->document, &where, reader->error, "%s: key '%s' stands here twice (first in line %d)",
+                 section->name, item->key, first->key_line);
+    }
   }
   read_fields(reader, node, section, parameters, parameter_count, target);
   if (more) {
@@ -282,9 +281,14 @@ const Node *section_node(const void *section, const char *key)
 
 void *section_find(const SectionList *list, const char *name)
 {
-  for (int k = 0; k < list->count; ++k) {
-    SectionHead *head = list->items[k];
-    if (head->name && !strcmp(head->name, name)) return head;
+  int first = 0, behind = list->by_name ? list->count : 0;
+  while (first < behind) {
+    const int middle = first + (behind - first) / 2;
+    if (strcmp(list->by_name[middle]->name, name) < 0)
+      first = middle + 1;
+    else
+      behind = middle;
   }
-  return NULL;
+  const bool found = list->by_name && first < list->count && !strcmp(list->by_name[first]->name, name);
+  return found ? list->by_name[first] : NULL;
 }

@@ -40,6 +40,7 @@ typedef struct TextList {
 typedef struct SectionList {
   void **items; /* pointers to the section's struct */
   int count;
+  SectionHead **by_name; /* the same in the order of their names, for section_find; NULL where they have none */
 } SectionList;
 
 typedef struct Reference { /* the name of something that the deck defines elsewhere, or its definition on the spot */

@@ -104,6 +104,7 @@ static Node *add_entry(const Path *path, Node *map, const char *key, size_t leng
   }
   if (map->count) memcpy(items, map->items, sizeof(Node) * (size_t)map->count);
   map->items = items;
+  map->by_key = NULL;
   Node *item = &items[map->count++];
   *item = (Node){.kind = NODE_MAP, .file = path->name, .key = name};
   return item;

@@ -148,6 +148,7 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   d->look_again = memory_zeroed((size_t)p->slices, sizeof(double), "suspect slices", error);
   if (!d->material || !d->family_volume || !d->is_torn || !d->suspects || !d->look_again) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < p->slices; ++s) {
+    if (s && p->block[s] == p->block[s - 1]) d->material[s] = d->material[s - 1]; /* so that it is not looked for */
     const SectionHead *named = section_find(spec->materials, d->body.blocks[p->block[s]]->material);
     while (strcmp(d->materials[d->material[s]].name, named->name)) ++d->material[s];
     for (int lane = 0; lane < SLICE; ++lane) p->density[s * SLICE + lane] = d->materials[d->material[s]].density;

@@ -39,7 +39,7 @@ static int add_loads(const LoadMaking *making, const SectionList *specs, int64_t
   int status = BRECCIA_OK;
   for (int k = 0; k < specs->count; ++k) {
     const LoadSpec *spec = specs->items[k];
-    if (spec->name) end_loads(loading, spec->name, stage);
+    if (spec->name && stage > 0) end_loads(loading, spec->name, stage);
     Load *load = &loading->loads[loading->count++];
     *load = (Load){.first = stage, .behind = INT64_MAX};
     const int before = loading->constraint_count;

@@ -20,4 +20,5 @@ void model_state(breccia_model *model, StateList *list)
   state_add_count(list, "states of the stage written", STATE_COMMITTED, &model->next_due);
   state_add_count(list, "step at which the run began", STATE_COMMITTED, &model->began);
   state_add_count(list, "step of the last state written", STATE_COMMITTED, &model->last_due);
+  state_add_count(list, "states written", STATE_COMMITTED, &model->states_due);
 }

@@ -207,14 +207,25 @@ static int check_states(const Run *run, Error *error)
   int status = path ? journal_finish(path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: results");
   if (!status) status = result_view_open(&view, path, error);
   if (!status) {
-    bool there = model->last_due < 0;
-    for (int k = 0; k < view.steps && !there; ++k) there = view.step_numbers[k] == model->last_due;
+    bool last = model->last_due < 0;
+    int64_t there = 0;
+    for (int k = 0; k < view.steps; ++k) {
+      there += view.step_numbers[k] <= model->last_due;
+      last |= view.step_numbers[k] == model->last_due;
+    }
     result_view_close(&view);
-    if (!there)
+    if (!last)
       status = error_add(error, BRECCIA_USER_ERROR,
                          "%s: lacks the state of step %lld, which was written before the checkpoint of step %lld; put "
                          "the file back as it was, or run without --restart",
                          path, (long long)model->last_due, (long long)model->solver.clock.step);
+    else if (there != model->states_due)
+      status =
+          error_add(error, BRECCIA_USER_ERROR,
+                    "%s: has %lld states up to step %lld, of which %lld were written before the checkpoint of step "
+                    "%lld; put the file back as it was, or run without --restart",
+                    path, (long long)there, (long long)model->last_due, (long long)model->states_due,
+                    (long long)model->solver.clock.step);
   }
   free(path);
   return status;
@@ -234,6 +245,7 @@ static int open_files(Run *run, Error *error)
   } else {
     model->next_due = 0;
     model->last_due = -1;
+    model->states_due = 0;
     model->began = model->solver.clock.step;
     status = forget_earlier(run, error);
     if (!status)
@@ -280,7 +292,10 @@ static int due(Run *run, Error *error)
   bool write = r->every > 0 && s->clock.step % r->every == 0;
   for (; model_has_passed(model, model->next_due, s->clock.time); ++model->next_due) write = true;
   write |= s->clock.ended && s->clock.stages > 1;
-  if (write) model->last_due = s->clock.step;
+  if (write) {
+    model->last_due = s->clock.step;
+    ++model->states_due;
+  }
   if (!status && write) status = write_results(run, error);
   bool by_steps = r->checkpoint_steps > 0 && s->clock.step && s->clock.step % r->checkpoint_steps == 0;
   if (!status && (by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
