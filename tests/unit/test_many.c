@@ -46,7 +46,7 @@ static void reading_grows_as_the_deck_does(void **state)
     const char *before, *line, *after;
   } parts[] = {
       {"materials:\n", "  m%d: {model: elastic, density: 2000, Young modulus: 1e9, Poisson ratio: 0.2}", BAR},
-      {CLAY BAR "variables: {\n", "v%d: 1 mm,", "}\n"},
+      {CLAY BAR "variables:\n", "  v%d: 1 mm", ""},
       {CLAY BAR "selections:\n", "  s%d: {face: x+}",
        "loads: [{on: s300, force: [1, 0, 0]}, {on: s7, force: [1, 0, 0]}]\n"},
       {CLAY BAR "selections:\n  s: {face: x+}\nloads:\n", "  - {on: s, name: l%d, force: [1, 0, 0]}", ""},
