@@ -221,7 +221,7 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
       for (int k = 0; k < 3; ++k)
         assert_memory_equal(&second->solver.records[k], &whole->solver.records[k], sizeof(StageRecord));
       second->peaks = whole->peaks = (Peaks){0}; /* of the states written: none in a run by steps */
-      second->next_due = second->last_due = 0;
+      second->next_due = second->last_due = second->states_due = 0;
       const StateCopy found = state_of(second), expected = state_of(whole);
       assert_same_state(&expected, &found);
       StateCopy copies[] = {found, expected};
@@ -314,7 +314,8 @@ static void a_stage_that_cannot_begin_leaves_the_one_before(void **state)
     }
     assert_int_equal(m->solver.clock.stage, 0);
     assert_int_equal(m->solver.clock.step, 40);
-    m->peaks = (Peaks){0};
+    m->peaks = (Peaks){0}; /* and a count, of the states that a run writes */
+    m->states_due = 0;
     ends[k] = state_of(m);
     breccia_error_destroy(&error);
     breccia_model_destroy(&m);
