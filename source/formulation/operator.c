@@ -193,7 +193,7 @@ int operator_matrix(const Operator *point, double *const u[3], double *k, Error 
 {
   const int count = point->count;
   double f[9], part[9];
-  Prepared *all = malloc(sizeof *all * (size_t)(count + 1));
+  Prepared *all = memory_plain((size_t)(count + 1), sizeof *all);
   if (!all) return error_add(error, BRECCIA_FAILURE, "out of memory: operator of a point");
   deformation(point, u, f);
   for (int l = 0; l < count; ++l) prepare(point, f, l, &all[l]);

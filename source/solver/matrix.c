@@ -202,7 +202,7 @@ static int list_places(Lists *of, const Region *region, Error *error)
     const int64_t end = of->first[n] + point.count;
     if (end > capacity) {
       capacity = 2 * end + 1024;
-      int64_t *grown = realloc(of->items, sizeof *grown * (size_t)capacity);
+      int64_t *grown = memory_grown(of->items, (size_t)capacity, sizeof *grown);
       if (!grown) status = error_add(error, BRECCIA_FAILURE, "out of memory: matrix");
       if (grown) of->items = grown;
     }
@@ -246,7 +246,7 @@ static int add_column(Rows *rows, int64_t row, int64_t column, Error *error)
   rows->seen_column[column] = row + 1;
   if (rows->count == rows->capacity) {
     rows->capacity = 2 * rows->capacity + 4096;
-    int64_t *grown = realloc(m->column, sizeof *grown * (size_t)rows->capacity);
+    int64_t *grown = memory_grown(m->column, (size_t)rows->capacity, sizeof *grown);
     if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: matrix");
     m->column = grown;
   }
