@@ -146,6 +146,12 @@ sed 's/at: \[6.2 ms, 6.4 ms\]/at: [6.2 ms, 64 ms]/' "$source/examples/block-with
 "$breccia" check late.yaml > out 2> errors; equal "a late picture: status" $? 0
 contains "a late picture" "$(cat errors)" "warning: late.yaml:72:21: the run ends at 0.008, before the picture at 0.064, which is not made"
 
+# what is doubted before the run and what turns up in it are each told once
+sed '/^failure/d; s/end time: 2.0e-3 s/end time: 2.0e-5 s, rest: 1e-9, damping: 1/; s/{field: damage}/{field: damage, at: [99]}/' plate.yaml > doubts.yaml
+"$breccia" run doubts.yaml > out 2> errors; equal "doubts: status" $? 0
+equal "a doubt before the run" "$(grep -c "before the picture at 99" errors)" 1
+equal "a doubt of the run" "$(grep -c "ended at its end time" errors)" 1
+
 # histories of a material at one particle
 "$breccia" run "$source/examples/block-with-hole/block.yaml" --steps 20 --output block > out 2>&1; equal "block: status" $? 0
 equal "history watched: heading" "$(head -1 block/p-history.csv)" "step,time (s),cap parameter"

@@ -38,6 +38,14 @@ equal "pdf" "$(head -c 4 plain.pdf)" %PDF
 equal "all steps" "$(wc -l < out)" 3
 "$breccia" plot bar --curve "end.x : pull.value" --output curve.svg > out 2>&1 || fail "curve: $(cat out)"
 contains "curve" "$(cat curve.svg)" "<svg"
+# a bar of 12 x 6 x 6 lies wide from its side, stands high from above with x upwards, and shows its square end from the front
+sizes() { "$breccia" plot bar --field damage --view="$1" --output view.png > out 2>&1 && od -An -tu1 -j16 -N8 view.png | awk '{print 256 * $3 + $4, 256 * $7 + $8}'; }
+read -r side_wide side_high <<< "$(sizes 90:0)"
+read -r top_wide top_high <<< "$(sizes 0:90)"
+read -r end_wide end_high <<< "$(sizes 0:0)"
+[ $((end_high - side_high)) -gt 100 ] && [ $((top_high)) = $((end_high)) ] || fail "heights from the side, above, the front: $side_high $top_high $end_high"
+[ $((end_wide - top_wide)) -gt 100 ] && [ $((side_wide)) -gt $((end_wide)) ] || fail "widths from the side, above, the front: $side_wide $top_wide $end_wide"
+checks=$((checks + 2))
 printf 'a,b\n0,0\n1,1\n' > measured.csv
 "$breccia" plot bar --curve "end.time : end.x" --output plus.svg > out 2>&1 || fail "plus: $(cat out)"
 "$breccia" plot bar --curve "end.time : - end.x" --output minus.svg > out 2>&1 || fail "minus: $(cat out)"
@@ -73,6 +81,28 @@ for near in 0.1:0 0.45:20 0.55:20 0.8:40 1:40; do
 done
 "$breccia" plot other --energy > out 2>&1 || fail "energy: $(cat out)"
 equal "name of the energies" "$(cat out)" "other/pictures/ledger.png"
+# rows of histories that are written seldom belong to those of the same steps: over the same thing both axes have the same numbers
+cat > flat.yaml <<'Y'
+materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}
+body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0, 0], to: [2.2, 0.7]}}}}
+peridynamics: {space: plane strain}
+loads: [{on: {face: x+}, body force: [1, 0]}]
+solve: {explicit: {steps: 40}}
+watch: {often: {displacement of: {face: x+}}, seldom: {displacement of: {face: x+}, every: 7}}
+results: {number: 2, fields: [displacement]}
+pictures: []
+Y
+"$breccia" run flat.yaml > out 2>&1 || fail "flat: $(cat out)"
+"$breccia" plot flat --curve "often.time : seldom.time" --output same.svg > out 2>&1 || fail "same: $(cat out)"
+equal "a time over itself" "$(numbers same.svg | uniq -c | awk '$1 != 2' | wc -l)" 0
+# numbers at the upright axis stand where their places are: 0 at the lower end of the body, 0.6 a seventh below its upper end
+"$breccia" plot flat --field displacement --deformed 0 --output flat.svg > out 2>&1 || fail "flat: $(cat out)"
+grep -o 'd="M [0-9.]* [0-9.]* L [0-9.]* [0-9.]* *"' flat.svg | tr -d '"' | awk '$3 == $6 && $5 - $2 == 4 {print $3}' | sort -n > marks
+grep -o 'd="M [0-9.]* [0-9.]* L [0-9.]* [0-9.]* L [0-9.]* [0-9.]* ' flat.svg | awk '$5 - $2 > 300 && $3 == $6 {print $3 + 6, $9 - 6}' > ends
+read -r upper lower < ends
+awk -v upper=$((upper)) -v lower=$((lower)) 'function near(a, b) {return (a - b) ^ 2 < 1}
+  NR == 1 {first = $1} {last = $1} END {exit !(NR > 2 && near(last, lower) && near(first, upper + (lower - upper) / 7))}' marks ||
+  fail "marks at the upright axis: $(cat ends marks | tr '\n' ' ')"
 # movies: what ffmpeg is given, what it makes where it is installed, and what is said where it is not
 mkdir programs
 cat > programs/ffmpeg <<'Y'

@@ -54,6 +54,15 @@ contains "variable set" "$("$breccia" check block.yaml --set variables.n=8)" 'Bl
 "$breccia" run plain.yaml --quiet --output set --set 'body.block.spacing=25 mm' --restart 2> errors && fail "another deck goes on from a checkpoint"
 contains "restart of another deck" "$(cat errors)" 'was written with another deck'
 
+# A key with a point in it is not the shorter one before the point, whichever stands first.
+for names in "rock rock.1" "rock.1 rock"; do
+  for name in $names; do echo "  $name: {model: elastic, density: 2500 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}"; done > rocks
+  sed '/^  sand/d; /^  rock/ {r rocks
+d}' plain.yaml > rocks.yaml
+  contains "density of $names" "$("$breccia" check rocks.yaml --set materials.rock.1.density=1700 2>&1)" "rock.1: 1700 kg/m3"
+  contains "density of $names" "$("$breccia" check rocks.yaml --set materials.rock.1.density=1700 --set materials.rock.density=1900 2>&1)" "rock: 1900 kg/m3"
+done
+
 # refuse FILE EDIT WORDS: FILE after a sed edit makes block.yaml, or what it is, refused in these words, all of them
 refuse() {
   cp -r library kept

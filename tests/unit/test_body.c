@@ -44,6 +44,35 @@ static void shapes_have_the_volumes_of_geometry(void **state)
   }
 }
 
+static void particles_on_the_face_of_a_hole_stay(void **state)
+{
+  (void)state;
+  /* Of 21 x 21 points around the middle: 81 lie within a distance of 5 of it, 12 of them right there, like 3, 4. A plate keeps those at its
+   * edge, and those at the edge of a hole. */
+  const struct {
+    const char *shape;
+    int count;
+  } cases[] = {
+      {"{difference: [{box: {particles: [21, 21], first particle: [-10, -10]}}, {sphere: {centre: [0, 0], radius: "
+       "5}}]}",
+       441 - 81 + 12},
+      {"{difference: [{box: {particles: [21, 21], first particle: [-10, -10]}}, {box: {from: [-3, -2], to: [3, 2]}}]}",
+       441 - 5 * 3},
+      {"{difference: [{box: {particles: [11, 11], first particle: [-5, -5]}}, {difference: [{box: {particles: [21, "
+       "21], "
+       "first particle: [-10, -10]}}, {sphere: {centre: [0, 0], radius: 5}}]}]}",
+       81},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *model =
+        model_of(MATERIAL SOLVE "peridynamics: {space: plane strain}\n"
+                                "body: {b: {material: m, lattice: square, thickness: 1, spacing: 1, shape: %s}}\n",
+                 cases[k].shape);
+    assert_int_equal(model->domain.particles->count, cases[k].count);
+    breccia_model_destroy(&model);
+  }
+}
+
 static void numbers_run_along_x_then_y_then_z(void **state)
 {
   (void)state;
@@ -315,6 +344,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shapes_have_the_volumes_of_geometry),
+      cmocka_unit_test(particles_on_the_face_of_a_hole_stay),
       cmocka_unit_test(numbers_run_along_x_then_y_then_z),
       cmocka_unit_test(families_on_lattices_have_the_counts_of_geometry),
       cmocka_unit_test(families_are_those_of_all_pairs_on_a_body_with_hole_cut_and_two_lattices),

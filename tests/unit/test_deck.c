@@ -232,6 +232,8 @@ static void expressions_keep_the_units_of_quantities(void **state)
       {"${sin(phi)} ${cos(60 deg)} ${2*phi}", "0.5 0.5 60 deg"},
       {"${3*f} ${1/f}", "30 Hz 0.1 s"},
       {"${floor(0.3 m/(0.1 m))} ${ceil(0.3 m/(0.1 m))} ${round(n/3)}", "3 3 1"},
+      {"${ceil(2.1 m/(0.7 m))} ${ceil(2.11 m/(0.7 m))} ${floor(2.09 m/(0.7 m))}",
+       "3 4 2"}, /* 2.1/0.7 is 3.0000000000000004 */
       {"${abs(-3 mm)}", "0.003 m"},
       {"${5 %}", "0.05"},
       {"${pi}", "3.14159265358979"},

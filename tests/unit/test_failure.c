@@ -62,6 +62,24 @@ static void no_bond_breaks_where_the_deck_says_so(void **state)
   }
 }
 
+static void particles_right_at_the_distance_are_kept_too(void **state)
+{
+  (void)state;
+  for (int spacings = 0; spacings < 9; ++spacings) {
+    breccia_model *m = model_of("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                                "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [20, 5, 3]}}}}\n"
+                                "failure: {critical stretch: 0.01, no failure within: {distance: %s%d%s}}\n"
+                                "loads: [{on: {face: x+, layers: 2}, velocity: [3, free, free]}]\n"
+                                "solve: {explicit: {steps: 1}}\n",
+                                spacings % 2 ? "0." : "", spacings, spacings % 2 ? "" : " spacings");
+    int kept = 0;
+    for (int64_t n = 0; n < m->domain.particles->count; ++n)
+      kept += m->domain.failure.kept[m->domain.particles->place_of[n]] != 0;
+    assert_int_equal(kept, (2 + spacings) * 5 * 3);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **state)
 {
   (void)state;
@@ -95,6 +113,72 @@ static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **stat
       assert_int_equal(breccia_model_broken_bonds(model), 0);
     }
     breccia_model_destroy(&model);
+    breccia_error_destroy(&error);
+  }
+}
+
+/* "string": elastic up to a strain of 1e-3, where it gives up. */
+static int string_prepare(const double *values, void *constants, char *reason, size_t size)
+{
+  (void)values, (void)constants, (void)reason, (void)size;
+  return 0;
+}
+static void string_moduli(const void *constants, double *bulk, double *shear)
+{
+  (void)constants;
+  *bulk = 1e4 / 1.5;
+  *shear = 1e4 / 2.5;
+}
+static int string_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    if (batch->strain[0][i] > 1e-3) return i;
+    batch->stress[0][i] = 1e4 * batch->strain[0][i];
+    if (batch->tangent) batch->tangent[i] = 1e4;
+  }
+  return -1;
+}
+static const breccia_law law_of_string = {.size = sizeof(breccia_law),
+                                          .name = "string",
+                                          .about = "gives up",
+                                          .source = "the tests",
+                                          .maturity = "experimental",
+                                          .constants_size = 1,
+                                          .components = 1,
+                                          .prepare = string_prepare,
+                                          .moduli = string_moduli,
+                                          .update = string_update};
+
+static void a_bond_whose_law_gives_up_takes_both_its_particles_along(void **state)
+{
+  (void)state;
+  /* A row bonded to next neighbours, one gap of which is opened: the two beside it lose the bonds on their other sides too, and no other
+   * particle loses any, wherever the gap is. */
+  enum { COUNT = 21 };
+  for (int gap = 2; gap < COUNT - 3; gap += 3) {
+    const breccia_law *const laws[] = {&law_of_string};
+    const breccia_options options = {
+        .size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1 + gap % 2};
+    breccia_error *error = breccia_error_create();
+    breccia_model *m;
+    if (breccia_model_load_string(
+            "units: {length: m, force: kN, time: s}\nmaterials: {s: {model: string, density: 2}}\n"
+            "body: {b: {material: s, lattice: line, area: 1, spacing: 1, shape: {box: {particles: "
+            "[21, 1, 1]}}}}\nperidynamics: {formulation: bond-based, horizon: 1.2}\n"
+            "failure: {failed laws: break}\nsolve: {explicit: {time step: 1e-4, steps: 3}}\n",
+            "deck", &options, &m, error))
+      fail_msg("%s", breccia_error_text(error));
+    const Particles *p = m->domain.particles;
+    for (int32_t n = gap + 1; n < COUNT; ++n) p->displacement[0][p->place_of[n]] = 5e-3;
+    step_surely(m, 3);
+    for (int32_t n = 0; n < COUNT; ++n) {
+      const int ends = n == 0 || n == COUNT - 1, lost = n == gap || n == gap + 1       ? 2
+                                                        : n == gap - 1 || n == gap + 2 ? 1
+                                                                                       : 0;
+      assert_int_equal(family_count(&m->domain.family, p->place_of[n]), 2 - ends - lost);
+    }
+    breccia_model_destroy(&m);
     breccia_error_destroy(&error);
   }
 }
@@ -189,7 +273,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bonds_near_grips_hold_where_the_deck_says_so),
       cmocka_unit_test(no_bond_breaks_where_the_deck_says_so),
+      cmocka_unit_test(particles_right_at_the_distance_are_kept_too),
       cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
+      cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
   };

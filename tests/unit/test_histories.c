@@ -180,6 +180,27 @@ static void records_in_every_form_say_the_same(void **state)
   remove_files(folder);
 }
 
+static void a_record_that_begins_before_the_run_counts_from_its_beginning(void **state)
+{
+  (void)state;
+  /* From 2 at -3 ms to 5 at 3 ms, and to 1 at 7 ms: 3.5 when the run begins, at time 0, from which integrals count. */
+  char path[] = "/tmp/breccia-XXXXXX", history[80];
+  const int file = mkstemp(path);
+  static const char rows[] = "-3 2\n3 5\n7 1\n";
+  assert_int_equal(write(file, rows, sizeof rows - 1), sizeof rows - 1);
+  close(file);
+  snprintf(history, sizeof history, "file: {name: %s}", path);
+  breccia_model *m = with_history(history);
+  History *h = history_of(m);
+  assert_values(h, 0, (double[]){3.5, 0, 0}, 1e-14);
+  assert_values(h, 2, (double[]){4.5, 3.5 * 2 + 0.25 * 4, 3.5 * 2 + 0.25 * 8 / 3}, 1e-13);
+  assert_values(h, 3, (double[]){5, 10.5 + 2.25, 3.5 * 4.5 + 0.25 * 9}, 1e-13);
+  assert_near(history_integral(h, 1, 1, 7), 12.75 + 12, 1e-13);
+  assert_near(history_integral(h, 1, 1, 9), 12.75 + 12, 1e-13);
+  breccia_model_destroy(&m);
+  unlink(path);
+}
+
 static void what_files_lack_is_said(void **state)
 {
   (void)state;
@@ -236,6 +257,7 @@ int main(void)
       cmocka_unit_test(products_and_sums_are_those_of_their_parts),
       cmocka_unit_test(what_was_found_does_not_depend_on_what_was_asked_before),
       cmocka_unit_test(records_in_every_form_say_the_same),
+      cmocka_unit_test(a_record_that_begins_before_the_run_counts_from_its_beginning),
       cmocka_unit_test(what_files_lack_is_said),
       cmocka_unit_test(the_peak_of_a_history_is_its_farthest_from_zero),
   };

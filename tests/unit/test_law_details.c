@@ -1,4 +1,5 @@
-/* What laws do where no parameter is given, under confinement, after an elastic stage, and when a point gives up: in closed form. */
+/* What laws do where no parameter is given, under confinement, after an elastic stage, and when a point gives up: in closed form. And what their
+ * histories keep. */
 #include "sample_laws.h"
 
 #include "base/tensor.h"
@@ -205,9 +206,91 @@ static void a_point_that_gives_up_carries_nothing_and_keeps_its_history(void **s
   material_destroy(&m);
 }
 
+static void rows_that_take_turns_remember_what_whole_copies_do(void **state)
+{
+  (void)state;
+  /* A law writes of its new row what differs from the committed one only, because both rows take turns. The same walk with the whole row
+   * copied before each step, gently and so far that every surface is reached and slid along, must leave the same bits. */
+  for (int n = 0; n < SAMPLES; ++n)
+    for (int far = 0; far < 2; ++far) {
+      Material m = samples[n].make();
+      Point turns = point_start(&m), copied = point_start(&m);
+      const size_t bytes = sizeof(double) * (size_t)m.history_values;
+      uint64_t seed = 53;
+      double strain[6] = {0}, a[6], b[6];
+      for (int step = 0; step < 600; ++step) {
+        const double size = samples[n].strain * (far ? 40 : 1);
+        sample_wander(&seed, size, size / 5, strain);
+        memcpy(copied.trial, copied.committed, bytes);
+        point_try(&turns, strain, a, NULL, 0);
+        point_try(&copied, strain, b, NULL, 0);
+        assert_memory_equal(a, b, sizeof a);
+        point_commit(&turns);
+        point_commit(&copied);
+      }
+      point_stop(&turns);
+      point_stop(&copied);
+      material_destroy(&m);
+    }
+}
+
+static void the_tangent_of_a_law_that_relaxes_is_that_of_its_step(void **state)
+{
+  (void)state;
+  /* 2 G (1 - lambda (1 - (1 - e^-x) / x)) for a deviator that grows evenly in a step of x relaxation times; K for the volume. */
+  Material m = material_of("viscoelastic", "Young modulus=2e8", "Poisson ratio=0.3", "relaxing share=0.6",
+                           "relaxation time=2", NULL);
+  const double steps[] = {0, 1e-3, 0.3, 1.7, 40};
+  for (int n = 0; n < 5; ++n) {
+    const double x = steps[n] / 2, held = x > 0 ? 1 - 0.6 * (1 - (1 - exp(-x)) / x) : 1,
+                 expected[3] = {m.bulk + 4 * m.shear * held / 3, m.bulk - 2 * m.shear * held / 3, m.shear * held};
+    double committed[12] = {0}, trial[12], strain[6] = {3e-4, -1e-4, 2e-4, 5e-4, -7e-4, 1e-4}, stress[6], tangent[36];
+    breccia_batch batch = {.size = sizeof(breccia_batch),
+                           .count = 1,
+                           .committed = committed,
+                           .trial = trial,
+                           .tangent = tangent,
+                           .time_step = steps[n]};
+    for (int k = 0; k < 6; ++k) {
+      batch.strain[k] = strain + k;
+      batch.stress[k] = stress + k;
+    }
+    assert_int_equal(m.law->update(m.constants, &batch), -1);
+    assert_near(tangent[0], expected[0], 1e-12 * expected[0]);
+    assert_near(tangent[1], expected[1], 1e-12 * expected[0]);
+    assert_near(tangent[21], expected[2], 1e-12 * expected[0]);
+    assert_near(stress[3], expected[2] * strain[3], 1e-12 * expected[0]); /* from rest the step is proportional */
+  }
+  material_destroy(&m);
+}
+
+static void damage_of_mazars_never_heals(void **state)
+{
+  (void)state;
+  /* Pulled until a known share is gone, E k0 (1 - D) e; then pressed so little that compression would damage less: what was lost stays
+   * lost, and so it does when it is pulled again. */
+  Material m = material_of("mazars", "Young modulus=30e6", "Poisson ratio=0", "tensile strength=3000",
+                           "fracture energy=0.1", "length=0.03", NULL);
+  const double k0 = 1e-4, pulled = 5e-4, rate = 1 / (0.1 / (0.03 * 3000) - k0 / 2),
+               whole = k0 / pulled * exp(-rate * (pulled - k0)), to[] = {pulled, -3e-4, 2e-4, -1e-5, pulled};
+  Point p = point_start(&m);
+  for (int k = 0; k < 5; ++k) {
+    double strain[6] = {to[k]}, stress[6];
+    point_try(&p, strain, stress, NULL, 0);
+    point_commit(&p);
+    assert_near(stress[0], whole * 30e6 * to[k], 1e-9 * 3000);
+  }
+  assert_true(whole < 0.2);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rows_that_take_turns_remember_what_whole_copies_do),
+      cmocka_unit_test(the_tangent_of_a_law_that_relaxes_is_that_of_its_step),
+      cmocka_unit_test(damage_of_mazars_never_heals),
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),

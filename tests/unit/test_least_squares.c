@@ -1,5 +1,7 @@
-/* The least sum of squares in a box: valleys, ends of the box, places without residuals, and the curvature at the end. */
+/* The least sum of squares in a box: valleys, ends of the box, places without residuals, and the curvature at the end; and systems of equations. */
 #include "base/least_squares.h"
+#include "base/linear.h"
+#include "base/random.h"
 #include "support.h"
 
 /** Rosenbrock's valley from (0, 0) to (1, 1), laid into the box: its residuals vanish at (0.75, 0.75). */
@@ -70,9 +72,38 @@ static void places_without_residuals_are_left_alone(void **state)
   least_squares_destroy(&p);
 }
 
+static void systems_are_solved_whatever_their_signs_and_order(void **state)
+{
+  (void)state;
+  /* Matrices with one large number in each row, of either sign and in any column, and small ones beside: only the large ones can be pivots. */
+  enum { SIZE = 5, COLUMNS = 2 };
+  uint64_t seed = 11;
+  for (int trial = 0; trial < 200; ++trial) {
+    double a[SIZE * SIZE], kept[SIZE * SIZE], right[SIZE * COLUMNS] = {0}, x[SIZE * COLUMNS];
+    int column[SIZE] = {0, 1, 2, 3, 4};
+    for (int r = SIZE - 1; r > 0; --r) {
+      const int other = (int)(random_uniform(&seed) * (r + 1)), mine = column[r];
+      column[r] = column[other];
+      column[other] = mine;
+    }
+    for (int k = 0; k < SIZE * SIZE; ++k) a[k] = 1e-9 * (random_uniform(&seed) - 0.5);
+    for (int r = 0; r < SIZE; ++r) a[SIZE * r + column[r]] = (random_uniform(&seed) < 0.5 ? -1 : 1) * (1 + r);
+    for (int k = 0; k < SIZE * COLUMNS; ++k) x[k] = random_uniform(&seed) - 0.5;
+    for (int r = 0; r < SIZE; ++r)
+      for (int n = 0; n < COLUMNS; ++n)
+        for (int k = 0; k < SIZE; ++k) right[COLUMNS * r + n] += a[SIZE * r + k] * x[COLUMNS * k + n];
+    memcpy(kept, a, sizeof a);
+    assert_true(linear_solve(SIZE, a, COLUMNS, right));
+    for (int k = 0; k < SIZE * COLUMNS; ++k) assert_near(right[k], x[k], 1e-13);
+    memcpy(kept + SIZE, kept, sizeof(double) * SIZE); /* two rows alike */
+    assert_false(linear_solve(SIZE, kept, COLUMNS, right));
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(systems_are_solved_whatever_their_signs_and_order),
       cmocka_unit_test(the_end_of_a_curved_valley_is_found),
       cmocka_unit_test(what_lies_outside_the_box_is_met_at_its_face),
       cmocka_unit_test(places_without_residuals_are_left_alone),

@@ -229,9 +229,118 @@ static void bodies_in_space_stand_upright_in_pictures(void **state)
   }
 }
 
+/** What summary.json tells as the peak of a load. */
+static double told_peak(const char *path, const char *load)
+{
+  char file[128], quoted[64];
+  snprintf(file, sizeof file, "%s/summary.json", path);
+  snprintf(quoted, sizeof quoted, "{\"name\": \"%s\"", load);
+  char *text = text_read_file(file, NULL), *at = text ? strstr(text, quoted) : NULL,
+       *peak = at ? strstr(at, "\"peak\": ") : NULL;
+  if (!peak) fail_msg("%s does not tell the peak of '%s'", file, load);
+  const double value = strtod(peak + strlen("\"peak\": "), NULL);
+  free(text);
+  return value;
+}
+
+static void loads_of_stages_peak_within_them(void **state)
+{
+  (void)state;
+  /* All grow by 1 in a microsecond. The first stage lasts 3, the second 5: what ends with the first has come to 3, what begins with the second to 5,
+   * and what is there all the while to 8. */
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
+      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
+      "loads: [{name: short, on: {face: x+}, body force: [2, 0, 0], history: {table: [[0, 0], [1, 1e6]]}},\n"
+      "        {name: long, on: {face: x+}, body force: [3, 0, 0], history: {table: [[0, 0], [1, 1e6]]}}]\n"
+      "solve:\n  - {explicit: {time step: 1e-6, steps: 3}}\n"
+      "  - {explicit: {time step: 1e-6, steps: 5}, without: [short], loads: [{name: late, on: {face: x+}, body force: "
+      "[7, 0, 0], history: {table: [[0, 0], [1, 1e6]]}}]}\n"
+      "results: {number: 4}\nwatch: {all: {displacement of: {all: yes}, every: 1}}\n");
+  char path[80], file[112];
+  run_into(m, "stages", path, sizeof path);
+  assert_near(told_peak(path, "short"), 2 * 3, 1e-6);
+  assert_near(told_peak(path, "long"), 3 * 8, 1e-6);
+  assert_near(told_peak(path, "late"), 7 * 5, 1e-6);
+  /* four states in each stage, evenly, besides the first */
+  snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+  ResultView view;
+  assert_int_equal(result_view_open(&view, file, NULL), 0);
+  static const int64_t steps[] = {0, 1, 2, 3, 4, 6, 7, 8};
+  assert_int_equal(view.steps, 8);
+  for (int k = 0; k < 8; ++k) assert_int_equal(view.step_numbers[k], steps[k]);
+  result_view_close(&view);
+  breccia_model_destroy(&m);
+}
+
+static void a_bonds_stretch_does_not_count_from_zero_as_its_opening_does(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
+      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
+      "solve: [{explicit: {time step: 1e-9, steps: 1}}, {displacements: zero, explicit: {time step: 1e-9, steps: 1}}]\n"
+      "watch: {bond: {bond between: [[0.05, 0.05, 0.05], [0.25, 0.05, 0.05]]}, gap: {opening between: [[0.05, 0.05, "
+      "0.05], [0.25, 0.05, 0.05]]}}\n");
+  const double f[9] = {1.03, 0, 0, 0, 1, 0, 0, 0, 1};
+  char path[80], file[112];
+  int count = 0;
+  deform_uniformly(m, f);
+  run_into(m, "zero", path, sizeof path);
+  snprintf(file, sizeof file, "%s/bond.csv", path);
+  double *stretch = csv_column(file, "stretch", CSV_FINISHED, &count, NULL, NULL);
+  for (int k = 0; k < count; ++k) assert_near(stretch[k], 0.03, 1e-9);
+  free(stretch);
+  assert_int_equal(count, 3);
+  snprintf(file, sizeof file, "%s/gap.csv", path);
+  double *opening = csv_column(file, "opening", CSV_FINISHED, &count, NULL, NULL);
+  for (int k = 0; k < count; ++k) assert_near(opening[k], k < count - 1 ? 0.006 : 0, 1e-9);
+  free(opening);
+  breccia_model_destroy(&m);
+}
+
+static void results_hold_every_broken_bond_in_its_order(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of("units: {length: m, force: kN, time: s}\n"
+               "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\nfailure: {critical "
+               "stretch: 0.01}\n"
+               "loads: [{on: {face: x+, layers: 2}, velocity: [4, free, free]}]\nsolve: {explicit: {steps: 120}}\n"
+               "results: {every: 20}\n");
+  char path[80], file[112];
+  run_into(m, "broken", path, sizeof path);
+  snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+  ResultView view;
+  assert_int_equal(result_view_open(&view, file, NULL), 0);
+  int growing = 0;
+  int64_t before = 0;
+  for (int k = 0; k < view.steps; ++k) {
+    int64_t count, expected = 0, *pairs = result_view_broken(&view, k, &count);
+    while (expected < m->domain.broken_count && m->domain.broken[expected].step <= view.step_numbers[k]) ++expected;
+    assert_int_equal(count, expected);
+    for (int64_t n = 0; n < count; ++n) {
+      assert_int_equal(pairs[2 * n], m->domain.broken[n].a);
+      assert_int_equal(pairs[2 * n + 1], m->domain.broken[n].b);
+    }
+    free(pairs);
+    growing += count > before;
+    before = count;
+  }
+  assert_true(growing > 2);
+  result_view_close(&view);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(loads_of_stages_peak_within_them),
+      cmocka_unit_test(a_bonds_stretch_does_not_count_from_zero_as_its_opening_does),
+      cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
       cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),
       cmocka_unit_test(bodies_in_space_stand_upright_in_pictures),

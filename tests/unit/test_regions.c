@@ -263,6 +263,22 @@ static void joints_break_and_keep_their_books(void **state)
   free(found[1]);
 }
 
+static void bonds_of_a_joint_are_told_once(void **state)
+{
+  (void)state;
+  /* Two bars of fibres and solid side by side: of bonds up to three spacings those along x cross the joint 1, 2 and 3 times in each row, those that
+   * rise by r rows as often as they are long. */
+  breccia_model *model = bar("horizon: 3.015", "continuum", 20, 6, ONE_STEP);
+  int64_t bonds = 0;
+  for (int dx = 1; dx <= 3; ++dx)
+    for (int dy = -3; dy <= 3; ++dy)
+      if (dx * dx + dy * dy <= 9) bonds += dx * (6 - abs(dy));
+  char words[64];
+  snprintf(words, sizeof words, ", joined by %lld bonds;", (long long)bonds);
+  if (!strstr(breccia_model_overview(model), words)) fail_msg("no '%s' in: %s", words, breccia_model_overview(model));
+  breccia_model_destroy(&model);
+}
+
 static void what_regions_cannot_be_is_refused(void **state)
 {
   (void)state;
@@ -303,6 +319,7 @@ int main(void)
       cmocka_unit_test(one_region_is_the_body_without),
       cmocka_unit_test(a_free_bar_keeps_its_energy),
       cmocka_unit_test(joints_break_and_keep_their_books),
+      cmocka_unit_test(bonds_of_a_joint_are_told_once),
       cmocka_unit_test(what_regions_cannot_be_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
