@@ -309,7 +309,8 @@ void points_change(const Points *points, int64_t first, int count, double *const
 
 /* ---- points tried out ---- */
 
-/** Stress of a point of one strain, from a history. @param[out] to  [MOST_VALUES] the history that follows */
+/** Stress of a point of one strain, from a history; one that gives up carries nothing and keeps its history.
+ *  @param[out] to  [MOST_VALUES] the history that follows */
 static double stress_from(const Points *points, int64_t row, const double *from, double strain, double *to,
                           double *tangent)
 {
@@ -321,8 +322,10 @@ static double stress_from(const Points *points, int64_t row, const double *from,
   batch.trial = to;
   batch.tangent = tangent;
   memcpy(to, from, sizeof(double) * (size_t)m->history_values);
-  m->law->update(m->constants, &batch);
-  return stress;
+  if (m->law->update(m->constants, &batch) < 0) return stress;
+  memcpy(to, from, sizeof(double) * (size_t)m->history_values);
+  if (tangent) *tangent = 0;
+  return 0;
 }
 
 double points_try(const Points *points, int64_t row, double strain, double *tangent)

@@ -84,7 +84,7 @@ equal "name of the energies" "$(cat out)" "other/pictures/ledger.png"
 # rows of histories that are written seldom belong to those of the same steps: over the same thing both axes have the same numbers
 cat > flat.yaml <<'Y'
 materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}
-body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0, 0], to: [2.2, 0.7]}}}}
+body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.05, shape: {box: {from: [0, 0], to: [2.2, 0.65]}}}}
 peridynamics: {space: plane strain}
 loads: [{on: {face: x+}, body force: [1, 0]}]
 solve: {explicit: {steps: 40}}
@@ -95,13 +95,13 @@ Y
 "$breccia" run flat.yaml > out 2>&1 || fail "flat: $(cat out)"
 "$breccia" plot flat --curve "often.time : seldom.time" --output same.svg > out 2>&1 || fail "same: $(cat out)"
 equal "a time over itself" "$(numbers same.svg | uniq -c | awk '$1 != 2' | wc -l)" 0
-# numbers at the upright axis stand where their places are: 0 at the lower end of the body, 0.6 a seventh below its upper end
+# numbers at the upright axis stand where their places are: 0 at the lower end of the body, 0.6 a thirteenth below its upper end
 "$breccia" plot flat --field displacement --deformed 0 --output flat.svg > out 2>&1 || fail "flat: $(cat out)"
 grep -o 'd="M [0-9.]* [0-9.]* L [0-9.]* [0-9.]* *"' flat.svg | tr -d '"' | awk '$3 == $6 && $5 - $2 == 4 {print $3}' | sort -n > marks
 grep -o 'd="M [0-9.]* [0-9.]* L [0-9.]* [0-9.]* L [0-9.]* [0-9.]* ' flat.svg | awk '$5 - $2 > 300 && $3 == $6 {print $3 + 6, $9 - 6}' > ends
 read -r upper lower < ends
-awk -v upper=$((upper)) -v lower=$((lower)) 'function near(a, b) {return (a - b) ^ 2 < 1}
-  NR == 1 {first = $1} {last = $1} END {exit !(NR > 2 && near(last, lower) && near(first, upper + (lower - upper) / 7))}' marks ||
+awk -v upper="$upper" -v lower="$lower" 'function near(a, b) {return (a - b) ^ 2 < 1}
+  NR == 1 {first = $1} {last = $1} END {exit !(NR > 2 && near(last, lower) && near(first, upper + (lower - upper) / 13))}' marks ||
   fail "marks at the upright axis: $(cat ends marks | tr '\n' ' ')"
 # movies: what ffmpeg is given, what it makes where it is installed, and what is said where it is not
 mkdir programs

@@ -255,6 +255,32 @@ static void round_bodies_lie_in_the_middle_of_their_lattice(void **state)
     }
 }
 
+static void parts_of_volumes_at_the_horizon_go_by_both_spacings(void **state)
+{
+  (void)state;
+  /* Of blocks of spacings 1 and 0.5 the share between them falls from 1 at delta - h to 1/2 at delta, beyond which there is no bond, with
+   * h = (1 + 0.5) / 4; from both ends alike. */
+  breccia_model *model =
+      model_of(MATERIAL SOLVE "peridynamics: {horizon: 2.6, volume correction: partial}\n"
+                              "body:\n  a: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [4, 4, 4]}}}\n"
+                              "  b: {material: m, spacing: 0.5, shape: {box: {from: [4, 0, 0], to: [7, 4, 4]}}}\n");
+  const Family *f = &model->domain.family;
+  const Particles *p = model->domain.particles;
+  int parts[2] = {0};
+  for (int64_t slice = 0; slice < p->slices; ++slice)
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        if (!(f->intact[slot] >> lane & 1)) continue;
+        const Bond bond = family_bond(f, slice, slot, lane);
+        const double share = fmin(1, (2.6 + 0.375 - bond.length) / 0.75);
+        assert_near(bond.weight, share * p->volume[bond.neighbour], 1e-12);
+        parts[p->block[slice]] += share < 1;
+      }
+  assert_true(parts[0] > 100);
+  assert_int_equal(parts[0], parts[1]);
+  breccia_model_destroy(&model);
+}
+
 static void particles_on_top_of_each_other_are_refused(void **state)
 {
   (void)state;
@@ -351,6 +377,7 @@ int main(void)
       cmocka_unit_test(bonds_come_in_pairs_with_opposite_vectors_and_break_on_both_sides),
       cmocka_unit_test(weighted_volume_of_whole_cells_matches_peridigm),
       cmocka_unit_test(weights_of_bonds_are_influence_times_volume),
+      cmocka_unit_test(parts_of_volumes_at_the_horizon_go_by_both_spacings),
       cmocka_unit_test(particles_on_top_of_each_other_are_refused),
       cmocka_unit_test(blocks_of_unlike_thickness_or_area_are_refused),
       cmocka_unit_test(selections_hold_what_they_say),

@@ -136,7 +136,7 @@ static char *folder_of_files(void)
   write_text(folder, "three.txt", "0 1 2\n1 2 3\n");
   write_text(folder, "back.txt", "0 1\n2 2\n1 3\n");
   write_text(folder, "table.csv",
-             "# made by hand\nt (s),other,motion (m/s2)\n0,9,0.1\n0.002,9,-0.2\n0.004,9,0.3\n"
+             "# made by hand\nt (s),motion rate (1/s),motion (m/s2)\n0,9,0.1\n0.002,9,-0.2\n0.004,9,0.3\n"
              "0.006,9,0\n0.008,9,.05\n");
   return folder;
 }

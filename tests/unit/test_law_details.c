@@ -285,11 +285,64 @@ static void damage_of_mazars_never_heals(void **state)
   material_destroy(&m);
 }
 
+/* "hourglass": elastic; it remembers the time and the time step that it was told. */
+static int hourglass_values(const void *constants)
+{
+  (void)constants;
+  return 2;
+}
+static int hourglass_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    batch->trial[2 * i] = batch->time;
+    batch->trial[2 * i + 1] = batch->time_step;
+    for (int k = 0; k < 6; ++k) batch->stress[k][i] = 6e4 * batch->strain[k][i];
+  }
+  return -1;
+}
+static const breccia_law law_of_hourglass = {.size = sizeof(breccia_law),
+                                             .name = "hourglass",
+                                             .about = "tells the time",
+                                             .source = "the tests",
+                                             .maturity = "experimental",
+                                             .constants_size = 1,
+                                             .components = 6,
+                                             .prepare = chalk_prepare,
+                                             .moduli = chalk_moduli,
+                                             .history_values = hourglass_values,
+                                             .update = hourglass_update};
+
+static void laws_are_told_the_time_of_the_end_of_their_step(void **state)
+{
+  (void)state;
+  const breccia_law *const laws[] = {&law_of_hourglass};
+  const breccia_options options = {.size = sizeof(breccia_options), .laws = laws, .law_count = 1};
+  breccia_model *m;
+  assert_int_equal(
+      breccia_model_load_string("units: {length: m, force: kN, time: s}\n"
+                                "materials: {h: {model: hourglass, density: 2}}\n"
+                                "body: {b: {material: h, spacing: 0.1, shape: {box: {particles: [5, 4, 3]}}}}\n"
+                                "solve: {explicit: {time step: 1e-5, end time: 7.4e-5}}\n",
+                                "deck", &options, &m, NULL),
+      0);
+  for (int step = 1; step <= 8; ++step) { /* the last one is shorter */
+    step_surely(m, 1);
+    for (int64_t n = 0; n < m->domain.particles->count; ++n) {
+      const double *told = points_history(&m->domain.regions[0].points, m->domain.particles->place_of[n]);
+      assert_near(told[0], step < 8 ? 1e-5 * step : 7.4e-5, 1e-18);
+      assert_near(told[1], step < 8 ? 1e-5 : 4e-6, 1e-18);
+    }
+  }
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rows_that_take_turns_remember_what_whole_copies_do),
       cmocka_unit_test(the_tangent_of_a_law_that_relaxes_is_that_of_its_step),
+      cmocka_unit_test(laws_are_told_the_time_of_the_end_of_their_step),
       cmocka_unit_test(damage_of_mazars_never_heals),
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),

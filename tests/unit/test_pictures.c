@@ -302,7 +302,12 @@ static void xdmf_names_a_whole_dataset_for_every_step(void **state)
     char name[96];
     int components;
     snprintf(name, sizeof name, "results.vtkhdf:/Breccia/States/%lld/stress<", (long long)view.step_numbers[k]);
-    assert_non_null(strstr(xdmf, name));
+    char *field = strstr(xdmf, name), *begin = NULL, time[64];
+    assert_non_null(field);
+    snprintf(time, sizeof time, "<Grid Name=\"step %lld\"", (long long)view.step_numbers[k]);
+    begin = strstr(xdmf, time);
+    assert_true(begin && begin < field);
+    assert_near(strtod(strstr(begin, "Time Value=\"") + strlen("Time Value=\""), NULL), view.times[k], 0);
     double *expected = result_view_read(&view, "stress", k, &components, NULL, NULL);
     double *found = calloc((size_t)view.particles * 6, sizeof *found);
     name[strlen(name) - 1] = 0;

@@ -282,7 +282,8 @@ static void a_bonds_stretch_does_not_count_from_zero_as_its_opening_does(void **
       "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
       "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
       "solve: [{explicit: {time step: 1e-9, steps: 1}}, {displacements: zero, explicit: {time step: 1e-9, steps: 1}}]\n"
-      "watch: {bond: {bond between: [[0.05, 0.05, 0.05], [0.25, 0.05, 0.05]]}, gap: {opening between: [[0.05, 0.05, "
+      "watch: {bond: {every: 1, bond between: [[0.05, 0.05, 0.05], [0.25, 0.05, 0.05]]}, gap: {every: 1, opening "
+      "between: [[0.05, 0.05, "
       "0.05], [0.25, 0.05, 0.05]]}}\n");
   const double f[9] = {1.03, 0, 0, 0, 1, 0, 0, 0, 1};
   char path[80], file[112];
@@ -301,16 +302,45 @@ static void a_bonds_stretch_does_not_count_from_zero_as_its_opening_does(void **
   breccia_model_destroy(&m);
 }
 
+static void a_run_that_began_between_two_rows_goes_on(void **state)
+{
+  (void)state;
+  /* Five steps are taken before it: of every third row the first is that of step 6. */
+  breccia_error *error = breccia_error_create();
+  char path[80], file[112];
+  snprintf(path, sizeof path, "%s/between", folder);
+  snprintf(file, sizeof file, "%s/all.csv", path);
+  for (int again = 0; again < 2; ++again) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}}\n"
+        "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 6]}}}}\n"
+        "solve: {explicit: {time step: 1e-6, steps: 12}}\nwatch: {all: {displacement of: {all: yes}, every: 3}}\n");
+    breccia_run run = {.size = sizeof(breccia_run),
+                       .folder = path,
+                       .steps = again ? 0 : 10,
+                       .restart = again ? BRECCIA_RESTART_LAST : BRECCIA_RESTART_NO};
+    if (!again) step_surely(m, 5);
+    const int status = breccia_model_run(m, &run, error);
+    if (status && status != BRECCIA_INTERRUPTED) fail_msg("%s", breccia_error_text(error));
+    breccia_model_destroy(&m);
+  }
+  int count;
+  double *steps = csv_column(file, "step", CSV_FINISHED, &count, NULL, NULL);
+  assert_int_equal(count, 3);
+  for (int k = 0; k < count; ++k) assert_near(steps[k], 6 + 3 * k, 0);
+  free(steps);
+  breccia_error_destroy(&error);
+}
+
 static void results_hold_every_broken_bond_in_its_order(void **state)
 {
   (void)state;
-  breccia_model *m =
-      model_of("units: {length: m, force: kN, time: s}\n"
-               "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
-               "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\nfailure: {critical "
-               "stretch: 0.01}\n"
-               "loads: [{on: {face: x+, layers: 2}, velocity: [4, free, free]}]\nsolve: {explicit: {steps: 120}}\n"
-               "results: {every: 20}\n");
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n" SOFT_SOLID
+      "body: {b: {material: m, spacing: 1, shape: {box: {particles: [12, 4, 3]}}}}\nfailure: {critical stretch: "
+      "0.01}\nloads: [{on: {face: x-, layers: 2}, velocity: [0, 0, 0]}, {on: {face: x+, layers: 2}, velocity: [3, "
+      "0, 0]}]\nsolve: {explicit: {steps: 100}}\nresults: {every: 1}\n");
   char path[80], file[112];
   run_into(m, "broken", path, sizeof path);
   snprintf(file, sizeof file, "%s/results.vtkhdf", path);
@@ -330,7 +360,7 @@ static void results_hold_every_broken_bond_in_its_order(void **state)
     growing += count > before;
     before = count;
   }
-  assert_true(growing > 2);
+  assert_true(growing > 1);
   result_view_close(&view);
   breccia_model_destroy(&m);
 }
@@ -340,6 +370,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(loads_of_stages_peak_within_them),
       cmocka_unit_test(a_bonds_stretch_does_not_count_from_zero_as_its_opening_does),
+      cmocka_unit_test(a_run_that_began_between_two_rows_goes_on),
       cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
       cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),

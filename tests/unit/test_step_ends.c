@@ -39,6 +39,27 @@ static void damped_bodies_come_to_rest_at_the_default_step(void **state)
   }
 }
 
+static void a_body_that_supports_hold_is_out_of_balance_while_it_moves(void **state)
+{
+  (void)state;
+  /* Its end is set over at once and held there: no load acts but what the supports carry, and forces out of balance are measured by that. */
+  breccia_model *m = model_of(
+      "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+      "body: {b: {material: m, lattice: line, area: 1, spacing: 0.1, shape: {box: {particles: [40, 1]}}}}\n"
+      "peridynamics: {formulation: bond-based, space: 1-D, horizon: 2.015 spacings}\n"
+      "loads: [{on: {face: x-, layers: 2}, displacement: [0, free]}, {on: {face: x+, layers: 2}, displacement: "
+      "[1e-3, free]}]\nsolve: {explicit: {end time: 3, local damping: 0.5}}\n");
+  Rest rest;
+  step_surely(m, 20);
+  assert_int_equal(rest_find(&m->solver, &rest, NULL), 0);
+  assert_true(rest.meant && !rest.reached);
+  assert_true(rest.unbalanced > 0.1 && rest.unbalanced < 10);
+  step_surely(m, INT64_MAX);
+  assert_int_equal(rest_find(&m->solver, &rest, NULL), 0);
+  assert_true(rest.reached && rest.unbalanced > 0);
+  breccia_model_destroy(&m);
+}
+
 static void steps_end_with_the_times_that_are_asked_for(void **state)
 {
   (void)state;
@@ -228,6 +249,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(damped_bodies_come_to_rest_at_the_default_step),
+      cmocka_unit_test(a_body_that_supports_hold_is_out_of_balance_while_it_moves),
       cmocka_unit_test(steps_end_with_the_times_that_are_asked_for),
       cmocka_unit_test(a_chosen_step_ends_with_the_end_time_by_a_shorter_last_one),
       cmocka_unit_test(a_step_that_fails_leaves_nothing_behind),
