@@ -85,6 +85,18 @@ solve:
 results: {number: 1, fields: [displacement, stress]}
 """
 
+REST = """\
+units: {length: m, force: kN, time: s}
+materials: {c: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m}}
+body: {b: {material: c, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {from: [0, 0], to: [0.1, 0.05]}}}}
+peridynamics: {space: plane stress, formulation: bond-based}
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 2}, displacement: [5e-6, free]}
+solve: {static: {increments: 3}}
+results: {number: 1, fields: [displacement, stress]}
+"""
+
 TEST = """\
 title: Steel under cycles
 units: {length: m, force: kN, time: s}
@@ -96,7 +108,7 @@ fit: {yield stress: {from: 1e5, to: 1e6}}
 
 
 def write_decks(folder):
-    for name, words in (("plate", PLATE), ("grains", GRAINS), ("halves", HALVES), ("test", TEST)):
+    for name, words in (("plate", PLATE), ("grains", GRAINS), ("halves", HALVES), ("rest", REST), ("test", TEST)):
         with open(os.path.join(folder, name + ".yaml"), "w") as file:
             file.write(words)
     with open(os.path.join(folder, "grains.csv"), "w") as file:
@@ -117,6 +129,7 @@ WALKS = {
     "run": ([], "run plate.yaml", ["plate"]),
     "run-grains": ([], "run grains.yaml", ["grains"]),
     "run-halves": ([], "run halves.yaml", ["halves"]),
+    "run-rest": ([], "run rest.yaml", ["rest"]),
     "restart": (["run plate.yaml --steps 6"], "run plate.yaml --restart", ["plate"]),
     "restart-grains": (["run grains.yaml --steps 20"], "run grains.yaml --restart", ["grains"]),
     "plot": (["run plate.yaml"], "plot plate --field stress --component xx --output picture.png", ["picture.png"]),
