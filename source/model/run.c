@@ -325,7 +325,8 @@ static int loop(Run *run, Error *error)
   int status = run->wish->restart ? BRECCIA_OK : due(run, error);
   while (!status && !solver_is_done(s) && s->clock.step < run->steps) {
     /* Where energy comes from nothing or speeds are absurd, some steps more show whether it goes on. */
-    if (run->wish->interrupted && *run->wish->interrupted && !ledger_is_doubtful(&s->ledger))
+    if (run->wish->interrupted && __atomic_load_n(run->wish->interrupted, __ATOMIC_RELAXED) &&
+        !ledger_is_doubtful(&s->ledger))
       return BRECCIA_INTERRUPTED;
     const int64_t stage = s->clock.stage, step = s->clock.step;
     status = host_status(run->host, model_advance(model, error), error);

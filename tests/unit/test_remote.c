@@ -8,6 +8,7 @@
 
 #include <poll.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -21,13 +22,14 @@ enum {
 /* ---- a server of our laws in a thread, and lines to it ---- */
 
 static char folder[] = "/tmp/breccia-remote-XXXXXX", where[160];
-static volatile int listening, interrupted;
+static atomic_bool listening;
+static volatile int interrupted;
 static pthread_t server;
 
 static void note_address(const char *address)
 {
   snprintf(where, sizeof where, "%s", address);
-  listening = 1;
+  listening = true;
 }
 
 static void *serve(void *spec)
@@ -40,13 +42,22 @@ static void *serve(void *spec)
 static ServeSpec spec;
 static char wanted[160];
 
-static void begin(const char *address, const char *secret)
+static void begin_with(ServeSpec wishes)
 {
-  snprintf(wanted, sizeof wanted, "%s", address);
-  spec = (ServeSpec){.address = wanted, .secret = secret, .interrupted = &interrupted, .listening = note_address};
-  listening = interrupted = 0;
+  snprintf(wanted, sizeof wanted, "%s", wishes.address);
+  spec = wishes;
+  spec.address = wanted;
+  spec.interrupted = &interrupted;
+  spec.listening = note_address;
+  listening = false;
+  __atomic_store_n(&interrupted, 0, __ATOMIC_RELAXED);
   assert_int_equal(pthread_create(&server, NULL, serve, &spec), 0);
   while (!listening) nanosleep(&(struct timespec){.tv_nsec = 1000000L}, NULL);
+}
+
+static void begin(const char *address, const char *secret)
+{
+  begin_with((ServeSpec){.address = address, .secret = secret});
 }
 
 static void begin_at_file(char path[128])
@@ -60,7 +71,7 @@ static void begin_at_file(char path[128])
 static void end(void)
 {
   void *status;
-  interrupted = 1;
+  __atomic_store_n(&interrupted, 1, __ATOMIC_RELAXED);
   pthread_join(server, &status);
   assert_int_equal(*(int *)status, BRECCIA_OK);
 }
@@ -222,6 +233,33 @@ static void strangers_cannot_speak_for_a_client(void **state)
   say(&stranger, OPERATION_HELLO, 0, hello, "points: 2\ncommits: 1\n");
   channel_close(&client.channel);
   channel_close(&stranger.channel);
+  end();
+}
+
+static void a_silent_client_of_datagrams_makes_room(void **state)
+{
+  (void)state;
+  begin_with((ServeSpec){.address = "udp://127.0.0.1:0", .silence = 0.2});
+  Line client = connect_to(where), next = connect_to(where);
+  say(&client, OPERATION_HELLO, 0, hello, "points: 0\n");
+  say(&client, OPERATION_CREATE, 2, steel, "components: 1\n");
+  pull(&client, 0, 3 * YIELD_STRAIN, 0);
+  say(&client, OPERATION_COMMIT, 0, "", "");
+  const double begun = clock_seconds();
+  for (;;) { /* until the silence has lasted long enough */
+    say(&next, OPERATION_HELLO, 0, hello, "");
+    if (next.operation == (OPERATION_HELLO | OPERATION_ANSWER)) break;
+    if (!strstr(next.text, "the server is busy with another client")) fail_msg("%s", next.text);
+    if (clock_seconds() - begun > PATIENCE) fail_msg("still busy after %d s", PATIENCE);
+    nanosleep(&(struct timespec){.tv_nsec = 20000000L}, NULL);
+  }
+  assert_true(clock_seconds() - begun >= 0.2);
+  /* The points are as they were; who was silent is a stranger now. */
+  if (!strstr(next.text, "points: 2\ncommits: 1\n")) fail_msg("%s", next.text);
+  say(&client, OPERATION_COMMIT, 0, "", "a client says HELLO first");
+  assert_near(pull(&next, 0, 2 * YIELD_STRAIN, 0), 0, 1e-6);
+  channel_close(&client.channel);
+  channel_close(&next.channel);
   end();
 }
 
@@ -499,6 +537,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(partial_trials_keep_the_state_of_the_others),
       cmocka_unit_test(strangers_cannot_speak_for_a_client),
+      cmocka_unit_test(a_silent_client_of_datagrams_makes_room),
       cmocka_unit_test(who_does_not_know_the_secret_holds_nothing),
       cmocka_unit_test(silent_and_slow_clients_hold_nobody_up),
       cmocka_unit_test(first_frames_are_bounded),

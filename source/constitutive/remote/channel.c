@@ -143,7 +143,7 @@ static ChannelStatus await(const Channel *c, short events, double end, Text *rea
     struct pollfd p = {.fd = c->socket, .events = events};
     const int n = poll(&p, 1, look_up ? LOOK_UP_EVERY_MS : left > 0 ? (left < 1e6 ? (int)(1000 * left) + 1 : -1) : 0);
     if (n > 0) return CHANNEL_OK;
-    if (c->interrupted && *c->interrupted) return CHANNEL_LATE;
+    if (c->interrupted && __atomic_load_n(c->interrupted, __ATOMIC_RELAXED)) return CHANNEL_LATE;
     if (look_up || (n < 0 && errno == EINTR)) continue;
     text_add(reason, "it does not answer");
     return CHANNEL_LATE;

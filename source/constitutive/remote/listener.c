@@ -18,7 +18,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-static const double FRAME_SECONDS = 60, SILENT_SECONDS = 60;
+static const double FRAME_SECONDS = 60, SILENT_SECONDS = 60; /* the second where the specification names none */
 static const char busy[] = "the server is busy with another client";
 
 struct Listener {
@@ -199,14 +199,14 @@ static ChannelStatus attend(Listener *l, Frame *frame, uint8_t **payload, bool *
 static ChannelStatus receive_datagrams(Listener *l, Frame *frame, uint8_t **payload, bool *fresh, double seconds,
                                        Text *reason)
 {
-  const double end = clock_seconds() + seconds;
+  const double end = clock_seconds() + seconds, silence = l->spec.silence > 0 ? l->spec.silence : SILENT_SECONDS;
   for (double left = seconds; left > 0; left = end - clock_seconds()) {
     const ChannelStatus status = channel_receive(l->client, frame, payload, left, reason);
     if (status) return status;
     const double now = clock_seconds();
     Text words = {0};
     *fresh = !l->tied || !channel_from_peer(l->client);
-    if (*fresh) examine(l, frame, *payload, l->tied && now - l->heard < SILENT_SECONDS, &words);
+    if (*fresh) examine(l, frame, *payload, l->tied && now - l->heard < silence, &words);
     if (words.length)
       channel_refuse_sender(l->client, frame->sequence, words.characters);
     else if (*fresh)

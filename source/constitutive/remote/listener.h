@@ -14,6 +14,7 @@ typedef struct ListenerSpec {
   int (*greets)(const void *context, const Frame *frame, const uint8_t *payload, Text *reason);
   const void *context;
   const volatile int *interrupted; /* ends waits early once it is not zero; may be NULL */
+  double silence; /* s, of a client of datagrams, after which another may take its place; 0: a minute */
 } ListenerSpec;
 
 /** Waits for clients at an address. @return NULL with the reason */
@@ -22,7 +23,7 @@ Listener *listener_open(const ListenerSpec *spec, Text *reason);
 const char *listener_address(const Listener *listener);
 /** Next frame of the one client that is served. Whoever has not greeted yet is listened to beside it and never waited for; who greets while
  *  a client is there is told that the server is busy. A client that sends datagrams says not when it leaves: another may take its place
- *  when it has been silent for a minute.
+ *  when it has been silent for as long as the specification says.
  *  @param[out] fresh  the frame is the greeting of a new client
  *  @return CHANNEL_CLOSED when a client has gone, CHANNEL_LATE after `seconds` without a frame, CHANNEL_BROKEN, with the reason, after bytes
  *          that are no frame or one that did not come whole within a minute */

@@ -429,6 +429,7 @@ int serve_materials(const ServeSpec *spec, Error *error)
                                              .open = spec->secret != NULL,
                                              .greets = greets,
                                              .context = &s,
+                                             .silence = spec->silence,
                                              .interrupted = spec->interrupted},
                              &words);
   if (!s.listener) {
@@ -437,7 +438,7 @@ int serve_materials(const ServeSpec *spec, Error *error)
     return BRECCIA_USER_ERROR;
   }
   if (spec->listening) spec->listening(listener_address(s.listener));
-  while (!(spec->interrupted && *spec->interrupted)) {
+  while (!(spec->interrupted && __atomic_load_n(spec->interrupted, __ATOMIC_RELAXED))) {
     Frame asked;
     uint8_t *payload;
     bool fresh = false;

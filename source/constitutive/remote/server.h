@@ -8,8 +8,9 @@ typedef struct ServeSpec {
   const char *address;
   const char *secret; /* that clients must know; NULL: none, and only this machine is listened to */
   const LawList *laws;
-  bool once;  /* end when the first client has gone */
-  bool zeros; /* answer with zeros instead of stresses: what the protocol itself costs */
+  bool once;      /* end when the first client has gone */
+  bool zeros;     /* answer with zeros instead of stresses: what the protocol itself costs */
+  double silence; /* s, of a client of datagrams, after which another may take its place; 0: a minute */
   const volatile int *interrupted;
   void (*listening)(const char *address); /* once it does; may be NULL */
 } ServeSpec;
