@@ -23,7 +23,9 @@ typedef int64_t LaneMask __attribute__((vector_size(32)));
 
 /* Before a loop none of whose turns reads what another one writes, so that the compiler need not make sure before it takes several
  * turns at once. */
-#ifdef __clang__
+#ifdef BRECCIA_NARROW_LANES
+#define LANES_INDEPENDENT
+#elif defined(__clang__)
 #define LANES_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
 #define LANES_INDEPENDENT _Pragma("GCC ivdep")
@@ -31,16 +33,25 @@ typedef int64_t LaneMask __attribute__((vector_size(32)));
 
 #define LANES_INLINE static inline __attribute__((always_inline))
 
+/* The thread sanitizer sees no loads and stores of more than 16 bytes: for it (BRECCIA_NARROW_LANES) they are made one by one. */
 LANES_INLINE Lanes lanes_load(const double *from)
 {
   Lanes lanes;
+#ifdef BRECCIA_NARROW_LANES
+  for (int k = 0; k < LANES; ++k) lanes[k] = from[k];
+#else
   memcpy(&lanes, from, sizeof lanes);
+#endif
   return lanes;
 }
 
 LANES_INLINE void lanes_store(double *to, Lanes lanes)
 {
+#ifdef BRECCIA_NARROW_LANES
+  for (int k = 0; k < LANES; ++k) to[k] = lanes[k];
+#else
   memcpy(to, &lanes, sizeof lanes);
+#endif
 }
 
 /** One number in all lanes. By way of its bits, because gcc then makes one load of it instead of a load and a permutation. */
@@ -105,6 +116,19 @@ LANES_INLINE LaneMask lanes_half(unsigned bits, int half)
 LANES_INLINE Lanes lanes_where(LaneMask mask, Lanes lanes)
 {
   return (Lanes)((LaneMask)lanes & mask);
+}
+
+/** Four numbers of which those count whose bit is set; zero for the others, which others may be writing. */
+LANES_INLINE Lanes lanes_load_some(const double *from, unsigned bits)
+{
+#ifdef BRECCIA_NARROW_LANES
+  Lanes lanes = {0};
+  for (int k = 0; k < LANES; ++k)
+    if (bits >> k & 1u) lanes[k] = from[k];
+  return lanes;
+#else
+  return lanes_where(lanes_mask(bits), lanes_load(from));
+#endif
 }
 
 /** a where the mask is set, b elsewhere. */

@@ -59,8 +59,9 @@ LANES_INLINE void lattice_row_sums_of(const RowKind *kind, int begin, int neighb
     Lanes s = {0}, m = {0};
     for (int n = 0; n < neighbours; ++n) {
       const int along = begin + n;
-      Lanes value = lanes_load(q + LANES * half + along);
-      if (present) value = lanes_where(lanes_mask((unsigned)present[along] >> (LANES * half) & 15u), value);
+      const double *there = q + LANES * half + along;
+      const Lanes value =
+          present ? lanes_load_some(there, (unsigned)present[along] >> (LANES * half) & 15u) : lanes_load(there);
       if (sum) s += value * lanes_set(kind->weight[n]);
       if (moment) m += value * lanes_set(kind->moment[n]);
     }

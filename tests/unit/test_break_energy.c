@@ -64,7 +64,7 @@ static void families_that_were_at_rest_keep_their_stiffness(void **state)
         "2]}}]\n"
         "solve: {explicit: {time step: 0.002, steps: 1}}\n",
         formulations[n]);
-    breccia_model *m = model_of(deck);
+    breccia_model *m = model_of("%s", deck);
     breccia_error *error = breccia_error_create();
     if (breccia_model_step(m, 1, error)) fail_msg("%s", breccia_error_text(error));
     const Domain *d = &m->domain;
