@@ -10,12 +10,14 @@ if ! cmp -s tests/external/requirements.txt "$environment/installed" 2> /dev/nul
 fi
 sh scripts/opensees.sh
 cmake --preset test > /dev/null
-cmake --build --preset test --target compare_results > /dev/null
+cmake --build --preset test --target breccia_command compare_results > /dev/null
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+mkdir "$work/bin" # the command as it is tested, with OpenSees beside it
+cp build/test/breccia build/release/breccia-opensees build/release/breccia-opensees-tcl "$work/bin"
 passed=0 failed=0
 for test in tests/external/test_*.py; do
-  if "$environment/bin/python" "$test" build/release/breccia "$work"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+  if "$environment/bin/python" "$test" "$work/bin/breccia" "$work"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
 done
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -1,7 +1,17 @@
 #!/bin/sh
-# fuzz_deck from the decks of the examples, then fuzz_server and fuzz_client from conversations, for so many seconds each.
+# fuzz_deck from the decks of the examples, then fuzz_server and fuzz_client from conversations, for so many seconds each, or, if FUZZ_RUNS
+# is set, so many inputs; FUZZ_ONLY names one of them.
 set -eu
 cd "$(dirname "$0")/../.."
+limit=${FUZZ_RUNS:+-runs=$FUZZ_RUNS}
+limit=${limit:--max_total_time=$1}
+fuzz() { # fuzz TARGET LONGEST FOLDER [options]: inputs of so many bytes at most, from those in the folder
+  target=$1 longest=$2 folder=$3
+  shift 3
+  [ "${FUZZ_ONLY:-$target}" = "$target" ] || return 0
+  LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" "build/fuzz/$target" "$limit" -seed="${FUZZ_SEED:-0}" -max_len="$longest" -rss_limit_mb=2048 -timeout=20 \
+    -artifact_prefix=build/fuzz/ -verbosity=0 -print_final_stats=1 "$@" "$folder"
+}
 mkdir -p build/fuzz/corpus
 for deck in examples/*/*.yaml; do
   cp "$deck" "build/fuzz/corpus/$(basename "$(dirname "$deck")")-$(basename "$deck")"
@@ -14,8 +24,7 @@ body: {block: {material: rock, spacing: '${dx}', shape: {box: {from: [0, 0, 0], 
 loads: [{name: pull, on: {face: x+}, velocity: ["${sin(30 deg)*c}", free, free]}]
 solve: {explicit: {end time: "${(1 + 2)^2 * 1 ms - abs(-1 us)}"}}
 Y
-LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_deck -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=4096 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
-  -dict=tests/fuzz/deck.dict -verbosity=0 -print_final_stats=1 build/fuzz/corpus
+fuzz fuzz_deck 4096 build/fuzz/corpus -dict=tests/fuzz/deck.dict
 
 mkdir -p build/fuzz/frames
 # A conversation: CREATE of two points, a trial, a commit with a trial, save.
@@ -24,13 +33,11 @@ mkdir -p build/fuzz/frames
   printf '\6\0\0\0\1\10\0\1\10\1\0\0\0\0\0\0\0\0'; } > build/fuzz/frames/j2
 printf '\4BRMS\1\0\205\0\1\0\0\0\0\0\0\0\1\0\0\0' > build/fuzz/frames/client
 printf '\2BRMS\1\0\1\0\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\10' > build/fuzz/frames/greeting
-LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_server -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=1024 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
-  -verbosity=0 -print_final_stats=1 build/fuzz/frames
+fuzz fuzz_server 1024 build/fuzz/frames
 
 mkdir -p build/fuzz/answers
 # Good answers to HELLO, PROBE, CREATE and what follows; and a law of one strain told by hand.
 { for n in $(seq 12); do printf '\1\0\0\0'; done; } > build/fuzz/answers/good
 { printf '\1\0\0\0\0\0\0\60components: 1\nbulk: 2e5\nshear: 1e5\nfailure: 0.1\n\1\0\0\0\0\0\0\30%24s' ''; } > build/fuzz/answers/uniaxial
 printf '\1\0\0\0\1\0\0\0\1\0\0\0\0\100\0\0' > build/fuzz/answers/refusal-without-words
-LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" build/fuzz/fuzz_client -max_total_time="$1" -seed="${FUZZ_SEED:-0}" -max_len=512 -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
-  -verbosity=0 -print_final_stats=1 build/fuzz/answers
+fuzz fuzz_client 512 build/fuzz/answers

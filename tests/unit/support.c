@@ -1,5 +1,10 @@
 #include "support.h"
 
+bool under_sanitizers(void)
+{
+  return getenv("BRECCIA_SANITIZED") != NULL;
+}
+
 breccia_model *model_of(const char *format, ...)
 {
   Text deck = {0};

@@ -15,6 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/** Whether this runs under the sanitizers, which make it five to ten times slower: numbers that hold for any body are then tried on fewer. */
+bool under_sanitizers(void);
+
 /** A model from a deck given as text with %-directives; fails the test with the reader's words if it is refused. */
 breccia_model *model_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /** The words with which a deck is refused, to be freed; fails the test if it is accepted. */
