@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -113,6 +113,13 @@ torture:
 	@cmake --preset fuzz > /dev/null
 	@cmake --build --preset fuzz --target fuzz_deck fuzz_server fuzz_client --parallel $(cores)
 	@python3 -B tests/torture.py docs/reliability.md
+
+# Small faults in lines that differ from BASE, one at a time; prints those that no test notices. 20 of them and half an hour, unless told otherwise:
+# `make mutants BASE=HEAD~3 COUNT=5 SEED=2 MINUTES=10 TESTS='test_deck|reuse'`. No part of CI: what survives is to be judged.
+mutants:
+	@sh scripts/setup.sh test
+	@sh tests/mutants/run.sh $(if $(BASE),--base $(BASE)) $(if $(COUNT),--count $(COUNT)) $(if $(SEED),--seed $(SEED)) \
+	  $(if $(MINUTES),--minutes $(MINUTES)) $(if $(TESTS),--tests '$(TESTS)')
 
 install: all
 	@cmake --install build/release $(if $(PREFIX),--prefix "$(PREFIX)")

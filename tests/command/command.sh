@@ -126,6 +126,15 @@ J
 contains "load that has ended" "$(cat out)" "load 'push': force, peak 500 N"
 contains "size of a body with a support" "$(cat out)" "body: 1 m x 400 mm x 400 mm, 320 kg"
 
+# a body is as heavy in millimetres as it is in metres
+cat > small.yaml <<'Y'
+units: {length: mm, force: N, time: s}
+materials: {rock: {model: elastic, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: rock, spacing: 10, shape: {box: {from: [0, 0, 0], to: [100, 50, 20]}}}}
+solve: {explicit: {steps: 1}}
+Y
+contains "a body in millimetres" "$("$breccia" check small.yaml 2>&1)" "body: 100 mm x 50 mm x 20 mm, 240 g;"
+
 # a burst writes the last good state and ends with status 1
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
 "$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2

@@ -100,6 +100,9 @@ static void damaged_bonds_balance_and_both_ends_remember_alike(void **state)
         bond_list_rows(&d->regions[0].bonds, f, slice, slot, lane, rows);
         bond_list_rows(&d->regions[0].bonds, f, bond.neighbour / SLICE, back, bond.neighbour % SLICE, back_rows);
         assert_true(rows[0] == back_rows[1] && rows[1] == back_rows[0]);
+        const Points *points = &d->regions[0].points; /* the first is of the place's own material */
+        assert_ptr_equal(points_material(points, rows[0]), &points->materials[d->material[slice]]);
+        assert_ptr_equal(points_material(points, rows[1]), &points->materials[d->material[bond.neighbour / SLICE]]);
         damaged += points_try(&d->regions[0].points, rows[0], 1e-6, NULL) < 0.999 * 30e6 * 1e-6;
         mixed += d->material[slice] != d->material[bond.neighbour / SLICE];
       }
