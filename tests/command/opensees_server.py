@@ -91,6 +91,7 @@ class Line:
             body = self.socket.recv(size, socket.MSG_WAITALL) if size else b""
         header = HEADER.unpack(head)
         self.session = header[7] or self.session
+        self.flags, self.count = header[4:6]
         return header[2], body
 
     def ask(self, operation, body=b"", count=0, flags=0):
@@ -153,6 +154,19 @@ def partial_trials_keep_the_state_of_the_others():
     line.pull(0, 4 * YIELD_STRAIN)
     line.ask(COMMIT)
     stress_is("the last trial counts", line.pull(0, 2 * YIELD_STRAIN), -YIELD_STRESS)
+    end(process)
+
+
+def the_point_that_cannot_be_followed_is_named():
+    process, address = start(stream("named"))
+    line = Line(address)
+    line.expect("points: 0\n", HELLO)
+    line.expect(MADE, CREATE, BARS, 7)
+    for failing in range(4):  # of points 2 to 5, counted from the first that is asked for
+        strains = [2.0 if k == failing else 0.5 * YIELD_STRAIN for k in range(4)]
+        line.expect("OpenSees cannot follow the strain of a point: too far", TRIAL, pack(2, strains), 4)
+        check("the point that failed", (line.flags, line.count) == (1, failing), f"flags {line.flags}, point {line.count}")
+    stress_is("the others can still be followed", line.pull(2, 0.5 * YIELD_STRAIN), 0.5 * YIELD_STRESS)
     end(process)
 
 
@@ -248,6 +262,8 @@ def main():
         partial_trials_keep_the_state_of_the_others()
         silent_and_slow_clients_hold_nobody_up()
         addresses_are_refused_in_one_line()
+        if TCL:  # no point of the other stand-in fails
+            the_point_that_cannot_be_followed_is_named()
         if not TCL:  # it listens over TCP only
             strangers_cannot_speak_for_a_client()
             only_sockets_of_their_own_are_removed()

@@ -103,6 +103,20 @@ read -r upper lower < ends
 awk -v upper="$upper" -v lower="$lower" 'function near(a, b) {return (a - b) ^ 2 < 1}
   NR == 1 {first = $1} {last = $1} END {exit !(NR > 2 && near(last, lower) && near(first, upper + (lower - upper) / 13))}' marks ||
   fail "marks at the upright axis: $(cat ends marks | tr '\n' ' ')"
+# the colours of a picture of the run reach over all its states, as those of `breccia plot` do: what moves less and less
+cat > fade.yaml <<'Y'
+materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}
+body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0, 0], to: [2, 0.6]}}}}
+peridynamics: {space: plane strain}
+loads: [{on: {all: yes}, initial velocity: {translation: [1, 0]}}]
+solve: {explicit: {end time: 0.02, damping: 300}}
+results: {number: 4, fields: [velocity]}
+pictures: [{field: velocity, at: [0.01]}]
+Y
+"$breccia" run fade.yaml > out 2>&1 || fail "fade: $(cat out)"
+"$breccia" plot fade --field velocity --time 0.01 --output late.png > out 2>&1 || fail "fade: $(cat out)"
+cmp late.png fade/pictures/velocity-10ms.png || fail "a picture of the run has other colours than the same one drawn afterwards"
+checks=$((checks + 1))
 # movies: what ffmpeg is given, what it makes where it is installed, and what is said where it is not
 mkdir programs
 cat > programs/ffmpeg <<'Y'

@@ -1,4 +1,4 @@
-# Stands in for a Tcl OpenSees where it is not installed: uniaxial materials that are elastic, perfectly plastic bars.
+# Stands in for a Tcl OpenSees where it is not installed: uniaxial materials that are elastic, perfectly plastic bars up to a strain of 1.
 #
 #   tclsh opensees.tcl SERVER --listen ADDRESS
 
@@ -17,6 +17,9 @@ proc invoke {what tag script} {
   return [uplevel 1 $script]
 }
 proc strain {value} {
+  if {$value > 1} {
+    error "too far"
+  }
   set ::strains($::current) $value
 }
 proc stress {} {
