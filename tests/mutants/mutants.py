@@ -81,11 +81,13 @@ def faults_of(file, numbers):
     numbers = numbers & code_lines(text)
     if not numbers:
         return []
-    faults, before = [], text.splitlines()
+    # The tool passes over lines that end with a comment.
+    faults, before = [], [COMMENT.sub("", line).rstrip() if n in numbers else line for n, line in enumerate(text.splitlines(), 1)]
     with tempfile.TemporaryDirectory() as folder:
-        wanted = pathlib.Path(folder) / "lines"
+        wanted, bare = pathlib.Path(folder) / "lines", pathlib.Path(folder) / source.name
+        bare.write_text("\n".join(before) + "\n")
         wanted.write_text("".join(f"{n}\n" for n in sorted(numbers)))
-        made = subprocess.run([MUTATE, file, "c", "--noCheck", "--lines", wanted, "--mutantDir", folder], capture_output=True, text=True)
+        made = subprocess.run([MUTATE, bare, "c", "--noCheck", "--lines", wanted, "--mutantDir", folder], capture_output=True, text=True)
         if made.returncode:
             sys.exit(f"{MUTATE} failed on {file}:\n{made.stdout[-2000:]}{made.stderr[-2000:]}")
         for mutant in sorted(pathlib.Path(folder).glob(f"{source.stem}.mutant.*")):
