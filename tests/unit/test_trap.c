@@ -101,6 +101,31 @@ static void all_threads_of_a_team_are_under_the_trap_of_their_caller(void **stat
   team_destroy(&team);
 }
 
+static void overflow_on_threads(void *context)
+{
+  (void)context;
+  do_what_is_wrong(1);
+}
+
+static void the_first_trap_is_told_and_not_the_last(void **state)
+{
+  (void)state;
+  if (!trap_is_possible()) skip();
+  Team *team = team_create(3, NULL);
+  Trap trap;
+  Text told = {0};
+  team_use(team);
+  trap_begin(&trap);
+  do_what_is_wrong(0);
+  team_run(overflow_on_threads, NULL);
+  trap_end();
+  team_use(NULL);
+  team_destroy(&team);
+  assert_true(trap_tell(&trap, &told));
+  assert_ptr_equal(strstr(told.characters, "division by zero in "), told.characters);
+  text_free(&told);
+}
+
 static volatile sig_atomic_t host_called;
 
 static void handle_in_host(int number)
@@ -231,6 +256,7 @@ int main(void)
       cmocka_unit_test(each_kind_is_noted_with_its_place),
       cmocka_unit_test(a_function_of_the_c_library_is_told_by_its_caller),
       cmocka_unit_test(all_threads_of_a_team_are_under_the_trap_of_their_caller),
+      cmocka_unit_test(the_first_trap_is_told_and_not_the_last),
       cmocka_unit_test(the_host_keeps_its_handler_its_flags_and_its_traps),
       cmocka_unit_test(a_run_stops_at_the_first_trap_and_is_the_same_up_to_it),
   };

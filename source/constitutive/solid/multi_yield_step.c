@@ -202,7 +202,8 @@ LANES_INLINE void pull_to(Four *f, LaneMask where, const Tensors *centre, Lanes 
 /** Points of `where` end on the outermost surface, which never moves. */
 LANES_INLINE void pull_to_outermost(Four *f, LaneMask where)
 {
-  const Lanes zero = lanes_set(0), square = product(&f->s, &f->s), factor = f->radius / lanes_root(square);
+  const Lanes zero = lanes_set(0), own = product(&f->s, &f->s), square = lanes_choose(own > zero, own, lanes_set(1)),
+              factor = f->radius / lanes_root(square);
   for (int j = 0; f->d && j < 6; ++j) {
     const Tensors *ds = &f->d->s[j], to = combine(factor, ds, -factor * product(&f->s, ds) / square, &f->s);
     assign(where, &f->d->s[j], &to);
