@@ -79,6 +79,8 @@ void points_destroy(Points *points)
   free(points->gave_up);
   untouched_destroy(points);
   free(points->tangent);
+  free(points->tangent_first);
+  free(points->linear_tangent);
   point_servers_destroy(points);
   *points = (Points){0};
 }
@@ -101,17 +103,16 @@ const Material *points_material(const Points *points, int64_t row)
   return &points->materials[points->runs[points_run(points, row)].material];
 }
 
-/** Where the history of a row begins. */
-static int64_t history_at(const Points *points, int64_t row)
+/** Where the history of a row of run n begins. */
+static int64_t history_at(const Points *points, int64_t n, int64_t row)
 {
-  const int64_t n = points_run(points, row);
   return points->history_first[n] +
          (row - points->runs[n].first) * points->materials[points->runs[n].material].history_values;
 }
 
 const double *points_history(const Points *points, int64_t row)
 {
-  return points->committed + history_at(points, row);
+  return points->committed + history_at(points, points_run(points, row), row);
 }
 
 void points_take_up(Points *points)
@@ -176,17 +177,24 @@ void points_state(Points *points, const char *of, StateList *list)
 
 /* ---- the door to laws ---- */
 
+/** Where the tangents from a row of run n on are kept; NULL: its law is linear. */
+static double *kept_tangent(const Points *points, int64_t n, int64_t row)
+{
+  const int64_t first = points->tangent_first[n];
+  return first < 0 ? NULL : points->tangent + 36 * (first + row - points->runs[n].first);
+}
+
 /** What laws see of rows of one run. Field by field into its place: made whole and copied, it cost more than the law of a bond. */
 static void make_batch(breccia_batch *batch, const Points *points, int64_t first, int count, double *const *strain,
                        double *const *stress)
 {
-  const int64_t row = history_at(points, first);
+  const int64_t run = points_run(points, first), row = history_at(points, run, first);
   const int components = points->components;
   batch->size = sizeof *batch;
   batch->count = count;
   batch->committed = points->committed + row;
   batch->trial = points->trial + row;
-  batch->tangent = points->keeps_tangents ? points->tangent + first * components * components : NULL;
+  batch->tangent = points->keeps_tangents ? kept_tangent(points, run, first) : NULL;
   batch->elastic_stage = points->elastic_stage;
   batch->time = points->time;
   batch->time_step = points->time_step;
@@ -279,26 +287,76 @@ void points_put_by(Points *points)
 
 /* ---- tangents ---- */
 
+/** The tangent that all points of a linear law have. */
+static void find_linear_tangent(const Points *points, const Material *m, double *tangent)
+{
+  double strain[6] = {0}, stress[6], *at[6], *to[6];
+  for (int k = 0; k < 6; ++k) {
+    at[k] = &strain[k];
+    to[k] = &stress[k];
+  }
+  breccia_batch one = {.size = sizeof one, .count = 1, .tangent = tangent};
+  memcpy(one.strain, at, sizeof at);
+  memcpy(one.stress, to, sizeof to);
+  update_batch(points, m, &one, at);
+}
+
+static int make_tangents(Points *points, Error *error)
+{
+  int64_t rows = 0;
+  points->tangent_first = memory_zeroed((size_t)points->run_count, sizeof(int64_t), "tangents", error);
+  points->linear_tangent = memory_zeroed((size_t)points->material_count, 36 * sizeof(double), "tangents", error);
+  if (!points->tangent_first || !points->linear_tangent) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < points->run_count; ++n) {
+    const bool linear = points->materials[points->runs[n].material].law->linear;
+    points->tangent_first[n] = linear ? -1 : rows;
+    if (!linear) rows += points->runs[n].count;
+  }
+  for (int k = 0; k < points->material_count; ++k)
+    if (points->materials[k].law->linear && points->materials[k].law->components == 6)
+      find_linear_tangent(points, &points->materials[k], points->linear_tangent + 36 * k);
+  points->tangent = memory_zeroed((size_t)rows, 36 * sizeof(double), "tangents", error);
+  return points->tangent ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
 int points_keep_tangents(Points *points, bool keep, Error *error)
 {
-  const size_t size = (size_t)(points->components * points->components);
-  if (!points->tangent &&
-      !(points->tangent = memory_zeroed(size * (size_t)points->count, sizeof(double), "tangents", error)))
-    return BRECCIA_FAILURE;
+  if (points->components != 6) return BRECCIA_OK;
+  if (!points->tangent && make_tangents(points, error)) return BRECCIA_FAILURE;
   points->keeps_tangents = keep;
   return BRECCIA_OK;
 }
 
 void points_tangent(const Points *points, int64_t row, double *tangent)
 {
-  const int size = points->components * points->components;
-  for (int k = 0; k < size; ++k) tangent[k] = points->tangent ? points->tangent[size * row + k] : 0;
+  const int64_t n = points_run(points, row);
+  const double *kept = points->tangent ? kept_tangent(points, n, row) : NULL;
+  if (points->tangent && !kept) kept = points->linear_tangent + 36 * points->runs[n].material;
+  for (int k = 0; k < 36; ++k) tangent[k] = kept ? kept[k] : 0;
+}
+
+/** Point after point within each sum of products, so that several points are worked on at once. */
+BRECCIA_CLONES
+static void change_linear(const double d[36], int count, double *const strain[6], double *const stress[6])
+{
+  for (int r = 0; r < 6; ++r) {
+    double *restrict to = stress[r];
+    for (int i = 0; i < count; ++i) to[i] = d[6 * r] * strain[0][i];
+    for (int k = 1; k < 6; ++k)
+      for (int i = 0; i < count && d[6 * r + k] != 0; ++i) to[i] += d[6 * r + k] * strain[k][i];
+  }
 }
 
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
 {
+  const int64_t n = points_run(points, first);
+  const double *kept = kept_tangent(points, n, first);
+  if (!kept) {
+    change_linear(points->linear_tangent + 36 * points->runs[n].material, count, strain, stress);
+    return;
+  }
   for (int i = 0; i < count; ++i) {
-    const double *d = points->tangent + 36 * (first + i);
+    const double *d = kept + 36 * i;
     for (int r = 0; r < 6; ++r) {
       double sum = 0;
       for (int k = 0; k < 6; ++k) sum += d[6 * r + k] * strain[k][i];

@@ -38,7 +38,9 @@ typedef struct Points {
   int64_t *history_first; /* [run_count] */
   const Material *materials;
   int material_count;
-  double *tangent; /* [count][36] or [count], once they were kept; NULL before */
+  double *tangent;        /* [rows of laws that are not linear][36], once they were kept; NULL before */
+  int64_t *tangent_first; /* [run_count] where those of a run begin; -1: its law is linear */
+  double *linear_tangent; /* [materials][36] of linear laws */
   bool keeps_tangents;
   uint8_t
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
@@ -87,9 +89,10 @@ int points_keep_stresses(Points *points, bool keep, Error *error);
  *  where there is no room for them. */
 void points_put_by(Points *points);
 
-/** Makes points keep the tangents of their next updates, or no longer. */
+/** Makes points of six components keep the tangents of their next updates, or no longer. Of linear laws one is kept for all their points; points of one
+ *  strain keep none (points_try). */
 int points_keep_tangents(Points *points, bool keep, Error *error);
-/** The tangent kept of a row, [components][components]; in plane stress the rows and columns of zz are condensed out. 0 if there is none. */
+/** The tangent kept of a row of six components, [6][6]; in plane stress the rows and columns of zz are condensed out. 0 if there is none. */
 void points_tangent(const Points *points, int64_t row, double *tangent);
 /** Changes of the stresses of `count` rows of six components with changes of their strains, by the tangents kept. */
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
