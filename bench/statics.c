@@ -1,12 +1,13 @@
 /* What it costs to solve K v = f: cubes, a square and scattered particles, held at one face and pulled at the other, on one thread and two. A Markdown table
  * goes to stdout.
- *   breccia_bench_statics [WORD]     WORD: only rows that have it in the name of formulation or body */
+ *   breccia_bench_statics [WORDS [THREADS]]     WORDS: only rows that have them in "formulation, body"; from so many threads on */
 #include "measure.h"
 
 #include "solver/linear_solver.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 typedef struct Case {
@@ -86,6 +87,14 @@ static double resident(void)
   return (double)pages * (double)sysconf(_SC_PAGESIZE);
 }
 
+/** Of all threads of this process. */
+static double processor_seconds(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 static int measure(breccia_model *model, const char *formulation, const char *body, int threads)
 {
   Domain *d = &model->domain;
@@ -102,17 +111,19 @@ static int measure(breccia_model *model, const char *formulation, const char *bo
   const double linearised = clock_seconds();
   if (linear_solver_create(&solver, "conjugate gradients", NULL) || linear_solver_prepare(&solver, NULL)) return 1;
   const double prepared = clock_seconds();
+  const double worked = processor_seconds();
   unknowns_gather(&solver.unknowns, v.force);
   if (linear_solver_solve(&solver, v.force, v.moved, 1e-8, &record, NULL)) return 1;
   const double solved = clock_seconds(), after = resident();
+  const double work = processor_seconds() - worked;
   domain_linear_step(d, v.moved, v.force);
-  const double again = clock_seconds();
+  const double again = clock_seconds(), begun = processor_seconds();
   domain_linear_step(d, v.moved, v.force);
-  const double product = clock_seconds() - again;
-  printf("| %s | %s | %lld | %d | %lld | %.1e | %.2f | %.2f | %.2f | %.2f | %.2f | %.0f |\n", formulation, body,
+  const double product = clock_seconds() - again, own = processor_seconds() - begun;
+  printf("| %s | %s | %lld | %d | %lld | %.1e | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.0f |\n", formulation, body,
          (long long)p->count, threads, (long long)record.iterations, record.residual, linearised - start,
-         prepared - linearised, solved - prepared, (solved - prepared) / (double)record.iterations / product,
-         1e9 * product / (double)d->family.bonds, (after - before) / (double)p->count);
+         prepared - linearised, solved - prepared, work, work / (double)record.iterations / own,
+         1e9 * own / (double)d->family.bonds, (after - before) / (double)p->count);
   fflush(stdout);
   linear_solver_destroy(&solver);
   drop(&v);
@@ -126,13 +137,15 @@ int main(int count, char **words)
   if (!mkdtemp(folder)) return 1;
   char *cloud = text_format("%s/scattered.csv", folder);
   write_scattered(cloud, NULL);
-  printf("| formulation | body | particles | threads | products | residual | linearise s | prepare s | solve s | iteration / product | product, "
-         "ns per bond | bytes per particle |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  printf("| formulation | body | particles | threads | products | residual | linearise s | prepare s | solve s | processor s | iteration / product | product, "
+         "ns per bond | bytes per particle |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   int failed = 0;
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c)
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
-      if (!strstr(cases[c].formulation, only) && !strstr(bodies[b].name, only)) continue;
-      for (int threads = 1; threads <= all_threads(); ++threads) {
+      char name[80];
+      snprintf(name, sizeof name, "%s, %s", cases[c].formulation, bodies[b].name);
+      if (!strstr(name, only)) continue;
+      for (int threads = count > 2 ? atoi(words[2]) : 1; threads <= all_threads(); ++threads) {
         use_threads(threads);
         breccia_model *model = load(folder, &bodies[b], &cases[c]);
         failed |= !model || measure(model, cases[c].formulation, bodies[b].name, threads);

@@ -1,5 +1,5 @@
-/* Conjugate gradients on products K v. */
-#include "solver/linear_solver.h"
+/* Conjugate gradients on products K v, with a preconditioner of two levels. */
+#include "solver/preconditioner.h"
 
 #include "base/memory.h"
 #include "base/team.h"
@@ -10,8 +10,9 @@
 enum { MOST_ITERATIONS = 20000 };
 
 typedef struct Gradients {
-  double *rest[3], *scaled[3], *direction[3], *product[3];
-  double *diagonal[3];
+  Preconditioner preconditioner;
+  double *rest[3], *direction[3];
+  double *product[3]; /* with K; then what the preconditioner makes of the rest */
 } Gradients;
 
 static double suits(const LinearSolver *s)
@@ -25,11 +26,10 @@ static void destroy(LinearSolver *s)
   Gradients *g = s->own;
   for (int k = 0; g && k < 3; ++k) {
     places_free(&g->rest[k]);
-    places_free(&g->scaled[k]);
     places_free(&g->direction[k]);
     places_free(&g->product[k]);
-    places_free(&g->diagonal[k]);
   }
+  if (g) preconditioner_destroy(&g->preconditioner);
   free(g);
 }
 
@@ -37,40 +37,52 @@ static int create(LinearSolver *s, Error *error)
 {
   const int64_t places = s->domain->particles->places;
   Gradients *g = s->own = memory_zeroed(1, sizeof *g, "conjugate gradients", error);
-  bool failed = !g;
+  bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, error);
   for (int k = 0; k < 3 && !failed; ++k) {
     failed |= !(g->rest[k] = places_array(places, "conjugate gradients", error));
-    failed |= !(g->scaled[k] = places_array(places, "conjugate gradients", error));
     failed |= !(g->direction[k] = places_array(places, "conjugate gradients", error));
     failed |= !(g->product[k] = places_array(places, "conjugate gradients", error));
-    failed |= !(g->diagonal[k] = places_array(places, "conjugate gradients", error));
   }
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
-/** What stands on the diagonal of K is in proportion to volume, stiffness and what is left of the family. */
 static int prepare(LinearSolver *s, Error *error)
 {
-  (void)error;
   Gradients *g = s->own;
-  const Particles *p = s->domain->particles;
-  for (int64_t n = 0; n < p->count; ++n) {
-    const int32_t i = p->place_of[n];
-    const Material *m = &s->domain->materials[s->domain->material[i / SLICE]];
-    const double family = fmax(1, family_count(&s->domain->family, i));
-    for (int k = 0; k < 3; ++k) g->diagonal[k][i] = p->volume[i] * (m->bulk + 4 * m->shear / 3) * family;
-  }
-  unknowns_gather(&s->unknowns, g->diagonal);
-  return BRECCIA_OK;
+  double *const work[2][3] = {{g->direction[0], g->direction[1], g->direction[2]},
+                              {g->product[0], g->product[1], g->product[2]}};
+  return preconditioner_prepare(&g->preconditioner, s, work, error);
 }
 
-static void precondition(const LinearSolver *s)
+/* ---- steps along arrays ---- */
+
+/** a += factor b of batches of places. */
+typedef struct Adding {
+  const Domain *domain;
+  double *const *a, *const *b;
+  double own, factor; /* a = own a + factor b */
+} Adding;
+
+BRECCIA_CLONES
+static void add(const Adding *s, int64_t first, int64_t last)
 {
-  const Gradients *g = s->own;
+  const Lanes own = lanes_set(s->own), factor = lanes_set(s->factor);
   for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < s->domain->particles->places; ++i)
-      g->scaled[k][i] = g->diagonal[k][i] > 0 ? g->rest[k][i] / g->diagonal[k][i] : 0;
-  unknowns_clear_rest(&s->unknowns, g->scaled);
+    for (int64_t i = first; i < last; i += LANES)
+      lanes_store(s->a[k] + i, own * lanes_load(s->a[k] + i) + factor * lanes_load(s->b[k] + i));
+}
+
+static void add_batch(void *context, int64_t b)
+{
+  const Adding *s = context;
+  const Batch *batch = &s->domain->batches[b];
+  add(s, batch->first * SLICE, batch->last * SLICE);
+}
+
+/** a = own a + factor b */
+static void combine(const LinearSolver *s, double own, double *const a[3], double factor, double *const b[3])
+{
+  team_each(s->domain->batch_count, add_batch, &(Adding){s->domain, a, b, own, factor});
 }
 
 static int solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
@@ -78,32 +90,27 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
 {
   (void)error;
   Gradients *g = s->own;
-  const int64_t places = s->domain->particles->places;
-  const double first = unknowns_product(&s->unknowns, f, f);
+  const Unknowns *u = &s->unknowns;
+  const double first = unknowns_product(u, f, f);
   double rest = first, slope = 0;
-  for (int k = 0; k < 3; ++k) memcpy(g->rest[k], f[k], sizeof(double) * (size_t)places);
-  for (int64_t n = 0; n < MOST_ITERATIONS && rest > tolerance * tolerance * first; ++n) {
-    precondition(s);
-    const double next = unknowns_product(&s->unknowns, g->rest, g->scaled);
-    for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < places; ++i)
-        g->direction[k][i] = g->scaled[k][i] + (n ? next / slope : 0) * g->direction[k][i];
+  for (int k = 0; k < 3; ++k) memset(g->direction[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
+  for (int k = 0; k < 3; ++k) memcpy(g->rest[k], f[k], sizeof(double) * (size_t)s->domain->particles->places);
+  while (record->iterations < MOST_ITERATIONS && rest > tolerance * tolerance * first) {
+    preconditioner_apply(&g->preconditioner, s, g->rest, g->product);
+    const double next = unknowns_product(u, g->rest, g->product);
+    combine(s, record->iterations ? next / slope : 0, g->direction, 1, g->product);
     slope = next;
     linear_solver_apply(s, g->direction, g->product);
-    unknowns_clear_rest(&s->unknowns, g->direction);
-    const double curvature = unknowns_product(&s->unknowns, g->direction, g->product);
+    unknowns_clear_rest(u, g->direction);
+    const double curvature = unknowns_product(u, g->direction, g->product);
     ++record->iterations;
     if (!(curvature > 0)) {
       record->indefinite = true;
       break;
     }
-    const double step = slope / curvature;
-    for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < places; ++i) {
-        v[k][i] += step * g->direction[k][i];
-        g->rest[k][i] -= step * g->product[k][i];
-      }
-    rest = unknowns_product(&s->unknowns, g->rest, g->rest);
+    combine(s, 1, v, slope / curvature, g->direction);
+    combine(s, 1, g->rest, -slope / curvature, g->product);
+    rest = unknowns_product(u, g->rest, g->rest);
   }
   record->residual = first > 0 ? sqrt(rest / first) : 0;
   return BRECCIA_OK;
@@ -111,7 +118,8 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
 
 static size_t bytes(const LinearSolver *s)
 {
-  return 15 * sizeof(double) * (size_t)s->domain->particles->places;
+  const Gradients *g = s->own;
+  return 10 * sizeof(double) * (size_t)s->domain->particles->places + preconditioner_bytes(&g->preconditioner);
 }
 
 const LinearType gradients_linear = {

@@ -1,0 +1,25 @@
+/* Elements of the coarse grid: boxes with bilinear or trilinear displacements. */
+#ifndef BRECCIA_SOLVER_COARSE_ELEMENT_H
+#define BRECCIA_SOLVER_COARSE_ELEMENT_H
+
+#include "domain/domain.h"
+
+enum { ELEMENT_SIZE = 24 };
+
+/** For moduli of 1, [corner * axes + component] by the same. */
+typedef struct ElementStiffness {
+  double lame[ELEMENT_SIZE][ELEMENT_SIZE], shear[ELEMENT_SIZE][ELEMENT_SIZE];
+} ElementStiffness;
+
+/** Lame's constants of an isotropic solid: stress = lame trace(strain) 1 + 2 shear strain, in as many axes as the body has. */
+typedef struct ElementModuli {
+  double lame, shear;
+} ElementModuli;
+
+/** Integrals over a box by 2 points along each axis. */
+void element_stiffness(int axes, const double size[3], ElementStiffness *stiffness);
+
+/** What a particle's family has left, at the state at which the domain was linearised. */
+ElementModuli element_moduli(const Domain *domain, int32_t place);
+
+#endif

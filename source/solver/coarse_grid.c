@@ -1,0 +1,440 @@
+#include "solver/coarse_grid.h"
+
+#include "base/team.h"
+#include "solver/coarse_element.h"
+#include <cholmod.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  CORNERS = 8,
+  NEIGHBOURS = 14,    /* corners around a corner that are numbered no higher, itself the last */
+  MOST_CORNERS = 1500 /* that have unknowns */
+};
+#define MOST_ELEMENTS 3e7 /* in the box, with and without particles */
+
+/* Least elements in horizons; what is added to the diagonal, of itself, so that a body that nothing holds can be factored. */
+static const double width = 4.0 / 3, added = 1e-6;
+
+struct CoarseGrid {
+  const Domain *domain;
+  int axes; /* of unknowns at a corner */
+  int elements[3], points[3];
+  double low[3], size[3];
+  int64_t element_count;      /* with particles */
+  int32_t (*corner)[CORNERS]; /* [element_count] their numbers; bit k of the index: the farther one along axis k */
+  int64_t *first;             /* [element_count + 1] */
+  int32_t *place;             /* [particles] element by element */
+  int32_t *element;           /* of the box: number of an element, or -1 */
+  int64_t corner_count;
+  int32_t (*touching)[CORNERS]; /* [corner_count] element times CORNERS + index of the corner in it, or -1 */
+  double *parts;                /* [element_count][CORNERS * 3] */
+  double *stiffness;            /* [corner_count][NEIGHBOURS][9], only while equations are made */
+  cholmod_common common;
+  cholmod_factor *factor;
+  cholmod_dense *right, *answer, *work[2];
+};
+
+/* ---- laying it ---- */
+
+/** Element of a particle, and where in it: 0 to 1 along each axis. */
+static int64_t locate(const CoarseGrid *g, const double position[3], double at[3])
+{
+  int64_t number = 0;
+  for (int k = 2; k >= 0; --k) {
+    const double x = (position[k] - g->low[k]) / g->size[k];
+    int n = (int)x;
+    if (n >= g->elements[k]) n = g->elements[k] - 1;
+    if (n < 0) n = 0;
+    at[k] = x - n;
+    number = number * g->elements[k] + n;
+  }
+  return number;
+}
+
+static int64_t locate_place(const CoarseGrid *g, int64_t i, double at[3])
+{
+  const Particles *p = g->domain->particles;
+  return locate(g, (double[3]){p->position[0][i], p->position[1][i], p->position[2][i]}, at);
+}
+
+static int64_t corner_in_box(const CoarseGrid *g, int64_t element, int c)
+{
+  int64_t number = 0, n[3] = {element % g->elements[0], element / g->elements[0] % g->elements[1],
+                              element / g->elements[0] / g->elements[1]};
+  for (int k = 2; k >= 0; --k) number = number * g->points[k] + n[k] + (c >> k & 1);
+  return number;
+}
+
+/** Divides the box of the body. @return elements in it */
+static double divide(CoarseGrid *g, const double high[3], double size)
+{
+  double count = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double extent = high[k] - g->low[k], number = fmax(1, floor(extent / size));
+    g->elements[k] = (int)fmin(number, INT_MAX - 1);
+    g->points[k] = g->elements[k] + 1;
+    g->size[k] = extent > 1e-6 * size ? extent / g->elements[k] : size;
+    count *= number;
+  }
+  return count;
+}
+
+static bool mark_corners(const CoarseGrid *g, int32_t *number, int64_t *count, Error *error)
+{
+  const int64_t all = (int64_t)g->points[0] * g->points[1] * g->points[2];
+  uint8_t *used = memory_zeroed((size_t)all, 1, "coarse grid", error);
+  *count = 0;
+  if (!used) return false;
+  for (int64_t e = 0; e < (int64_t)g->elements[0] * g->elements[1] * g->elements[2]; ++e)
+    for (int c = 0; c < CORNERS && g->element[e] >= 0; ++c)
+      if (c >> g->axes == 0) used[corner_in_box(g, e, c)] = 1;
+  for (int64_t n = 0; n < all; ++n) {
+    if (number) number[n] = used[n] ? (int32_t)*count : -1;
+    *count += used[n];
+  }
+  free(used);
+  return true;
+}
+
+/** Elements with particles, and how many particles each has. */
+static bool mark_elements(CoarseGrid *g, Error *error)
+{
+  const Particles *p = g->domain->particles;
+  const int64_t all = (int64_t)g->elements[0] * g->elements[1] * g->elements[2];
+  double at[3];
+  free(g->element);
+  g->element = memory_zeroed((size_t)all, sizeof *g->element, "coarse grid", error);
+  if (!g->element) return false;
+  for (int64_t n = 0; n < p->count; ++n) ++g->element[locate_place(g, p->place_of[n], at)];
+  g->element_count = 0;
+  for (int64_t e = 0; e < all; ++e) g->element[e] = g->element[e] ? (int32_t)g->element_count++ : -1;
+  return true;
+}
+
+/** The narrowest elements with which the grid has few enough corners. */
+static bool choose_elements(CoarseGrid *g, Error *error)
+{
+  double high[3], size = width * g->domain->family.horizon;
+  particles_bounds(g->domain->particles, g->low, high);
+  for (;; size *= 1.1) {
+    if (divide(g, high, size) > MOST_ELEMENTS) continue;
+    if (!mark_elements(g, error) || !mark_corners(g, NULL, &g->corner_count, error)) return false;
+    if (g->corner_count <= MOST_CORNERS) return true;
+  }
+}
+
+static bool sort_particles(CoarseGrid *g, Error *error)
+{
+  const Particles *p = g->domain->particles;
+  double at[3];
+  g->first = memory_zeroed((size_t)g->element_count + 2, sizeof *g->first, "coarse grid", error);
+  g->place = memory_zeroed((size_t)p->count, sizeof *g->place, "coarse grid", error);
+  if (!g->first || !g->place) return false;
+  for (int64_t n = 0; n < p->count; ++n) ++g->first[g->element[locate_place(g, p->place_of[n], at)] + 2];
+  for (int64_t e = 0; e < g->element_count; ++e) g->first[e + 2] += g->first[e + 1];
+  for (int64_t i = 0; i < p->places; ++i)
+    if (p->number[i] >= 0) g->place[g->first[g->element[locate_place(g, i, at)] + 1]++] = (int32_t)i;
+  return true;
+}
+
+static bool number_corners(CoarseGrid *g, Error *error)
+{
+  const int64_t all = (int64_t)g->points[0] * g->points[1] * g->points[2];
+  int32_t *number = memory_zeroed((size_t)all, sizeof *number, "coarse grid", error);
+  g->corner = memory_zeroed((size_t)g->element_count, sizeof *g->corner, "coarse grid", error);
+  g->touching = memory_zeroed((size_t)g->corner_count, sizeof *g->touching, "coarse grid", error);
+  g->parts = memory_zeroed((size_t)g->element_count * CORNERS * 3, sizeof(double), "coarse grid", error);
+  const bool well = number && g->corner && g->touching && g->parts && mark_corners(g, number, &g->corner_count, error);
+  if (well) memset(g->touching, -1, sizeof *g->touching * (size_t)g->corner_count);
+  for (int64_t e = 0; well && e < (int64_t)g->elements[0] * g->elements[1] * g->elements[2]; ++e)
+    for (int c = 0; c < 1 << g->axes && g->element[e] >= 0; ++c) {
+      const int32_t at = number[corner_in_box(g, e, c)];
+      g->corner[g->element[e]][c] = at;
+      g->touching[at][c] = g->element[e] * CORNERS + c;
+    }
+  free(number);
+  return well;
+}
+
+CoarseGrid *coarse_grid_create(const Domain *d, Error *error)
+{
+  CoarseGrid *g = memory_zeroed(1, sizeof *g, "coarse grid", error);
+  if (!g) return NULL;
+  g->domain = d;
+  g->axes = d->body.dimensions;
+  cholmod_start(&g->common);
+  g->common.supernodal = CHOLMOD_SIMPLICIAL;
+  g->common.print = 0;
+  if (!choose_elements(g, error) || !sort_particles(g, error) || !number_corners(g, error)) coarse_grid_destroy(&g);
+  return g;
+}
+
+void coarse_grid_destroy(CoarseGrid **grid)
+{
+  CoarseGrid *g = *grid;
+  if (!g) return;
+  cholmod_free_factor(&g->factor, &g->common);
+  cholmod_free_dense(&g->right, &g->common);
+  cholmod_free_dense(&g->answer, &g->common);
+  for (int k = 0; k < 2; ++k) cholmod_free_dense(&g->work[k], &g->common);
+  cholmod_finish(&g->common);
+  free(g->corner);
+  free(g->first);
+  free(g->place);
+  free(g->element);
+  free(g->touching);
+  free(g->parts);
+  free(g->stiffness);
+  free(g);
+  *grid = NULL;
+}
+
+size_t coarse_grid_bytes(const CoarseGrid *g)
+{
+  return g->common.memory_inuse + sizeof(int32_t) * (size_t)g->domain->particles->count +
+         (size_t)g->element_count * (sizeof *g->corner + CORNERS * 3 * sizeof(double)) +
+         (size_t)g->corner_count * sizeof *g->touching;
+}
+
+/* ---- its equations ---- */
+
+/** Shares of the corners at a point of an element. */
+static inline void interpolate(int axes, const double at[3], double share[CORNERS])
+{
+  share[0] = 1;
+  for (int k = 0; k < axes; ++k)
+    for (int c = 0; c < 1 << k; ++c) {
+      share[c + (1 << k)] = share[c] * at[k];
+      share[c] -= share[c + (1 << k)];
+    }
+}
+
+/** Adds a stiffness between component r of corner a and component s of corner b of an element. */
+static void add(CoarseGrid *g, int64_t e, int a, int r, int b, int s, double stiffness)
+{
+  int way = 0;
+  for (int k = g->axes - 1; k >= 0; --k) way = 3 * way + (b >> k & 1) - (a >> k & 1) + 1;
+  way -= g->axes == 3 ? 0 : g->axes == 2 ? -9 : -12; /* the corner itself is the 13th of 27 */
+  if (way < NEIGHBOURS) g->stiffness[((int64_t)g->corner[e][a] * NEIGHBOURS + way) * 9 + 3 * r + s] += stiffness;
+}
+
+static void add_elements(CoarseGrid *g)
+{
+  const int size = g->axes << g->axes;
+  ElementStiffness unit;
+  double volume = 1;
+  for (int k = 0; k < g->axes; ++k) volume *= g->size[k];
+  element_stiffness(g->axes, g->size, &unit);
+  for (int64_t e = 0; e < g->element_count; ++e) {
+    double lame = 0, shear = 0;
+    for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
+      const double weight = g->domain->particles->volume[g->place[n]] / volume;
+      const ElementModuli moduli = element_moduli(g->domain, g->place[n]);
+      lame += weight * moduli.lame;
+      shear += weight * moduli.shear;
+    }
+    for (int a = 0; a < size; ++a)
+      for (int b = 0; b < size; ++b)
+        add(g, e, a / g->axes, a % g->axes, b / g->axes, b % g->axes,
+            lame * unit.lame[a][b] + shear * unit.shear[a][b]);
+  }
+}
+
+/** A spring from a point of the grid to the ground. */
+static void hold(CoarseGrid *g, const double position[3], const double direction[3], double stiffness)
+{
+  double at[3], share[CORNERS];
+  const int32_t e = g->element[locate(g, position, at)];
+  if (e < 0) return;
+  interpolate(g->axes, at, share);
+  for (int a = 0; a < 1 << g->axes; ++a)
+    for (int b = 0; b < 1 << g->axes; ++b)
+      for (int r = 0; r < g->axes; ++r)
+        for (int s = 0; s < g->axes; ++s)
+          if (direction[r] != 0 && direction[s] != 0)
+            add(g, e, a, r, b, s, stiffness * direction[r] * direction[s] * share[a] * share[b]);
+}
+
+/** Held motions. Of a particle that mirrors another the plane between them is held where they move against each other; where they move alike
+ *  nothing is. */
+static void add_supports(CoarseGrid *g, const Unknowns *u, const double *diagonal)
+{
+  const Particles *p = g->domain->particles;
+  for (int c = 0; c < u->loading->constraint_count; ++c) {
+    const Constraint *constraint = &u->loading->constraints[c];
+    if (!load_acts(u->loading, constraint->load) || (constraint->images && constraint->share > 0)) continue;
+    for (int64_t n = 0; n < constraint->load->selection.count; ++n) {
+      const int32_t i = constraint->load->selection.places[n], image = constraint->images ? constraint->images[n] : i;
+      double position[3];
+      for (int k = 0; k < 3; ++k) position[k] = (p->position[k][i] + p->position[k][image]) / 2;
+      hold(g, position, constraint->direction, diagonal[image]);
+    }
+  }
+}
+
+/** Springs to the ground, by what the body as a whole feels of them, and masses. */
+static int add_springs(CoarseGrid *g, const Unknowns *u, double mass_factor, Error *error)
+{
+  const Particles *p = g->domain->particles;
+  double *v[3] = {NULL}, *change[3] = {NULL};
+  bool well = true;
+  for (int k = 0; k < 3; ++k) {
+    well &= (v[k] = places_array(p->places, "coarse grid", error)) != NULL;
+    well &= (change[k] = places_array(p->places, "coarse grid", error)) != NULL;
+  }
+  for (int axis = 0; axis < g->axes && well; ++axis) {
+    const double direction[3] = {axis == 0, axis == 1, axis == 2};
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) {
+        v[k][i] = k == axis;
+        change[k][i] = 0;
+      }
+    loading_change(u->loading, p, v, change);
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      const double stiffness = p->volume[i] * (mass_factor * p->density[i] + fmax(0, -change[axis][i]));
+      if (stiffness > 0)
+        hold(g, (double[3]){p->position[0][i], p->position[1][i], p->position[2][i]}, direction, stiffness);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    places_free(&v[k]);
+    places_free(&change[k]);
+  }
+  return well ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
+/** Number of the neighbour of a corner, 0 .. NEIGHBOURS - 1, or -1. */
+static int32_t neighbour(const CoarseGrid *g, int64_t corner, int way)
+{
+  const int off[3] = {way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1};
+  for (int c = 0; c < 1 << g->axes; ++c) {
+    if (g->touching[corner][c] < 0) continue;
+    int other = 0;
+    for (int k = 0; k < 3 && other >= 0; ++k) {
+      const int at = (c >> k & 1) + off[k];
+      other = at < 0 || at > 1 || (k >= g->axes && off[k]) ? -1 : other | at << k;
+    }
+    if (other >= 0) return g->corner[g->touching[corner][c] / CORNERS][other];
+  }
+  return -1;
+}
+
+/** Rows above the diagonal, column by column. */
+static void fill(const CoarseGrid *g, cholmod_sparse *matrix)
+{
+  int *first = matrix->p, *row = matrix->i, count = 0;
+  double *value = matrix->x;
+  for (int64_t n = 0; n < g->corner_count; ++n) {
+    int32_t beside[NEIGHBOURS];
+    for (int way = 0; way < NEIGHBOURS; ++way) beside[way] = neighbour(g, n, way);
+    for (int r = 0; r < g->axes; ++r) {
+      first[n * g->axes + r] = count;
+      for (int way = 0; way < NEIGHBOURS; ++way)
+        for (int s = 0; s < g->axes && beside[way] >= 0; ++s) {
+          if (beside[way] == n && s > r) break;
+          row[count] = beside[way] * g->axes + s;
+          value[count++] = g->stiffness[(n * NEIGHBOURS + way) * 9 + 3 * r + s] * (beside[way] == n && s == r ? 1 + added : 1);
+        }
+    }
+  }
+  first[g->corner_count * g->axes] = count;
+}
+
+static int factor(CoarseGrid *g, Error *error)
+{
+  const size_t size = (size_t)(g->corner_count * g->axes);
+  cholmod_sparse *matrix = cholmod_allocate_sparse(size, size, size * (size_t)(NEIGHBOURS * g->axes), true, true, 1,
+                                                   CHOLMOD_REAL, &g->common);
+  if (matrix) fill(g, matrix);
+  if (matrix && !g->factor) g->factor = cholmod_analyze(matrix, &g->common);
+  if (matrix && g->factor) cholmod_factorize(matrix, g->factor, &g->common);
+  cholmod_free_sparse(&matrix, &g->common);
+  if (!g->right) g->right = cholmod_zeros(size, 1, CHOLMOD_REAL, &g->common);
+  if (!g->factor || !g->right || g->common.status < 0) return error_add(error, BRECCIA_FAILURE, "out of memory: coarse grid");
+  return BRECCIA_OK;
+}
+
+int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, double mass_factor, Error *error)
+{
+  g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
+  if (!g->stiffness) return BRECCIA_FAILURE;
+  add_elements(g);
+  add_supports(g, u, diagonal);
+  int status = add_springs(g, u, mass_factor, error);
+  if (!status) status = factor(g, error);
+  free(g->stiffness);
+  g->stiffness = NULL;
+  return status;
+}
+
+/* ---- its answer ---- */
+
+typedef struct Transfer {
+  const CoarseGrid *grid;
+  double *const *f, *const *v;
+  const double *answer;
+} Transfer;
+
+/** What the particles of an element give its corners. */
+static void gather_element(void *context, int64_t e)
+{
+  const Transfer *t = context;
+  const CoarseGrid *g = t->grid;
+  double sum[CORNERS * 3] = {0};
+  for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
+    const int32_t i = g->place[n];
+    double at[3], share[CORNERS];
+    locate_place(g, i, at);
+    interpolate(g->axes, at, share);
+    for (int k = 0; k < g->axes; ++k)
+      for (int c = 0; c < 1 << g->axes; ++c) sum[CORNERS * k + c] += share[c] * t->f[k][i];
+  }
+  memcpy(g->parts + e * CORNERS * 3, sum, sizeof sum);
+}
+
+static void gather_corner(void *context, int64_t n)
+{
+  const CoarseGrid *g = context;
+  for (int k = 0; k < g->axes; ++k) {
+    double sum = 0;
+    for (int c = 0; c < 1 << g->axes; ++c) {
+      const int32_t at = g->touching[n][c];
+      if (at >= 0) sum += g->parts[(int64_t)(at / CORNERS) * CORNERS * 3 + CORNERS * k + at % CORNERS];
+    }
+    ((double *)g->right->x)[n * g->axes + k] = sum;
+  }
+}
+
+static void spread_element(void *context, int64_t e)
+{
+  const Transfer *t = context;
+  const CoarseGrid *g = t->grid;
+  double of[CORNERS * 3];
+  for (int k = 0; k < g->axes; ++k)
+    for (int c = 0; c < 1 << g->axes; ++c) of[CORNERS * k + c] = t->answer[(int64_t)g->corner[e][c] * g->axes + k];
+  for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
+    const int32_t i = g->place[n];
+    double at[3], share[CORNERS];
+    locate_place(g, i, at);
+    interpolate(g->axes, at, share);
+    for (int k = 0; k < g->axes; ++k) {
+      double sum = 0;
+      for (int c = 0; c < 1 << g->axes; ++c) sum += share[c] * of[CORNERS * k + c];
+      t->v[k][i] += sum;
+    }
+  }
+}
+
+void coarse_grid_correct(CoarseGrid *g, double *const f[3], double *const v[3])
+{
+  Transfer t = {g, f, v, NULL};
+  team_each(g->element_count, gather_element, &t);
+  team_each(g->corner_count, gather_corner, g);
+  if (!cholmod_solve2(CHOLMOD_A, g->factor, g->right, NULL, &g->answer, NULL, &g->work[0], &g->work[1], &g->common)) return;
+  t.answer = g->answer->x;
+  team_each(g->element_count, spread_element, &t);
+}

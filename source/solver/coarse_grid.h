@@ -1,0 +1,29 @@
+/* A regular grid of finite elements laid over the body, some horizon wide each, whose solution stands for the smooth part of a solution among particles.
+ *
+ * Elements are bilinear or trilinear, as stiff as the particles in them: their moduli, by their volume over the element's. Elements without particles have no
+ * stiffness, and their corners no unknowns. What is held holds the grid by springs at the particles. Displacements of particles are interpolated
+ * from the corners of their element, so that lattices, scattered particles, holes and several materials are all alike. Its equations
+ * are factored by CHOLMOD (Chen et al. 2008, ACM Trans. Math. Softw. 35, 22) without supernodes: no BLAS, so the same bits with any. */
+#ifndef BRECCIA_SOLVER_COARSE_GRID_H
+#define BRECCIA_SOLVER_COARSE_GRID_H
+
+#include "solver/unknowns.h"
+
+typedef struct CoarseGrid CoarseGrid;
+
+/** Lays the grid over the body: elements at least 4/3 horizons wide, and so wide that it has few corners. */
+CoarseGrid *coarse_grid_create(const Domain *domain, Error *error);
+void coarse_grid_destroy(CoarseGrid **grid);
+
+/** Makes its equations anew, of the state at which the domain was linearised, and factors them.
+ *  @param[in] diagonal     [places] stiffness of each particle against being moved alone: how stiffly the grid is held where the particle is
+ *  @param[in] mass_factor  as in LinearSolver */
+int coarse_grid_prepare(CoarseGrid *grid, const Unknowns *unknowns, const double *diagonal, double mass_factor,
+                        Error *error);
+
+/** Adds to displacements v of all particles what the grid answers to forces f, by the team. */
+void coarse_grid_correct(CoarseGrid *grid, double *const f[3], double *const v[3]);
+
+size_t coarse_grid_bytes(const CoarseGrid *grid);
+
+#endif

@@ -1,0 +1,137 @@
+#include "solver/preconditioner.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <string.h>
+
+enum { PROBES = 3 };
+
+int preconditioner_create(Preconditioner *m, const Domain *d, Error *error)
+{
+  m->diagonal = places_array(d->particles->places, "preconditioner", error);
+  m->grid = m->diagonal ? coarse_grid_create(d, error) : NULL;
+  return m->grid ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
+void preconditioner_destroy(Preconditioner *m)
+{
+  places_free(&m->diagonal);
+  coarse_grid_destroy(&m->grid);
+}
+
+size_t preconditioner_bytes(const Preconditioner *m)
+{
+  return coarse_grid_bytes(m->grid);
+}
+
+/* ---- the diagonal ---- */
+
+/** 1 or -1, as if at random, of a component of a probe at a place (SplitMix64). */
+static double sign(int probe, int component, int64_t place)
+{
+  uint64_t x = ((uint64_t)place * 3 + (uint64_t)component) * PROBES + (uint64_t)probe + 1;
+  x *= 0x9e3779b97f4a7c15u;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+  return x >> 63 ? 1 : -1;
+}
+
+typedef struct Probing {
+  const LinearSolver *solver;
+  double *const *v, *const *kv;
+  double *diagonal;
+  int probe;
+} Probing;
+
+static void sow(void *context, int64_t b)
+{
+  const Probing *p = context;
+  const Batch *batch = &p->solver->domain->batches[b];
+  for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
+    for (int k = 0; k < 3; ++k) p->v[k][i] = p->solver->domain->particles->number[i] < 0 ? 0 : sign(p->probe, k, i);
+}
+
+static void reap(void *context, int64_t b)
+{
+  const Probing *p = context;
+  const Batch *batch = &p->solver->domain->batches[b];
+  for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
+    for (int k = 0; k < 3; ++k) p->diagonal[i] += p->v[k][i] * p->kv[k][i];
+}
+
+/** What a particle of its volume, moduli and family would have on the diagonal, but for a factor that all have. */
+static double guess(const Domain *d, int64_t i)
+{
+  const Material *m = &d->materials[d->material[i / SLICE]];
+  return d->particles->volume[i] * (m->bulk + 4 * m->shear / 3) * fmax(1, family_count(&d->family, (int32_t)i));
+}
+
+/** The mean of v K v over random signs v is the diagonal (Bekas, Kokiopoulou and Saad 2007, Appl. Numer. Math. 57, 1214): what stands beside it averages
+ *  out, and is small where families are large. Whatever the signs say, the diagonal is not less than a share of what its particle's family makes expected:
+ *  in what softens K is not positive, but M must be. */
+static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3])
+{
+  const Domain *d = s->domain;
+  const int64_t places = d->particles->places;
+  const double share = 1.0 / (PROBES * d->body.dimensions), least = 0.2;
+  double cross[2] = {0}, found = 0, expected = 0;
+  memset(m->diagonal, 0, sizeof(double) * (size_t)places);
+  for (int probe = 0; probe < PROBES; ++probe) {
+    Probing p = {s, v, kv, m->diagonal, probe};
+    team_each(d->batch_count, sow, &p);
+    linear_solver_apply(s, v, kv);
+    unknowns_clear_rest(&s->unknowns, v);
+    team_each(d->batch_count, reap, &p);
+    for (int64_t i = 0; i < places && probe < 2; ++i)
+      for (int k = 0; k < 3; ++k) cross[probe] += kv[k][i] * sign(1 - probe, k, i);
+  }
+  double size = 0;
+  for (int64_t i = 0; i < places; ++i) {
+    if (d->particles->number[i] < 0) continue;
+    found += m->diagonal[i] * share;
+    expected += guess(d, i);
+    size += fabs(m->diagonal[i]);
+  }
+  m->is_symmetric = fabs(cross[0] - cross[1]) <= 1e-9 * size;
+  const double factor = found > 0 ? found / expected : 1;
+  for (int64_t i = 0; i < places; ++i)
+    m->diagonal[i] =
+        d->particles->number[i] < 0 ? 1 : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
+}
+
+int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const work[2][3], Error *error)
+{
+  find_diagonal(m, s, work[0], work[1]);
+  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, s->mass_factor, error);
+}
+
+/* ---- as it is used ---- */
+
+typedef struct Scaling {
+  const Preconditioner *m;
+  const Domain *domain;
+  double *const *f, *const *v;
+} Scaling;
+
+BRECCIA_CLONES
+static void divide(const double *diagonal, double *const f[3], double *const v[3], int64_t first, int64_t last)
+{
+  for (int64_t i = first; i < last; i += LANES) {
+    const Lanes inverse = lanes_set(1) / lanes_load(diagonal + i);
+    for (int k = 0; k < 3; ++k) lanes_store(v[k] + i, inverse * lanes_load(f[k] + i));
+  }
+}
+
+static void divide_batch(void *context, int64_t b)
+{
+  const Scaling *s = context;
+  const Batch *batch = &s->domain->batches[b];
+  divide(s->m->diagonal, s->f, s->v, batch->first * SLICE, batch->last * SLICE);
+}
+
+void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, double *const f[3], double *const v[3])
+{
+  team_each(s->domain->batch_count, divide_batch, &(Scaling){m, s->domain, f, v});
+  coarse_grid_correct(m->grid, f, v);
+  unknowns_clear_rest(&s->unknowns, v);
+}
