@@ -258,21 +258,21 @@ static void hold(CoarseGrid *g, const double position[3], const double direction
             add(g, e, a, r, b, s, stiffness * direction[r] * direction[s] * share[a] * share[b]);
 }
 
-/** Held motions. Of a particle that mirrors another the plane between them is held where they move against each other; where they move alike
+typedef struct Holding {
+  CoarseGrid *grid;
+  const double *diagonal;
+} Holding;
+
+/** A held motion. Of a particle that mirrors another the plane between them is held where they move against each other; where they move alike
  *  nothing is. */
-static void add_supports(CoarseGrid *g, const Unknowns *u, const double *diagonal)
+static void add_support(const Constraint *c, int64_t n, void *context)
 {
-  const Particles *p = g->domain->particles;
-  for (int c = 0; c < u->loading->constraint_count; ++c) {
-    const Constraint *constraint = &u->loading->constraints[c];
-    if (!load_acts(u->loading, constraint->load) || (constraint->images && constraint->share > 0)) continue;
-    for (int64_t n = 0; n < constraint->load->selection.count; ++n) {
-      const int32_t i = constraint->load->selection.places[n], image = constraint->images ? constraint->images[n] : i;
-      double position[3];
-      for (int k = 0; k < 3; ++k) position[k] = (p->position[k][i] + p->position[k][image]) / 2;
-      hold(g, position, constraint->direction, diagonal[image]);
-    }
-  }
+  const Holding *h = context;
+  const Particles *p = h->grid->domain->particles;
+  const int32_t i = c->load->selection.places[n], image = c->images ? c->images[n] : i;
+  double position[3];
+  for (int k = 0; k < 3; ++k) position[k] = (p->position[k][i] + p->position[k][image]) / 2;
+  if (!c->images || c->share < 0) hold(h->grid, position, c->direction, h->diagonal[image]);
 }
 
 /** Springs to the ground, by what the body as a whole feels of them, and masses. */
@@ -363,7 +363,7 @@ int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal
   g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
   if (!g->stiffness) return BRECCIA_FAILURE;
   add_elements(g);
-  add_supports(g, u, diagonal);
+  unknowns_each_row(u, add_support, &(Holding){g, diagonal});
   int status = add_springs(g, u, mass_factor, error);
   if (!status) status = factor(g, error);
   free(g->stiffness);

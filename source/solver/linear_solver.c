@@ -36,9 +36,10 @@ const char *linear_solver_name(const LinearSolver *s)
 
 int linear_solver_create(LinearSolver *s, const char *word, Error *error)
 {
+  s->is_free = !strcmp(word, "automatic");
   for (int k = 0; k < TYPES; ++k) {
     if (!strcmp(word, words[k + 1])) s->type = types[k];
-    if (!strcmp(word, "automatic") && (!s->type || types[k]->suits(s) > s->type->suits(s))) s->type = types[k];
+    if (s->is_free && (!s->type || types[k]->suits(s) > s->type->suits(s))) s->type = types[k];
   }
   return s->type->create(s, error);
 }
@@ -54,11 +55,30 @@ int linear_solver_prepare(LinearSolver *s, Error *error)
   return s->type->prepare(s, error);
 }
 
+/** The other way from now on, beginning with these equations. */
+static int take_instead(LinearSolver *s, double *const f[3], double *const v[3], double tolerance,
+                        LinearRecord *record, Error *error)
+{
+  const LinearRecord before = *record;
+  const LinearType *instead = s->type->instead;
+  *record = (LinearRecord){.iterations = before.iterations};
+  for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
+  s->type->destroy(s);
+  s->own = NULL;
+  s->type = instead;
+  if (instead->create(s, error) || instead->prepare(s, error) || instead->solve(s, f, v, tolerance, record, error))
+    return BRECCIA_FAILURE;
+  record->indefinite |= before.indefinite;
+  return BRECCIA_OK;
+}
+
 int linear_solver_solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
                         Error *error)
 {
   *record = (LinearRecord){0};
-  return s->type->solve(s, f, v, tolerance, record, error);
+  const int status = s->type->solve(s, f, v, tolerance, record, error);
+  if (status || !record->unsuited || !s->is_free || !s->type->instead) return status;
+  return take_instead(s, f, v, tolerance, record, error);
 }
 
 typedef struct Weighing {

@@ -11,10 +11,13 @@ typedef struct LinearRecord {
   int64_t iterations; /* products with K; 0 of a direct solver */
   double residual;    /* what is left of the right-hand side, over all of it */
   bool indefinite;    /* K has a direction against which the body does not resist */
+  bool unsuited;      /* the way does not solve with such a K, and another has to be taken */
 } LinearRecord;
 
 /** A way to solve; the list is in linear_types.h. */
-typedef struct LinearType {
+typedef struct LinearType LinearType;
+struct LinearType {
+  const LinearType *instead; /* where the deck does not say, and K turns out not to suit this one; or NULL */
   /** How well it suits the body: the way with the highest number is taken where the deck does not say. */
   double (*suits)(const LinearSolver *solver);
   int (*create)(LinearSolver *solver, Error *error);
@@ -25,7 +28,7 @@ typedef struct LinearType {
   int (*solve)(LinearSolver *solver, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
                Error *error);
   size_t (*bytes)(const LinearSolver *solver);
-} LinearType;
+};
 
 struct LinearSolver {
   const LinearType *type;
@@ -33,6 +36,7 @@ struct LinearSolver {
   const Loading *loading;
   Unknowns unknowns;
   double mass_factor; /* K + mass_factor M is solved instead: of implicit dynamics; 0 in statics */
+  bool is_free;       /* the deck does not say which */
   void *own;          /* what the type keeps */
 };
 

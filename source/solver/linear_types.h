@@ -4,3 +4,5 @@ LINEAR("direct", direct,
        "by factors of the assembled stiffness: SuiteSparse; for bodies in the plane and small ones in space")
 LINEAR("conjugate gradients", gradients,
        "step by step with products K v, at the price of an evaluation of forces each; nothing is assembled")
+LINEAR("minimal residuals", residuals,
+       "the same for stiffness that is not symmetric or does not resist every motion; it keeps up to 42 vectors")

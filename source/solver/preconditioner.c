@@ -99,9 +99,10 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3]
         d->particles->number[i] < 0 ? 1 : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
 }
 
-int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const work[2][3], Error *error)
+int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3],
+                           Error *error)
 {
-  find_diagonal(m, s, work[0], work[1]);
+  find_diagonal(m, s, v, kv);
   return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, s->mass_factor, error);
 }
 

@@ -19,9 +19,9 @@ int preconditioner_create(Preconditioner *preconditioner, const Domain *domain, 
 void preconditioner_destroy(Preconditioner *preconditioner);
 
 /** The domain was linearised anew. It takes some products with K.
- *  @param[out] work  two vectors to work with */
-int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver, double *const work[2][3],
-                           Error *error);
+ *  @param[out] v, kv  vectors to work with */
+int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver, double *const v[3],
+                           double *const kv[3], Error *error);
 
 /** v = M^-1 f, both vectors of unknowns. */
 void preconditioner_apply(const Preconditioner *preconditioner, const LinearSolver *solver, double *const f[3],

@@ -1,0 +1,149 @@
+/* Generalised minimal residuals, restarted (Saad and Schultz 1986, SIAM J. Sci. Stat. Comput. 7, 856), for stiffness that is not symmetric or does not resist
+ * every motion. The preconditioner stands on the right, so that residuals are those of the equations. Each product adds a vector to those that are kept. */
+#include "solver/preconditioner.h"
+#include "solver/vectors.h"
+
+#include "base/memory.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BASIS = 40, MOST_PRODUCTS = 5000 };
+
+typedef struct Residuals {
+  Preconditioner preconditioner;
+  double *basis[BASIS + 1][3]; /* as many as were needed so far */
+  double *scaled[3];
+} Residuals;
+
+/** The least squares of the projected equations, kept triangular by rotations. */
+typedef struct Projected {
+  double h[BASIS + 1][BASIS]; /* column by column of products */
+  double cosine[BASIS], sine[BASIS], right[BASIS + 1];
+} Projected;
+
+static double suits(const LinearSolver *s)
+{
+  (void)s;
+  return 0.5;
+}
+
+static void destroy(LinearSolver *s)
+{
+  Residuals *g = s->own;
+  for (int n = 0; g && n <= BASIS; ++n) vectors_free(g->basis[n]);
+  if (g) vectors_free(g->scaled);
+  if (g) preconditioner_destroy(&g->preconditioner);
+  free(g);
+}
+
+static int create(LinearSolver *s, Error *error)
+{
+  Residuals *g = s->own = memory_zeroed(1, sizeof *g, "minimal residuals", error);
+  const int64_t places = s->domain->particles->places;
+  const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, error) ||
+                      !vectors_make(g->scaled, places, "minimal residuals", error) ||
+                      !vectors_make(g->basis[0], places, "minimal residuals", error);
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+static int prepare(LinearSolver *s, Error *error)
+{
+  Residuals *g = s->own;
+  return preconditioner_prepare(&g->preconditioner, s, g->scaled, g->basis[0], error);
+}
+
+/** Turns a new column of the projected equations, and the right-hand side with it. @return what is left of the residual */
+static double turn(Projected *p, int n)
+{
+  for (int i = 0; i < n; ++i) {
+    const double upper = p->h[i][n], lower = p->h[i + 1][n];
+    p->h[i][n] = p->cosine[i] * upper + p->sine[i] * lower;
+    p->h[i + 1][n] = p->cosine[i] * lower - p->sine[i] * upper;
+  }
+  const double length = hypot(p->h[n][n], p->h[n + 1][n]);
+  p->cosine[n] = length > 0 ? p->h[n][n] / length : 1;
+  p->sine[n] = length > 0 ? p->h[n + 1][n] / length : 0;
+  p->h[n][n] = length;
+  p->right[n + 1] = -p->sine[n] * p->right[n];
+  p->right[n] *= p->cosine[n];
+  return fabs(p->right[n + 1]);
+}
+
+/** Adds to v what the first `count` vectors of the basis answer best. The last vector of the basis is lost. */
+static void add_answer(const LinearSolver *s, const Projected *p, int count, double *const v[3])
+{
+  const Residuals *g = s->own;
+  double y[BASIS];
+  for (int i = count - 1; i >= 0; --i) {
+    y[i] = p->right[i];
+    for (int k = i + 1; k < count; ++k) y[i] -= p->h[i][k] * y[k];
+    y[i] = p->h[i][i] > 0 ? y[i] / p->h[i][i] : 0;
+  }
+  vectors_combine(s->domain, 0, g->basis[count], y[0], g->basis[0]);
+  for (int i = 1; i < count; ++i) vectors_combine(s->domain, 1, g->basis[count], y[i], g->basis[i]);
+  preconditioner_apply(&g->preconditioner, s, g->basis[count], g->scaled);
+  vectors_combine(s->domain, 1, v, 1, g->scaled);
+}
+
+/** One round, from the residual in the first vector of the basis. */
+static int go_round(LinearSolver *s, double length, double enough, double *const v[3], LinearRecord *record,
+                    Error *error)
+{
+  Residuals *g = s->own;
+  const Unknowns *u = &s->unknowns;
+  Projected p = {.right = {length}};
+  double left = length;
+  int n = 0;
+  vectors_combine(s->domain, 1 / length, g->basis[0], 0, g->basis[0]);
+  for (; n < BASIS && left > enough; ++n) {
+    double *const *next = g->basis[n + 1];
+    if (!next[0] && !vectors_make(g->basis[n + 1], s->domain->particles->places, "minimal residuals", error))
+      return BRECCIA_FAILURE;
+    preconditioner_apply(&g->preconditioner, s, g->basis[n], g->scaled);
+    linear_solver_apply(s, g->scaled, next);
+    ++record->iterations;
+    for (int i = 0; i <= n; ++i) {
+      p.h[i][n] = unknowns_product(u, next, g->basis[i]);
+      vectors_combine(s->domain, 1, next, -p.h[i][n], g->basis[i]);
+    }
+    p.h[n + 1][n] = sqrt(unknowns_product(u, next, next));
+    if (p.h[n + 1][n] > 0) vectors_combine(s->domain, 1 / p.h[n + 1][n], next, 0, next);
+    left = turn(&p, n);
+  }
+  add_answer(s, &p, n, v);
+  return BRECCIA_OK;
+}
+
+static int solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
+                 Error *error)
+{
+  Residuals *g = s->own;
+  const Unknowns *u = &s->unknowns;
+  const double first = sqrt(unknowns_product(u, f, f));
+  const double little = 0.95; /* a round that leaves more than this of the residual leads nowhere */
+  vectors_combine(s->domain, 0, g->basis[0], 1, f);
+  for (double length = first, before = INFINITY; first > 0;) {
+    record->residual = length / first;
+    if (length <= tolerance * first || length > little * before || record->iterations >= MOST_PRODUCTS) break;
+    before = length;
+    if (go_round(s, length, 0.9 * tolerance * first, v, record, error)) return BRECCIA_FAILURE;
+    vectors_combine(s->domain, 0, g->scaled, 1, v);
+    linear_solver_apply(s, g->scaled, g->basis[0]);
+    ++record->iterations;
+    vectors_combine(s->domain, -1, g->basis[0], 1, f);
+    length = sqrt(unknowns_product(u, g->basis[0], g->basis[0]));
+  }
+  record->indefinite = unknowns_product(u, f, v) < 0;
+  return BRECCIA_OK;
+}
+
+static size_t bytes(const LinearSolver *s)
+{
+  const Residuals *g = s->own;
+  return 3 * (BASIS + 2) * sizeof(double) * (size_t)s->domain->particles->places +
+         preconditioner_bytes(&g->preconditioner);
+}
+
+const LinearType residuals_linear = {
+    .suits = suits, .create = create, .destroy = destroy, .prepare = prepare, .solve = solve, .bytes = bytes};

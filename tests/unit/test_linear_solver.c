@@ -1,0 +1,384 @@
+/* Krylov methods on products with the stiffness, against dense solutions of the same products, and how many products they take. */
+#include "support.h"
+
+#include "base/linear.h"
+#include "base/random.h"
+#include "solver/preconditioner.h"
+#include "solver/vectors.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define END "solve: {explicit: {steps: 1, time step: 1e-6}}\n"
+#define ELASTIC "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+#define SPRINGS "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+#define TWO                                                                                                            \
+  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}, n: {model: elastic, density: 2, Young modulus: 50, "        \
+  "Poisson ratio: 0.4}}\n"
+#define BLOCK "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
+#define BLOCKS                                                                                                         \
+  "body: {a: {material: m, spacing: 0.1, shape: {box: {particles: [4, 5, 4]}}},\n"                                     \
+  "       b: {material: n, spacing: 0.1, shape: {box: {from: [0.4, 0, 0], to: [0.7, 0.5, 0.4]}}}}\n"
+#define PLATE                                                                                                          \
+  "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [9, 7]}}}}\n"
+#define HOLD "{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}"
+
+/** Each formulation, held and loaded in different ways. */
+static const struct Case {
+  const char *name, *deck;
+  bool mirrored; /* forces on images are dropped, so that the stiffness is not symmetric */
+} cases[] = {
+    {"correspondence in space",
+     ELASTIC BLOCK "peridynamics: {formulation: correspondence, space: 3-D}\n"
+                   "loads: [" HOLD ", {on: {face: x+, layers: 1}, traction: [1, 2, -0.5]}]\n"},
+    {"ordinary in space", ELASTIC BLOCK "peridynamics: {formulation: ordinary, space: 3-D}\n"
+                                        "loads: [" HOLD ", {on: {face: x+, layers: 1}, displacement: [0.001, free, free]},"
+                                        " {on: {nearest: [0.35, 0.25, 0.35]}, roller: [0, 1, 1]}]\n"},
+    {"bonds in space", SPRINGS BLOCK "peridynamics: {formulation: bond-based, space: 3-D}\n"
+                                     "loads: [" HOLD ", {on: {face: x+, layers: 1}, tie: {directions: x}}]\n"},
+    {"two materials", TWO BLOCKS "peridynamics: {formulation: correspondence, space: 3-D}\n"
+                                 "loads: [" HOLD ", {on: {face: x+}, traction: [1, 2, -0.5]}]\n"},
+    {"bonds in the plane", SPRINGS PLATE "peridynamics: {formulation: bond-based, space: plane stress}\n"
+                                         "loads: [{on: {face: x-, layers: 2}, roller: [1, 0]},"
+                                         " {on: {nearest: [0.75, 0.05]}, roller: [0.6, 0.8]},"
+                                         " {on: {face: x+, layers: 1}, traction: [1, 0.5]}]\n"},
+    {"correspondence in plane stress",
+     ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane stress}\n"
+                   "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, tie: {directions: x}}]\n"},
+    {"ordinary on springs", ELASTIC PLATE "peridynamics: {formulation: ordinary, space: plane strain}\n"
+                                          "loads: [{on: {all: yes}, spring: {stiffness: 2e3}}]\n"},
+    {"a bar", SPRINGS "body: {b: {material: m, lattice: line, area: 0.5, spacing: 0.1, shape: {box: {particles: [40, 1]}}}}\n"
+                      "peridynamics: {formulation: bond-based, space: 1-D}\n"
+                      "loads: [{on: {face: x-, layers: 1}, displacement: [0]}]\n"},
+    {"a quarter of a plate",
+     ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane strain}\n"
+                   "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}]\n",
+     true},
+};
+enum { CASES = sizeof cases / sizeof *cases };
+
+/** A model, linearised at a strained state, and what is solved of it. */
+typedef struct Problem {
+  breccia_model *model;
+  Domain *domain;
+  LinearSolver solver;
+  double *f[3], *v[3], *kv[3];
+  Team *before;
+} Problem;
+
+static void fill_randomly(const Particles *p, double *const v[3], double size, uint64_t seed)
+{
+  for (int k = 0; k < 3; ++k)
+    for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = size * (random_uniform(&seed) - 0.5);
+}
+
+static Problem pose(breccia_model *model, double mass_factor)
+{
+  Problem problem = {.model = model, .domain = &model->domain};
+  const Particles *p = problem.domain->particles;
+  problem.before = team_use(model->team);
+  problem.solver = (LinearSolver){.domain = problem.domain,
+                                  .loading = &model->loading,
+                                  .unknowns = unknowns_of(problem.domain, &model->loading),
+                                  .mass_factor = mass_factor};
+  assert_true(vectors_make(problem.f, p->places, "test", NULL) && vectors_make(problem.v, p->places, "test", NULL) &&
+              vectors_make(problem.kv, p->places, "test", NULL));
+  fill_randomly(p, problem.f, 1, 4);
+  unknowns_clear_rest(&problem.solver.unknowns, problem.f);
+  assert_int_equal(domain_linearise(problem.domain, NULL), 0);
+  return problem;
+}
+
+static void begin(Problem *p, const char *word)
+{
+  assert_int_equal(linear_solver_create(&p->solver, word, NULL), 0);
+  assert_int_equal(linear_solver_prepare(&p->solver, NULL), 0);
+}
+
+static LinearRecord solve(Problem *p, double tolerance)
+{
+  LinearRecord record;
+  for (int k = 0; k < 3; ++k) memset(p->v[k], 0, sizeof(double) * (size_t)p->domain->particles->places);
+  assert_int_equal(linear_solver_solve(&p->solver, p->f, p->v, tolerance, &record, NULL), 0);
+  return record;
+}
+
+static void forget(Problem *p)
+{
+  linear_solver_destroy(&p->solver);
+  vectors_free(p->f), vectors_free(p->v), vectors_free(p->kv);
+  team_use(p->before);
+  breccia_model_destroy(&p->model);
+}
+
+/** Solves by products with one displacement after another. What is not free has a stiffness of 1, alone. */
+static void solve_densely(Problem *p, double *const v[3])
+{
+  const Particles *particles = p->domain->particles;
+  const Unknowns *u = &p->solver.unknowns;
+  const int count = (int)particles->count, size = 3 * count;
+  double *matrix = calloc((size_t)size * (size_t)size, sizeof *matrix), *right = calloc((size_t)size, sizeof *right);
+  double *moved[3], scale = 0;
+  assert_true(vectors_make(moved, particles->places, "test", NULL));
+  for (int column = 0; column < size; ++column) {
+    const int32_t place = particles->place_of[column / 3];
+    for (int k = 0; k < 3; ++k) memset(moved[k], 0, sizeof(double) * (size_t)particles->places);
+    moved[column % 3][place] = 1;
+    unknowns_clear_rest(u, moved);
+    for (int row = 0; row < size; ++row)
+      matrix[row * size + column] = (row == column) - moved[row % 3][particles->place_of[row / 3]];
+    linear_solver_apply(&p->solver, moved, p->kv);
+    for (int row = 0; row < size; ++row)
+      matrix[row * size + column] += p->kv[row % 3][particles->place_of[row / 3]];
+    right[column] = p->f[column % 3][place];
+    scale = fmax(scale, fabs(matrix[column * size + column]));
+  }
+  assert_true(linear_solve(size, matrix, 1, right));
+  for (int row = 0; row < size; ++row) v[row % 3][particles->place_of[row / 3]] = right[row];
+  vectors_free(moved);
+  free(matrix), free(right);
+}
+
+static void assert_same_answer(const Problem *p, double *const wanted[3], double tolerance, const char *name)
+{
+  double most = 0, off = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->domain->particles->places; ++i) {
+      most = fmax(most, fabs(wanted[k][i]));
+      off = fmax(off, fabs(wanted[k][i] - p->v[k][i]));
+    }
+  if (!(off <= tolerance * most) || !(most > 0)) fail_msg("%s: off by %g of %g", name, off, most);
+}
+
+static void answers_are_those_of_a_dense_solution(void **state)
+{
+  (void)state;
+  static const char *const ways[] = {"conjugate gradients", "minimal residuals"};
+  for (int c = 0; c < CASES; ++c)
+    for (int way = cases[c].mirrored; way < 2; ++way) {
+      Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way ? 3e3 : 0);
+      char name[100];
+      double *wanted[3];
+      snprintf(name, sizeof name, "%s by %s", cases[c].name, ways[way]);
+      assert_true(vectors_make(wanted, p.domain->particles->places, "test", NULL));
+      solve_densely(&p, wanted);
+      begin(&p, ways[way]);
+      const LinearRecord record = solve(&p, 1e-12);
+      if (!(record.residual <= 1e-12)) fail_msg("%s: residual %g", name, record.residual);
+      assert_false(record.indefinite);
+      assert_false(record.unsuited);
+      assert_same_answer(&p, wanted, 1e-9, name);
+      vectors_free(wanted);
+      forget(&p);
+    }
+}
+
+static double product(const Problem *p, double *const a[3], double *const b[3])
+{
+  return unknowns_product(&p->solver.unknowns, a, b);
+}
+
+/** Else conjugate gradients go astray. */
+static void the_preconditioner_is_symmetric_and_positive(void **state)
+{
+  (void)state;
+  for (int c = 0; c < CASES; ++c) {
+    Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), 0);
+    Preconditioner m = {0};
+    double *x[3], *y[3], *mx[3], *my[3];
+    const int64_t places = p.domain->particles->places;
+    assert_true(vectors_make(x, places, "test", NULL) && vectors_make(y, places, "test", NULL));
+    assert_true(vectors_make(mx, places, "test", NULL) && vectors_make(my, places, "test", NULL));
+    assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
+    assert_int_equal(preconditioner_prepare(&m, &p.solver, x, y, NULL), 0);
+    assert_int_equal(m.is_symmetric, !cases[c].mirrored);
+    for (uint64_t seed = 1; seed < 6; ++seed) {
+      fill_randomly(p.domain->particles, x, 1, seed);
+      fill_randomly(p.domain->particles, y, 1, 100 + seed);
+      unknowns_clear_rest(&p.solver.unknowns, x);
+      unknowns_clear_rest(&p.solver.unknowns, y);
+      preconditioner_apply(&m, &p.solver, x, mx);
+      preconditioner_apply(&m, &p.solver, y, my);
+      const double size = sqrt(product(&p, x, mx) * product(&p, y, my));
+      assert_true(product(&p, x, mx) > 0);
+      assert_near(product(&p, x, my), product(&p, y, mx), 1e-12 * size);
+    }
+    preconditioner_destroy(&m);
+    vectors_free(x), vectors_free(y), vectors_free(mx), vectors_free(my);
+    forget(&p);
+  }
+}
+
+static breccia_model *cube(const char *formulation, const char *material, int n, const char *more)
+{
+  return model_of(UNITS "%speridynamics: {formulation: %s, space: 3-D}\nbody: {b: {material: m, spacing: 0.1, shape: {box: "
+                        "{particles: [%d, %d, %d]}}}}\nloads: [{on: {face: x-, layers: 3}, displacement: [0, 0, 0]}]\n%s" END,
+                  material, formulation, n, n, n, more);
+}
+
+/** Pulled and bent at the far face, so that the whole body answers. */
+static void load_far_face(Problem *p, int n)
+{
+  const Particles *q = p->domain->particles;
+  for (int64_t at = 0; at < q->count; ++at) {
+    const int32_t i = q->place_of[at];
+    for (int k = 0; k < 3; ++k) p->f[k][i] = q->position[0][i] > 0.1 * (n - 3) ? (k == 0) + 0.3 * (k == 1) : 0;
+  }
+}
+
+/** The diagonal alone takes twice as many for a body twice as long: 159 and 310 of ordinary bonds, say. */
+static void the_number_of_products_does_not_grow_with_the_body(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *formulation, *material;
+    int n;
+  } of[] = {{"correspondence", ELASTIC, 12}, {"bond-based", SPRINGS, 12}, {"ordinary", ELASTIC, 9}};
+  for (int c = 0; c < 3; ++c) {
+    int64_t products[2];
+    for (int twice = 0; twice < 2; ++twice) {
+      const int n = of[c].n << twice;
+      Problem p = pose(cube(of[c].formulation, of[c].material, n, ""), 0);
+      load_far_face(&p, n);
+      begin(&p, "conjugate gradients");
+      const LinearRecord record = solve(&p, 1e-8);
+      assert_true(record.residual <= 1e-8);
+      products[twice] = record.iterations;
+      forget(&p);
+    }
+    print_message("%s: %lld products, of a body twice as long %lld\n", of[c].formulation, (long long)products[0],
+                  (long long)products[1]);
+    assert_true(products[1] <= 40);
+    assert_true((double)products[1] <= 1.3 * (double)products[0]);
+  }
+}
+
+static void answers_have_the_same_bits_for_any_number_of_threads(void **state)
+{
+  (void)state;
+  static const char *const ways[] = {"conjugate gradients", "minimal residuals"};
+  for (int way = 0; way < 2; ++way) {
+    Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
+    const size_t bytes = sizeof(double) * (size_t)p.domain->particles->places;
+    double *first[3];
+    assert_true(vectors_make(first, p.domain->particles->places, "test", NULL));
+    for (int threads = 1; threads <= 3; ++threads) {
+      Team *team = team_create(threads, NULL), *before = team_use(team);
+      begin(&p, ways[way]);
+      solve(&p, 1e-8);
+      for (int k = 0; k < 3; ++k) {
+        if (threads == 1) memcpy(first[k], p.v[k], bytes);
+        assert_memory_equal(first[k], p.v[k], bytes);
+      }
+      p.solver.type->destroy(&p.solver);
+      p.solver.type = NULL;
+      p.solver.own = NULL;
+      team_use(before);
+      team_destroy(&team);
+    }
+    vectors_free(first);
+    forget(&p);
+  }
+}
+
+/** A cut that all but parts the body, and a particle without bonds. */
+static void broken_bodies_are_solved(void **state)
+{
+  (void)state;
+  Problem p = pose(cube("correspondence", ELASTIC, 10, ""), 0);
+  Domain *d = p.domain;
+  const int32_t lost = d->particles->place_of[d->particles->count - 1];
+  for (int64_t s = 0; s < d->particles->slices; ++s)
+    for (int64_t slot = d->family.first[s]; slot < d->family.first[s + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        const int32_t a = (int32_t)(s * SLICE + lane);
+        if (!(d->family.intact[slot] >> lane & 1)) continue;
+        const int32_t b = family_bond(&d->family, s, slot, lane).neighbour;
+        const double *x = d->particles->position[0], *y = d->particles->position[1];
+        if (a == lost || b == lost || ((x[a] - 0.55) * (x[b] - 0.55) < 0 && fmax(y[a], y[b]) < 0.7))
+          family_break(&d->family, a, b);
+      }
+  for (int64_t s = 0; s < d->particles->slices; ++s)
+    if (d->regions->type->renew) d->regions->type->renew(d->regions->formulation, s);
+  assert_int_equal(domain_linearise(d, NULL), 0);
+  load_far_face(&p, 10);
+  for (int k = 0; k < 3; ++k) p.f[k][lost] = 0;
+  begin(&p, "conjugate gradients");
+  const LinearRecord record = solve(&p, 1e-8);
+  assert_true(record.residual <= 1e-8);
+  assert_false(record.indefinite);
+  assert_true(record.iterations <= 80);
+  for (int k = 0; k < 3; ++k) assert_near(p.v[k][lost], 0, 0);
+  forget(&p);
+}
+
+#define SOFTENING                                                                                                      \
+  "materials: {m: {model: mazars, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, tensile strength: 1, fracture energy: 1e-3}}\n"
+#define FLOWING                                                                                                        \
+  "materials: {m: {model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, cohesion: 1, friction angle: 35, dilation angle: 0, "  \
+  "hardening modulus: 500}}\n"
+
+/** Strained evenly, sheared and pulled, with some unevenness. */
+static void strain(const Problem *p, double size)
+{
+  const Particles *q = p->domain->particles;
+  fill_randomly(q, q->displacement, 0.01 * size, 9);
+  for (int64_t n = 0; n < q->count; ++n) {
+    const int32_t i = q->place_of[n];
+    q->displacement[0][i] += size * (q->position[0][i] + 0.5 * q->position[1][i]);
+  }
+  assert_int_equal(domain_linearise(p->domain, NULL), 0);
+}
+
+/** Plastic flow without dilation makes tangents that are not symmetric, softening such that are not definite: conjugate gradients say so, and what is
+ *  taken by itself solves both. */
+static void the_way_follows_the_stiffness(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *name, *material;
+    double strain;
+    bool indefinite;
+  } of[] = {{"flow", FLOWING, 5e-4, false}, {"softening", SOFTENING, 3e-4, true}};
+  for (int c = 0; c < 2; ++c) {
+    Problem p = pose(cube("correspondence", of[c].material, 8, ""), 0);
+    strain(&p, of[c].strain);
+    begin(&p, "conjugate gradients");
+    LinearRecord record = solve(&p, 1e-8);
+    if (!record.unsuited) fail_msg("%s: conjugate gradients do not notice", of[c].name);
+    assert_int_equal(record.indefinite, of[c].indefinite);
+    linear_solver_destroy(&p.solver);
+    p.solver.domain = p.domain;
+    p.solver.loading = &p.model->loading;
+    p.solver.unknowns = unknowns_of(p.domain, &p.model->loading);
+    p.solver.type = NULL;
+    p.solver.is_free = true;
+    for (int k = 1; linear_word(k); ++k)
+      if (!strcmp(linear_word(k), "conjugate gradients")) begin(&p, linear_word(k));
+    p.solver.is_free = true; /* as where the deck does not say */
+    record = solve(&p, 1e-8);
+    assert_string_equal(linear_solver_name(&p.solver), "minimal residuals");
+    print_message("%s: %lld products, residual %g\n", of[c].name, (long long)record.iterations, record.residual);
+    assert_true(record.residual <= 1e-8);
+    assert_int_equal(record.indefinite, of[c].indefinite);
+    for (int k = 0; k < 3; ++k) memcpy(p.kv[k], p.v[k], sizeof(double) * (size_t)p.domain->particles->places);
+    double *check[3];
+    assert_true(vectors_make(check, p.domain->particles->places, "test", NULL));
+    linear_solver_apply(&p.solver, p.kv, check);
+    vectors_combine(p.domain, 1, check, -1, p.f);
+    assert_true(product(&p, check, check) <= 1.01e-16 * product(&p, p.f, p.f));
+    vectors_free(check);
+    forget(&p);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(answers_are_those_of_a_dense_solution),
+      cmocka_unit_test(the_preconditioner_is_symmetric_and_positive),
+      cmocka_unit_test(the_number_of_products_does_not_grow_with_the_body),
+      cmocka_unit_test(answers_have_the_same_bits_for_any_number_of_threads),
+      cmocka_unit_test(broken_bodies_are_solved),
+      cmocka_unit_test(the_way_follows_the_stiffness),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
