@@ -36,13 +36,14 @@ static const BenchBody bodies[] = {
 static breccia_model *load(const char *folder, const BenchBody *body, const Case *c)
 {
   Text deck = {0};
-  text_add(&deck,
-           "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n"
-           "peridynamics: {formulation: %s, space: %s}\nbody: {b: {material: m, spacing: 0.03, %s}}\n"
-           "solve: {explicit: {steps: 1, time step: 1e-6}}\n"
-           "loads: [{on: {face: x+, layers: 3}, body force: [400, 100, 0]}, {on: {face: x-, layers: 3}, velocity: [0, 0, "
-           "0]}]\n",
-           c->law, c->formulation, body->space, body->block);
+  text_add(
+      &deck,
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n"
+      "peridynamics: {formulation: %s, space: %s}\nbody: {b: {material: m, spacing: 0.03, %s}}\n"
+      "solve: {explicit: {steps: 1, time step: 1e-6}}\n"
+      "loads: [{on: {face: x+, layers: 3}, body force: [400, 100, 0]}, {on: {face: x-, layers: 3}, velocity: [0, 0, "
+      "0]}]\n",
+      c->law, c->formulation, body->space, body->block);
   char *name = text_format("%s/deck", folder);
   breccia_model *model = NULL;
   breccia_error *error = breccia_error_create();
@@ -137,7 +138,8 @@ int main(int count, char **words)
   if (!mkdtemp(folder)) return 1;
   char *cloud = text_format("%s/scattered.csv", folder);
   write_scattered(cloud, NULL);
-  printf("| formulation | body | particles | threads | products | residual | linearise s | prepare s | solve s | processor s | iteration / product | product, "
+  printf("| formulation | body | particles | threads | products | residual | linearise s | prepare s | solve s | "
+         "processor s | iteration / product | product, "
          "ns per bond | bytes per particle |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   int failed = 0;
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c)

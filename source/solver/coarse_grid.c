@@ -31,6 +31,7 @@ struct CoarseGrid {
   int64_t corner_count;
   int32_t (*touching)[CORNERS]; /* [corner_count] element times CORNERS + index of the corner in it, or -1 */
   double *parts;                /* [element_count][CORNERS * 3] */
+  const double *diagonal;       /* as it was prepared */
   double *stiffness;            /* [corner_count][NEIGHBOURS][9], only while equations are made */
   cholmod_common common;
   cholmod_factor *factor;
@@ -258,21 +259,16 @@ static void hold(CoarseGrid *g, const double position[3], const double direction
             add(g, e, a, r, b, s, stiffness * direction[r] * direction[s] * share[a] * share[b]);
 }
 
-typedef struct Holding {
-  CoarseGrid *grid;
-  const double *diagonal;
-} Holding;
-
 /** A held motion. Of a particle that mirrors another the plane between them is held where they move against each other; where they move alike
  *  nothing is. */
 static void add_support(const Constraint *c, int64_t n, void *context)
 {
-  const Holding *h = context;
-  const Particles *p = h->grid->domain->particles;
+  CoarseGrid *g = context;
+  const Particles *p = g->domain->particles;
   const int32_t i = c->load->selection.places[n], image = c->images ? c->images[n] : i;
   double position[3];
   for (int k = 0; k < 3; ++k) position[k] = (p->position[k][i] + p->position[k][image]) / 2;
-  if (!c->images || c->share < 0) hold(h->grid, position, c->direction, h->diagonal[image]);
+  if ((!c->images || c->share < 0) && isfinite(g->diagonal[image])) hold(g, position, c->direction, g->diagonal[image]);
 }
 
 /** Springs to the ground, by what the body as a whole feels of them, and masses. */
@@ -337,7 +333,8 @@ static void fill(const CoarseGrid *g, cholmod_sparse *matrix)
         for (int s = 0; s < g->axes && beside[way] >= 0; ++s) {
           if (beside[way] == n && s > r) break;
           row[count] = beside[way] * g->axes + s;
-          value[count++] = g->stiffness[(n * NEIGHBOURS + way) * 9 + 3 * r + s] * (beside[way] == n && s == r ? 1 + added : 1);
+          value[count++] =
+              g->stiffness[(n * NEIGHBOURS + way) * 9 + 3 * r + s] * (beside[way] == n && s == r ? 1 + added : 1);
         }
     }
   }
@@ -354,7 +351,8 @@ static int factor(CoarseGrid *g, Error *error)
   if (matrix && g->factor) cholmod_factorize(matrix, g->factor, &g->common);
   cholmod_free_sparse(&matrix, &g->common);
   if (!g->right) g->right = cholmod_zeros(size, 1, CHOLMOD_REAL, &g->common);
-  if (!g->factor || !g->right || g->common.status < 0) return error_add(error, BRECCIA_FAILURE, "out of memory: coarse grid");
+  if (!g->factor || !g->right || g->common.status < 0)
+    return error_add(error, BRECCIA_FAILURE, "out of memory: coarse grid");
   return BRECCIA_OK;
 }
 
@@ -362,8 +360,9 @@ int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal
 {
   g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
   if (!g->stiffness) return BRECCIA_FAILURE;
+  g->diagonal = diagonal;
   add_elements(g);
-  unknowns_each_row(u, add_support, &(Holding){g, diagonal});
+  unknowns_each_row(u, add_support, g);
   int status = add_springs(g, u, mass_factor, error);
   if (!status) status = factor(g, error);
   free(g->stiffness);
@@ -388,6 +387,7 @@ static void gather_element(void *context, int64_t e)
   for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
     const int32_t i = g->place[n];
     double at[3], share[CORNERS];
+    if (isinf(g->diagonal[i])) continue;
     locate_place(g, i, at);
     interpolate(g->axes, at, share);
     for (int k = 0; k < g->axes; ++k)
@@ -419,6 +419,7 @@ static void spread_element(void *context, int64_t e)
   for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
     const int32_t i = g->place[n];
     double at[3], share[CORNERS];
+    if (isinf(g->diagonal[i])) continue;
     locate_place(g, i, at);
     interpolate(g->axes, at, share);
     for (int k = 0; k < g->axes; ++k) {
@@ -434,7 +435,8 @@ void coarse_grid_correct(CoarseGrid *g, double *const f[3], double *const v[3])
   Transfer t = {g, f, v, NULL};
   team_each(g->element_count, gather_element, &t);
   team_each(g->corner_count, gather_corner, g);
-  if (!cholmod_solve2(CHOLMOD_A, g->factor, g->right, NULL, &g->answer, NULL, &g->work[0], &g->work[1], &g->common)) return;
+  if (!cholmod_solve2(CHOLMOD_A, g->factor, g->right, NULL, &g->answer, NULL, &g->work[0], &g->work[1], &g->common))
+    return;
   t.answer = g->answer->x;
   team_each(g->element_count, spread_element, &t);
 }

@@ -56,8 +56,8 @@ int linear_solver_prepare(LinearSolver *s, Error *error)
 }
 
 /** The other way from now on, beginning with these equations. */
-static int take_instead(LinearSolver *s, double *const f[3], double *const v[3], double tolerance,
-                        LinearRecord *record, Error *error)
+static int take_instead(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
+                        Error *error)
 {
   const LinearRecord before = *record;
   const LinearType *instead = s->type->instead;

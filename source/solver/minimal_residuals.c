@@ -74,7 +74,7 @@ static double turn(Projected *p, int n)
 static void add_answer(const LinearSolver *s, const Projected *p, int count, double *const v[3])
 {
   const Residuals *g = s->own;
-  double y[BASIS];
+  double y[BASIS] = {0};
   for (int i = count - 1; i >= 0; --i) {
     y[i] = p->right[i];
     for (int k = i + 1; k < count; ++k) y[i] -= p->h[i][k] * y[k];

@@ -94,13 +94,13 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3]
   }
   m->is_symmetric = fabs(cross[0] - cross[1]) <= 1e-9 * size;
   const double factor = found > 0 ? found / expected : 1;
-  for (int64_t i = 0; i < places; ++i)
-    m->diagonal[i] =
-        d->particles->number[i] < 0 ? 1 : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
+  for (int64_t i = 0; i < places; ++i) {
+    const bool lost = d->particles->number[i] < 0 || (m->diagonal[i] == 0 && !family_count(&d->family, (int32_t)i));
+    m->diagonal[i] = lost ? INFINITY : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
+  }
 }
 
-int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3],
-                           Error *error)
+int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3], Error *error)
 {
   find_diagonal(m, s, v, kv);
   return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, s->mass_factor, error);

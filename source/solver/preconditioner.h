@@ -10,7 +10,7 @@
 #include "solver/linear_solver.h"
 
 typedef struct Preconditioner {
-  double *diagonal; /* [places] mean over the axes */
+  double *diagonal; /* [places] mean over the axes; infinite: nothing holds the particle, and it stays where it is */
   CoarseGrid *grid;
   bool is_symmetric; /* K, as far as two products tell */
 } Preconditioner;

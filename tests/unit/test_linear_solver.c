@@ -11,7 +11,8 @@
 #define ELASTIC "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
 #define SPRINGS "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
 #define TWO                                                                                                            \
-  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}, n: {model: elastic, density: 2, Young modulus: 50, "        \
+  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}, n: {model: elastic, "         \
+  "density: 2, Young modulus: 50, "                                                                                    \
   "Poisson ratio: 0.4}}\n"
 #define BLOCK "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
 #define BLOCKS                                                                                                         \
@@ -24,14 +25,14 @@
 /** Each formulation, held and loaded in different ways. */
 static const struct Case {
   const char *name, *deck;
-  bool mirrored; /* forces on images are dropped, so that the stiffness is not symmetric */
 } cases[] = {
     {"correspondence in space",
      ELASTIC BLOCK "peridynamics: {formulation: correspondence, space: 3-D}\n"
                    "loads: [" HOLD ", {on: {face: x+, layers: 1}, traction: [1, 2, -0.5]}]\n"},
-    {"ordinary in space", ELASTIC BLOCK "peridynamics: {formulation: ordinary, space: 3-D}\n"
-                                        "loads: [" HOLD ", {on: {face: x+, layers: 1}, displacement: [0.001, free, free]},"
-                                        " {on: {nearest: [0.35, 0.25, 0.35]}, roller: [0, 1, 1]}]\n"},
+    {"ordinary in space",
+     ELASTIC BLOCK "peridynamics: {formulation: ordinary, space: 3-D}\n"
+                   "loads: [" HOLD ", {on: {face: x+, layers: 1}, displacement: [0.001, free, free]},"
+                   " {on: {nearest: [0.35, 0.25, 0.35]}, roller: [0, 1, 1]}]\n"},
     {"bonds in space", SPRINGS BLOCK "peridynamics: {formulation: bond-based, space: 3-D}\n"
                                      "loads: [" HOLD ", {on: {face: x+, layers: 1}, tie: {directions: x}}]\n"},
     {"two materials", TWO BLOCKS "peridynamics: {formulation: correspondence, space: 3-D}\n"
@@ -40,20 +41,26 @@ static const struct Case {
                                          "loads: [{on: {face: x-, layers: 2}, roller: [1, 0]},"
                                          " {on: {nearest: [0.75, 0.05]}, roller: [0.6, 0.8]},"
                                          " {on: {face: x+, layers: 1}, traction: [1, 0.5]}]\n"},
-    {"correspondence in plane stress",
-     ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane stress}\n"
-                   "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, tie: {directions: x}}]\n"},
+    {"correspondence in plane stress", ELASTIC PLATE
+     "peridynamics: {formulation: correspondence, space: plane stress}\n"
+     "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, tie: {directions: x}}]\n"},
     {"ordinary on springs", ELASTIC PLATE "peridynamics: {formulation: ordinary, space: plane strain}\n"
                                           "loads: [{on: {all: yes}, spring: {stiffness: 2e3}}]\n"},
-    {"a bar", SPRINGS "body: {b: {material: m, lattice: line, area: 0.5, spacing: 0.1, shape: {box: {particles: [40, 1]}}}}\n"
-                      "peridynamics: {formulation: bond-based, space: 1-D}\n"
-                      "loads: [{on: {face: x-, layers: 1}, displacement: [0]}]\n"},
+    {"a bar",
+     SPRINGS "body: {b: {material: m, lattice: line, area: 0.5, spacing: 0.1, shape: {box: {particles: [40, 1]}}}}\n"
+             "peridynamics: {formulation: bond-based, space: 1-D}\n"
+             "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}]\n"},
     {"a quarter of a plate",
      ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane strain}\n"
-                   "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}]\n",
-     true},
+                   "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}]\n"},
 };
 enum { CASES = sizeof cases / sizeof *cases };
+
+/** Forces on images are dropped, so that the stiffness is not symmetric. */
+static bool is_mirrored(const struct Case *c)
+{
+  return strstr(c->deck, "support") != NULL;
+}
 
 /** A model, linearised at a strained state, and what is solved of it. */
 typedef struct Problem {
@@ -126,8 +133,7 @@ static void solve_densely(Problem *p, double *const v[3])
     for (int row = 0; row < size; ++row)
       matrix[row * size + column] = (row == column) - moved[row % 3][particles->place_of[row / 3]];
     linear_solver_apply(&p->solver, moved, p->kv);
-    for (int row = 0; row < size; ++row)
-      matrix[row * size + column] += p->kv[row % 3][particles->place_of[row / 3]];
+    for (int row = 0; row < size; ++row) matrix[row * size + column] += p->kv[row % 3][particles->place_of[row / 3]];
     right[column] = p->f[column % 3][place];
     scale = fmax(scale, fabs(matrix[column * size + column]));
   }
@@ -153,7 +159,7 @@ static void answers_are_those_of_a_dense_solution(void **state)
   (void)state;
   static const char *const ways[] = {"conjugate gradients", "minimal residuals"};
   for (int c = 0; c < CASES; ++c)
-    for (int way = cases[c].mirrored; way < 2; ++way) {
+    for (int way = is_mirrored(&cases[c]); way < 2; ++way) {
       Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way ? 3e3 : 0);
       char name[100];
       double *wanted[3];
@@ -189,7 +195,7 @@ static void the_preconditioner_is_symmetric_and_positive(void **state)
     assert_true(vectors_make(mx, places, "test", NULL) && vectors_make(my, places, "test", NULL));
     assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
     assert_int_equal(preconditioner_prepare(&m, &p.solver, x, y, NULL), 0);
-    assert_int_equal(m.is_symmetric, !cases[c].mirrored);
+    assert_int_equal(m.is_symmetric, !is_mirrored(&cases[c]));
     for (uint64_t seed = 1; seed < 6; ++seed) {
       fill_randomly(p.domain->particles, x, 1, seed);
       fill_randomly(p.domain->particles, y, 1, 100 + seed);
@@ -209,8 +215,9 @@ static void the_preconditioner_is_symmetric_and_positive(void **state)
 
 static breccia_model *cube(const char *formulation, const char *material, int n, const char *more)
 {
-  return model_of(UNITS "%speridynamics: {formulation: %s, space: 3-D}\nbody: {b: {material: m, spacing: 0.1, shape: {box: "
-                        "{particles: [%d, %d, %d]}}}}\nloads: [{on: {face: x-, layers: 3}, displacement: [0, 0, 0]}]\n%s" END,
+  return model_of(UNITS
+                  "%speridynamics: {formulation: %s, space: 3-D}\nbody: {b: {material: m, spacing: 0.1, shape: {box: "
+                  "{particles: [%d, %d, %d]}}}}\nloads: [{on: {face: x-, layers: 3}, displacement: [0, 0, 0]}]\n%s" END,
                   material, formulation, n, n, n, more);
 }
 
@@ -311,9 +318,11 @@ static void broken_bodies_are_solved(void **state)
 }
 
 #define SOFTENING                                                                                                      \
-  "materials: {m: {model: mazars, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, tensile strength: 1, fracture energy: 1e-3}}\n"
+  "materials: {m: {model: mazars, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, tensile strength: 1, fracture "  \
+  "energy: 1e-3}}\n"
 #define FLOWING                                                                                                        \
-  "materials: {m: {model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, cohesion: 1, friction angle: 35, dilation angle: 0, "  \
+  "materials: {m: {model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, cohesion: 1, friction "  \
+  "angle: 35, dilation angle: 0, "                                                                                     \
   "hardening modulus: 500}}\n"
 
 /** Strained evenly, sheared and pulled, with some unevenness. */
@@ -323,7 +332,7 @@ static void strain(const Problem *p, double size)
   fill_randomly(q, q->displacement, 0.01 * size, 9);
   for (int64_t n = 0; n < q->count; ++n) {
     const int32_t i = q->place_of[n];
-    q->displacement[0][i] += size * (q->position[0][i] + 0.5 * q->position[1][i]);
+    q->displacement[0][i] += size * (q->position[0][i] + q->position[1][i]);
   }
   assert_int_equal(domain_linearise(p->domain, NULL), 0);
 }
@@ -337,7 +346,7 @@ static void the_way_follows_the_stiffness(void **state)
     const char *name, *material;
     double strain;
     bool indefinite;
-  } of[] = {{"flow", FLOWING, 5e-4, false}, {"softening", SOFTENING, 3e-4, true}};
+  } of[] = {{"flow", FLOWING, -1e-3, false}, {"softening", SOFTENING, 3e-4, true}};
   for (int c = 0; c < 2; ++c) {
     Problem p = pose(cube("correspondence", of[c].material, 8, ""), 0);
     strain(&p, of[c].strain);
@@ -345,14 +354,6 @@ static void the_way_follows_the_stiffness(void **state)
     LinearRecord record = solve(&p, 1e-8);
     if (!record.unsuited) fail_msg("%s: conjugate gradients do not notice", of[c].name);
     assert_int_equal(record.indefinite, of[c].indefinite);
-    linear_solver_destroy(&p.solver);
-    p.solver.domain = p.domain;
-    p.solver.loading = &p.model->loading;
-    p.solver.unknowns = unknowns_of(p.domain, &p.model->loading);
-    p.solver.type = NULL;
-    p.solver.is_free = true;
-    for (int k = 1; linear_word(k); ++k)
-      if (!strcmp(linear_word(k), "conjugate gradients")) begin(&p, linear_word(k));
     p.solver.is_free = true; /* as where the deck does not say */
     record = solve(&p, 1e-8);
     assert_string_equal(linear_solver_name(&p.solver), "minimal residuals");
