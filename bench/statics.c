@@ -118,9 +118,9 @@ static int measure(breccia_model *model, const char *formulation, const char *bo
   const double solved = clock_seconds(), after = resident();
   const double work = processor_seconds() - worked;
   domain_linear_step(d, v.moved, v.force);
-  const double again = clock_seconds(), begun = processor_seconds();
+  const double begun = processor_seconds();
   domain_linear_step(d, v.moved, v.force);
-  const double product = clock_seconds() - again, own = processor_seconds() - begun;
+  const double own = processor_seconds() - begun;
   printf("| %s | %s | %lld | %d | %lld | %.1e | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.0f |\n", formulation, body,
          (long long)p->count, threads, (long long)record.iterations, record.residual, linearised - start,
          prepared - linearised, solved - prepared, work, work / (double)record.iterations / own,

@@ -15,7 +15,7 @@ typedef struct CoarseGrid CoarseGrid;
 CoarseGrid *coarse_grid_create(const Domain *domain, Error *error);
 void coarse_grid_destroy(CoarseGrid **grid);
 
-/** Makes its equations anew, of the state at which the domain was linearised, and factors them.
+/** Makes its equations again, of the state at which the domain was linearised, and factors them.
  *  @param[in] diagonal     [places] stiffness of each particle against being moved alone: how stiffly the grid is held where the particle is;
  *                          infinite: the particle has no part in it. Borrowed until the next time
  *  @param[in] mass_factor  as in LinearSolver */

@@ -18,7 +18,7 @@ typedef struct Preconditioner {
 int preconditioner_create(Preconditioner *preconditioner, const Domain *domain, Error *error);
 void preconditioner_destroy(Preconditioner *preconditioner);
 
-/** The domain was linearised anew. It takes some products with K.
+/** The domain was linearised again. It takes some products with K.
  *  @param[out] v, kv  vectors to work with */
 int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver, double *const v[3],
                            double *const kv[3], Error *error);
