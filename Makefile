@@ -98,11 +98,12 @@ clang-test:
 	@cmake --build --preset clang-test --parallel $(cores)
 	@ctest --preset clang-test --parallel $(cores)
 
-# The deck reader against random decks, then both sides of the protocol of material servers against random frames, for FUZZ_SECONDS each.
+# The deck reader against random decks, small models of such decks for some steps, then both sides of the protocol of material servers against
+# random frames, for FUZZ_SECONDS each.
 fuzz:
 	@sh scripts/setup.sh test
 	@cmake --preset fuzz > /dev/null
-	@cmake --build --preset fuzz --target fuzz_deck fuzz_server fuzz_client --parallel $(cores)
+	@cmake --build --preset fuzz --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
 	@sh tests/fuzz/run.sh $(or $(FUZZ_SECONDS),60)
 
 # The tests that inject faults, by the thousand, for about TORTURE_MINUTES (60); remakes the table of docs/reliability.md.
@@ -111,7 +112,7 @@ torture:
 	@cmake --preset test > /dev/null
 	@cmake --build --preset test --parallel $(cores)
 	@cmake --preset fuzz > /dev/null
-	@cmake --build --preset fuzz --target fuzz_deck fuzz_server fuzz_client --parallel $(cores)
+	@cmake --build --preset fuzz --target fuzz_deck fuzz_model fuzz_server fuzz_client --parallel $(cores)
 	@python3 -B tests/torture.py docs/reliability.md
 
 # Small faults in lines that differ from BASE, one at a time; prints those that no test notices. 20 of them and half an hour, unless told otherwise:

@@ -36,7 +36,7 @@ PARTS = [
      [r"memory of libraries too: (\d+) calls refused, (\d+) problems"]),
 ] + [
     (name, ["sh", "tests/fuzz/run.sh", "0"], {"FUZZ_ONLY": target, "FUZZ_RUNS": some(100000), "FUZZ_SEED": "1"}, [r"number_of_executed_units: (\d+)"])
-    for name, target in (("random decks", "fuzz_deck"), ("random frames to a server", "fuzz_server"), ("random answers to a client", "fuzz_client"))
+    for name, target in (("random decks", "fuzz_deck"), ("random bodies, some steps", "fuzz_model"), ("random frames to a server", "fuzz_server"), ("random answers to a client", "fuzz_client"))
 ]
 
 

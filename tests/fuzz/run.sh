@@ -1,5 +1,5 @@
 #!/bin/sh
-# fuzz_deck from the decks of the examples, then fuzz_server and fuzz_client from conversations, for so many seconds each, or, if FUZZ_RUNS
+# fuzz_deck from the decks of the examples, fuzz_model from small ones, then fuzz_server and fuzz_client from conversations, for so many seconds each, or, if FUZZ_RUNS
 # is set, so many inputs; FUZZ_ONLY names one of them.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -12,6 +12,28 @@ fuzz() { # fuzz TARGET LONGEST FOLDER [options]: inputs of so many bytes at most
   LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" "build/fuzz/$target" "$limit" -seed="${FUZZ_SEED:-0}" -max_len="$longest" -rss_limit_mb=2048 -timeout=20 \
     -artifact_prefix=build/fuzz/ -verbosity=0 -print_final_stats=1 "$@" "$folder"
 }
+
+# A deck of each law of the laboratory's examples, and those of bodies of all kinds.
+mkdir -p build/fuzz/models
+cp tests/fuzz/decks/*.yaml build/fuzz/models
+for deck in examples/materials/*.yaml; do
+  law=$(basename "$deck" .yaml)
+  case $law in
+  *-softening | elastic-1d | elastic-brittle | elastic-perfectly-plastic | kent* | concrete02 | mander | steel* | menegotto*) with=bond-based ;;
+  *) with=correspondence ;;
+  esac
+  {
+    echo 'units: {length: m, force: kN, time: s}'
+    printf 'materials:\n  m:\n'
+    sed -n '/^material:/,/^[a-ln-z]/s/^  [^ ]/  &/p' "$deck"
+    echo 'body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 4, 4]}}}}'
+    echo "peridynamics: {formulation: $with}"
+    echo 'loads: [{on: {face: x-, layers: 2}, displacement: [0, 0, 0]}, {on: {face: x+, layers: 2}, velocity: [-50, 10, free]}]'
+    echo 'solve: {explicit: {steps: 5}}'
+  } > "build/fuzz/models/law-$law.yaml"
+done
+fuzz fuzz_model 4096 build/fuzz/models -dict=tests/fuzz/deck.dict
+
 mkdir -p build/fuzz/corpus
 for deck in examples/*/*.yaml; do
   cp "$deck" "build/fuzz/corpus/$(basename "$(dirname "$deck")")-$(basename "$deck")"
