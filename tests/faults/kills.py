@@ -3,7 +3,8 @@
 
 A run is killed (SIGKILL) just before its Nth such call, or in the middle of what the call writes; io_faults.c, preloaded, does it. What is
 left is taken up with --restart, or begun again where there was no checkpoint yet, and must end in the same bits as a run that nobody
-disturbed: results, histories and the state at the end. Runs that are taken up are killed again, up to three times.
+disturbed: results, histories and the state at the end. Runs that are taken up are killed again, up to three times. Of every two runs one takes its results
+for large ones, which are written in place with a journal.
 
 usage: kills.py COMMAND SHIM COMPARE_RESULTS [--count N] [--seconds S] [--seed K]
   --count N    so many runs that are killed (24); first one of each kind of call, then all calls in a random order, then several in a row
@@ -48,8 +49,10 @@ ALIKE = ("results.vtkhdf", "checkpoint.h5")  # by what is in them
 
 
 class Walk:
-    def __init__(self, options, work):
+    def __init__(self, options, work, large):
         self.options, self.work = options, work
+        self.faults = {"FAULT_LARGER": "300000000"} if large else {}
+        os.makedirs(work)
         with open(f"{work}/deck.yaml", "w") as deck:
             deck.write(DECK)
         self.run("whole")
@@ -67,8 +70,8 @@ class Walk:
 
     def run(self, folder, restart=False, **faults):
         """Returns the status and what was said; a status below zero is a signal."""
-        environment = dict(os.environ, LC_ALL="C")
-        if faults:
+        environment = dict(os.environ, LC_ALL="C", **self.faults)
+        if faults or self.faults:
             environment.update(LD_PRELOAD=self.options.shim, FAULT_FOLDER=f"{self.work}/{folder}", FAULT_EXCEPT="run.lock")
             environment.update({f"FAULT_{key.upper()}": str(value) for key, value in faults.items()})
         words = [self.options.command, "run", "deck.yaml", "--quiet", "--threads", "1", "--output", folder] + ["--restart"] * restart
@@ -146,15 +149,18 @@ def main():
     tried = kills = restarts = 0
     lost = []
     try:
-        walk = Walk(options, work)
-        plans = walk.plans(random.Random(options.seed))
+        chance = random.Random(options.seed)
+        walks = [Walk(options, f"{work}/{name}", name == "large") for name in ("small", "large")]
+        plans = [walk.plans(chance) for walk in walks]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             while kills < options.count and time.monotonic() < end:
-                batch = [next(plans) for _ in range(min(16, options.count - kills))]
-                for plan, (k, r, problem) in zip(batch, pool.map(walk.kill, range(tried, tried + len(batch)), batch)):
+                batch = [(number, walks[number % 2], next(plans[number % 2])) for number in range(tried, tried + min(16, options.count - kills))]
+                done = pool.map(lambda one: one[1].kill(one[0], one[2]), batch)
+                for (_, walk, plan), (k, r, problem) in zip(batch, done):
                     kills, restarts = kills + k, restarts + r
                     if problem:
-                        lost.append(" then ".join(f"{WORDS[how]} call {call} ({walk.calls[call - 1]})" for call, how in plan) + f": {problem}")
+                        calls = " then ".join(f"{WORDS[how]} call {call} ({walk.calls[call - 1]})" for call, how in plan)
+                        lost.append(f"{os.path.basename(walk.work)} results, {calls}: {problem}")
                 tried += len(batch)
     finally:
         shutil.rmtree(work, ignore_errors=True)
