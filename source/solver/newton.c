@@ -2,6 +2,7 @@
 
 #include "base/team.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 int newton_create(Newton *n, Error *error)
@@ -203,4 +204,26 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
     if (!isfinite(force)) return NEWTON_DIVERGED;
   }
   return NEWTON_SLOW;
+}
+
+const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words, size_t size)
+{
+  const Domain *d = n->domain;
+  const Particles *p = d->particles;
+  switch (outcome) {
+  case NEWTON_SLOW:
+    snprintf(words, size, "%lld iterations left %.2g of the forces out of balance%s", (long long)n->iterations - 1,
+             n->unbalanced, n->indefinite ? ", and the body does not resist some motion any more" : "");
+    break;
+  case NEWTON_LAW: {
+    const int64_t i = d->failed_place;
+    const Material *m = &d->materials[d->material[i / SLICE]];
+    snprintf(words, size, "the law %s of material '%s' could not be integrated at particle %d at [%g, %g, %g]",
+             m->law_name, m->name, p->number[i], p->position[0][i], p->position[1][i], p->position[2][i]);
+    break;
+  }
+  case NEWTON_SINGULAR: snprintf(words, size, "the body does not resist some motion at all"); break;
+  default: snprintf(words, size, "the forces have grown beyond all bounds");
+  }
+  return words;
 }

@@ -80,4 +80,7 @@ void newton_destroy(Newton *newton);
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
 
+/** Why it did not converge. @return `words` */
+const char *newton_describe(const Newton *newton, NewtonOutcome outcome, char *words, size_t size);
+
 #endif

@@ -1,0 +1,131 @@
+#include "solver/increment.h"
+
+#include "base/team.h"
+#include <math.h>
+#include <string.h>
+
+int increment_create(Increment *i, Domain *domain, Error *error)
+{
+  i->domain = domain;
+  for (int k = 0; k < 3; ++k) {
+    i->internal[k] = places_array(domain->particles->places, "forces", error);
+    i->external[k] = places_array(domain->particles->places, "forces", error);
+    if (!i->internal[k] || !i->external[k]) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+void increment_forget(Increment *i)
+{
+  state_copy_destroy(&i->before);
+  domain_keep_stresses(i->domain, false, NULL);
+}
+
+void increment_destroy(Increment *i)
+{
+  for (int k = 0; k < 3; ++k) {
+    places_free(&i->internal[k]);
+    places_free(&i->external[k]);
+  }
+  if (i->domain) increment_forget(i);
+}
+
+int increment_keep(Increment *i, Solver *run, Error *error)
+{
+  if (i->before.rows) return BRECCIA_OK;
+  StateList list = {0};
+  domain_state(i->domain, &list);
+  solver_state(run, &list);
+  int status = state_keep(&i->before, &list, error);
+  state_list_destroy(&list);
+  if (!status) status = domain_keep_stresses(i->domain, true, error);
+  if (status) increment_forget(i);
+  return status;
+}
+
+double increment_end(const Solver *run, double length)
+{
+  const Clock *clock = &run->clock;
+  const double tiny = 1e-6 * length;
+  double end = clock->time + length;
+  if (end > clock->stage_end - tiny) end = clock->stage_end;
+  for (int64_t k = 0; k < run->stop_count; ++k)
+    if (run->stops[k] > clock->time + tiny && run->stops[k] < end + tiny) {
+      end = run->stops[k];
+      break;
+    }
+  return end;
+}
+
+static void note_places(void *context)
+{
+  Increment *i = context;
+  const Domain *d = i->domain;
+  const Particles *p = d->particles;
+  TEAM_FOR (b, d->batch_count) {
+    const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
+    state_note_places(&i->before, first, last);
+    for (int k = 0; k < 3; ++k) {
+      memcpy(i->internal[k] + first, p->internal[k] + first, sizeof(double) * (size_t)(last - first));
+      memcpy(i->external[k] + first, p->external[k] + first, sizeof(double) * (size_t)(last - first));
+    }
+  }
+}
+
+void increment_begin(Increment *i)
+{
+  state_note_others(&i->before);
+  team_run(note_places, i);
+  domain_put_stresses_by(i->domain);
+}
+
+void increment_retreat(Increment *i)
+{
+  const Particles *p = i->domain->particles;
+  state_undo(&i->before);
+  for (int k = 0; k < 3; ++k) memcpy(p->external[k], i->external[k], sizeof(double) * (size_t)p->places);
+  domain_put_stresses_by(i->domain);
+  domain_follow(i->domain);
+}
+
+static void accept(void *context)
+{
+  domain_accept(context);
+}
+
+void increment_accept(Increment *i, double *const moved[3])
+{
+  Domain *d = i->domain;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t place = 0; place < d->particles->places; ++place) i->moved = fmax(i->moved, fabs(moved[k][place]));
+  team_run(accept, d);
+  domain_commit_points(d);
+  forces_commit(&d->forces);
+}
+
+static void break_bonds(void *context)
+{
+  struct {
+    Domain *domain;
+    Moment moment;
+  } *of = context;
+  domain_break(of->domain, &of->moment);
+  domain_forces(of->domain);
+  domain_accept(of->domain);
+}
+
+int64_t increment_break(Increment *i, const Clock *clock, int64_t most)
+{
+  Domain *d = i->domain;
+  const int64_t broken = d->broken_count;
+  struct {
+    Domain *domain;
+    Moment moment;
+  } of = {d, {.step = clock->step + 1, .time = clock->time, .motion = sqrt(3) * i->moved, .most = most}};
+  if (!d->failure.criterion && !d->gave_up) return 0;
+  i->moved = 0;
+  team_run(break_bonds, &of);
+  domain_commit_points(d);
+  forces_commit(&d->forces);
+  return d->broken_count - broken;
+}

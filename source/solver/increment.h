@@ -1,0 +1,38 @@
+/* What solvers that iterate try at a time: an increment that is accepted whole or taken back whole, and bonds that break between two. */
+#ifndef BRECCIA_SOLVER_INCREMENT_H
+#define BRECCIA_SOLVER_INCREMENT_H
+
+#include "solver/solver.h"
+
+typedef struct Increment {
+  Domain *domain;
+  StateCopy before;
+  double *internal[3], *external[3]; /* forces per volume of bonds and of loads at its beginning */
+  double moved;                      /* largest component of any motion since bonds were judged */
+} Increment;
+
+/** `increment` is zero; destroy it in any case. */
+int increment_create(Increment *increment, Domain *domain, Error *error);
+void increment_destroy(Increment *increment);
+
+/** Room for what an increment tries; only while steps are taken, as pictures and the like need room afterwards. */
+int increment_keep(Increment *increment, Solver *solver, Error *error);
+void increment_forget(Increment *increment);
+
+/** Where an increment of a length ends: at a time that is asked for, if it comes before its end or hardly behind it. */
+double increment_end(const Solver *solver, double length);
+
+/** Notes the state, so that it can be had back. */
+void increment_begin(Increment *increment);
+/** The state as it was noted. */
+void increment_retreat(Increment *increment);
+/** What laws and forces remember of the increment is so from now on.
+ *  @param[in] moved  changes of displacements in it */
+void increment_accept(Increment *increment, double *const moved[3]);
+
+/** Breaks the most loaded bonds that are beyond their limit, at the displacements held, and commits what is left of the body, with its forces.
+ *  @param[in] most  as in Moment
+ *  @return how many */
+int64_t increment_break(Increment *increment, const Clock *clock, int64_t most);
+
+#endif
