@@ -26,7 +26,7 @@ static volatile int interrupted;
 static void on_signal(int number)
 {
   interrupted = 1;
-  signal(number, SIG_DFL);
+  if (number != SIGXCPU) signal(number, SIG_DFL); /* which the system sends again every second, up to its hard limit */
 }
 
 static void show_progress(void *context, int64_t step, int64_t steps, double left)
