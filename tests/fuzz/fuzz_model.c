@@ -39,16 +39,15 @@ static bool is_harmless(const DeckSpec *spec, const DeckReader *reader)
 }
 
 /** A deck that the reader takes, or NULL. @param[out] document  in which it lies */
-static const DeckSpec *read_deck(const char *deck, DeckReader *reader)
+static const DeckSpec *read_deck(const char *deck, DeckReader *reader, Document **document)
 {
   static Units *units; /* reading the unit database takes longer than a thousand decks */
   static const LawList laws;
   if (!units) units = units_create("m", "kN", "s", reader->error);
-  reader->document = document_parse(deck, strlen(deck), "deck", reader->error);
+  reader->document = *document = document_parse(deck, strlen(deck), "deck", reader->error);
   reader->units = units;
   reader->context = &laws;
-  if (!reader->document || !units || deck_resolve(reader->document, &deck_section, units, NULL, 0, reader->error))
-    return NULL;
+  if (!reader->document || !units || deck_resolve(*document, &deck_section, units, NULL, 0, reader->error)) return NULL;
   const DeckSpec *spec = section_read(reader, reader->document->root, &deck_section);
   return error_count(reader->error) ? NULL : spec;
 }
@@ -99,10 +98,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   memcpy(deck, data, size);
   deck[size] = 0;
   if (!counts.tried++) atexit(tell_counts);
+  Document *document;
   DeckReader reader = {.error = breccia_error_create()};
-  const DeckSpec *spec = read_deck(deck, &reader);
+  const DeckSpec *spec = read_deck(deck, &reader, &document);
   const bool harmless = spec && is_harmless(spec, &reader);
-  document_destroy(&reader.document);
+  document_destroy(&document);
   breccia_error_destroy(&reader.error);
   counts.read += harmless;
   if (harmless) run_deck(deck);
