@@ -14,7 +14,7 @@ cmake --build --preset test --target breccia_command compare_results > /dev/null
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" # the command as it is tested, with OpenSees beside it
-cp build/test/breccia build/release/breccia-opensees build/release/breccia-opensees-tcl "$work/bin"
+cp build/test/breccia build/test/tests/compare_results build/release/breccia-opensees build/release/breccia-opensees-tcl "$work/bin"
 passed=0 failed=0
 for test in tests/external/test_*.py; do
   if "$environment/bin/python" "$test" "$work/bin/breccia" "$work"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi

@@ -18,7 +18,7 @@ failures = 0
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 EXAMPLES = os.path.join(ROOT, "examples")
-COMPARE = os.path.join(os.path.dirname(BRECCIA), "..", "test", "tests", "compare_results")
+COMPARE = os.path.join(os.path.dirname(BRECCIA), "compare_results")
 sys.path.insert(0, os.path.join(ROOT, "servers"))
 from opensees_server import TRIED  # noqa: E402  ten laws in space that soil, rock and concrete are computed with, and three along bonds
 
