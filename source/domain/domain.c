@@ -95,6 +95,11 @@ void domain_set_elastic_stage(Domain *d, bool elastic)
   for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;
 }
 
+void domain_mix_tangents(Domain *d, double elastic_weight)
+{
+  for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_weight = elastic_weight;
+}
+
 void domain_tell_time(Domain *d, double time, double time_step)
 {
   for (int r = 0; r < d->region_count; ++r) {

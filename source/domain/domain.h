@@ -178,6 +178,10 @@ int domain_record(Domain *domain, const BrokenBond *bond);
 /** Force per volume squared that the neighbour exerts on the particle through one bond, t_ij - t_ji. */
 void domain_bond_force(const Domain *domain, int64_t slice, int64_t slot, int lane, double force[3]);
 
+/** Mixes elastic tangents, of the first moduli, into those of laws in linearised steps, 0 to 1 of the whole; points on bonds follow at the next
+ *  domain_linearise. Where families flow without points nothing is mixed. */
+void domain_mix_tangents(Domain *domain, double elastic_weight);
+
 /** Whether laws respond elastically; and makes them do so. */
 bool domain_in_elastic_stage(const Domain *domain);
 void domain_set_elastic_stage(Domain *domain, bool elastic);

@@ -49,3 +49,13 @@ double constraint_displacement(const Constraint *constraint, double run_time)
   if (constraint->order) return history_integral(&load->history, constraint->order, constraint->value, time);
   return constraint->value * history_factor(&load->history, time);
 }
+
+double constraint_velocity(const Constraint *constraint, double run_time, double step)
+{
+  Load *load = constraint->load;
+  const double time = run_time - load->begin, little = 1e-3 * step, before = fmax(run_time - little, load->begin);
+  if (constraint->order == 1) return constraint->value * history_factor(&load->history, time);
+  if (constraint->order == 2) return history_integral(&load->history, 1, constraint->value, time);
+  return (constraint_displacement(constraint, run_time + little) - constraint_displacement(constraint, before)) /
+         (run_time + little - before);
+}

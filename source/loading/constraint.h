@@ -10,4 +10,8 @@ int constraints_check(const Loading *loading, const Particles *particles, const 
 /** Displacement along its direction that a constraint prescribes at a time of the run, from where its load began. By one thread. */
 double constraint_displacement(const Constraint *constraint, double time);
 
+/** Velocity along it at a time of the run. By one thread.
+ *  @param[in] step  time over a small part of which displacements are differenced that are prescribed themselves */
+double constraint_velocity(const Constraint *constraint, double time, double step);
+
 #endif

@@ -129,10 +129,10 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   const struct {
     const char *key;
     double value;
-  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal}, {"stored", e.stored},
-                  {"dissipated", e.dissipated}, {"external", e.external}, {"damping", e.damping},
-                  {"fracture", e.fracture},     {"friction", e.friction}, {"between", e.between},
-                  {"imbalance", e.imbalance}};
+  } energies[] = {{"kinetic", e.kinetic},       {"internal", e.internal},  {"stored", e.stored},
+                  {"dissipated", e.dissipated}, {"external", e.external},  {"damping", e.damping},
+                  {"fracture", e.fracture},     {"friction", e.friction},  {"numerical", e.numerical},
+                  {"between", e.between},       {"imbalance", e.imbalance}};
   for (int k = 0; k < (int)(sizeof energies / sizeof *energies); ++k) {
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, energies[k].value);
@@ -259,6 +259,7 @@ void run_tell_outcome(Run *run, int status)
                   {" + fracture ", e.fracture, true},
                   {" + friction ", e.friction, e.friction != 0},
                   {" + damping ", e.damping, e.damping != 0},
+                  {" + numerical damping ", e.numerical, fabs(e.numerical) > 1e-9 * s->ledger.paid},
                   {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
                   {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->ledger.paid}};
   for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {

@@ -80,7 +80,7 @@ void points_destroy(Points *points)
   untouched_destroy(points);
   free(points->tangent);
   free(points->tangent_first);
-  free(points->linear_tangent);
+  free(points->elastic_tangent);
   point_servers_destroy(points);
   *points = (Points){0};
 }
@@ -301,20 +301,33 @@ static void find_linear_tangent(const Points *points, const Material *m, double 
   update_batch(points, m, &one, at);
 }
 
+/** The tangent by the first moduli. */
+static void find_elastic_tangent(const Points *points, const Material *m, double *tangent)
+{
+  const double lame = m->bulk - 2 * m->shear / 3,
+               across = points->plane_stress ? lame * lame / (lame + 2 * m->shear) : 0;
+  const int axes = points->plane_stress ? 2 : 3;
+  for (int r = 0; r < axes; ++r)
+    for (int k = 0; k < axes; ++k) tangent[6 * r + k] = lame - across + (r == k ? 2 * m->shear : 0);
+  for (int k = 3; k < 6; ++k) tangent[7 * k] = m->shear;
+}
+
 static int make_tangents(Points *points, Error *error)
 {
   int64_t rows = 0;
   points->tangent_first = memory_zeroed((size_t)points->run_count, sizeof(int64_t), "tangents", error);
-  points->linear_tangent = memory_zeroed((size_t)points->material_count, 36 * sizeof(double), "tangents", error);
-  if (!points->tangent_first || !points->linear_tangent) return BRECCIA_FAILURE;
+  points->elastic_tangent = memory_zeroed((size_t)points->material_count, 36 * sizeof(double), "tangents", error);
+  if (!points->tangent_first || !points->elastic_tangent) return BRECCIA_FAILURE;
   for (int64_t n = 0; n < points->run_count; ++n) {
     const bool linear = points->materials[points->runs[n].material].law->linear;
     points->tangent_first[n] = linear ? -1 : rows;
     if (!linear) rows += points->runs[n].count;
   }
-  for (int k = 0; k < points->material_count; ++k)
-    if (points->materials[k].law->linear && points->materials[k].law->components == 6)
-      find_linear_tangent(points, &points->materials[k], points->linear_tangent + 36 * k);
+  for (int k = 0; k < points->material_count; ++k) {
+    const Material *m = &points->materials[k];
+    if (m->law->components == 6)
+      (m->law->linear ? find_linear_tangent : find_elastic_tangent)(points, m, points->elastic_tangent + 36 * k);
+  }
   points->tangent = memory_zeroed((size_t)rows, 36 * sizeof(double), "tangents", error);
   return points->tangent ? BRECCIA_OK : BRECCIA_FAILURE;
 }
@@ -331,8 +344,9 @@ void points_tangent(const Points *points, int64_t row, double *tangent)
 {
   const int64_t n = points_run(points, row);
   const double *kept = points->tangent ? kept_tangent(points, n, row) : NULL;
-  if (points->tangent && !kept) kept = points->linear_tangent + 36 * points->runs[n].material;
-  for (int k = 0; k < 36; ++k) tangent[k] = kept ? kept[k] : 0;
+  const double *elastic = points->tangent ? points->elastic_tangent + 36 * points->runs[n].material : NULL;
+  const double w = kept ? points->elastic_weight : 1;
+  for (int k = 0; k < 36; ++k) tangent[k] = (kept ? (1 - w) * kept[k] : 0) + (elastic && w > 0 ? w * elastic[k] : 0);
 }
 
 /** Point after point within each sum of products, so that several points are worked on at once. */
@@ -350,17 +364,19 @@ static void change_linear(const double d[36], int count, double *const strain[6]
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
 {
   const int64_t n = points_run(points, first);
-  const double *kept = kept_tangent(points, n, first);
+  const double *kept = kept_tangent(points, n, first), w = points->elastic_weight;
+  const double *elastic = points->elastic_tangent + 36 * points->runs[n].material;
   if (!kept) {
-    change_linear(points->linear_tangent + 36 * points->runs[n].material, count, strain, stress);
+    change_linear(elastic, count, strain, stress);
     return;
   }
   for (int i = 0; i < count; ++i) {
     const double *d = kept + 36 * i;
     for (int r = 0; r < 6; ++r) {
-      double sum = 0;
+      double sum = 0, elastically = 0;
       for (int k = 0; k < 6; ++k) sum += d[6 * r + k] * strain[k][i];
-      stress[r][i] = sum;
+      for (int k = 0; w > 0 && k < 6; ++k) elastically += elastic[6 * r + k] * strain[k][i];
+      stress[r][i] = w > 0 ? (1 - w) * sum + w * elastically : sum;
     }
   }
 }
@@ -390,13 +406,16 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
 {
   const Material *m = points_material(points, row);
   const double *history = points_history(points, row);
-  double scratch[MOST_VALUES];
+  double scratch[MOST_VALUES], stress = NAN;
   if (m->remote) {
-    const double stress = point_servers_last_stress(history);
+    stress = point_servers_last_stress(history);
     if (tangent) *tangent = strain != 0 ? stress / strain : material_young(m);
-    return stress;
+  } else if (m->history_values <= MOST_VALUES) {
+    stress = stress_from(points, row, history, strain, scratch, tangent);
   }
-  return m->history_values > MOST_VALUES ? NAN : stress_from(points, row, history, strain, scratch, tangent);
+  if (tangent && points->elastic_weight > 0)
+    *tangent = (1 - points->elastic_weight) * *tangent + points->elastic_weight * material_young(m);
+  return stress;
 }
 
 double points_elastic_energy(const Points *points, int64_t row)

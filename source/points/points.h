@@ -38,9 +38,10 @@ typedef struct Points {
   int64_t *history_first; /* [run_count] */
   const Material *materials;
   int material_count;
-  double *tangent;        /* [rows of laws that are not linear][36], once they were kept; NULL before */
-  int64_t *tangent_first; /* [run_count] where those of a run begin; -1: its law is linear */
-  double *linear_tangent; /* [materials][36] of linear laws */
+  double *tangent;         /* [rows of laws that are not linear][36], once they were kept; NULL before */
+  int64_t *tangent_first;  /* [run_count] where those of a run begin; -1: its law is linear */
+  double *elastic_tangent; /* [materials][36] of linear laws theirs, of others by their first moduli */
+  double elastic_weight;   /* of elastic tangents in those that are told, 0 to 1; the rest is as kept */
   bool keeps_tangents;
   uint8_t
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
@@ -92,13 +93,14 @@ void points_put_by(Points *points);
 /** Makes points of six components keep the tangents of their next updates, or no longer. Of linear laws one is kept for all their points; points of one
  *  strain keep none (points_try). */
 int points_keep_tangents(Points *points, bool keep, Error *error);
-/** The tangent kept of a row of six components, [6][6]; in plane stress the rows and columns of zz are condensed out. 0 if there is none. */
+/** The tangent of a row of six components as kept, and by the elastic weight, [6][6]; in plane stress the rows and columns of zz are condensed out.
+ *  0 if there is none. */
 void points_tangent(const Points *points, int64_t row, double *tangent);
-/** Changes of the stresses of `count` rows of six components with changes of their strains, by the tangents kept. */
+/** Changes of the stresses of `count` rows of six components with changes of their strains, by their tangents. */
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
 
 /** Stress of a point of one strain; histories stay as they are.
- *  @param[out] tangent  its slope; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
+ *  @param[out] tangent  its slope, and by the elastic weight Young's modulus; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
 double points_try(const Points *points, int64_t row, double strain, double *tangent);
 
 /** Energy per volume that a point in space would give back if it unloaded with its first moduli. */

@@ -222,7 +222,7 @@ static void add(CoarseGrid *g, int64_t e, int a, int r, int b, int s, double sti
   if (way < NEIGHBOURS) g->stiffness[((int64_t)g->corner[e][a] * NEIGHBOURS + way) * 9 + 3 * r + s] += stiffness;
 }
 
-static void add_elements(CoarseGrid *g)
+static void add_elements(CoarseGrid *g, double factor)
 {
   const int size = g->axes << g->axes;
   ElementStiffness unit;
@@ -232,7 +232,7 @@ static void add_elements(CoarseGrid *g)
   for (int64_t e = 0; e < g->element_count; ++e) {
     double lame = 0, shear = 0;
     for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
-      const double weight = g->domain->particles->volume[g->place[n]] / volume;
+      const double weight = factor * g->domain->particles->volume[g->place[n]] / volume;
       const ElementModuli moduli = element_moduli(g->domain, g->place[n]);
       lame += weight * moduli.lame;
       shear += weight * moduli.shear;
@@ -356,12 +356,13 @@ static int factor(CoarseGrid *g, Error *error)
   return BRECCIA_OK;
 }
 
-int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, double mass_factor, Error *error)
+int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, double stiffness_share,
+                        double mass_factor, Error *error)
 {
   g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
   if (!g->stiffness) return BRECCIA_FAILURE;
   g->diagonal = diagonal;
-  add_elements(g);
+  add_elements(g, 1 + stiffness_share);
   unknowns_each_row(u, add_support, g);
   int status = add_springs(g, u, mass_factor, error);
   if (!status) status = factor(g, error);

@@ -31,3 +31,35 @@ double damping_rate(const NumberOrSection *given)
   const DampingSpec *spec = given->section;
   return spec ? 4 * acos(-1) * spec->ratio * spec->at : given->value;
 }
+
+static const Field rayleigh_fields[] = {
+    {.key = "ratio",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(RayleighSpec, ratio),
+     .dimension = "1",
+     .range = "[0, inf)",
+     .meaning = "share of critical damping at both frequencies; somewhat less between them, more beyond"},
+    {.key = "from",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(RayleighSpec, from),
+     .dimension = "frequency",
+     .range = "(0, inf)",
+     .meaning = "the lower frequency, usually the first of the body"},
+    {.key = "to",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(RayleighSpec, to),
+     .dimension = "frequency",
+     .range = "(0, inf)",
+     .meaning = "the upper one, usually the last that matters"},
+};
+const Section rayleigh_section = {.name = "Rayleigh damping",
+                                  .about = "Damping in proportion to mass and to initial stiffness, by one ratio at "
+                                           "two frequencies.",
+                                  .size = sizeof(RayleighSpec),
+                                  FIELDS(rayleigh_fields)};
+
+Rayleigh rayleigh_of(const RayleighSpec *spec)
+{
+  const double from = 2 * acos(-1) * spec->from, to = 2 * acos(-1) * spec->to, twice = 2 * spec->ratio;
+  return (Rayleigh){.mass = twice * from * to / (from + to), .stiffness = twice / (from + to)};
+}

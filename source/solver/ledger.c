@@ -97,12 +97,13 @@ Energy ledger_energy(const Ledger *l, Domain *d)
               .damping = l->damped ? l->damping_work : 0, /* else roundings */
               .fracture = d->fracture_energy,
               .friction = forces_dissipated(&d->forces),
+              .numerical = l->numerical,
               .between = l->between};
   const bool elastic = domain_is_elastic(d);
   e.stored = domain_stored_energy(d) + forces_energy(&d->forces);
   if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
-  const double error = l->external_work + l->kinetic_at_start + l->between - l->kinetic - l->damping_work - e.stored -
-                       e.dissipated - e.fracture - e.friction;
+  const double error = l->external_work + l->kinetic_at_start + l->between - l->kinetic - l->damping_work -
+                       l->numerical - e.stored - e.dissipated - e.fracture - e.friction;
   const double largest = l->paid > 0 ? l->paid : fmax(fmax(l->kinetic, fabs(l->bond_work)), fabs(e.fracture));
   e.imbalance = largest > 0 ? fabs(error) / largest : 0;
   return e;
@@ -118,6 +119,7 @@ void ledger_state(Ledger *l, StateList *list)
               {"work of damping", &l->damping_work},
               {"kinetic energy", &l->kinetic},
               {"energy between steps", &l->between},
+              {"numerical damping", &l->numerical},
               {"kinetic energy at the start", &l->kinetic_at_start},
               {"paid energy", &l->paid}};
   state_add_number(list, "largest speed given", "velocity", STATE_TRIED, &l->given);

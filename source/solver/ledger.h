@@ -8,8 +8,9 @@
 /** What is summed over steps. */
 typedef struct Ledger {
   double bond_work, external_work, damping_work;
-  double kinetic; /* as of now */
-  double between; /* kinetic energy at full steps exceeds what the works say by the sum of this (explicit.c) */
+  double kinetic;   /* as of now */
+  double between;   /* kinetic energy at full steps exceeds what the works say by the sum of this (explicit.c) */
+  double numerical; /* that schemes of implicit dynamics have taken out of vibrations */
   double kinetic_at_start;
   double paid;           /* the most that loads, motions and speeds at the start have put in so far */
   double wave;           /* fastest waves of its materials, as they are unharmed */
@@ -22,7 +23,7 @@ typedef struct Ledger {
   bool trapped;          /* a floating-point trap has sprung in the last step */
 } Ledger;
 
-/** Where the work went: external + kinetic at the start + between = kinetic + stored + dissipated + fracture + friction + damping + error. */
+/** Where the work went: external + kinetic at the start + between = kinetic + stored + dissipated + fracture + friction + damping + numerical + error. */
 typedef struct Energy {
   double kinetic;
   double internal;   /* stored + dissipated: work on bonds, less what went with broken ones */
@@ -30,8 +31,9 @@ typedef struct Energy {
   double dissipated; /* by laws: yielding and softening */
   double external;   /* work of loads and prescribed motions */
   double damping;
-  double fracture; /* work that broken bonds had received and not given back or dissipated */
-  double friction; /* of contact */
+  double fracture;  /* work that broken bonds had received and not given back or dissipated */
+  double friction;  /* of contact */
+  double numerical; /* taken out of vibrations by schemes of implicit dynamics */
   double
       between; /* what the kinetic energy of the speeds at full steps is above that of the works (explicit.c): short waves
                        that the step hardly follows */

@@ -35,9 +35,11 @@ struct LinearSolver {
   Domain *domain;
   const Loading *loading;
   Unknowns unknowns;
-  double mass_factor; /* K + mass_factor M is solved instead: of implicit dynamics; 0 in statics */
-  bool is_free;       /* the deck does not say which */
-  void *own;          /* what the type keeps */
+  /* (1 + stiffness_share) K + mass_factor M is solved instead, in implicit dynamics; both are 0 in statics. Loads that follow displacements have no
+   * share. */
+  double stiffness_share, mass_factor;
+  bool is_free; /* the deck does not say which */
+  void *own;    /* what the type keeps */
 };
 
 /** Words of a choice in a deck: "automatic" and the ways there are, then NULL. */

@@ -362,7 +362,7 @@ static void add_block(Matrix *m, int64_t row_place, int64_t column_place, const 
               factor * rows[i].factor[t] * k[3 * i + j] * columns[j].factor[s];
 }
 
-static int fill_points(Matrix *m, const Domain *d, Error *error)
+static int fill_points(Matrix *m, const Domain *d, double factor, Error *error)
 {
   const Region *region = &d->regions[0];
   const int64_t points = region->type->point_count(region->formulation);
@@ -380,18 +380,18 @@ static int fill_points(Matrix *m, const Domain *d, Error *error)
     if (!status) status = operator_matrix(&point, d->particles->displacement, k, error);
     for (int a = 0; a < count && !status; ++a)
       for (int b = 0; b < count; ++b)
-        add_block(m, point.places[a].place, point.places[b].place, k + 9 * (count * a + b), -1);
+        add_block(m, point.places[a].place, point.places[b].place, k + 9 * (count * a + b), -factor);
   }
   operator_destroy(&point);
   free(k);
   return status;
 }
 
-int matrix_fill(Matrix *m, const Unknowns *u, double mass_factor, Error *error)
+int matrix_fill(Matrix *m, const Unknowns *u, double stiffness_share, double mass_factor, Error *error)
 {
   const Particles *p = u->domain->particles;
   memset(m->value, 0, sizeof *m->value * (size_t)m->first[m->size]);
-  const int status = fill_points(m, u->domain, error);
+  const int status = fill_points(m, u->domain, 1 + stiffness_share, error);
   for (int64_t n = 0; n < p->count && !status && mass_factor != 0; ++n) {
     const int32_t i = p->place_of[n];
     const double mass = mass_factor * p->density[i] * p->volume[i];

@@ -32,8 +32,8 @@ int matrix_create(Matrix *matrix, const Unknowns *unknowns, Error *error);
 void matrix_destroy(Matrix *matrix);
 
 /** Fills in the stiffness at the state at which the domain was linearised, and a factor times the masses. Bonds may have broken since the
- *  matrix was created. */
-int matrix_fill(Matrix *matrix, const Unknowns *unknowns, double mass_factor, Error *error);
+ *  matrix was created. @param[in] stiffness_share  the stiffness counts 1 + this */
+int matrix_fill(Matrix *matrix, const Unknowns *unknowns, double stiffness_share, double mass_factor, Error *error);
 
 /** Largest difference of entries across the diagonal, over the largest entry. */
 double matrix_asymmetry(const Matrix *matrix);

@@ -30,14 +30,21 @@ void newton_destroy(Newton *n)
   linear_solver_destroy(&n->linear);
 }
 
+typedef struct Loads {
+  const Loading *loading;
+  Particles *particles;
+  double time;
+} Loads;
+
 static void apply_loads(void *context)
 {
-  const struct {
-    const Loading *loading;
-    Particles *particles;
-    double time;
-  } *of = context;
+  const Loads *of = context;
   loading_apply_untied(of->loading, of->particles, of->time);
+}
+
+void newton_apply_loads(const Newton *n, double time)
+{
+  team_run(apply_loads, &(Loads){n->loading, n->domain->particles, time});
 }
 
 /** Forces on particles, and the most of them that supports and loads exert. @return that the laws could be asked */
@@ -45,11 +52,7 @@ static NewtonOutcome find_forces(Newton *n, double time, Error *error)
 {
   Domain *d = n->domain;
   const Particles *p = d->particles;
-  struct {
-    const Loading *loading;
-    Particles *particles;
-    double time;
-  } of = {n->loading, d->particles, time};
+  if (n->beside && n->beside->prepare(n->beside->context, n->moved, time, error)) return NEWTON_FAILED;
   if (domain_linearise(d, error)) return NEWTON_FAILED;
   if (*domain_server_problem(d)) {
     error_add(error, BRECCIA_FAILURE, "%s", domain_server_problem(d));
@@ -57,13 +60,14 @@ static NewtonOutcome find_forces(Newton *n, double time, Error *error)
   }
   if (d->failed_place >= 0) return NEWTON_LAW;
   if (!isfinite(d->force_sum)) return NEWTON_DIVERGED;
-  team_run(apply_loads, &of);
+  newton_apply_loads(n, time);
   double exerted = 0;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       n->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
       exerted += p->volume[i] * p->external[k][i] * p->volume[i] * p->external[k][i];
     }
+  if (n->beside) exerted = fmax(exerted, n->beside->add(n->beside->context, n->moved, n->force));
   const double all = unknowns_product(&n->linear.unknowns, n->force, n->force);
   unknowns_gather(&n->linear.unknowns, n->force);
   const double free = unknowns_product(&n->linear.unknowns, n->force, n->force);
@@ -164,6 +168,7 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
   const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
   n->indefinite = false;
+  for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   NewtonOutcome outcome = find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = add_motions(n, time);

@@ -56,10 +56,23 @@ typedef enum NewtonOutcome {
   NEWTON_FAILED,   /* the reason is in the error */
 } NewtonOutcome;
 
+/** Forces beside those of bonds and loads that are to be balanced too: of inertia and damping. The tangent has theirs by `mass_factor` and
+ *  `stiffness_share` of the linear solver. */
+typedef struct NewtonForces {
+  void *context;
+  /** Before forces of bonds are found at the displacements held, for what needs linearised steps of its own.
+   *  @param[in] moved  changes of displacements since the increment began; @param[in] time  at its end */
+  int (*prepare)(void *context, double *const moved[3], double time, Error *error);
+  /** Adds the forces on all places.
+   *  @return the square of the size of those on the unknowns beside which forces out of balance are small */
+  double (*add)(void *context, double *const moved[3], double *const force[3]);
+} NewtonForces;
+
 typedef struct Newton {
   Domain *domain;
   const Loading *loading;
   const NewtonSpec *spec;
+  const NewtonForces *beside; /* NULL: none, as at rest */
   LinearSolver linear;
   double *force[3];  /* out of balance, on the unknowns */
   double *change[3]; /* of displacements in an iteration */
@@ -73,12 +86,15 @@ typedef struct Newton {
   Text *log;         /* a line per iteration is added; NULL: nobody wants it */
 } Newton;
 
-/** `newton` has domain, loading and spec, and is zero beyond; destroy it in any case. */
+/** `newton` has domain, loading, spec and `beside`, and is zero beyond; destroy it in any case. */
 int newton_create(Newton *newton, Error *error);
 void newton_destroy(Newton *newton);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
+
+/** Sets external forces to what loads say at a time of the run. */
+void newton_apply_loads(const Newton *newton, double time);
 
 /** Why it did not converge. @return `words` */
 const char *newton_describe(const Newton *newton, NewtonOutcome outcome, char *words, size_t size);

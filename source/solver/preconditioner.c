@@ -103,7 +103,7 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3]
 int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3], Error *error)
 {
   find_diagonal(m, s, v, kv);
-  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, s->mass_factor, error);
+  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, s->stiffness_share, s->mass_factor, error);
 }
 
 /* ---- as it is used ---- */

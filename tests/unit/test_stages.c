@@ -342,7 +342,7 @@ static void what_does_not_fit_is_said(void **state)
        "step: 2e-5}}]\n",
        "times the stable step"},
       {"solve: [{laws: plastic, explicit: {steps: 1}}]\n", "elastic"},
-      {"solve: [{name: nothing}]\n", "none of 'explicit', 'static' is given"},
+      {"solve: [{name: nothing}]\n", "none of 'explicit'"},
       {"watch: {w: {load: a}}\nsolve: [{loads: [{name: a, gravity: [1, 0]}], explicit: {steps: 1}}, {loads: [{name: a, "
        "on: {face: x+}, force: [1, 0]}], explicit: {steps: 1}}]\n",
        "the loads of the name 'a' are of several kinds"},

@@ -96,8 +96,11 @@ static void the_matrix_does_what_a_linearised_step_does(void **state)
     breccia_model *model = model_of(UNITS "%ssolve: {static: {increments: 1}}\n", cases[c].deck);
     Domain *d = &model->domain;
     const Particles *p = d->particles;
-    LinearSolver solver = {
-        .domain = d, .loading = &model->loading, .unknowns = unknowns_of(d, &model->loading), .mass_factor = 7};
+    LinearSolver solver = {.domain = d,
+                           .loading = &model->loading,
+                           .unknowns = unknowns_of(d, &model->loading),
+                           .stiffness_share = 0.3,
+                           .mass_factor = 7};
     Matrix m = {0};
     double *v[3], *kv[3], *x, *y;
     make_vectors(p, v), make_vectors(p, kv);
@@ -106,7 +109,7 @@ static void the_matrix_does_what_a_linearised_step_does(void **state)
       for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] *= k < d->body.dimensions ? 0.01 : 0;
     assert_int_equal(domain_linearise(d, NULL), 0);
     assert_int_equal(matrix_create(&m, &solver.unknowns, NULL), 0);
-    assert_int_equal(matrix_fill(&m, &solver.unknowns, solver.mass_factor, NULL), 0);
+    assert_int_equal(matrix_fill(&m, &solver.unknowns, solver.stiffness_share, solver.mass_factor, NULL), 0);
     assert_int_equal(m.size, unknowns_count(&solver.unknowns, NULL));
     fill_randomly(p, v, 3);
     unknowns_clear_rest(&solver.unknowns, v);

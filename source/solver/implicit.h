@@ -1,0 +1,49 @@
+/* Implicit dynamics, inside of this room: one file for the keys and words (implicit.c), one for a step (implicit_step.c). */
+#ifndef BRECCIA_SOLVER_IMPLICIT_H
+#define BRECCIA_SOLVER_IMPLICIT_H
+
+#include "solver/damping.h"
+#include "solver/increment.h"
+#include "solver/newton.h"
+
+typedef struct ImplicitSpec {
+  SectionHead head;
+  double end_time, time_step, smallest, local_error, beta, gamma, alpha;
+  const char *scheme;
+  NumberOrSection mass_damping;
+  double stiffness_damping;
+  RayleighSpec *rayleigh;
+  Rayleigh damping; /* from these */
+  NewtonSpec newton;
+} ImplicitSpec;
+
+typedef struct Implicit {
+  Domain *domain;
+  const Loading *loading;
+  const ImplicitSpec *spec;
+  Clock *clock;
+  Ledger *ledger;
+  Newton newton;
+  NewtonForces beside;
+  Increment increment;
+  double *acceleration[3];
+  double *drag[3]; /* forces of damping, against velocities */
+  /* At the end of the step under way, as far as it has been iterated; `result` is whatever is worked out. */
+  double *velocity[3], *drag_then[3], *result[3];
+  double length; /* of the step under way */
+  double next;   /* of the step to be tried next */
+  double shift;  /* size of the largest displacements so far, by which errors are measured */
+  double stable; /* longest step of explicit dynamics at the begin of the stage */
+  int64_t cuts;  /* in the stage */
+} Implicit;
+
+/** The longest step that the stage may take. */
+double implicit_longest(const ImplicitSpec *spec);
+
+/** Velocities, accelerations and damping of the state held. */
+int implicit_begin(Solver *solver, Error *error);
+int implicit_advance(Solver *solver, Text *warning, Error *error);
+/** Foresees how many steps there will be. */
+void implicit_count_steps(const Solver *solver);
+
+#endif

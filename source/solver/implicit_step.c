@@ -1,0 +1,347 @@
+/* Steps of implicit dynamics (docs/theory.md 7). With g = internal + external forces - damping, all at times of steps, a step solves for displacements
+ *   M a' = (1 + alpha) g' - alpha g                                                     (Hilber, Hughes and Taylor 1977; alpha = 0: Newmark 1959)
+ *   u' = u + dt v + dt^2 [(1/2 - beta) a + beta a'],   v' = v + dt [(1 - gamma) a + gamma a'].
+ * Damping is mass M v + stiffness K0 v, where K0 is what elastic laws make of the bonds that are left, as the body stands.
+ *
+ * Works are summed by the trapezium rule. What the kinetic energy of free particles lacks of theirs is the scheme's own
+ * damping: nothing with the average acceleration. */
+#include "solver/implicit.h"
+
+#include "base/team.h"
+#include "loading/constraint.h"
+#include "solver/vectors.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- motions ---- */
+
+static double along(double *const v[3], const double direction[3], int32_t i)
+{
+  return v[0][i] * direction[0] + v[1][i] * direction[1] + v[2][i] * direction[2];
+}
+
+typedef struct Rates {
+  const Constraint *constraint; /* whose velocity was found last */
+  double rate, most;            /* it, and the largest of all */
+  double time, step;
+  double *const *velocity;
+} Rates;
+
+static void prescribe_rate(const Constraint *c, int64_t n, void *context)
+{
+  Rates *r = context;
+  if (c != r->constraint) {
+    r->constraint = c;
+    r->rate = constraint_velocity(c, r->time, r->step);
+    r->most = fmax(r->most, fabs(r->rate));
+  }
+  const int32_t i = c->load->selection.places[n];
+  double wanted = r->rate - along(r->velocity, c->direction, i);
+  if (c->images) wanted += c->share * along(r->velocity, c->direction, c->images[n]);
+  for (int k = 0; k < 3; ++k) r->velocity[k][i] += wanted * c->direction[k];
+}
+
+/** Velocities at the end of the step: those of prescribed motions as prescribed, because the scheme makes them ring. */
+static void find_velocities(Implicit *s, double *const moved[3], double time)
+{
+  const Particles *p = s->domain->particles;
+  const double dt = s->length, beta = s->spec->beta, gamma = s->spec->gamma;
+  Rates r = {.time = time, .step = dt, .velocity = s->velocity};
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      s->velocity[k][i] = gamma / (beta * dt) * moved[k][i] + (1 - gamma / beta) * p->velocity[k][i] +
+                          dt * (1 - gamma / (2 * beta)) * s->acceleration[k][i];
+  unknowns_each_row(&s->newton.linear.unknowns, prescribe_rate, &r);
+  s->ledger->given = fmax(s->ledger->given, r.most);
+}
+
+/** Acceleration of a place at the end of the step, by the scheme. */
+static double acceleration_then(const Implicit *s, double *const moved[3], int k, int64_t i)
+{
+  const double dt = s->length, beta = s->spec->beta;
+  return (moved[k][i] / dt - s->domain->particles->velocity[k][i]) / (beta * dt) -
+         (1 / (2 * beta) - 1) * s->acceleration[k][i];
+}
+
+/** Forces of damping at the displacements held, against these velocities. Trial states and forces of bonds are lost. */
+static int find_drag(Implicit *s, double *const velocity[3], double *const drag[3], Error *error)
+{
+  Domain *d = s->domain;
+  const Particles *p = d->particles;
+  const Rayleigh c = s->spec->damping;
+  if (c.stiffness > 0) {
+    const bool elastic = domain_in_elastic_stage(d);
+    domain_set_elastic_stage(d, true);
+    const int status = domain_linearise(d, error);
+    if (!status) domain_linear_step(d, velocity, drag);
+    domain_set_elastic_stage(d, elastic);
+    if (status) return status;
+  }
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      drag[k][i] =
+          p->volume[i] * (c.mass * p->density[i] * velocity[k][i] - (c.stiffness > 0 ? c.stiffness * drag[k][i] : 0));
+  return BRECCIA_OK;
+}
+
+/** Accelerations by the forces held, of tied particles by all of theirs; 0 where motions are prescribed. */
+static void find_accelerations(Implicit *s)
+{
+  const Particles *p = s->domain->particles;
+  const Unknowns *u = &s->newton.linear.unknowns;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      s->acceleration[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]) - s->drag[k][i];
+  unknowns_gather(u, s->acceleration);
+  for (int k = 0; k < 3; ++k) {
+    const TieGroups *ties = &s->loading->ties[k];
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      s->acceleration[k][i] /= p->density[i] * p->volume[i];
+    }
+    for (int64_t g = 0; g < ties->count; ++g) {
+      const int32_t one = ties->places[ties->first[g]];
+      double mass = 0;
+      for (int64_t n = ties->first[g]; n < ties->first[g + 1]; ++n)
+        mass += p->density[ties->places[n]] * p->volume[ties->places[n]];
+      s->acceleration[k][one] *= p->density[one] * p->volume[one] / mass;
+    }
+  }
+  unknowns_spread(u, NAN, s->acceleration);
+}
+
+/* ---- forces beside those of bonds and loads ---- */
+
+static int prepare_forces(void *context, double *const moved[3], double time, Error *error)
+{
+  Implicit *s = context;
+  find_velocities(s, moved, time);
+  return find_drag(s, s->velocity, s->drag_then, error);
+}
+
+/** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha); its scale is also that of the inertia with which the step began. */
+static double add_forces(void *context, double *const moved[3], double *const force[3])
+{
+  Implicit *s = context;
+  const Particles *p = s->domain->particles;
+  const double alpha = s->spec->alpha, weight = 1 / (1 + alpha);
+  double size = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      const double mass = p->density[i] * p->volume[i], inertia = mass * s->acceleration[k][i];
+      const double before = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]) - s->drag[k][i];
+      force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + mass * acceleration_then(s, moved, k, i));
+      size += inertia * inertia;
+    }
+  return size;
+}
+
+/* ---- books ---- */
+
+static double kinetic_energy(const Particles *p, double *const velocity[3])
+{
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) sum += 0.5 * p->density[i] * p->volume[i] * velocity[k][i] * velocity[k][i];
+  return sum;
+}
+
+typedef struct HeldEnergy {
+  const Particles *particles;
+  double *const *velocity;
+  double energy;
+} HeldEnergy;
+
+static void add_held(const Constraint *c, int64_t n, void *context)
+{
+  HeldEnergy *h = context;
+  const int32_t i = c->load->selection.places[n];
+  const double rate = along(h->velocity, c->direction, i);
+  h->energy += 0.5 * h->particles->density[i] * h->particles->volume[i] * rate * rate;
+}
+
+/** Kinetic energy of what moves as prescribed. */
+static double held_energy(const Implicit *s, double *const velocity[3])
+{
+  HeldEnergy h = {.particles = s->domain->particles, .velocity = velocity};
+  unknowns_each_row(&s->newton.linear.unknowns, add_held, &h);
+  return h.energy;
+}
+
+/** In prescribed directions what changes the kinetic energy and the bonds is booked as external, whatever it is. */
+static void book(Implicit *s)
+{
+  const Particles *p = s->domain->particles;
+  const Unknowns *u = &s->newton.linear.unknowns;
+  double *const *moved = s->newton.moved, bonds = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      bonds -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * moved[k][i];
+      s->result[k][i] = s->drag[k][i] + s->drag_then[k][i];
+    }
+  unknowns_gather(u, s->result);
+  const double damping = 0.5 * unknowns_product(u, s->result, moved);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      s->result[k][i] = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i] + p->internal[k][i] +
+                                        p->external[k][i]) -
+                        s->drag[k][i] - s->drag_then[k][i];
+  unknowns_gather(u, s->result);
+  const double freely = 0.5 * unknowns_product(u, s->result, moved);
+  const double kinetic = kinetic_energy(p, s->velocity), held = held_energy(s, s->velocity);
+  const double kinetic_before = kinetic_energy(p, p->velocity), held_before = held_energy(s, p->velocity);
+  s->ledger->bond_work += bonds;
+  s->ledger->damping_work += damping;
+  s->ledger->external_work += bonds + damping + freely + held - held_before;
+  s->ledger->numerical += freely + held - held_before - (kinetic - kinetic_before);
+  s->ledger->kinetic = kinetic;
+}
+
+/* ---- a step ---- */
+
+int implicit_begin(Solver *run, Error *error)
+{
+  Implicit *s = run->own;
+  const Particles *p = s->domain->particles;
+  domain_tell_time(s->domain, run->clock.time, 0);
+  if (find_drag(s, p->velocity, s->drag, error)) return BRECCIA_FAILURE;
+  domain_evaluate(s->domain);
+  newton_apply_loads(&s->newton, run->clock.time);
+  find_accelerations(s);
+  s->ledger->kinetic = kinetic_energy(p, p->velocity);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
+  return BRECCIA_OK;
+}
+
+/** Accelerations at the end of a step that has converged, and its error as a share of the largest displacements so far: what Newmark's displacements
+ *  lack of those of a linearly changing acceleration (Zienkiewicz and Xie 1991, Earthq. Eng. Struct. Dyn. 20, 871). */
+static double find_error(Implicit *s)
+{
+  const Particles *p = s->domain->particles;
+  const Unknowns *u = &s->newton.linear.unknowns;
+  double change = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = acceleration_then(s, s->newton.moved, k, i);
+  unknowns_clear_rest(u, s->result);
+  unknowns_spread(u, NAN, s->result);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      const double d = s->result[k][i] - s->acceleration[k][i];
+      change += d * d;
+    }
+  const double shift = fmax(s->shift, sqrt(unknowns_product(u, p->displacement, p->displacement)));
+  const double error = fabs(s->spec->beta - 1.0 / 6) * s->length * s->length * sqrt(change);
+  return shift > 0 ? error / shift : 0;
+}
+
+/** Lengths by which a step has to change for an error of third order in it to be the one allowed. */
+static double wanted_change(const Implicit *s, double found)
+{
+  return found > 0 ? 0.9 * cbrt(s->spec->local_error / found) : INFINITY;
+}
+
+static void finish_step(Implicit *s)
+{
+  const Particles *p = s->domain->particles;
+  const Unknowns *u = &s->newton.linear.unknowns;
+  double fastest = 0;
+  book(s);
+  find_error(s);
+  increment_accept(&s->increment, s->newton.moved);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      fastest = fmax(fastest, fabs(s->newton.moved[k][i]) / s->length);
+      p->velocity[k][i] = s->velocity[k][i];
+      s->acceleration[k][i] = s->result[k][i];
+      s->drag[k][i] = s->drag_then[k][i];
+    }
+  s->ledger->fastest = fastest;
+  s->shift = fmax(s->shift, sqrt(unknowns_product(u, p->displacement, p->displacement)));
+}
+
+/** One try to come to a time of the run. @param[out] found  the error of the step, if it has converged */
+static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *error)
+{
+  const ImplicitSpec *spec = s->spec;
+  const double dt = s->length = end - s->clock->time, rate = spec->gamma / (spec->beta * dt);
+  LinearSolver *linear = &s->newton.linear;
+  linear->stiffness_share = spec->damping.stiffness * rate;
+  linear->mass_factor = 1 / ((1 + spec->alpha) * spec->beta * dt * dt) + spec->damping.mass * rate;
+  s->beside = (NewtonForces){s, prepare_forces, add_forces};
+  s->newton.beside = &s->beside;
+  increment_begin(&s->increment);
+  domain_tell_time(s->domain, end, dt);
+  domain_mix_tangents(s->domain, linear->stiffness_share / (1 + linear->stiffness_share));
+  const NewtonOutcome outcome = newton_solve(&s->newton, end, error);
+  domain_mix_tangents(s->domain, 0);
+  *found = outcome == NEWTON_CONVERGED ? find_error(s) : 0;
+  return outcome;
+}
+
+/** Bonds that are beyond their limit break all at once: waves carry on what follows. Steps become shorter as long as bonds break, but not
+ *  shorter than waves take across a horizon, faster than which no crack runs. */
+static int break_bonds(Solver *run, Error *error)
+{
+  Implicit *s = run->own;
+  const int64_t broken = increment_break(&s->increment, s->clock, 0);
+  if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
+  if (!broken) return BRECCIA_OK;
+  text_add(&run->log, "  %lld bonds break\n", (long long)broken);
+  find_accelerations(s);
+  s->next = fmax(s->length / 2, fmin(s->length, s->domain->family.horizon / s->ledger->wave));
+  return BRECCIA_OK;
+}
+
+void implicit_count_steps(const Solver *run)
+{
+  const Implicit *s = run->own;
+  Clock *clock = (Clock *)&run->clock;
+  clock->stage_last = clock->step + (int64_t)ceil((clock->stage_end - clock->time) / s->next - 1e-6);
+}
+
+int implicit_advance(Solver *run, Text *warning, Error *error)
+{
+  (void)warning;
+  Implicit *s = run->own;
+  Clock *clock = &run->clock;
+  const double longest = implicit_longest(s->spec), shortest = s->spec->smallest * longest;
+  double end, found;
+  char words[320];
+  if (increment_keep(&s->increment, run, error)) return BRECCIA_FAILURE;
+  s->newton.log = &run->log;
+  for (;; ++s->cuts) {
+    end = increment_end(run, s->next);
+    text_add(&run->log, "step %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, clock->time, end);
+    const NewtonOutcome outcome = try_step(s, end, &found, error);
+    if (outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
+    const double change = wanted_change(s, found);
+    if (outcome == NEWTON_CONVERGED && (change >= 0.9 || s->length <= shortest)) {
+      finish_step(s);
+      const bool easy = s->newton.iterations <= s->spec->newton.iterations / 2;
+      if (easy && s->length >= 0.999 * s->next) s->next = fmin(longest, fmin(2, fmax(change, 0.5)) * s->next);
+      break;
+    }
+    if (outcome == NEWTON_CONVERGED) {
+      increment_retreat(&s->increment);
+      text_add(&run->log, "    cut: the step errs by %.2g of the largest displacements\n", found);
+      s->next = fmax(shortest, s->length * fmax(0.2, change));
+      continue;
+    }
+    text_add(&run->log, "    cut: no equilibrium: %s\n", newton_describe(&s->newton, outcome, words, sizeof words));
+    s->next = s->length / 2;
+    if (s->next < shortest)
+      return error_add(error, BRECCIA_FAILURE,
+                       "implicit: no equilibrium with inertia beyond time %g, with steps cut to %.2g: %s; go on with a "
+                       "stage of 'explicit', or look at the loads and at the last pictures",
+                       clock->time, s->length, words);
+  }
+  clock->time_step = end - clock->time;
+  clock->time = end;
+  if (break_bonds(run, error)) return BRECCIA_FAILURE;
+  ++clock->step;
+  clock->ended = clock->time >= clock->stage_end - 1e-9 * longest;
+  implicit_count_steps(run);
+  if (clock->ended) increment_forget(&s->increment);
+  return BRECCIA_OK;
+}
