@@ -16,6 +16,7 @@ if [ "${1:-}" != --only-write ]; then
     variant $deck one "silling: 1"
   done
   "$breccia" run rest.yaml --quiet
+  "$breccia" run static.yaml --quiet
 fi
 [ "${1:-}" != --with-opensees ] || "$breccia" run clay-opensees.yaml --quiet
 
@@ -70,6 +71,7 @@ in_opensees() { grep -qs '"completed": true' clay-opensees/summary.json && "$@" 
   echo "| clay: backbone followed, point m (distance from the hyperbola, kPa; one chord is 1.5) | yes | $(backbone clay/point-m.csv) | $(in_opensees backbone clay-opensees/point-m.csv) |"
   echo "| clay: the same, point n | yes | $(backbone clay/point-n.csv) | $(in_opensees backbone clay-opensees/point-n.csv) |"
   echo "| elastic at rest at 500 kN/m³: opening of the mouth (mm) | 3.34 (finite elements) | $(number "$(last rest/mouth.csv 4)" "%.3f" 1000) |  |"
+  echo "| elastic, the same in equilibrium by the static solver (mm) | 3.34 (finite elements) | $(number "$(last static/mouth.csv 4)" "%.3f" 1000); $(awk -v a="$(last static/mouth.csv 4)" -v b="$(last rest/mouth.csv 4)" 'BEGIN {d = a / b - 1; printf "%.0e", d < 0 ? -d : d}') of it from the one at rest |  |"
   echo "| clay: bonds broken by 0.092 s | | $(summary clay broken_bonds) | $(in_opensees summary clay-opensees broken_bonds) |"
   echo "| clay: largest difference of any curve, of its largest value | | | $(in_opensees difference_to_opensees) |"
   echo

@@ -77,6 +77,38 @@ static void pressure_from_both_ends_stresses_a_bar_by_itself(void **state)
   breccia_model_destroy(&m);
 }
 
+static void radial_pressure_pushes_half_a_pipe_by_its_diameter(void **state)
+{
+  (void)state;
+  /* Half a ring on y > 0: a pressure p within is in all p x diameter x length along y, in the plane and around an axis askew in space. Shares go by
+   * volume along the true directions, so that what is left is the roundness of a lattice. */
+  const double radius = 1, pressure = 7, length = 0.5;
+  breccia_model *m = model_of(
+      SOFT "body: {b: {material: m, lattice: square, spacing: 0.02, thickness: 0.5, shape: {difference: [{box: {from: "
+           "[-1.2, 0], to: [1.2, 1.2]}}, {sphere: {centre: [0, 0], radius: 1}}]}}}\n"
+           "loads: [{on: {inside: {sphere: {centre: [0, 0], radius: 1.1}}}, radial pressure: {pressure: 7, centre: "
+           "[0, 0], area: \"${pi/2}\"}}]\n"
+           "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n");
+  step_surely(m, 1);
+  assert_near(sums_of(m).external[0], 0, 1e-10);
+  assert_near(sums_of(m).external[1], 2 * radius * length * pressure, 0.005 * 2 * radius * length * pressure);
+  assert_near(sums_of(m).turn[2], 0, 1e-10);
+  breccia_model_destroy(&m);
+  m = model_of(
+      CUBE
+      "loads: [{on: {all: yes}, radial pressure: {pressure: -3, centre: [1, 0.1, -2], axis: [0, 2, 0], area: 5}}]\n"
+      "solve: {explicit: {steps: 1}}\n");
+  step_surely(m, 1);
+  const Particles *p = m->domain.particles;
+  const int32_t i = p->place_of[0];
+  const double dx = p->position[0][i] - 1, dz = p->position[2][i] + 2, r = sqrt(dx * dx + dz * dz);
+  const double force = -3 * 5 / (64 * 1e-3); /* per volume */
+  assert_near(p->external[0][i], force * dx / r, 1e-12 * fabs(force));
+  assert_near(p->external[1][i], 0, 0);
+  assert_near(p->external[2][i], force * dz / r, 1e-12 * fabs(force));
+  breccia_model_destroy(&m);
+}
+
 static void the_ground_moves_as_seen_from_itself(void **state)
 {
   (void)state;
@@ -352,6 +384,10 @@ static void what_does_not_fit_is_said(void **state)
       {"{on: {all: yes}, pressure: 3}", "pressure: acts on a face: 'on' must say which, like {face: x+}"},
       {"{on: {all: yes}, traction: [1, 0, 0]}", "or 'area' how large it is"},
       {"{on: {face: x+}, pressure: 3, area: 2}", "area: only a 'traction' has one"},
+      {"{on: {all: yes}, radial pressure: {pressure: 3, area: 1, centre: [0.05, 0.05, 0]}}",
+       "a particle stands on the axis"},
+      {"{on: {all: yes}, radial pressure: {pressure: 3, area: 1, centre: [0, 0, 0], axis: [0, 0, 0]}}",
+       "axis: must not be zero"},
       {"{on: {face: x+}, roller: [0, 0, 0]}", "roller: must not be zero"},
       {"{on: {face: x+}, roller: [1, 0, 0], history: {ramp to: 1}}", "history: 'roller' does not vary in time"},
       {"{on: {face: x+}, spring: {stiffness: -1}}", "stiffness: -1 is out of range"},
@@ -378,6 +414,21 @@ static void what_does_not_fit_is_said(void **state)
                                 "loads: [{initial velocity: {rotation: [1, 0, 0]}}]\nsolve: {explicit: {steps: 1}}\n");
   assert_non_null(strstr(words, "plane and turns about z only"));
   free(words);
+  words = refusal_of(
+      SOFT "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [6, 20]}}}}\n"
+           "peridynamics: {space: plane strain}\n"
+           "loads: [{on: {all: yes}, radial pressure: {pressure: 3, area: 1, centre: [9, 9], axis: [1, 0, 0]}}]\n"
+           "solve: {explicit: {steps: 1}}\n");
+  assert_non_null(strstr(words, "the body is plane; leave out 'axis'"));
+  free(words);
+  /* The box around the disc has particles on its left that the half plane takes away: nothing would be held. */
+  words = refusal_of(
+      SOFT "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {difference: [{sphere: "
+           "{centre: [0, 0], radius: 1}}, {box: {from: [-2, -2], to: [0, 2]}}]}}}\n"
+           "peridynamics: {space: plane strain}\nloads: [{on: {face: x-}, support: {held: across}}]\n"
+           "solve: {explicit: {steps: 1}}\n");
+  assert_non_null(strstr(words, "has no particles at its face x-"));
+  free(words);
 }
 
 int main(void)
@@ -385,6 +436,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pressure_and_traction_have_the_resultant_of_their_face),
       cmocka_unit_test(pressure_from_both_ends_stresses_a_bar_by_itself),
+      cmocka_unit_test(radial_pressure_pushes_half_a_pipe_by_its_diameter),
       cmocka_unit_test(the_ground_moves_as_seen_from_itself),
       cmocka_unit_test(on_inclined_rollers_a_body_slides_without_friction),
       cmocka_unit_test(a_body_is_thrown_and_spins_as_said),

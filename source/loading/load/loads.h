@@ -14,6 +14,7 @@ LOAD(pressure, "pressure", FIELD_NUMBER, "stress",
      "on the face that 'on' selects, inwards, spread over its layers; its direction stays as the body turns")
 LOAD(traction, "traction", FIELD_POINT, "stress",
      "force per area of the face that 'on' selects, spread over its layers; or of 'area'")
+LOAD_SECTION(radial_pressure, "radial pressure", "on a round surface, away from its axis or towards it")
 LOAD_SECTION(spring, "spring", "springs to the ground or to other particles")
 LOAD(displacement, "displacement", FIELD_FREE_POINT, "length", "prescribed displacement")
 LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")

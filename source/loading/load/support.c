@@ -130,6 +130,13 @@ static int create(Load *load, const LoadMaking *making)
   if (!support) return BRECCIA_FAILURE;
   int64_t count = 0;
   for (int64_t n = 0; n < body->particles.count; ++n) count += body->margin_of[n] == margin;
+  if (!count)
+    return node_error(
+        making->reader->document, load->node, error,
+        "support: block '%s' has no particles at its face %c%c, where the box around its shape ends; let the "
+        "first shape of a 'difference' end at the face",
+        body->blocks[body->margins.items[margin].block]->head.name, "xyz"[axis],
+        body -> margins.items[margin].high ? '+' : '-');
   selection_destroy(&load->selection);
   load->selection.places = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
   support->images = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);

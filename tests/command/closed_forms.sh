@@ -1,0 +1,34 @@
+# The examples whose answers are known in closed form, on coarse lattices.
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+
+run() { # run DECK [options]
+  "$breccia" run "$source/examples/$1.yaml" --quiet --output "$work/$(basename "$1")" "${@:2}" > out 2>&1 || fail "$1: $(cat out)"
+}
+# value FOLDER/WATCH COLUMN: the last one of a history
+value() { tail -1 "$work/$1.csv" | cut -d, -f"$2"; }
+# near WHAT FOUND EXPECTED SHARE: within a share of what is expected
+near() {
+  checks=$((checks + 1))
+  awk -v a="$2" -v b="$3" -v s="$4" 'BEGIN {d = a / b - 1; exit !(a != "" && d <= s && d >= -s)}' || fail "$1 is $2, expected $3 within $4 of it"
+}
+exact() { awk "BEGIN {printf \"%.10g\", $1}"; }
+
+# weight (H y - y^2 / 2) / (K + 4 G / 3) at the uppermost particles, and weight (H - y) at the lowest
+run gravity-column/column
+near "settlement of the column" "$(value column/top 4)" "$(exact "-19.62 * (10 * 9.875 - 9.875 ^ 2 / 2) / 180e3")" 0.002
+near "stress under the column" "$(value column/base 10)" "$(exact "-19.62 * 9.875")" 0.005
+
+# Lamé: u = (1 + nu) / E p a^2 / (b^2 - a^2) ((1 - 2 nu) r + b^2 / r), a particle above the wall
+run pressurised-ring/ring --set "variables.dx=50 mm"
+near "opening of the ring" "$(value ring/wall 4)" "$(exact "1.25 / 10e6 * 1000 / 3 * (0.5 * 1.025 + 4 / 1.025)")" 0.025
+
+# Kirsch: u E / (sigma a) at r, in plane stress: ((1 + nu) / 2) (r ((k - 1) / 2 + 1) + (2 + k) / r - 1 / r^3), k = (3 - nu) / (1 + nu)
+run plate-with-hole/plate --set "variables.dx=10 mm"
+near "widening of the hole" "$(value plate/side 3)" "$(exact "1000 * 0.1 / 210e6 * 0.65 * (1.05 * (1 + (2.7 / 1.3 - 1) / 2) + (2 + 2.7 / 1.3) / 1.05 - 1.05 ^ -3)")" 0.025
+near "stress above the hole" "$(value plate/edge 9)" "$(exact "1000 * (1 + 0.5 / 1.05 ^ 2 + 1.5 / 1.05 ^ 4)")" 0.08
+
+# The opening to which rest.yaml comes by damping, in 6000 steps
+run plate-with-crack/static
+near "opening of the crack" "$(value static/mouth 4)" 0.0033157288 1e-6
+finish
