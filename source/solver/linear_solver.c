@@ -110,7 +110,10 @@ static void weigh_batch(void *context, int64_t b)
 void linear_solver_apply(LinearSolver *s, double *const v[3], double *const kv[3])
 {
   unknowns_spread(&s->unknowns, NAN, v);
-  domain_linear_step(s->domain, v, kv);
+  if (s->elastic)
+    elastic_step_apply(s->elastic, s->domain, v, kv);
+  else
+    domain_linear_step(s->domain, v, kv);
   if (s->stiffness_share != 0) vectors_combine(s->domain, 1 + s->stiffness_share, kv, 0, kv);
   loading_change(s->loading, s->domain->particles, v, kv);
   team_each(s->domain->batch_count, weigh_batch, &(Weighing){s, v, kv});

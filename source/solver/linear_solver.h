@@ -2,6 +2,7 @@
 #ifndef BRECCIA_SOLVER_LINEAR_SOLVER_H
 #define BRECCIA_SOLVER_LINEAR_SOLVER_H
 
+#include "solver/elastic_step.h"
 #include "solver/unknowns.h"
 
 typedef struct LinearSolver LinearSolver;
@@ -38,8 +39,9 @@ struct LinearSolver {
   /* (1 + stiffness_share) K + mass_factor M is solved instead, in implicit dynamics; both are 0 in statics. Loads that follow displacements have no
    * share. */
   double stiffness_share, mass_factor;
-  bool is_free; /* the deck does not say which */
-  void *own;    /* what the type keeps */
+  const ElasticStep *elastic; /* K is this stiffness; NULL: that at which the domain was linearised */
+  bool is_free;               /* the deck does not say which */
+  void *own;                  /* what the type keeps */
 };
 
 /** Words of a choice in a deck: "automatic" and the ways there are, then NULL. */

@@ -17,7 +17,8 @@ int newton_create(Newton *n, Error *error)
     failed |= !(n->change[k] = places_array(places, "corrections", error));
     failed |= !(n->moved[k] = places_array(places, "increments", error));
   }
-  return failed ? BRECCIA_FAILURE : linear_solver_create(&n->linear, n->spec->linear, error);
+  if (failed) return BRECCIA_FAILURE;
+  return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
 }
 
 void newton_destroy(Newton *n)
@@ -47,13 +48,15 @@ void newton_apply_loads(const Newton *n, double time)
   team_run(apply_loads, &(Loads){n->loading, n->domain->particles, time});
 }
 
-/** Forces on particles, and the most of them that supports and loads exert. @return that the laws could be asked */
-static NewtonOutcome find_forces(Newton *n, double time, Error *error)
+NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
 {
   Domain *d = n->domain;
   const Particles *p = d->particles;
   if (n->beside && n->beside->prepare(n->beside->context, n->moved, time, error)) return NEWTON_FAILED;
-  if (domain_linearise(d, error)) return NEWTON_FAILED;
+  if (n->relaxes)
+    domain_evaluate(d);
+  else if (domain_linearise(d, error))
+    return NEWTON_FAILED;
   if (*domain_server_problem(d)) {
     error_add(error, BRECCIA_FAILURE, "%s", domain_server_problem(d));
     return NEWTON_FAILED;
@@ -140,7 +143,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
 {
   enum { MOST = 6 };
   const double enough = 0.8;
-  NewtonOutcome outcome = find_forces(n, time, error);
+  NewtonOutcome outcome = newton_find_forces(n, time, error);
   *work = unknowns_product(&n->linear.unknowns, n->change, n->force);
   for (int k = 0; k < MOST && !whole; ++k) {
     const bool bad = outcome == NEWTON_LAW || outcome == NEWTON_DIVERGED;
@@ -150,7 +153,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
     if (!bad && (*work < 0) == (first_work < 0)) break; /* it goes on down: the next iteration will see to that */
     move(n, wanted - *share);
     *share = wanted;
-    outcome = find_forces(n, time, error);
+    outcome = newton_find_forces(n, time, error);
     *work = unknowns_product(&n->linear.unknowns, n->change, n->force);
   }
   return outcome;
@@ -169,7 +172,7 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
   n->iterations = n->products = 0;
   n->indefinite = false;
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
-  NewtonOutcome outcome = find_forces(n, time, error);
+  NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = add_motions(n, time);
   double before = 0, first_work = 0;

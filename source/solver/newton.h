@@ -73,6 +73,7 @@ typedef struct Newton {
   const Loading *loading;
   const NewtonSpec *spec;
   const NewtonForces *beside; /* NULL: none, as at rest */
+  bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
   double *force[3];  /* out of balance, on the unknowns */
   double *change[3]; /* of displacements in an iteration */
@@ -89,6 +90,10 @@ typedef struct Newton {
 /** `newton` has domain, loading, spec and `beside`, and is zero beyond; destroy it in any case. */
 int newton_create(Newton *newton, Error *error);
 void newton_destroy(Newton *newton);
+
+/** Forces out of balance on the unknowns, with loads as they are at a time of the run, and the most that supports and loads exert.
+ *  @return that the laws could be asked */
+NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);

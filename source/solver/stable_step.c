@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "base/team.h"
+#include "base/tridiagonal.h"
 #include <math.h>
 #include <string.h>
 
@@ -52,37 +53,6 @@ static double mass_product(const Domain *d, double *const a[3], double *const b[
     sum += part;
   }
   return sum;
-}
-
-/** Number of eigenvalues of the tridiagonal matrix that are larger than x (Sturm). */
-static int count_above(const double *alpha, const double *beta, int n, double x)
-{
-  int count = 0;
-  double q = 1;
-  for (int k = 0; k < n; ++k) {
-    q = alpha[k] - x - (k ? beta[k] * beta[k] / q : 0);
-    if (q == 0) q = 1e-300;
-    count += q > 0;
-  }
-  return count;
-}
-
-static double largest_eigenvalue(const double *alpha, const double *beta, int n)
-{
-  double low = alpha[0], high = 0;
-  for (int k = 0; k < n; ++k) {
-    double row = alpha[k] + (k ? fabs(beta[k]) : 0) + (k + 1 < n ? fabs(beta[k + 1]) : 0);
-    high = fmax(high, row);
-    low = fmin(low, alpha[k]);
-  }
-  for (int k = 0; k < 100 && high - low > 1e-10 * fabs(high); ++k) {
-    double middle = (low + high) / 2;
-    if (count_above(alpha, beta, n, middle))
-      low = middle;
-    else
-      high = middle;
-  }
-  return high;
 }
 
 typedef struct Iteration { /* of Lanczos' method */
@@ -172,7 +142,7 @@ int stable_step(Domain *d, double *step, Error *error)
     it.beta = beta[n];
     team_run(orthogonalize, &it);
     it.beta = beta[n + 1] = sqrt(mass_product(d, it.next, it.next));
-    largest = largest_eigenvalue(alpha, beta, n + 1);
+    largest = tridiagonal_largest(alpha, beta, n + 1);
     if (!(beta[n + 1] > 1e-9 * fabs(largest)) || (n > 12 && largest - before < 1e-4 * largest)) break;
     before = largest;
     team_run(normalize, &it);

@@ -1,7 +1,7 @@
-/* Bodies at rest under their loads: increments of loads and motions, each brought to equilibrium by Newton's method (newton.h), and bonds that break
- * in between, the most loaded first. Histories of loads run in the time of the stage, which need not be one of a clock. */
+/* Bodies at rest under their loads: increments of loads and motions, each brought to equilibrium by Newton's method (newton.h) or dynamic
+ * relaxation (relaxation.h), and bonds that break in between, the most loaded first. Histories of loads run in the time of the stage, which need not be one of a clock. */
 #include "solver/increment.h"
-#include "solver/newton.h"
+#include "solver/relaxation.h"
 
 #include "base/memory.h"
 #include "base/team.h"
@@ -13,9 +13,16 @@
 typedef struct StaticSpec {
   SectionHead head;
   double end_time, smallest;
-  int64_t increments, bonds_at_once;
+  int64_t increments, bonds_at_once, relaxation_iterations;
+  const char *method;
   NewtonSpec newton;
 } StaticSpec;
+
+static const char *method_word(int k)
+{
+  static const char *const words[] = {"newton", "relaxation", NULL};
+  return words[k];
+}
 
 static const Field static_fields[] = {
     {.key = "end time",
@@ -45,11 +52,26 @@ static const Field static_fields[] = {
      .standard = "10",
      .range = "[1, 1e9]",
      .meaning = "so many bonds beyond their limit break before equilibrium is sought again, the most loaded first"},
+    {.key = "method",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(StaticSpec, method),
+     .standard = "newton",
+     .meaning = "newton: by linearised equations; relaxation: by forces alone, as if the body came to rest in a damped "
+                "motion (dynamic relaxation): it needs no tangents, and goes on to the next state of rest where a body "
+                "gives way",
+     .choice = method_word},
+    {.key = "relaxation iterations",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(StaticSpec, relaxation_iterations),
+     .standard = "2000",
+     .range = "[1, 1e9]",
+     .meaning = "an increment that takes more by relaxation, at an evaluation of forces each, is tried again with half "
+                "of its length"},
     NEWTON_FIELDS(StaticSpec, newton),
 };
 
 const Section static_section = {.name = "static",
-                                .about = "Equilibrium at rest, increment by increment, by Newton's method.",
+                                .about = "Equilibrium at rest, increment by increment.",
                                 .size = sizeof(StaticSpec),
                                 FIELDS(static_fields)};
 
@@ -60,6 +82,7 @@ typedef struct Static {
   Clock *clock;
   Ledger *ledger;
   Newton newton;
+  Relaxation relaxation; /* empty where Newton's method serves */
   Increment increment;
   double next;  /* length of the increment to be tried next */
   int64_t cuts; /* in the stage */
@@ -77,6 +100,7 @@ static void destroy(Solver *run)
 {
   Static *s = run->own;
   newton_destroy(&s->newton);
+  relaxation_destroy(&s->relaxation);
   increment_destroy(&s->increment);
   free(s);
   run->own = NULL;
@@ -93,8 +117,9 @@ static int create(Solver *run, Error *error)
                 .ledger = &run->ledger,
                 .newton = {.domain = run->domain, .loading = run->loading}};
   s->newton.spec = &s->spec->newton;
-  if (increment_create(&s->increment, run->domain, error)) return BRECCIA_FAILURE;
-  return newton_create(&s->newton, error);
+  s->newton.relaxes = !strcmp(s->spec->method, "relaxation");
+  if (increment_create(&s->increment, run->domain, error) || newton_create(&s->newton, error)) return BRECCIA_FAILURE;
+  return s->newton.relaxes ? relaxation_create(&s->relaxation, &s->newton, error) : BRECCIA_OK;
 }
 
 static bool damps(const Solver *run)
@@ -174,7 +199,7 @@ static void describe(const Solver *run, const char *time, Text *text)
   Error *none = NULL;
   describe_stage(s->spec, time, text);
   text_add(text, " for %lld unknowns, by %s", (long long)unknowns_count(&s->newton.linear.unknowns, none),
-           linear_solver_name(&s->newton.linear));
+           s->newton.relaxes ? "dynamic relaxation" : linear_solver_name(&s->newton.linear));
 }
 
 /* ---- increments ---- */
@@ -221,7 +246,9 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
 {
   increment_begin(&s->increment);
   domain_tell_time(s->domain, end, end - s->clock->time);
-  const NewtonOutcome outcome = newton_solve(&s->newton, end, error);
+  const NewtonOutcome outcome =
+      s->newton.relaxes ? relaxation_solve(&s->relaxation, &s->newton, end, s->spec->relaxation_iterations, error)
+                        : newton_solve(&s->newton, end, error);
   if (outcome != NEWTON_CONVERGED) {
     increment_retreat(&s->increment);
     return outcome;
@@ -293,7 +320,8 @@ static int advance(Solver *run, Text *warning, Error *error)
                      (long long)s->domain->broken_count, clock->time,
                      newton_describe(&s->newton, outcome, words, sizeof words));
   }
-  if (iterations <= s->spec->newton.iterations / 2) s->next = fmin(2 * s->next, whole_increment(s->spec));
+  const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : s->spec->newton.iterations;
+  if (iterations <= most / 2) s->next = fmin(2 * s->next, whole_increment(s->spec));
   clock->ended = clock->time >= clock->stage_end - 1e-9 * whole_increment(s->spec);
   count_steps(run);
   if (clock->ended) increment_forget(&s->increment);

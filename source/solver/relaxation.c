@@ -1,0 +1,188 @@
+#include "solver/relaxation.h"
+
+#include "base/random.h"
+#include "base/tridiagonal.h"
+#include "solver/vectors.h"
+#include <math.h>
+#include <string.h>
+
+enum { PROBES = 12, MOST_PREDICTING = 60, TOLD_EVERY = 50 };
+/* Highest eigenvalue of K over M in steps of 1: 4 is the limit. */
+static const double highest = 4 / 1.1;
+
+int relaxation_create(Relaxation *r, Newton *n, Error *error)
+{
+  const int64_t places = n->domain->particles->places;
+  r->prepared = NAN;
+  n->linear.elastic = &r->elastic;
+  const bool failed = elastic_step_create(&r->elastic, n->domain, error) ||
+                      preconditioner_create(&r->mass, n->domain, error) ||
+                      !vectors_make(r->velocity, places, "dynamic relaxation", error) ||
+                      !vectors_make(r->momentum, places, "dynamic relaxation", error) ||
+                      !vectors_make(r->product, places, "dynamic relaxation", error);
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+void relaxation_destroy(Relaxation *r)
+{
+  elastic_step_destroy(&r->elastic);
+  preconditioner_destroy(&r->mass);
+  vectors_free(r->velocity);
+  vectors_free(r->momentum);
+  vectors_free(r->product);
+}
+
+static void clear(const Newton *n, double *const v[3])
+{
+  for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)n->domain->particles->places);
+}
+
+/** Conjugate gradients for the elastic body, with the mass as preconditioner.
+ *  @param[in,out] f  right-hand side; then what is left of it
+ *  @param[in,out] v  the answer is added; a vector of unknowns
+ *  @return the largest eigenvalue of K over M that shows in the steps taken */
+static double answer_elastically(Relaxation *r, Newton *n, double *const f[3], double *const v[3], int most,
+                                 double tolerance)
+{
+  const Unknowns *u = &n->linear.unknowns;
+  const Domain *d = n->domain;
+  double alpha[MOST_PREDICTING], beta[MOST_PREDICTING] = {0}, slope = 0, share = 1;
+  const double first = unknowns_product(u, f, f);
+  int k = 0;
+  for (; k < most && unknowns_product(u, f, f) > tolerance * tolerance * first; ++k) {
+    preconditioner_apply(&r->mass, &n->linear, f, r->product);
+    const double next = unknowns_product(u, f, r->product), again = k ? next / slope : 0;
+    vectors_combine(d, again, r->velocity, 1, r->product);
+    slope = next;
+    linear_solver_apply(&n->linear, r->velocity, r->product);
+    ++n->products;
+    unknowns_clear_rest(u, r->velocity);
+    const double curvature = unknowns_product(u, r->velocity, r->product);
+    if (!(curvature > 0)) break;
+    /* The matrix of Lanczos' method (Golub and Van Loan, Matrix Computations, 10.2). */
+    alpha[k] = curvature / slope + (k ? again / share : 0);
+    beta[k] = k ? sqrt(again) / share : 0;
+    share = slope / curvature;
+    vectors_combine(d, 1, v, share, r->velocity);
+    vectors_combine(d, 1, f, -share, r->product);
+  }
+  return k ? tridiagonal_largest(alpha, beta, k) : 0;
+}
+
+/** The mass for the body as it is. */
+static int prepare(Relaxation *r, Newton *n, Error *error)
+{
+  const Particles *p = n->domain->particles;
+  uint64_t seed = 1;
+  if (preconditioner_prepare(&r->mass, &n->linear, r->velocity, r->product, error)) return BRECCIA_FAILURE;
+  clear(n, r->momentum);
+  clear(n, n->change);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->count; ++i) r->momentum[k][p->place_of[i]] = random_uniform(&seed) - 0.5;
+  unknowns_gather(&n->linear.unknowns, r->momentum);
+  r->scale = answer_elastically(r, n, r->momentum, n->change, PROBES, 0) / highest;
+  return BRECCIA_OK;
+}
+
+/** Adds what the motions in `change` do to the forces of an elastic body by themselves. */
+static void add_motions(Relaxation *r, Newton *n)
+{
+  const Particles *p = n->domain->particles;
+  elastic_step_apply(&r->elastic, n->domain, n->change, r->product);
+  loading_change(n->loading, p, n->change, r->product);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) r->product[k][i] *= p->volume[i];
+  unknowns_gather(&n->linear.unknowns, r->product);
+  vectors_combine(n->domain, 1, n->force, 1, r->product);
+  ++n->products;
+}
+
+static void move(Newton *n, double *const v[3])
+{
+  vectors_combine(n->domain, 1, n->domain->particles->displacement, 1, v);
+  vectors_combine(n->domain, 1, n->moved, 1, v);
+}
+
+/** Moves all particles as an elastic body would answer to loads and motions. */
+static int predict(Relaxation *r, Newton *n, double time, bool moves, Error *error)
+{
+  const Unknowns *u = &n->linear.unknowns;
+  elastic_step_prepare(&r->elastic, n->domain);
+  if (r->prepared != time && prepare(r, n, error)) return BRECCIA_FAILURE;
+  r->prepared = time;
+  clear(n, n->change);
+  unknowns_spread(u, time, n->change);
+  if (moves) add_motions(r, n);
+  clear(n, n->change);
+  const double before = unknowns_product(u, n->force, n->force);
+  answer_elastically(r, n, n->force, n->change, MOST_PREDICTING, 1e-2);
+  /* Where elastic stiffness is not symmetric, gradients may lead astray. */
+  if (!(unknowns_product(u, n->force, n->force) <= before)) clear(n, n->change);
+  unknowns_spread(u, time, n->change);
+  move(n, n->change);
+  if (n->log) text_add(n->log, "    elastic prediction: %lld evaluations\n", (long long)n->products);
+  return BRECCIA_OK;
+}
+
+/** One step of the motion. @param[in,out] damping  c; then that of the next step */
+static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *damping, Error *error)
+{
+  const Unknowns *u = &n->linear.unknowns;
+  const Domain *d = n->domain;
+  vectors_combine(d, (2 - *damping) / (2 + *damping), r->momentum, 2 / (2 + *damping), n->force);
+  preconditioner_apply(&r->mass, &n->linear, r->momentum, r->velocity);
+  vectors_combine(d, 1 / r->scale, r->velocity, 0, r->velocity);
+  const double twice_kinetic = unknowns_product(u, r->velocity, r->momentum);
+  const double before = unknowns_product(u, r->velocity, n->force);
+  unknowns_spread(u, NAN, r->velocity);
+  move(n, r->velocity);
+  const NewtonOutcome outcome = newton_find_forces(n, time, error);
+  if (outcome != NEWTON_CONVERGED) return outcome;
+  const double fall = before - unknowns_product(u, r->velocity, n->force);
+  const double quotient = twice_kinetic > 0 ? fall / twice_kinetic : 0;
+  if (quotient > highest) { /* stiffer than the elastic body: steps of 1 must not become unstable */
+    r->scale *= 1.5 * quotient / highest;
+    clear(n, r->momentum);
+  }
+  *damping = 2 * sqrt(fmin(fmax(quotient, 0), 0.9));
+  return NEWTON_CONVERGED;
+}
+
+/** Forces out of balance over those that are exerted. */
+static double find_unbalanced(const Newton *n)
+{
+  const double force = sqrt(unknowns_product(&n->linear.unknowns, n->force, n->force));
+  return n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
+}
+
+NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t most, Error *error)
+{
+  const Unknowns *u = &n->linear.unknowns;
+  n->iterations = n->products = 0;
+  n->indefinite = false;
+  clear(n, n->moved);
+  NewtonOutcome outcome = newton_find_forces(n, time, error);
+  if (outcome != NEWTON_CONVERGED) return outcome;
+  clear(n, n->change);
+  unknowns_spread(u, time, n->change);
+  const bool moves = unknowns_product(u, n->change, n->change) > 0;
+  n->unbalanced = find_unbalanced(n);
+  if (moves || n->unbalanced > n->spec->residual) {
+    if (predict(r, n, time, moves, error)) return NEWTON_FAILED;
+    if ((outcome = newton_find_forces(n, time, error)) != NEWTON_CONVERGED) return outcome;
+    n->unbalanced = find_unbalanced(n);
+  }
+  double damping = 0;
+  clear(n, r->momentum);
+  while (n->unbalanced > n->spec->residual) {
+    if (++n->iterations > most) return NEWTON_SLOW;
+    if ((outcome = take_step(r, n, time, &damping, error)) != NEWTON_CONVERGED) return outcome;
+    n->unbalanced = find_unbalanced(n);
+    if (!isfinite(n->unbalanced) && n->exerted > 0) return NEWTON_DIVERGED;
+    if (n->log && (n->iterations % TOLD_EVERY == 0 || n->unbalanced <= n->spec->residual))
+      text_add(n->log, "    iteration %lld: residual %.2e, damping %.2g\n", (long long)n->iterations, n->unbalanced,
+               damping);
+  }
+  n->reference = n->exerted;
+  return NEWTON_CONVERGED;
+}
