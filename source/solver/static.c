@@ -92,7 +92,7 @@ static void list_state(Solver *run, StateList *list)
 {
   Static *s = run->own;
   state_add_number(list, "next increment", "time", STATE_COMMITTED, &s->next);
-  state_add_number(list, "exerted force", "force", STATE_COMMITTED, &s->newton.reference);
+  newton_state(&s->newton, list);
   state_add_count(list, "cuts of increments", STATE_COMMITTED, &s->cuts);
 }
 
