@@ -76,10 +76,16 @@ double history_factor(const History *history, double time)
   return history->type ? history->type->factor(history, time) : 1;
 }
 
+bool history_is_controlled(const History *history)
+{
+  return history->type == &controlled_history;
+}
+
 double history_peak(const History *h, double time)
 {
   enum { SAMPLES = 1000, MOST_CORNERS = 1000000 };
   if (!h->type) return 1;
+  if (history_is_controlled(h)) return h->most;
   double peak = 0, corner = 0;
   for (int k = 0; k <= SAMPLES; ++k) peak = fmax(peak, fabs(history_factor(h, time * k / SAMPLES)));
   for (int k = 0; k < MOST_CORNERS && (corner = h->type->corner(h, corner)) < time; ++k)

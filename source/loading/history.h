@@ -49,6 +49,7 @@ typedef struct History {
   double *rows;           /* of files; owned */
   struct History *parts;  /* [part_count] of products and sums */
   int part_count;
+  double found, most; /* factor of what is controlled, and the farthest from zero that it has been at rest */
   Panel *panels;
   int64_t panel_count, panel_capacity;
 } History;
@@ -73,6 +74,9 @@ double history_factor(const History *history, double time);
 
 /** `scale` times the integral of the factor from 0 to a time, or with order 2 that of this integral. By one thread: what was found is kept. */
 double history_integral(History *history, int order, double scale, double time);
+
+/** Whether its factor is found by a solver: History.found. */
+bool history_is_controlled(const History *history);
 
 /** The largest size of the factor from time 0 up to a time. */
 double history_peak(const History *history, double time);

@@ -154,6 +154,9 @@ double load_factor(const Load *load, double time);
 /** Sets the external force per volume of all particles to what the loads say at a time, by all threads; with ties, at the internal forces held. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
 
+/** Sets it to what controlled loads say at factor 1, of their particles and of those of other loads; by all threads. */
+void loading_apply_controlled(const Loading *loading, Particles *particles);
+
 /** The same without what ties make of it, for those who give tied particles one displacement; by all threads. */
 void loading_apply_untied(const Loading *loading, Particles *particles, double time);
 /** Adds changes of external forces per volume with changes v of displacements: of springs. By one thread.

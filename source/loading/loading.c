@@ -153,6 +153,12 @@ void loading_state(Loading *loading, StateList *list)
     Load *load = &loading->loads[k];
     snprintf(name, sizeof name, "load %d from", k);
     if (load->type->state) load->type->state(load, name, list);
+    if (history_is_controlled(&load->history)) {
+      snprintf(name, sizeof name, "load %d factor", k);
+      state_add_number(list, name, "1", STATE_TRIED, &load->history.found);
+      snprintf(name, sizeof name, "load %d most", k);
+      state_add_number(list, name, "1", STATE_TRIED, &load->history.most);
+    }
     if (!loading->loads[k].first) continue;
     snprintf(name, sizeof name, "load %d begins", k);
     state_add_number(list, name, "time", STATE_COMMITTED, &loading->loads[k].begin);
@@ -177,14 +183,30 @@ static void clear(const Selection *selection, Particles *p)
     for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
 }
 
-void loading_apply_untied(const Loading *loading, Particles *p, double time)
+/** Loads may overlap: they are cleared first, then added. */
+static void clear_all(const Loading *loading, Particles *p)
 {
-  for (int l = 0; l < loading->count; ++l) { /* loads may overlap: clear first, then add */
+  for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     if ((!load->type->force && load->type != &tie_load) || !load_acts(loading, load)) continue;
     clear(&load->selection, p);
     clear(&load->other, p);
   }
+}
+
+void loading_apply_controlled(const Loading *loading, Particles *p)
+{
+  clear_all(loading, p);
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    if (load->type->force && load_acts(loading, load) && history_is_controlled(&load->history))
+      load->type->force(load, p, 1);
+  }
+}
+
+void loading_apply_untied(const Loading *loading, Particles *p, double time)
+{
+  clear_all(loading, p);
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     if (load->type->force && load_acts(loading, load)) load->type->force(load, p, load_factor(load, time));

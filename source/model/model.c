@@ -167,6 +167,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
   model->solver = (Solver){.domain = &model->domain,
                            .loading = &model->loading,
                            .stages = &spec->solve,
+                           .selections = &spec->selections,
                            .reader = &model->reader,
                            .force = options->force,
                            .trap = options->trap};

@@ -315,6 +315,10 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
     text_add(text, "%s", load->type->timeless ? "\n" : "; ");
     if (load->type->timeless) return;
   }
+  if (history_is_controlled(&load->history)) {
+    text_add(text, "as much as control finds\n");
+    return;
+  }
   const double rise = plausibility_in_si(model, "time", history_rise(&load->history));
   if (rise > 0) {
     text_add(text, "grows over ");

@@ -119,26 +119,21 @@ static int prepare_forces(void *context, double *const moved[3], double time, Er
   return find_drag(s, s->velocity, s->drag_then, error);
 }
 
-/** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha), beside the inertia: nothing else acts on a body that flies. */
+/** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha); its scale is also that of the inertia with which the step began. */
 static double add_forces(void *context, double *const moved[3], double *const force[3])
 {
   Implicit *s = context;
   const Particles *p = s->domain->particles;
-  const Unknowns *u = &s->newton.linear.unknowns;
   const double alpha = s->spec->alpha, weight = 1 / (1 + alpha);
+  double size = 0;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
+      const double mass = p->density[i] * p->volume[i], inertia = mass * s->acceleration[k][i];
       const double before = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]) - s->drag[k][i];
-      s->result[k][i] = p->density[i] * p->volume[i] * acceleration_then(s, moved, k, i);
-      force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + s->result[k][i]);
+      force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + mass * acceleration_then(s, moved, k, i));
+      size += inertia * inertia;
     }
-  unknowns_gather(u, s->result);
-  return unknowns_product(u, s->result, s->result);
-}
-
-NewtonForces implicit_forces(Implicit *s)
-{
-  return (NewtonForces){s, prepare_forces, add_forces};
+  return size;
 }
 
 /* ---- books ---- */
@@ -273,6 +268,8 @@ static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *err
   LinearSolver *linear = &s->newton.linear;
   linear->stiffness_share = spec->damping.stiffness * rate;
   linear->mass_factor = 1 / ((1 + spec->alpha) * spec->beta * dt * dt) + spec->damping.mass * rate;
+  s->beside = (NewtonForces){s, prepare_forces, add_forces};
+  s->newton.beside = &s->beside;
   increment_begin(&s->increment);
   domain_tell_time(s->domain, end, dt);
   domain_mix_tangents(s->domain, linear->stiffness_share / (1 + linear->stiffness_share));

@@ -17,6 +17,10 @@ int newton_create(Newton *n, Error *error)
     failed |= !(n->change[k] = places_array(places, "corrections", error));
     failed |= !(n->moved[k] = places_array(places, "increments", error));
   }
+  for (int k = 0; k < 3 && n->control; ++k) {
+    failed |= !(n->pull[k] = places_array(places, "controlled loads", error));
+    failed |= !(n->pulled[k] = places_array(places, "controlled loads", error));
+  }
   if (failed) return BRECCIA_FAILURE;
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
 }
@@ -27,6 +31,8 @@ void newton_destroy(Newton *n)
     places_free(&n->force[k]);
     places_free(&n->change[k]);
     places_free(&n->moved[k]);
+    places_free(&n->pull[k]);
+    places_free(&n->pulled[k]);
   }
   linear_solver_destroy(&n->linear);
 }
@@ -97,61 +103,52 @@ static bool add_motions(Newton *n, double time)
   return true;
 }
 
-void newton_state(Newton *n, StateList *list)
+static void apply_controlled(void *context)
 {
-  state_add_number(list, "exerted force", "force", STATE_COMMITTED, &n->reference);
-  if (!n->beside) return;
-  state_add_number(list, "stiffness factored", "1", STATE_COMMITTED, &n->factored_share);
-  state_add_number(list, "mass factored", "1", STATE_COMMITTED, &n->factored_mass);
-  state_add_count(list, "broken bonds when factored", STATE_COMMITTED, &n->factored_broken);
-  state_add_count(list, "stiffness follows", STATE_COMMITTED, &n->follows);
+  const Newton *n = context;
+  loading_apply_controlled(n->loading, n->domain->particles);
 }
 
-static bool keeps_factors(const Newton *n)
+/** Forces on the unknowns where the factor of controlled loads grows by 1. Leaves zeros in `pulled`. */
+static void find_pull(Newton *n)
 {
-  return n->beside && !n->follows && domain_is_elastic(n->domain);
+  double *const *room = n->pulled;
+  const Particles *p = n->domain->particles;
+  const Unknowns *u = &n->linear.unknowns;
+  for (int k = 0; k < 3; ++k) memset(room[k], 0, sizeof(double) * (size_t)p->places);
+  unknowns_spread_pull(u, room);
+  domain_linear_step(n->domain, room, n->pull);
+  loading_change(n->loading, p, room, n->pull);
+  for (int k = 0; k < 3; ++k) memcpy(room[k], p->external[k], sizeof(double) * (size_t)p->places);
+  team_run(apply_controlled, n);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      n->pull[k][i] = p->volume[i] * (n->pull[k][i] + p->external[k][i]);
+      p->external[k][i] = room[k][i];
+      room[k][i] = 0;
+    }
+  unknowns_gather(u, n->pull);
 }
 
-/** Exchanges the displacements held for others. */
-static void exchange(const Newton *n, double *displacement[3])
+/** Adds to the change that brings forces into balance what takes the measure of the control to its target, and finds the factor of the loads for it. */
+static NewtonOutcome follow_control(Newton *n, double accuracy, double *work, Error *error)
 {
-  for (int k = 0; k < 3; ++k) {
-    double *held = n->domain->particles->displacement[k];
-    n->domain->particles->displacement[k] = displacement[k];
-    displacement[k] = held;
-  }
-}
-
-/** Factors or a preconditioner for the next linear equations; the changes are 0 afterwards. Assembling and factoring the matrix of a plate takes tens of
- *  times as long as a step with factors that are there. */
-static int prepare(Newton *n, Error *error)
-{
-  LinearSolver *l = &n->linear;
-  const Domain *d = n->domain;
-  for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)d->particles->places);
-  if (!keeps_factors(n)) {
-    n->factored = false;
-    return linear_solver_prepare(l, error);
-  }
-  const double share = l->stiffness_share, mass = l->mass_factor;
-  const bool same = fabs(mass - n->factored_mass) <= 1e-9 * mass &&
-                    fabs(share - n->factored_share) <= 1e-9 * (1 + share) && n->factored_broken == d->broken_count;
-  if (same && n->factored) return BRECCIA_OK;
-  if (!same) {
-    n->factored_share = share;
-    n->factored_mass = mass;
-    n->factored_broken = d->broken_count;
-  }
-  l->stiffness_share = n->factored_share;
-  l->mass_factor = n->factored_mass;
-  exchange(n, n->change);
-  int status = domain_linearise(n->domain, error);
-  if (!status) status = linear_solver_prepare(l, error);
-  exchange(n, n->change);
-  l->stiffness_share = share;
-  l->mass_factor = mass;
-  n->factored = !status;
-  return status ? status : domain_linearise(n->domain, error);
+  const Particles *p = n->domain->particles;
+  LinearRecord linear;
+  find_pull(n);
+  if (linear_solver_solve(&n->linear, n->pull, n->pulled, accuracy, &linear, error)) return NEWTON_FAILED;
+  n->products += linear.iterations;
+  n->indefinite |= linear.indefinite;
+  unknowns_spread_pull(&n->linear.unknowns, n->pulled);
+  const double grows = control_value(n->control, n->pulled);
+  const double more = (n->target - control_shown(n->control, p) - control_value(n->control, n->change)) / grows;
+  if (!isfinite(more)) return NEWTON_SINGULAR;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) n->change[k][i] += more * n->pulled[k][i];
+  n->more = more;
+  *work = unknowns_product(&n->linear.unknowns, n->change, n->force) +
+          more * unknowns_product(&n->linear.unknowns, n->change, n->pull);
+  return NEWTON_CONVERGED;
 }
 
 /** Adds a share of the change to the displacements. */
@@ -163,6 +160,7 @@ static void move(Newton *n, double share)
       p->displacement[k][i] += share * n->change[k][i];
       n->moved[k][i] += share * n->change[k][i];
     }
+  if (n->control) control_add(n->loading, share * n->more);
 }
 
 /** How closely the next linear equations are to be solved: no closer than what their linearity is worth, but for bodies that are elastic. */
@@ -219,6 +217,9 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
 static bool has_converged(const Newton *n, double correction, double work, double first_work)
 {
   if (!(n->unbalanced <= n->spec->residual)) return false;
+  if (n->control &&
+      !(fabs(n->target - control_shown(n->control, n->domain->particles)) <= n->spec->residual * fabs(n->target)))
+    return false; /* only a part of the last change was taken */
   if (!isnan(n->spec->displacement) && !(correction <= n->spec->displacement)) return false;
   return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
 }
@@ -231,8 +232,7 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  const bool moves = add_motions(n, time);
-  const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
+  const bool moves = add_motions(n, time) || (n->control && control_shown(n->control, p) != n->target);
   double before = 0, first_work = 0;
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   double force = size_of(n, n->force);
@@ -242,18 +242,24 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
     return NEWTON_CONVERGED;
   }
   for (n->iterations = 1; n->iterations <= n->spec->iterations; ++n->iterations) {
-    LinearRecord linear;
-    if (prepare(n, error)) return NEWTON_FAILED;
+    LinearRecord linear = {0};
+    if (linear_solver_prepare(&n->linear, error)) return NEWTON_FAILED;
+    for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
     const double accuracy = n->exerted > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
-    if (linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error)) return NEWTON_FAILED;
+    if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error))
+      return NEWTON_FAILED;
     n->products += linear.iterations;
     n->indefinite |= linear.indefinite;
-    const double start = unknowns_product(&n->linear.unknowns, n->change, n->force);
+    double start = unknowns_product(&n->linear.unknowns, n->change, n->force);
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
-    double share = 1, work;
-    move(n, 1);
-    outcome = search_line(n, time, moves && n->iterations == 1, start, &work, &share, error);
+    if (n->control && (outcome = follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
+    /* Where bonds soften and unload in turn full corrections may go round in circles: a part now and then leads out of them. */
+    enum { AFTER = 4, EVERY = 3 };
+    const bool part = n->control && n->iterations > AFTER && n->iterations % EVERY == EVERY - 1;
+    double share = part ? 0.6 : 1, work;
+    move(n, share);
+    outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     before = force;
     force = size_of(n, n->force);
@@ -267,7 +273,6 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
       return NEWTON_CONVERGED;
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
-    if (keeps_factors(n) && force > enough * before) n->follows = 1;
   }
   return NEWTON_SLOW;
 }

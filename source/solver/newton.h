@@ -5,6 +5,7 @@
 #ifndef BRECCIA_SOLVER_NEWTON_H
 #define BRECCIA_SOLVER_NEWTON_H
 
+#include "solver/control.h"
 #include "solver/linear_solver.h"
 
 /** Keys of solvers that iterate, to be put among theirs; each begins where the struct begins in theirs. */
@@ -64,7 +65,7 @@ typedef struct NewtonForces {
    *  @param[in] moved  changes of displacements since the increment began; @param[in] time  at its end */
   int (*prepare)(void *context, double *const moved[3], double time, Error *error);
   /** Adds the forces on all places.
-   *  @return the square of the size of forces beside which those out of balance are small, if these are more than loads and reactions */
+   *  @return the square of the size of those on the unknowns beside which forces out of balance are small */
   double (*add)(void *context, double *const moved[3], double *const force[3]);
 } NewtonForces;
 
@@ -75,17 +76,17 @@ typedef struct Newton {
   const NewtonForces *beside; /* NULL: none, as at rest */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
-  double *force[3];  /* out of balance, on the unknowns */
-  double *change[3]; /* of displacements in an iteration */
-  double *moved[3];  /* in all iterations of an increment */
-  double reference;  /* the most that loads and supports have exerted at any equilibrium of the stage so far */
-  double exerted;    /* the same, or what they exert now if that is more */
-  /* In dynamics of elastic bodies factors and preconditioners of their stiffness at the start, without displacements, serve for all steps of one length,
-   * until bonds break. Of which these are is state, so that a restart makes the same; whether they are there is not. */
-  double factored_share, factored_mass; /* stiffness_share and mass_factor */
-  int64_t factored_broken;              /* bonds */
-  bool factored;
-  int64_t follows; /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
+  const Control *control; /* NULL: all factors of loads are given */
+  double target;          /* what it is to be at the end of the increment */
+  double *force[3];       /* out of balance, on the unknowns */
+  double *change[3];      /* of displacements in an iteration */
+  double *moved[3];       /* in all iterations of an increment */
+  double more;            /* change of that factor in an iteration */
+  double *pull[3],
+      *pulled
+          [3]; /* forces where the factor of controlled loads grows by 1, and displacements from them; with control only */
+  double reference; /* the most that loads and supports have exerted at any equilibrium of the stage so far */
+  double exerted;   /* the same, or what they exert now if that is more */
   /* of the last increment */
   int64_t iterations, products;
   double unbalanced; /* forces out of balance over the reference */
@@ -103,9 +104,6 @@ NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
-
-/** Rows of what it keeps from one increment to the next. */
-void newton_state(Newton *newton, StateList *list);
 
 /** Sets external forces to what loads say at a time of the run. */
 void newton_apply_loads(const Newton *newton, double time);

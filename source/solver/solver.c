@@ -153,6 +153,25 @@ int solver_enter(Solver *s, int64_t stage, Error *error)
   return take_stage(s, stage, error);
 }
 
+/** Says so where a load has a factor to be found and no stage in which it acts finds it. */
+static int check_controlled(const Solver *s, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int l = 0; l < s->loading->count; ++l) {
+    const Load *load = &s->loading->loads[l];
+    bool found = !history_is_controlled(&load->history);
+    for (int64_t k = load->first; !found && k < s->clock.stages && k < load->behind; ++k) {
+      const SolverType *type = types[type_of(stage_of(s, k))];
+      found = type->controls && type->controls(stage_of(s, k)->of[type_of(stage_of(s, k))]);
+    }
+    if (!found)
+      status = node_error(s->reader->document, load->history.value_node, error,
+                          "controlled: no stage in which the load acts finds its factor; give a stage of 'static' a "
+                          "'control'");
+  }
+  return status;
+}
+
 int solver_create(Solver *s, Text *warning, Error *error)
 {
   bool zeroes = false;
@@ -162,6 +181,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
   for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
   int status = check_laws(s, error);
+  if (!status) status = check_controlled(s, error);
   if (!status) status = solver_enter(s, 0, error);
   if (!status) status = s->type->plan(s, warning, error);
   for (int64_t k = 1; !status && k < s->clock.stages; ++k) {

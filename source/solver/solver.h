@@ -37,10 +37,11 @@ enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 typedef struct Solver {
   Domain *domain;
   Loading *loading;
-  const SectionList *stages; /* of SolveSpec, one at least */
-  const DeckReader *reader;  /* for messages that point into the deck */
-  bool force;                /* accept a chosen step above the stable one */
-  bool trap;                 /* fail where a step divides by zero, overflows or does what is not defined */
+  const SectionList *stages;     /* of SolveSpec, one at least */
+  const SectionList *selections; /* those of the deck that have names */
+  const DeckReader *reader;      /* for messages that point into the deck */
+  bool force;                    /* accept a chosen step above the stable one */
+  bool trap;                     /* fail where a step divides by zero, overflows or does what is not defined */
   Clock clock;
   Ledger ledger;
   const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */
@@ -63,6 +64,8 @@ struct SolverType {
   int (*plan)(Solver *solver, Text *warning, Error *error);
   /** Mistakes of a later stage with this section that can be seen before the run. */
   int (*check)(Solver *solver, const void *spec, Error *error);
+  /** Whether a stage with this section finds the factors of controlled loads. May be NULL: it does not. */
+  bool (*controls)(const void *spec);
   /** Other times are asked for. */
   void (*plan_again)(Solver *solver);
   /** Forces and accelerations of the state held, before the first step. */

@@ -15,6 +15,7 @@ typedef struct StaticSpec {
   double end_time, smallest;
   int64_t increments, bonds_at_once, relaxation_iterations;
   const char *method;
+  const ControlSpec *control;
   NewtonSpec newton;
 } StaticSpec;
 
@@ -67,6 +68,12 @@ static const Field static_fields[] = {
      .range = "[1, 1e9]",
      .meaning = "an increment that takes more by relaxation, at an evaluation of forces each, is tried again with half "
                 "of its length"},
+    {.key = "control",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(StaticSpec, control),
+     .standard = "",
+     .meaning = "what controlled loads are to bring about",
+     .section = &control_section},
     NEWTON_FIELDS(StaticSpec, newton),
 };
 
@@ -83,6 +90,7 @@ typedef struct Static {
   Ledger *ledger;
   Newton newton;
   Relaxation relaxation; /* empty where Newton's method serves */
+  Control control;
   Increment increment;
   double next;  /* length of the increment to be tried next */
   int64_t cuts; /* in the stage */
@@ -92,7 +100,8 @@ static void list_state(Solver *run, StateList *list)
 {
   Static *s = run->own;
   state_add_number(list, "next increment", "time", STATE_COMMITTED, &s->next);
-  newton_state(&s->newton, list);
+  state_add_number(list, "exerted force", "force", STATE_COMMITTED, &s->newton.reference);
+  if (s->spec->control) state_add_number(list, "control at the begin", "length", STATE_COMMITTED, &s->control.from);
   state_add_count(list, "cuts of increments", STATE_COMMITTED, &s->cuts);
 }
 
@@ -101,6 +110,7 @@ static void destroy(Solver *run)
   Static *s = run->own;
   newton_destroy(&s->newton);
   relaxation_destroy(&s->relaxation);
+  control_destroy(&s->control);
   increment_destroy(&s->increment);
   free(s);
   run->own = NULL;
@@ -117,9 +127,18 @@ static int create(Solver *run, Error *error)
                 .ledger = &run->ledger,
                 .newton = {.domain = run->domain, .loading = run->loading}};
   s->newton.spec = &s->spec->newton;
+  const int status = control_create(&s->control, s->spec->control, run->domain, run->reader, run->selections);
+  if (status) return status;
+  if (s->spec->control) s->newton.control = &s->control;
   s->newton.relaxes = !strcmp(s->spec->method, "relaxation");
   if (increment_create(&s->increment, run->domain, error) || newton_create(&s->newton, error)) return BRECCIA_FAILURE;
   return s->newton.relaxes ? relaxation_create(&s->relaxation, &s->newton, error) : BRECCIA_OK;
+}
+
+static bool controls(const void *section)
+{
+  const StaticSpec *spec = section;
+  return spec->control != NULL;
 }
 
 static bool damps(const Solver *run)
@@ -149,7 +168,10 @@ static int check(Solver *run, const void *section, Error *error)
                       "static: nothing holds the body against moving %s as a whole; hold it by a support, a roller, a "
                       "displacement or a spring",
                       motion);
-  return BRECCIA_OK;
+  if (spec->control && !strcmp(spec->method, "relaxation"))
+    return node_error(run->reader->document, section_node(spec, "control"), error,
+                      "control: dynamic relaxation cannot find factors of loads; leave 'method: relaxation' out");
+  return control_check(spec->control, run->loading, run->reader, error);
 }
 
 static void count_steps(const Solver *run)
@@ -212,6 +234,7 @@ static int begin(Solver *run, Error *error)
   run->ledger.damping_work += run->ledger.kinetic; /* of the stage before: it is at rest now */
   run->ledger.kinetic = 0;
   for (int k = 0; k < 3; ++k) memset(p->velocity[k], 0, sizeof(double) * (size_t)p->places);
+  s->control.from = control_shown(&s->control, p);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
   return BRECCIA_OK;
@@ -246,6 +269,9 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
 {
   increment_begin(&s->increment);
   domain_tell_time(s->domain, end, end - s->clock->time);
+  if (s->spec->control)
+    s->newton.target = s->control.from + (s->spec->control->to - s->control.from) * (end - s->clock->stage_time) /
+                                             (s->clock->stage_end - s->clock->stage_time);
   const NewtonOutcome outcome =
       s->newton.relaxes ? relaxation_solve(&s->relaxation, &s->newton, end, s->spec->relaxation_iterations, error)
                         : newton_solve(&s->newton, end, error);
@@ -254,6 +280,7 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
     return outcome;
   }
   book(s);
+  control_accept(s->loading);
   increment_accept(&s->increment, s->newton.moved);
   return outcome;
 }
@@ -337,6 +364,7 @@ const SolverType static_solver = {.name = "static",
                                   .begin = begin,
                                   .advance = advance,
                                   .state = list_state,
+                                  .controls = controls,
                                   .damps = damps,
                                   .foresee = foresee,
                                   .describe = describe,

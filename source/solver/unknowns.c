@@ -46,6 +46,7 @@ void unknowns_each_row(const Unknowns *u, void (*one)(const Constraint *constrai
 typedef struct Spreading {
   const Unknowns *unknowns;
   double time;
+  bool pulls; /* with motions of controlled loads, of factor 1 */
   double *const *v;
 } Spreading;
 
@@ -56,6 +57,7 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
   double *const *u = s->unknowns->domain->particles->displacement;
   double wanted = 0;
   if (c->images) wanted = c->share * along(s->v, c->direction, c->images[n]);
+  if (s->pulls && history_is_controlled(&c->load->history)) wanted += c->value;
   if (!isnan(s->time)) {
     wanted += constraint_displacement(c, s->time) + (c->from ? c->from[n] : 0) - along(u, c->direction, i);
     if (c->images) wanted += c->share * along(u, c->direction, c->images[n]);
@@ -63,9 +65,9 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
   add_along(s->v, c->direction, i, wanted - along(s->v, c->direction, i));
 }
 
-void unknowns_spread(const Unknowns *u, double time, double *const v[3])
+static void spread(const Unknowns *u, Spreading *s)
 {
-  Spreading s = {u, time, v};
+  double *const *v = s->v;
   clear_flat(u, v);
   for (int k = 0; k < 3; ++k) {
     const TieGroups *ties = &u->loading->ties[k];
@@ -73,7 +75,17 @@ void unknowns_spread(const Unknowns *u, double time, double *const v[3])
       for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n)
         v[k][ties->places[n]] = v[k][ties->places[ties->first[g]]];
   }
-  unknowns_each_row(u, spread_row, &s);
+  unknowns_each_row(u, spread_row, s);
+}
+
+void unknowns_spread(const Unknowns *u, double time, double *const v[3])
+{
+  spread(u, &(Spreading){u, time, false, v});
+}
+
+void unknowns_spread_pull(const Unknowns *u, double *const v[3])
+{
+  spread(u, &(Spreading){u, NAN, true, v});
 }
 
 /* ---- its transpose ---- */

@@ -14,6 +14,9 @@ HISTORY(table, "table", FIELD_PAIRS, "1", NULL,
         "factors at times, straight lines between them, constant before and after")
 HISTORY_SECTION(sine, "sine", "harmonic")
 HISTORY_SECTION(file, "file", "numbers from a file: a record of an earthquake, a column of measurements")
+HISTORY(controlled, "controlled", FIELD_FLAG, NULL, NULL,
+        "the factor is found by a stage of 'static' so that what its 'control' measures is as prescribed; 0 before, "
+        "and kept in stages without control")
 HISTORY_LIST(product, "product", "the product of several histories, like a sine times a table")
 HISTORY_LIST(sum, "sum", "the sum of several histories")
 #undef HISTORY_SECTION

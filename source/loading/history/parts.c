@@ -13,6 +13,11 @@ int parts_create(History *h, const DeckReader *reader)
   int status = BRECCIA_OK;
   while (h->part_count < list->count && !status) {
     status = history_create(&h->parts[h->part_count], list->items[h->part_count], reader);
+    if (!status && history_is_controlled(&h->parts[h->part_count]))
+      status = node_error(reader->document, h->value_node, reader->error,
+                          "%s: a factor that is found by control has no place in it; let the load have 'history: "
+                          "{controlled: yes}' alone",
+                          h->value_node->key);
     ++h->part_count;
   }
   return status;
