@@ -63,8 +63,9 @@ def between(mark, text, page="README.md"):
     """Puts a text between the marks of a page."""
     old = open(page).read()
     begin, end = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
+    new = old[:old.index(begin) + len(begin)] + "\n" + text + "\n\n" + old[old.index(end):]
     with open(page, "w") as file:
-        file.write(old[:old.index(begin) + len(begin)] + "\n" + text + "\n\n" + old[old.index(end):])
+        file.write(new)
 
 
 def chart(name, title, x, y, curves, more=""):

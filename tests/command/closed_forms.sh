@@ -1,4 +1,4 @@
-# The examples whose answers are known in closed form, on coarse lattices.
+# The examples whose answers are known otherwise, on coarse lattices.
 . "$(dirname "$0")/common.sh"
 cd "$work" || exit 1
 
@@ -31,4 +31,8 @@ near "stress above the hole" "$(value plate/edge 9)" "$(exact "1000 * (1 + 0.5 /
 # The opening to which rest.yaml comes by damping, in 6000 steps
 run plate-with-crack/static
 near "opening of the crack" "$(value static/mouth 4)" 0.0033157288 1e-6
+# Prandtl: (2 + pi) s_u on 1 m x 1 m, s_u = 100 kPa; 5 particles under half of the footing carry 12 % more
+run footing/footing --set "variables.dx=200 mm" --set "variables.settlement=9 mm" --set "solve.static.increments=6"
+near "limit load of the footing" "$(cut -d, -f4 footing/footing.csv | sort -gr | head -1)" 514.16 0.13
+
 finish
