@@ -35,4 +35,10 @@ near "opening of the crack" "$(value static/mouth 4)" 0.0033157288 1e-6
 run footing/footing --set "variables.dx=200 mm" --set "variables.settlement=9 mm" --set "solve.static.increments=6"
 near "limit load of the footing" "$(cut -d, -f4 footing/footing.csv | sort -gr | head -1)" 514.16 0.13
 
+# Slip circles: 1.47
+run slope/slope --set "variables.dx=2 m"
+equal "the slope stands at 1.3" "$(json slope/summary.json completed)" true
+"$breccia" run "$source/examples/slope/slope.yaml" --quiet --output fallen --set "variables.dx=2 m" --set "variables.factor=1.6" > out 2>&1
+equal "the slope falls at 1.6: status" $? 1
+contains "the slope falls at 1.6" "$(cat out)" "static: no equilibrium"
 finish
