@@ -130,6 +130,10 @@ void domain_evaluate(Domain *domain);
 /** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
 void domain_show_states(Domain *domain);
 
+/** Lets linearised steps take the secant of bonds whose slope is below zero, or no longer: those who iterate come on by it where bonds soften and
+ *  unload in turn, if slowly. */
+void domain_take_secants(Domain *domain, bool take);
+
 /** Evaluates forces at the displacements held and keeps what linearised steps need of that: tangents of laws among it. */
 int domain_linearise(Domain *domain, Error *error);
 /** K v: changes of internal forces per volume with changes v of the displacements, at those at which the domain was linearised, which are

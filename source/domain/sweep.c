@@ -306,6 +306,11 @@ void domain_follow(Domain *d)
 
 /* ---- linearised steps ---- */
 
+void domain_take_secants(Domain *d, bool take)
+{
+  for (int r = 0; r < d->region_count; ++r) d->regions[r].points.secants = take;
+}
+
 int domain_linearise(Domain *d, Error *error)
 {
   for (int r = 0; r < d->region_count; ++r)

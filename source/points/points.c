@@ -413,6 +413,7 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
   } else if (m->history_values <= MOST_VALUES) {
     stress = stress_from(points, row, history, strain, scratch, tangent);
   }
+  if (tangent && points->secants && *tangent < 0 && strain * stress > 0) *tangent = stress / strain;
   if (tangent && points->elastic_weight > 0)
     *tangent = (1 - points->elastic_weight) * *tangent + points->elastic_weight * material_young(m);
   return stress;

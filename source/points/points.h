@@ -43,6 +43,7 @@ typedef struct Points {
   double *elastic_tangent; /* [materials][36] of linear laws theirs, of others by their first moduli */
   double elastic_weight;   /* of elastic tangents in those that are told, 0 to 1; the rest is as kept */
   bool keeps_tangents;
+  bool secants; /* points_try tells the secant instead of a slope below zero */
   uint8_t
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
   int elastic_stage;      /* laws respond elastically while it is set */

@@ -224,7 +224,41 @@ static bool has_converged(const Newton *n, double correction, double work, doubl
   return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
 }
 
-NewtonOutcome newton_solve(Newton *n, double time, Error *error)
+/** How an increment comes on. */
+typedef struct Pace {
+  double least;    /* forces out of balance so far */
+  int64_t since;   /* iterations that have not halved them */
+  bool by_secants; /* of bonds that soften */
+  double enough;   /* with these forces out of balance tangents are tried again */
+} Pace;
+
+/** Where bonds soften and unload in turn corrections by tangents go round in circles, or to a state that the body does not stay in. Secants, which are
+ *  nearly the same in both, lead to one in which it does, if slowly; near to it tangents are tried again.
+ *  @return whether the slopes to be taken are others from now on */
+static bool choose_slopes(Newton *n, Pace *pace, double force)
+{
+  enum { PATIENCE = 4 };
+  const double near = 1e-3;
+  const bool were = pace->by_secants;
+  if (!were) {
+    const bool halved = force < 0.5 * pace->least;
+    pace->since = halved ? 0 : pace->since + 1;
+    if (halved) pace->least = force;
+    const bool again = pace->enough > 0; /* they were tried near to it: one step must do better */
+    if (pace->since >= (again ? 1 : PATIENCE)) {
+      pace->by_secants = true;
+      pace->enough = near * fmin(force, again ? pace->enough : force);
+    }
+  } else if (force < pace->enough) {
+    pace->by_secants = false;
+    pace->least = force;
+    pace->since = 0;
+  }
+  if (were != pace->by_secants) domain_take_secants(n->domain, pace->by_secants);
+  return were != pace->by_secants;
+}
+
+static NewtonOutcome solve(Newton *n, double time, Error *error)
 {
   const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
@@ -241,7 +275,9 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
     n->reference = n->exerted;
     return NEWTON_CONVERGED;
   }
-  for (n->iterations = 1; n->iterations <= n->spec->iterations; ++n->iterations) {
+  enum { LONGER = 10 }; /* secants come on by a fifth of what is left in an iteration */
+  Pace pace = {.least = INFINITY};
+  for (n->iterations = 1; n->iterations <= n->spec->iterations * (pace.enough > 0 ? LONGER : 1); ++n->iterations) {
     LinearRecord linear = {0};
     if (linear_solver_prepare(&n->linear, error)) return NEWTON_FAILED;
     for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
@@ -254,11 +290,8 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
     if (n->control && (outcome = follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
-    /* Where bonds soften and unload in turn full corrections may go round in circles: a part now and then leads out of them. */
-    enum { AFTER = 4, EVERY = 3 };
-    const bool part = n->control && n->iterations > AFTER && n->iterations % EVERY == EVERY - 1;
-    double share = part ? 0.6 : 1, work;
-    move(n, share);
+    double share = 1, work;
+    move(n, 1);
     outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     before = force;
@@ -273,8 +306,16 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
       return NEWTON_CONVERGED;
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
+    if (choose_slopes(n, &pace, force) && domain_linearise(n->domain, error)) return NEWTON_FAILED;
   }
   return NEWTON_SLOW;
+}
+
+NewtonOutcome newton_solve(Newton *n, double time, Error *error)
+{
+  const NewtonOutcome outcome = solve(n, time, error);
+  domain_take_secants(n->domain, false);
+  return outcome;
 }
 
 const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words, size_t size)
