@@ -131,8 +131,8 @@ void domain_evaluate(Domain *domain);
 void domain_show_states(Domain *domain);
 
 /** Lets linearised steps take the secant of bonds whose slope is below zero, or no longer: those who iterate come on by it where bonds soften and
- *  unload in turn, if slowly. */
-void domain_take_secants(Domain *domain, bool take);
+ *  unload in turn, if slowly. @return whether the body has bonds of such laws */
+bool domain_take_secants(Domain *domain, bool take);
 
 /** Evaluates forces at the displacements held and keeps what linearised steps need of that: tangents of laws among it. */
 int domain_linearise(Domain *domain, Error *error);

@@ -306,9 +306,14 @@ void domain_follow(Domain *d)
 
 /* ---- linearised steps ---- */
 
-void domain_take_secants(Domain *d, bool take)
+bool domain_take_secants(Domain *d, bool take)
 {
-  for (int r = 0; r < d->region_count; ++r) d->regions[r].points.secants = take;
+  bool any = false;
+  for (int r = 0; r < d->region_count; ++r) {
+    d->regions[r].points.secants = take;
+    any |= d->regions[r].points.components == 1;
+  }
+  return any;
 }
 
 int domain_linearise(Domain *d, Error *error)

@@ -245,16 +245,16 @@ static bool choose_slopes(Newton *n, Pace *pace, double force)
     pace->since = halved ? 0 : pace->since + 1;
     if (halved) pace->least = force;
     const bool again = pace->enough > 0; /* they were tried near to it: one step must do better */
-    if (pace->since >= (again ? 1 : PATIENCE)) {
+    if (pace->since >= (again ? 1 : PATIENCE) && domain_take_secants(n->domain, true)) {
       pace->by_secants = true;
       pace->enough = near * fmin(force, again ? pace->enough : force);
     }
   } else if (force < pace->enough) {
+    domain_take_secants(n->domain, false);
     pace->by_secants = false;
     pace->least = force;
     pace->since = 0;
   }
-  if (were != pace->by_secants) domain_take_secants(n->domain, pace->by_secants);
   return were != pace->by_secants;
 }
 
