@@ -164,7 +164,7 @@ static void list_state(Solver *run, StateList *list)
   state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration, places);
   state_add_vector(list, "damping force", "force", STATE_COMMITTED, s->drag, places);
   state_add_number(list, "next step", "time", STATE_COMMITTED, &s->next);
-  state_add_number(list, "exerted force", "force", STATE_COMMITTED, &s->newton.reference);
+  newton_state(&s->newton, list);
   state_add_number(list, "largest displacements", "length", STATE_COMMITTED, &s->shift);
   state_add_count(list, "cuts of steps", STATE_COMMITTED, &s->cuts);
 }
@@ -195,6 +195,8 @@ static int create(Solver *run, Error *error)
                   .newton = {.domain = run->domain, .loading = run->loading},
                   .stable = INFINITY};
   s->newton.spec = &s->spec->newton;
+  s->beside = implicit_forces(s);
+  s->newton.beside = &s->beside;
   run->ledger.wave = ledger_wave_speed(run->domain);
   const int64_t places = run->domain->particles->places;
   const bool made =

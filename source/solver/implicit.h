@@ -40,6 +40,9 @@ typedef struct Implicit {
 /** The longest step that the stage may take. */
 double implicit_longest(const ImplicitSpec *spec);
 
+/** Inertia and damping, for Newton's method. */
+NewtonForces implicit_forces(Implicit *solver);
+
 /** Velocities, accelerations and damping of the state held. */
 int implicit_begin(Solver *solver, Error *error);
 int implicit_advance(Solver *solver, Text *warning, Error *error);

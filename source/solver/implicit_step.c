@@ -136,6 +136,11 @@ static double add_forces(void *context, double *const moved[3], double *const fo
   return size;
 }
 
+NewtonForces implicit_forces(Implicit *s)
+{
+  return (NewtonForces){s, prepare_forces, add_forces};
+}
+
 /* ---- books ---- */
 
 static double kinetic_energy(const Particles *p, double *const velocity[3])
@@ -268,8 +273,6 @@ static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *err
   LinearSolver *linear = &s->newton.linear;
   linear->stiffness_share = spec->damping.stiffness * rate;
   linear->mass_factor = 1 / ((1 + spec->alpha) * spec->beta * dt * dt) + spec->damping.mass * rate;
-  s->beside = (NewtonForces){s, prepare_forces, add_forces};
-  s->newton.beside = &s->beside;
   increment_begin(&s->increment);
   domain_tell_time(s->domain, end, dt);
   domain_mix_tangents(s->domain, linear->stiffness_share / (1 + linear->stiffness_share));

@@ -151,6 +151,63 @@ static NewtonOutcome follow_control(Newton *n, double accuracy, double *work, Er
   return NEWTON_CONVERGED;
 }
 
+void newton_state(Newton *n, StateList *list)
+{
+  state_add_number(list, "exerted force", "force", STATE_COMMITTED, &n->reference);
+  if (!n->beside) return;
+  state_add_number(list, "stiffness factored", "1", STATE_COMMITTED, &n->factored_share);
+  state_add_number(list, "mass factored", "1", STATE_COMMITTED, &n->factored_mass);
+  state_add_count(list, "broken bonds when factored", STATE_COMMITTED, &n->factored_broken);
+  state_add_count(list, "stiffness follows", STATE_COMMITTED, &n->follows);
+}
+
+static bool keeps_factors(const Newton *n)
+{
+  return n->beside && !n->follows && domain_is_elastic(n->domain);
+}
+
+/** Exchanges the displacements held for others. */
+static void exchange(const Newton *n, double *displacement[3])
+{
+  for (int k = 0; k < 3; ++k) {
+    double *held = n->domain->particles->displacement[k];
+    n->domain->particles->displacement[k] = displacement[k];
+    displacement[k] = held;
+  }
+}
+
+/** Factors or a preconditioner for the next linear equations; the changes are 0 afterwards. Assembling and factoring the matrix of a plate takes tens of
+ *  times as long as a step with factors that are there. */
+static int prepare(Newton *n, Error *error)
+{
+  LinearSolver *l = &n->linear;
+  const Domain *d = n->domain;
+  for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)d->particles->places);
+  if (!keeps_factors(n)) {
+    n->factored = false;
+    return linear_solver_prepare(l, error);
+  }
+  const double share = l->stiffness_share, mass = l->mass_factor;
+  const bool same = fabs(mass - n->factored_mass) <= 1e-9 * mass &&
+                    fabs(share - n->factored_share) <= 1e-9 * (1 + share) && n->factored_broken == d->broken_count;
+  if (same && n->factored) return BRECCIA_OK;
+  if (!same) {
+    n->factored_share = share;
+    n->factored_mass = mass;
+    n->factored_broken = d->broken_count;
+  }
+  l->stiffness_share = n->factored_share;
+  l->mass_factor = n->factored_mass;
+  exchange(n, n->change);
+  int status = domain_linearise(n->domain, error);
+  if (!status) status = linear_solver_prepare(l, error);
+  exchange(n, n->change);
+  l->stiffness_share = share;
+  l->mass_factor = mass;
+  n->factored = !status;
+  return status ? status : domain_linearise(n->domain, error);
+}
+
 /** Adds a share of the change to the displacements. */
 static void move(Newton *n, double share)
 {
@@ -267,6 +324,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = add_motions(n, time) || (n->control && control_shown(n->control, p) != n->target);
+  const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
   double before = 0, first_work = 0;
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   double force = size_of(n, n->force);
@@ -279,8 +337,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   Pace pace = {.least = INFINITY};
   for (n->iterations = 1; n->iterations <= n->spec->iterations * (pace.enough > 0 ? LONGER : 1); ++n->iterations) {
     LinearRecord linear = {0};
-    if (linear_solver_prepare(&n->linear, error)) return NEWTON_FAILED;
-    for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
+    if (prepare(n, error)) return NEWTON_FAILED;
     const double accuracy = n->exerted > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
     if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error))
       return NEWTON_FAILED;
@@ -307,6 +364,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
     if (choose_slopes(n, &pace, force) && domain_linearise(n->domain, error)) return NEWTON_FAILED;
+    if (keeps_factors(n) && force > enough * before) n->follows = 1;
   }
   return NEWTON_SLOW;
 }

@@ -87,6 +87,13 @@ typedef struct Newton {
           [3]; /* forces where the factor of controlled loads grows by 1, and displacements from them; with control only */
   double reference; /* the most that loads and supports have exerted at any equilibrium of the stage so far */
   double exerted;   /* the same, or what they exert now if that is more */
+  /* In dynamics of elastic bodies factors and preconditioners of their stiffness at the start, without displacements, serve for all steps of one length,
+   * until bonds break. Of which these are is state, so that a restart makes the same; whether they are there is not. */
+  double factored_share, factored_mass; /* stiffness_share and mass_factor */
+  int64_t factored_broken;              /* bonds */
+  bool factored;
+  int64_t
+      follows; /* 1: the body has turned or stretched too much for them, and they are made anew in every iteration */
   /* of the last increment */
   int64_t iterations, products;
   double unbalanced; /* forces out of balance over the reference */
@@ -104,6 +111,9 @@ NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
+
+/** Rows of what it keeps from one increment to the next. */
+void newton_state(Newton *newton, StateList *list);
 
 /** Sets external forces to what loads say at a time of the run. */
 void newton_apply_loads(const Newton *newton, double time);

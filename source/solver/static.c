@@ -100,7 +100,7 @@ static void list_state(Solver *run, StateList *list)
 {
   Static *s = run->own;
   state_add_number(list, "next increment", "time", STATE_COMMITTED, &s->next);
-  state_add_number(list, "exerted force", "force", STATE_COMMITTED, &s->newton.reference);
+  newton_state(&s->newton, list);
   if (s->spec->control) state_add_number(list, "control at the begin", "length", STATE_COMMITTED, &s->control.from);
   state_add_count(list, "cuts of increments", STATE_COMMITTED, &s->cuts);
 }
