@@ -119,21 +119,21 @@ static int prepare_forces(void *context, double *const moved[3], double time, Er
   return find_drag(s, s->velocity, s->drag_then, error);
 }
 
-/** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha); its scale is also that of the inertia with which the step began. */
+/** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha), beside the inertia: nothing else acts on a body that flies. */
 static double add_forces(void *context, double *const moved[3], double *const force[3])
 {
   Implicit *s = context;
   const Particles *p = s->domain->particles;
+  const Unknowns *u = &s->newton.linear.unknowns;
   const double alpha = s->spec->alpha, weight = 1 / (1 + alpha);
-  double size = 0;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      const double mass = p->density[i] * p->volume[i], inertia = mass * s->acceleration[k][i];
       const double before = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]) - s->drag[k][i];
-      force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + mass * acceleration_then(s, moved, k, i));
-      size += inertia * inertia;
+      s->result[k][i] = p->density[i] * p->volume[i] * acceleration_then(s, moved, k, i);
+      force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + s->result[k][i]);
     }
-  return size;
+  unknowns_gather(u, s->result);
+  return unknowns_product(u, s->result, s->result);
 }
 
 NewtonForces implicit_forces(Implicit *s)

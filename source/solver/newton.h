@@ -65,7 +65,7 @@ typedef struct NewtonForces {
    *  @param[in] moved  changes of displacements since the increment began; @param[in] time  at its end */
   int (*prepare)(void *context, double *const moved[3], double time, Error *error);
   /** Adds the forces on all places.
-   *  @return the square of the size of those on the unknowns beside which forces out of balance are small */
+   *  @return the square of the size of forces beside which those out of balance are small, if these are more than loads and reactions */
   double (*add)(void *context, double *const moved[3], double *const force[3]);
 } NewtonForces;
 
