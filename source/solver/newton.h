@@ -92,8 +92,7 @@ typedef struct Newton {
   double factored_share, factored_mass; /* stiffness_share and mass_factor */
   int64_t factored_broken;              /* bonds */
   bool factored;
-  int64_t
-      follows; /* 1: the body has turned or stretched too much for them, and they are made anew in every iteration */
+  int64_t follows; /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
   /* of the last increment */
   int64_t iterations, products;
   double unbalanced; /* forces out of balance over the reference */
