@@ -109,6 +109,9 @@ typedef struct breccia_law {
   /** How its deviator flows, if that and `moduli` say all. NULL: they do not. @return 0, or 1 with the reason in words */
   int (*deviator)(const void *constants, breccia_deviator *deviator, char *reason, size_t reason_size);
   int takes_time; /* 1: stress depends on how long steps take */
+  /** Of a law that softens until it has spent a fracture energy: elastic energy per volume of a point pulled in one direction as it begins to.
+   *  Zero-energy control then fades with the stiffness that a point has left. NULL: it does not soften. */
+  double (*softening_energy)(const void *constants);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

@@ -129,6 +129,7 @@ int material_prepare(Material *material, const breccia_law *law, const double *v
     return BRECCIA_USER_ERROR;
   }
   law->moduli(material->constants, &material->bulk, &material->shear);
+  if (law->softening_energy) material->softening_energy = law->softening_energy(material->constants);
   material->history_values = law->history_values ? law->history_values(material->constants) : 0;
   return BRECCIA_OK;
 }

@@ -26,6 +26,7 @@ typedef struct Material {
   const char *law_name; /* as decks call it, also where strains have limits */
   void *constants;      /* owned */
   double density, bulk, shear;
+  double softening_energy; /* as the law says; 0: it does not soften */
   int history_values;
   Remote *remote; /* owned; NULL: the law is in this program */
 } Material;

@@ -318,6 +318,7 @@ BRECCIA_CLONES
 static int64_t respond(void *formulation, const Sweep *sweep)
 {
   const Correspondence *c = formulation;
+  if (c->fading && !sweep->at && !sweep->no_law) correspondence_fade(c, sweep);
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES)
     if (sweep->at)
       respond_lanes(c, sweep, place, true);
@@ -417,6 +418,8 @@ const FormulationType formulation_correspondence = {
     .point_count = correspondence_point_count,
     .point = correspondence_point,
     .shares = correspondence_shares,
+    .state = correspondence_state,
+    .commit = correspondence_commit,
     .stored_energy = correspondence_stored_energy,
     .elongation = correspondence_elongation,
     .keep_turns = correspondence_keep_turns,

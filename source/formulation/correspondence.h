@@ -24,6 +24,8 @@ typedef enum Control { CONTROL_NONE, CONTROL_UNIFORM, CONTROL_SCALAR, CONTROL_TE
 enum { MOST_PULLS = 9 + 3 + 6 };
 enum { CORRESPONDENCE_SHOWN = 8 }; /* of a place, where bonds are stored: x, y, z, 0, V u, V v, V w, V */
 
+typedef struct Fading Fading; /* of the control where laws soften (correspondence_fading.c) */
+
 typedef struct Correspondence {
   const Particles *particles;
   const Family *family;
@@ -32,6 +34,7 @@ typedef struct Correspondence {
   const uint8_t *foreign; /* [slices], or NULL */
   bool plane, finite;
   Control control;
+  Control widest; /* for which there is room: of a uniform control that may fade it is CONTROL_SCALAR */
   double strength;
   ShapeTable shapes;   /* K^-1, m, w_sum */
   double *state[9];    /* Q */
@@ -39,6 +42,7 @@ typedef struct Correspondence {
   double uniform;      /* C, if it is uniform */
   double *hold[6];     /* C: one component, or six, or none */
   double *held[3];     /* C u, if neighbours read it */
+  Fading *fading;      /* NULL: C stays as it is */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull
@@ -72,6 +76,12 @@ static inline bool hold_is_read(Control control)
   return control == CONTROL_SCALAR || control == CONTROL_TENSOR;
 }
 
+/** Numbers that sums along lattice rows take for each place of a slice. */
+static inline int pull_count(Control control)
+{
+  return 9 + (hold_is_read(control) ? 3 + hold_components(control) : 0);
+}
+
 /** Numbers of a row that shows a particle's response: Q and x, then C u and C if they are read, in whole vectors. */
 static inline int state_length(Control control)
 {
@@ -96,6 +106,15 @@ void correspondence_half_state(const void *formulation, double *const *at, int64
 int64_t correspondence_point_count(const void *formulation);
 int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
 int correspondence_linearise(void *formulation, Error *error);
+
+/* How C fades as points soften (correspondence_fading.c). */
+bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts);
+int correspondence_create_fading(Correspondence *c, Error *error);
+void correspondence_destroy_fading(Correspondence *c);
+void correspondence_fade(const Correspondence *c, const Sweep *sweep);
+void correspondence_commit(void *formulation, bool well);
+void correspondence_state(void *formulation, const char *part, StateList *list);
+size_t correspondence_fading_bytes(const Correspondence *c);
 
 /** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
  *  1 + (G - G^T) / 2. Written less 1. */

@@ -96,6 +96,7 @@ void correspondence_destroy(void *formulation)
     places_free(&c->row_displacement[kind]);
     places_free(&c->row_pull[kind]);
   }
+  correspondence_destroy_fading(c);
   places_free(&c->row);
   places_free(&c->shown);
   places_free(&c->gradients);
@@ -232,22 +233,28 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     return NULL;
   }
   team_each(c->particles->slices, set_hold, c);
+  const bool may_fade = correspondence_may_fade(c, parts);
+  c->widest = c->control;
   if (is_uniform(c)) {
     c->control = CONTROL_UNIFORM;
     c->uniform = c->hold[0][c->particles->place_of[0]];
-    places_free(&c->hold[0]);
+    if (!may_fade) {
+      c->widest = CONTROL_UNIFORM;
+      places_free(&c->hold[0]);
+    }
   }
-  c->pulls = 9 + (hold_is_read(c->control) ? 3 + hold_components(c->control) : 0);
+  c->pulls = pull_count(c->control);
   for (int kind = 0; kind < c->family->rows.kinds; ++kind) {
     failed |= !(c->row_displacement[kind] = places_array(6 * places, "row sums", error));
-    failed |= !(c->row_pull[kind] = places_array(c->pulls * places, "row sums", error));
+    failed |= !(c->row_pull[kind] = places_array(pull_count(c->widest) * places, "row sums", error));
   }
   if (c->family->stored_slots) {
-    failed |= !(c->row = places_array(state_length(c->control) * places, "force states", error));
+    failed |= !(c->row = places_array(state_length(c->widest) * places, "force states", error));
     failed |= !(c->shown = places_array(CORRESPONDENCE_SHOWN * places, "force states", error));
   }
-  for (int k = 0; k < 3 && hold_is_read(c->control); ++k)
+  for (int k = 0; k < 3 && hold_is_read(c->widest); ++k)
     failed |= !(c->held[k] = places_array(places, "zero-energy control", error));
+  if (may_fade) failed |= correspondence_create_fading(c, error) != BRECCIA_OK;
   if (failed) {
     correspondence_destroy(c);
     return NULL;
@@ -267,10 +274,11 @@ size_t correspondence_bytes(const void *formulation)
 {
   const Correspondence *c = formulation;
   size_t numbers =
-      9 + 3 + (size_t)hold_components(c->control) + (hold_is_read(c->control) ? 3 : 0) + (c->turns ? 9 : 0);
-  numbers += (size_t)(c->family->rows.kinds * (6 + c->pulls) + (c->row ? state_length(c->control) + 8 : 0));
+      9 + 3 + (size_t)hold_components(c->widest) + (hold_is_read(c->widest) ? 3 : 0) + (c->turns ? 9 : 0);
+  numbers +=
+      (size_t)(c->family->rows.kinds * (6 + pull_count(c->widest)) + (c->row ? state_length(c->widest) + 8 : 0));
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
-         (size_t)c->particles->count * sizeof(int32_t);
+         correspondence_fading_bytes(c) + (size_t)c->particles->count * sizeof(int32_t);
 }
 
 /** Only the bonds of contact itself cross the face (docs/theory.md 2, pairs that a cut parts). */

@@ -86,6 +86,12 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   return 1;
 }
 
+static double softening_energy(const void *constants)
+{
+  const DamagePlasticity *c = constants;
+  return c->tension * c->tension / (2 * elasticity_young(&c->elastic));
+}
+
 static int history_values(const void *constants)
 {
   (void)constants;
@@ -289,6 +295,7 @@ const breccia_law law_damage_plasticity = {
     .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
+    .softening_energy = softening_energy,
     .history_values = history_values,
     .history_name = history_name,
     .update = update,

@@ -49,6 +49,12 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   return 1;
 }
 
+static double softening_energy(const void *constants)
+{
+  const Mazars *c = constants;
+  return elasticity_young(&c->elastic) * c->threshold * c->threshold / 2;
+}
+
 static int history_values(const void *constants)
 {
   (void)constants;
@@ -166,6 +172,7 @@ const breccia_law law_mazars = {
     .components = 6,
     .prepare = prepare,
     .moduli = elasticity_moduli,
+    .softening_energy = softening_energy,
     .history_values = history_values,
     .history_name = history_name,
     .begin = begin,

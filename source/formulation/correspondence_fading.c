@@ -1,0 +1,264 @@
+/* Control of zero-energy modes that fades where the law of a point softens (docs/theory.md 8.7): it would hold cracks together for good.
+ *
+ * Of what C is in families with all their bonds a point keeps the factor
+ *   f = least so far of  s : e / e : C_0 : e  times  min(1, w_most / w),
+ * the stiffness that the point has left (C_0 the law's first moduli), and what the control may store: w = sum weight z . C z / 2, z = eta - G xi,
+ * is what it would store as it was, w_most a share of the energy with which the law begins to soften. The second factor is for points that a
+ * crack's far edge passes, whose strain is small where few of their bonds bridge a wide crack. It is asked for only in families in which a
+ * factor has fallen before.
+ *
+ * Each point has its own factor for all its bonds, so that z stays what is left by the best fit, and forces follow from an energy. A step takes the
+ * factors that were committed with the one before: forces are then linear in what they were, and the tangent symmetric. */
+#include "formulation/correspondence.h"
+
+#include "base/memory.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double most_stored = 0.125; /* of the energy with which a law begins to soften, for control */
+static const double roundings = 1e-6;    /* points with all their stiffness but this have lost none */
+
+/** Of a slice. */
+enum { TRIED = 1, SOFTENED = 2, BESIDE = 4 }; /* a factor was below 1 in some trial; is below 1; is so of a neighbour */
+
+struct Fading {
+  double *used, *next; /* [places] factors in the forces of the committed state, and in those of the step that follows */
+  double *found;       /* [places] that step's own, for the one after it */
+  double *whole[6];    /* C where nothing has faded; NULL of a uniform control */
+  uint8_t *mark;       /* [slices] where it is 0, all factors are 1 */
+};
+
+bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
+{
+  bool softens = false;
+  for (int64_t slice = 0; slice < c->particles->slices; ++slice)
+    softens |= !is_foreign(c->foreign, slice * SLICE) && parts->materials[parts->material[slice]].softening_energy > 0;
+  return softens && c->control != CONTROL_NONE;
+}
+
+int correspondence_create_fading(Correspondence *c, Error *error)
+{
+  const int64_t places = c->particles->places;
+  Fading *f = c->fading = memory_zeroed(1, sizeof *f, "zero-energy control", error);
+  if (!f) return BRECCIA_FAILURE;
+  f->used = places_array(places, "zero-energy control", error);
+  f->next = places_array(places, "zero-energy control", error);
+  f->found = places_array(places, "zero-energy control", error);
+  f->mark = memory_zeroed((size_t)c->particles->slices, 1, "zero-energy control", error);
+  bool failed = !f->used || !f->next || !f->found || !f->mark;
+  for (int k = 0; k < hold_components(c->control); ++k) {
+    failed |= !(f->whole[k] = places_array(places, "zero-energy control", error));
+    if (f->whole[k]) memcpy(f->whole[k], c->hold[k], sizeof(double) * (size_t)places);
+  }
+  for (int64_t i = 0; i < places && !failed; ++i) f->used[i] = f->next[i] = f->found[i] = 1;
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+void correspondence_destroy_fading(Correspondence *c)
+{
+  Fading *f = c->fading;
+  if (!f) return;
+  places_free(&f->used);
+  places_free(&f->next);
+  places_free(&f->found);
+  for (int k = 0; k < 6; ++k) places_free(&f->whole[k]);
+  free(f->mark);
+  free(f);
+  c->fading = NULL;
+}
+
+size_t correspondence_fading_bytes(const Correspondence *c)
+{
+  if (!c->fading) return 0;
+  const size_t numbers = 3 + (c->fading->whole[0] ? (size_t)hold_components(c->widest) : 0);
+  return (size_t)c->particles->places * numbers * sizeof(double) + (size_t)c->particles->slices;
+}
+
+/** C of a slice's places, by factors. */
+static void set_hold(const Correspondence *c, int64_t slice, const double *factor)
+{
+  const Fading *f = c->fading;
+  for (int k = 0; k < hold_components(c->control); ++k)
+    for (int64_t i = slice * SLICE; i < (slice + 1) * SLICE; ++i)
+      c->hold[k][i] = (f->whole[k] ? f->whole[k][i] : c->uniform) * factor[i];
+}
+
+/* ---- what a step finds ---- */
+
+/** Stiffness that four points have left, over their first one. */
+LANES_INLINE Lanes stiffness_left(const Material *m, const Sweep *sweep, int64_t here)
+{
+  Lanes strain[6], work = {0}, deviators = {0};
+  for (int k = 0; k < 6; ++k) {
+    strain[k] = lanes_load(sweep->strain[k] + here);
+    work += lanes_load(sweep->stress[k] + here) * strain[k];
+  }
+  const Lanes volume = strain[XX] + strain[YY] + strain[ZZ], mean = volume * lanes_set(1.0 / 3);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes deviator = strain[k] - mean;
+    deviators += lanes_set(2) * deviator * deviator + strain[k + 3] * strain[k + 3];
+  }
+  const Lanes elastic = lanes_set(m->bulk) * volume * volume + lanes_set(m->shear) * deviators;
+  const LaneMask lost = work < lanes_set(1 - roundings) * elastic;
+  return lanes_choose(lost, lanes_greatest(lanes_set(0), work / elastic), lanes_set(1));
+}
+
+/** What the control of four places would store per volume if nothing of it had faded. @param[in] g  [9][BATCH] G */
+LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const double *g)
+{
+  const Family *f = c->family;
+  const int64_t slice = place / SLICE;
+  const int half = (int)(place % SLICE / LANES);
+  double *const *u = c->particles->displacement;
+  Lanes own[3], gradient[9], whole[6], sum = {0};
+  for (int k = 0; k < 3; ++k) own[k] = lanes_load(u[k] + place);
+  for (int k = 0; k < 9; ++k) gradient[k] = lanes_load(g + k * BATCH);
+  for (int k = 0; k < hold_components(c->widest); ++k)
+    whole[k] = c->fading->whole[k] ? lanes_load(c->fading->whole[k] + place) : lanes_set(c->uniform);
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    Lanes xi[3] = {{0}}, z[3] = {{0}}, weight = {0}, square = {0};
+    if (slot < f->stored[slice]) {
+      const Pattern *row = &f->patterns[f->pattern[slot]];
+      const int64_t there = f->base[slot] + LANES * half;
+      weight = lanes_set(row->weight);
+      for (int k = 0; k < 3; ++k) {
+        xi[k] = lanes_set(row->xi[k]);
+        z[k] = lanes_load(u[k] + there) - own[k];
+      }
+    } else {
+      for (int lane = 0; lane < LANES; ++lane) {
+        if (!(f->intact[slot] >> (LANES * half + lane) & 1)) continue;
+        const Bond bond = family_bond(f, slice, slot, LANES * half + lane);
+        weight[lane] = bond.weight;
+        for (int k = 0; k < 3; ++k) {
+          xi[k][lane] = bond.xi[k];
+          z[k][lane] = u[k][bond.neighbour] - u[k][place + lane];
+        }
+      }
+    }
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) z[r] -= gradient[3 * r + k] * xi[k];
+    for (int r = 0; r < 3; ++r) {
+      if (c->widest == CONTROL_SCALAR) square += whole[0] * z[r] * z[r];
+      for (int k = 0; c->widest == CONTROL_TENSOR && k < 3; ++k) square += whole[symmetric_place[3 * r + k]] * z[r] * z[k];
+    }
+    sum += lanes_where(lanes_half(f->intact[slot], half), weight * square);
+  }
+  return lanes_set(0.5) * sum;
+}
+
+/** Before a step's forces: C by the committed factors; and notes what factors its strains and stresses leave. */
+BRECCIA_CLONES
+void correspondence_fade(const Correspondence *c, const Sweep *sweep)
+{
+  const Fading *f = c->fading;
+  const Material *m = points_material(c->points, sweep->first * SLICE);
+  const bool softens = m->softening_energy > 0 && !c->points->elastic_stage;
+  const Lanes one = lanes_set(1), most = lanes_set(most_stored * m->softening_energy);
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
+    if (f->mark[slice]) set_hold(c, slice, f->next);
+    for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; place += LANES) {
+      const int64_t here = place - sweep->first * SLICE;
+      Lanes left = softens ? stiffness_left(m, sweep, here) : one;
+      if (!f->mark[slice]) {
+        const LaneMask lost = left < one;
+        if (!(lost[0] | lost[1] | lost[2] | lost[3])) continue;
+        f->mark[slice] = TRIED;
+      }
+      if (softens && f->mark[slice] & (SOFTENED | BESIDE)) {
+        const Lanes stored = stored_whole(c, place, sweep->carry + here);
+        left *= lanes_choose(stored > most, most / stored, one);
+      }
+      lanes_store(f->found + place, lanes_least(lanes_load(f->next + place), left));
+    }
+  }
+}
+
+/* ---- the committed state ---- */
+
+/** From the first factor below 1 on C is no longer the same everywhere. */
+static void set_control(Correspondence *c, bool softened)
+{
+  const bool uniform = c->widest == CONTROL_SCALAR && !c->fading->whole[0];
+  if (!uniform || softened == (c->control == CONTROL_SCALAR)) return;
+  c->control = softened ? CONTROL_SCALAR : CONTROL_UNIFORM;
+  c->pulls = pull_count(c->control);
+  for (int64_t slice = 0; slice < c->particles->slices; ++slice) set_hold(c, slice, c->fading->used);
+}
+
+/** Marks a slice in which factors have fallen, and those of all neighbours, whether their bonds have broken or not: a restart marks the same. */
+static void mark_softened(const Correspondence *c, int64_t slice)
+{
+  const Family *f = c->family;
+  uint8_t *mark = c->fading->mark;
+  mark[slice] |= SOFTENED;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane)
+      mark[(slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane]) / SLICE] |=
+          BESIDE;
+}
+
+/** Marks slices whose factors have fallen. @return whether any have, now or before */
+static bool find_softened(const Correspondence *c)
+{
+  const Fading *f = c->fading;
+  bool softened = false;
+  for (int64_t slice = 0; slice < c->particles->slices; ++slice) {
+    bool fallen = false;
+    for (int64_t i = slice * SLICE; f->mark[slice] && !(f->mark[slice] & SOFTENED) && i < (slice + 1) * SLICE; ++i)
+      fallen |= f->next[i] < 1;
+    if (fallen) mark_softened(c, slice);
+    softened |= (f->mark[slice] & SOFTENED) != 0;
+  }
+  return softened;
+}
+
+void correspondence_commit(void *formulation, bool well)
+{
+  Correspondence *c = formulation;
+  const Fading *f = c->fading;
+  if (!f) return;
+  const size_t bytes = sizeof(double) * SLICE;
+  for (int64_t slice = 0; slice < c->particles->slices; ++slice) {
+    const int64_t first = slice * SLICE;
+    if (!f->mark[slice]) continue;
+    if (well) memcpy(f->used + first, f->next + first, bytes);
+    if (well) memcpy(f->next + first, f->found + first, bytes);
+    if (!well) set_hold(c, slice, f->used);
+  }
+  if (well) set_control(c, find_softened(c));
+}
+
+/** Factors were put in place from outside. */
+static int take_up(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)numbers, (void)count, (void)error;
+  Correspondence *c = owner;
+  memset(c->fading->mark, TRIED, (size_t)c->particles->slices);
+  const bool softened = find_softened(c);
+  set_control(c, softened);
+  for (int64_t slice = 0; slice < c->particles->slices; ++slice) {
+    c->fading->mark[slice] &= (uint8_t)~TRIED;
+    set_hold(c, slice, c->fading->used);
+  }
+  return BRECCIA_OK;
+}
+
+void correspondence_state(void *formulation, const char *part, StateList *list)
+{
+  static const StateCare care = {.resume = take_up};
+  Correspondence *c = formulation;
+  if (!c->fading) return;
+  StateRow row = {.unit = "1",
+                  .kind = STATE_NUMBERS,
+                  .entity = STATE_OF_PLACE,
+                  .role = STATE_COMMITTED,
+                  .count = c->particles->places,
+                  .values = c->fading->used};
+  state_add(list, &row, "zero-energy control", part);
+  row.values = c->fading->next;
+  row.care = &care;
+  row.owner = c;
+  state_add(list, &row, "zero-energy control to come", part);
+}
