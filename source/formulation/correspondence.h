@@ -130,8 +130,8 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
 void correspondence_axial_spring(const Correspondence *c, double *const u[3], int64_t place, const Bond *bond,
                                  double pull[3], double spring[6]);
 
-/** Width of the band of particles whose families a plane crack divides: all of them follow their law to its end as it opens. A bar pulled
- *  apart so spends 0.9 of the fracture energy where control is negligible (docs/theory.md 8.7). */
+/** Width of the band of particles whose families a plane crack divides, and that follow their law to its end as it opens: nearly all within a horizon
+ *  in the plane, less in space, where the farthest are hardly strained (docs/theory.md 8.7). */
 double correspondence_characteristic_length(const BondLength *of);
 
 #endif

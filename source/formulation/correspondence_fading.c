@@ -23,10 +23,11 @@ static const double roundings = 1e-6;    /* points with all their stiffness but 
 enum { TRIED = 1, SOFTENED = 2, BESIDE = 4 }; /* a factor was below 1 in some trial; is below 1; is so of a neighbour */
 
 struct Fading {
-  double *used, *next; /* [places] factors in the forces of the committed state, and in those of the step that follows */
-  double *found;       /* [places] that step's own, for the one after it */
-  double *whole[6];    /* C where nothing has faded; NULL of a uniform control */
-  uint8_t *mark;       /* [slices] where it is 0, all factors are 1 */
+  double *used,
+      *next;        /* [places] factors in the forces of the committed state, and in those of the step that follows */
+  double *found;    /* [places] that step's own, for the one after it */
+  double *whole[6]; /* C where nothing has faded; NULL of a uniform control */
+  uint8_t *mark;    /* [slices] where it is 0, all factors are 1 */
 };
 
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
@@ -141,7 +142,8 @@ LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const do
       for (int k = 0; k < 3; ++k) z[r] -= gradient[3 * r + k] * xi[k];
     for (int r = 0; r < 3; ++r) {
       if (c->widest == CONTROL_SCALAR) square += whole[0] * z[r] * z[r];
-      for (int k = 0; c->widest == CONTROL_TENSOR && k < 3; ++k) square += whole[symmetric_place[3 * r + k]] * z[r] * z[k];
+      for (int k = 0; c->widest == CONTROL_TENSOR && k < 3; ++k)
+        square += whole[symmetric_place[3 * r + k]] * z[r] * z[k];
     }
     sum += lanes_where(lanes_half(f->intact[slot], half), weight * square);
   }
@@ -195,8 +197,8 @@ static void mark_softened(const Correspondence *c, int64_t slice)
   mark[slice] |= SOFTENED;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane)
-      mark[(slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane]) / SLICE] |=
-          BESIDE;
+      mark[(slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane]) /
+           SLICE] |= BESIDE;
 }
 
 /** Marks slices whose factors have fallen. @return whether any have, now or before */

@@ -150,11 +150,13 @@ static void check_material(breccia_model *model, int k)
   if (energy && !isnan(energy->fracture_energy))
     check_fracture_energy(model, m, energy->fracture_energy, section_node(energy, "fracture energy"));
   const bool softens = m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
-  if (softens && !isfinite(model->domain.failure.limit[k]))
+  if (softens && !(m->softening_energy > 0) && !isfinite(model->domain.failure.limit[k]))
     plausibility_say(
         model, section_node(spec, "model"),
-        "material '%s': %s softens, but no bond breaks, and the control of zero-energy modes keeps its stiffness and "
-        "holds cracks together; add 'failure: {critical stretch: ...}'",
+        "material '%s': %s softens, but does not say with which energy, and no bond breaks: the control of zero-energy "
+        "modes "
+        "keeps its stiffness and holds cracks together; give the law a 'softening_energy', or the deck 'failure: "
+        "{critical stretch: ...}'",
         m->name, m->law_name);
 }
 
