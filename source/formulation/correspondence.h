@@ -107,7 +107,8 @@ int64_t correspondence_point_count(const void *formulation);
 int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
 int correspondence_linearise(void *formulation, Error *error);
 
-/* How C fades as points soften (correspondence_fading.c). */
+/* How C fades as points soften (correspondence_fading.c). Fade: in a step, before forces: C by the factors committed, and what factors its strains and
+ * stresses leave. */
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts);
 int correspondence_create_fading(Correspondence *c, Error *error);
 void correspondence_destroy_fading(Correspondence *c);

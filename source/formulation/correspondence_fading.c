@@ -150,9 +150,8 @@ LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const do
   return lanes_set(0.5) * sum;
 }
 
-/** Before a step's forces: C by the committed factors; and notes what factors its strains and stresses leave. */
 BRECCIA_CLONES
-void correspondence_fade(const Correspondence *c, const Sweep *sweep)
+static void fade(const Correspondence *c, const Sweep *sweep)
 {
   const Fading *f = c->fading;
   const Material *m = points_material(c->points, sweep->first * SLICE);
@@ -175,6 +174,11 @@ void correspondence_fade(const Correspondence *c, const Sweep *sweep)
       lanes_store(f->found + place, lanes_least(lanes_load(f->next + place), left));
     }
   }
+}
+
+void correspondence_fade(const Correspondence *c, const Sweep *sweep)
+{
+  fade(c, sweep); /* clones would be seen outside the library */
 }
 
 /* ---- the committed state ---- */
