@@ -154,6 +154,27 @@ static void half_torn_bars_restart_to_the_same_bits(void **state)
   assert_int_equal(system(command), 0);
 }
 
+static void what_has_faded_stays_so_as_a_crack_closes(void **state)
+{
+  (void)state;
+  breccia_model *m = half_torn_bar();
+  const Particles *p = m->domain.particles;
+  const Correspondence *c = formulation_of(m);
+  const size_t bytes = sizeof(double) * (size_t)p->places;
+  double *before = malloc(bytes);
+  assert_non_null(before);
+  memcpy(before, c->hold[0], bytes);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t n = 0; n < p->count; ++n) {
+      p->displacement[k][p->place_of[n]] *= 0.1;
+      p->velocity[k][p->place_of[n]] = 0;
+    }
+  step_surely(m, 3);
+  for (int64_t n = 0; n < p->count; ++n) assert_true(c->hold[0][p->place_of[n]] <= before[p->place_of[n]]);
+  free(before);
+  breccia_model_destroy(&m);
+}
+
 /** How far particles stand to and from each other in turn, which strains do not see. */
 static double checkerboard_of(const breccia_model *m)
 {
@@ -197,6 +218,7 @@ int main(void)
       cmocka_unit_test(nothing_fades_before_the_law_softens),
       cmocka_unit_test(forces_of_a_half_torn_bar_are_those_of_its_operator),
       cmocka_unit_test(half_torn_bars_restart_to_the_same_bits),
+      cmocka_unit_test(what_has_faded_stays_so_as_a_crack_closes),
       cmocka_unit_test(noise_in_a_half_torn_bar_does_not_grow),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
