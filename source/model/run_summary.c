@@ -1,6 +1,7 @@
 /* What a run did: summary.json, and the same in words. */
 #include "model/run.h"
 
+#include "solver/reactions.h"
 #include "solver/rest.h"
 #include <math.h>
 #include <string.h>
@@ -91,6 +92,50 @@ static void tell_stages(const Solver *s, const char *time, Text *text)
   }
 }
 
+/** What supports and loads exert in the end, with moments about the origin, and how far they are from balancing each other. */
+typedef struct Balance {
+  Wrench reactions, loads;
+  double left; /* the largest component of their sum, over the sizes of all single forces */
+} Balance;
+
+static bool find_balance(const Solver *s, Balance *balance)
+{
+  const double origin[3] = {0};
+  Reactions reactions = {0};
+  double left = 0;
+  const bool found = !reactions_create(&reactions, s->domain->particles, NULL);
+  if (found) {
+    balance->reactions = reactions_sum(&reactions, s, NULL, NULL, origin);
+    balance->loads = reactions_of_loads(s, origin);
+    for (int k = 0; k < 3; ++k) left = fmax(left, fabs(balance->reactions.force[k] + balance->loads.force[k]));
+    balance->left = left > 0 ? left / (balance->reactions.size + balance->loads.size) : 0;
+  }
+  reactions_destroy(&reactions);
+  return found;
+}
+
+static void add_vector(Text *text, const char *key, const double v[3])
+{
+  text_add(text, "\"%s\": [%.10g, %.10g, %.10g]", key, v[0], v[1], v[2]);
+}
+
+static void add_balance(const Solver *s, Text *text)
+{
+  Balance balance;
+  if (!find_balance(s, &balance)) return;
+  text_add(text, "  \"equilibrium\": {");
+  add_vector(text, "reactions", balance.reactions.force);
+  text_add(text, ", ");
+  add_vector(text, "moment of reactions", balance.reactions.moment);
+  text_add(text, ", ");
+  add_vector(text, "loads", balance.loads.force);
+  text_add(text, ", ");
+  add_vector(text, "moment of loads", balance.loads.moment);
+  text_add(text, ", ");
+  add_number(text, "left", balance.left);
+  text_add(text, "},\n");
+}
+
 int run_write_summary(Run *run, int status, const char *problem, Error *error)
 {
   breccia_model *model = run->model;
@@ -137,7 +182,9 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     if (k) text_add(&t, ", ");
     add_number(&t, energies[k].key, energies[k].value);
   }
-  text_add(&t, "},\n  \"peaks\": {");
+  text_add(&t, "},\n");
+  add_balance(s, &t);
+  text_add(&t, "  \"peaks\": {");
   const Peaks *p = &model->peaks;
   const struct {
     const char *key;
@@ -164,11 +211,10 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     text_add(&t, "}");
   }
   text_add(&t, "],\n  \"units\": {");
-  static const char *const units[][2] = {{"times", "time"},
-                                         {"positions and displacements", "length"},
-                                         {"velocities", "velocity"},
-                                         {"stresses", "stress"},
-                                         {"energies", "energy"}}; /* shares have none */
+  static const char *const units[][2] = {{"times", "time"},          {"positions and displacements", "length"},
+                                         {"velocities", "velocity"}, {"stresses", "stress"},
+                                         {"energies", "energy"},     {"forces", "force"},
+                                         {"moments", "energy"}}; /* shares have none */
   for (size_t k = 0; k < sizeof units / sizeof *units; ++k) {
     char unit[64];
     units_name(model->units, dimension_find(units[k][1]), unit, sizeof unit);
@@ -188,8 +234,9 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
 }
 
 /** Says whether a body that was meant to come to rest has done so. */
-static void tell_rest(const Solver *s, Text *t)
+static void tell_rest(const Solver *s, const Units *units, Text *t)
 {
+  Balance balance;
   Rest rest;
   if (rest_find(s, &rest, NULL) || !rest.meant) return;
   if (rest.reached)
@@ -202,6 +249,13 @@ static void tell_rest(const Solver *s, Text *t)
         "are below %g): run longer, with local damping, or load more slowly; what slides or falls does not come to "
         "rest\n",
         rest.unbalanced, rest.kinetic, rest_limit);
+  if (!s->loading->constraint_count || !find_balance(s, &balance)) return;
+  const double *r = balance.reactions.force, *l = balance.loads.force;
+  char force[64];
+  units_name(units, dimension_find("force"), force, sizeof force);
+  text_add(t, "supports and prescribed motions exert [%.6g, %.6g, %.6g] %s, loads [%.6g, %.6g, %.6g]; ", r[0], r[1],
+           r[2], force, l[0], l[1], l[2]);
+  text_add(t, "of all these forces %.2g is left\n", balance.left);
 }
 
 static void tell_load(const breccia_model *model, const Load *load, Text *t)
@@ -281,7 +335,7 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(stress * peaks->mean_high, "Pa", t);
     text_add(t, ", damage %.3g\n", peaks->damage);
   }
-  tell_rest(s, t);
+  tell_rest(s, model->units, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;

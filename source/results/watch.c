@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
+#include "solver/reactions.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,6 +51,15 @@ static const Field watch_fields[] = {
          "total force that bonds exert on these particles; minus the reaction where a motion is prescribed slowly",
      .section = &selection_section,
      .group = 'A'},
+    {.key = "reaction on",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(WatchSpec, reaction),
+     .standard = "",
+     .meaning =
+         "total force that supports and prescribed motions exert on these particles, inertia and damping allowed "
+         "for, and its moment about their middle",
+     .section = &selection_section,
+     .group = 'A'},
     {.key = "stress and strain of",
      .kind = FIELD_REFERENCE,
      .offset = offsetof(WatchSpec, stress),
@@ -92,6 +102,13 @@ static const Field watch_fields[] = {
      .standard = "",
      .meaning = "value of a named load",
      .group = 'A'},
+    {.key = "reaction of",
+     .kind = FIELD_NAME,
+     .offset = offsetof(WatchSpec, reaction_of),
+     .dimension = "load",
+     .standard = "",
+     .meaning = "the same of a named support or prescribed motion: force and moment that it exerts on the body",
+     .group = 'A'},
     {.key = "energy",
      .kind = FIELD_FLAG,
      .offset = offsetof(WatchSpec, energy),
@@ -123,6 +140,8 @@ struct Watch {
   Selection selection;
   int32_t ends[2];
   const LoadSpec *load;
+  Reactions reactions;
+  uint8_t *on; /* [places] of reactions on a selection */
   FILE *file;
   char *path;
   int64_t last_step;
@@ -161,6 +180,14 @@ static void force_row(const Watch *w, const Solver *s, double *values)
     values[k] = 0;
     for (int64_t n = 0; n < w->selection.count; ++n)
       values[k] += p->internal[k][w->selection.places[n]] * p->volume[w->selection.places[n]];
+  }
+}
+static void reaction_row(const Watch *w, const Solver *s, double *values)
+{
+  const Wrench sum = reactions_sum(&w->reactions, s, w->on, w->spec->reaction_of, NULL);
+  for (int k = 0; k < 3; ++k) {
+    values[k] = sum.force[k];
+    values[3 + k] = sum.moment[k];
   }
 }
 static void stress_row(const Watch *w, const Solver *s, double *values)
@@ -248,6 +275,7 @@ static const Kind
     displacement_kind = {"x:length,y:length,z:length", displacement_row},
     velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
     force_kind = {"x:force,y:force,z:force", force_row},
+    reaction_kind = {"x:force,y:force,z:force,moment x:energy,moment y:energy,moment z:energy", reaction_row},
     stress_kind = {"strain xx:1,strain yy:1,strain zz:1,strain xy:1,strain yz:1,strain zx:1,stress xx:stress,"
                    "stress yy:stress,stress zz:stress,stress xy:stress,stress yz:stress,stress "
                    "zx:stress,octahedral shear strain:1,octahedral shear stress:stress,mean stress:stress",
@@ -299,6 +327,43 @@ static int name_histories(Watch *w, const Domain *domain, const DeckReader *read
   return BRECCIA_OK;
 }
 
+/** Room for reactions; says so where no motion is prescribed to any particle that is watched. */
+static int resolve_reaction(Watch *w, const Domain *domain, const Loading *loading, const DeckReader *reader,
+                            const SectionList *selections)
+{
+  const char *name = w->spec->reaction_of, *key = name ? "reaction of" : "reaction on";
+  w->kind = &reaction_kind;
+  if (reactions_create(&w->reactions, domain->particles, reader->error)) return BRECCIA_FAILURE;
+  if (!name) {
+    const int status = selection_create(&w->selection, &domain->body, reader, selections, &w->spec->reaction);
+    if (status) return status;
+    if (!(w->on = memory_zeroed((size_t)domain->particles->places, 1, "reactions", reader->error)))
+      return BRECCIA_FAILURE;
+    for (int64_t n = 0; n < w->selection.count; ++n) w->on[w->selection.places[n]] = 1;
+  }
+  bool holds = false, mirrors = false, others = false;
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    const Load *load = constraint->load;
+    const bool named = name && load->spec->name && !strcmp(load->spec->name, name);
+    holds |= named;
+    mirrors |= named && constraint->images;
+    others |= !named && constraint->images;
+    for (int64_t n = 0; !name && n < load->selection.count; ++n) holds |= w->on[load->selection.places[n]] > 0;
+  }
+  if (mirrors && others)
+    return node_error(
+        reader->document, section_node(w->spec, key), reader->error,
+        "reaction of: supports of several faces lean on each other outside the body, so that one alone is "
+        "not known; their sum is in the summary");
+  if (holds) return BRECCIA_OK;
+  return node_error(reader->document, section_node(w->spec, key), reader->error,
+                    name
+                        ? "reaction of: the load '%s' prescribes no motion; what forces come to is told by 'load'"
+                        : "reaction on: no motion is prescribed to these particles; name a support under 'reaction of'",
+                    name);
+}
+
 static int resolve(Watch *w, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *selections)
 {
@@ -309,6 +374,7 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
     int status = selection_create(&w->selection, body, reader, selections, &spec->history);
     return status ? status : name_histories(w, domain, reader);
   }
+  if (spec->reaction.node || spec->reaction_of) return resolve_reaction(w, domain, loading, reader, selections);
   const struct {
     const Reference *reference;
     const Kind *kind;
@@ -534,6 +600,8 @@ void watches_destroy(Watches **watches)
   for (int k = 0; k < (*watches)->count; ++k) {
     Watch *w = &(*watches)->items[k];
     selection_destroy(&w->selection);
+    reactions_destroy(&w->reactions);
+    free(w->on);
     if (w->file) fclose(w->file);
     free(w->path);
   }

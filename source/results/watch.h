@@ -7,9 +7,9 @@
 typedef struct WatchSpec {
   SectionHead head;
   int64_t every;
-  Reference displacement, velocity, force, stress, history, damage;
+  Reference displacement, velocity, force, reaction, stress, history, damage;
   NumberList opening, bond;
-  const char *load;
+  const char *load, *reaction_of;
   bool energy;
 } WatchSpec;
 

@@ -375,6 +375,7 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .advance = advance,
                                     .state = list_state,
                                     .damps = damps,
+                                    .inertia = explicit_inertia,
                                     .foresee = explicit_foresee,
                                     .describe = describe,
                                     .describe_stage = describe_stage};

@@ -65,6 +65,9 @@ void explicit_prescribe_displacements(Explicit *solver);
 /** After the second kick: velocities at the end of the step, by central difference of the prescribed motion. By all threads. */
 void explicit_prescribe_velocities(Explicit *solver);
 
+/** Force of inertia and damping of the n-th particle of a motion along its direction, by central difference of what is prescribed. */
+double explicit_inertia(const Solver *solver, const Constraint *constraint, int64_t n);
+
 /** Takes the state back to the start of the step, and says what happened. @return BRECCIA_FAILURE */
 int explicit_retreat(Explicit *solver, Error *error);
 

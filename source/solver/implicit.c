@@ -279,6 +279,17 @@ static void describe(const Solver *run, const char *time, Text *text)
            linear_solver_name(&s->newton.linear));
 }
 
+static double inertia(const Solver *run, const Constraint *constraint, int64_t n)
+{
+  const Implicit *s = run->own;
+  const Particles *p = s->domain->particles;
+  const int32_t i = constraint->load->selection.places[n];
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    sum += constraint->direction[k] * (p->density[i] * p->volume[i] * s->acceleration[k][i] + s->drag[k][i]);
+  return sum;
+}
+
 const SolverType implicit_solver = {.name = "implicit",
                                     .create = create,
                                     .destroy = destroy,
@@ -289,6 +300,7 @@ const SolverType implicit_solver = {.name = "implicit",
                                     .advance = implicit_advance,
                                     .state = list_state,
                                     .damps = damps,
+                                    .inertia = inertia,
                                     .foresee = foresee,
                                     .describe = describe,
                                     .describe_stage = describe_stage};

@@ -178,3 +178,16 @@ void explicit_prescribe_velocities(Explicit *s)
     TEAM_SINGLE add_parts(s, constraint);
   }
 }
+
+double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t n)
+{
+  const Explicit *s = run->own;
+  const Particles *p = s->domain->particles;
+  const int32_t i = constraint->load->selection.places[n];
+  const double time = s->clock->time, dt = s->clock->time_step;
+  if (time <= constraint->load->begin) return 0;
+  const double before = constraint_displacement(constraint, time - dt), now = constraint_displacement(constraint, time),
+               after = constraint_displacement(constraint, time + dt);
+  const double acceleration = (after - 2 * now + before) / (dt * dt), rate = (after - before) / (2 * dt);
+  return p->density[i] * p->volume[i] * (acceleration + s->spec->damping * rate);
+}

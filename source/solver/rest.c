@@ -1,6 +1,7 @@
 #include "solver/rest.h"
 
 #include "base/memory.h"
+#include "solver/unknowns.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,6 +16,7 @@ static bool is_steady(const Load *load, double time)
 
 static bool is_meant(const Solver *s)
 {
+  if (s->type->rests) return true;
   if (!s->type->damps(s)) return false;
   for (int k = 0; k < s->loading->count; ++k)
     if (load_acts(s->loading, &s->loading->loads[k]) && !is_steady(&s->loading->loads[k], s->clock.time)) return false;
@@ -47,6 +49,10 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
       for (int k = 0; k < 3; ++k) free_force[k][i] -= along * c->direction[k];
       acting += fabs(along);
     }
+  }
+  if (!failed && s->type->rests) { /* what ties exert is not among the forces then */
+    const Unknowns unknowns = unknowns_of(s->domain, s->loading);
+    unknowns_gather(&unknowns, free_force);
   }
   for (int64_t n = 0; !failed && n < p->count; ++n) {
     const int32_t i = p->place_of[n];

@@ -76,6 +76,10 @@ struct SolverType {
   void (*state)(Solver *solver, StateList *list);
   /** Whether something takes energy out of motions, so that a body may come to rest. */
   bool (*damps)(const Solver *solver);
+  /** Whether every step ends in equilibrium at rest. */
+  bool rests;
+  /** Force of inertia and damping of the n-th particle of a motion along its direction, in the state held. NULL: there is none, at rest. */
+  double (*inertia)(const Solver *solver, const Constraint *constraint, int64_t n);
   /** Steps and time that a stage with this section will take at most, by the stable step of the body as it is. */
   void (*foresee)(const void *spec, const Clock *clock, double *steps, double *time);
   /** The steps to come of the stage under way, in words. @param[in] time  unit of time */

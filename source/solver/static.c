@@ -366,6 +366,7 @@ const SolverType static_solver = {.name = "static",
                                   .state = list_state,
                                   .controls = controls,
                                   .damps = damps,
+                                  .rests = true,
                                   .foresee = foresee,
                                   .describe = describe,
                                   .describe_stage = describe_stage};

@@ -1,0 +1,33 @@
+/* What supports and prescribed motions exert on a body: in each direction in which a particle's motion is prescribed, the force that must act on it beside bonds, loads
+ * and damping so that it moves as it does. Particles outside a support, mirror images of others, stand for the support: what bonds with them exert on the
+ * body is its reaction, and no loads act on them. */
+#ifndef BRECCIA_SOLVER_REACTIONS_H
+#define BRECCIA_SOLVER_REACTIONS_H
+
+#include "solver/solver.h"
+
+typedef struct Reactions {
+  double *force[3]; /* on held particles, what is left of it while they are gone through */
+} Reactions;
+
+/** A sum of forces, and its moment about a point. */
+typedef struct Wrench {
+  double force[3], moment[3], about[3];
+  double size; /* sum of the sizes of the forces */
+} Wrench;
+
+/** `reactions` is zero; destroy it in any case. */
+int reactions_create(Reactions *reactions, const Particles *particles, Error *error);
+void reactions_destroy(Reactions *reactions);
+
+/** Sum of the reactions in the state held.
+ *  @param[in] on     [places] 1: on these particles; NULL: on all
+ *  @param[in] load   name of the load whose motions count; NULL: all motions that act
+ *  @param[in] about  point of the moment, forces acting where particles are now; NULL: the middle of the particles, as they are now */
+Wrench reactions_sum(const Reactions *reactions, const Solver *solver, const uint8_t *on, const char *load,
+                     const double *about);
+
+/** Sum of the forces of loads on the particles of the body, springs and gravity among them. */
+Wrench reactions_of_loads(const Solver *solver, const double about[3]);
+
+#endif

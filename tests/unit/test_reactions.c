@@ -1,0 +1,169 @@
+/* What supports and prescribed motions exert: sums and moments against loads and against the change of momentum. */
+#include "support.h"
+
+#include "solver/reactions.h"
+#include "solver/rest.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+
+static Wrench sum_of(const breccia_model *model, const uint8_t *on, const char *load, const double *about)
+{
+  Reactions reactions = {0};
+  assert_int_equal(reactions_create(&reactions, model->domain.particles, NULL), 0);
+  const Wrench sum = reactions_sum(&reactions, &model->solver, on, load, about);
+  reactions_destroy(&reactions);
+  return sum;
+}
+
+static void a_base_carries_the_weight_of_a_block(void **state)
+{
+  (void)state;
+  static const char *const methods[] = {"newton", "relaxation"};
+  for (int m = 0; m < 2; ++m) {
+    breccia_model *model =
+        model_of(UNITS SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
+                                  "loads: [{gravity: [0, 0, -9.81]},"
+                                  " {name: base, on: {face: z-, layers: 1}, displacement: [0, 0, 0]}]\n"
+                                  "solve: {static: {increments: 2, residual: 1e-10, method: %s}}\n",
+                 methods[m]);
+    step_surely(model, INT64_MAX);
+    const double weight = 2 * 9.81 * 6 * 5 * 4 * 1e-3;
+    const Wrench base = sum_of(model, NULL, "base", NULL);
+    assert_near(base.force[2], weight, 1e-8 * weight);
+    for (int k = 0; k < 2; ++k) assert_near(base.force[k], 0, 1e-8 * weight);
+    for (int k = 0; k < 3; ++k) assert_near(base.moment[k], 0, 1e-8 * weight);
+    assert_near(base.about[0], 0.3, 1e-12);
+    const Wrench aside = sum_of(model, NULL, NULL, (const double[3]){0.1, 0, 0});
+    assert_near(aside.moment[1], -0.2 * weight, 1e-8 * weight);
+    assert_near(aside.moment[0], 0.25 * weight, 1e-8 * weight);
+    breccia_model_destroy(&model);
+  }
+}
+
+static void supports_outside_the_body_carry_it_too(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, 6]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane strain}\n"
+      "loads: [{name: wall, on: {face: x-}, support: {held: across}}, {name: floor, on: {face: y-}, support: {held: "
+      "across}}, {gravity: [0, -9.81]}, {on: {face: x+, layers: 1}, traction: [1, 0]}, {on: {face: y+, layers: 1}, "
+      "traction: [0, -3]}]\n"
+      "solve: {static: {increments: 1, residual: 1e-10}}\n");
+  step_surely(model, INT64_MAX);
+  const Wrench both = sum_of(model, NULL, NULL, NULL);
+  assert_near(both.force[0], -1 * 0.6 * 0.2, 1e-9);
+  assert_near(both.force[1], 3 * 0.8 * 0.2 + 2 * 9.81 * 0.8 * 0.6 * 0.2, 1e-9); /* of the body alone */
+  const Wrench loads = reactions_of_loads(&model->solver, both.about);
+  for (int k = 0; k < 2; ++k) assert_near(loads.force[k], -both.force[k], 1e-9);
+  breccia_model_destroy(&model);
+}
+
+static void two_supports_share_the_load_of_a_beam(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [31, 6]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane stress}\n"
+      "loads: [{name: left, on: {nearest: [0.05, 0]}, displacement: [0, 0]},"
+      " {name: right, on: {nearest: [3.05, 0]}, displacement: [free, 0]},"
+      " {on: {nearest: [1.55, 0.55]}, force: [0, -0.01]}]\n"
+      "watch: {left: {reaction of: left}, right: {reaction on: {nearest: [3.05, 0]}}}\n"
+      "solve: {static: {increments: 1, residual: 1e-10}}\n");
+  step_surely(model, INT64_MAX);
+  const Wrench left = sum_of(model, NULL, "left", NULL), right = sum_of(model, NULL, "right", NULL);
+  assert_near(left.force[1], 0.005, 1e-6);
+  assert_near(right.force[1], 0.005, 1e-6);
+  assert_near(left.force[1] + right.force[1], 0.01, 1e-10);
+  assert_near(right.force[0], 0, 0);
+  const Wrench loads = reactions_of_loads(&model->solver, left.about);
+  assert_near(loads.force[1], -0.01, 1e-12);
+  assert_near(loads.moment[2] + sum_of(model, NULL, NULL, left.about).moment[2], 0, 1e-9);
+  breccia_model_destroy(&model);
+}
+
+static void a_shaken_body_is_pushed_by_its_change_of_momentum(void **state)
+{
+  (void)state;
+  /* Sum of m u'' + c m u' = reactions, exactly so for central differences, held particles among them. */
+  breccia_model *model =
+      model_of(UNITS SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 3, 3]}}}}\n"
+                                "loads: [{on: {face: x-, layers: 2}, displacement: [1e-3, 0, free], history: {sine: "
+                                "{frequency: 40 Hz}}}]\n"
+                                "solve: {explicit: {time step: 2e-4, steps: 90, damping: 30}}\n");
+  const Particles *p = model->domain.particles;
+  const double dt = 2e-4;
+  double before[3] = {0}, now[3] = {0}, after[3] = {0}, largest = 0;
+  Wrench found = {.about = {0}};
+  for (int step = 0; step < 80; ++step) {
+    step_surely(model, 1);
+    for (int k = 0; k < 3; ++k) {
+      before[k] = now[k];
+      now[k] = after[k];
+      after[k] = 0;
+      for (int64_t i = 0; i < p->places; ++i) after[k] += p->density[i] * p->volume[i] * p->displacement[k][i];
+      const double pushed = (after[k] - 2 * now[k] + before[k]) / (dt * dt) + 30 * (after[k] - before[k]) / (2 * dt);
+      largest = fmax(largest, fabs(pushed));
+      if (step > 2) assert_near(found.force[k], pushed, 1e-6 * largest);
+    }
+    found = sum_of(model, NULL, NULL, NULL);
+  }
+  assert_true(largest > 1e-3);
+  breccia_model_destroy(&model);
+}
+
+static void a_static_stage_ends_at_rest_ties_among_it(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS SOFT_SOLID
+      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 4, 4]}}}}\n"
+      "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x+, layers: 1}, tie: {directions: x}},"
+      " {on: {nearest: [0.6, 0.4, 0.4]}, force: [1, 0, 0], history: {ramp to: 1}}]\n"
+      "solve: {static: {increments: 2}}\n");
+  step_surely(model, INT64_MAX);
+  Rest rest;
+  assert_int_equal(rest_find(&model->solver, &rest, NULL), 0);
+  assert_true(rest.meant && rest.reached);
+  assert_near(rest.unbalanced, 0, 1e-6);
+  assert_near(sum_of(model, NULL, NULL, NULL).force[0], -1, 1e-7);
+  breccia_model_destroy(&model);
+}
+
+static void what_holds_nothing_is_refused(void **state)
+{
+  (void)state;
+  static const char *const watches[] = {"reaction on: {face: x+, layers: 1}", "reaction of: pull", "reaction of: wall"},
+                           *const reasons[] = {"no motion is prescribed to these particles", "prescribes no motion",
+                                               "lean on each other"};
+  for (int k = 0; k < 3; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck,
+             UNITS SOFT_SOLID
+             "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 4, 4]}}}}\n"
+             "loads: [{on: {face: x-, layers: 1}, displacement: [0, free, free]}, {name: pull, on: {face: "
+             "x+, layers: 1}, traction: [1, 0, 0]}, {name: wall, on: {face: y-}, support: {held: across}}, {on: {face: "
+             "z-}, support: {held: across}}]\n"
+             "watch: {w: {%s}}\n"
+             "solve: {static: {increments: 1}}\n",
+             watches[k]);
+    char *words = refusal_of(deck);
+    assert_non_null(strstr(words, reasons[k]));
+    free(words);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_base_carries_the_weight_of_a_block),
+      cmocka_unit_test(supports_outside_the_body_carry_it_too),
+      cmocka_unit_test(two_supports_share_the_load_of_a_beam),
+      cmocka_unit_test(a_shaken_body_is_pushed_by_its_change_of_momentum),
+      cmocka_unit_test(a_static_stage_ends_at_rest_ties_among_it),
+      cmocka_unit_test(what_holds_nothing_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
