@@ -235,7 +235,6 @@ static int open_files(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   const ResultNames names = {run->names.items, run->names.count, !strcmp(model->spec->results->precision, "single")};
-  int64_t resume = run->wish->restart ? model->solver.clock.step : -1;
   int status;
   if (run->wish->restart) {
     status = check_states(run, error);
@@ -253,7 +252,9 @@ static int open_files(Run *run, Error *error)
                                   &names, error);
   }
   if (!status) status = write_deck(run, error);
-  if (!status) status = watches_open(model->watches, run->wish->folder, model->units, model->began, resume, error);
+  if (!status)
+    status = watches_open(model->watches, run->wish->folder, model->units, &model->solver, model->began,
+                          run->wish->restart, error);
   if (!status && run->wish->restart == BRECCIA_RESTART_BEFORE)
     status = checkpoint_return_to_before(run->wish->folder, error);
   return status;

@@ -26,9 +26,9 @@ static const Field watch_fields[] = {
     {.key = "every",
      .kind = FIELD_COUNT,
      .offset = offsetof(WatchSpec, every),
-     .standard = "10",
+     .standard = "",
      .range = "[1, inf)",
-     .meaning = "a row every so many steps"},
+     .meaning = "a row every so many steps; when absent 10, and 1 in stages of few long steps: static, implicit"},
     {.key = "displacement of",
      .kind = FIELD_REFERENCE,
      .offset = offsetof(WatchSpec, displacement),
@@ -472,10 +472,19 @@ static int column_count(const Kind *kind)
   return columns;
 }
 
+/** Whether there is a row of a step that is done. */
+static bool is_due(const Watch *w, const Solver *solver, int64_t step)
+{
+  enum { USUAL = 10 };
+  if (w->spec->every > 0) return step % w->spec->every == 0;
+  return step % USUAL == 0 || solver_step_was_long(solver, step);
+}
+
 /** Cuts a history file behind the last row that is due and not beyond the step from which the run goes on. All rows since the run began must
  *  be there. */
-static int take_up_rows(Watch *w, int64_t began, int64_t step, Error *error)
+static int take_up_rows(Watch *w, const Solver *solver, int64_t began, Error *error)
 {
+  const int64_t step = solver->clock.step;
   size_t length;
   char *text = text_read_file(w->path, &length), *row = text ? strchr(text, '\n') : NULL;
   if (!text)
@@ -483,27 +492,32 @@ static int take_up_rows(Watch *w, int64_t began, int64_t step, Error *error)
                      "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or run "
                      "without --restart",
                      w->path, strerror(errno), (long long)step);
-  const int64_t every = w->spec->every;
   const int columns = column_count(w->kind);
-  int64_t due = (began + every - 1) / every * every, line = 2;
-  for (row = row ? row + 1 : text + length; due <= step && is_row_of(row, due, columns); due += every, ++line) {
-    w->last_step = due;
-    row = strchr(row, '\n') + 1;
+  int64_t line = 2, missing = -1;
+  row = row ? row + 1 : text + length;
+  for (int64_t due = began; due <= step && missing < 0; ++due) {
+    if (!is_due(w, solver, due)) continue;
+    if (is_row_of(row, due, columns)) {
+      w->last_step = due;
+      row = strchr(row, '\n') + 1;
+      ++line;
+    } else
+      missing = due;
   }
   int status = BRECCIA_OK;
-  if (due <= step)
+  if (missing >= 0)
     status = error_add(error, BRECCIA_USER_ERROR,
                        "%s:%lld: expected the row of step %lld; the run goes on from step %lld and needs all rows up "
                        "to there: put the file back as it was, or run without --restart",
-                       w->path, (long long)line, (long long)due, (long long)step);
+                       w->path, (long long)line, (long long)missing, (long long)step);
   else if (truncate(w->path, row - text))
     status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
   free(text);
   return status;
 }
 
-int watches_open(Watches *watches, const char *folder, const Units *units, int64_t began, int64_t resume_after,
-                 Error *error)
+int watches_open(Watches *watches, const char *folder, const Units *units, const Solver *solver, int64_t began,
+                 bool resume, Error *error)
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
@@ -512,11 +526,11 @@ int watches_open(Watches *watches, const char *folder, const Units *units, int64
     free(w->path);
     w->path = text_format("%s/%s.csv", folder, name);
     if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
-    const int status = resume_after >= 0 ? take_up_rows(w, began, resume_after, error) : BRECCIA_OK;
+    const int status = resume ? take_up_rows(w, solver, began, error) : BRECCIA_OK;
     if (status) return status;
-    w->file = fopen(w->path, resume_after >= 0 ? "a" : "w");
+    w->file = fopen(w->path, resume ? "a" : "w");
     if (!w->file) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    if (resume_after < 0) write_header(w->file, w->kind, units);
+    if (!resume) write_header(w->file, w->kind, units);
   }
   return BRECCIA_OK;
 }
@@ -535,7 +549,7 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
-    if (w->last_step == solver->clock.step || (solver->clock.step % w->spec->every && !last)) continue;
+    if (w->last_step == solver->clock.step || (!last && !is_due(w, solver, solver->clock.step))) continue;
     double values[MOST_COLUMNS];
     const int columns = column_count(w->kind);
     w->kind->row(w, solver, values);

@@ -20,10 +20,10 @@ typedef struct Watches Watches;
 /** Resolves the watches of a deck on a body. */
 int watches_create(Watches **watches, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *specs, const SectionList *selections);
-/** Opens <folder>/<name>.csv for each; with `resume_after` >= 0 old files are kept up to that step and continued. All their rows from the step on
- *  at which the run began must be there: else BRECCIA_USER_ERROR. */
-int watches_open(Watches *watches, const char *folder, const Units *units, int64_t began, int64_t resume_after,
-                 Error *error);
+/** Opens <folder>/<name>.csv for each; with `resume` old files are kept up to the step at which the solver stands and continued. All their rows from the
+ *  step on at which the run began must be there: else BRECCIA_USER_ERROR. */
+int watches_open(Watches *watches, const char *folder, const Units *units, const Solver *solver, int64_t began,
+                 bool resume, Error *error);
 /** Brings all rows to the disk: a checkpoint must not be ahead of them when the machine goes down. */
 int watches_settle(const Watches *watches, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */

@@ -113,6 +113,13 @@ const char *solver_stage_name(const Solver *s, int64_t stage, char *name, size_t
   return name;
 }
 
+bool solver_step_was_long(const Solver *s, int64_t step)
+{
+  int64_t stage = 0;
+  while (stage < s->clock.stage && (double)step > s->records[stage].last_step) ++stage;
+  return types[type_of(stage_of(s, stage))]->few_steps;
+}
+
 void solver_describe_stage(const Solver *s, int64_t stage, const char *time, Text *text)
 {
   const int type = type_of(stage_of(s, stage));

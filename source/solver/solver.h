@@ -76,6 +76,8 @@ struct SolverType {
   void (*state)(Solver *solver, StateList *list);
   /** Whether something takes energy out of motions, so that a body may come to rest. */
   bool (*damps)(const Solver *solver);
+  /** Whether its steps are few and long, so that histories have a row for each. */
+  bool few_steps;
   /** Whether every step ends in equilibrium at rest. */
   bool rests;
   /** Force of inertia and damping of the n-th particle of a motion along its direction, in the state held. NULL: there is none, at rest. */
@@ -95,6 +97,9 @@ void solver_destroy(Solver *solver);
 
 /** Name of a stage: as in the deck, or its number from 1. @return `name` */
 const char *solver_stage_name(const Solver *solver, int64_t stage, char *name, size_t size);
+
+/** Whether a step, one that is done, was among few and long ones. */
+bool solver_step_was_long(const Solver *solver, int64_t step);
 
 /** How a stage goes and ends, in words. @param[in] time  unit of time */
 void solver_describe_stage(const Solver *solver, int64_t stage, const char *time, Text *text);

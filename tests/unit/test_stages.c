@@ -237,6 +237,43 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
   breccia_model_destroy(&whole);
 }
 
+static void histories_have_a_row_for_each_long_step(void **state)
+{
+  (void)state;
+  /* Steps 1 to 3 are static, and of the others each tenth has a row; so too where a run is taken up in the middle. */
+  static const int wanted[] = {0, 1, 2, 3, 10, 20, 30, 33};
+  for (int stop = 0; stop < 26; stop += 5) {
+    char folder[] = "/tmp/breccia-XXXXXX", path[64], line[256];
+    breccia_run run = {.size = sizeof(breccia_run), .steps = stop};
+    Error *error = breccia_error_create();
+    assert_non_null(mkdtemp(folder));
+    run.folder = folder;
+    for (int part = stop ? 0 : 1; part < 2; ++part) {
+      breccia_model *model =
+          model_of(BAR "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {gravity: [20, 0, 0]}]\n"
+                       "watch: {end: {displacement of: {nearest: [1, 0, 0]}}}\n"
+                       "solve: [{static: {increments: 3}}, {explicit: {time step: 2e-5, steps: 30}}]\n");
+      if (part) run.steps = 0;
+      if (breccia_model_run(model, &run, error)) fail_msg("%s", breccia_error_text(error));
+      run.restart = 1;
+      breccia_model_destroy(&model);
+    }
+    snprintf(path, sizeof path, "%s/end.csv", folder);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    for (size_t k = 0; k < sizeof wanted / sizeof *wanted; ++k) {
+      assert_non_null(fgets(line, sizeof line, file));
+      assert_int_equal(atoi(line), wanted[k]);
+    }
+    assert_null(fgets(line, sizeof line, file));
+    fclose(file);
+    breccia_error_destroy(&error);
+    snprintf(line, sizeof line, "rm -r %s", folder);
+    assert_int_equal(system(line), 0);
+  }
+}
+
 static void one_stage_in_a_list_is_the_same_as_no_list(void **state)
 {
   (void)state;
@@ -365,6 +402,7 @@ int main(void)
       cmocka_unit_test(springs_blows_and_ties_begin_with_their_stage),
       cmocka_unit_test(in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break),
       cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
+      cmocka_unit_test(histories_have_a_row_for_each_long_step),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),
       cmocka_unit_test(laws_with_rates_do_not_see_where_a_stage_begins),
       cmocka_unit_test(a_stage_that_cannot_begin_leaves_the_one_before),
