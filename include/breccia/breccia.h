@@ -171,6 +171,16 @@ typedef struct breccia_run {
  *  after which all else is there; one that cannot be drawn (results do not hold it, gnuplot is not installed) a warning. */
 BRECCIA_API int breccia_model_run(breccia_model *model, const breccia_run *run, breccia_error *error);
 
+typedef struct breccia_modes {
+  size_t size;
+  const char *folder; /* for a table, results and pictures; made if need be; NULL: nothing is written */
+  int count;          /* of modes, the slowest first */
+} breccia_modes;
+
+/** Frequencies and modes of vibration of the body, elastic and whole, as it is held in the stage under way. They are told in
+ *  breccia_model_outcome, with advice for loading and damping. */
+BRECCIA_API int breccia_model_modes(breccia_model *model, const breccia_modes *modes, breccia_error *error);
+
 /** What a run would do, in some lines (NULL when memory is out); warnings about the deck, one per line; what a run did and which files it wrote.
  *  Valid until the model is next used. */
 BRECCIA_API const char *breccia_model_overview(breccia_model *model);

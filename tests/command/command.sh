@@ -5,7 +5,7 @@ cd "$work"
 "$breccia" --version > out; equal "version: status" $? 0
 contains "version" "$(cat out)" "breccia 0."
 "$breccia" --help > out; equal "help: status" $? 0
-for verb in run check new plot models material calibrate schema completion; do
+for verb in run check modes new plot models material calibrate schema completion; do
   contains "help" "$(cat out)" "  $verb "
   "$breccia" $verb --help > verb 2>&1; equal "$verb --help: status" $? 0
   contains "$verb --help" "$(cat verb)" "usage: breccia $verb"
@@ -21,6 +21,23 @@ contains "new in no folder" "$(cat out)" "no-folder/wall.yaml: cannot be written
 "$breccia" run > /dev/null 2> out; equal "run without deck: status" $? 2
 "$breccia" run a.yaml --steps many 2> out; equal "run --steps many: status" $? 2
 contains "run --steps many" "$(cat out)" "--steps: 'many' is not a whole number"
+
+# modes: a table, results that can be drawn, and what is wrong
+cat > bar.yaml <<'END'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic-1d, Young modulus: 1e6, density: 2}}
+body: {bar: {material: m, lattice: line, spacing: 0.05, area: 0.01, shape: {box: {particles: [80, 1]}}}}
+peridynamics: {formulation: bond-based, space: 1-D, horizon: 3.015 spacings, surface correction: energy}
+loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}]
+solve: {static: {increments: 1}}
+END
+"$breccia" modes bar.yaml --count 2 > out 2>&1; equal "modes: status" $? 0
+contains "modes" "$(cat out)" "damping: {ratio: 1, at: 45.4"
+awk -F, 'NR == 2 {exit !($2 > 45 && $2 < 46)}' bar-modes/modes.csv || fail "modes: not a quarter of a wave: $(cat bar-modes/modes.csv)"
+[ -s bar-modes/results.vtkhdf ] && [ -s bar-modes/pictures/mode-2.png ] || fail "modes: files are missing: $(ls -R bar-modes)"
+"$breccia" plot bar-modes --field displacement --step 1 --output mode.png > out 2>&1; equal "plot of a mode: status" $? 0
+"$breccia" modes bar.yaml --count 500 > out 2>&1; equal "modes: too many: status" $? 2
+contains "modes: too many" "$(cat out)" "500 modes are too many for a body with 77 unknowns"
 
 # new, check, run: the starter deck works as it comes
 "$breccia" new plate.yaml > out; equal "new: status" $? 0

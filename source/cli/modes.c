@@ -1,0 +1,59 @@
+/* How a body vibrates by itself. */
+#include "verbs.h"
+
+#include <stdlib.h>
+
+enum { MODES, OUTPUT, SET, COUNT };
+
+static const Option options[] = {{"count", "N", "how many modes, the slowest first (6)"},
+                                 {"output", "FOLDER", "for the files (DECK-modes beside the deck)"},
+                                 SET_OPTION,
+                                 {0}};
+
+static int find(const char *deck, const char **values, const DeckSettings *settings)
+{
+  long long count = 6;
+  if (values[MODES] && read_whole(values[MODES], "count", 1, &count)) return 2;
+  breccia_error *error = breccia_error_create();
+  const breccia_options wishes = {.size = sizeof wishes, .settings = settings->items, .setting_count = settings->count};
+  breccia_model *model;
+  int status = breccia_model_load_file(deck, &wishes, &model, error);
+  if (status) return fail(error, status);
+  if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
+  char *beside = result_folder(deck), *folder = words_of("%s", values[OUTPUT] ? values[OUTPUT] : "");
+  if (!values[OUTPUT]) {
+    free(folder);
+    folder = words_of("%s-modes", beside);
+  }
+  const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = (int)(count > 1000000 ? 1000000 : count)};
+  status = breccia_model_modes(model, &wish, error);
+  if (!status) status = show(breccia_model_outcome(model), stdout);
+  free(beside);
+  free(folder);
+  breccia_model_destroy(&model);
+  return fail(error, status);
+}
+
+static int run(int argc, char **argv, const Verb *verb)
+{
+  const char *values[COUNT];
+  DeckSettings settings;
+  if (settings_begin(&settings, SET, argc)) return BRECCIA_FAILURE;
+  const int first = read_options(argc, argv, verb, values, settings_note, &settings);
+  int status = first == -2 ? 0 : 2;
+  if (first >= 0 && argc - first != 1)
+    fprintf(stderr, "breccia modes: give one deck; see 'breccia modes --help'\n");
+  else if (first >= 0)
+    status = find(argv[first], values, &settings);
+  free(settings.items);
+  return status;
+}
+
+const Verb verb_modes = {
+    .name = "modes",
+    .arguments = "DECK [options]",
+    .about = "frequencies and modes of the body as its first stage holds it, and what follows for loading and damping",
+    .options = options,
+    .more = "Bonds are whole, laws elastic. Modes are written as displacements, each as a step of a result file whose\n"
+            "time is the number of the mode; pictures are drawn of all.",
+    .run = run};

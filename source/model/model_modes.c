@@ -1,0 +1,155 @@
+/* How a body vibrates, in words, files and pictures. */
+#include "base/whole_file.h"
+#include "model/run.h"
+#include "model/sized.h"
+#include "solver/modes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char axes[] = "xyz";
+
+/** Hertz of a frequency in the deck's units. */
+static double hertz(const breccia_model *model, double frequency)
+{
+  return units_in_si(model->units, dimension_find("frequency"), frequency);
+}
+
+static void tell_table(const breccia_model *model, const Modes *modes, Text *t)
+{
+  text_add(t, "mode   frequency      period   of the mass, along");
+  for (int k = 0; k < model->domain.body.dimensions; ++k) text_add(t, "%s %c", k ? "    " : "", axes[k]);
+  text_add(t, "\n");
+  for (int n = 0; n < modes->count; ++n) {
+    const Mode *mode = &modes->modes[n];
+    Text frequency = {0}, period = {0};
+    if (mode->frequency > 0) {
+      quantity_describe(hertz(model, mode->frequency), "Hz", &frequency);
+      quantity_describe(1 / hertz(model, mode->frequency), "s", &period);
+    }
+    text_add(t, "%4d %11s %11s                 ", n + 1, mode->frequency > 0 ? text_words(&frequency) : "0",
+             mode->frequency > 0 ? text_words(&period) : "-");
+    for (int k = 0; k < model->domain.body.dimensions; ++k)
+      text_add(t, "%s%3.0f %%", k ? " " : "", 100 * mode->share[k]);
+    text_add(t, "\n");
+    text_free(&frequency);
+    text_free(&period);
+  }
+}
+
+/** What follows for runs of the body. */
+static void tell_advice(const breccia_model *model, const Modes *modes, Text *t)
+{
+  if (modes->rigid) text_add(t, "%d of them: nothing holds the body against moving as a whole\n", modes->rigid);
+  if (modes->rigid == modes->count) return;
+  const double first = hertz(model, modes->modes[modes->rigid].frequency),
+               last = hertz(model, modes->modes[modes->count - 1].frequency);
+  text_add(t, "loads that are to leave the body at rest: over 5 to 10 of its first periods, ");
+  quantity_describe(5 / first, "s", t);
+  text_add(t, " to ");
+  quantity_describe(10 / first, "s", t);
+  text_add(t, ", or by 'static'\nto come to rest soonest by 'explicit': damping: {ratio: 1, at: %.4g Hz}\n", first);
+  if (last > first)
+    text_add(t, "5 %% of critical damping by 'implicit': Rayleigh damping: {ratio: 0.05, from: %.4g Hz, to: %.4g Hz}\n",
+             first, last);
+  text_add(t, "steps of 'implicit' that follow all of these: ");
+  quantity_describe(1 / (20 * last), "s", t);
+}
+
+static int write_table(const breccia_model *model, const char *folder, const Modes *modes, Text *files, Error *error)
+{
+  Text t = {0};
+  char *path = text_format("%s/modes.csv", folder);
+  text_add(&t, "mode,frequency (Hz),mass share x,mass share y,mass share z\n");
+  for (int n = 0; n < modes->count; ++n) {
+    const Mode *mode = &modes->modes[n];
+    text_add(&t, "%d,%.17g,%.17g,%.17g,%.17g\n", n + 1, hertz(model, mode->frequency), mode->share[0], mode->share[1],
+             mode->share[2]);
+  }
+  const int status =
+      path ? whole_file_write(path, &t, error) : error_add(error, BRECCIA_FAILURE, "out of memory: modes");
+  if (!status) text_add(files, "\n  %s", path);
+  text_free(&t);
+  free(path);
+  return status;
+}
+
+/** Modes as displacements, the largest a tenth of the body; the time of each is its number. */
+static int write_states(breccia_model *model, const char *folder, const Modes *modes, Text *files, Error *error)
+{
+  static const char *const fields[] = {"displacement"};
+  Domain *d = &model->domain;
+  ResultFile *file = NULL;
+  double low[3], high[3], size = d->body.largest_spacing, *held[3];
+  particles_bounds(d->particles, low, high);
+  for (int k = 0; k < 3; ++k) size = fmax(size, high[k] - low[k]);
+  int status = result_file_create(&file, folder, d, model->units, model->spec->title,
+                                  &(ResultNames){.fields = fields, .count = 1}, error);
+  for (int n = 0; n < modes->count && !status; ++n) {
+    for (int k = 0; k < 3; ++k) {
+      double *shape = modes->modes[n].displacement[k];
+      for (int64_t i = 0; i < d->particles->places; ++i) shape[i] *= 0.1 * size;
+      held[k] = d->particles->displacement[k];
+      d->particles->displacement[k] = shape;
+    }
+    status = result_file_write(file, d, n + 1, n + 1, error);
+    for (int k = 0; k < 3; ++k) d->particles->displacement[k] = held[k];
+  }
+  if (!status) status = result_file_show(file, error);
+  result_file_destroy(&file);
+  if (!status) text_add(files, "\n  %s/results.vtkhdf (and results.xdmf for older ParaView)", folder);
+  return status;
+}
+
+static int draw(const breccia_model *model, const char *folder, const Modes *modes, Text *files, Error *error)
+{
+  int status = BRECCIA_OK;
+  char *pictures = text_format("%s/pictures", folder);
+  if (!pictures || run_make_folder(pictures, error)) status = BRECCIA_FAILURE;
+  for (int n = 0; n < modes->count && !status; ++n) {
+    char title[64], *path = text_format("%s/mode-%d.png", pictures, n + 1);
+    breccia_plot plot;
+    snprintf(title, sizeof title, "mode %d: %.4g Hz", n + 1, hertz(model, modes->modes[n].frequency));
+    breccia_plot_begin(&plot, sizeof plot);
+    plot.field = "displacement";
+    plot.state = BRECCIA_STATE_OF_STEP;
+    plot.step = n + 1;
+    plot.title = title;
+    plot.path = path;
+    status = path ? breccia_plot_field(folder, &plot, error) : BRECCIA_FAILURE;
+    if (!status) text_add(files, "\n  %s", path);
+    free(path);
+  }
+  free(pictures);
+  return status;
+}
+
+int breccia_model_modes(breccia_model *model, const breccia_modes *given, breccia_error *error)
+{
+  Entry entry;
+  breccia_modes wish;
+  Modes modes = {0};
+  Text files = {0};
+  if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
+  text_free(&model->outcome);
+  int status = sized_take(&wish, sizeof wish, given, "breccia_modes", error);
+  if (!status && wish.count < 1)
+    status = error_add(error, BRECCIA_USER_ERROR, "modes: %d are asked for; ask for one or more", wish.count);
+  if (!status) status = modes_find(&model->domain, &model->loading, wish.count, &modes, error);
+  if (!status) {
+    tell_table(model, &modes, &model->outcome);
+    tell_advice(model, &modes, &model->outcome);
+  }
+  if (!status && wish.folder) {
+    status = run_make_folder(wish.folder, error);
+    if (!status) status = write_table(model, wish.folder, &modes, &files, error);
+    if (!status) status = write_states(model, wish.folder, &modes, &files, error);
+    if (!status) status = draw(model, wish.folder, &modes, &files, error);
+    if (!status) text_add(&model->outcome, "\nwritten:%s", text_words(&files));
+  }
+  text_free(&files);
+  modes_destroy(&modes);
+  return model_leave(&entry, status, error);
+}

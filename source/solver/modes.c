@@ -1,0 +1,228 @@
+/* K q = omega^2 M q by ARPACK (Lehoucq, Sorensen and Yang 1998), in its shift-invert mode: the largest eigenvalues of (K + s M)^-1 M belong to the lowest
+ * frequencies. The shift s is small and positive, so that what moves as a whole is no exception and the equations are those of an implicit step, solved
+ * in the same ways. */
+#include "solver/modes.h"
+
+#include "base/memory.h"
+#include "base/random.h"
+#include "solver/ledger.h"
+#include "solver/vectors.h"
+#include <arpack.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** ARPACK remembers between two calls where it is, in one place for all: one body at a time. */
+static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
+
+typedef struct Search {
+  Domain *domain;
+  LinearSolver linear;
+  int axes, wanted, basis;
+  a_int size; /* of a column of numbers: components of all particles */
+  double *from[3], *to[3];
+  double *start, *columns, *work, *projected, *values;
+  a_int *chosen;
+} Search;
+
+/* ---- columns and vectors ---- */
+
+static void pack(const Search *s, double *const v[3], double *column)
+{
+  const Particles *p = s->domain->particles;
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < s->axes; ++k) column[n * s->axes + k] = v[k][p->place_of[n]];
+}
+
+static void unpack(const Search *s, const double *column, double *const v[3])
+{
+  const Particles *p = s->domain->particles;
+  for (int k = s->axes; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)p->places);
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < s->axes; ++k) v[k][p->place_of[n]] = column[n * s->axes + k];
+}
+
+static void multiply_masses(const Search *s, const double *column, double *product)
+{
+  const Particles *p = s->domain->particles;
+  unpack(s, column, s->from);
+  unknowns_spread(&s->linear.unknowns, NAN, s->from);
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) s->from[k][i] *= p->density[i] * p->volume[i];
+  unknowns_gather(&s->linear.unknowns, s->from);
+  pack(s, s->from, product);
+}
+
+static int solve(Search *s, const double *column, double *answer, Error *error)
+{
+  const double accuracy = 1e-11;
+  LinearRecord record;
+  unpack(s, column, s->from);
+  for (int k = 0; k < 3; ++k) memset(s->to[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
+  if (linear_solver_solve(&s->linear, s->from, s->to, accuracy, &record, error)) return BRECCIA_FAILURE;
+  unknowns_clear_rest(&s->linear.unknowns, s->to);
+  pack(s, s->to, answer);
+  return BRECCIA_OK;
+}
+
+/* ---- iteration ---- */
+
+static int create(Search *s, int64_t unknowns, Error *error)
+{
+  s->basis = (int)fmin((double)unknowns, 2 * s->wanted + 10);
+  const size_t size = (size_t)s->size, basis = (size_t)s->basis;
+  s->start = memory_zeroed(size, sizeof(double), "modes", error);
+  s->columns = memory_zeroed(size * basis, sizeof(double), "modes", error);
+  s->work = memory_zeroed(3 * size, sizeof(double), "modes", error);
+  s->projected = memory_zeroed(basis * (basis + 8), sizeof(double), "modes", error);
+  s->values = memory_zeroed(basis, sizeof(double), "modes", error);
+  s->chosen = memory_zeroed(basis, sizeof(a_int), "modes", error);
+  const int64_t places = s->domain->particles->places;
+  const bool made = s->start && s->columns && s->work && s->projected && s->values && s->chosen &&
+                    vectors_make(s->from, places, "modes", error) && vectors_make(s->to, places, "modes", error);
+  if (!made) return BRECCIA_FAILURE;
+  uint64_t seed = 1;
+  for (int k = 0; k < s->axes; ++k)
+    for (int64_t n = 0; n < s->domain->particles->count; ++n)
+      s->from[k][s->domain->particles->place_of[n]] = random_uniform(&seed) - 0.5;
+  unknowns_clear_rest(&s->linear.unknowns, s->from);
+  pack(s, s->from, s->start);
+  return BRECCIA_OK;
+}
+
+static void destroy(Search *s)
+{
+  linear_solver_destroy(&s->linear);
+  vectors_free(s->from);
+  vectors_free(s->to);
+  free(s->start);
+  free(s->columns);
+  free(s->work);
+  free(s->projected);
+  free(s->values);
+  free(s->chosen);
+}
+
+/** The eigenvalues wanted, and their vectors in the first columns. */
+static int iterate(Search *s, double shift, Error *error)
+{
+  enum { MOST_RESTARTS = 300, EXACT_SHIFTS = 1, SHIFT_INVERT = 3, FIRST = -1, NEXT = 1, MASSES = 2, DONE = 99 };
+  const double accuracy = 1e-10;
+  a_int what = 0, status = 1, parameters[11] = {EXACT_SHIFTS, 0, MOST_RESTARTS, 1, 0, 0, SHIFT_INVERT}, at[11] = {0};
+  const a_int room = s->basis * (s->basis + 8);
+  do {
+    dsaupd_c(&what, "G", s->size, "LM", s->wanted, accuracy, s->start, s->basis, s->columns, s->size, parameters, at,
+             s->work, s->projected, room, &status);
+    double *from = s->work + at[0] - 1, *to = s->work + at[1] - 1;
+    if (what == MASSES) multiply_masses(s, from, to);
+    if (what == FIRST) multiply_masses(s, from, to);
+    if (what == FIRST && solve(s, to, to, error)) return BRECCIA_FAILURE;
+    if (what == NEXT && solve(s, s->work + at[2] - 1, to, error)) return BRECCIA_FAILURE;
+  } while (what != DONE);
+  if (!status)
+    dseupd_c(1, "A", s->chosen, s->values, s->columns, s->size, -shift, "G", s->size, "LM", s->wanted, accuracy,
+             s->start, s->basis, s->columns, s->size, parameters, at, s->work, s->projected, room, &status);
+  if (status)
+    return error_add(error, BRECCIA_FAILURE,
+                     "the modes could not be found: ARPACK's iteration ended with %d; ask for more or fewer of them",
+                     (int)status);
+  return BRECCIA_OK;
+}
+
+/* ---- what comes out ---- */
+
+static int take_mode(const Search *s, int from, Mode *mode, Error *error)
+{
+  const Particles *p = s->domain->particles;
+  double moved[3] = {0}, mass = 0, largest = 0;
+  if (!vectors_make(mode->displacement, p->places, "modes", error)) return BRECCIA_FAILURE;
+  unpack(s, s->columns + (size_t)s->size * (size_t)from, mode->displacement);
+  unknowns_spread(&s->linear.unknowns, NAN, mode->displacement);
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double m = p->density[i] * p->volume[i];
+    mass += m;
+    for (int k = 0; k < 3; ++k) {
+      const double u = mode->displacement[k][i];
+      moved[k] += m * u;
+      if (fabs(u) > (1 + 1e-6) * fabs(largest)) largest = u; /* of equal ones the first, whatever their roundings */
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    mode->share[k] = moved[k] * moved[k] / mass; /* the sum of m u^2 is 1 */
+    for (int64_t i = 0; i < p->places && largest != 0; ++i) mode->displacement[k][i] /= largest;
+  }
+  return BRECCIA_OK;
+}
+
+/** @param[in] little  omega squared below which nothing is bent */
+static int take_modes(const Search *s, double little, Modes *modes, Error *error)
+{
+  modes->modes = memory_zeroed((size_t)s->wanted, sizeof *modes->modes, "modes", error);
+  if (!modes->modes) return BRECCIA_FAILURE;
+  modes->count = s->wanted;
+  for (int n = 0; n < s->wanted; ++n) {
+    int from = 0; /* the lowest that is not taken yet */
+    for (int k = 1; k < s->wanted; ++k)
+      if (s->values[k] < s->values[from]) from = k;
+    const double square = s->values[from];
+    s->values[from] = INFINITY;
+    if (square < -little)
+      return error_add(error, BRECCIA_FAILURE, "the body gives way by itself: a mode has a negative stiffness");
+    modes->modes[n].frequency = square > little ? sqrt(square) / (2 * acos(-1)) : 0;
+    modes->rigid += square <= little;
+    if (take_mode(s, from, &modes->modes[n], error)) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+void modes_destroy(Modes *modes)
+{
+  for (int n = 0; n < modes->count; ++n) vectors_free(modes->modes[n].displacement);
+  free(modes->modes);
+  *modes = (Modes){0};
+}
+
+/** Squared, the frequency of waves over the length of the body. */
+static double wave_square(const Domain *d)
+{
+  double low[3], high[3], square = 0;
+  particles_bounds(d->particles, low, high);
+  for (int k = 0; k < 3; ++k) square += pow(high[k] - low[k], 2);
+  square = fmax(square, pow(d->body.largest_spacing, 2));
+  return pow(ledger_wave_speed(d), 2) / square;
+}
+
+int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error *error)
+{
+  const double shift = 1e-2 * wave_square(d), little = 1e-7 * wave_square(d);
+  Search s = {.domain = d,
+              .axes = d->body.dimensions,
+              .wanted = count,
+              .linear = {.domain = d, .loading = loading, .unknowns = unknowns_of(d, loading), .mass_factor = shift}};
+  const double size = (double)s.axes * (double)d->particles->count;
+  s.size = (a_int)size;
+  const int64_t unknowns = unknowns_count(&s.linear.unknowns, error);
+  if (unknowns < 0) return BRECCIA_FAILURE;
+  if (count >= unknowns)
+    return error_add(error, BRECCIA_USER_ERROR, "%d modes are too many for a body with %lld unknowns", count,
+                     (long long)unknowns);
+  if ((double)s.size != size) return error_add(error, BRECCIA_USER_ERROR, "the body is too large for ARPACK");
+  const bool elastic = domain_in_elastic_stage(d);
+  domain_set_elastic_stage(d, true);
+  int status = domain_linearise(d, error);
+  domain_set_elastic_stage(d, elastic);
+  if (!status) status = create(&s, unknowns, error);
+  if (!status) status = linear_solver_create(&s.linear, "automatic", error);
+  if (!status) status = linear_solver_prepare(&s.linear, error);
+  if (!status) {
+    pthread_mutex_lock(&arpack);
+    status = iterate(&s, shift, error);
+    pthread_mutex_unlock(&arpack);
+  }
+  if (!status) status = take_modes(&s, little, modes, error);
+  destroy(&s);
+  domain_evaluate(d);
+  return status;
+}

@@ -1,0 +1,156 @@
+/* Frequencies and modes of vibration, beside closed forms. */
+#include "support.h"
+
+#include "solver/modes.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define BAR                                                                                                            \
+  UNITS "materials: {m: {model: elastic-1d, Young modulus: 1e6, density: 2}}\n"                                        \
+        "body: {bar: {material: m, lattice: line, spacing: 0.05, area: 0.01, shape: {box: {particles: [80, 1]}}}}\n"   \
+        "peridynamics: {formulation: bond-based, space: 1-D, horizon: 3.015 spacings, surface correction: energy}\n"
+
+static Modes modes_of(breccia_model *model, int count)
+{
+  Modes modes = {0};
+  Error *error = breccia_error_create();
+  if (modes_find(&model->domain, &model->loading, count, &modes, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  for (int n = 1; n < count; ++n) assert_true(modes.modes[n].frequency >= modes.modes[n - 1].frequency);
+  return modes;
+}
+
+static void a_bar_vibrates_at_odd_quarters_of_its_wave(void **state)
+{
+  (void)state;
+  /* Fixed and free: (2n - 1) c / 4L, with 8 / (pi (2n - 1))^2 of the mass. */
+  const double pi = acos(-1), speed = sqrt(1e6 / 2), length = 77.5 * 0.05;
+  breccia_model *m =
+      model_of(BAR "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}]\nsolve: {static: {increments: 1}}\n");
+  Modes modes = modes_of(m, 4);
+  assert_int_equal(modes.rigid, 0);
+  for (int n = 0; n < 4; ++n) {
+    const double odd = 2 * n + 1, wanted = odd * speed / (4 * length);
+    assert_near(modes.modes[n].frequency, wanted, 0.01 * wanted);
+    assert_near(modes.modes[n].share[0], 8 / pow(pi * odd, 2) * 77.5 / 80, 0.01);
+    assert_near(modes.modes[n].share[1], 0, 1e-12);
+  }
+  modes_destroy(&modes);
+  breccia_model_destroy(&m);
+}
+
+static void a_cantilever_bends_as_beams_do(void **state)
+{
+  (void)state;
+  /* Euler and Bernoulli, less what shear and turning take: 1 - (1.875)^2 / 2 (r / L)^2 (1 + E / (k G)) about (Timoshenko 1921). */
+  const double pi = acos(-1), depth = 0.8, length = 7.975, radius = depth / sqrt(12), first = 1.87510407,
+               bending = first * first / (2 * pi * length * length) * sqrt(1e4 / 2) * radius,
+               wanted = bending * (1 - first * first / 2 * pow(radius / length, 2) * (1 + 2.5 / (5.0 / 6)));
+  double found[2];
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m =
+        model_of(UNITS SOFT_SOLID
+                 "body: {b: {material: m, lattice: square, spacing: 0.05, thickness: 0.2, shape: {box: {particles: "
+                 "[160, 16]}}}}\n"
+                 "peridynamics: {formulation: %s, space: plane stress}\n"
+                 "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}]\nsolve: {static: {increments: 1}}\n",
+                 k ? "ordinary" : "correspondence");
+    Modes modes = modes_of(m, 3);
+    found[k] = modes.modes[0].frequency;
+    if (fabs(found[k] - wanted) > (k ? 0.08 : 0.03) * wanted) fail_msg("%g instead of %g", found[k], wanted);
+    assert_near(modes.modes[0].share[1], 0.613, 0.02); /* of the first mode of any slender cantilever */
+    assert_int_equal(modes.rigid, 0);
+    modes_destroy(&modes);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_free_body_moves_as_a_whole_in_so_many_ways(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *deck;
+    int rigid;
+  } bodies[] = {
+      {SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
+                  "peridynamics: {formulation: correspondence, space: 3-D}\n",
+       6},
+      {SOFT_SOLID
+       "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [9, 6]}}}}\n"
+       "peridynamics: {formulation: ordinary, space: plane strain}\n",
+       3},
+      {SOFT_SOLID
+       "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [9, 6]}}}}\n"
+       "peridynamics: {formulation: correspondence, space: plane stress}\n"
+       "loads: [{on: {face: y-, layers: 1}, roller: [0, 1]}]\n",
+       1}};
+  for (int b = 0; b < 3; ++b) {
+    breccia_model *m = model_of(UNITS "%ssolve: {explicit: {steps: 1}}\n", bodies[b].deck);
+    const Particles *p = m->domain.particles;
+    Modes modes = modes_of(m, 8);
+    assert_int_equal(modes.rigid, bodies[b].rigid);
+    assert_true(modes.modes[modes.rigid].frequency > 1);
+    for (int r = 0; r < 8; ++r)
+      for (int c = 0; c < r; ++c) { /* orthogonal by mass */
+        double product = 0, sizes[2] = {0};
+        for (int k = 0; k < 3; ++k)
+          for (int64_t i = 0; i < p->places; ++i) {
+            const double mass = p->density[i] * p->volume[i], u = modes.modes[r].displacement[k][i],
+                         v = modes.modes[c].displacement[k][i];
+            product += mass * u * v;
+            sizes[0] += mass * u * u;
+            sizes[1] += mass * v * v;
+          }
+        assert_near(product, 0, 1e-7 * sqrt(sizes[0] * sizes[1]));
+      }
+    modes_destroy(&modes);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void springs_ties_and_supports_are_felt(void **state)
+{
+  (void)state;
+  /* A block that its springs carry: omega^2 = k / m along x. Half of it beyond a plane of symmetry has the whole one's symmetric modes. */
+  breccia_model *m = model_of(BAR "loads: [{on: {all: yes}, spring: {stiffness: 8}}]\nsolve: {explicit: {steps: 1}}\n");
+  Modes modes = modes_of(m, 2);
+  assert_near(modes.modes[0].frequency, sqrt(8 / 0.08) / (2 * acos(-1)), 1e-6);
+  assert_near(modes.modes[0].share[0], 1, 1e-6);
+  modes_destroy(&modes);
+  breccia_model_destroy(&m);
+  /* Tied ends move together: of a free bar's modes n c / 2L those with even n are left. With springs nothing is assembled. */
+  for (int k = 0; k < 2; ++k) {
+    m = model_of(BAR
+                 "loads: [{on: {nearest: [0, 0]}, tie: {to: {nearest: [3.95, 0]}}}%s]\nsolve: {explicit: {steps: 1}}\n",
+                 k ? ", {on: {all: yes}, spring: {stiffness: 1e-9}}" : "");
+    modes = modes_of(m, 3);
+    assert_int_equal(modes.rigid, 1);
+    assert_near(modes.modes[1].frequency, sqrt(1e6 / 2) / 4, 0.02 * sqrt(1e6 / 2) / 4);
+    modes_destroy(&modes);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void more_modes_than_unknowns_are_refused(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(BAR "solve: {explicit: {steps: 1}}\n");
+  Modes modes = {0};
+  Error *error = breccia_error_create();
+  assert_int_equal(modes_find(&m->domain, &m->loading, 80, &modes, error), BRECCIA_USER_ERROR);
+  assert_non_null(strstr(breccia_error_text(error), "80 modes are too many for a body with 80 unknowns"));
+  breccia_error_destroy(&error);
+  modes_destroy(&modes);
+  breccia_model_destroy(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_bar_vibrates_at_odd_quarters_of_its_wave),
+      cmocka_unit_test(a_cantilever_bends_as_beams_do),
+      cmocka_unit_test(a_free_body_moves_as_a_whole_in_so_many_ways),
+      cmocka_unit_test(springs_ties_and_supports_are_felt),
+      cmocka_unit_test(more_modes_than_unknowns_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
