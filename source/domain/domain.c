@@ -2,6 +2,7 @@
 
 #include "base/team.h"
 #include "base/tensor.h"
+#include "constitutive/remote/remote.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,6 +137,13 @@ bool domain_has_servers(const Domain *d)
   bool servers = false;
   for (int r = 0; r < d->region_count; ++r) servers |= d->regions[r].points.servers != NULL;
   return servers;
+}
+
+const Material *domain_without_trials(const Domain *d)
+{
+  for (int k = 0; k < d->material_count; ++k)
+    if (d->materials[k].remote && !remote_iterates(d->materials[k].remote)) return &d->materials[k];
+  return NULL;
 }
 
 static void store_batch(void *context, int64_t b)

@@ -215,11 +215,7 @@ static bool damps(const Solver *run)
 
 static int check(Solver *run, const void *section, Error *error)
 {
-  const ImplicitSpec *spec = section;
-  if (forces_strike(&run->domain->forces))
-    return node_error(run->reader->document, spec->head.node, error,
-                      "implicit: contact has no place in it yet; leave 'contact' out, or take 'explicit'");
-  return BRECCIA_OK;
+  return increment_check(run, section, "take 'explicit'", error);
 }
 
 static int plan(Solver *run, Text *warning, Error *error)

@@ -4,6 +4,21 @@
 #include <math.h>
 #include <string.h>
 
+int increment_check(const Solver *run, const void *section, const char *instead, Error *error)
+{
+  const SectionHead *head = section;
+  const Material *served = domain_without_trials(run->domain);
+  if (forces_strike(&run->domain->forces))
+    return node_error(run->reader->document, head->node, error,
+                      "%s: contact has no place in it yet; leave 'contact' out, or %s", head->node->key, instead);
+  if (served)
+    return node_error(run->reader->document, head->node, error,
+                      "%s: it tries strains several times, and the server of material '%s' cannot take a trial back; "
+                      "take 'explicit', a server that can (docs/material-server.md), or a law of this program",
+                      head->node->key, served->name);
+  return BRECCIA_OK;
+}
+
 int increment_create(Increment *i, Domain *domain, Error *error)
 {
   i->domain = domain;

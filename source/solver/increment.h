@@ -11,6 +11,10 @@ typedef struct Increment {
   double moved;                      /* largest component of any motion since bonds were judged */
 } Increment;
 
+/** Refuses what solvers that iterate have no place for.
+ *  @param[in] section  of the solver's keys, to be named; @param[in] instead  what to do without contact */
+int increment_check(const Solver *solver, const void *section, const char *instead, Error *error);
+
 /** `increment` is zero; destroy it in any case. */
 int increment_create(Increment *increment, Domain *domain, Error *error);
 void increment_destroy(Increment *increment);

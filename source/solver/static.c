@@ -159,10 +159,8 @@ static int check(Solver *run, const void *section, Error *error)
   const StaticSpec *spec = section;
   const Unknowns unknowns = unknowns_of(run->domain, run->loading);
   char motion[16];
-  if (forces_strike(&run->domain->forces))
-    return node_error(run->reader->document, spec->head.node, error,
-                      "static: contact has no place in it yet; leave 'contact' out, or find rest by 'explicit' with "
-                      "'local damping'");
+  const int status = increment_check(run, section, "find rest by 'explicit' with 'local damping'", error);
+  if (status) return status;
   if (unknowns_are_loose(&unknowns, motion, sizeof motion))
     return node_error(run->reader->document, spec->head.node, error,
                       "static: nothing holds the body against moving %s as a whole; hold it by a support, a roller, a "

@@ -431,95 +431,6 @@ static void a_server_ends_while_a_client_is_slow(void **state)
   channel_close(&line.channel);
 }
 
-/* ---- servers that are found again ---- */
-
-/** A server that saves nothing, at some commit of session 77 with three points. */
-typedef struct Script {
-  int listener, commits, commits_asked;
-} Script;
-
-static void *play(void *context)
-{
-  Script *script = context;
-  Channel *c = channel_over(accept(script->listener, NULL, NULL), false, false);
-  Frame frame = {0};
-  uint8_t *payload;
-  Text words = {0};
-  while (frame.operation != OPERATION_BYE && channel_receive(c, &frame, &payload, PATIENCE, &words) == CHANNEL_OK) {
-    Text reply = {0};
-    if (frame.operation == OPERATION_HELLO) text_add(&reply, "session: 77\npoints: 3\ncommits: %d\n", script->commits);
-    if (frame.operation == OPERATION_PROBE)
-      text_add(&reply, "components: 6\nbulk: 2\nshear: 1\nstate: 0\niterates: 1\nsaves: 0\n");
-    script->commits_asked += frame.operation == OPERATION_COMMIT;
-    memcpy(channel_payload(c, reply.length), text_words(&reply), reply.length);
-    const Frame answer = {.version = FRAME_VERSION,
-                          .operation = frame.operation | OPERATION_ANSWER,
-                          .sequence = frame.sequence,
-                          .length = (uint32_t)reply.length,
-                          .session = 77};
-    channel_send(c, &answer, PATIENCE, &words);
-    text_free(&reply);
-  }
-  text_free(&words);
-  channel_close(&c);
-  return NULL;
-}
-
-/** Takes up a run at commit 5 with a server at another. @return the status; *asked tells how often the server was to commit */
-static int take_up(int commits, int *asked, char *told, size_t size)
-{
-  struct sockaddr_un un = {.sun_family = AF_UNIX};
-  snprintf(un.sun_path, sizeof un.sun_path, "%s/script", folder);
-  Script script = {.listener = socket(AF_UNIX, SOCK_STREAM, 0), .commits = commits};
-  assert_int_equal(bind(script.listener, (struct sockaddr *)&un, sizeof un), 0);
-  assert_int_equal(listen(script.listener, 1), 0);
-  pthread_t player;
-  assert_int_equal(pthread_create(&player, NULL, play, &script), 0);
-  char *address = text_format("unix:%s", un.sun_path);
-  const RemoteSpec remote_spec = {.material = "clay",
-                                  .command = "nDMaterial Any $tag",
-                                  .stage = -1,
-                                  .servers = (const char *const[]){address},
-                                  .server_count = 1,
-                                  .timeout = PATIENCE,
-                                  .stress_unit = 1,
-                                  .units = {"m", "kN", "s"},
-                                  .length = NAN};
-  Error *error = breccia_error_create();
-  Remote *remote = NULL;
-  assert_int_equal(remote_open(&remote, &remote_spec, error), BRECCIA_OK);
-  const int status = remote_resume(remote, (const int64_t[]){0, 3}, NULL, (const double[]){77, 5}, error);
-  snprintf(told, size, "%s", breccia_error_text(error));
-  remote_close(&remote);
-  pthread_join(player, NULL);
-  breccia_error_destroy(&error);
-  close(script.listener);
-  unlink(un.sun_path);
-  free(address);
-  *asked = script.commits_asked;
-  return status;
-}
-
-static void a_server_is_taken_up_where_the_checkpoint_is(void **state)
-{
-  (void)state;
-  char told[400];
-  int asked;
-  assert_int_equal(take_up(5, &asked, told, sizeof told), BRECCIA_OK);
-  assert_int_equal(asked, 0);
-  /* The commit goes with the trial that follows, which never came: it is made up for. */
-  assert_int_equal(take_up(4, &asked, told, sizeof told), BRECCIA_OK);
-  assert_int_equal(asked, 1);
-  static const int elsewhere[] = {6, 7, 3, 0};
-  for (int k = 0; k < 4; ++k) {
-    assert_int_equal(take_up(elsewhere[k], &asked, told, sizeof told), BRECCIA_USER_ERROR);
-    assert_int_equal(asked, 0);
-    char words[100];
-    snprintf(words, sizeof words, " is at commit %d, the checkpoint at commit 5", elsewhere[k]);
-    if (!strstr(told, words)) fail_msg("expected '%s', found '%s'", words, told);
-  }
-}
-
 static int make_folder(void **state)
 {
   (void)state;
@@ -544,7 +455,6 @@ int main(void)
       cmocka_unit_test(addresses_are_refused_in_words),
       cmocka_unit_test(only_sockets_of_their_own_are_removed),
       cmocka_unit_test(a_server_ends_while_a_client_is_slow),
-      cmocka_unit_test(a_server_is_taken_up_where_the_checkpoint_is),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
