@@ -3,10 +3,11 @@
 #include "base/memory.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void check_control(const DeckReader *reader, void *section)
 {
-  const ControlSpec *c = section;
+  ControlSpec *c = section;
   if (c->opening.count && c->opening.count != 2)
     node_error(reader->document, section_node(c, "opening between"), reader->error,
                "opening between: expected two points, found %d", c->opening.count);
@@ -16,6 +17,7 @@ static void check_control(const DeckReader *reader, void *section)
   if (!c->displacement.node && !isnan(c->direction[0]))
     node_error(reader->document, section_node(c, "direction"), reader->error,
                "direction: only of 'displacement of'; an opening counts along the line between its points");
+  if (c->end) deck_number(reader, c->end, "to", c->bond.node ? "1" : "length", NULL, &c->to);
 }
 
 static const Field control_fields[] = {
@@ -33,6 +35,24 @@ static const Field control_fields[] = {
      .meaning = "mean displacement of a selection along 'direction'",
      .section = &selection_section,
      .group = 'A'},
+    {.key = "stretch in",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(ControlSpec, bond),
+     .standard = "",
+     .meaning =
+         "stretch of the bond of a selection (both ends belong to it) that stretches the fastest, another one in "
+         "each increment: a crack is followed wherever it runs",
+     .section = &selection_section,
+     .group = 'A'},
+    {.key = "arc length of",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(ControlSpec, path),
+     .standard = "",
+     .meaning =
+         "root mean square of the displacements of a selection, on the way that it went in the increment before: "
+         "for bodies that snap through; a sharp corner, as where brittle bars break, it does not turn",
+     .section = &selection_section,
+     .group = 'A'},
     {.key = "direction",
      .kind = FIELD_POINT,
      .offset = offsetof(ControlSpec, direction),
@@ -40,10 +60,10 @@ static const Field control_fields[] = {
      .standard = "",
      .meaning = "of the displacement that counts, of any length"},
     {.key = "to",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(ControlSpec, to),
-     .dimension = "length",
-     .meaning = "its value at the end of the stage; it goes there in equal parts from where it is at its beginning"},
+     .kind = FIELD_QUANTITY,
+     .offset = offsetof(ControlSpec, end),
+     .meaning = "its value at the end of the stage; it goes there in equal parts from where it is at its beginning. "
+                "Of a stretch or an arc length: the sum of all increments"},
 };
 
 const Section control_section = {.name = "control",
@@ -100,18 +120,42 @@ static int measure_displacement(Control *c, const Body *body, const DeckReader *
   return status;
 }
 
+/** What a way is measured on, or a bond is looked for in. */
+static int measure_found(Control *c, const Reference *in, const DeckReader *reader, const SectionList *selections)
+{
+  Selection selection;
+  int status = BRECCIA_OK;
+  if (!(c->spec->to > 0))
+    status = node_error(reader->document, section_node(c->spec, "to"), reader->error,
+                        "to: expected a number above 0, by which the body goes on");
+  if (!status) status = selection_create(&selection, &c->domain->body, reader, selections, in);
+  if (status) return status;
+  const bool bond = in == &c->spec->bond;
+  status = make_room(c, bond ? 2 : selection.count, reader->error);
+  if (!status && !bond) memcpy(c->places, selection.places, sizeof *c->places * (size_t)c->count);
+  if (!status && bond) {
+    c->belongs = memory_zeroed((size_t)c->domain->particles->places, 1, "control", reader->error);
+    if (!c->belongs) status = BRECCIA_FAILURE;
+    for (int64_t n = 0; n < selection.count && !status; ++n) c->belongs[selection.places[n]] = 1;
+  }
+  selection_destroy(&selection);
+  return status;
+}
+
 int control_create(Control *c, const ControlSpec *spec, const Domain *domain, const DeckReader *reader,
                    const SectionList *selections)
 {
-  *c = (Control){.spec = spec};
+  *c = (Control){.spec = spec, .domain = domain};
   if (!spec) return BRECCIA_OK;
-  return spec->opening.count ? measure_opening(c, &domain->body, reader)
-                             : measure_displacement(c, &domain->body, reader, selections);
+  if (spec->opening.count) return measure_opening(c, &domain->body, reader);
+  if (spec->displacement.node) return measure_displacement(c, &domain->body, reader, selections);
+  return measure_found(c, spec->path.node ? &spec->path : &spec->bond, reader, selections);
 }
 
 void control_destroy(Control *c)
 {
   free(c->places);
+  free(c->belongs);
   for (int k = 0; k < 3; ++k) free(c->weight[k]);
   *c = (Control){0};
 }
@@ -147,9 +191,86 @@ double control_value(const Control *c, double *const v[3])
   return sum;
 }
 
-double control_shown(const Control *c, const Particles *p)
+double control_shown(const Control *c)
 {
+  const Particles *p = c->domain->particles;
   return control_value(c, p->displacement) - (p->zero[0] ? control_value(c, p->zero) : 0);
+}
+
+/** Lets the value of a path count displacements along v. */
+static void point_along(Control *c, double *const v[3])
+{
+  double sum = 0;
+  for (int64_t n = 0; n < c->count; ++n)
+    for (int k = 0; k < 3; ++k) sum += v[k][c->places[n]] * v[k][c->places[n]];
+  if (!(sum > 0)) return;
+  for (int64_t n = 0; n < c->count; ++n)
+    for (int k = 0; k < 3; ++k) c->weight[k][n] = v[k][c->places[n]] / sqrt(sum * (double)c->count);
+}
+
+/** Lets the value be the stretch of the bond that v stretches or shortens the most. */
+static void take_bond(Control *c, double *const v[3])
+{
+  const Family *f = &c->domain->family;
+  double most = 0;
+  for (int64_t slice = 0; slice < c->domain->particles->places / SLICE; ++slice)
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        const int64_t place = slice * SLICE + lane;
+        if (!(f->intact[slot] >> lane & 1) || !c->belongs[place]) continue;
+        const Bond bond = family_bond(f, slice, slot, lane);
+        if (!c->belongs[bond.neighbour]) continue;
+        double along[3], stretch = 0;
+        for (int k = 0; k < 3; ++k) {
+          along[k] = bond.xi[k] / (bond.length * bond.length);
+          stretch += along[k] * (v[k][bond.neighbour] - v[k][place]);
+        }
+        if (!(fabs(stretch) > most)) continue;
+        most = fabs(stretch);
+        c->places[0] = (int32_t)place;
+        c->places[1] = bond.neighbour;
+        for (int k = 0; k < 3; ++k) {
+          c->weight[k][0] = -along[k];
+          c->weight[k][1] = along[k];
+        }
+      }
+}
+
+static bool follows_path(const Control *c)
+{
+  return c->spec->path.node;
+}
+
+/** Whether an increment begins with what is measured yet to be found. */
+static bool is_open(const Control *c)
+{
+  return c->spec->bond.node || (follows_path(c) && !c->on_way);
+}
+
+void control_begin(Control *c)
+{
+  if (!c->spec) return;
+  c->on_way = 0;
+  c->from = control_shown(c);
+}
+
+double control_target(Control *c, double before, double after)
+{
+  const double to = c->spec->to;
+  for (int k = 0; k < 3 && is_open(c); ++k) memset(c->weight[k], 0, sizeof(double) * (size_t)c->count);
+  const double now = control_shown(c);
+  c->step = follows_path(c) || c->spec->bond.node ? to * (after - before) : c->from + (to - c->from) * after - now;
+  return now + c->step;
+}
+
+double control_aim(Control *c, double *const pulled[3])
+{
+  if (!is_open(c)) return 0;
+  if (follows_path(c))
+    point_along(c, pulled);
+  else
+    take_bond(c, pulled);
+  return control_shown(c);
 }
 
 void control_add(const Loading *loading, double change)
@@ -158,10 +279,31 @@ void control_add(const Loading *loading, double change)
     if (is_controlled(loading, &loading->loads[l])) loading->loads[l].history.found += change;
 }
 
-void control_accept(const Loading *loading)
+void control_accept(Control *c, const Loading *loading, double *const moved[3])
 {
   for (int l = 0; l < loading->count; ++l) {
     History *h = &loading->loads[l].history;
     if (is_controlled(loading, &loading->loads[l])) h->most = fmax(h->most, fabs(h->found));
   }
+  if (!follows_path(c) || c->step == 0) return; /* bonds have broken on the way, which goes on */
+  point_along(c, moved);
+  ++c->on_way;
+}
+
+void control_state(Control *c, StateList *list)
+{
+  static const char *const axes[] = {"x", "y", "z"};
+  if (!c->spec) return;
+  state_add_number(list, "control at the begin", "length", STATE_COMMITTED, &c->from);
+  if (!follows_path(c)) return;
+  state_add_count(list, "increments of the path", STATE_COMMITTED, &c->on_way);
+  for (int k = 0; k < 3; ++k)
+    state_add(list,
+              &(StateRow){.unit = "1",
+                          .kind = STATE_NUMBERS,
+                          .entity = STATE_OF_ALL,
+                          .role = STATE_COMMITTED,
+                          .count = c->count,
+                          .values = c->weight[k]},
+              "way of the path", axes[k]);
 }

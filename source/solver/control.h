@@ -1,17 +1,23 @@
 /* Control of a body at rest by what it does: the common factor of some loads is found so that a measure of the displacements, like the opening of a
  * crack, grows as prescribed. The load may fall meanwhile, and what it acts on may go back: softening and snap-back can be followed as long as
- * the measure grows (de Borst 1987, Computers & Structures 25, 211-224: indirect displacement control). */
+ * the measure grows (de Borst 1987, Computers & Structures 25, 211-224: indirect displacement control).
+ *
+ * What is measured may be found, too: in each increment the bond that stretches the fastest, wherever a crack runs (after Chen and Schreyer 1990,
+ * Computer Methods in Applied Mechanics and Engineering 90, 869-884, who take elements); or the way that the body went last, by a length of it (arc
+ * length, on the plane across that way: Ramm 1981, Nonlinear Finite Element Analysis in Structural Mechanics, 63-89). */
 #ifndef BRECCIA_SOLVER_CONTROL_H
 #define BRECCIA_SOLVER_CONTROL_H
 
+#include "base/state.h"
 #include "body/selection.h"
 #include "solver/unknowns.h"
 
 typedef struct ControlSpec {
   SectionHead head;
   NumberList opening;
-  Reference displacement;
-  double direction[3], to;
+  Reference displacement, bond, path;
+  const Node *end;
+  double direction[3], to; /* to: from `end` */
 } ControlSpec;
 
 extern const Section control_section;
@@ -19,10 +25,14 @@ extern const Section control_section;
 /** A weighted sum of displacements. */
 typedef struct Control {
   const ControlSpec *spec;
+  const Domain *domain;
   int32_t *places;   /* [count]; owned */
-  double *weight[3]; /* [count]; owned */
+  double *weight[3]; /* [count]; owned; zeros as long as it is to be found */
   int64_t count;
-  double from; /* value at the begin of the stage */
+  uint8_t *belongs; /* [places] whose bonds are looked at; owned; NULL: another measure */
+  double from;      /* value at the begin of the stage */
+  double step;      /* by how much it changes in the increment */
+  int64_t on_way;   /* increments that the path has taken */
 } Control;
 
 /** @param[in] spec  NULL: no control; `control` is zero then. Destroy it in any case. */
@@ -33,15 +43,29 @@ void control_destroy(Control *control);
 /** Mistakes of the loads that act in the stage under way: none to be found, or one that cannot be. */
 int control_check(const ControlSpec *spec, const Loading *loading, const DeckReader *reader, Error *error);
 
+/** The stage begins: values are told from those of now. */
+void control_begin(Control *control);
+/** What its value is to be after an increment; of one that is yet to be found, as if it was zero before.
+ *  @param[in] before, after  parts of the stage that have gone at its begin and at its end */
+double control_target(Control *control, double before, double after);
+/** Finds what is measured, if it is yet to be found.
+ *  @param[in] pulled  displacements where the factor of controlled loads grows by 1
+ *  @return by how much the value, and so its target, is another now */
+double control_aim(Control *control, double *const pulled[3]);
+
 /** Its value at a vector over places. */
 double control_value(const Control *control, double *const v[3]);
 
 /** Its value as watched, from where displacements count as zero. */
-double control_shown(const Control *control, const Particles *particles);
+double control_shown(const Control *control);
 
 /** Adds to the factors of controlled loads in the stage under way. */
 void control_add(const Loading *loading, double change);
-/** Notes how far these have been: the body is at rest. */
-void control_accept(const Loading *loading);
+/** The body is at rest: notes how far these have been, and the way of a path.
+ *  @param[in] moved  changes of displacements in the increment */
+void control_accept(Control *control, const Loading *loading, double *const moved[3]);
+
+/** Rows of what it keeps from one increment to the next. */
+void control_state(Control *control, StateList *list);
 
 #endif

@@ -140,8 +140,9 @@ static NewtonOutcome follow_control(Newton *n, double accuracy, double *work, Er
   n->products += linear.iterations;
   n->indefinite |= linear.indefinite;
   unknowns_spread_pull(&n->linear.unknowns, n->pulled);
+  if (n->iterations == 1) n->target += control_aim(n->control, n->pulled);
   const double grows = control_value(n->control, n->pulled);
-  const double more = (n->target - control_shown(n->control, p) - control_value(n->control, n->change)) / grows;
+  const double more = (n->target - control_shown(n->control) - control_value(n->control, n->change)) / grows;
   if (!isfinite(more)) return NEWTON_SINGULAR;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) n->change[k][i] += more * n->pulled[k][i];
@@ -274,8 +275,8 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
 static bool has_converged(const Newton *n, double correction, double work, double first_work)
 {
   if (!(n->unbalanced <= n->spec->residual)) return false;
-  if (n->control &&
-      !(fabs(n->target - control_shown(n->control, n->domain->particles)) <= n->spec->residual * fabs(n->target)))
+  const double off = n->control ? fabs(n->target - control_shown(n->control)) : 0;
+  if (n->control && !(off <= n->spec->residual * fmax(fabs(n->target), fabs(n->control->step))))
     return false; /* only a part of the last change was taken */
   if (!isnan(n->spec->displacement) && !(correction <= n->spec->displacement)) return false;
   return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
@@ -323,7 +324,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  const bool moves = add_motions(n, time) || (n->control && control_shown(n->control, p) != n->target);
+  const bool moves = add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
   const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
   double before = 0, first_work = 0;
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);

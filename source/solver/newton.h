@@ -76,12 +76,12 @@ typedef struct Newton {
   const NewtonForces *beside; /* NULL: none, as at rest */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
-  const Control *control; /* NULL: all factors of loads are given */
-  double target;          /* what it is to be at the end of the increment */
-  double *force[3];       /* out of balance, on the unknowns */
-  double *change[3];      /* of displacements in an iteration */
-  double *moved[3];       /* in all iterations of an increment */
-  double more;            /* change of that factor in an iteration */
+  Control *control;  /* NULL: all factors of loads are given */
+  double target;     /* what it is to be at the end of the increment */
+  double *force[3];  /* out of balance, on the unknowns */
+  double *change[3]; /* of displacements in an iteration */
+  double *moved[3];  /* in all iterations of an increment */
+  double more;       /* change of that factor in an iteration */
   double *pull[3],
       *pulled
           [3]; /* forces where the factor of controlled loads grows by 1, and displacements from them; with control only */

@@ -101,7 +101,7 @@ static void list_state(Solver *run, StateList *list)
   Static *s = run->own;
   state_add_number(list, "next increment", "time", STATE_COMMITTED, &s->next);
   newton_state(&s->newton, list);
-  if (s->spec->control) state_add_number(list, "control at the begin", "length", STATE_COMMITTED, &s->control.from);
+  control_state(&s->control, list);
   state_add_count(list, "cuts of increments", STATE_COMMITTED, &s->cuts);
 }
 
@@ -232,7 +232,7 @@ static int begin(Solver *run, Error *error)
   run->ledger.damping_work += run->ledger.kinetic; /* of the stage before: it is at rest now */
   run->ledger.kinetic = 0;
   for (int k = 0; k < 3; ++k) memset(p->velocity[k], 0, sizeof(double) * (size_t)p->places);
-  s->control.from = control_shown(&s->control, p);
+  control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
   return BRECCIA_OK;
@@ -267,9 +267,10 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
 {
   increment_begin(&s->increment);
   domain_tell_time(s->domain, end, end - s->clock->time);
-  if (s->spec->control)
-    s->newton.target = s->control.from + (s->spec->control->to - s->control.from) * (end - s->clock->stage_time) /
-                                             (s->clock->stage_end - s->clock->stage_time);
+  if (s->spec->control) {
+    const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
+    s->newton.target = control_target(&s->control, (s->clock->time - begin) / whole, (end - begin) / whole);
+  }
   const NewtonOutcome outcome =
       s->newton.relaxes ? relaxation_solve(&s->relaxation, &s->newton, end, s->spec->relaxation_iterations, error)
                         : newton_solve(&s->newton, end, error);
@@ -278,7 +279,7 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
     return outcome;
   }
   book(s);
-  control_accept(s->loading);
+  if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
   increment_accept(&s->increment, s->newton.moved);
   return outcome;
 }

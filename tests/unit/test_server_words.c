@@ -119,13 +119,14 @@ static void solve_by(const char *solver, bool iterates, char *told, size_t size)
 {
   Script script = {.iterates = iterates};
   begin(&script);
-  char *deck = text_format("units: {length: m, force: kN, time: s}\n"
-                           "materials: {clay: {opensees: nDMaterial Any $tag, server: ['unix:%s'], density: 2}}\n"
-                           "body: {b: {material: clay, lattice: cubic, spacing: 1, shape: {box: {particles: [4, 4, 4]}}}}\n"
-                           "peridynamics: {formulation: correspondence}\n"
-                           "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}]\n"
-                           "solve: %s\n",
-                           script.at.sun_path, solver);
+  char *deck =
+      text_format("units: {length: m, force: kN, time: s}\n"
+                  "materials: {clay: {opensees: nDMaterial Any $tag, server: ['unix:%s'], density: 2}}\n"
+                  "body: {b: {material: clay, lattice: cubic, spacing: 1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+                  "peridynamics: {formulation: correspondence}\n"
+                  "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}]\n"
+                  "solve: %s\n",
+                  script.at.sun_path, solver);
   Error *error = breccia_error_create();
   breccia_model *model;
   const int status = breccia_model_load_string(deck, "deck", NULL, &model, error);
@@ -148,7 +149,8 @@ static void what_iterates_wants_trials_that_can_be_taken_back(void **state)
     solve_by(solvers[k], true, told, sizeof told);
     assert_string_equal(told, "");
     solve_by(solvers[k], false, told, sizeof told);
-    if (!strstr(told, "the server of material 'clay' cannot take a trial back")) fail_msg("%s: found '%s'", solvers[k], told);
+    if (!strstr(told, "the server of material 'clay' cannot take a trial back"))
+      fail_msg("%s: found '%s'", solvers[k], told);
   }
   solve_by("{explicit: {end time: 1 ms}}", false, told, sizeof told);
   assert_string_equal(told, "");
