@@ -132,6 +132,14 @@ bool domain_may_stiffen(const Domain *d)
   return may;
 }
 
+bool domain_lags(const Domain *d)
+{
+  bool lags = false;
+  for (int r = 0; r < d->region_count; ++r)
+    lags |= d->regions[r].type->lags && d->regions[r].type->lags(d->regions[r].formulation);
+  return lags;
+}
+
 bool domain_has_servers(const Domain *d)
 {
   bool servers = false;

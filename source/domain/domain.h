@@ -194,6 +194,8 @@ void domain_commit_points(Domain *domain);
 /** What went wrong in a material server, one line; "" if nothing did. */
 const char *domain_server_problem(const Domain *domain);
 bool domain_has_servers(const Domain *domain);
+/** Whether forces are found with something as the step before left it. */
+bool domain_lags(const Domain *domain);
 /** A material whose server cannot repeat a trial, as iterations have it do; NULL: there is none. */
 const Material *domain_without_trials(const Domain *domain);
 /** Whether the stable step may fall as bonds break. */

@@ -420,6 +420,7 @@ const FormulationType formulation_correspondence = {
     .shares = correspondence_shares,
     .state = correspondence_state,
     .commit = correspondence_commit,
+    .lags = correspondence_lags,
     .stored_energy = correspondence_stored_energy,
     .elongation = correspondence_elongation,
     .keep_turns = correspondence_keep_turns,

@@ -114,6 +114,7 @@ int correspondence_create_fading(Correspondence *c, Error *error);
 void correspondence_destroy_fading(Correspondence *c);
 void correspondence_fade(const Correspondence *c, const Sweep *sweep);
 void correspondence_commit(void *formulation, bool well);
+bool correspondence_lags(const void *formulation);
 void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 

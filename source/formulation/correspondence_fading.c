@@ -28,6 +28,7 @@ struct Fading {
   double *found;    /* [places] that step's own, for the one after it */
   double *whole[6]; /* C where nothing has faded; NULL of a uniform control */
   uint8_t *mark;    /* [slices] where it is 0, all factors are 1 */
+  bool softened;    /* some are below 1 */
 };
 
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
@@ -186,6 +187,7 @@ void correspondence_fade(const Correspondence *c, const Sweep *sweep)
 /** From the first factor below 1 on C is no longer the same everywhere. */
 static void set_control(Correspondence *c, bool softened)
 {
+  c->fading->softened = softened;
   const bool uniform = c->widest == CONTROL_SCALAR && !c->fading->whole[0];
   if (!uniform || softened == (c->control == CONTROL_SCALAR)) return;
   c->control = softened ? CONTROL_SCALAR : CONTROL_UNIFORM;
@@ -234,6 +236,12 @@ void correspondence_commit(void *formulation, bool well)
     if (!well) set_hold(c, slice, f->used);
   }
   if (well) set_control(c, find_softened(c));
+}
+
+bool correspondence_lags(const void *formulation)
+{
+  const Correspondence *c = formulation;
+  return c->fading && c->fading->softened;
 }
 
 /** Factors were put in place from outside. */

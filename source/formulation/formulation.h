@@ -172,6 +172,9 @@ typedef struct FormulationType {
   void (*state)(void *formulation, const char *part, StateList *list);
   /** The step under way has come out well, or has failed: makes what laws remember of it the committed state, or forgets it. */
   void (*commit)(void *formulation, bool well);
+  /** Whether forces are found with something as the step before left it, so that a step that is tried again from where it ended comes to other
+   *  ones; NULL: never. */
+  bool (*lags)(const void *formulation);
   /** History number k of the law at a place, as committed, where there are no points; NULL: 0. */
   double (*history)(const void *formulation, int64_t place, int k);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.

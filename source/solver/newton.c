@@ -329,8 +329,9 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   double before = 0, first_work = 0;
   for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
   double force = size_of(n, n->force);
+  n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
   if (!moves && (force == 0 || force <= n->spec->residual * n->exerted)) {
-    n->unbalanced = n->exerted > 0 ? force / n->exerted : 0;
+    n->unbalanced = n->unbalanced_before;
     n->reference = n->exerted;
     return NEWTON_CONVERGED;
   }

@@ -95,9 +95,9 @@ typedef struct Newton {
   int64_t follows; /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
   /* of the last increment */
   int64_t iterations, products;
-  double unbalanced; /* forces out of balance over the reference */
-  bool indefinite;   /* the body did not resist some change of displacements */
-  Text *log;         /* a line per iteration is added; NULL: nobody wants it */
+  double unbalanced_before, unbalanced; /* forces out of balance over the reference, at its begin and at its end */
+  bool indefinite;                      /* the body did not resist some change of displacements */
+  Text *log;                            /* a line per iteration is added; NULL: nobody wants it */
 } Newton;
 
 /** `newton` has domain, loading, spec and `beside`, and is zero beyond; destroy it in any case. */

@@ -166,7 +166,7 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   clear(n, n->change);
   unknowns_spread(u, time, n->change);
   const bool moves = unknowns_product(u, n->change, n->change) > 0;
-  n->unbalanced = find_unbalanced(n);
+  n->unbalanced_before = n->unbalanced = find_unbalanced(n);
   if (moves || n->unbalanced > n->spec->residual) {
     if (predict(r, n, time, moves, error)) return NEWTON_FAILED;
     if ((outcome = newton_find_forces(n, time, error)) != NEWTON_CONVERGED) return outcome;

@@ -277,6 +277,22 @@ contains "softening: brittleness" "$(cat "$work/out")" "fracture energy 120 J/m2
 warns "s/  steel: .*/  wall: $(echo "$mazars" | sed 's/120/22/; s/3 MPa/1.4 MPa/')/" 5:126 "fracture energy: 22 N/m is little for concrete, which has 60 to 200 N/m"
 warns 's/  steel: .*/  wall: {model: mohr-coulomb, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, cohesion: 10 GPa, friction angle: 30, tensile strength: 3 GPa}/' 5:144 "tensile strength: it is 0.1 of Young's modulus"
 warns 's/body force: \[1, 0, 0\], history: {ramp to: 0.1 s}/displacement: [0.01, free, free]/' 18:27 "displacement: the particles jump by 0.01 m in the first step; let it grow"
+for law in 'model: elastic' 'model: j2, yield stress: 1 MPa'; do
+  cat > "$work/rest.yaml" <<Y
+title: A plate at rest
+units: {length: m, force: kN, time: s}
+materials: {s: {$law, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, 0], to: [0.2, 0.1]}}}}
+peridynamics: {space: plane strain}
+loads: [{on: {face: x-}, displacement: [0, 0]}, {on: {face: x+}, displacement: [1e-5, free]}]
+solve: {static: {}}
+Y
+  "$breccia" check "$work/rest.yaml" 2> "$work/errors" > /dev/null
+  case $law in
+  *j2*) contains "$law: jump at rest" "$(cat "$work/errors")" "the particles jump by 1e-05 m" ;;
+  *) equal "$law: no jump at rest" "$(cat "$work/errors")" "" ;;
+  esac
+done
 warns 's/body force: \[1, 0, 0\]/displacement: [0.01, free, free]/' 18:6 "load: bonds may break at the grips, within a horizon"
 warns 's/\[\[0.45, 0\], \[0.45, 0.2\]\]/[[450, 0], [450, 200]]/' 14:6 'crack: it cuts no bond; the outermost particles stand at [0.05, 0.05, 0.05] and [0.95, 0.45, 0.25]: look at its coordinates and their unit'
 warns 's/{cut: .*/{remove: {box: {from: [450, 0, 0], to: [451, 200, 1]}}}/' 14:6 'crack: it takes out no particle; the outermost'
