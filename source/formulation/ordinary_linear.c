@@ -6,62 +6,102 @@
 
 #include "base/tensor.h"
 
-#include <math.h>
-
-/** Half a slot at the displacements held, and how elongations change. */
+/** Half a slot at the displacements held, and how elongations change. Where there is no bond lengths are 1, so that nothing is divided by 0. */
 typedef struct HalfSlot {
-  Lanes n[3], change[3], along, length, reference, weight;
-  Lanes tension, stiffness, turned; /* of both ends */
-  Lanes kept;                       /* x of the slice's own end, where it flows */
+  Lanes n[3], change[3], along, by_length, reference, weight, elongation; /* by_length: 1 / |y| */
+  LaneMask intact;
+  int64_t own, there;    /* in the arrays of slots; first neighbour of lattice slots */
+  const int32_t *stored; /* neighbours of stored ones, or NULL */
 } HalfSlot;
 
-LANES_INLINE HalfSlot half_slot(const Ordinary *o, double *const at[3], int64_t slice, int64_t slot, int half,
-                                bool forces)
+LANES_INLINE Lanes at_neighbours(const HalfSlot *h, const double *values)
 {
-  HalfSlot h = {.along = {0}};
-  for (int lane = 0; lane < LANES; ++lane) {
-    const int64_t place = slice * SLICE + LANES * half + lane, own = slot * SLICE + LANES * half + lane;
-    if (!(o->family->intact[slot] >> (LANES * half + lane) & 1)) {
-      h.length[lane] = h.reference[lane] = 1;
-      continue;
-    }
-    const Bond bond = ordinary_bond(o, slice, slot, LANES * half + lane);
-    const OrdinaryStretch s = ordinary_stretch(at, place, &bond);
+  return h->stored ? lanes_gather(values, h->stored) : lanes_load(values + h->there);
+}
+
+LANES_INLINE HalfSlot half_slot(const Ordinary *o, double *const at[3], int64_t slice, int64_t slot, int half)
+{
+  const Family *f = o->family;
+  const Particles *p = o->particles;
+  const int64_t here = slice * SLICE + LANES * half;
+  HalfSlot h = {.own = slot * SLICE + LANES * half, .intact = lanes_half(f->intact[slot], half)};
+  Lanes xi[3], y[3], whole = {0}, square = {0}, d = {0};
+  if (slot < f->stored[slice]) {
+    const Pattern *row = &f->patterns[f->pattern[slot]];
+    h.there = f->base[slot] + LANES * half;
+    h.reference = lanes_set(row->length);
+    h.weight = lanes_set(row->weight * o->factor[f->pattern[slot]]);
+    for (int k = 0; k < 3; ++k) xi[k] = lanes_set(row->xi[k]);
+  } else {
+    const int64_t first = (int64_t)f->base[slot] * SLICE + LANES * half;
+    h.stored = f->neighbour + first;
     for (int k = 0; k < 3; ++k) {
-      h.n[k][lane] = s.y[k] / s.length;
-      h.change[k][lane] = o->particles->displacement[k][bond.neighbour] - o->particles->displacement[k][place];
-      h.along[lane] += h.n[k][lane] * h.change[k][lane];
+      xi[k] = at_neighbours(&h, p->position[k]) - lanes_load(p->position[k] + here);
+      whole += xi[k] * xi[k];
     }
-    h.length[lane] = s.length;
-    h.reference[lane] = bond.length;
-    h.weight[lane] = bond.weight;
-    if (o->flow) h.kept[lane] = ordinary_deviatoric(o, place, &bond, &s) - o->flow->shift[1][own];
-    if (!forces) continue; /* other threads are writing what follows */
-    const OrdinaryEnd here = ordinary_end(o, place, own, &bond, &s),
-                      there = ordinary_end(o, bond.neighbour, o->flow ? o->flow->back[own] : 0, &bond, &s);
-    h.tension[lane] = here.tension + there.tension;
-    h.stiffness[lane] = here.stiffness + there.stiffness;
-    h.turned[lane] = here.turned + there.turned;
+    h.reference = lanes_choose(h.intact, lanes_root(whole), lanes_set(1));
+    h.weight = at_neighbours(&h, p->volume);
+    if (f->scale) h.weight *= lanes_load(f->scale + first);
+  }
+  h.weight = lanes_where(h.intact, h.weight);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes eta = at_neighbours(&h, at[k]) - lanes_load(at[k] + here);
+    y[k] = xi[k] + eta;
+    square += y[k] * y[k];
+    d += eta * (xi[k] + y[k]);
+    h.change[k] = at_neighbours(&h, p->displacement[k]) - lanes_load(p->displacement[k] + here);
+  }
+  const Lanes length = lanes_root(lanes_choose(h.intact, square, lanes_set(1)));
+  h.by_length = lanes_set(1) / length;
+  h.elongation = d / (length + h.reference);
+  h.along = (Lanes){0};
+  for (int k = 0; k < 3; ++k) {
+    h.n[k] = y[k] * h.by_length;
+    h.along += h.n[k] * h.change[k];
   }
   return h;
 }
 
-int64_t ordinary_change_dilatation(const Ordinary *o, const Sweep *sweep)
+/** x = e_d - s of one end, by its dilatation. */
+LANES_INLINE Lanes kept_by(const Ordinary *o, const HalfSlot *h, Lanes dilatation, Lanes shift)
+{
+  return h->elongation - dilatation * h->reference * lanes_set(1.0 / o->dimensions) - shift;
+}
+
+/** Shifts as the other ends know them. */
+LANES_INLINE Lanes shifts_there(const Ordinary *o, const HalfSlot *h)
+{
+  Lanes shift = {0};
+  for (int lane = 0; lane < LANES; ++lane)
+    if (h->intact[lane]) shift[lane] = o->flow->shift[1][o->flow->back[h->own + lane]];
+  return shift;
+}
+
+BRECCIA_CLONES
+static void change_dilatation(const Ordinary *o, const Sweep *sweep)
 {
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice)
     for (int half = 0; half < 2; ++half) {
       const int64_t here = slice * SLICE + LANES * half;
-      Lanes sum = {0}, kept = {0}, evenly = {0};
+      Lanes sum = {0}, amount = {0}, evenly = {0};
       for (int64_t slot = o->family->first[slice]; slot < o->family->first[slice + 1]; ++slot) {
-        const HalfSlot h = half_slot(o, sweep->at, slice, slot, half, false);
+        const HalfSlot h = half_slot(o, sweep->at, slice, slot, half);
         sum += h.weight * h.reference * h.along;
-        kept += h.weight * h.kept * h.along;
-        evenly += h.weight * h.kept * h.reference;
+        if (!o->flow) continue;
+        const Lanes kept = kept_by(o, &h, lanes_load(o->dilatation + here),
+                                   lanes_load(o->flow->shift[1] + h.own)); /* of its own end */
+        amount += h.weight * kept * h.along;
+        evenly += h.weight * kept * h.reference;
       }
       const Lanes dilatation = lanes_load(o->inverse + here) * sum;
       lanes_store(o->change + here, dilatation);
-      if (o->flow) lanes_store(o->flow->amount + here, kept - evenly * dilatation * lanes_set(1.0 / o->dimensions));
+      if (o->flow) lanes_store(o->flow->amount + here, amount - evenly * dilatation * lanes_set(1.0 / o->dimensions));
     }
+}
+
+int64_t ordinary_change_dilatation(const Ordinary *o, const Sweep *sweep)
+{
+  change_dilatation(o, sweep);
   return -1;
 }
 
@@ -101,18 +141,55 @@ int64_t ordinary_change_states(const Ordinary *o, const Sweep *sweep)
   return -1;
 }
 
-int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep)
+/** Pull of both ends of half a slot over influence, its growth with the elongation alone, and its change with those of the families. */
+typedef struct BothEnds {
+  Lanes tension, stiffness, turned;
+} BothEnds;
+
+LANES_INLINE BothEnds both_ends(const Ordinary *o, const HalfSlot *h, int64_t here)
+{
+  const Lanes own = lanes_load(o->shear + here), other = at_neighbours(h, o->shear);
+  BothEnds ends = {.tension = (lanes_load(o->base + here) + at_neighbours(h, o->base)) * h->reference +
+                              (own + other) * h->elongation,
+                   .stiffness = own + other,
+                   .turned = (lanes_load(o->change + here) + at_neighbours(h, o->change)) * h->reference};
+  if (!o->flow) return ends;
+  const Flow *flow = o->flow;
+  const Lanes shift = lanes_load(flow->shift[1] + h->own), back = shifts_there(o, h);
+  Lanes factor = {0}, factor_there = {0};
+  for (int lane = 0; lane < LANES; ++lane) {
+    if (!h->intact[lane]) continue;
+    factor[lane] = flow->returned[here + lane].factor;
+    factor_there[lane] = flow->returned[h->stored ? h->stored[lane] : h->there + lane].factor;
+  }
+  ends.tension -= own * shift + other * back;
+  ends.stiffness = own * factor + other * factor_there;
+  ends.turned += lanes_load(flow->amount + here) * kept_by(o, h, lanes_load(o->dilatation + here), shift) +
+                 at_neighbours(h, flow->amount) * kept_by(o, h, at_neighbours(h, o->dilatation), back);
+  return ends;
+}
+
+BRECCIA_CLONES
+static void change_forces(const Ordinary *o, const Sweep *sweep)
 {
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice)
     for (int half = 0; half < 2; ++half) {
+      const int64_t here = slice * SLICE + LANES * half;
       Lanes force[3] = {{0}};
       for (int64_t slot = o->family->first[slice]; slot < o->family->first[slice + 1]; ++slot) {
-        const HalfSlot h = half_slot(o, sweep->at, slice, slot, half, true);
-        const Lanes across = h.tension / h.length, pull = h.turned + (h.stiffness - across) * h.along;
-        for (int k = 0; k < 3; ++k) force[k] += h.weight * (pull * h.n[k] + across * h.change[k]);
+        const HalfSlot h = half_slot(o, sweep->at, slice, slot, half);
+        const BothEnds ends = both_ends(o, &h, here);
+        const Lanes across = ends.tension * h.by_length, pull = ends.turned + (ends.stiffness - across) * h.along;
+        for (int k = 0; k < 3; ++k)
+          force[k] += lanes_where(h.intact, h.weight * (pull * h.n[k] + across * h.change[k]));
       }
-      for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + slice * SLICE + LANES * half, force[k]);
+      for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + here, force[k]);
     }
+}
+
+int64_t ordinary_change_forces(const Ordinary *o, const Sweep *sweep)
+{
+  change_forces(o, sweep);
   return -1;
 }
 
