@@ -198,13 +198,14 @@ int operator_matrix(const Operator *point, double *const u[3], double *k, Error 
   deformation(point, u, f);
   for (int l = 0; l < count; ++l) prepare(point, f, l, &all[l]);
   for (int a = 0; a < count; ++a)
-    for (int b = 0; b < count; ++b) through_point(point, &all[a], point->places[a].g, &all[b], k + 9 * (count * a + b));
+    for (int b = 0; b < count; ++b)
+      through_point(point, &all[a], point->places[a].g, &all[b], k + 9 * ((int64_t)count * a + b));
   for (int l = 1; l < count; ++l) {
     against_first(point, l, part);
     add(k, part, -1);
-    add(k + 9 * (count * l + l), part, -1);
+    add(k + 9 * ((int64_t)count * l + l), part, -1);
     add(k + 9 * l, part, 1);
-    add(k + 9 * (count * l), part, 1);
+    add(k + 9 * ((int64_t)count * l), part, 1);
   }
   free(all);
   return BRECCIA_OK;

@@ -3,6 +3,7 @@
 #define BRECCIA_LOADING_LOAD_H
 
 #include "body/selection.h"
+#include "formulation/operator.h"
 #include "loading/history.h"
 
 /** What stands under the key of a load. */
@@ -111,6 +112,9 @@ struct LoadType {
   bool (*begin)(Load *load, Particles *particles);
   /** Adds to changes of external forces per volume what they change with changes v of displacements. NULL: nothing. */
   void (*change)(const Load *load, const Particles *particles, double *const v[3], double *const change[3]);
+  /** The same as points, numbered from 0, for matrices. NULL: there are none. */
+  int64_t (*point_count)(const Load *load);
+  int (*point)(const Load *load, const Particles *particles, int64_t number, Operator *point, Error *error);
   /** Energy that it holds and gives back. May be NULL. */
   double (*energy)(const Load *load, const Particles *particles);
   /** The most that it adds to an eigenvalue of stiffness over mass. May be NULL. */

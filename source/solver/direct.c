@@ -3,6 +3,7 @@
 #include "solver/linear_solver.h"
 #include "solver/matrix.h"
 
+#include "base/library_threads.h"
 #include "base/memory.h"
 #include <cholmod.h>
 #include <math.h>
@@ -20,11 +21,15 @@ typedef struct Direct {
   bool indefinite;
 } Direct;
 
+/** Products take less time than factors in all but the smallest bodies, even where many are needed (docs/performance.md); factors are the last resort
+ *  where they can be had: one of a body in space has the square of the entries that one in the plane has. */
 static double suits(const LinearSolver *s)
 {
-  /* A factor of a body in space has the square of the entries that one in the plane has. */
-  const double most = s->domain->body.dimensions == 3 ? 6000 : 250000;
-  return !matrix_refusal(&s->unknowns) && (double)s->domain->particles->count < most ? 2 : 0;
+  static const double small[] = {20000, 500, 300}, most[] = {1e6, 250000, 6000};
+  const int of = s->domain->body.dimensions - 1;
+  const double count = (double)s->domain->particles->count;
+  if (matrix_refusal(&s->unknowns) || count > most[of]) return 0;
+  return count <= small[of] ? 2 : 0.1;
 }
 
 static void forget_factors(Direct *d)
@@ -124,6 +129,14 @@ static int factor_any(Direct *d, Error *error)
   return BRECCIA_OK; /* singular ones show in what is left */
 }
 
+static int factor(Direct *d, Error *error)
+{
+  d->indefinite = false;
+  const bool symmetric = matrix_asymmetry(&d->matrix) < 1e-9;
+  if (symmetric && factor_symmetric(d, error)) return BRECCIA_FAILURE;
+  return symmetric && !d->indefinite ? BRECCIA_OK : factor_any(d, error);
+}
+
 static int prepare(LinearSolver *s, Error *error)
 {
   Direct *d = s->own;
@@ -144,10 +157,10 @@ static int prepare(LinearSolver *s, Error *error)
   if (status) return status;
   hold_lone_unknowns(&d->matrix);
   if (d->numeric) umfpack_dl_free_numeric(&d->numeric);
-  d->indefinite = false;
-  const bool symmetric = matrix_asymmetry(&d->matrix) < 1e-9;
-  if (symmetric && factor_symmetric(d, error)) return BRECCIA_FAILURE;
-  return symmetric && !d->indefinite ? BRECCIA_OK : factor_any(d, error);
+  const LibraryThreads before = library_threads_forbid();
+  status = factor(d, error);
+  library_threads_allow(before);
+  return status;
 }
 
 /** One solution with the factors. */
@@ -197,6 +210,7 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
   double *x = memory_zeroed(size + 1, sizeof *x, "direct solution", error);
   int status = right && x ? BRECCIA_OK : BRECCIA_FAILURE;
   record->indefinite = d->indefinite;
+  const LibraryThreads before = library_threads_forbid();
   if (!status) {
     matrix_pack(&d->matrix, &s->unknowns, f, right);
     double whole = find_residual(d, right, x);
@@ -208,6 +222,7 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
     }
     if (!status) matrix_unpack(&d->matrix, &s->unknowns, x, v);
   }
+  library_threads_allow(before);
   free(right);
   free(x);
   return status;

@@ -62,13 +62,14 @@ static int take_instead(LinearSolver *s, double *const f[3], double *const v[3],
 {
   const LinearRecord before = *record;
   const LinearType *instead = s->type->instead;
-  *record = (LinearRecord){.iterations = before.iterations};
+  *record = (LinearRecord){0};
   for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
   s->type->destroy(s);
   s->own = NULL;
   s->type = instead;
   if (instead->create(s, error) || instead->prepare(s, error) || instead->solve(s, f, v, tolerance, record, error))
     return BRECCIA_FAILURE;
+  record->iterations += before.iterations;
   record->indefinite |= before.indefinite;
   return BRECCIA_OK;
 }
@@ -77,9 +78,10 @@ int linear_solver_solve(LinearSolver *s, double *const f[3], double *const v[3],
                         Error *error)
 {
   *record = (LinearRecord){0};
-  const int status = s->type->solve(s, f, v, tolerance, record, error);
-  if (status || !record->unsuited || !s->is_free || !s->type->instead) return status;
-  return take_instead(s, f, v, tolerance, record, error);
+  int status = s->type->solve(s, f, v, tolerance, record, error);
+  while (!status && record->unsuited && s->is_free && s->type->instead && s->type->instead->suits(s) > 0)
+    status = take_instead(s, f, v, tolerance, record, error);
+  return status;
 }
 
 typedef struct Weighing {

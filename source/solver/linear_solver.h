@@ -19,7 +19,7 @@ typedef struct LinearRecord {
 typedef struct LinearType LinearType;
 struct LinearType {
   const LinearType *instead; /* where the deck does not say, and K turns out not to suit this one; or NULL */
-  /** How well it suits the body: the way with the highest number is taken where the deck does not say. */
+  /** How well it suits the body: the way with the highest number is taken where the deck does not say; 0: not at all. */
   double (*suits)(const LinearSolver *solver);
   int (*create)(LinearSolver *solver, Error *error);
   void (*destroy)(LinearSolver *solver);

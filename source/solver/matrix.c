@@ -7,171 +7,54 @@
 
 const char *matrix_refusal(const Unknowns *u)
 {
-  if (u->domain->region_count > 1) return "bonds between regions have no operators";
+  const int64_t most = 3000; /* rows and columns of one spring are all filled */
   for (int l = 0; l < u->loading->count; ++l) {
     const Load *load = &u->loading->loads[l];
-    if (load->type->change && load_acts(u->loading, load)) return "springs are not in it yet";
+    if (!load->type->change || !load_acts(u->loading, load)) continue;
+    if (!load->type->point) return "a load that follows displacements has no place in it";
+    if (load->selection.count + load->other.count > most && load->other.count)
+      return "a spring joins so many particles that it would be full";
   }
   return NULL;
 }
 
-/* ---- how displacements follow from unknowns ---- */
+/* ---- points ---- */
 
-/** Directions in which a particle is held, and, behind them, those in which it is free. */
-typedef struct Held {
-  int held, free;
-  double direction[3][3];
-} Held;
+/** What has points: a region or a load. */
+typedef struct Source {
+  const Region *region;
+  const Load *load;
+  int64_t count;
+} Source;
 
-typedef struct Numbering {
-  Matrix *matrix;
-  const Unknowns *unknowns;
-  int64_t *which; /* [places] index of a particle that is held anywhere, plus 1 */
-  Held *held;
-  int64_t held_count;
-} Numbering;
-
-static void mark(Numbering *of, int32_t i)
+/** @return sources in all; the n-th of them is written */
+static int find_source(const Unknowns *u, int n, Source *source)
 {
-  if (!of->which[i]) of->which[i] = ++of->held_count;
-}
-
-static void hold(Numbering *of, int32_t i, const double direction[3])
-{
-  Held *h = &of->held[of->which[i] - 1];
-  for (int m = 0; m < h->held; ++m) {
-    const double *d = h->direction[m];
-    if (fabs(d[0] * direction[0] + d[1] * direction[1] + d[2] * direction[2]) > 0.5) return; /* twice the same way */
+  const Domain *d = u->domain;
+  int count = 0;
+  for (int r = 0; r < d->region_count; ++r)
+    if (count++ == n)
+      *source = (Source){.region = &d->regions[r], .count = d->regions[r].type->point_count(d->regions[r].formulation)};
+  for (int l = 0; l < u->loading->count; ++l) {
+    const Load *load = &u->loading->loads[l];
+    if (load->type->point && load_acts(u->loading, load) && count++ == n)
+      *source = (Source){.load = load, .count = load->type->point_count(load)};
   }
-  memcpy(h->direction[h->held++], direction, 3 * sizeof *direction);
+  return count;
 }
 
-static void mark_row(const Constraint *c, int64_t n, void *context)
+static int find_point(const Source *source, const Unknowns *u, int64_t number, Operator *point, Error *error)
 {
-  mark(context, c->load->selection.places[n]);
+  if (source->load) return source->load->type->point(source->load, u->domain->particles, number, point, error);
+  return source->region->type->point(source->region->formulation, number, point, error);
 }
 
-static void hold_row(const Constraint *c, int64_t n, void *context)
+static int64_t count_points(const Unknowns *u)
 {
-  hold(context, c->load->selection.places[n], c->direction);
-}
-
-/** Calls for each particle that follows another one along an axis. */
-static void each_tie(Numbering *of, void (*one)(Numbering *of, int32_t follower, int32_t leader, int axis))
-{
-  for (int k = 0; k < 3; ++k) {
-    const TieGroups *ties = &of->unknowns->loading->ties[k];
-    for (int64_t g = 0; g < ties->count; ++g)
-      for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n)
-        one(of, ties->places[n], ties->places[ties->first[g]], k);
-  }
-}
-
-static void mark_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
-{
-  (void)leader, (void)axis;
-  mark(of, follower);
-}
-
-static void hold_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
-{
-  (void)leader;
-  hold(of, follower, (const double[]){axis == 0, axis == 1, axis == 2});
-}
-
-static void follow_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
-{
-  of->matrix->follow[3 * follower + axis] = of->matrix->follow[3 * leader + axis];
-}
-
-/** Directions across those that are held, of the axes along which the body extends: those that differ from them most come first. */
-static void find_free(const Unknowns *u, Held *h)
-{
-  int left = -h->held;
-  for (int k = 0; k < 3; ++k) left += !u->flat[k];
-  for (; h->free < left; ++h->free) {
-    double best = 0, chosen[3] = {0};
-    for (int k = 0; k < 3; ++k) {
-      double v[3] = {k == 0, k == 1, k == 2}, square = 0;
-      for (int m = 0; m < h->held + h->free; ++m) {
-        const double *d = h->direction[m], along = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
-        for (int j = 0; j < 3; ++j) v[j] -= along * d[j];
-      }
-      for (int j = 0; j < 3; ++j) square += v[j] * v[j];
-      if (u->flat[k] || square < best + 1e-6) continue;
-      best = square;
-      for (int j = 0; j < 3; ++j) chosen[j] = v[j] / sqrt(square);
-    }
-    memcpy(h->direction[h->held + h->free], chosen, sizeof chosen);
-  }
-}
-
-static void add_term(Follow *follow, int64_t unknown, double factor)
-{
-  for (int t = 0; t < follow->count; ++t)
-    if (follow->unknown[t] == unknown) {
-      follow->factor[t] += factor;
-      return;
-    }
-  if (factor == 0 || follow->count == MOST_TERMS) return;
-  follow->unknown[follow->count] = unknown;
-  follow->factor[follow->count++] = factor;
-}
-
-/** Unknowns of a particle of its own. */
-static void follow_own(Numbering *of, int32_t i)
-{
-  Matrix *m = of->matrix;
-  Follow *own = &m->follow[3 * (int64_t)i];
-  const Held *h = of->which[i] ? &of->held[of->which[i] - 1] : NULL;
-  for (int k = 0; k < 3 && !h; ++k)
-    if (!of->unknowns->flat[k]) add_term(&own[k], m->size++, 1);
-  for (int f = 0; h && f < h->free; ++f, ++m->size)
-    for (int k = 0; k < 3; ++k) add_term(&own[k], m->size, h->direction[h->held + f][k]);
-}
-
-/** Adds what a displacement of `from` along a direction is, times a share, to that of `own` along it. */
-static void add_along(Follow *own, const Follow *from, const double direction[3], double share)
-{
-  Follow copy[3] = {from[0], from[1], from[2]};
-  for (int k = 0; k < 3; ++k)
-    for (int j = 0; j < 3; ++j)
-      for (int t = 0; t < copy[j].count; ++t)
-        add_term(&own[k], copy[j].unknown[t], share * direction[k] * direction[j] * copy[j].factor[t]);
-}
-
-static void follow_row(const Constraint *c, int64_t n, void *context)
-{
-  Follow *follow = ((Numbering *)context)->matrix->follow, *own = &follow[3 * (int64_t)c->load->selection.places[n]];
-  add_along(own, own, c->direction, -1);
-  if (c->images) add_along(own, &follow[3 * (int64_t)c->images[n]], c->direction, c->share);
-}
-
-static int number_unknowns(Matrix *m, const Unknowns *u, Error *error)
-{
-  const Particles *p = u->domain->particles;
-  Numbering of = {.matrix = m, .unknowns = u};
-  m->follow = memory_zeroed(3 * (size_t)p->places, sizeof *m->follow, "unknowns", error);
-  of.which = memory_zeroed((size_t)p->places, sizeof *of.which, "unknowns", error);
-  int status = m->follow && of.which ? BRECCIA_OK : BRECCIA_FAILURE;
-  if (!status) {
-    unknowns_each_row(u, mark_row, &of);
-    each_tie(&of, mark_tie);
-    of.held = memory_zeroed((size_t)of.held_count + 1, sizeof *of.held, "unknowns", error);
-    if (!of.held) status = BRECCIA_FAILURE;
-  }
-  if (!status) {
-    unknowns_each_row(u, hold_row, &of);
-    each_tie(&of, hold_tie);
-    for (int64_t n = 0; n < of.held_count; ++n) find_free(u, &of.held[n]);
-    for (int64_t n = 0; n < p->count; ++n) follow_own(&of, p->place_of[n]);
-    each_tie(&of, follow_tie);
-    for (int64_t i = 0; i < 3 * p->places; ++i) m->follow[i].own = m->follow[i].count;
-    unknowns_each_row(u, follow_row, &of);
-  }
-  free(of.which);
-  free(of.held);
-  return status;
+  Source source;
+  int64_t points = 0;
+  for (int n = 0; n < find_source(u, n, &source); ++n) points += source.count;
+  return points;
 }
 
 /* ---- which entries there are ---- */
@@ -189,26 +72,27 @@ static void lists_free(Lists *lists)
 }
 
 /** Places of every point. */
-static int list_places(Lists *of, const Region *region, Error *error)
+static int list_places(Lists *of, const Unknowns *u, Error *error)
 {
-  const int64_t points = region->type->point_count(region->formulation);
   Operator point = {0};
-  int64_t capacity = 0;
+  Source source;
+  int64_t capacity = 0, all = 0;
   int status = BRECCIA_OK;
-  of->first = memory_zeroed((size_t)points + 1, sizeof *of->first, "matrix", error);
+  of->first = memory_zeroed((size_t)count_points(u) + 1, sizeof *of->first, "matrix", error);
   if (!of->first) return BRECCIA_FAILURE;
-  for (int64_t n = 0; n < points && !status; ++n) {
-    status = region->type->point(region->formulation, n, &point, error);
-    const int64_t end = of->first[n] + point.count;
-    if (end > capacity) {
-      capacity = 2 * end + 1024;
-      int64_t *grown = memory_grown(of->items, (size_t)capacity, sizeof *grown);
-      if (!grown) status = error_add(error, BRECCIA_FAILURE, "out of memory: matrix");
-      if (grown) of->items = grown;
+  for (int s = 0; s < find_source(u, s, &source); ++s)
+    for (int64_t n = 0; n < source.count && !status; ++n, ++all) {
+      status = find_point(&source, u, n, &point, error);
+      const int64_t end = of->first[all] + point.count;
+      if (end > capacity) {
+        capacity = 2 * end + 1024;
+        int64_t *grown = memory_grown(of->items, (size_t)capacity, sizeof *grown);
+        if (!grown) status = error_add(error, BRECCIA_FAILURE, "out of memory: matrix");
+        if (grown) of->items = grown;
+      }
+      for (int l = 0; l < point.count && !status; ++l) of->items[of->first[all] + l] = point.places[l].place;
+      of->first[all + 1] = end;
     }
-    for (int l = 0; l < point.count && !status; ++l) of->items[of->first[n] + l] = point.places[l].place;
-    of->first[n + 1] = end;
-  }
   operator_destroy(&point);
   return status;
 }
@@ -270,7 +154,7 @@ static int find_row(Rows *rows, int64_t row, Error *error)
         rows->seen_place[other] = row + 1;
         for (int k = 0; k < 3; ++k)
           for (int c = 0; c < m->follow[3 * other + k].count && !status; ++c)
-            status = add_column(rows, row, m->follow[3 * other + k].unknown[c], error);
+            status = add_column(rows, row, follow_terms(&m->follow[3 * other + k])[c].unknown, error);
       }
     }
   }
@@ -290,7 +174,8 @@ static int list_owners(Rows *rows, int64_t places, Error *error)
   count = 0;
   for (int64_t i = 0; i < places && !status; ++i) {
     for (int k = 0; k < 3; ++k)
-      for (int t = 0; t < m->follow[3 * i + k].own; ++t) terms.items[count++] = m->follow[3 * i + k].unknown[t];
+      for (int t = 0; t < m->follow[3 * i + k].own; ++t)
+        terms.items[count++] = follow_terms(&m->follow[3 * i + k])[t].unknown;
     terms.first[i + 1] = count;
   }
   if (!status) status = turn_round(&terms, places, m->size, &rows->of_unknowns, error);
@@ -300,11 +185,11 @@ static int list_owners(Rows *rows, int64_t places, Error *error)
 
 int matrix_create(Matrix *m, const Unknowns *u, Error *error)
 {
-  const Region *region = &u->domain->regions[0];
-  const int64_t places = u->domain->particles->places, points = region->type->point_count(region->formulation);
+  const int64_t places = m->places = u->domain->particles->places, points = count_points(u);
   Rows rows = {.matrix = m};
-  int status = number_unknowns(m, u, error);
-  if (!status) status = list_places(&rows.of_points, region, error);
+  m->follow = follow_create(u, &m->size, error);
+  int status = m->follow ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (!status) status = list_places(&rows.of_points, u, error);
   if (!status) status = turn_round(&rows.of_points, points, places, &rows.of_places, error);
   if (!status) status = list_owners(&rows, places, error);
   m->first = memory_zeroed((size_t)m->size + 1, sizeof *m->first, "matrix", error);
@@ -331,13 +216,13 @@ void matrix_destroy(Matrix *m)
   free(m->first);
   free(m->column);
   free(m->value);
-  free(m->follow);
+  follow_destroy(&m->follow, m->places);
   *m = (Matrix){0};
 }
 
 /* ---- numbers ---- */
 
-static double *entry(const Matrix *m, int64_t row, int64_t column)
+static int64_t find_entry(const Matrix *m, int64_t row, int64_t column)
 {
   int64_t low = m->first[row], high = m->first[row + 1];
   while (high - low > 1) {
@@ -347,7 +232,7 @@ static double *entry(const Matrix *m, int64_t row, int64_t column)
     else
       high = middle;
   }
-  return &m->value[low];
+  return low;
 }
 
 /** Adds a factor times what joins two displacements, 3 x 3 of them. */
@@ -355,33 +240,41 @@ static void add_block(Matrix *m, int64_t row_place, int64_t column_place, const 
 {
   const Follow *rows = &m->follow[3 * row_place], *columns = &m->follow[3 * column_place];
   for (int i = 0; i < 3; ++i)
-    for (int t = 0; t < rows[i].own; ++t)
+    for (int t = 0; t < rows[i].own; ++t) {
+      const Term row = follow_terms(&rows[i])[t];
+      const int64_t end = m->first[row.unknown + 1];
+      int64_t at = end - 1; /* the unknowns of a particle mostly stand side by side */
       for (int j = 0; j < 3; ++j)
-        for (int s = 0; s < columns[j].count; ++s)
-          *entry(m, rows[i].unknown[t], columns[j].unknown[s]) +=
-              factor * rows[i].factor[t] * k[3 * i + j] * columns[j].factor[s];
+        for (int s = 0; s < columns[j].count; ++s) {
+          const Term column = follow_terms(&columns[j])[s];
+          at =
+              at + 1 < end && m->column[at + 1] == column.unknown ? at + 1 : find_entry(m, row.unknown, column.unknown);
+          m->value[at] += factor * row.factor * k[3 * i + j] * column.factor;
+        }
+    }
 }
 
-static int fill_points(Matrix *m, const Domain *d, double factor, Error *error)
+static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Error *error)
 {
-  const Region *region = &d->regions[0];
-  const int64_t points = region->type->point_count(region->formulation);
   Operator point = {0};
+  Source source;
   double *k = NULL;
   int room = 0, status = BRECCIA_OK;
-  for (int64_t n = 0; n < points && !status; ++n) {
-    status = region->type->point(region->formulation, n, &point, error);
-    const int count = point.count;
-    if (!status && count > room) {
-      room = 2 * count;
-      free(k);
-      if (!(k = memory_zeroed(9 * (size_t)room * (size_t)room, sizeof *k, "matrix", error))) status = BRECCIA_FAILURE;
+  for (int s = 0; s < find_source(u, s, &source); ++s)
+    for (int64_t n = 0; n < source.count && !status; ++n) {
+      const double factor = source.load ? 1 : 1 + stiffness_share;
+      status = find_point(&source, u, n, &point, error);
+      const int count = point.count;
+      if (!status && count > room) {
+        room = 2 * count;
+        free(k);
+        if (!(k = memory_zeroed(9 * (size_t)room * (size_t)room, sizeof *k, "matrix", error))) status = BRECCIA_FAILURE;
+      }
+      if (!status) status = operator_matrix(&point, u->domain->particles->displacement, k, error);
+      for (int a = 0; a < count && !status; ++a)
+        for (int b = 0; b < count; ++b)
+          add_block(m, point.places[a].place, point.places[b].place, k + 9 * ((int64_t)count * a + b), -factor);
     }
-    if (!status) status = operator_matrix(&point, d->particles->displacement, k, error);
-    for (int a = 0; a < count && !status; ++a)
-      for (int b = 0; b < count; ++b)
-        add_block(m, point.places[a].place, point.places[b].place, k + 9 * (count * a + b), -factor);
-  }
   operator_destroy(&point);
   free(k);
   return status;
@@ -391,7 +284,7 @@ int matrix_fill(Matrix *m, const Unknowns *u, double stiffness_share, double mas
 {
   const Particles *p = u->domain->particles;
   memset(m->value, 0, sizeof *m->value * (size_t)m->first[m->size]);
-  const int status = fill_points(m, u->domain, 1 + stiffness_share, error);
+  const int status = fill_points(m, u, stiffness_share, error);
   for (int64_t n = 0; n < p->count && !status && mass_factor != 0; ++n) {
     const int32_t i = p->place_of[n];
     const double mass = mass_factor * p->density[i] * p->volume[i];
@@ -406,7 +299,7 @@ double matrix_asymmetry(const Matrix *m)
   for (int64_t row = 0; row < m->size; ++row)
     for (int64_t t = m->first[row]; t < m->first[row + 1]; ++t) {
       largest = fmax(largest, fabs(m->value[t]));
-      if (m->column[t] > row) most = fmax(most, fabs(m->value[t] - *entry(m, m->column[t], row)));
+      if (m->column[t] > row) most = fmax(most, fabs(m->value[t] - m->value[find_entry(m, m->column[t], row)]));
     }
   return largest > 0 ? most / largest : 0;
 }
@@ -419,7 +312,8 @@ void matrix_pack(const Matrix *m, const Unknowns *u, double *const v[3], double 
   for (int64_t i = 0; i < u->domain->particles->places; ++i)
     for (int k = 0; k < 3; ++k) {
       const Follow *follow = &m->follow[3 * i + k];
-      for (int t = 0; t < follow->own; ++t) x[follow->unknown[t]] += follow->factor[t] * v[k][i];
+      for (int t = 0; t < follow->own; ++t)
+        x[follow_terms(follow)[t].unknown] += follow_terms(follow)[t].factor * v[k][i];
     }
 }
 
@@ -429,7 +323,8 @@ void matrix_unpack(const Matrix *m, const Unknowns *u, const double *x, double *
     for (int k = 0; k < 3; ++k) {
       const Follow *follow = &m->follow[3 * i + k];
       double sum = 0;
-      for (int t = 0; t < follow->count; ++t) sum += follow->factor[t] * x[follow->unknown[t]];
+      for (int t = 0; t < follow->count; ++t)
+        sum += follow_terms(follow)[t].factor * x[follow_terms(follow)[t].unknown];
       v[k][i] = sum;
     }
   unknowns_clear_rest(u, v);

@@ -1,30 +1,21 @@
-/* The tangent stiffness as a sparse matrix, assembled point by point from the operators of formulations (formulation/operator.h).
+/* The tangent stiffness as a sparse matrix, assembled point by point from the operators of formulations and springs (formulation/operator.h).
  *
  * Rows and columns are unknowns by number. A displacement that is not free stands in no row, or is shared out to the unknowns that it follows. */
 #ifndef BRECCIA_SOLVER_MATRIX_H
 #define BRECCIA_SOLVER_MATRIX_H
 
-#include "solver/unknowns.h"
-
-enum { MOST_TERMS = 6 };
-
-/** A displacement as the sum over `count` terms of factor times unknown. The force on it belongs to the unknowns of the first `own` ones; those behind
- *  are of the particle whose mirror image it is. */
-typedef struct Follow {
-  int own, count;
-  int64_t unknown[MOST_TERMS];
-  double factor[MOST_TERMS];
-} Follow;
+#include "solver/follow.h"
 
 typedef struct Matrix {
   int64_t size;   /* rows, columns */
   int64_t *first; /* [size + 1] of the entries of a row; columns ascend */
   int64_t *column;
   double *value;
-  Follow *follow; /* [places][3] how displacements follow from unknowns */
+  int64_t places;
+  Follow *follow; /* [places][3] */
 } Matrix;
 
-/** Why there is no matrix, or NULL: operators of points must be all that there is. */
+/** Why there is no matrix, or NULL. */
 const char *matrix_refusal(const Unknowns *unknowns);
 
 /** Numbers the unknowns and finds which entries there are. Destroy it in any case. */

@@ -121,7 +121,8 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
   Residuals *g = s->own;
   const Unknowns *u = &s->unknowns;
   const double first = sqrt(unknowns_product(u, f, f));
-  const double little = 0.95; /* a round that leaves more than this of the residual leads nowhere */
+  const double little = 0.95;  /* a round that leaves more than this of the residual leads nowhere */
+  const double useless = 0.01; /* Newton's method comes on well with less */
   vectors_combine(s->domain, 0, g->basis[0], 1, f);
   for (double length = first, before = INFINITY; first > 0;) {
     record->residual = length / first;
@@ -135,6 +136,7 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
     length = sqrt(unknowns_product(u, g->basis[0], g->basis[0]));
   }
   record->indefinite = unknowns_product(u, f, v) < 0;
+  record->unsuited = !(record->residual <= fmax(tolerance, useless));
   return BRECCIA_OK;
 }
 
@@ -145,5 +147,12 @@ static size_t bytes(const LinearSolver *s)
          preconditioner_bytes(&g->preconditioner);
 }
 
-const LinearType residuals_linear = {
-    .suits = suits, .create = create, .destroy = destroy, .prepare = prepare, .solve = solve, .bytes = bytes};
+extern const LinearType direct_linear;
+
+const LinearType residuals_linear = {.instead = &direct_linear,
+                                     .suits = suits,
+                                     .create = create,
+                                     .destroy = destroy,
+                                     .prepare = prepare,
+                                     .solve = solve,
+                                     .bytes = bytes};

@@ -1,10 +1,13 @@
-/* Krylov methods on products with the stiffness, against dense solutions of the same products, and how many products they take. */
+/* Krylov methods on products with the stiffness and factors of the assembled matrix, against dense solutions of the same products, and how many products
+ * they take. */
 #include "support.h"
 
 #include "base/linear.h"
 #include "base/random.h"
+#include "solver/matrix.h"
 #include "solver/preconditioner.h"
 #include "solver/vectors.h"
+#include <dirent.h>
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 #define END "solve: {explicit: {steps: 1, time step: 1e-6}}\n"
@@ -14,6 +17,9 @@
   "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}, n: {model: elastic, "         \
   "density: 2, Young modulus: 50, "                                                                                    \
   "Poisson ratio: 0.4}}\n"
+#define FIBRES                                                                                                         \
+  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}, f: {model: elastic-1d, "      \
+  "density: 2, Young modulus: 1e4}}\n"
 #define BLOCK "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
 #define BLOCKS                                                                                                         \
   "body: {a: {material: m, spacing: 0.1, shape: {box: {particles: [4, 5, 4]}}},\n"                                     \
@@ -53,6 +59,15 @@ static const struct Case {
     {"a quarter of a plate",
      ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane strain}\n"
                    "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}]\n"},
+    {"bonds beside correspondence on springs", FIBRES
+     "body: {a: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [5, 7]}}},\n"
+     "       b: {material: f, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {from: [0.5, 0], to: [0.9, "
+     "0.7]}}}}\n"
+     "peridynamics: {formulation: correspondence, space: plane strain, regions: {fibres: {blocks: [b], formulation: "
+     "bond-based}}}\n"
+     "loads: [" HOLD ", {on: {face: x+, layers: 1}, spring: {stiffness: 2e3, direction: [0.6, 0.8]}},"
+     " {on: {nearest: [0.45, 0.65]}, spring: {stiffness: 1e3, to: {nearest: [0.75, 0.05]}}},"
+     " {on: {face: y+, layers: 1}, spring: {stiffness: 3e3, direction: [1, 2], to: {face: y-, layers: 1}}}]\n"},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -151,10 +166,10 @@ static void assert_same_answer(const Problem *p, double *const wanted[3], double
 static void answers_are_those_of_a_dense_solution(void **state)
 {
   (void)state;
-  static const char *const ways[] = {"conjugate gradients", "minimal residuals"};
+  static const char *const ways[] = {"conjugate gradients", "minimal residuals", "direct"};
   for (int c = 0; c < CASES; ++c)
-    for (int way = 0; way < 2; ++way) {
-      Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way ? 3e3 : 0);
+    for (int way = 0; way < 3; ++way) {
+      Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way == 1 ? 3e3 : 0);
       char name[100];
       double *wanted[3];
       snprintf(name, sizeof name, "%s by %s", cases[c].name, ways[way]);
@@ -367,15 +382,98 @@ static void the_way_follows_the_stiffness(void **state)
   }
 }
 
+/** Of this process; 0 where the system does not tell. */
+static int count_threads(void)
+{
+  DIR *folder = opendir("/proc/self/task");
+  int count = 0;
+  while (folder && readdir(folder)) ++count;
+  if (folder) closedir(folder);
+  return count;
+}
+
+static breccia_model *plate(int n)
+{
+  return model_of(UNITS ELASTIC
+                  "peridynamics: {formulation: correspondence, space: plane strain}\nbody: {b: {material: m, lattice: "
+                  "square, spacing: 0.1, thickness: 1, shape: {box: {particles: [%d, %d]}}}}\nloads: [" HOLD "]\n" END,
+                  n, n);
+}
+
+/** Far up in the spectrum of vibrations minimal residuals lead nowhere; factors do not mind. */
+static void factors_are_the_last_resort(void **state)
+{
+  (void)state;
+  Problem p = pose(plate(24), 0);
+  p.solver.mass_factor = -2e5;
+  begin(&p, "minimal residuals");
+  LinearRecord record = solve(&p, 1e-8);
+  print_message("minimal residuals: %lld products leave %g\n", (long long)record.iterations, record.residual);
+  assert_true(record.residual > 0.01);
+  assert_true(record.unsuited);
+  p.solver.is_free = true; /* as where the deck does not say */
+  record = solve(&p, 1e-8);
+  assert_string_equal(linear_solver_name(&p.solver), "direct");
+  assert_true(record.residual <= 1e-8);
+  assert_false(record.unsuited);
+  forget(&p);
+}
+
+/** Threads of libraries stand in the way of ours. */
+static void factors_start_no_threads(void **state)
+{
+  (void)state;
+  Problem p = pose(plate(40), 0);
+  const int before = count_threads();
+  begin(&p, "direct");
+  solve(&p, 1e-8);
+  assert_int_equal(count_threads(), before);
+  forget(&p);
+}
+
+/** Displacements as the matrix makes them of its unknowns are those that loads allow, and each product with the matrix is one with the stiffness. */
+static void the_matrix_is_the_stiffness(void **state)
+{
+  (void)state;
+  for (int c = 0; c < CASES; ++c) {
+    Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), 10);
+    Matrix m = {0};
+    fill_randomly(p.domain->particles, p.domain->particles->displacement, 1e-3, 5);
+    assert_int_equal(domain_linearise(p.domain, NULL), 0);
+    assert_int_equal(matrix_create(&m, &p.solver.unknowns, NULL), 0);
+    assert_int_equal(matrix_fill(&m, &p.solver.unknowns, 0, 10, NULL), 0);
+    assert_int_equal(m.size, unknowns_count(&p.solver.unknowns, NULL));
+    double *x = calloc((size_t)m.size, sizeof *x), *kx = calloc((size_t)m.size, sizeof *kx), most = 0, off = 0;
+    uint64_t seed = 7;
+    for (int64_t n = 0; n < m.size; ++n) x[n] = random_uniform(&seed) - 0.5;
+    matrix_unpack(&m, &p.solver.unknowns, x, p.v);
+    linear_solver_apply(&p.solver, p.v, p.kv);
+    matrix_pack(&m, &p.solver.unknowns, p.kv, kx);
+    for (int64_t row = 0; row < m.size; ++row) {
+      double sum = 0;
+      for (int64_t t = m.first[row]; t < m.first[row + 1]; ++t) sum += m.value[t] * x[m.column[t]];
+      most = fmax(most, fabs(sum));
+      off = fmax(off, fabs(sum - kx[row]));
+    }
+    if (!(off <= 1e-11 * most)) fail_msg("%s: off by %g of %g", cases[c].name, off, most);
+    matrix_destroy(&m);
+    free(x), free(kx);
+    forget(&p);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(factors_start_no_threads), /* first: where they do those of others may be there already */
       cmocka_unit_test(answers_are_those_of_a_dense_solution),
       cmocka_unit_test(the_preconditioner_is_symmetric_and_positive),
       cmocka_unit_test(the_number_of_products_does_not_grow_with_the_body),
       cmocka_unit_test(answers_have_the_same_bits_for_any_number_of_threads),
       cmocka_unit_test(broken_bodies_are_solved),
       cmocka_unit_test(the_way_follows_the_stiffness),
+      cmocka_unit_test(the_matrix_is_the_stiffness),
+      cmocka_unit_test(factors_are_the_last_resort),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

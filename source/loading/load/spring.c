@@ -188,6 +188,45 @@ static void add_change(const Load *load, const Particles *p, double *const v[3],
   }
 }
 
+/** One for each end on the ground and direction; one for each direction of a spring that joins. */
+static int64_t point_count(const Load *load)
+{
+  const Spring *spring = load->own;
+  return (joins(load) ? 1 : load->selection.count) * (spring->directed ? 1 : 3);
+}
+
+static int add_end(Operator *point, const Particles *p, int32_t place, const double direction[3], double share,
+                   Error *error)
+{
+  OperatorPlace *end = operator_add(point, place, error);
+  for (int k = 0; k < 3 && end; ++k) end->g[k] = share * p->volume[place] * direction[k];
+  return end ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
+/** The elongation as the strain, the stiffness as the tangent. Of springs to the ground the elongation is that of one particle times its volume. */
+static int find_point(const Load *load, const Particles *p, int64_t number, Operator *point, Error *error)
+{
+  const Spring *spring = load->own;
+  const int axis = (int)(number % 3);
+  const double axes[3] = {axis == 0, axis == 1, axis == 2}, *direction = spring->directed ? spring->direction : axes;
+  const int64_t n = spring->directed ? number : number / 3;
+  operator_clear(point);
+  point->components = 1;
+  point->volume = 1;
+  point->tangent[0] = spring->stiffness;
+  if (!joins(load)) {
+    const int32_t place = load->selection.places[n];
+    point->tangent[0] /= load->volume * p->volume[place];
+    return add_end(point, p, place, direction, 1, error);
+  }
+  int status = BRECCIA_OK;
+  for (int64_t k = 0; k < load->selection.count && !status; ++k)
+    status = add_end(point, p, load->selection.places[k], direction, 1 / load->volume, error);
+  for (int64_t k = 0; k < load->other.count && !status; ++k)
+    status = add_end(point, p, load->other.places[k], direction, -1 / spring->other_volume, error);
+  return status;
+}
+
 static bool begin(Load *load, Particles *p)
 {
   Spring *spring = load->own;
@@ -284,6 +323,8 @@ const LoadType spring_load = {.timeless = true,
                               .force = force,
                               .begin = begin,
                               .change = add_change,
+                              .point_count = point_count,
+                              .point = find_point,
                               .energy = energy,
                               .tell = tell,
                               .eigenvalue = eigenvalue,

@@ -1,0 +1,200 @@
+#include "solver/follow.h"
+
+#include "base/memory.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** Directions in which a particle is held, and, behind them, those in which it is free. */
+typedef struct Held {
+  int held, free;
+  double direction[3][3];
+} Held;
+
+typedef struct Numbering {
+  Follow *follow;
+  int64_t count; /* unknowns */
+  const Unknowns *unknowns;
+  int64_t *which; /* [places] index of a particle that is held anywhere, plus 1 */
+  Held *held;
+  int64_t held_count;
+  bool out_of_memory;
+} Numbering;
+
+static void mark(Numbering *of, int32_t i)
+{
+  if (!of->which[i]) of->which[i] = ++of->held_count;
+}
+
+static void hold(Numbering *of, int32_t i, const double direction[3])
+{
+  Held *h = &of->held[of->which[i] - 1];
+  for (int m = 0; m < h->held; ++m) {
+    const double *d = h->direction[m];
+    if (fabs(d[0] * direction[0] + d[1] * direction[1] + d[2] * direction[2]) > 0.5) return; /* twice the same way */
+  }
+  memcpy(h->direction[h->held++], direction, 3 * sizeof *direction);
+}
+
+static void mark_row(const Constraint *c, int64_t n, void *context)
+{
+  mark(context, c->load->selection.places[n]);
+}
+
+static void hold_row(const Constraint *c, int64_t n, void *context)
+{
+  hold(context, c->load->selection.places[n], c->direction);
+}
+
+/** Calls for each particle that follows another one along an axis. */
+static void each_tie(Numbering *of, void (*one)(Numbering *of, int32_t follower, int32_t leader, int axis))
+{
+  for (int k = 0; k < 3; ++k) {
+    const TieGroups *ties = &of->unknowns->loading->ties[k];
+    for (int64_t g = 0; g < ties->count; ++g)
+      for (int64_t n = ties->first[g] + 1; n < ties->first[g + 1]; ++n)
+        one(of, ties->places[n], ties->places[ties->first[g]], k);
+  }
+}
+
+static void mark_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
+{
+  (void)leader, (void)axis;
+  mark(of, follower);
+}
+
+static void hold_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
+{
+  (void)leader;
+  hold(of, follower, (const double[]){axis == 0, axis == 1, axis == 2});
+}
+
+static void follow_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
+{
+  of->follow[3 * follower + axis] = of->follow[3 * leader + axis]; /* of its own: few terms */
+}
+
+/** Directions across those that are held, of the axes along which the body extends: those that differ from them most come first. */
+static void find_free(const Unknowns *u, Held *h)
+{
+  int left = -h->held;
+  for (int k = 0; k < 3; ++k) left += !u->flat[k];
+  for (; h->free < left; ++h->free) {
+    double best = 0, chosen[3] = {0};
+    for (int k = 0; k < 3; ++k) {
+      double v[3] = {k == 0, k == 1, k == 2}, square = 0;
+      for (int m = 0; m < h->held + h->free; ++m) {
+        const double *d = h->direction[m], along = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+        for (int j = 0; j < 3; ++j) v[j] -= along * d[j];
+      }
+      for (int j = 0; j < 3; ++j) square += v[j] * v[j];
+      if (u->flat[k] || square < best + 1e-6) continue;
+      best = square;
+      for (int j = 0; j < 3; ++j) chosen[j] = v[j] / sqrt(square);
+    }
+    memcpy(h->direction[h->held + h->free], chosen, sizeof chosen);
+  }
+}
+
+/** Adds to what there is of an unknown, or puts it behind the others. */
+static void add_term(Numbering *of, Follow *f, int64_t unknown, double factor)
+{
+  Term *terms = f->count > FEW_TERMS ? f->many : f->few;
+  for (int t = 0; t < f->count; ++t)
+    if (terms[t].unknown == unknown) {
+      terms[t].factor += factor;
+      return;
+    }
+  if (factor == 0) return;
+  if (f->count >= FEW_TERMS) {
+    Term *grown = memory_grown(f->many, (size_t)f->count + 1, sizeof *grown);
+    if (!grown) {
+      of->out_of_memory = true;
+      return;
+    }
+    if (f->count == FEW_TERMS) memcpy(grown, f->few, sizeof f->few);
+    f->many = terms = grown;
+  }
+  terms[f->count++] = (Term){unknown, factor};
+}
+
+/** Unknowns of a particle of its own. */
+static void follow_own(Numbering *of, int32_t i)
+{
+  Follow *own = &of->follow[3 * (int64_t)i];
+  const Held *h = of->which[i] ? &of->held[of->which[i] - 1] : NULL;
+  for (int k = 0; k < 3 && !h; ++k)
+    if (!of->unknowns->flat[k]) add_term(of, &own[k], of->count++, 1);
+  for (int f = 0; h && f < h->free; ++f, ++of->count)
+    for (int k = 0; k < 3; ++k) add_term(of, &own[k], of->count, h->direction[h->held + f][k]);
+}
+
+/** A displacement along a direction, term by term, before anything of it changes. */
+static Term *terms_along(Numbering *of, const Follow *from, const double direction[3], int *count)
+{
+  *count = 0;
+  Term *terms = memory_plain((size_t)(from[0].count + from[1].count + from[2].count + 1), sizeof *terms);
+  if (!terms) of->out_of_memory = true;
+  for (int k = 0; k < 3 && terms; ++k)
+    for (int t = 0; t < from[k].count; ++t) {
+      terms[*count] = follow_terms(&from[k])[t];
+      terms[(*count)++].factor *= direction[k];
+    }
+  return terms;
+}
+
+/** Adds what a displacement of `from` along a direction is, times a share, to that of `own` along it. */
+static void add_along(Numbering *of, Follow *own, const Follow *from, const double direction[3], double share)
+{
+  int count;
+  Term *terms = terms_along(of, from, direction, &count);
+  for (int k = 0; k < 3; ++k)
+    for (int t = 0; t < count; ++t) add_term(of, &own[k], terms[t].unknown, share * direction[k] * terms[t].factor);
+  free(terms);
+}
+
+static void follow_row(const Constraint *c, int64_t n, void *context)
+{
+  Numbering *of = context;
+  Follow *own = &of->follow[3 * (int64_t)c->load->selection.places[n]];
+  add_along(of, own, own, c->direction, -1);
+  if (c->images) add_along(of, own, &of->follow[3 * (int64_t)c->images[n]], c->direction, c->share);
+}
+
+Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
+{
+  const Particles *p = u->domain->particles;
+  Numbering of = {.unknowns = u};
+  of.follow = memory_zeroed(3 * (size_t)p->places, sizeof *of.follow, "unknowns", error);
+  of.which = memory_zeroed((size_t)p->places, sizeof *of.which, "unknowns", error);
+  bool failed = !of.follow || !of.which;
+  if (!failed) {
+    unknowns_each_row(u, mark_row, &of);
+    each_tie(&of, mark_tie);
+    of.held = memory_zeroed((size_t)of.held_count + 1, sizeof *of.held, "unknowns", error);
+    failed = !of.held;
+  }
+  if (!failed) {
+    unknowns_each_row(u, hold_row, &of);
+    each_tie(&of, hold_tie);
+    for (int64_t n = 0; n < of.held_count; ++n) find_free(u, &of.held[n]);
+    for (int64_t n = 0; n < p->count; ++n) follow_own(&of, p->place_of[n]);
+    each_tie(&of, follow_tie);
+    for (int64_t i = 0; i < 3 * p->places; ++i) of.follow[i].own = of.follow[i].count;
+    unknowns_each_row(u, follow_row, &of);
+    if (of.out_of_memory) error_add(error, BRECCIA_FAILURE, "out of memory: unknowns");
+    failed = of.out_of_memory;
+  }
+  free(of.which);
+  free(of.held);
+  *count = of.count;
+  if (failed && of.follow) follow_destroy(&of.follow, p->places);
+  return of.follow;
+}
+
+void follow_destroy(Follow **follow, int64_t places)
+{
+  for (int64_t i = 0; *follow && i < 3 * places; ++i) free((*follow)[i].many);
+  free(*follow);
+  *follow = NULL;
+}
