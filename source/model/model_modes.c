@@ -1,4 +1,5 @@
 /* How a body vibrates, in words, files and pictures. */
+#include "base/memory.h"
 #include "base/whole_file.h"
 #include "model/run.h"
 #include "model/sized.h"
@@ -50,7 +51,8 @@ static void tell_advice(const breccia_model *model, const Modes *modes, Text *t)
   quantity_describe(5 / first, "s", t);
   text_add(t, " to ");
   quantity_describe(10 / first, "s", t);
-  text_add(t, ", or by 'static'\nto come to rest soonest by 'explicit': damping: {ratio: 1, at: %.4g Hz}\n", first);
+  text_add(t, "%s\nto come to rest soonest by 'explicit': damping: {ratio: 1, at: %.4g Hz}\n",
+           modes->rigid ? "" : ", or by 'static'", first);
   if (last > first)
     text_add(t, "5 %% of critical damping by 'implicit': Rayleigh damping: {ratio: 0.05, from: %.4g Hz, to: %.4g Hz}\n",
              first, last);
@@ -85,8 +87,12 @@ static int write_states(breccia_model *model, const char *folder, const Modes *m
   double low[3], high[3], size = d->body.largest_spacing, *held[3];
   particles_bounds(d->particles, low, high);
   for (int k = 0; k < 3; ++k) size = fmax(size, high[k] - low[k]);
-  int status = result_file_create(&file, folder, d, model->units, model->spec->title,
-                                  &(ResultNames){.fields = fields, .count = 1}, error);
+  double *frequencies = memory_zeroed((size_t)modes->count, sizeof(double), "modes", error);
+  if (!frequencies) return BRECCIA_FAILURE;
+  for (int n = 0; n < modes->count; ++n) frequencies[n] = hertz(model, modes->modes[n].frequency);
+  const ResultNames names = {.fields = fields, .count = 1, .frequencies = frequencies, .frequency_count = modes->count};
+  int status = result_file_create(&file, folder, d, model->units, model->spec->title, &names, error);
+  free(frequencies);
   for (int n = 0; n < modes->count && !status; ++n) {
     for (int k = 0; k < 3; ++k) {
       double *shape = modes->modes[n].displacement[k];
@@ -99,24 +105,25 @@ static int write_states(breccia_model *model, const char *folder, const Modes *m
   }
   if (!status) status = result_file_show(file, error);
   result_file_destroy(&file);
-  if (!status) text_add(files, "\n  %s/results.vtkhdf (and results.xdmf for older ParaView)", folder);
+  if (!status)
+    text_add(files,
+             "\n  %s/results.vtkhdf (and results.xdmf for older ParaView); displacements at most a tenth of the body",
+             folder);
   return status;
 }
 
-static int draw(const breccia_model *model, const char *folder, const Modes *modes, Text *files, Error *error)
+static int draw(const char *folder, const Modes *modes, Text *files, Error *error)
 {
   int status = BRECCIA_OK;
   char *pictures = text_format("%s/pictures", folder);
   if (!pictures || run_make_folder(pictures, error)) status = BRECCIA_FAILURE;
   for (int n = 0; n < modes->count && !status; ++n) {
-    char title[64], *path = text_format("%s/mode-%d.png", pictures, n + 1);
+    char *path = text_format("%s/mode-%d.png", pictures, n + 1);
     breccia_plot plot;
-    snprintf(title, sizeof title, "mode %d: %.4g Hz", n + 1, hertz(model, modes->modes[n].frequency));
     breccia_plot_begin(&plot, sizeof plot);
     plot.field = "displacement";
     plot.state = BRECCIA_STATE_OF_STEP;
     plot.step = n + 1;
-    plot.title = title;
     plot.path = path;
     status = path ? breccia_plot_field(folder, &plot, error) : BRECCIA_FAILURE;
     if (!status) text_add(files, "\n  %s", path);
@@ -146,7 +153,7 @@ int breccia_model_modes(breccia_model *model, const breccia_modes *given, brecci
     status = run_make_folder(wish.folder, error);
     if (!status) status = write_table(model, wish.folder, &modes, &files, error);
     if (!status) status = write_states(model, wish.folder, &modes, &files, error);
-    if (!status) status = draw(model, wish.folder, &modes, &files, error);
+    if (!status) status = draw(wish.folder, &modes, &files, error);
     if (!status) text_add(&model->outcome, "\nwritten:%s", text_words(&files));
   }
   text_free(&files);

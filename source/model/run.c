@@ -234,7 +234,9 @@ static int check_states(const Run *run, Error *error)
 static int open_files(Run *run, Error *error)
 {
   breccia_model *model = run->model;
-  const ResultNames names = {run->names.items, run->names.count, !strcmp(model->spec->results->precision, "single")};
+  const ResultNames names = {.fields = run->names.items,
+                             .count = run->names.count,
+                             .single = !strcmp(model->spec->results->precision, "single")};
   int status;
   if (run->wish->restart) {
     status = check_states(run, error);

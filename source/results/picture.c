@@ -1,6 +1,7 @@
 #include "results/picture.h"
 
 #include "base/memory.h"
+#include "deck/quantity.h"
 #include "results/colours.h"
 #include "results/fields.h"
 #include "results/scene.h"
@@ -147,8 +148,20 @@ static void trim_zeros(char *number)
   if (number[n - 1] == '.') number[n - 1] = 0;
 }
 
+bool picture_of_mode(const ResultView *view, int step)
+{
+  return step < view->frequency_count;
+}
+
 void picture_time(const ResultView *view, int step, bool all_digits, char *words, size_t size)
 {
+  if (picture_of_mode(view, step)) {
+    Text frequency = {0};
+    quantity_describe(view->frequencies[step], "Hz", &frequency);
+    snprintf(words, size, "mode %lld, %s", (long long)view->step_numbers[step], text_words(&frequency));
+    text_free(&frequency);
+    return;
+  }
   const DisplayUnit unit = display_unit(view->time_unit, view->steps ? view->times[view->steps - 1] : 0);
   char number[64];
   snprintf(number, sizeof number, "%.*f", time_decimals(view, unit.factor), view->times[step] * unit.factor);
@@ -160,7 +173,9 @@ void picture_name(const ResultView *view, int step, const char *field, const cha
                   char *name, size_t size)
 {
   char time[96] = "", words[256];
-  if (with_time) {
+  if (with_time && picture_of_mode(view, step))
+    snprintf(time, sizeof time, "mode %lld", (long long)view->step_numbers[step]);
+  else if (with_time) {
     picture_time(view, step, false, time, sizeof time);
     char *space = strchr(time, ' ');
     if (space) memmove(space, space + 1, strlen(space));

@@ -47,10 +47,14 @@ unsigned char *picture_pixels(const ResultView *view, int step, const PictureOpt
 /** True if the ending of a file name is one that can be drawn to. */
 bool picture_format(const char *path);
 
-/** The time of a step in a unit that suits all times of the file: "79.2 ms"; with `all_digits` as many as every other step has. */
+/** Whether a step is a mode of vibration. */
+bool picture_of_mode(const ResultView *view, int step);
+
+/** The time of a step in a unit that suits all times of the file: "79.2 ms"; with `all_digits` as many as every other step has. Of a mode its number and
+ *  frequency: "mode 2, 45.6 Hz". */
 void picture_time(const ResultView *view, int step, bool all_digits, char *words, size_t size);
 
-/** A short file name without ending: the field, and of several times the time: "damage-79.2ms". */
+/** A short file name without ending: the field, and of several times the time: "damage-79.2ms", or "displacement-mode-2". */
 void picture_name(const ResultView *view, int step, const char *field, const char *component, bool with_time,
                   char *name, size_t size);
 

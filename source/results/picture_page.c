@@ -96,7 +96,8 @@ static void write_heads(Page *page, const Scene *scene, const ResultView *view, 
   char time[96];
   picture_time(view, step, o->one_of_many, time, sizeof time);
   snprintf(page->title, sizeof page->title, "%s", o->title ? o->title : view->title);
-  snprintf(page->subtitle, sizeof page->subtitle, "%s at %s", scene->heading, time);
+  snprintf(page->subtitle, sizeof page->subtitle, "%s %s %s", scene->heading, picture_of_mode(view, step) ? "of" : "at",
+           time);
   Text notes = {0};
   if (o->deformed == 0)
     text_add(&notes, "reference shape");

@@ -235,6 +235,11 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     bad |= attribute_text(own, ".", "title", title) | attribute_text(own, ".", "length unit", unit);
     units_name(units, dimension_find("time"), unit, sizeof unit);
     bad |= attribute_text(own, ".", "time unit", unit);
+    if (names->frequencies) {
+      bad |= dataset_create(own, "Frequencies", H5T_IEEE_F64LE, 1, 64);
+      bad |= dataset_write(own, "Frequencies", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)names->frequency_count,
+                           names->frequencies);
+    }
     hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     bad |= states < 0 || H5Gclose(states) < 0;
     bad |= H5Gclose(own) < 0;

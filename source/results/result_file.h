@@ -18,6 +18,9 @@ typedef struct ResultNames {
   const char *const *fields; /* of fields.c, or named history numbers */
   int count;
   bool single;
+  const double *
+      frequencies; /* [frequency_count] in Hz, of modes of vibration that stand in place of states: the n-th at time and step n; NULL: of a run */
+  int frequency_count;
 } ResultNames;
 
 /** Begins a result file in `folder` (results.vtkhdf and results.xdmf), replacing an older one. */

@@ -121,7 +121,13 @@ static int read_numbers(ResultView *view, Error *error)
   if (!view->spacings) return BRECCIA_USER_ERROR;
   for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
   view->broken = read_all(view, "Breccia/BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &view->broken_count, error);
-  return view->broken ? read_lattices(view, error) : BRECCIA_USER_ERROR;
+  if (!view->broken) return BRECCIA_USER_ERROR;
+  if (H5Lexists(view->file, "Breccia/Frequencies", H5P_DEFAULT) > 0) {
+    view->frequencies =
+        read_all(view, "Breccia/Frequencies", H5T_NATIVE_DOUBLE, sizeof(double), &view->frequency_count, error);
+    if (!view->frequencies) return BRECCIA_USER_ERROR;
+  }
+  return read_lattices(view, error);
 }
 
 /** Finishes what a killed run had begun to put into the file; where another run is at it now, it says so. */
@@ -180,6 +186,7 @@ void result_view_close(ResultView *view)
   free(view->spacings);
   free(view->lattice_numbers);
   free(view->broken);
+  free(view->frequencies);
   *view = (ResultView){.file = -1};
 }
 

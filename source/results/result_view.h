@@ -19,6 +19,8 @@ typedef struct ResultView {
   double *spacings; /* [particles] */
   int64_t *broken;  /* [broken_count][3]: step, and both particles, of bonds as they broke */
   int64_t broken_count;
+  double *frequencies; /* [frequency_count] Hz: the steps are modes of vibration; NULL: states of a run */
+  int64_t frequency_count;
   uint8_t *lattice_numbers; /* [particles] of lattice_types */
   const LatticeType *lattice_types[MOST_LATTICES];
   bool plane;

@@ -1,7 +1,9 @@
 /* Frequencies and modes of vibration, beside closed forms. */
 #include "support.h"
 
+#include "results/picture.h"
 #include "solver/modes.h"
+#include <unistd.h>
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 #define BAR                                                                                                            \
@@ -107,6 +109,59 @@ static void a_free_body_moves_as_a_whole_in_so_many_ways(void **state)
   }
 }
 
+static void modes_are_those_of_elastic_laws(void **state)
+{
+  (void)state;
+  /* Stretched to five times the strain at which its law begins to soften a bar has the modes that it had before, and its forces stay as they were. */
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {model: mazars, density: 2.4, Young modulus: 30e6, Poisson ratio: 0.2, tensile strength: "
+      "3000, fracture energy: 0.1}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 1, shape: {box: {particles: [20, 6]}}}}\n"
+      "peridynamics: {space: plane stress, strain: small}\n"
+      "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}]\nsolve: {static: {increments: 1}}\n");
+  const Particles *p = m->domain.particles;
+  Modes before = modes_of(m, 3);
+  for (int64_t n = 0; n < p->count; ++n) p->displacement[0][p->place_of[n]] = 5e-4 * p->position[0][p->place_of[n]];
+  compute_forces(m);
+  double *forces = malloc(sizeof(double) * (size_t)p->places);
+  assert_non_null(forces);
+  memcpy(forces, p->internal[0], sizeof(double) * (size_t)p->places);
+  Modes after = modes_of(m, 3);
+  for (int n = 0; n < 3; ++n)
+    assert_near(after.modes[n].frequency, before.modes[n].frequency, 1e-6 * before.modes[n].frequency);
+  assert_false(domain_in_elastic_stage(&m->domain));
+  assert_memory_equal(forces, p->internal[0], sizeof(double) * (size_t)p->places);
+  free(forces);
+  modes_destroy(&before);
+  modes_destroy(&after);
+  breccia_model_destroy(&m);
+}
+
+static void pictures_say_which_mode_they_show(void **state)
+{
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", path[64], words[96], command[64];
+  assert_non_null(mkdtemp(folder));
+  breccia_model *m =
+      model_of(BAR "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}]\nsolve: {static: {increments: 1}}\n");
+  const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = 2};
+  Error *error = breccia_error_create();
+  if (breccia_model_modes(m, &wish, error)) fail_msg("%s", breccia_error_text(error));
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", folder);
+  assert_int_equal(result_view_open(&view, path, error), 0);
+  picture_time(&view, 1, false, words, sizeof words);
+  assert_string_equal(words, "mode 2, 136 Hz"); /* 3 c / 4L but for what the horizon takes */
+  picture_name(&view, 1, "displacement", "x", true, words, sizeof words);
+  assert_string_equal(words, "displacement-x-mode-2");
+  result_view_close(&view);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 static void springs_ties_and_supports_are_felt(void **state)
 {
   (void)state;
@@ -149,6 +204,8 @@ int main(void)
       cmocka_unit_test(a_bar_vibrates_at_odd_quarters_of_its_wave),
       cmocka_unit_test(a_cantilever_bends_as_beams_do),
       cmocka_unit_test(a_free_body_moves_as_a_whole_in_so_many_ways),
+      cmocka_unit_test(modes_are_those_of_elastic_laws),
+      cmocka_unit_test(pictures_say_which_mode_they_show),
       cmocka_unit_test(springs_ties_and_supports_are_felt),
       cmocka_unit_test(more_modes_than_unknowns_are_refused),
   };
