@@ -59,3 +59,14 @@ double constraint_velocity(const Constraint *constraint, double run_time, double
   return (constraint_displacement(constraint, run_time + little) - constraint_displacement(constraint, before)) /
          (run_time + little - before);
 }
+
+double constraint_acceleration(const Constraint *constraint, double run_time, double step)
+{
+  Load *load = constraint->load;
+  const double time = run_time - load->begin;
+  if (time <= 0) return 0;
+  if (constraint->order == 2) return constraint->value * history_factor(&load->history, time);
+  return (constraint_displacement(constraint, run_time + step) - 2 * constraint_displacement(constraint, run_time) +
+          constraint_displacement(constraint, run_time - step)) /
+         (step * step);
+}

@@ -14,4 +14,9 @@ double constraint_displacement(const Constraint *constraint, double time);
  *  @param[in] step  time over a small part of which displacements are differenced that are prescribed themselves */
 double constraint_velocity(const Constraint *constraint, double time, double step);
 
+/** Acceleration along it at a time of the run, 0 before its load has begun. By one thread.
+ *  @param[in] step  time over which displacements are differenced, unless accelerations are prescribed: where velocities jump, what it takes is
+ *                   spread over a step */
+double constraint_acceleration(const Constraint *constraint, double time, double step);
+
 #endif

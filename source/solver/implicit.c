@@ -3,6 +3,7 @@
 #include "solver/vectors.h"
 
 #include "base/memory.h"
+#include "loading/constraint.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -275,15 +276,16 @@ static void describe(const Solver *run, const char *time, Text *text)
            linear_solver_name(&s->newton.linear));
 }
 
+/** Accelerations that are kept are those of free particles: what is prescribed has its own. */
 static double inertia(const Solver *run, const Constraint *constraint, int64_t n)
 {
   const Implicit *s = run->own;
   const Particles *p = s->domain->particles;
   const int32_t i = constraint->load->selection.places[n];
-  double sum = 0;
-  for (int k = 0; k < 3; ++k)
-    sum += constraint->direction[k] * (p->density[i] * p->volume[i] * s->acceleration[k][i] + s->drag[k][i]);
-  return sum;
+  double drag = 0;
+  for (int k = 0; k < 3; ++k) drag += constraint->direction[k] * s->drag[k][i];
+  return drag +
+         p->density[i] * p->volume[i] * constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
 }
 
 const SolverType implicit_solver = {.name = "implicit",

@@ -114,6 +114,28 @@ static void a_shaken_body_is_pushed_by_its_change_of_momentum(void **state)
   breccia_model_destroy(&model);
 }
 
+static void a_stiff_body_is_pushed_by_its_mass_times_its_acceleration(void **state)
+{
+  (void)state;
+  /* Half of it is held and moves evenly faster, whichever way the deck says so; what it exerts on the other half is quickly even, too. Mass damping c
+   * adds c m u'. */
+  static const char *const motions[] = {"acceleration: [2, 0, free]", "velocity: [2, 0, free], history: {ramp to: 1}",
+                                        "displacement: [1, 0, free], history: {product: [{ramp to: 1}, {ramp to: 1}]}"};
+  const double mass = 2 * 8 * 3 * 3 * 1e-3, c = 3, time = 0.5;
+  for (int m = 0; m < 3; ++m) {
+    breccia_model *model =
+        model_of(UNITS SOFT_SOLID "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 3, 3]}}}}\n"
+                                  "loads: [{on: {face: x-, layers: 4}, %s}]\n"
+                                  "solve: {implicit: {end time: %g, time step: 0.01, damping: %g, stiffness damping: "
+                                  "0.01}}\n",
+                 motions[m], time, c);
+    step_surely(model, INT64_MAX);
+    const double wanted = mass * 2 * (1 + c * time), found = sum_of(model, NULL, NULL, NULL).force[0];
+    if (fabs(found - wanted) > 2e-3 * wanted) fail_msg("%s: %g instead of %g", motions[m], found, wanted);
+    breccia_model_destroy(&model);
+  }
+}
+
 static void a_static_stage_ends_at_rest_ties_among_it(void **state)
 {
   (void)state;
@@ -162,6 +184,7 @@ int main(void)
       cmocka_unit_test(supports_outside_the_body_carry_it_too),
       cmocka_unit_test(two_supports_share_the_load_of_a_beam),
       cmocka_unit_test(a_shaken_body_is_pushed_by_its_change_of_momentum),
+      cmocka_unit_test(a_stiff_body_is_pushed_by_its_mass_times_its_acceleration),
       cmocka_unit_test(a_static_stage_ends_at_rest_ties_among_it),
       cmocka_unit_test(what_holds_nothing_is_refused),
   };
