@@ -272,11 +272,12 @@ void plausibility_in_short(const breccia_model *model, Text *text)
   describe_body(model, &e, text);
 }
 
-/** The lowest frequencies of a free body, estimated as a bar's: along it wave speed / (2 largest size), and bending as a beam of
- *  rectangular section, 1.03 speed thickness / length^2 (4.730^2 / (2 pi sqrt 12)), both with the speed of bars. Supports change
- *  them: a beam on two supports bends at 0.44 of the second, a cantilever at 0.16. */
-static void describe_frequencies(const breccia_model *model, const Extent *e, Text *text)
+/** The lowest frequency as the body is held. Where that is not looked for, those of a free body, estimated as a bar's: along it wave speed /
+ *  (2 largest size), and bending as a beam of rectangular section, 1.03 speed thickness / length^2 (4.730^2 / (2 pi sqrt 12)), both with the speed of
+ *  bars. Supports change them: a beam on two supports bends at 0.44 of the second, a cantilever at 0.16. */
+static void describe_frequencies(breccia_model *model, const Extent *e, Text *text)
 {
+  if (plausibility_describe_mode(model, text)) return;
   const Material *m = main_material(model);
   const double bar =
       sqrt(plausibility_in_si(model, "stress", material_young(m)) / plausibility_in_si(model, "density", m->density));
@@ -288,7 +289,7 @@ static void describe_frequencies(const breccia_model *model, const Extent *e, Te
     quantity_describe(bending, "Hz", text);
     text_add(text, " in bending across its thinnest side");
   }
-  text_add(text, "\n");
+  text_add(text, "; 'breccia modes' finds it as the body is held\n");
 }
 
 /* ---- loads ---- */
@@ -430,7 +431,7 @@ void plausibility_warn(breccia_model *model)
   check_grips(model);
 }
 
-void plausibility_describe(const breccia_model *model, Text *text)
+void plausibility_describe(breccia_model *model, Text *text)
 {
   const Extent e = extent_of(model);
   text_add(text, "in SI units:\n");

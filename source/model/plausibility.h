@@ -9,7 +9,7 @@
 void plausibility_warn(breccia_model *model);
 
 /** Adds lines on materials, body, waves and loads. */
-void plausibility_describe(const breccia_model *model, Text *text);
+void plausibility_describe(breccia_model *model, Text *text);
 
 /** Adds the shortest of it: how big the body is, and how long a wave takes through it. */
 void plausibility_in_short(const breccia_model *model, Text *text);

@@ -36,6 +36,13 @@ contains "modes" "$(cat out)" "damping: {ratio: 1, at: 45.4"
 awk -F, 'NR == 2 {exit !($2 > 45 && $2 < 46)}' bar-modes/modes.csv || fail "modes: not a quarter of a wave: $(cat bar-modes/modes.csv)"
 [ -s bar-modes/results.vtkhdf ] && [ -s bar-modes/pictures/mode-2.png ] || fail "modes: files are missing: $(ls -R bar-modes)"
 "$breccia" plot bar-modes --field displacement --step 1 --output mode.png > out 2>&1; equal "plot of a mode: status" $? 0
+"$breccia" check bar.yaml > out 2>&1; contains "check: frequency" "$(cat out)" "lowest frequency as the body is held: 45.4 Hz, a period of 22 ms"
+sed 's/^solve.*/solve: {explicit: {steps: 10, damping: {ratio: 1, at: 45 Hz}}}/' bar.yaml > damped.yaml
+"$breccia" check damped.yaml > out 2>&1; contains "check: damping" "$(cat out)" "loads over 110 ms to 220 ms leave it at rest; damping: {ratio: 1, at: 45.4"
+sed 's/^loads.*//' damped.yaml > free.yaml
+"$breccia" check free.yaml > out 2>&1; contains "check: free body" "$(cat out)" "as the body is held, apart from motion as a whole: 88.4 Hz"
+sed 's/particles: \[80, 1\]/particles: [4001, 1]/' damped.yaml > long.yaml
+"$breccia" check long.yaml > out 2>&1; contains "check: large body" "$(cat out)" "'breccia modes' finds it as the body is held"
 "$breccia" modes bar.yaml --count 500 > out 2>&1; equal "modes: too many: status" $? 2
 contains "modes: too many" "$(cat out)" "500 modes are too many for a body with 77 unknowns"
 

@@ -1,0 +1,71 @@
+/* The lowest frequency of a body as it is held, where a deck asks how long loads, damping and steps should take. */
+#include "model/plausibility_parts.h"
+
+#include "solver/modes.h"
+
+/** Where the stage under way comes to rest or follows motions by long steps, or a load takes its time. */
+static bool is_wanted(const breccia_model *model)
+{
+  const Solver *s = &model->solver;
+  bool wanted = s->type->few_steps || s->type->damps(s);
+  for (int k = 0; k < model->loading.count; ++k) wanted |= history_rise(&model->loading.loads[k].history) > 0;
+  return wanted;
+}
+
+/** A second on a slow machine, by factors of the stiffness: 4000 particles in the plane, 400 in space. */
+static bool is_small(const Domain *d)
+{
+  return d->particles->count <= (d->body.dimensions == 3 ? 400 : 4000);
+}
+
+/** In Hz, of what is bent; 0: not known. @param[out] loose  the body can move as a whole */
+static double lowest_frequency(breccia_model *model, bool *loose)
+{
+  const int most_rigid = model->domain.body.dimensions == 3 ? 6 : 3, tries[] = {1, 1 + most_rigid};
+  Entry entry;
+  double found = 0;
+  *loose = false;
+  if (model_enter(model, &entry, NULL)) return 0;
+  for (int k = 0; k < 2 && found == 0; ++k) {
+    Modes modes = {0};
+    if (!modes_find(&model->domain, &model->loading, tries[k], &modes, NULL)) {
+      *loose = modes.rigid > 0;
+      if (modes.rigid < modes.count) found = plausibility_in_si(model, "frequency", modes.modes[modes.rigid].frequency);
+    }
+    modes_destroy(&modes);
+  }
+  model_leave(&entry, BRECCIA_OK, NULL);
+  return found;
+}
+
+static void advise(const breccia_model *model, double frequency, Text *text)
+{
+  const Solver *s = &model->solver;
+  if (s->type->rests) return;
+  if (s->type->few_steps) {
+    text_add(text, "; steps of ");
+    quantity_describe(1 / (20 * frequency), "s", text);
+    text_add(text, " follow it");
+    return;
+  }
+  text_add(text, "; loads over ");
+  quantity_describe(5 / frequency, "s", text);
+  text_add(text, " to ");
+  quantity_describe(10 / frequency, "s", text);
+  text_add(text, " leave it at rest; damping: {ratio: 1, at: %.4g Hz} brings it to rest soonest", frequency);
+}
+
+bool plausibility_describe_mode(breccia_model *model, Text *text)
+{
+  if (!is_wanted(model) || !is_small(&model->domain) || domain_has_servers(&model->domain)) return false;
+  bool loose;
+  const double frequency = lowest_frequency(model, &loose);
+  if (!(frequency > 0)) return false;
+  text_add(text, "  lowest frequency as the body is held%s: ", loose ? ", apart from motion as a whole" : "");
+  quantity_describe(frequency, "Hz", text);
+  text_add(text, ", a period of ");
+  quantity_describe(1 / frequency, "s", text);
+  advise(model, frequency, text);
+  text_add(text, "\n");
+  return true;
+}
