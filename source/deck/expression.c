@@ -172,6 +172,34 @@ static int tangent(Reader *r, const char *at, int count, Measure *a)
   return check_angle(r, at, a, "tan");
 }
 
+/** The result of an inverse function. */
+static int give_angle(Reader *r, const char *at, Measure *a, double angle, const char *what)
+{
+  if (check_plain(r, at, a, what)) return 1;
+  if (isnan(angle)) return refuse(r, at, "%s takes a number from -1 to 1, not %g", what, a->value);
+  a->value = angle;
+  a->power[MEASURE_ANGLE] = 1;
+  return 0;
+}
+
+static int inverse_sine(Reader *r, const char *at, int count, Measure *a)
+{
+  (void)count;
+  return give_angle(r, at, a, asin(a->value), "asin");
+}
+
+static int inverse_cosine(Reader *r, const char *at, int count, Measure *a)
+{
+  (void)count;
+  return give_angle(r, at, a, acos(a->value), "acos");
+}
+
+static int inverse_tangent(Reader *r, const char *at, int count, Measure *a)
+{
+  (void)count;
+  return give_angle(r, at, a, atan(a->value), "atan");
+}
+
 static const struct {
   const char *name;
   int fewest, most;                                                       /* arguments */
@@ -185,7 +213,10 @@ static const struct {
                  {"ceil", 1, 1, round_up},
                  {"sin", 1, 1, sine},
                  {"cos", 1, 1, cosine},
-                 {"tan", 1, 1, tangent}};
+                 {"tan", 1, 1, tangent},
+                 {"asin", 1, 1, inverse_sine},
+                 {"acos", 1, 1, inverse_cosine},
+                 {"atan", 1, 1, inverse_tangent}};
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 void expression_functions(Text *words)

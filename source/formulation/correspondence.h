@@ -24,6 +24,7 @@ typedef enum Control { CONTROL_NONE, CONTROL_UNIFORM, CONTROL_SCALAR, CONTROL_TE
 enum { MOST_PULLS = 9 + 3 + 6 };
 enum { CORRESPONDENCE_SHOWN = 8 }; /* of a place, where bonds are stored: x, y, z, 0, V u, V v, V w, V */
 
+typedef enum ControlFades { FADES_NEVER, FADES_WITH_SOFTENING, FADES_WITH_YIELDING } ControlFades;
 typedef struct Fading Fading; /* of the control where laws soften (correspondence_fading.c) */
 
 typedef struct Correspondence {
@@ -42,7 +43,8 @@ typedef struct Correspondence {
   double uniform;      /* C, if it is uniform */
   double *hold[6];     /* C: one component, or six, or none */
   double *held[3];     /* C u, if neighbours read it */
-  Fading *fading;      /* NULL: C stays as it is */
+  ControlFades fades;
+  Fading *fading; /* NULL: C stays as it is */
   /* Sums along lattice rows, for each kind of row and slice those of its eight places; what is read together lies together. */
   double *row_displacement[ROW_KINDS]; /* [slices][3][2][8] moment and sum of u_k */
   double *row_pull

@@ -1,4 +1,5 @@
-/* Control of zero-energy modes that fades where the law of a point softens (docs/theory.md 8.7): it would hold cracks together for good.
+/* Control of zero-energy modes that fades where the law of a point softens (docs/theory.md 8.7): it would hold cracks together for good. Or where it
+ * yields, too, if it is asked to: it would carry ever more beside what flows.
  *
  * Of what C is in families with all their bonds a point keeps the factor
  *   f = least so far of  s : e / e : C_0 : e  times  min(1, w_most / w),
@@ -31,12 +32,18 @@ struct Fading {
   bool softened;    /* some are below 1 */
 };
 
+static bool fades_in(const Correspondence *c, const Material *m)
+{
+  return c->fades == FADES_WITH_YIELDING ? !m->law->linear
+                                         : c->fades == FADES_WITH_SOFTENING && m->softening_energy > 0;
+}
+
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
 {
-  bool softens = false;
+  bool may = false;
   for (int64_t slice = 0; slice < c->particles->slices; ++slice)
-    softens |= !is_foreign(c->foreign, slice * SLICE) && parts->materials[parts->material[slice]].softening_energy > 0;
-  return softens && c->control != CONTROL_NONE;
+    may |= !is_foreign(c->foreign, slice * SLICE) && fades_in(c, &parts->materials[parts->material[slice]]);
+  return may && c->control != CONTROL_NONE;
 }
 
 int correspondence_create_fading(Correspondence *c, Error *error)
@@ -156,13 +163,13 @@ static void fade(const Correspondence *c, const Sweep *sweep)
 {
   const Fading *f = c->fading;
   const Material *m = points_material(c->points, sweep->first * SLICE);
-  const bool softens = m->softening_energy > 0 && !c->points->elastic_stage;
+  const bool may = fades_in(c, m) && !c->points->elastic_stage, softens = may && m->softening_energy > 0;
   const Lanes one = lanes_set(1), most = lanes_set(most_stored * m->softening_energy);
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     if (f->mark[slice]) set_hold(c, slice, f->next);
     for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; place += LANES) {
       const int64_t here = place - sweep->first * SLICE;
-      Lanes left = softens ? stiffness_left(m, sweep, here) : one;
+      Lanes left = may ? stiffness_left(m, sweep, here) : one;
       if (!f->mark[slice]) {
         const LaneMask lost = left < one;
         if (!(lost[0] | lost[1] | lost[2] | lost[3])) continue;

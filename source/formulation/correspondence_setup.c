@@ -6,10 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct ControlSpec { /* of zero-energy modes; exactly one is given */
+typedef struct ControlSpec { /* of zero-energy modes; exactly one of silling, wan, none is given */
   SectionHead head;
   double silling, wan;
   bool none;
+  const char *fades;
 } ControlSpec;
 
 typedef struct CorrespondenceSpec {
@@ -22,6 +23,14 @@ static const char *strain_word(int k)
 {
   static const char *const words[] = {"green-lagrange", "small", NULL};
   return words[k];
+}
+
+static const char *const fade_words[] = {
+    [FADES_NEVER] = "never", [FADES_WITH_SOFTENING] = "softening", [FADES_WITH_YIELDING] = "yielding", NULL};
+
+static const char *fade_word(int k)
+{
+  return fade_words[k];
 }
 
 static const Field control_fields[] = {
@@ -48,6 +57,14 @@ static const Field control_fields[] = {
      .standard = "",
      .meaning = "no control: zero-energy modes are free to grow",
      .group = 'A'},
+    {.key = "fades",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(ControlSpec, fades),
+     .standard = "softening",
+     .meaning = "with the stiffness that a point has lost, for good: where its law softens; or also where it yields, "
+                "which limit loads of soil need, as control would carry more and more besides. Not for loads that come "
+                "and go: what has faded does not come back where a point is elastic again",
+     .choice = fade_word},
 };
 static const Section control_section = {
     .name = "zero-energy control",
@@ -219,6 +236,9 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     c->strength = control->wan;
   }
   if ((control && control->none) || c->strength == 0) c->control = CONTROL_NONE;
+  c->fades = FADES_WITH_SOFTENING;
+  for (int k = 0; control && fade_words[k]; ++k)
+    if (!strcmp(control->fades, fade_words[k])) c->fades = (ControlFades)k;
 
   int64_t places = parts->particles->places;
   int failed = 0;

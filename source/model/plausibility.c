@@ -155,7 +155,7 @@ static void check_material(breccia_model *model, int k)
         model, section_node(spec, "model"),
         "material '%s': %s softens, but does not say with which energy, and no bond breaks: the control of zero-energy "
         "modes keeps its stiffness and holds cracks together; give the law a 'softening_energy', or the deck "
-        "'failure: {critical stretch: ...}'",
+        "'failure: {critical stretch: ...}' or 'zero-energy control: {silling: ..., fades: yielding}'",
         m->name, m->law_name);
 }
 

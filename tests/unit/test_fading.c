@@ -97,6 +97,52 @@ static void few_increments_at_rest_spend_no_more(void **state)
   }
 }
 
+/** A rough strip footing of 2 m on clay of 1 kPa, ten particles wide; Prandtl: 5.14. @return what it carries per width at the end, and one increment before */
+static double pushed_footing(const char *fades, double *before)
+{
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: j2, density: 2, Young modulus: 1000, Poisson ratio: 0.45, yield stress: 1.7320508}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.2, thickness: 1, shape: {box: {from: [0, 0], to: [4, "
+      "2]}}}}\n"
+      "peridynamics: {space: plane strain, zero-energy control: {silling: 0.2%s}}\n"
+      "loads:\n"
+      "  - {on: {face: x-}, support: {held: across}}\n"
+      "  - {on: {face: x+}, support: {held: across}}\n"
+      "  - {on: {face: y-}, support: {held: all}}\n"
+      "  - {name: foot, on: {face: y+, inside: {box: {from: [0, 0], to: [1, 3]}}}, displacement: [0, -0.015], history: "
+      "{ramp "
+      "to: 1}}\n"
+      "solve: {static: {increments: 8}}\n",
+      fades);
+  const Particles *p = m->domain.particles;
+  const Load *foot = &m->loading.loads[3];
+  double carried = 0;
+  while (!solver_is_done(&m->solver)) {
+    *before = carried;
+    carried = 0;
+    step_surely(m, 1);
+    for (int64_t n = 0; n < foot->selection.count; ++n)
+      carried += p->internal[1][foot->selection.places[n]] * p->volume[foot->selection.places[n]];
+  }
+  breccia_model_destroy(&m);
+  return carried;
+}
+
+/** Control that keeps its stiffness carries more and more beside clay that flows. */
+static void control_that_fades_with_yielding_leaves_a_limit_load(void **state)
+{
+  (void)state;
+  double before, kept_before;
+  const double limit = pushed_footing(", fades: yielding", &before), kept = pushed_footing("", &kept_before);
+  print_message("footing: %.2f, %.3f more in the last increment; kept: %.2f, %.3f\n", limit, limit / before - 1, kept,
+                kept / kept_before - 1);
+  assert_true(limit / before < 1.005);
+  assert_true(limit > 5.14 &&
+              limit < 1.6 * 5.14 * 1.1); /* of ten particles, which clay feels as eleven and a horizon */
+  assert_true(kept > 1.25 * limit && kept / kept_before > 1.04);
+}
+
 static void nothing_fades_before_the_law_softens(void **state)
 {
   (void)state;
@@ -247,6 +293,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bars_pulled_apart_spend_their_fracture_energy),
       cmocka_unit_test(few_increments_at_rest_spend_no_more),
+      cmocka_unit_test(control_that_fades_with_yielding_leaves_a_limit_load),
       cmocka_unit_test(nothing_fades_before_the_law_softens),
       cmocka_unit_test(forces_of_a_half_torn_bar_are_those_of_its_operator),
       cmocka_unit_test(half_torn_bars_restart_to_the_same_bits),
