@@ -12,10 +12,11 @@ static bool is_wanted(const breccia_model *model)
   return wanted;
 }
 
-/** A second on a slow machine, by factors of the stiffness: 4000 particles in the plane, 400 in space. */
+/** About a second of a slow machine, by factors of the stiffness: 4000 particles in the plane, 400 in space, of a horizon of three spacings. */
 static bool is_small(const Domain *d)
 {
-  return d->particles->count <= (d->body.dimensions == 3 ? 400 : 4000);
+  const double particles = (double)d->particles->count, family = (double)d->family.bonds / particles;
+  return particles <= (d->body.dimensions == 3 ? 400 : 4000) && particles * family * family <= 3.2e6;
 }
 
 /** In Hz, of what is bent; 0: not known. @param[out] loose  the body can move as a whole */

@@ -54,13 +54,24 @@ static void multiply_masses(const Search *s, const double *column, double *produ
   pack(s, s->from, product);
 }
 
+static int say_inexact(double residual, Error *error)
+{
+  return error_add(error, BRECCIA_FAILURE,
+                   "the modes could not be found: equations with the body's stiffness were solved up to a residual of "
+                   "%.1g only; look for springs and materials that differ by many powers of ten, and for parts that "
+                   "hang by few bonds",
+                   residual);
+}
+
 static int solve(Search *s, const double *column, double *answer, Error *error)
 {
-  const double accuracy = 1e-11;
+  /* Iterations may come to a stand before the first; beyond the second nothing can be found. */
+  const double accuracy = 1e-11, enough = 1e-6;
   LinearRecord record;
   unpack(s, column, s->from);
   for (int k = 0; k < 3; ++k) memset(s->to[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
   if (linear_solver_solve(&s->linear, s->from, s->to, accuracy, &record, error)) return BRECCIA_FAILURE;
+  if (!(record.residual <= enough)) return say_inexact(record.residual, error);
   unknowns_clear_rest(&s->linear.unknowns, s->to);
   pack(s, s->to, answer);
   return BRECCIA_OK;
@@ -132,6 +143,22 @@ static int iterate(Search *s, double shift, Error *error)
 
 /* ---- what comes out ---- */
 
+/** What is left of K q - omega^2 M q, of the whole with the shift. */
+static double find_residual(Search *s, const double *column, double square)
+{
+  const double shifted = square + s->linear.mass_factor;
+  double *forces = s->work, *masses = s->work + s->size, left = 0, whole = 0;
+  unpack(s, column, s->from);
+  linear_solver_apply(&s->linear, s->from, s->to);
+  pack(s, s->to, forces);
+  multiply_masses(s, column, masses);
+  for (a_int k = 0; k < s->size; ++k) {
+    left += pow(forces[k] - shifted * masses[k], 2);
+    whole += pow(shifted * masses[k], 2);
+  }
+  return sqrt(left / whole);
+}
+
 static int take_mode(const Search *s, int from, Mode *mode, Error *error)
 {
   const Particles *p = s->domain->particles;
@@ -157,7 +184,7 @@ static int take_mode(const Search *s, int from, Mode *mode, Error *error)
 }
 
 /** @param[in] little  omega squared below which nothing is bent */
-static int take_modes(const Search *s, double little, Modes *modes, Error *error)
+static int take_modes(Search *s, double little, Modes *modes, Error *error)
 {
   modes->modes = memory_zeroed((size_t)s->wanted, sizeof *modes->modes, "modes", error);
   if (!modes->modes) return BRECCIA_FAILURE;
@@ -170,6 +197,8 @@ static int take_modes(const Search *s, double little, Modes *modes, Error *error
     s->values[from] = INFINITY;
     if (square < -little)
       return error_add(error, BRECCIA_FAILURE, "the body gives way by itself: a mode has a negative stiffness");
+    const double residual = find_residual(s, s->columns + (size_t)s->size * (size_t)from, square), enough = 1e-3;
+    if (!(residual <= enough)) return say_inexact(residual, error);
     modes->modes[n].frequency = square > little ? sqrt(square) / (2 * acos(-1)) : 0;
     modes->rigid += square <= little;
     if (take_mode(s, from, &modes->modes[n], error)) return BRECCIA_FAILURE;

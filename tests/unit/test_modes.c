@@ -198,6 +198,21 @@ static void more_modes_than_unknowns_are_refused(void **state)
   breccia_model_destroy(&m);
 }
 
+static void modes_that_roundings_hide_are_not_told(void **state)
+{
+  (void)state;
+  /* Springs 1e16 times as stiff as bonds: what bonds do is lost in the sums. */
+  breccia_model *m = model_of(BAR "loads: [{on: {face: x-, layers: 3}, spring: {stiffness: 1e20}}]\nsolve: {explicit: "
+                                  "{steps: 1}}\n");
+  Modes modes = {0};
+  Error *error = breccia_error_create();
+  assert_int_equal(modes_find(&m->domain, &m->loading, 2, &modes, error), BRECCIA_FAILURE);
+  assert_non_null(strstr(breccia_error_text(error), "the modes could not be found: equations with the body's"));
+  breccia_error_destroy(&error);
+  modes_destroy(&modes);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -208,6 +223,7 @@ int main(void)
       cmocka_unit_test(pictures_say_which_mode_they_show),
       cmocka_unit_test(springs_ties_and_supports_are_felt),
       cmocka_unit_test(more_modes_than_unknowns_are_refused),
+      cmocka_unit_test(modes_that_roundings_hide_are_not_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
