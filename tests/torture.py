@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""The long form of the tests that inject faults: each by the thousand, then the table of docs/reliability.md from their counts.
+"""The long form of the tests that inject faults: each by the thousand, then the table of docs/reliability.md from their
+counts.
 
 usage: torture.py PAGE   TORTURE_MINUTES (60): how long, about, on two quiet cores; less time means fewer of each
 """
+import concurrent.futures
 import datetime
 import math
 import os
@@ -22,44 +24,59 @@ def some(most):
     return str(max(1, round(most * SHARE)))
 
 
-# What is tried, the command, its environment, and the words of each count in what it prints; or the count itself, where one mistake ends it.
-PARTS = [
-    ("runs killed where they write, taken up again", ["python3", "-B", "tests/faults/kills.py", COMMAND, f"{BUILD}/tests/libio_faults.so", COMPARE, "--count", some(1000)], {},
-     [r"kills: (\d+) tried, (\d+) lost"]),
-    ("writes that fail, once or for good", ["bash", "tests/command/io_faults.sh", COMMAND, ".", BUILD], {"IO_FAULTS": str(EVERY)},
-     [r"failing writes: (\d+) tried, (\d+) lost"]),
-    ("flipped bytes of checkpoints", ["sh", "-c", f"cd {BUILD}/tests && ./test_checkpoint"], {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
-    ("flipped bytes of results", ["sh", "-c", f"cd {BUILD}/tests && ./test_result_file"], {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
-    ("refused memory", ["python3", "-B", "tests/faults/memory.py", COMMAND, f"{BUILD}/tests/libfailing_memory.so", COMPARE, "--every", str(EVERY)], {},
-     [r"memory: (\d+) calls refused, (\d+) problems"]),
-    ("refused memory of the libraries", ["python3", "-B", "tests/faults/memory.py", COMMAND, f"{BUILD}/tests/libfailing_memory.so", COMPARE, "--libraries", "--every", str(1009 * EVERY)], {},
-     [r"memory of libraries too: (\d+) calls refused, (\d+) problems"]),
-] + [
-    (name, ["sh", "tests/fuzz/run.sh", "0"], {"FUZZ_ONLY": target, "FUZZ_RUNS": some(100000), "FUZZ_SEED": "1"}, [r"number_of_executed_units: (\d+)"])
-    for name, target in (("random decks", "fuzz_deck"), ("random bodies, some steps", "fuzz_model"), ("random frames to a server", "fuzz_server"), ("random answers to a client", "fuzz_client"))
+FAULTS, SHIM = "tests/faults", f"{BUILD}/tests/libio_faults.so"
+MEMORY = ["python3", "-B", f"{FAULTS}/memory.py", COMMAND, f"{BUILD}/tests/libfailing_memory.so", COMPARE]
+
+
+def unit_test(name):
+    return ["sh", "-c", f"cd {BUILD}/tests && ./{name}"]
+
+
+def fuzz(name, target, pattern=r"number_of_executed_units: (\d+)", most=100000):
+    environment = {"FUZZ_ONLY": target, "FUZZ_RUNS": some(most), "FUZZ_SEED": "1"}
+    return name, ["sh", "tests/fuzz/run.sh", "0"], environment, pattern
+
+
+# What is tried, the command, its environment, and the words of the counts in what it prints; or the count itself, where
+# one mistake ends it. Those of the first list keep all cores busy by themselves; of the second as many run side by side
+# as there are cores, the longest first.
+WIDE = [
+    ("runs killed where they write, taken up again",
+     ["python3", "-B", f"{FAULTS}/kills.py", COMMAND, SHIM, COMPARE, "--count", some(1000)], {},
+     r"kills: (\d+) tried, (\d+) lost"),
+    ("refused memory", [*MEMORY, "--every", str(EVERY)], {}, r"memory: (\d+) calls refused, (\d+) problems"),
+    ("refused memory of the libraries", [*MEMORY, "--libraries", "--every", str(1009 * EVERY)], {},
+     r"memory of libraries too: (\d+) calls refused, (\d+) problems"),
+]
+NARROW = [
+    ("writes that fail, once or for good", ["bash", "tests/command/io_faults.sh", COMMAND, ".", BUILD],
+     {"IO_FAULTS": str(EVERY)}, r"failing writes: (\d+) tried, (\d+) lost"),
+    fuzz("random bodies, some steps", "fuzz_model", most=20000),
+    ("flipped bytes of checkpoints", unit_test("test_checkpoint"), {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
+    ("flipped bytes of results", unit_test("test_result_file"), {"BRECCIA_FLIPS": some(10000)}, int(some(10000))),
+    fuzz("random frames to a server", "fuzz_server", r"server: (\d+) frames"),
+    fuzz("random decks", "fuzz_deck"),
+    fuzz("random answers to a client", "fuzz_client"),
 ]
 
 
-def attempt(name, command, environment, counts):
+def attempt(part):
     """Runs one part. Returns a row: name, tried, lost."""
+    name, command, environment, counts = part
     words = [os.path.abspath(word) if word.startswith("build/") else word for word in command]
     begun = datetime.datetime.now()
-    done = subprocess.run(words, env=dict(os.environ, **environment), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
-    tried = lost = 0
-    if isinstance(counts, int):
-        tried, lost = counts, int(done.returncode != 0)
-    for pattern in counts if isinstance(counts, list) else []:
-        for found in re.findall(pattern, done.stdout):
-            found = (found,) if isinstance(found, str) else found
-            tried += int(found[0])
-            lost += int(found[1]) if len(found) > 1 else 0
-    if done.returncode and not lost:
-        lost = 1
+    done = subprocess.run(words, env=dict(os.environ, **environment), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, errors="replace")
+    tried, lost = counts if isinstance(counts, int) else 0, 0
+    for found in re.finditer(counts, done.stdout) if isinstance(counts, str) else []:
+        tried += int(found[1])
+        lost += int(found[2]) if found.re.groups > 1 else 0
+    if done.returncode or not tried:
+        lost = max(lost, 1)
     minutes = (datetime.datetime.now() - begun).total_seconds() / 60
-    print(f"{name}: {tried} tried, {lost} lost ({minutes:.1f} min)", flush=True)
-    if lost or not tried:
-        print(done.stdout[-6000:], flush=True)
-    return name, tried, lost if tried else 1
+    said = f"\n{done.stdout[-6000:]}" if lost else ""
+    print(f"{name}: {tried} tried, {lost} lost ({minutes:.1f} min){said}", flush=True)
+    return name, tried, lost
 
 
 def write_table(page, rows):
@@ -68,7 +85,8 @@ def write_table(page, rows):
         before, rest = file.read().split(begin)
     after = rest.split(end)[1]
     day = datetime.date.today().strftime("%-d %B %Y")
-    table = f"Counted on {day}, on {platform.system()} {platform.machine()}:\n\n| tried | how many | lost |\n|---|---|---|\n"
+    table = f"Counted on {day}, on {platform.system()} {platform.machine()}:\n\n"
+    table += "| tried | how many | lost |\n|---|---|---|\n"
     table += "".join(f"| {name} | {tried} | {lost} |\n" for name, tried, lost in rows)
     with open(page, "w") as file:
         file.write(before + begin + table + end + after)
@@ -78,7 +96,9 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     os.chdir(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-    rows = [attempt(*part) for part in PARTS]
+    rows = [attempt(part) for part in WIDE]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        rows += pool.map(attempt, NARROW)
     write_table(sys.argv[1], rows)
     sys.exit(any(lost for _, _, lost in rows))
 

@@ -1,4 +1,5 @@
-/* A server that answers by chance, for libFuzzer: whatever it says, the client must say in one line what is wrong, or use it. */
+/* A server that answers by chance, for libFuzzer: whatever it says, the client must say in one line what is wrong, or
+ * use it. */
 #include "constitutive/law.h"
 #include "constitutive/remote/frame.h"
 #include "constitutive/remote/remote.h"

@@ -1,5 +1,5 @@
-/* Random decks through model building and a few steps, for libFuzzer. Bodies are kept small, and no law runs in another process. Most
- * mutations exchange words and numbers, so that many a mutant of a good deck is still one. */
+/* Random decks through model building and a few steps, for libFuzzer. Bodies are kept small, and no law runs in another
+ * process. Most mutations exchange words and numbers, so that many a mutant of a good deck is still one. */
 #include "breccia/breccia.h"
 #include "deck/resolve.h"
 #include "model/deck_layout.h"

@@ -1,4 +1,5 @@
-/* Random frames to a material server, random bytes to one before the greeting, and to a client, for libFuzzer. The server must answer a HELLO after anything. */
+/* Random frames to a material server, random bytes to one before the greeting, and to a client, for libFuzzer. The
+ * server must answer a HELLO after anything. */
 #include "constitutive/remote/channel.h"
 #include "constitutive/remote/server.h"
 
@@ -13,6 +14,7 @@
 
 static char address[64], other[64];
 static volatile int ready;
+static long conversations, frames, lines;
 
 static void is_ready(const char *where)
 {
@@ -34,6 +36,12 @@ static void remove_sockets(void)
   unlink(other + 5);
 }
 
+static void tell_counts(void)
+{
+  remove_sockets();
+  fprintf(stderr, "server: %ld frames in %ld conversations, %ld lines of bytes\n", frames, conversations, lines);
+}
+
 static Channel *connect_to(const char *where)
 {
   Text words = {0};
@@ -51,6 +59,7 @@ static int ask(Channel *channel, Frame frame, const uint8_t *payload, uint32_t *
   uint8_t *bytes, *to = channel_payload(channel, frame.length);
   if (!to) abort();
   if (frame.length) memcpy(to, payload, frame.length);
+  ++frames;
   if (channel_send(channel, &frame, 5, &words) == CHANNEL_OK) {
     const ChannelStatus status = channel_receive(channel, &reply, &bytes, 5, &words);
     if (status == CHANNEL_LATE || status == CHANNEL_BROKEN) abort(); /* a server always answers, in frames */
@@ -99,11 +108,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(un.sun_path, sizeof un.sun_path, "%s", other + 5);
     listener = socket(AF_UNIX, SOCK_STREAM, 0);
     if (bind(listener, (struct sockaddr *)&un, sizeof un) || listen(listener, 4)) abort();
-    atexit(remove_sockets);
+    atexit(tell_counts);
     if (pthread_create(&thread, NULL, serve, NULL)) abort();
     while (!ready) nanosleep(&(struct timespec){.tv_nsec = 1000000L}, NULL);
   }
   if (!size) return 0;
+  lines += data[0] % 2 == 0;
   if (data[0] % 4 == 0) {
     tell_client(listener, data + 1, size - 1);
     return 0;
@@ -113,6 +123,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size = 1; /* whoever greets next is served */
   }
   /* Frames: operation, flags, count, length of the payload; of whole checksums, or what follows would never be seen. */
+  ++conversations;
   Channel *channel = connect_to(address);
   uint32_t session = 0, sequence = 1;
   Frame frame = {.version = FRAME_VERSION, .operation = OPERATION_HELLO, .sequence = 1, .length = sizeof hello - 1};

@@ -204,6 +204,39 @@ static void partial_trials_keep_the_state_of_the_others(void **state)
   end();
 }
 
+/** The bulk modulus that a law is said to have, in the client's units. */
+static void bulk_is(Line *line, Operation operation, const char *units, double bulk)
+{
+  char body[200], *found;
+  snprintf(body, sizeof body, "%scommand: elastic; Young modulus=1 MPa; Poisson ratio=0.2\n", units);
+  say(line, operation, 1, body, "bulk: ");
+  found = strstr(line->text, "bulk: ");
+  assert_near(strtod(found + strlen("bulk: "), NULL), bulk, 1e-12 * bulk);
+}
+
+/* K = E/(3(1 - 2ν)) = 5/9 MPa, however often clients change their units, and after units that there are not. */
+static void units_are_those_of_who_asks(void **state)
+{
+  (void)state;
+  char path[128];
+  static const char millimetres[] = "length unit: mm\n", both[] = "length unit: mm\nforce unit: kN\n";
+  begin_at_file(path);
+  for (int client = 0; client < 2; ++client) {
+    Line line = connect_to(where);
+    say(&line, OPERATION_HELLO, 0, hello, "program: breccia serve\n");
+    bulk_is(&line, OPERATION_CREATE, "", 5e6 / 9);
+    bulk_is(&line, OPERATION_PROBE, "", 5e6 / 9);
+    bulk_is(&line, OPERATION_PROBE, millimetres, 5.0 / 9);
+    bulk_is(&line, OPERATION_CREATE, both, 5e-3 / 9);
+    say(&line, OPERATION_PROBE, 1, "length unit: kN\ncommand: elastic; Young modulus=1; Poisson ratio=0\n",
+        "unit 'kN' is not a unit of length");
+    bulk_is(&line, OPERATION_CREATE, millimetres, 5.0 / 9);
+    say(&line, OPERATION_BYE, 0, "", "");
+    await_end(&line);
+  }
+  end();
+}
+
 /* ---- who is served ---- */
 
 static void strangers_cannot_speak_for_a_client(void **state)
@@ -447,6 +480,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(partial_trials_keep_the_state_of_the_others),
+      cmocka_unit_test(units_are_those_of_who_asks),
       cmocka_unit_test(strangers_cannot_speak_for_a_client),
       cmocka_unit_test(a_silent_client_of_datagrams_makes_room),
       cmocka_unit_test(who_does_not_know_the_secret_holds_nothing),

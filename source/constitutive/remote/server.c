@@ -16,7 +16,6 @@ static const double POLL_SECONDS = 0.2, SEND_SECONDS = 60;
 
 /** The points of a session. */
 typedef struct Session {
-  Units *units;
   Material material;
   uint32_t number; /* 0: none */
   int64_t points, commits;
@@ -32,6 +31,8 @@ typedef struct Server {
   const ServeSpec *spec;
   Listener *listener;
   Session held;
+  Units *units; /* of whoever named a law last, by these names */
+  char *unit_names[3];
   uint32_t last; /* sequence number of the frame answered last */
   bool answered;
   bool leaving;
@@ -98,22 +99,54 @@ static ChannelStatus answer_text(Server *s, const Frame *asked, Text *text)
 static void session_end(Session *h)
 {
   if (h->material.law) material_destroy(&h->material);
-  units_destroy(&h->units);
   free(h->committed);
   free(h->trial);
   free(h->tried);
   *h = (Session){0};
 }
 
+static void forget_units(Server *s)
+{
+  units_destroy(&s->units);
+  for (int k = 0; k < 3; ++k) {
+    free(s->unit_names[k]);
+    s->unit_names[k] = NULL;
+  }
+}
+
+/** The client's units, kept for whoever has the same: reading the database of units takes a hundred times as long as
+ *  all else that makes a point. @return NULL after adding a line to `error` */
+static const Units *take_units(Server *s, const char *text, size_t length, Error *error)
+{
+  static const char *const keys[] = {"length unit", "force unit", "time unit"}, *const standard[] = {UNITS_LENGTH,
+                                                                                                     UNITS_FORCE,
+                                                                                                     UNITS_TIME};
+  char *names[3];
+  bool told = true, known = s->units != NULL;
+  for (int k = 0; k < 3; ++k) {
+    names[k] = frame_line(text, length, keys[k]);
+    if (!names[k]) names[k] = text_format("%s", standard[k]);
+    told = told && names[k];
+    known = known && told && !strcmp(names[k], s->unit_names[k]);
+  }
+  if (known) {
+    for (int k = 0; k < 3; ++k) free(names[k]);
+    return s->units;
+  }
+  forget_units(s);
+  memcpy(s->unit_names, names, sizeof names);
+  if (!told) error_add(error, BRECCIA_FAILURE, "out of memory: units");
+  return s->units = told ? units_create(names[0], names[1], names[2], error) : NULL;
+}
+
 /** A material from "LAW; KEY=VALUE; KEY=VALUE" in the client's units. */
-static int read_material(const Server *s, Session *h, const char *text, size_t length, Error *error)
+static int read_material(Server *s, Session *h, const char *text, size_t length, Error *error)
 {
   const char *words[MOST_PARAMETERS];
-  char *units[3], *command = frame_line(text, length, "command");
-  static const char *const keys[] = {"length unit", "force unit", "time unit"};
+  const Units *units;
+  char *command = frame_line(text, length, "command");
   const double stage = frame_number(text, length, "stage", 1);
   int count = 0, status = BRECCIA_USER_ERROR;
-  for (int k = 0; k < 3; ++k) units[k] = frame_line(text, length, keys[k]);
   char *state = NULL, *name = command ? strtok_r(command, ";", &state) : NULL;
   for (char *word = NULL; name && (word = strtok_r(NULL, ";", &state)) && count < MOST_PARAMETERS;) {
     word += strspn(word, " ");
@@ -131,11 +164,9 @@ static int read_material(const Server *s, Session *h, const char *text, size_t l
     text_free(&names);
   } else if (stage != 0 && stage != 1) {
     error_add(error, BRECCIA_USER_ERROR, "a stage is 0 (elastic) or 1 (plastic)");
-  } else if ((h->units = units_create(units[0] ? units[0] : UNITS_LENGTH, units[1] ? units[1] : UNITS_FORCE,
-                                      units[2] ? units[2] : UNITS_TIME, error)))
-    status = material_from_words(&h->material, law, words, count, h->units, "", error);
+  } else if ((units = take_units(s, text, length, error)))
+    status = material_from_words(&h->material, law, words, count, units, "", error);
   h->elastic = stage == 0;
-  for (int k = 0; k < 3; ++k) free(units[k]);
   free(command);
   return status;
 }
@@ -463,6 +494,7 @@ int serve_materials(const ServeSpec *spec, Error *error)
   }
   text_free(&words);
   session_end(&s.held);
+  forget_units(&s);
   listener_close(&s.listener);
   return BRECCIA_OK;
 }
