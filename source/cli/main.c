@@ -60,9 +60,8 @@ char *words_of(const char *format, ...)
   if (words) vsnprintf(words, (size_t)length + 1, format, again);
   va_end(again);
   va_end(arguments);
-  if (words) return words;
-  fprintf(stderr, "breccia: out of memory: words\n");
-  exit(BRECCIA_FAILURE);
+  if (!words) fprintf(stderr, "breccia: out of memory: words\n");
+  return words;
 }
 
 char *result_folder(const char *deck)

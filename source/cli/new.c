@@ -79,7 +79,7 @@ static bool holds(const char *path, const ExampleFile *file)
   return same;
 }
 
-/** Path of a file in the folder of another. To be freed. */
+/** Path of a file in the folder of another. To be freed; NULL when memory is out, after saying so. */
 static char *beside(const char *path, const char *file)
 {
   const char *slash = strrchr(path, '/');
@@ -129,21 +129,22 @@ static const Example *find_example(const char *name)
     }
   }
   if (count == 1) return found;
-  char *near = words_of("%s", "");
+  int near = 0;
   for (const Example *e = examples; e->name; ++e) {
     const char *place = strchr(name, '/') ? e->name : short_name(e);
     if (count ? strcmp(place, name) : !strstr(e->name, name) && !breccia_nearest_word(name, &place, 1)) continue;
-    char *more = words_of("%s%s'%s'", near, *near ? ", " : "", e->name);
-    free(near);
-    near = more;
+    if (near++)
+      fprintf(stderr, ", ");
+    else if (count > 1)
+      fprintf(stderr, "breccia new: several examples are called '%s': give one of ", name);
+    else
+      fprintf(stderr, "breccia new: there is no example '%s'; the nearest names are ", name);
+    fprintf(stderr, "'%s'", e->name);
   }
-  if (count > 1)
-    fprintf(stderr, "breccia new: several examples are called '%s': give one of %s\n", name, near);
-  else if (*near)
-    fprintf(stderr, "breccia new: there is no example '%s'; the nearest names are %s\n", name, near);
+  if (near)
+    fprintf(stderr, "\n");
   else
     fprintf(stderr, "breccia new: there is no example '%s'; 'breccia new --example' lists them\n", name);
-  free(near);
   return NULL;
 }
 
@@ -153,15 +154,12 @@ static int write_example(const Example *example, const char *path)
   int count = 0, status = 0;
   for (const ExampleFile *f = example->files + 1; f->name && !status; ++f) {
     char *companion = beside(path, f->name);
-    if (holds(companion, f)) {
-      free(companion);
-      continue;
-    }
-    status = write_new(companion, f->bytes, f->length);
-    if (status)
-      free(companion);
-    else
+    const bool there = companion && holds(companion, f);
+    if (!there) status = companion ? write_new(companion, f->bytes, f->length) : BRECCIA_FAILURE;
+    if (companion && !there && !status)
       written[count++] = companion;
+    else
+      free(companion);
   }
   if (!status) status = write_new(path, example->files[0].bytes, example->files[0].length);
   if (!status) {

@@ -88,6 +88,11 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   }
   size_t told = strlen(breccia_model_warnings(model));
   char *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : result_folder(deck);
+  if (!folder) {
+    breccia_model_destroy(&model);
+    breccia_error_destroy(&error);
+    return BRECCIA_FAILURE;
+  }
   const breccia_run wish = {.size = sizeof wish,
                             .folder = folder,
                             .restart = values[RESTART_BEFORE] ? BRECCIA_RESTART_BEFORE

@@ -2,6 +2,7 @@
 #include "verbs.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,10 +58,11 @@ typedef struct Work {
 /** Runs a case to its end. What `breccia run` would print goes into a file beside its results. @return exit status */
 static int run_case(const Work *work, const breccia_case *one, bool restart)
 {
-  char *path = words_of("%s/log.txt", one->folder);
-  FILE *log = path && (!mkdir(one->folder, 0777) || errno == EEXIST) ? fopen(path, restart ? "a" : "w") : NULL;
+  char path[PATH_MAX];
+  const bool fits = snprintf(path, sizeof path, "%s/log.txt", one->folder) < (int)sizeof path;
+  FILE *log = fits && (!mkdir(one->folder, 0777) || errno == EEXIST) ? fopen(path, restart ? "a" : "w") : NULL;
   if (!log) {
-    fprintf(stderr, "%s: cannot be written: %s\n", path ? path : one->folder, strerror(errno));
+    fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(fits ? errno : ENAMETOOLONG));
     return BRECCIA_USER_ERROR;
   }
   breccia_error *error = breccia_error_create();
@@ -77,11 +79,11 @@ static int run_case(const Work *work, const breccia_case *one, bool restart)
     fprintf(log, "%s\n%s\n", breccia_model_warnings(model), breccia_model_outcome(model));
     breccia_model_destroy(&model);
   }
-  fprintf(log, "%s\n", breccia_error_text(error));
-  if (status && status != BRECCIA_INTERRUPTED) fprintf(stderr, "%s: %s\n", one->name, breccia_error_text(error));
+  const char *words = status && !error ? "out of memory: messages" : breccia_error_text(error);
+  fprintf(log, "%s\n", words);
+  if (status && status != BRECCIA_INTERRUPTED) fprintf(stderr, "%s: %s\n", one->name, words);
   breccia_error_destroy(&error);
   fclose(log);
-  free(path);
   return status == BRECCIA_INTERRUPTED ? 130 : status;
 }
 
@@ -250,8 +252,10 @@ static int run(int argc, char **argv, const Verb *verb)
     struct sigaction action = {.sa_handler = on_signal};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    char *beside = result_folder(argv[first]),
-         *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : words_of("%s-study", beside);
+    char *beside = values[OUTPUT] ? NULL : result_folder(argv[first]), *folder = values[OUTPUT]
+                                                                                     ? words_of("%s", values[OUTPUT])
+                                                                                 : beside ? words_of("%s-study", beside)
+                                                                                          : NULL;
     const breccia_study_plan plan = {.size = sizeof plan,
                                      .deck = argv[first],
                                      .folder = folder,
@@ -264,7 +268,7 @@ static int run(int argc, char **argv, const Verb *verb)
                                      .curves = lists.items[CURVE],
                                      .curve_count = lists.count[CURVE],
                                      .together = values[TOGETHER] != NULL};
-    status = study_deck(&plan, values, error);
+    status = folder ? study_deck(&plan, values, error) : BRECCIA_FAILURE;
     free(folder);
     free(beside);
   }

@@ -64,10 +64,10 @@ int print_page(const char *page);
 /** Prints what somebody should look at, each line as a warning. */
 void warn(const char *lines);
 
-/** Formatted text, to be freed; ends the command when memory is out. */
+/** Formatted text, to be freed. @return NULL when memory is out, after saying so */
 char *words_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** Folder for a deck's results: beside it, named after it. To be freed. */
+/** Folder for a deck's results: beside it, named after it. To be freed; NULL as above. */
 char *result_folder(const char *deck);
 
 /** Reads a whole number of at least `least`; says what is wrong. */

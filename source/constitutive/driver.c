@@ -25,12 +25,14 @@ int driver_create(Driver *d, const Material *material, Error *error)
   *d = (Driver){.material = material, .components = material->law->components};
   d->committed = memory_zeroed(values, sizeof(double), "history", error);
   d->trial = memory_zeroed(values, sizeof(double), "history", error);
-  if (!d->committed || !d->trial) return BRECCIA_FAILURE;
-  if (material->law->begin) {
+  int status = d->committed && d->trial ? BRECCIA_OK : BRECCIA_FAILURE;
+  if (!status && material->law->begin) {
     material->law->begin(material->constants, d->committed);
     material->law->begin(material->constants, d->trial);
   }
-  return material->remote ? begin_in_server(d, error) : BRECCIA_OK;
+  if (!status && material->remote) status = begin_in_server(d, error);
+  if (status) driver_destroy(d);
+  return status;
 }
 
 void driver_destroy(Driver *d)

@@ -28,7 +28,7 @@ void *__libc_realloc(void *memory, size_t size);
 void *__libc_memalign(size_t alignment, size_t size);
 void __libc_free(void *memory);
 
-enum { LONGEST = 30 }; /* s that the processor may work; a run takes a tenth of one */
+enum { LONGEST = 10 }; /* s that the processor may work; a run takes a tenth of one */
 
 static uintptr_t first_byte, last_byte; /* of the program */
 static atomic_long calls;
@@ -232,4 +232,15 @@ void free(void *memory)
 {
   forget(memory);
   __libc_free(memory);
+}
+
+/** A library that ends the program is told as one that crashes: HDF5 does so where it finds no place for a number of its own. */
+void exit(int status)
+{
+  if (counting && status < 0 && !is_program(__builtin_return_address(0))) abort();
+  union {
+    void *found;
+    void (*call)(int) __attribute__((noreturn));
+  } libc = {dlsym(RTLD_NEXT, "exit")};
+  libc.call(status);
 }
