@@ -3,8 +3,8 @@
 
 A run is killed (SIGKILL) just before its Nth such call, or in the middle of what the call writes; io_faults.c, preloaded, does it. What is
 left is taken up with --restart, or begun again where there was no checkpoint yet, and must end in the same bits as a run that nobody
-disturbed: results, histories and the state at the end. Runs that are taken up are killed again, up to three times. Of every two runs one takes its results
-for large ones, which are written in place with a journal.
+disturbed: results, histories and the state at the end. Runs that are taken up are killed again, up to three times. Of every three runs one takes
+its results for large ones, which are written in place with a journal, and one goes through stages of all solvers.
 
 usage: kills.py COMMAND SHIM COMPARE_RESULTS [--count N] [--seconds S] [--seed K]
   --count N    so many runs that are killed (24); first one of each kind of call, then all calls in a random order, then several in a row
@@ -24,7 +24,7 @@ import sys
 import tempfile
 import time
 
-DECK = """\
+BODY = """\
 units: {length: m, force: kN, time: s}
 materials:
   c: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m}
@@ -33,28 +33,43 @@ body:
   left: {material: c, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {particles: [9, 5], first particle: [0, 0]}}}
   right: {material: s, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {particles: [9, 5], first particle: [0.09, 0]}}}
 peridynamics: {space: plane strain, regions: {fibres: {blocks: [left], formulation: bond-based}}}
-failure: {critical stretch: 3e-4}
+failure: {critical stretch: 3e-4, near grips: break}
+pictures: []
+"""
+MOTION = """\
 loads:
   - {on: {face: x-, layers: 2}, displacement: [0, free]}
   - {on: {face: x+, layers: 2}, velocity: [0.5, free]}
 solve: {explicit: {steps: 140}}
 watch: {end: {displacement of: {face: x+}, every: 3}, energy: {energy: yes, every: 20}}
 results: {number: 4, checkpoint steps: 30, precision: double, fields: [displacement, damage, stress]}
-pictures: []
+"""
+STAGES = """\
+cracks: [{cut: {line: [[0.045, -1], [0.045, 0.015]]}}]
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 2}, displacement: [2e-5, free], history: {ramp to: 1}}
+solve:
+  - {name: pull, static: {increments: 12}}
+  - {name: swing, implicit: {end time: 1e-4, time step: 1e-5}}
+  - {name: shake, explicit: {steps: 20}}
+  - {name: rest, static: {method: relaxation, increments: 4}}
+watch: {end: {displacement of: {face: x+}, every: 1}, energy: {energy: yes, every: 2}}
+results: {number: 4, checkpoint steps: 3, precision: double, fields: [displacement, damage, stress]}
 """
 BEFORE, WITHIN = 1, 2
 WORDS = {BEFORE: "before", WITHIN: "within"}
-SAME = ("end.csv", "energy.csv", "results.xdmf")  # byte by byte
+SAME = ("end.csv", "energy.csv", "results.xdmf", "solution.txt")  # byte by byte
 ALIKE = ("results.vtkhdf", "checkpoint.h5")  # by what is in them
 
 
 class Walk:
-    def __init__(self, options, work, large):
+    def __init__(self, options, work, solve=MOTION, large=False):
         self.options, self.work = options, work
         self.faults = {"FAULT_LARGER": "300000000"} if large else {}
         os.makedirs(work)
         with open(f"{work}/deck.yaml", "w") as deck:
-            deck.write(DECK)
+            deck.write(BODY + solve)
         self.run("whole")
         if not os.path.exists(f"{work}/whole/checkpoint.h5"):
             sys.exit("the whole run leaves no checkpoint")
@@ -90,6 +105,8 @@ class Walk:
     def compare(self, folder):
         """What is not as in the whole run, in words; none if all is."""
         for name in SAME:
+            if not os.path.exists(f"{self.work}/whole/{name}"):
+                continue
             if not filecmp.cmp(f"{self.work}/whole/{name}", f"{self.work}/{folder}/{name}", shallow=False):
                 return f"{name} differs"
         for name in ALIKE:
@@ -150,17 +167,17 @@ def main():
     lost = []
     try:
         chance = random.Random(options.seed)
-        walks = [Walk(options, f"{work}/{name}", name == "large") for name in ("small", "large")]
+        walks = [Walk(options, f"{work}/small"), Walk(options, f"{work}/large", large=True), Walk(options, f"{work}/stages", STAGES)]
         plans = [walk.plans(chance) for walk in walks]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             while kills < options.count and time.monotonic() < end:
-                batch = [(number, walks[number % 2], next(plans[number % 2])) for number in range(tried, tried + min(16, options.count - kills))]
+                batch = [(number, walks[number % 3], next(plans[number % 3])) for number in range(tried, tried + min(16, options.count - kills))]
                 done = pool.map(lambda one: one[1].kill(one[0], one[2]), batch)
                 for (_, walk, plan), (k, r, problem) in zip(batch, done):
                     kills, restarts = kills + k, restarts + r
                     if problem:
                         calls = " then ".join(f"{WORDS[how]} call {call} ({walk.calls[call - 1]})" for call, how in plan)
-                        lost.append(f"{os.path.basename(walk.work)} results, {calls}: {problem}")
+                        lost.append(f"{os.path.basename(walk.work)}, {calls}: {problem}")
                 tried += len(batch)
     finally:
         shutil.rmtree(work, ignore_errors=True)
