@@ -40,6 +40,7 @@ struct breccia_model {
   int64_t began;         /* the step at which the run began to write */
   int64_t last_due;      /* step of the last state that was due; -1: none */
   int64_t states_due;    /* how many were due since the run began */
+  int64_t log_bytes;     /* of solution.txt, with what was told of all steps so far */
   int64_t states_before; /* that were due in earlier stages */
   Peaks peaks;
   double run_seconds;

@@ -21,4 +21,5 @@ void model_state(breccia_model *model, StateList *list)
   state_add_count(list, "step at which the run began", STATE_COMMITTED, &model->began);
   state_add_count(list, "step of the last state written", STATE_COMMITTED, &model->last_due);
   state_add_count(list, "states written", STATE_COMMITTED, &model->states_due);
+  state_add_count(list, "bytes of solution.txt", STATE_COMMITTED, &model->log_bytes);
 }

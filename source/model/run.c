@@ -247,6 +247,7 @@ static int open_files(Run *run, Error *error)
     model->next_due = 0;
     model->last_due = -1;
     model->states_due = 0;
+    model->log_bytes = 0;
     model->began = model->solver.clock.step;
     status = forget_earlier(run, error);
     if (!status)
@@ -335,12 +336,12 @@ static int loop(Run *run, Error *error)
     status = host_status(run->host, model_advance(model, error), error);
     if (s->clock.stage != stage) begin_stage(model);
     if (status) {
-      run_log_write(run, NULL); /* how it failed */
+      run_log_write(run, false, NULL); /* how it failed */
       break;
     }
     model->run_steps += s->clock.step - step;
     run->steps = steps_wanted(run);
-    status = run_log_write(run, error);
+    status = run_log_write(run, true, error);
     run->unwritten |= status != 0;
     if (!status) status = due(run, error);
     show_progress(run, false);

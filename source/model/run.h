@@ -28,8 +28,8 @@ int run_make_folder(const char *path, Error *error);
 /** Writes a small file whole, or not at all. */
 int run_write_file(Run *run, const char *name, const Text *words, Error *error);
 
-/** Adds what the solver tells of its last step to solution.txt. */
-int run_log_write(Run *run, Error *error);
+/** Adds what the solver tells of its last step to solution.txt. @param[in] done  the step was taken; else a restart forgets it */
+int run_log_write(Run *run, bool done, Error *error);
 int run_log_close(Run *run, Error *error);
 
 /** Pictures are made from the files, as `breccia plot` does.

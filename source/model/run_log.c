@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static char *path_of(const Run *run)
 {
@@ -17,19 +19,27 @@ static int tell_failure(const Run *run, int reason, Error *error)
                    strerror(reason));
 }
 
-int run_log_write(Run *run, Error *error)
+/** Opens it behind what was told up to the checkpoint: the steps behind it will be told again. */
+static int open_log(Run *run, Error *error)
+{
+  struct stat status;
+  char *path = path_of(run);
+  run->log = path ? fopen(path, run->wish->restart ? "a" : "w") : NULL;
+  bool bad = !run->log || fstat(fileno(run->log), &status);
+  if (!bad && status.st_size > run->model->log_bytes) bad = ftruncate(fileno(run->log), run->model->log_bytes) != 0;
+  if (!bad) text_add(&run->logs, "  %s\n", path);
+  free(path);
+  return bad ? tell_failure(run, errno, error) : BRECCIA_OK;
+}
+
+int run_log_write(Run *run, bool done, Error *error)
 {
   const Text *lines = &run->model->solver.log;
   if (!lines->length) return BRECCIA_OK;
-  if (!run->log) {
-    char *path = path_of(run);
-    run->log = path ? fopen(path, run->wish->restart ? "a" : "w") : NULL;
-    if (path && run->log) text_add(&run->logs, "  %s\n", path);
-    free(path);
-    if (!run->log) return tell_failure(run, errno, error);
-  }
+  if (!run->log && open_log(run, error)) return BRECCIA_FAILURE;
   errno = 0;
   const bool bad = fputs(text_words(lines), run->log) < 0 || fflush(run->log);
+  if (done) run->model->log_bytes = ftell(run->log);
   return bad ? tell_failure(run, errno, error) : BRECCIA_OK;
 }
 

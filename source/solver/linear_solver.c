@@ -42,6 +42,7 @@ int linear_solver_create(LinearSolver *s, const char *word, Error *error)
     if (!strcmp(word, words[k + 1])) s->type = types[k];
     if (s->is_free && (!s->type || types[k]->suits(s) > s->type->suits(s))) s->type = types[k];
   }
+  s->first = s->type;
   return s->type->create(s, error);
 }
 
@@ -51,9 +52,27 @@ void linear_solver_destroy(LinearSolver *s)
   *s = (LinearSolver){0};
 }
 
+void linear_solver_state(LinearSolver *s, StateList *list)
+{
+  state_add_count(list, "ways of equations given up", STATE_COMMITTED, &s->given_up);
+}
+
+/** Takes the way that the state asks for. @return status of creating it */
+static int follow_state(LinearSolver *s, Error *error)
+{
+  if (s->left == s->given_up) return BRECCIA_OK;
+  s->type->destroy(s);
+  s->own = NULL;
+  s->type = s->first;
+  for (s->left = 0; s->left < s->given_up && s->type->instead; ++s->left) s->type = s->type->instead;
+  s->given_up = s->left;
+  return s->type->create(s, error);
+}
+
 int linear_solver_prepare(LinearSolver *s, Error *error)
 {
-  return s->type->prepare(s, error);
+  const int status = follow_state(s, error);
+  return status ? status : s->type->prepare(s, error);
 }
 
 /** The other way from now on, beginning with these equations. */
@@ -61,14 +80,10 @@ static int take_instead(LinearSolver *s, double *const f[3], double *const v[3],
                         Error *error)
 {
   const LinearRecord before = *record;
-  const LinearType *instead = s->type->instead;
   *record = (LinearRecord){0};
   for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
-  s->type->destroy(s);
-  s->own = NULL;
-  s->type = instead;
-  if (instead->create(s, error) || instead->prepare(s, error) || instead->solve(s, f, v, tolerance, record, error))
-    return BRECCIA_FAILURE;
+  ++s->given_up;
+  if (linear_solver_prepare(s, error) || s->type->solve(s, f, v, tolerance, record, error)) return BRECCIA_FAILURE;
   record->iterations += before.iterations;
   record->indefinite |= before.indefinite;
   return BRECCIA_OK;
@@ -78,7 +93,8 @@ int linear_solver_solve(LinearSolver *s, double *const f[3], double *const v[3],
                         Error *error)
 {
   *record = (LinearRecord){0};
-  int status = s->type->solve(s, f, v, tolerance, record, error);
+  int status = s->left != s->given_up ? linear_solver_prepare(s, error) : BRECCIA_OK;
+  if (!status) status = s->type->solve(s, f, v, tolerance, record, error);
   while (!status && record->unsuited && s->is_free && s->type->instead && s->type->instead->suits(s) > 0)
     status = take_instead(s, f, v, tolerance, record, error);
   return status;

@@ -41,6 +41,8 @@ struct LinearSolver {
   double stiffness_share, mass_factor;
   const ElasticStep *elastic; /* K is this stiffness; NULL: that at which the domain was linearised */
   bool is_free;               /* the deck does not say which */
+  const LinearType *first;    /* the way that was taken at the beginning */
+  int64_t given_up, left;     /* ways that did not suit: by the state, which may come back, and those left so far */
   void *own;                  /* what the type keeps */
 };
 
@@ -54,6 +56,9 @@ void linear_solver_destroy(LinearSolver *solver);
 int linear_solver_prepare(LinearSolver *solver, Error *error);
 int linear_solver_solve(LinearSolver *solver, double *const f[3], double *const v[3], double tolerance,
                         LinearRecord *record, Error *error);
+
+/** Rows of what a solution to come depends on: which way is taken. */
+void linear_solver_state(LinearSolver *solver, StateList *list);
 
 /** Forces K v, with loads that follow displacements and the mass factor, on the unknowns.
  *  @param[in,out] v  a change of displacements: what is not free is made to follow, without motions that are prescribed

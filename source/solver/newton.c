@@ -155,6 +155,7 @@ static NewtonOutcome follow_control(Newton *n, double accuracy, double *work, Er
 void newton_state(Newton *n, StateList *list)
 {
   state_add_number(list, "exerted force", "force", STATE_COMMITTED, &n->reference);
+  if (!n->relaxes) linear_solver_state(&n->linear, list);
   if (!n->beside) return;
   state_add_number(list, "stiffness factored", "1", STATE_COMMITTED, &n->factored_share);
   state_add_number(list, "mass factored", "1", STATE_COMMITTED, &n->factored_mass);

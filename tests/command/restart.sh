@@ -143,6 +143,75 @@ for file in results.vtkhdf checkpoint.h5; do
   checks=$((checks + 1))
 done
 
+# a body at rest that softens, stopped after its equations have come to be solved in another way than at first
+cat > strip.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials:
+  c: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m}
+body:
+  strip: {material: c, spacing: 5 mm, lattice: square, thickness: 0.1, shape: {box: {particles: [53, 10], first particle: [0, 0]}}}
+cracks: [{cut: {line: [[0.1325, -1], [0.1325, 0.0175]]}}]
+peridynamics: {space: plane stress, formulation: bond-based}
+failure: {near grips: hold}
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 2}, displacement: [6e-5, free], history: {ramp to: 1}}
+solve: {static: {increments: 6}}
+watch: {mouth: {opening between: [[0.13, 0], [0.135, 0]], every: 1}, energy: {energy: yes, every: 1}}
+results: {number: 4, precision: double}
+pictures: []
+Y
+# stages of all solvers, stopped in each of them
+cat > stages.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials:
+  c: {model: exponential-softening, density: 2.4, Young modulus: 30 GPa, tensile strength: 3 MPa, fracture energy: 100 N/m}
+  s: {model: j2, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.25, yield stress: 2 MPa, hardening modulus: 1 GPa}
+body:
+  left: {material: c, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {particles: [9, 5], first particle: [0, 0]}}}
+  right: {material: s, spacing: 10 mm, lattice: square, thickness: 0.1, shape: {box: {particles: [9, 5], first particle: [0.09, 0]}}}
+cracks: [{cut: {line: [[0.045, -1], [0.045, 0.015]]}}]
+peridynamics: {space: plane strain, regions: {fibres: {blocks: [left], formulation: bond-based}}}
+failure: {critical stretch: 3e-4, near grips: break}
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 2}, displacement: [2e-5, free], history: {ramp to: 1}}
+solve:
+  - {name: pull, static: {increments: 12}}
+  - {name: swing, implicit: {end time: 1e-4, time step: 1e-5}}
+  - {name: shake, explicit: {steps: 20}}
+  - {name: rest, static: {method: relaxation, increments: 4}}
+watch: {mouth: {opening between: [[0.04, 0], [0.05, 0]], every: 1}, energy: {energy: yes, every: 1}}
+results: {number: 4, precision: double}
+pictures: []
+Y
+stop_at() { # stop_at DECK STEP ...: stopped there and taken up again, it ends as in one go
+  local deck=$1 steps file again=
+  shift
+  "$breccia" run $deck.yaml --output whole-$deck > out 2>&1 || fail "$deck: $(cat out)"
+  for steps in "$@" 1000; do
+    "$breccia" run $deck.yaml --output stopped-$deck --steps $steps $again > out 2>&1 || fail "$deck, to step $steps: $(cat out)"
+    again=--restart
+  done
+  for file in mouth.csv energy.csv solution.txt; do
+    cmp -s whole-$deck/$file stopped-$deck/$file || fail "$deck: $file differs"
+    checks=$((checks + 1))
+  done
+  for file in results.vtkhdf checkpoint.h5; do
+    "$build/tests/compare_results" whole-$deck/$file stopped-$deck/$file || fail "$deck: $file differs"
+    checks=$((checks + 1))
+  done
+}
+stop_at strip 2 4
+grep -q "the body does not resist some motion" whole-strip/solution.txt || fail "strip: no equations are hard to solve, the test is too tame"
+stop_at stages 4 8 16 31 44
+[ "$(json whole-stages/summary.json broken_bonds)" -gt 0 ] || fail "stages: no bond breaks, the test is too tame"
+# what the log tells of steps behind the checkpoint is cut
+"$breccia" run stages.yaml --output stopped-stages --steps 44 > out 2>&1
+head -c 2000 whole-stages/solution.txt >> stopped-stages/solution.txt
+"$breccia" run stages.yaml --output stopped-stages --restart > out 2>&1 || fail "stages: $(cat out)"
+equal "solution.txt beyond the checkpoint" "$(cksum < stopped-stages/solution.txt)" "$(cksum < whole-stages/solution.txt)"
+
 # interrupted and killed at random moments
 RANDOM=7
 signals="INT HUP TERM XCPU KILL"
