@@ -216,6 +216,11 @@ static bool damps(const Solver *run)
 
 static int check(Solver *run, const void *section, Error *error)
 {
+  const ImplicitSpec *spec = section;
+  const double steps = spec->end_time / implicit_longest(spec);
+  if (steps > 1e15)
+    return node_error(run->reader->document, section_node(spec, "time step"), error,
+                      "time step: %.3g steps are too many", steps);
   return increment_check(run, section, "take 'explicit'", error);
 }
 

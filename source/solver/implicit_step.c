@@ -300,7 +300,8 @@ void implicit_count_steps(const Solver *run)
 {
   const Implicit *s = run->own;
   Clock *clock = (Clock *)&run->clock;
-  clock->stage_last = clock->step + (int64_t)ceil((clock->stage_end - clock->time) / s->next - 1e-6);
+  const double left = ceil((clock->stage_end - clock->time) / s->next - 1e-6);
+  clock->stage_last = clock->step + (int64_t)fmin(left, 1e15);
 }
 
 int implicit_advance(Solver *run, Text *warning, Error *error)

@@ -411,7 +411,7 @@ static void assert_same_bits_after_restart(const char *law)
   run.steps = 0;
   if (breccia_model_run(second, &run, error)) fail_msg("%s", breccia_error_text(error));
   second->peaks = whole->peaks = (Peaks){0};
-  second->next_due = second->last_due = second->states_due = 0;
+  second->next_due = second->last_due = second->states_due = second->log_bytes = 0; /* of files */
   StateCopy found = state_of(second), expected = state_of(whole);
   assert_int_equal(found.count, expected.count);
   for (int k = 0; k < found.count; ++k)
@@ -443,7 +443,8 @@ static void keys_that_contradict_each_other_are_refused(void **state)
   } cases[] = {{"scheme: HHT, beta: 0.3", "beta: it follows from 'alpha'"},
                {"alpha: -0.1", "alpha: it belongs to 'scheme: HHT'"},
                {"beta: 0.2", "beta: below gamma / 2"},
-               {"damping: 3, Rayleigh damping: {ratio: 0.05, from: 1, to: 9}", "damping: 'Rayleigh damping' says it"}};
+               {"damping: 3, Rayleigh damping: {ratio: 0.05, from: 1, to: 9}", "damping: 'Rayleigh damping' says it"},
+               {"time step: 1e-45", "time step: 1e+45 steps are too many"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     char deck[1024];
     snprintf(deck, sizeof deck, BAR "solve: {implicit: {end time: 1, %s}}\n", cases[k].keys);
