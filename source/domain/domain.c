@@ -197,6 +197,7 @@ size_t domain_bytes(const Domain *d)
 {
   size_t bytes = domain_particle_bytes(d) + family_bytes(&d->family);
   for (int r = 0; r < d->region_count; ++r)
-    bytes += bond_list_bytes(&d->regions[r].bonds, &d->family) + d->regions[r].type->bytes(d->regions[r].formulation);
+    bytes += points_tangent_bytes(&d->regions[r].points) + bond_list_bytes(&d->regions[r].bonds, &d->family) +
+             d->regions[r].type->bytes(d->regions[r].formulation);
   return bytes;
 }

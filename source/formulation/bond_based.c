@@ -274,7 +274,7 @@ static size_t bytes(const void *formulation)
 {
   const BondBased *b = formulation;
   return 2 * (size_t)b->particles->slices + (b->surface ? (size_t)b->family->slots * SLICE * sizeof(float) : 0) +
-         (b->bonds ? sizeof(double) * (size_t)b->bonds->count : 0) +
+         (b->bonds ? sizeof(double) * (size_t)b->bonds->count * (b->tension ? 3 : 1) : 0) +
          (b->shown ? BOND_SHOWN * sizeof(double) * (size_t)b->particles->places : 0);
 }
 

@@ -293,7 +293,8 @@ void correspondence_gradient(const void *formulation, int64_t place, double f[9]
 size_t correspondence_bytes(const void *formulation)
 {
   const Correspondence *c = formulation;
-  size_t numbers = 9 + 3 + (size_t)hold_components(c->widest) + (hold_is_read(c->widest) ? 3 : 0) + (c->turns ? 9 : 0);
+  size_t numbers = 9 + 3 + (size_t)hold_components(c->widest) + (hold_is_read(c->widest) ? 3 : 0) + (c->turns ? 9 : 0) +
+                   (c->gradients ? 9 : 0);
   numbers += (size_t)(c->family->rows.kinds * (6 + pull_count(c->widest)) + (c->row ? state_length(c->widest) + 8 : 0));
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
          correspondence_fading_bytes(c) + (size_t)c->particles->count * sizeof(int32_t);

@@ -277,7 +277,8 @@ double ordinary_critical_stretch(const BondLength *of, const Material *material,
 size_t ordinary_bytes(const void *formulation)
 {
   const Ordinary *o = formulation;
-  return (size_t)o->particles->places * sizeof(double) * (size_t)(7 + (o->shown ? STRETCH_SHOWN : 0)) +
+  return (size_t)o->particles->places * sizeof(double) *
+             (size_t)(7 + (o->shown ? STRETCH_SHOWN : 0) + (o->change ? 1 : 0)) +
          2 * (size_t)o->particles->slices +
          (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
          ordinary_flow_bytes(o);

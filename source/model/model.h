@@ -30,6 +30,7 @@ struct breccia_model {
   Watches *watches;
   Text warnings, overview, plausibility, outcome, stage;
   Outlook outlook;
+  double solver_bytes; /* that the solver takes, once that is expected */
   bool begun;
   int threads; /* wanted; 0: as many as the machine has to spare */
   Team *team;

@@ -49,6 +49,14 @@ static double measure_evaluation(breccia_model *model)
   }
 }
 
+/** Seconds of a step, on the average over those of the stage under way and of later stages, which are taken as explicit ones. */
+static double mean_step(const Clock *clock, const StepCost *cost, double evaluation)
+{
+  const double own = (double)(clock->stage_last - clock->step), all = (double)(clock->steps - clock->step);
+  const double step = cost->evaluations * evaluation + cost->seconds;
+  return all > 0 ? (own * step + (all - own) * 1.2 * evaluation) / all : step;
+}
+
 int model_expect(breccia_model *model, Error *error)
 {
   const Domain *d = &model->domain;
@@ -57,13 +65,16 @@ int model_expect(breccia_model *model, Error *error)
   ResultNames names = {.single = !strcmp(model->spec->results->precision, "single")};
   TextList list;
   if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
-  const int status = model_field_names(model, &list, error);
+  StepCost cost;
+  int status = model_field_names(model, &list, error);
+  if (!status) status = solver_measure(&model->solver, &cost, error);
   if (!status) {
     names.fields = list.items;
     names.count = list.count;
-    /* What a step does beside the forces takes 2 to 40 % of them (docs/performance.md). */
-    outlook_expect(&model->outlook, 1.2 * measure_evaluation(model), result_file_state_bytes(d, &names),
-                   (double)(domain_particle_bytes(d)), d->particles->count);
+    const double evaluation = measure_evaluation(model);
+    outlook_expect(&model->outlook, mean_step(&model->solver.clock, &cost, evaluation),
+                   result_file_state_bytes(d, &names), (double)(domain_particle_bytes(d)), d->particles->count);
+    model->solver_bytes = cost.bytes;
     free(list.items);
   }
   return model_leave(&entry, status, error);
@@ -176,12 +187,12 @@ const char *breccia_model_overview(breccia_model *model)
   plausibility_describe_contact(model, text);
   plausibility_in_short(model, text);
   text_add(text, "\n");
+  model_expect(model, NULL); /* the equations of the first step say how they are best solved */
   if (s->clock.stages > 1)
     describe_stages(model, time, text);
   else
     s->type->describe(s, time, text);
-  text_add(text, ", %.0f MB, about ", (double)domain_bytes(d) / 1e6);
-  model_expect(model, NULL);
+  text_add(text, ", %.0f MB, about ", ((double)domain_bytes(d) + model->solver_bytes) / 1e6);
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (domain_has_servers(d)) text_add(text, " and what its material servers take");

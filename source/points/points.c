@@ -340,6 +340,14 @@ int points_keep_tangents(Points *points, bool keep, Error *error)
   return BRECCIA_OK;
 }
 
+size_t points_tangent_bytes(const Points *points)
+{
+  size_t rows = 0;
+  for (int64_t n = 0; points->tangent && n < points->run_count; ++n)
+    if (points->tangent_first[n] >= 0) rows += (size_t)points->runs[n].count;
+  return rows * 36 * sizeof(double);
+}
+
 void points_tangent(const Points *points, int64_t row, double *tangent)
 {
   const int64_t n = points_run(points, row);

@@ -97,6 +97,7 @@ int points_keep_tangents(Points *points, bool keep, Error *error);
 /** The tangent of a row of six components as kept, and by the elastic weight, [6][6]; in plane stress the rows and columns of zz are condensed out.
  *  0 if there is none. */
 void points_tangent(const Points *points, int64_t row, double *tangent);
+size_t points_tangent_bytes(const Points *points);
 /** Changes of the stresses of `count` rows of six components with changes of their strains, by their tangents. */
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
 

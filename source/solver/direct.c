@@ -25,7 +25,7 @@ typedef struct Direct {
  *  where they can be had: one of a body in space has the square of the entries that one in the plane has. */
 static double suits(const LinearSolver *s)
 {
-  static const double small[] = {20000, 500, 300}, most[] = {1e6, 250000, 6000};
+  static const double small[] = {20000, 500, 100}, most[] = {1e6, 250000, 6000};
   const int of = s->domain->body.dimensions - 1;
   const double count = (double)s->domain->particles->count;
   if (matrix_refusal(&s->unknowns) || count > most[of]) return 0;
@@ -234,5 +234,32 @@ static size_t bytes(const LinearSolver *s)
   return d->common.memory_usage + 16 * (size_t)(d->matrix.first ? d->matrix.first[d->matrix.size] : 0);
 }
 
-const LinearType direct_linear = {
-    .suits = suits, .create = create, .destroy = destroy, .prepare = prepare, .solve = solve, .bytes = bytes};
+/** By trials on squares and cubes (docs/performance.md): what it takes grows with the places that a row joins, and a little faster than with the unknowns. */
+static LinearForesight foresee(const LinearSolver *s)
+{
+  const Domain *d = s->domain;
+  const int axes = d->body.dimensions;
+  const double count = (double)d->particles->count, small = 200, unknowns = axes * count;
+  double row = 0;
+  if (axes == 1 || count < small) return (LinearForesight){.bytes = (double)bytes(s)};
+  for (int r = 0; r < d->region_count;
+       ++r) { /* points on bonds join two places, families all within two horizons of each other */
+    const double family = (double)d->family.bonds / count;
+    const double joined = d->regions[r].type->components == 1 ? family : pow(2, axes) * family;
+    row += axes * (1 + joined) * (double)d->regions[r].particles / count;
+  }
+  row = fmin(row, unknowns);
+  if (axes == 2)
+    return (LinearForesight){.seconds = 6e-7 * unknowns * row * pow(unknowns / 5e4, 0.15),
+                             .bytes = unknowns * (24 * row + 36 * sqrt(row) * log2(unknowns))};
+  return (LinearForesight){.seconds = 1.5e-6 * unknowns * row * pow(unknowns / 4e3, 0.3),
+                           .bytes = unknowns * (24 * row + 12 * pow(row, 2.0 / 3) * cbrt(unknowns))};
+}
+
+const LinearType direct_linear = {.suits = suits,
+                                  .create = create,
+                                  .destroy = destroy,
+                                  .prepare = prepare,
+                                  .solve = solve,
+                                  .bytes = bytes,
+                                  .foresee = foresee};

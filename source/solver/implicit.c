@@ -259,6 +259,17 @@ static void foresee(const void *section, const Clock *clock, double *steps, doub
   *time += spec->end_time;
 }
 
+/** With about the inertia of the longest step, which all bodies have, so that those that nothing holds resist too. */
+static int measure(Solver *run, StepCost *cost, Error *error)
+{
+  Newton *newton = &((Implicit *)run->own)->newton;
+  const double step = implicit_longest(run->spec);
+  newton->linear.mass_factor = 4 / (step * step);
+  const int status = newton_measure(newton, cost, error);
+  newton->linear.mass_factor = 0;
+  return status;
+}
+
 static void describe_stage(const void *section, const char *time, Text *text)
 {
   const ImplicitSpec *spec = section;
@@ -306,5 +317,6 @@ const SolverType implicit_solver = {.name = "implicit",
                                     .few_steps = true,
                                     .inertia = inertia,
                                     .foresee = foresee,
+                                    .measure = measure,
                                     .describe = describe,
                                     .describe_stage = describe_stage};

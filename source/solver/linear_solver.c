@@ -52,6 +52,12 @@ void linear_solver_destroy(LinearSolver *s)
   *s = (LinearSolver){0};
 }
 
+LinearForesight linear_solver_foresee(const LinearSolver *s)
+{
+  if (s->type->foresee) return s->type->foresee(s);
+  return (LinearForesight){.bytes = (double)s->type->bytes(s)};
+}
+
 void linear_solver_state(LinearSolver *s, StateList *list)
 {
   state_add_count(list, "ways of equations given up", STATE_COMMITTED, &s->given_up);

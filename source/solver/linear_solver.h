@@ -15,6 +15,11 @@ typedef struct LinearRecord {
   bool unsuited;      /* the way does not solve with such a K, and another has to be taken */
 } LinearRecord;
 
+/** What a way to solve takes, about. */
+typedef struct LinearForesight {
+  double seconds, bytes; /* to make ready for other equations; 0 seconds: try it */
+} LinearForesight;
+
 /** A way to solve; the list is in linear_types.h. */
 typedef struct LinearType LinearType;
 struct LinearType {
@@ -29,6 +34,8 @@ struct LinearType {
   int (*solve)(LinearSolver *solver, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
                Error *error);
   size_t (*bytes)(const LinearSolver *solver);
+  /** What it will take, where trying that would take as long. NULL: not long. */
+  LinearForesight (*foresee)(const LinearSolver *solver);
 };
 
 struct LinearSolver {
@@ -64,6 +71,9 @@ void linear_solver_state(LinearSolver *solver, StateList *list);
  *  @param[in,out] v  a change of displacements: what is not free is made to follow, without motions that are prescribed
  *  @param[out] kv    a vector of unknowns */
 void linear_solver_apply(LinearSolver *solver, double *const v[3], double *const kv[3]);
+
+/** What the way that is taken needs. */
+LinearForesight linear_solver_foresee(const LinearSolver *solver);
 
 /** Name of the way that is taken. */
 const char *linear_solver_name(const LinearSolver *solver);

@@ -7,6 +7,7 @@
 
 #include "solver/control.h"
 #include "solver/linear_solver.h"
+#include "solver/solver.h"
 
 /** Keys of solvers that iterate, to be put among theirs; each begins where the struct begins in theirs. */
 typedef struct NewtonSpec {
@@ -110,6 +111,9 @@ NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
+
+/** Tries what an increment will take (newton_cost.c). @param[out] cost  of one, and memory */
+int newton_measure(Newton *newton, StepCost *cost, Error *error);
 
 /** Rows of what it keeps from one increment to the next. */
 void newton_state(Newton *newton, StateList *list);

@@ -270,6 +270,13 @@ int solver_begin(Solver *s, Error *error)
   return status;
 }
 
+int solver_measure(Solver *s, StepCost *cost, Error *error)
+{
+  const double most = 1.2; /* what a step does beside the forces takes 2 to 40 % of them (docs/performance.md) */
+  *cost = (StepCost){.evaluations = most};
+  return s->type->measure ? s->type->measure(s, cost, error) : BRECCIA_OK;
+}
+
 /** @param[in] step, time  at the end of the step in which the trap has sprung, if it has */
 static int tell_trap(const Trap *trap, int64_t step, double time, Error *error)
 {

@@ -26,6 +26,12 @@ extern const Section solve_section;
 
 typedef struct SolverType SolverType;
 
+/** What a step takes, about. */
+typedef struct StepCost {
+  double evaluations, seconds; /* evaluations of forces, and what it takes beside them */
+  double bytes;                /* beside the body and its formulations */
+} StepCost;
+
 /** How a stage went. */
 typedef struct StageRecord {
   double first_step, last_step, begin, end; /* steps done and times at its begin and end */
@@ -84,6 +90,8 @@ struct SolverType {
   double (*inertia)(const Solver *solver, const Constraint *constraint, int64_t n);
   /** Steps and time that a stage with this section will take at most, by the stable step of the body as it is. */
   void (*foresee)(const void *spec, const Clock *clock, double *steps, double *time);
+  /** Tries what a step of the stage under way takes, at the displacements held. NULL: little beside an evaluation of the forces. */
+  int (*measure)(Solver *solver, StepCost *cost, Error *error);
   /** The steps to come of the stage under way, in words. @param[in] time  unit of time */
   void (*describe)(const Solver *solver, const char *time, Text *text);
   /** How a stage with this section goes and ends, in words. */
@@ -120,6 +128,9 @@ void solver_stop_at(Solver *solver, const double *times, int64_t count, bool aga
 
 /** Before the first step. */
 int solver_begin(Solver *solver, Error *error);
+
+/** What a step of the stage under way takes. Before the run; forces are to be evaluated again. */
+int solver_measure(Solver *solver, StepCost *cost, Error *error);
 
 /** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit; where energies or
  *  a trap give the reason the step has been taken.

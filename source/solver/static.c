@@ -207,6 +207,11 @@ static void foresee(const void *section, const Clock *clock, double *steps, doub
   *time += spec->end_time;
 }
 
+static int measure(Solver *run, StepCost *cost, Error *error)
+{
+  return newton_measure(&((Static *)run->own)->newton, cost, error);
+}
+
 static void describe_stage(const void *section, const char *time, Text *text)
 {
   const StaticSpec *spec = section;
@@ -388,5 +393,6 @@ const SolverType static_solver = {.name = "static",
                                   .few_steps = true,
                                   .rests = true,
                                   .foresee = foresee,
+                                  .measure = measure,
                                   .describe = describe,
                                   .describe_stage = describe_stage};

@@ -431,6 +431,33 @@ static void factors_start_no_threads(void **state)
   forget(&p);
 }
 
+/** What is told before, beside what is taken then. */
+static void memory_of_factors_is_foreseen(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *formulation, *material, *space, *shape;
+  } of[] = {
+      {"bond-based", SPRINGS, "plane strain", "lattice: square, thickness: 1, shape: {box: {particles: [60, 50]}}"},
+      {"ordinary", ELASTIC, "plane strain", "lattice: square, thickness: 1, shape: {box: {particles: [40, 40]}}"},
+      {"correspondence", ELASTIC, "plane strain", "lattice: square, thickness: 1, shape: {box: {particles: [60, 20]}}"},
+      {"bond-based", SPRINGS, "3-D", "shape: {box: {particles: [9, 9, 9]}}"},
+      {"correspondence", ELASTIC, "3-D", "shape: {box: {particles: [7, 7, 7]}}"}};
+  for (size_t c = 0; c < sizeof of / sizeof *of; ++c) {
+    Problem p = pose(model_of(UNITS "%speridynamics: {formulation: %s, space: %s}\nbody: {b: {material: m, spacing: "
+                                    "0.1, %s}}\nloads: [" HOLD "]\n" END,
+                              of[c].material, of[c].formulation, of[c].space, of[c].shape),
+                     0);
+    assert_int_equal(linear_solver_create(&p.solver, "direct", NULL), 0);
+    const double told = linear_solver_foresee(&p.solver).bytes;
+    assert_int_equal(linear_solver_prepare(&p.solver, NULL), 0);
+    const double taken = (double)p.solver.type->bytes(&p.solver);
+    print_message("%s, %s: %.3g bytes, told %.3g\n", of[c].formulation, of[c].space, taken, told);
+    assert_true(told < 2 * taken && taken < 2 * told);
+    forget(&p);
+  }
+}
+
 /** Displacements as the matrix makes them of its unknowns are those that loads allow, and each product with the matrix is one with the stiffness. */
 static void the_matrix_is_the_stiffness(void **state)
 {
@@ -474,6 +501,7 @@ int main(void)
       cmocka_unit_test(the_way_follows_the_stiffness),
       cmocka_unit_test(the_matrix_is_the_stiffness),
       cmocka_unit_test(factors_are_the_last_resort),
+      cmocka_unit_test(memory_of_factors_is_foreseen),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
