@@ -67,7 +67,8 @@ int model_expect(breccia_model *model, Error *error)
   if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   StepCost cost;
   int status = model_field_names(model, &list, error);
-  if (!status) status = solver_measure(&model->solver, &cost, error);
+  if (status) return model_leave(&entry, status, error);
+  status = solver_measure(&model->solver, &cost, error);
   if (!status) {
     names.fields = list.items;
     names.count = list.count;
@@ -75,8 +76,8 @@ int model_expect(breccia_model *model, Error *error)
     outlook_expect(&model->outlook, mean_step(&model->solver.clock, &cost, evaluation),
                    result_file_state_bytes(d, &names), (double)(domain_particle_bytes(d)), d->particles->count);
     model->solver_bytes = cost.bytes;
-    free(list.items);
   }
+  free(list.items);
   return model_leave(&entry, status, error);
 }
 
