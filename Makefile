@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-elements bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -50,6 +50,11 @@ recovery: all
 bench-peers: all
 	@sh scripts/setup.sh peers
 	@build/release/breccia_peers
+
+# Elastic bodies at rest beside finite elements of OpenSees; the a table of docs/performance.md.
+bench-elements: all
+	@sh scripts/opensees.sh
+	@.venv/opensees/bin/python bench/finite_elements.py build/release/breccia docs/performance.md
 
 # The tables of docs/performance.md.
 bench-report: all
