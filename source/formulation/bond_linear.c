@@ -33,19 +33,21 @@ LANES_INLINE HalfSlot half_slot(const BondBased *b, double *const at[3], int64_t
     h.constant = lanes_set(b->stiffness[b->particles->block[slice]]);
     return h;
   }
-  for (int lane = 0; lane < LANES; ++lane) {
-    const Bond bond = family_bond(f, slice, slot, LANES * half + lane);
-    const int32_t there = bond.neighbour;
-    for (int k = 0; k < 3; ++k) {
-      h.xi[k][lane] = bond.xi[k];
-      h.eta[k][lane] = at[k][there] - at[k][here + lane];
-      h.change[k][lane] = b->particles->displacement[k][there] - b->particles->displacement[k][here + lane];
-    }
-    h.length[lane] = bond.length;
-    h.weight[lane] = bond.weight;
-    h.constant[lane] =
-        0.5 * (b->stiffness[b->particles->block[slice]] + b->stiffness[b->particles->block[there / SLICE]]);
+  const int64_t first = (int64_t)f->base[slot] * SLICE + LANES * half;
+  const int32_t *there = f->neighbour + first;
+  Lanes square = {0}, other;
+  for (int k = 0; k < 3; ++k) {
+    h.xi[k] = lanes_gather(b->particles->position[k], there) - lanes_load(b->particles->position[k] + here);
+    h.eta[k] = lanes_gather(at[k], there) - lanes_load(at[k] + here);
+    h.change[k] = lanes_gather(b->particles->displacement[k], there) - lanes_load(b->particles->displacement[k] + here);
+    square += h.xi[k] * h.xi[k];
   }
+  /* Where there is no bond nothing is divided by 0. */
+  h.length = lanes_root(lanes_choose(lanes_half(f->intact[slot], half), square, lanes_set(1)));
+  h.weight = lanes_gather(b->particles->volume, there);
+  if (f->scale) h.weight *= lanes_load(f->scale + first);
+  for (int lane = 0; lane < LANES; ++lane) other[lane] = b->stiffness[b->particles->block[there[lane] / SLICE]];
+  h.constant = lanes_set(0.5) * (lanes_set(b->stiffness[b->particles->block[slice]]) + other);
   return h;
 }
 
