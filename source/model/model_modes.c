@@ -1,14 +1,17 @@
 /* How a body vibrates, in words, files and pictures. */
+#include "base/folder_lock.h"
 #include "base/memory.h"
 #include "base/whole_file.h"
 #include "model/run.h"
 #include "model/sized.h"
+#include "results/result_view.h"
 #include "solver/modes.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char axes[] = "xyz";
 
@@ -133,30 +136,60 @@ static int draw(const char *folder, const Modes *modes, Text *files, Error *erro
   return status;
 }
 
+/** A result file that is not of modes, or cannot be read, is a run's: it is left as it is. */
+static int look_for_run(const char *folder, Error *error)
+{
+  char *path = text_format("%s/results.vtkhdf", folder);
+  if (!path) return error_add(error, BRECCIA_FAILURE, "out of memory: modes");
+  bool of_run = false;
+  if (!access(path, F_OK)) {
+    ResultView view;
+    Error *ignored = breccia_error_create();
+    of_run = result_view_open(&view, path, ignored) || !view.frequencies;
+    result_view_close(&view);
+    breccia_error_destroy(&ignored);
+  }
+  free(path);
+  if (!of_run) return BRECCIA_OK;
+  return error_add(error, BRECCIA_USER_ERROR,
+                   "%s: holds the results of a run, which modes would write over; give them a folder of their own",
+                   folder);
+}
+
+static int write_all(breccia_model *model, const char *folder, const Modes *modes, Error *error)
+{
+  Text files = {0};
+  int status = write_table(model, folder, modes, &files, error);
+  if (!status) status = write_states(model, folder, modes, &files, error);
+  if (!status) status = draw(folder, modes, &files, error);
+  if (!status) text_add(&model->outcome, "\nwritten:%s", text_words(&files));
+  text_free(&files);
+  return status;
+}
+
 int breccia_model_modes(breccia_model *model, const breccia_modes *given, breccia_error *error)
 {
   Entry entry;
   breccia_modes wish;
   Modes modes = {0};
-  Text files = {0};
+  FolderLock lock = {.descriptor = -1};
   if (model_enter(model, &entry, error)) return BRECCIA_FAILURE;
   text_free(&model->outcome);
   int status = sized_take(&wish, sizeof wish, given, "breccia_modes", error);
   if (!status && wish.count < 1)
     status = error_add(error, BRECCIA_USER_ERROR, "modes: %d are asked for; ask for one or more", wish.count);
+  if (!status && wish.folder) {
+    status = run_make_folder(wish.folder, error);
+    if (!status) status = folder_lock_take(&lock, wish.folder, error);
+    if (!status) status = look_for_run(wish.folder, error);
+  }
   if (!status) status = modes_find(&model->domain, &model->loading, wish.count, &modes, error);
   if (!status) {
     tell_table(model, &modes, &model->outcome);
     tell_advice(model, &modes, &model->outcome);
   }
-  if (!status && wish.folder) {
-    status = run_make_folder(wish.folder, error);
-    if (!status) status = write_table(model, wish.folder, &modes, &files, error);
-    if (!status) status = write_states(model, wish.folder, &modes, &files, error);
-    if (!status) status = draw(wish.folder, &modes, &files, error);
-    if (!status) text_add(&model->outcome, "\nwritten:%s", text_words(&files));
-  }
-  text_free(&files);
+  if (!status && wish.folder) status = write_all(model, wish.folder, &modes, error);
+  folder_lock_return(&lock);
   modes_destroy(&modes);
   return model_leave(&entry, status, error);
 }

@@ -1,8 +1,9 @@
 /* K q = omega^2 M q by ARPACK (Lehoucq, Sorensen and Yang 1998), in its shift-invert mode: the largest eigenvalues of (K + s M)^-1 M belong to the lowest
  * frequencies. The shift s is small and positive, so that what moves as a whole is no exception and the equations are those of an implicit step, solved
- * in the same ways. */
+ * in the same ways. Where K is not symmetric, as beside mirror images that are held in all directions, Arnoldi's iteration takes the place of Lanczos'. */
 #include "solver/modes.h"
 
+#include "base/library_threads.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "solver/ledger.h"
@@ -22,8 +23,10 @@ typedef struct Search {
   int axes, wanted, basis;
   a_int size; /* of a column of numbers: components of all particles */
   double *from[3], *to[3];
-  double *start, *columns, *work, *projected, *values;
+  double *start, *columns, *work, *projected;
+  double *values, *imaginary; /* of omega squared; of two that are complex the columns are the vector's two parts */
   a_int *chosen;
+  bool symmetric; /* K is */
 } Search;
 
 /* ---- columns and vectors ---- */
@@ -79,6 +82,38 @@ static int solve(Search *s, const double *column, double *answer, Error *error)
 
 /* ---- iteration ---- */
 
+static void fill_at_random(const Search *s, uint64_t seed, double *const v[3])
+{
+  const Particles *p = s->domain->particles;
+  for (int k = 0; k < s->axes; ++k)
+    for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+  unknowns_clear_rest(&s->linear.unknowns, v);
+}
+
+/** a K b is b K a, of two vectors at random. */
+static int find_symmetry(Search *s, Error *error)
+{
+  const double roundings = 1e-11; /* images at one face of a body of 1e8 particles make more */
+  const Unknowns *u = &s->linear.unknowns;
+  const int64_t places = s->domain->particles->places;
+  double *a[3] = {0}, *b[3] = {0};
+  int status = BRECCIA_FAILURE;
+  if (vectors_make(a, places, "modes", error) && vectors_make(b, places, "modes", error)) {
+    fill_at_random(s, 2, a);
+    fill_at_random(s, 3, b);
+    linear_solver_apply(&s->linear, a, s->to);
+    unknowns_clear_rest(u, a); /* what follows the unknowns was set */
+    const double size = sqrt(unknowns_product(u, s->to, s->to) * unknowns_product(u, b, b)),
+                 one = unknowns_product(u, b, s->to);
+    linear_solver_apply(&s->linear, b, s->to);
+    s->symmetric = fabs(one - unknowns_product(u, a, s->to)) <= roundings * size;
+    status = BRECCIA_OK;
+  }
+  vectors_free(a);
+  vectors_free(b);
+  return status;
+}
+
 static int create(Search *s, int64_t unknowns, Error *error)
 {
   s->basis = (int)fmin((double)unknowns, 2 * s->wanted + 10);
@@ -86,18 +121,16 @@ static int create(Search *s, int64_t unknowns, Error *error)
   s->start = memory_zeroed(size, sizeof(double), "modes", error);
   s->columns = memory_zeroed(size * basis, sizeof(double), "modes", error);
   s->work = memory_zeroed(3 * size, sizeof(double), "modes", error);
-  s->projected = memory_zeroed(basis * (basis + 8), sizeof(double), "modes", error);
+  s->projected =
+      memory_zeroed(3 * basis * (basis + 3), sizeof(double), "modes", error); /* what Arnoldi's needs, and more */
   s->values = memory_zeroed(basis, sizeof(double), "modes", error);
+  s->imaginary = memory_zeroed(basis, sizeof(double), "modes", error);
   s->chosen = memory_zeroed(basis, sizeof(a_int), "modes", error);
   const int64_t places = s->domain->particles->places;
-  const bool made = s->start && s->columns && s->work && s->projected && s->values && s->chosen &&
+  const bool made = s->start && s->columns && s->work && s->projected && s->values && s->imaginary && s->chosen &&
                     vectors_make(s->from, places, "modes", error) && vectors_make(s->to, places, "modes", error);
   if (!made) return BRECCIA_FAILURE;
-  uint64_t seed = 1;
-  for (int k = 0; k < s->axes; ++k)
-    for (int64_t n = 0; n < s->domain->particles->count; ++n)
-      s->from[k][s->domain->particles->place_of[n]] = random_uniform(&seed) - 0.5;
-  unknowns_clear_rest(&s->linear.unknowns, s->from);
+  fill_at_random(s, 1, s->from);
   pack(s, s->from, s->start);
   return BRECCIA_OK;
 }
@@ -112,6 +145,7 @@ static void destroy(Search *s)
   free(s->work);
   free(s->projected);
   free(s->values);
+  free(s->imaginary);
   free(s->chosen);
 }
 
@@ -120,20 +154,28 @@ static int iterate(Search *s, double shift, Error *error)
 {
   enum { MOST_RESTARTS = 300, EXACT_SHIFTS = 1, SHIFT_INVERT = 3, FIRST = -1, NEXT = 1, MASSES = 2, DONE = 99 };
   const double accuracy = 1e-10;
-  a_int what = 0, status = 1, parameters[11] = {EXACT_SHIFTS, 0, MOST_RESTARTS, 1, 0, 0, SHIFT_INVERT}, at[11] = {0};
-  const a_int room = s->basis * (s->basis + 8);
+  a_int what = 0, status = 1, parameters[11] = {EXACT_SHIFTS, 0, MOST_RESTARTS, 1, 0, 0, SHIFT_INVERT}, at[14] = {0};
+  const a_int room = 3 * s->basis * (s->basis + 3);
   do {
-    dsaupd_c(&what, "G", s->size, "LM", s->wanted, accuracy, s->start, s->basis, s->columns, s->size, parameters, at,
-             s->work, s->projected, room, &status);
+    (s->symmetric ? dsaupd_c : dnaupd_c)(&what, "G", s->size, "LM", s->wanted, accuracy, s->start, s->basis, s->columns,
+                                         s->size, parameters, at, s->work, s->projected, room, &status);
     double *from = s->work + at[0] - 1, *to = s->work + at[1] - 1;
     if (what == MASSES) multiply_masses(s, from, to);
     if (what == FIRST) multiply_masses(s, from, to);
     if (what == FIRST && solve(s, to, to, error)) return BRECCIA_FAILURE;
     if (what == NEXT && solve(s, s->work + at[2] - 1, to, error)) return BRECCIA_FAILURE;
   } while (what != DONE);
-  if (!status)
+  if (!status && s->symmetric)
     dseupd_c(1, "A", s->chosen, s->values, s->columns, s->size, -shift, "G", s->size, "LM", s->wanted, accuracy,
              s->start, s->basis, s->columns, s->size, parameters, at, s->work, s->projected, room, &status);
+  else if (!status) {
+    double *scratch = memory_zeroed(3 * (size_t)s->basis, sizeof *scratch, "modes", error);
+    if (!scratch) return BRECCIA_FAILURE;
+    dneupd_c(1, "A", s->chosen, s->values, s->imaginary, s->columns, s->size, -shift, 0, scratch, "G", s->size, "LM",
+             s->wanted, accuracy, s->start, s->basis, s->columns, s->size, parameters, at, s->work, s->projected, room,
+             &status);
+    free(scratch);
+  }
   if (status)
     return error_add(error, BRECCIA_FAILURE,
                      "the modes could not be found: ARPACK's iteration ended with %d; ask for more or fewer of them",
@@ -159,25 +201,28 @@ static double find_residual(Search *s, const double *column, double square)
   return sqrt(left / whole);
 }
 
+/** Mirror images outside the body follow it, and are no part of its mass. */
 static int take_mode(const Search *s, int from, Mode *mode, Error *error)
 {
   const Particles *p = s->domain->particles;
-  double moved[3] = {0}, mass = 0, largest = 0;
+  double moved[3] = {0}, mass = 0, squares = 0, largest = 0;
   if (!vectors_make(mode->displacement, p->places, "modes", error)) return BRECCIA_FAILURE;
   unpack(s, s->columns + (size_t)s->size * (size_t)from, mode->displacement);
   unknowns_spread(&s->linear.unknowns, NAN, mode->displacement);
   for (int64_t n = 0; n < p->count; ++n) {
+    if (body_outside(&s->domain->body, n)) continue;
     const int32_t i = p->place_of[n];
     const double m = p->density[i] * p->volume[i];
     mass += m;
     for (int k = 0; k < 3; ++k) {
       const double u = mode->displacement[k][i];
       moved[k] += m * u;
+      squares += m * u * u;
       if (fabs(u) > (1 + 1e-6) * fabs(largest)) largest = u; /* of equal ones the first, whatever their roundings */
     }
   }
   for (int k = 0; k < 3; ++k) {
-    mode->share[k] = moved[k] * moved[k] / mass; /* the sum of m u^2 is 1 */
+    mode->share[k] = squares > 0 ? moved[k] * moved[k] / (mass * squares) : 0;
     for (int64_t i = 0; i < p->places && largest != 0; ++i) mode->displacement[k][i] /= largest;
   }
   return BRECCIA_OK;
@@ -189,6 +234,7 @@ static int take_modes(Search *s, double little, Modes *modes, Error *error)
   modes->modes = memory_zeroed((size_t)s->wanted, sizeof *modes->modes, "modes", error);
   if (!modes->modes) return BRECCIA_FAILURE;
   modes->count = s->wanted;
+  const double pair = 1e-3; /* complex to this share: two modes of about one frequency */
   for (int n = 0; n < s->wanted; ++n) {
     int from = 0; /* the lowest that is not taken yet */
     for (int k = 1; k < s->wanted; ++k)
@@ -197,6 +243,10 @@ static int take_modes(Search *s, double little, Modes *modes, Error *error)
     s->values[from] = INFINITY;
     if (square < -little)
       return error_add(error, BRECCIA_FAILURE, "the body gives way by itself: a mode has a negative stiffness");
+    if (fabs(s->imaginary[from]) > pair * (fabs(square) + s->linear.mass_factor))
+      return error_add(error, BRECCIA_FAILURE,
+                       "the modes could not be found: forces of mirror images outside a face join two of them; hold "
+                       "layers by 'displacement' in place of 'support: {held: all}'");
     const double residual = find_residual(s, s->columns + (size_t)s->size * (size_t)from, square), enough = 1e-3;
     if (!(residual <= enough)) return say_inexact(residual, error);
     modes->modes[n].frequency = square > little ? sqrt(square) / (2 * acos(-1)) : 0;
@@ -243,11 +293,14 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   int status = domain_linearise(d, error);
   domain_set_elastic_stage(d, elastic);
   if (!status) status = create(&s, unknowns, error);
+  if (!status) status = find_symmetry(&s, error);
   if (!status) status = linear_solver_create(&s.linear, "automatic", error);
   if (!status) status = linear_solver_prepare(&s.linear, error);
   if (!status) {
     pthread_mutex_lock(&arpack);
+    const LibraryThreads before = library_threads_forbid();
     status = iterate(&s, shift, error);
+    library_threads_allow(before);
     pthread_mutex_unlock(&arpack);
   }
   if (!status) status = take_modes(&s, little, modes, error);
