@@ -68,8 +68,8 @@ def between(mark, text, page="README.md"):
         file.write(new)
 
 
-def chart(name, title, x, y, curves, more=""):
-    """A picture of curves (label, style of gnuplot, [(x, y), ...]) in pictures/; more: further commands of gnuplot."""
+def chart(name, title, x, y, curves, more="", besides=()):
+    """A picture of curves (label, style of gnuplot, [(x, y), ...]) in pictures/; more: further commands of gnuplot; besides: what else it is to plot."""
     script = f"""set terminal pngcairo size 800,520 font "sans,12"
 set output "pictures/{name}.png"
 set title "{title}"
@@ -79,7 +79,7 @@ set key outside below Left reverse maxcols 2 samplen 2.5
 set grid lc rgb "#dddddd" lw 1 lt 1
 set border lc rgb "#333333"
 {more}
-plot {", ".join(f"'-' {style} title '{label}'" for label, style, _ in curves)}
+plot {", ".join([f"'-' {style} title '{label}'" for label, style, _ in curves] + list(besides))}
 """
     for _, _, values in curves:
         script += "".join(f"{a} {b}\n" for a, b in values) + "e\n"

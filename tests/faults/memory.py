@@ -156,7 +156,7 @@ TIMES = re.compile(rb"[0-9.]+ ns per directed bond|[0-9.]+ s for [0-9]+ steps|\"
 TOLD = re.compile("out of memory|Cannot allocate memory")
 
 # what crashes by itself when it is refused memory, or tries again without end
-KNOWN_ENDS = ("crash in libhdf5", "crash in libudunits2", "no end in libfontconfig")
+KNOWN_ENDS = ("crash in libhdf5", "crash in libudunits2", "crash in libfontconfig", "no end in libfontconfig")
 KEPT = re.compile("^kept: .*$", re.M)
 END = re.compile("^(?:crash|no end) in .*$", re.M)
 
