@@ -265,7 +265,8 @@ static void finish_step(Implicit *s)
   s->shift = fmax(s->shift, sqrt(unknowns_product(u, p->displacement, p->displacement)));
 }
 
-/** One try to come to a time of the run. @param[out] found  the error of the step, if it has converged */
+/** One try to come to a time of the run; the state is that of before if it fails.
+ *  @param[out] found  the error of the step, if it has converged */
 static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *error)
 {
   const ImplicitSpec *spec = s->spec;
@@ -279,6 +280,7 @@ static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *err
   const NewtonOutcome outcome = newton_solve(&s->newton, end, error);
   domain_mix_tangents(s->domain, 0);
   *found = outcome == NEWTON_CONVERGED ? find_error(s) : 0;
+  if (outcome != NEWTON_CONVERGED) increment_retreat(&s->increment);
   return outcome;
 }
 
@@ -292,7 +294,7 @@ static int break_bonds(Solver *run, Error *error)
   if (!broken) return BRECCIA_OK;
   text_add(&run->log, "  %lld bonds break\n", (long long)broken);
   find_accelerations(s);
-  s->next = fmax(s->length / 2, fmin(s->length, s->domain->family.horizon / s->ledger->wave));
+  s->next = fmax(s->next / 2, fmin(s->next, s->domain->family.horizon / s->ledger->wave));
   return BRECCIA_OK;
 }
 
@@ -304,10 +306,20 @@ void implicit_count_steps(const Solver *run)
   clock->stage_last = clock->step + (int64_t)fmin(left, 1e15);
 }
 
+/** A step that has failed for good: what its tries have changed is as it was. */
+static int give_up(Implicit *s, double next, int64_t cuts)
+{
+  s->next = next;
+  s->cuts = cuts;
+  return BRECCIA_FAILURE;
+}
+
 int implicit_advance(Solver *run, Text *warning, Error *error)
 {
   (void)warning;
   Implicit *s = run->own;
+  const double first = s->next;
+  const int64_t cuts = s->cuts;
   Clock *clock = &run->clock;
   const double longest = implicit_longest(s->spec), shortest = s->spec->smallest * longest;
   double end, found;
@@ -318,11 +330,11 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
     end = increment_end(run, s->next);
     text_add(&run->log, "step %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, clock->time, end);
     const NewtonOutcome outcome = try_step(s, end, &found, error);
-    if (outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
+    if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     const double change = wanted_change(s, found);
     if (outcome == NEWTON_CONVERGED && (change >= 0.9 || s->length <= shortest)) {
       finish_step(s);
-      const bool easy = s->newton.iterations <= s->spec->newton.iterations / 2;
+      const bool easy = s->newton.iterations <= (s->spec->newton.iterations + 1) / 2;
       if (easy && s->length >= 0.999 * s->next) s->next = fmin(longest, fmin(2, fmax(change, 0.5)) * s->next);
       break;
     }
@@ -334,11 +346,13 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
     }
     text_add(&run->log, "    cut: no equilibrium: %s\n", newton_describe(&s->newton, outcome, words, sizeof words));
     s->next = s->length / 2;
-    if (s->next < shortest)
-      return error_add(error, BRECCIA_FAILURE,
-                       "implicit: no equilibrium with inertia beyond time %g, with steps cut to %.2g: %s; go on with a "
-                       "stage of 'explicit', or look at the loads and at the last pictures",
-                       clock->time, s->length, words);
+    if (s->next < shortest) {
+      error_add(error, BRECCIA_FAILURE,
+                "implicit: no equilibrium with inertia beyond time %g, with steps cut to %.2g: %s; go on with a "
+                "stage of 'explicit', or look at the loads and at the last pictures",
+                clock->time, s->length, words);
+      return give_up(s, first, cuts);
+    }
   }
   clock->time_step = end - clock->time;
   clock->time = end;

@@ -126,7 +126,7 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
   vectors_combine(s->domain, 0, g->basis[0], 1, f);
   for (double length = first, before = INFINITY; first > 0;) {
     record->residual = length / first;
-    if (length <= tolerance * first || length > little * before || record->iterations >= MOST_PRODUCTS) break;
+    if (length <= tolerance * first || !(length <= little * before) || record->iterations >= MOST_PRODUCTS) break;
     before = length;
     if (go_round(s, length, 0.9 * tolerance * first, v, record, error)) return BRECCIA_FAILURE;
     vectors_combine(s->domain, 0, g->scaled, 1, v);

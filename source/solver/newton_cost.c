@@ -49,8 +49,11 @@ int newton_measure(Newton *n, StepCost *cost, Error *error)
   const LinearForesight before = linear_solver_foresee(&n->linear);
   Trial trial = {INFINITY, INFINITY};
   enum { MOST = 10 };
+  const int64_t given_up =
+      n->linear.given_up; /* the run gives up its ways by itself, whether this was asked for or not */
   for (int k = 0; before.seconds == 0 && k < MOST && (k == 0 || clock_seconds() - begin < enough); ++k)
     if (try_equations(n, &trial, error)) return BRECCIA_FAILURE;
+  n->linear.given_up = given_up;
   if (before.seconds > 0) trial = (Trial){before.seconds, 0};
   const double softer = domain_take_secants(n->domain, false) ? softening : 1;
   const double one = linearised + trial.ready + softer * trial.product * (elastic ? elastic_products : products);
