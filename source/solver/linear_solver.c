@@ -103,13 +103,6 @@ int linear_solver_solve(LinearSolver *s, double *const f[3], double *const v[3],
   if (!status) status = s->type->solve(s, f, v, tolerance, record, error);
   while (!status && record->unsuited && s->is_free && s->type->instead && s->type->instead->suits(s) > 0)
     status = take_instead(s, f, v, tolerance, record, error);
-  if (!status && record->unsuited && !record->indefinite && !s->is_free)
-    return error_add(
-        error, BRECCIA_FAILURE,
-        "equations: '%s' cannot solve these: the stiffness is not symmetric, as where a law flows in another "
-        "direction than its yield surface says; take 'minimal residuals' or 'direct', or leave "
-        "'equations' out",
-        linear_solver_name(s));
   return status;
 }
 

@@ -344,6 +344,13 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     const double accuracy = n->exerted > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
     if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error))
       return NEWTON_FAILED;
+    if (linear.unsuited && !linear.indefinite && !n->linear.is_free) {
+      error_add(error, BRECCIA_FAILURE,
+                "equations: '%s' cannot solve these: the stiffness is not symmetric, as where a law flows in another "
+                "direction than its yield surface says; take 'minimal residuals' or 'direct', or leave 'equations' out",
+                linear_solver_name(&n->linear));
+      return NEWTON_FAILED;
+    }
     n->products += linear.iterations;
     n->indefinite |= linear.indefinite;
     double start = unknowns_product(&n->linear.unknowns, n->change, n->force);

@@ -258,9 +258,29 @@ static void a_loose_body_is_refused(void **state)
   free(words);
 }
 
+/** Conjugate gradients that were asked for by name: nothing would come of them, increment after increment. */
+static void equations_that_do_not_suit_are_named(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS "materials: {m: {model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, cohesion: 6, "
+            "friction "
+            "angle: 35 deg, dilation angle: 0, hardening modulus: 500}}\n" BLOCK
+            "peridynamics: {formulation: correspondence}\n"
+            "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0, 0]}, {on: {face: x+, layers: 2}, displacement: "
+            "[0, 0.02, 0], history: {ramp to: 1}}]\n"
+            "solve: {static: {equations: conjugate gradients}}\n");
+  breccia_error *error = breccia_error_create();
+  assert_int_equal(breccia_model_step(model, INT64_MAX, error), BRECCIA_FAILURE);
+  if (!strstr(breccia_error_text(error), "the stiffness is not symmetric")) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(equations_that_do_not_suit_are_named),
       cmocka_unit_test(gathering_is_spreading_transposed),
       cmocka_unit_test(the_matrix_does_what_a_linearised_step_does),
       cmocka_unit_test(both_ways_find_the_same_rest_and_reactions_are_the_loads),
