@@ -144,6 +144,22 @@ static void a_crack_is_followed_wherever_it_runs(void **state)
   breccia_model_destroy(&model);
 }
 
+static void what_controls_nothing_is_refused(void **state)
+{
+  static const char *const cases[][2] = {
+      {"controlled: no", "deck:8:73: controlled: only 'yes' means something; a load without 'history' acts in full"},
+  };
+  (void)state;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char deck[1200];
+    snprintf(deck, sizeof deck, PLATE, "traction: [1, 0]", cases[k][0], "direct",
+             ", control: {displacement of: {nearest: [0.55, 0.05]}, direction: [2, 1], to: 0.003}");
+    char *found = refusal_of(deck);
+    if (strncmp(found, cases[k][1], strlen(cases[k][1])) != 0) fail_msg("«%s», expected «%s»", found, cases[k][1]);
+    free(found);
+  }
+}
+
 /* Two flat bars that lean against each other, of one bond each; a softer third one hangs from their top and is pulled at its other end. */
 #define ARCH                                                                                                           \
   "units: {length: m, force: kN, time: s}\n"                                                                           \
@@ -215,6 +231,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_factor_that_is_found_is_that_which_would_be_given),
+      cmocka_unit_test(what_controls_nothing_is_refused),
       cmocka_unit_test(a_long_brittle_bar_snaps_back_and_spends_its_fracture_energy),
       cmocka_unit_test(a_crack_is_followed_wherever_it_runs),
       cmocka_unit_test(arc_length_goes_round_every_corner_of_a_flat_arch),

@@ -2,6 +2,13 @@
 
 #include <math.h>
 
+static int create(History *h, const DeckReader *reader)
+{
+  if (*(const bool *)h->value) return BRECCIA_OK;
+  return node_error(reader->document, h->value_node, reader->error,
+                    "controlled: only 'yes' means something; a load without 'history' acts in full");
+}
+
 static double factor(const History *h, double time)
 {
   (void)time;
@@ -26,4 +33,5 @@ static double rise(const History *h)
   return 0;
 }
 
-const HistoryType controlled_history = {.factor = factor, .integral = integral, .corner = corner, .rise = rise};
+const HistoryType controlled_history = {
+    .create = create, .factor = factor, .integral = integral, .corner = corner, .rise = rise};
