@@ -209,9 +209,12 @@ static void mark_softened(const Correspondence *c, int64_t slice)
   uint8_t *mark = c->fading->mark;
   mark[slice] |= SOFTENED;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane)
-      mark[(slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane]) /
-           SLICE] |= BESIDE;
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int64_t there =
+          slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+      if (there >= 0 && there < c->particles->places) /* lanes without a bond may lead beyond the lattice */
+        mark[there / SLICE] |= BESIDE;
+    }
 }
 
 /** Marks slices whose factors have fallen. @return whether any have, now or before */
