@@ -5,11 +5,13 @@ set -eu
 cd "$(dirname "$0")/../.."
 limit=${FUZZ_RUNS:+-runs=$FUZZ_RUNS}
 limit=${limit:--max_total_time=$1}
+# libfyaml loses what it grows for a text of more than 64 parts, as '' is in single quotes. Only here: elsewhere what we lose of a deck is to be seen.
+{ cat tests/leaks.txt && echo leak:libfyaml; } > build/fuzz/leaks.txt
 fuzz() { # fuzz TARGET LONGEST FOLDER [options]: inputs of so many bytes at most, from those in the folder
   target=$1 longest=$2 folder=$3
   shift 3
   [ "${FUZZ_ONLY:-$target}" = "$target" ] || return 0
-  LSAN_OPTIONS="suppressions=tests/leaks.txt:print_suppressions=0" "build/fuzz/$target" "$limit" \
+  LSAN_OPTIONS="suppressions=build/fuzz/leaks.txt:print_suppressions=0" "build/fuzz/$target" "$limit" \
     -seed="${FUZZ_SEED:-0}" -max_len="$longest" -rss_limit_mb=2048 -timeout=20 -artifact_prefix=build/fuzz/ \
     -verbosity=0 -print_final_stats=1 "$@" "$folder"
 }
@@ -39,6 +41,7 @@ done
 fuzz fuzz_model 4096 build/fuzz/models -dict=tests/fuzz/deck.dict
 
 mkdir -p build/fuzz/corpus
+printf "title: '%s'\n" "$(printf "%070d" 0 | sed "s/0/''/g")" > build/fuzz/corpus/quotes.yaml
 for deck in examples/*/*.yaml; do
   cp "$deck" "build/fuzz/corpus/$(basename "$(dirname "$deck")")-$(basename "$deck")"
 done
