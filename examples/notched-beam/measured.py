@@ -32,14 +32,15 @@ def strip(depth):
 
 
 class Beam:
-    def __init__(self, model, depth, energy=125):
-        """energy: G_F [N/m]. The folder of results is MODEL-DEPTH-ENERGY."""
-        self.depth, self.folder = depth, f"{model}-{depth}-{energy}"
-        self.name = MODELS[model] + ("" if energy == 125 else f", G_F {energy} N/m")
+    def __init__(self, model, depth, initial=None):
+        """initial: other initial fracture energy than that of the deck [N/m]. The folder of results is MODEL-DEPTH or MODEL-DEPTH-INITIAL."""
+        self.depth, self.folder = depth, f"{model}-{depth}" + (f"-{initial}" if initial else "")
+        self.name = MODELS[model] + (f", G_f {initial} N/m" if initial else "")
+        setting = ["--set", f"materials.concrete.initial fracture energy={initial} N/m"] if initial else []
         if "--only-write" not in sys.argv:
             breccia("run", f"measured-{model}.yaml", "--quiet", "--output", self.folder,
                     "--set", f"variables.D={depth} mm", "--set", f"variables.dx={depth / 20} mm",
-                    "--set", f"materials.concrete.fracture energy={energy} N/m", *strength_of(model, depth))
+                    *setting, *strength_of(model, depth))
         self.curve = list(zip(column(self.folder, "mouth", 3), column(self.folder, "jack", 3)))
         self.peak = max(load for _, load in self.curve)
         self.at_peak = next(opening for opening, load in self.curve if load == self.peak)
@@ -73,7 +74,7 @@ def size_effect(strengths):
 
 
 beams = {model: [Beam(model, depth) for depth in DEPTHS] for model in MODELS}
-smallest = [beams[model][0] for model in MODELS] + [Beam("plastic-damage", 50, 90)]
+smallest = [beams[model][0] for model in MODELS] + [Beam("plastic-damage", 50, initial) for initial in (50, 62.5)]
 between("measured", table(
     ["opening", "tests", *(beam.name for beam in smallest)],
     [[f"{opening * 1000:.0f} µm", f"{least} to {largest} N", *(against(beam.load(opening), least, largest) for beam in smallest)]

@@ -154,6 +154,11 @@ static Material damage_plasticity(void)
 {
   return material_of("damage-plasticity", CONCRETE, "compressive strength=34000", NULL);
 }
+static Material damage_with_tail(void)
+{
+  return material_of("damage-plasticity", CONCRETE, "compressive strength=34000", "initial fracture energy=0.035",
+                     NULL);
+}
 static Material mazars(void)
 {
   return material_of("mazars", CONCRETE, NULL);
@@ -187,6 +192,7 @@ const Sample samples[SAMPLES] = {
     {.name = "tresca", .make = tresca, .strain = 5e-3, .associated = true, .over = over_tresca},
     {.name = "bounding-surface-clay", .make = bounding, .strain = 5e-3, .over = over_bounding, .jumps = true},
     {.name = "damage-plasticity", .make = damage_plasticity, .strain = 2e-3},
+    {.name = "damage-plasticity with a tail", .make = damage_with_tail, .strain = 2e-3},
     {.name = "mazars", .make = mazars, .strain = 1e-3, .associated = true, .over = over_tension},
 };
 

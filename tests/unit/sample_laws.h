@@ -4,7 +4,7 @@
 
 #include "point.h"
 
-enum { SAMPLES = 15 };
+enum { SAMPLES = 16 };
 
 typedef struct Sample {
   const char *name;

@@ -188,9 +188,12 @@ static void concrete_spends_its_fracture_energy_over_any_length(void **state)
 {
   (void)state;
   const char *const lengths[] = {"length=0.01", "length=0.03", "length=0.1"};
-  for (int law = 0; law < 2; ++law)
+  for (int law = 0; law < 3; ++law)
     for (int k = 0; k < 3; ++k) {
-      Material m = law ? material_of("damage-plasticity", CONCRETE, "compressive strength=34000", lengths[k], NULL)
+      Material m = law == 2 ? material_of("damage-plasticity", CONCRETE, "compressive strength=34000", lengths[k],
+                                          "initial fracture energy=0.035", NULL)
+                   : law == 1
+                       ? material_of("damage-plasticity", CONCRETE, "compressive strength=34000", lengths[k], NULL)
                        : material_of("mazars", CONCRETE, lengths[k], NULL);
       Curve c = {0};
       const double length = atof(lengths[k] + strlen("length="));
@@ -200,6 +203,43 @@ static void concrete_spends_its_fracture_energy_over_any_length(void **state)
       assert_near(c.stress, 0, 1);
       material_destroy(&m);
     }
+}
+
+/** Area below the first tangent of stress over opening: length times strain less what unloading along E gives back. */
+static double initial_energy(const Material *m, double length)
+{
+  static const bool lateral[6] = {false, true, true};
+  const double yield = 3000 / 30e6;
+  Driver d;
+  double stress[2], opening[2];
+  assert_int_equal(driver_create(&d, m, NULL), 0);
+  for (int k = 0; k < 2; ++k) {
+    const double target[6] = {yield + (k + 1) * 1e-8 / length};
+    assert_true(driver_step(&d, lateral, target, 1e-9));
+    stress[k] = d.stress[0];
+    opening[k] = length * (d.strain[0] - d.stress[0] / 30e6);
+  }
+  driver_destroy(&d);
+  return 3000.0 * 3000 / 2 * (opening[1] - opening[0]) / (stress[0] - stress[1]);
+}
+
+static void the_first_tangent_of_softening_has_its_own_energy(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *energy, *length, *damage;
+    double expected;
+  } cases[] = {{"initial fracture energy=0.035", "length=0.03", "tension damage=0.75", 0.035},
+               {"initial fracture energy=0.035", "length=0.1", "tension damage=0.2", 0.035},
+               {"initial fracture energy=0.02", "length=0.05", "tension damage=0", 0.02},
+               {NULL, "length=0.001", "tension damage=0.75", 0.05}}; /* one exponential, stored energy beside nothing */
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    Material m = material_of("damage-plasticity", CONCRETE, "compressive strength=34000", cases[k].length,
+                             cases[k].damage, cases[k].energy, NULL);
+    const double found = initial_energy(&m, atof(cases[k].length + strlen("length=")));
+    assert_near(found, cases[k].expected, 5e-3 * cases[k].expected);
+    material_destroy(&m);
+  }
 }
 
 static void concrete_reaches_its_compressive_and_biaxial_strength(void **state)
@@ -468,6 +508,14 @@ static void inadmissible_parameters_are_refused_with_the_reason(void **state)
        "Young modulus=3e7,Poisson ratio=0.2,tensile strength=3000,compressive strength=5e3,fracture "
        "energy=0.1,length=0.01",
        "must be larger than 'tensile strength'"},
+      {"damage-plasticity",
+       "Young modulus=3e7,Poisson ratio=0.2,tensile strength=3000,compressive strength=3e4,fracture "
+       "energy=0.1,length=0.3,initial fracture energy=0.04",
+       "it must be less than 0.266667"},
+      {"damage-plasticity",
+       "Young modulus=3e7,Poisson ratio=0.2,tensile strength=3000,compressive strength=3e4,fracture "
+       "energy=0.1,length=0.001,initial fracture energy=0.06",
+       "must be at most 0.0500"},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     char reason[512] = "";
@@ -485,6 +533,7 @@ int main(void)
       cmocka_unit_test(multi_yield_tangent_is_the_derivative_of_stress_while_loading_on),
       cmocka_unit_test(plane_stress_of_any_law_has_no_stress_across_the_plane),
       cmocka_unit_test(concrete_spends_its_fracture_energy_over_any_length),
+      cmocka_unit_test(the_first_tangent_of_softening_has_its_own_energy),
       cmocka_unit_test(concrete_reaches_its_compressive_and_biaxial_strength),
       cmocka_unit_test(cracks_of_concrete_close),
       cmocka_unit_test(mazars_is_strong_in_compression),

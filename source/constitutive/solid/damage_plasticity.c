@@ -3,7 +3,8 @@
  * Effective stress obeys F = (q + alpha I1 + beta <s1> - gamma <-s1>) / (1 - alpha) - Sc <= 0 with beta = Sc / St (1 - alpha) - (1 + alpha);
  * flow along sqrt((e f_t tan(psi))^2 + q^2) + tan(psi) I1 / 3; nominal stress = (1 - D) effective stress, 1 - D = (1 - D_c) (1 - r D_t).
  * Uniaxial curves over plastic strain x are those of Lee and Fenves: tension f_t exp(-b x), compression
- * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness.
+ * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness. Where concrete
+ * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
  *
  * The flow keeps the direction of the trial deviator, and all else follows from one multiplier: its equation has one unknown. */
 #include "constitutive/solid/dual.h"
@@ -14,6 +15,7 @@ typedef struct DamagePlasticity {
   Elasticity elastic;
   double alpha, gamma, dilation, rounding; /* tan(psi), e f_t tan(psi) */
   double tension, tension_rate, tension_share;
+  double tail, steeper; /* t, and k - 1; 1 and 0: one exponential */
   double compression, hump, compression_rate, compression_share;
 } DamagePlasticity;
 
@@ -29,7 +31,8 @@ enum {
   ECCENTRICITY,
   TENSION_DAMAGE,
   COMPRESSION_DAMAGE,
-  LENGTH
+  LENGTH,
+  INITIAL_ENERGY
 };
 enum { PLASTIC = 0, IN_TENSION = 6, IN_COMPRESSION, DAMAGE, HISTORY };
 
@@ -47,7 +50,41 @@ static const breccia_parameter parameters[] = {
     {"tension damage", "1", "0.75", "[0, 1)", "share of the softening in tension that is loss of stiffness"},
     {"compression damage", "1", "0.5", "[0, 1)", "the same in compression"},
     {"length", "length", "", "(0, inf)", "over which the energies are spread; that of the formulation when absent"},
+    {"initial fracture energy", "fracture energy", "", "(0, inf)",
+     "G_f below the first tangent of stress over opening, which decides largest loads; about 0.4 G_F in concrete; when "
+     "absent G_F / 2, one exponential"},
 };
+
+/* Share of the strength at which concrete's softening turns into its long tail: 0.15 to 0.33. */
+static const double turn = 0.25;
+
+/** Two exponentials, so that the first tangent of stress over opening has an energy of its own below it. Opening over length is x and what damage
+ *  makes elastic, x' (1 + m f_t |c'| / E) at first. @param[in] area  below c. @return 1 with a reason */
+static int prepare_tail(DamagePlasticity *c, const double *v, double area, char *reason, size_t size)
+{
+  const double young = elasticity_young(&c->elastic), strength = v[TENSILE], length = v[LENGTH],
+               first =
+                   2 * v[INITIAL_ENERGY] / (length * strength) - c->tension_share * strength / young; /* 1 / |c'(0)| */
+  if (first <= (1 - c->tension_share) * strength / young) {
+    snprintf(reason, size,
+             "a length of %g makes the curve of tension snap back; with this 'initial fracture energy' it must be less "
+             "than %g: take a finer spacing",
+             length, 2 * v[INITIAL_ENERGY] * young / (strength * strength));
+    return 1;
+  }
+  const double steepness = (area / first - turn * turn - (1 - turn) * (1 - turn)) / (turn * (1 - turn)); /* k + 1 / k */
+  if (steepness < 2) {
+    snprintf(reason, size,
+             "'initial fracture energy' must be at most %g with this 'fracture energy': that of one exponential",
+             length * strength / 2 * (area + c->tension_share * strength / young));
+    return 1;
+  }
+  const double k = (steepness + sqrt(steepness * steepness - 4)) / 2;
+  c->tail = turn;
+  c->steeper = k - 1;
+  c->tension_rate = (turn + (1 - turn) / k) / area;
+  return 0;
+}
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
@@ -75,7 +112,10 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   const double m = c->tension_share, stored = strength * strength / young,
                left = v[ENERGY] / v[LENGTH] - stored * m / (2 * (2 - m));
   c->tension_rate = strength / left;
+  c->tail = 1;
+  c->steeper = 0;
   if (left > (1 - m) * stored) {
+    if (!isnan(v[INITIAL_ENERGY]) && prepare_tail(c, v, left / strength, reason, size)) return 1;
     if (v[COMPRESSIVE] * v[FIRST_YIELD] > strength) return 0;
     snprintf(reason, size, "'first yield' times 'compressive strength' must be larger than 'tensile strength'");
     return 1;
@@ -130,6 +170,17 @@ static double shrink_of(const DamagePlasticity *c, double trial, double multipli
   return q / trial;
 }
 
+/** The curve of tension over plastic strain, to a power: c^share. */
+static Dual remaining(const DamagePlasticity *c, Dual plastic, double share)
+{
+  const Dual slow = dual_exp(dual_scale(-c->tension_rate * share, plastic));
+  if (c->tail == 1) return slow;
+  const Dual quick = dual_exp(dual_scale(-c->tension_rate * c->steeper, plastic)),
+             both = dual_shift(dual_scale(1 - c->tail, quick), c->tail);
+  const double power = pow(both.value, share);
+  return dual_product(slow, dual_chain(power, share * power / both.value, both, 0, both));
+}
+
 /** Trial principal stresses are the variables 0 to 2, the multiplier is 3. */
 static Flow flow_by(const DamagePlasticity *c, const double trial[3], double multiplier, const double *committed)
 {
@@ -164,8 +215,8 @@ static Flow flow_by(const DamagePlasticity *c, const double trial[3], double mul
   f.tension = dual_shift(dual_product(f.share, dual_positive(largest)), committed[IN_TENSION]);
   f.compression = dual_shift(dual_product(dual_shift(dual_scale(-1, f.share), 1), dual_positive(dual_scale(-1, least))),
                              committed[IN_COMPRESSION]);
-  const double bt = c->tension_rate * (1 - c->tension_share), b = c->compression_rate, m = c->compression_share;
-  Dual strength = dual_scale(c->tension, dual_exp(dual_scale(-bt, f.tension)));
+  const double b = c->compression_rate, m = c->compression_share;
+  Dual strength = dual_scale(c->tension, remaining(c, f.tension, 1 - c->tension_share));
   strength = dual_larger(strength, dual_constant(1e-9 * c->tension)); /* a crack cannot carry, but divides */
   Dual cohesion = dual_sum(c->compression * (1 + c->hump), dual_exp(dual_scale(-b * (1 - m), f.compression)),
                            -c->compression * c->hump, dual_exp(dual_scale(-b * (2 - m), f.compression)));
@@ -181,7 +232,7 @@ static Flow flow_by(const DamagePlasticity *c, const double trial[3], double mul
 /** 1 - D of a state. */
 static Dual wholeness(const DamagePlasticity *c, const Flow *f)
 {
-  const Dual tension = dual_exp(dual_scale(-c->tension_rate * c->tension_share, f->tension)),
+  const Dual tension = remaining(c, f->tension, c->tension_share),
              compression = dual_exp(dual_scale(-c->compression_rate * c->compression_share, f->compression));
   const Dual lost = dual_product(f->share, dual_shift(dual_scale(-1, tension), 1));
   return dual_product(compression, dual_shift(dual_scale(-1, lost), 1));
@@ -281,12 +332,14 @@ const breccia_law law_damage_plasticity = {
     .name = "damage-plasticity",
     .about = "concrete: plasticity with damage of its own in tension and compression; cracks close; energies hold for "
              "any spacing",
-    .source = "Lubliner, Oliver, Oller and Onate 1989; Lee and Fenves 1998",
+    .source = "Lubliner, Oliver, Oller and Onate 1989; Lee and Fenves 1998; initial fracture energy Bazant 2002",
     .maturity = "verified against its closed forms",
     .equations = "effective stress: (q + α I₁ + β⟨σ₁⟩ − γ⟨−σ₁⟩) / (1 − α) ≤ S_c, β = (1 − α) S_c/S_t − (1 + α), α from "
                  "the biaxial ratio, γ from the meridian ratio\n"
                  "flow along √((e f_t tan ψ)² + q²) + tan ψ I₁/3\n"
-                 "tension over plastic strain f_t exp(−b x), compression f_c0 ((1 + a) exp(−b x) − a exp(−2 b x)), "
+                 "tension over plastic strain f_t exp(−b x), or with an initial fracture energy f_t (t exp(−b x) + (1 "
+                 "− t) exp(−k b "
+                 "x)), t = 1/4, compression f_c0 ((1 + a) exp(−b x) − a exp(−2 b x)), "
                  "with areas G_F/l and G_c/l\n"
                  "σ = (1 − D) σ_eff, 1 − D = (1 − D_c)(1 − r D_t), r the share of tension in the principal stresses",
     .opensees = "nDMaterial ASDConcrete3D (similar)",
