@@ -1,7 +1,7 @@
 /* Loaded before the C library (LD_PRELOAD), lets calls that write into one folder fail, as a full or broken disk would, or kills the
  * process at one of them.
  *
- * FAULT_FOLDER  the folder; calls on other files pass
+ * FAULT_FOLDER  the folder, or one file in it; calls on other files pass
  * FAULT_AT      the number of the call that fails, from 1 on; 0: none, and they are only counted
  * FAULT_ERROR   its errno, a number
  * FAULT_LASTS   1: all calls after it fail too
@@ -71,7 +71,9 @@ static bool fails(const char *path, Kind kind)
     path = whole;
   }
   const size_t length = strlen(folder);
-  if (strncmp(path, folder, length) || path[length] != '/' || (except && strstr(path + length, except))) return false;
+  if (strncmp(path, folder, length) || (path[length] != '/' && (path[length] || kind == MAKE)) ||
+      (except && strstr(path + length, except)))
+    return false;
   const long number = atomic_fetch_add(&calls, 1) + 1, at = number_of("FAULT_AT");
   if (count) {
     const int out = (int)syscall(SYS_openat, AT_FDCWD, count, O_WRONLY | O_CREAT | O_APPEND, 0666);

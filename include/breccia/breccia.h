@@ -132,6 +132,7 @@ typedef struct breccia_options {
   int setting_count;
   int trap; /* 1: the first division by zero, overflow or invalid operation in a step stops the run and is told with its place in the
              * program. Meanwhile the process has a handler for SIGFPE, which hands on what is not of the model's threads */
+  int loose; /* 1: a body that nothing holds is no mistake in stages of statics until they begin, for breccia_model_modes */
 } breccia_options;
 
 /** Reads and checks a deck and builds the body, its families and its material points. Nothing is written.

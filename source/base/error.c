@@ -10,7 +10,7 @@ enum { MOST_LINES = 30, LONGEST_LINE = 4000, END_KEPT = 400 };
 
 struct breccia_error {
   Text text;
-  int count;
+  int count, told; /* lines; and with those that were told again, of a mistake that stands at several places */
 };
 
 breccia_error *breccia_error_create(void)
@@ -64,6 +64,7 @@ int error_add(Error *error, int status, const char *format, ...)
   text_add_list(&line, format, arguments);
   va_end(arguments);
   cut_line(&line);
+  ++error->told;
   if (!line.characters || !holds_line(error, line.characters)) {
     if (error->count < MOST_LINES)
       text_add(&error->text, "%s%s", error->count ? "\n" : "", line.characters ? line.characters : format);
@@ -85,11 +86,11 @@ int error_out_of_memory(Error *error)
     text->length = strcspn(told, "\n");
     memmove(text->characters, told, text->length);
     text->characters[text->length] = 0;
-    error->count = 1;
+    error->count = error->told = 1;
     return BRECCIA_FAILURE;
   }
   text_free(text);
-  error->count = 0;
+  error->count = error->told = 0;
   return error_add(error, BRECCIA_FAILURE, "out of memory: close other programs, or take fewer particles or threads");
 }
 
@@ -100,5 +101,5 @@ bool error_is_full(const Error *error)
 
 int error_count(const Error *error)
 {
-  return error ? error->count : 0;
+  return error ? error->told : 0;
 }

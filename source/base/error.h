@@ -18,7 +18,7 @@ int error_add(Error *error, int status, const char *format, ...) __attribute__((
  *  @return BRECCIA_FAILURE */
 int error_out_of_memory(Error *error);
 
-/** @return the number of lines added so far */
+/** @return how many lines were added so far, those that stood there already too: whether something went wrong since tells their difference */
 int error_count(const Error *error);
 
 /** Whether further lines are only counted: more are no help, the first are to be mended first. */

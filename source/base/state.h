@@ -19,7 +19,8 @@ typedef enum StateRole {
   STATE_SHOWN,     /* given with the body, or found when somebody looks: there is nothing to save */
   STATE_COMMITTED, /* changes only where a step has come out well, or its owner takes the changes back */
   STATE_TRIED,     /* changes before that is known, and comes back by copy */
-  STATE_FOLLOWS,   /* follows from the others; saved all the same, because a law may not give the same bits twice */
+  STATE_LEARNED, /* how the next try is best made: changes in tries and stays so, as the body does not depend on it but for roundings */
+  STATE_FOLLOWS, /* follows from the others; saved all the same, because a law may not give the same bits twice */
 } StateRole;
 
 enum { STATE_MISFIT = -1 };

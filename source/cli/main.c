@@ -147,6 +147,22 @@ void settings_note(void *context, int option, const char *value)
   if (option == settings->option) settings->items[settings->count++] = value;
 }
 
+int act_on_deck(int argc, char **argv, const Verb *verb, int set,
+                int (*act)(const char *deck, const char **values, const DeckSettings *settings))
+{
+  const char *values[MOST_OPTIONS];
+  DeckSettings settings;
+  if (settings_begin(&settings, set, argc)) return BRECCIA_FAILURE;
+  const int first = read_options(argc, argv, verb, values, settings_note, &settings);
+  int status = first == -2 ? 0 : 2;
+  if (first >= 0 && argc - first != 1)
+    fprintf(stderr, "breccia %s: give one deck; see 'breccia %s --help'\n", verb->name, verb->name);
+  else if (first >= 0)
+    status = act(argv[first], values, &settings);
+  free(settings.items);
+  return status;
+}
+
 static void print_help(FILE *out)
 {
   fprintf(out, "breccia %s: peridynamics for concrete, soil and rock\n\nusage: breccia VERB ...\n\n", BRECCIA_VERSION);

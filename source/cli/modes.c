@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-enum { MODES, OUTPUT, SET, COUNT };
+enum { MODES, OUTPUT, SET };
 
 static const Option options[] = {{"count", "N", "how many modes, the slowest first (6)"},
                                  {"output", "FOLDER", "for the files (DECK-modes beside the deck)"},
@@ -15,7 +15,8 @@ static int find(const char *deck, const char **values, const DeckSettings *setti
   long long count = 6;
   if (values[MODES] && read_whole(values[MODES], "count", 1, &count)) return 2;
   breccia_error *error = breccia_error_create();
-  const breccia_options wishes = {.size = sizeof wishes, .settings = settings->items, .setting_count = settings->count};
+  const breccia_options wishes = {
+      .size = sizeof wishes, .settings = settings->items, .setting_count = settings->count, .loose = 1};
   breccia_model *model;
   int status = breccia_model_load_file(deck, &wishes, &model, error);
   if (status) return fail(error, status);
@@ -36,17 +37,7 @@ static int find(const char *deck, const char **values, const DeckSettings *setti
 
 static int run(int argc, char **argv, const Verb *verb)
 {
-  const char *values[COUNT];
-  DeckSettings settings;
-  if (settings_begin(&settings, SET, argc)) return BRECCIA_FAILURE;
-  const int first = read_options(argc, argv, verb, values, settings_note, &settings);
-  int status = first == -2 ? 0 : 2;
-  if (first >= 0 && argc - first != 1)
-    fprintf(stderr, "breccia modes: give one deck; see 'breccia modes --help'\n");
-  else if (first >= 0)
-    status = find(argv[first], values, &settings);
-  free(settings.items);
-  return status;
+  return act_on_deck(argc, argv, verb, SET, find);
 }
 
 const Verb verb_modes = {

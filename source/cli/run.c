@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SET, OUTPUT, STEPS, THREADS, RESTART, RESTART_BEFORE, FORCE, TRAP, QUIET, COUNT };
+enum { SET, OUTPUT, STEPS, THREADS, RESTART, RESTART_BEFORE, FORCE, TRAP, QUIET };
 
 static const Option options[] = {
     SET_OPTION,
@@ -117,17 +117,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
 
 static int run(int argc, char **argv, const Verb *verb)
 {
-  const char *values[COUNT];
-  DeckSettings settings;
-  if (settings_begin(&settings, SET, argc)) return BRECCIA_FAILURE;
-  const int first = read_options(argc, argv, verb, values, settings_note, &settings);
-  int status = first == -2 ? 0 : 2;
-  if (first >= 0 && argc - first != 1)
-    fprintf(stderr, "breccia run: give one deck; see 'breccia run --help'\n");
-  else if (first >= 0)
-    status = run_deck(argv[first], values, &settings);
-  free(settings.items);
-  return status;
+  return act_on_deck(argc, argv, verb, SET, run_deck);
 }
 
 const Verb verb_run = {

@@ -50,6 +50,11 @@ int settings_begin(DeckSettings *settings, int option, int argc);
 /** For read_options, with the settings as context. */
 void settings_note(void *settings, int option, const char *value);
 
+/** For a verb that takes one deck: reads its options, and does it.
+ *  @param[in] set  number of --set in its table; @param[in] act  gets one value per option, as read_options gives them */
+int act_on_deck(int argc, char **argv, const Verb *verb, int set,
+                int (*act)(const char *deck, const char **values, const DeckSettings *settings));
+
 void print_verb_help(const Verb *verb, FILE *out);
 
 /** Prints an error's lines and returns the status. */

@@ -81,15 +81,20 @@ bool history_is_controlled(const History *history)
   return history->type == &controlled_history;
 }
 
+static double farther(double peak, double factor)
+{
+  return fabs(factor) > fabs(peak) ? factor : peak;
+}
+
 double history_peak(const History *h, double time)
 {
   enum { SAMPLES = 1000, MOST_CORNERS = 1000000 };
   if (!h->type) return 1;
   if (history_is_controlled(h)) return h->most;
   double peak = 0, corner = 0;
-  for (int k = 0; k <= SAMPLES; ++k) peak = fmax(peak, fabs(history_factor(h, time * k / SAMPLES)));
+  for (int k = 0; k <= SAMPLES; ++k) peak = farther(peak, history_factor(h, time * k / SAMPLES));
   for (int k = 0; k < MOST_CORNERS && (corner = h->type->corner(h, corner)) < time; ++k)
-    peak = fmax(peak, fabs(history_factor(h, corner)));
+    peak = farther(peak, history_factor(h, corner));
   return peak;
 }
 

@@ -78,7 +78,7 @@ double history_integral(History *history, int order, double scale, double time);
 /** Whether its factor is found by a solver: History.found. */
 bool history_is_controlled(const History *history);
 
-/** The largest size of the factor from time 0 up to a time. */
+/** The factor that is farthest from zero from time 0 up to a time. */
 double history_peak(const History *history, double time);
 
 /** Time that it takes to its largest value; 0: it is there at once. */

@@ -123,7 +123,7 @@ struct LoadType {
   void (*state)(Load *load, const char *name, StateList *list);
   /** What it comes to on this body, for people. May be NULL. */
   LoadWords (*tell)(const Load *load, const Particles *particles);
-  /** What it prescribes at factor 1: the length of a vector. */
+  /** What it prescribes at factor 1: the length of a vector, or a number with its sign. */
   double (*magnitude)(const LoadValue *value);
   /** What it is, where its key and the dimension in the list do not tell. May be NULL. */
   const char *(*kind)(const LoadValue *value, const char **dimension);
@@ -181,7 +181,7 @@ void loading_mark_held(const Loading *loading, uint8_t *held);
 /** What a load prescribes, as its key in the deck. @param[out] dimension  of its value */
 const char *load_kind(const LoadSpec *load, const char **dimension);
 
-/** Length of the vector that a load prescribes at factor 1. */
+/** What a load prescribes at factor 1: the length of its vector, or its number with its sign. */
 double load_magnitude(const LoadSpec *load);
 
 #endif

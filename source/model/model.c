@@ -170,6 +170,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
                            .selections = &spec->selections,
                            .reader = &model->reader,
                            .force = options->force,
+                           .loose = options->loose,
                            .trap = options->trap};
   status = solver_create(&model->solver, &model->warnings, error);
   if (!status) status = model_make_schedule(model, true, error);
@@ -372,7 +373,7 @@ const char *breccia_model_plausibility(breccia_model *model)
 {
   const Host host = host_enter();
   text_free(&model->plausibility);
-  plausibility_describe(model, &model->plausibility);
+  plausibility_describe(model, true, &model->plausibility);
   return host_leave(&host, BRECCIA_OK, NULL) ? NULL : text_words(&model->plausibility);
 }
 

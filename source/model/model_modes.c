@@ -46,7 +46,11 @@ static void tell_table(const breccia_model *model, const Modes *modes, Text *t)
 /** What follows for runs of the body. */
 static void tell_advice(const breccia_model *model, const Modes *modes, Text *t)
 {
-  if (modes->rigid) text_add(t, "%d of them: nothing holds the body against moving as a whole\n", modes->rigid);
+  if (modes->rigid)
+    text_add(t, "%d of them: %s the body against moving as a whole\n", modes->rigid,
+             loading_eigenvalue(&model->loading, model->domain.particles) > 0
+                 ? "only springs too soft to show beside roundings hold"
+                 : "nothing holds");
   if (modes->rigid == modes->count) return;
   const double first = hertz(model, modes->modes[modes->rigid].frequency),
                last = hertz(model, modes->modes[modes->count - 1].frequency);

@@ -4,12 +4,14 @@
 #define BRECCIA_MODEL_OUTLOOK_H
 
 #include "base/pace.h"
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct Outlook {
   Pace steps, bytes, checkpoints; /* `bytes`: of states that are written */
   double state_bytes;             /* of one state */
   double picture_seconds;         /* of one picture */
+  bool least;                     /* what was expected beforehand is the least that steps take */
 } Outlook;
 
 typedef struct Task { /* what is still to be done */

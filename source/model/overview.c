@@ -49,14 +49,6 @@ static double measure_evaluation(breccia_model *model)
   }
 }
 
-/** Seconds of a step, on the average over those of the stage under way and of later stages, which are taken as explicit ones. */
-static double mean_step(const Clock *clock, const StepCost *cost, double evaluation)
-{
-  const double own = (double)(clock->stage_last - clock->step), all = (double)(clock->steps - clock->step);
-  const double step = cost->evaluations * evaluation + cost->seconds;
-  return all > 0 ? (own * step + (all - own) * 1.2 * evaluation) / all : step;
-}
-
 int model_expect(breccia_model *model, Error *error)
 {
   const Domain *d = &model->domain;
@@ -73,8 +65,9 @@ int model_expect(breccia_model *model, Error *error)
     names.fields = list.items;
     names.count = list.count;
     const double evaluation = measure_evaluation(model);
-    outlook_expect(&model->outlook, mean_step(&model->solver.clock, &cost, evaluation),
-                   result_file_state_bytes(d, &names), (double)(domain_particle_bytes(d)), d->particles->count);
+    outlook_expect(&model->outlook, cost.evaluations * evaluation + cost.seconds, result_file_state_bytes(d, &names),
+                   (double)(domain_particle_bytes(d)), d->particles->count);
+    model->outlook.least = cost.least;
     model->solver_bytes = cost.bytes;
   }
   free(list.items);
@@ -193,7 +186,8 @@ const char *breccia_model_overview(breccia_model *model)
     describe_stages(model, time, text);
   else
     s->type->describe(s, time, text);
-  text_add(text, ", %.0f MB, about ", ((double)domain_bytes(d) + model->solver_bytes) / 1e6);
+  text_add(text, ", %.0f MB, %s ", ((double)domain_bytes(d) + model->solver_bytes) / 1e6,
+           model->outlook.least ? "at least" : "about");
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
   if (domain_has_servers(d)) text_add(text, " and what its material servers take");

@@ -275,9 +275,9 @@ void plausibility_in_short(const breccia_model *model, Text *text)
 /** The lowest frequency as the body is held. Where that is not looked for, those of a free body, estimated as a bar's: along it wave speed /
  *  (2 largest size), and bending as a beam of rectangular section, 1.03 speed thickness / length^2 (4.730^2 / (2 pi sqrt 12)), both with the speed of
  *  bars. Supports change them: a beam on two supports bends at 0.44 of the second, a cantilever at 0.16. */
-static void describe_frequencies(breccia_model *model, const Extent *e, Text *text)
+static void describe_frequencies(breccia_model *model, const Extent *e, bool search, Text *text)
 {
-  if (plausibility_describe_mode(model, text)) return;
+  if (search && plausibility_describe_mode(model, text)) return;
   const Material *m = main_material(model);
   const double bar =
       sqrt(plausibility_in_si(model, "stress", material_young(m)) / plausibility_in_si(model, "density", m->density));
@@ -322,16 +322,20 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
     return;
   }
   const double rise = plausibility_in_si(model, "time", history_rise(&load->history));
+  const bool rests = solver_stage_rests(&model->solver, load->first);
   if (rise > 0) {
     text_add(text, "grows over ");
     quantity_describe(rise, "s", text);
+    if (rests) text_add(text, " of its stage, at rest");
+  }
+  if (rise > 0 && !rests) {
     text_add(text, ", %.3g travel times of a wave: %s", rise / e->crossing,
              rise < e->crossing        ? "a blow"
              : rise < 10 * e->crossing ? "waves will show"
                                        : "slow");
-  } else
-    text_add(text, "acts in full from the start");
-  if (has_kind(l, "velocity")) {
+  }
+  if (!(rise > 0)) text_add(text, "acts in full from the start");
+  if (has_kind(l, "velocity") && !rests) {
     const Material *m = main_material(model);
     const double speed = plausibility_in_si(model, "velocity", magnitude);
     text_add(text, "; a wave behind ");
@@ -347,7 +351,7 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
 static void check_jump(breccia_model *model, const Load *load)
 {
   const LoadSpec *l = load->spec;
-  const double start = load_magnitude(l) * fabs(history_factor(&load->history, 0));
+  const double start = fabs(load_magnitude(l) * history_factor(&load->history, 0));
   if ((!has_kind(l, "displacement") && !has_kind(l, "support")) || start == 0) return;
   if (model->solver.type->rests && model->solver.stages->count == 1 && domain_is_elastic(&model->domain)) return;
   char length[32];
@@ -363,8 +367,8 @@ static void check_shaking(breccia_model *model, const Load *load)
 {
   static const double most = 30, gravity = 9.81; /* m/s2 */
   if (!has_kind(load->spec, "base acceleration") && !has_kind(load->spec, "acceleration")) return;
-  const double peak = plausibility_in_si(model, "acceleration", load_magnitude(load->spec)) *
-                      history_peak(&load->history, model->solver.clock.end_time - load->begin);
+  const double peak = fabs(plausibility_in_si(model, "acceleration", load_magnitude(load->spec)) *
+                           history_peak(&load->history, model->solver.clock.end_time - load->begin));
   if (peak > most)
     plausibility_say(
         model, load->node,
@@ -431,16 +435,26 @@ void plausibility_warn(breccia_model *model)
   check_grips(model);
 }
 
-void plausibility_describe(breccia_model *model, Text *text)
+void plausibility_describe(breccia_model *model, bool search, Text *text)
 {
   const Extent e = extent_of(model);
   text_add(text, "in SI units:\n");
   for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
-  describe_frequencies(model, &e, text);
+  describe_frequencies(model, &e, search, text);
   for (int k = 0; k < model->loading.count; ++k) describe_load(model, &model->loading.loads[k], &e, text);
-  const double time =
-      plausibility_in_si(model, "time", (double)model->solver.clock.steps * model->solver.clock.time_step);
+  const double time = plausibility_in_si(model, "time", solver_time_in_motion(&model->solver));
+  bool rests = false;
+  for (int64_t k = model->solver.clock.stage; k < model->solver.clock.stages; ++k)
+    rests |= solver_stage_rests(&model->solver, k);
   text_add(text, "  the run: ");
+  if (rests && time == 0) {
+    text_add(text, "from rest to rest, in which no time passes but that of histories");
+    return;
+  }
+  if (!isfinite(time)) {
+    text_add(text, "steps beside stages at rest, which are as long as the body allows then");
+    return;
+  }
   quantity_describe(time, "s", text);
-  text_add(text, ", %.3g travel times of a wave", time / e.crossing);
+  text_add(text, "%s, %.3g travel times of a wave", rests ? " beside stages at rest" : "", time / e.crossing);
 }

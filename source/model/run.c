@@ -335,11 +335,11 @@ static int loop(Run *run, Error *error)
     const int64_t stage = s->clock.stage, step = s->clock.step;
     status = host_status(run->host, model_advance(model, error), error);
     if (s->clock.stage != stage) begin_stage(model);
+    model->run_steps += s->clock.step - step;
     if (status) {
       run_log_write(run, false, NULL); /* how it failed */
       break;
     }
-    model->run_steps += s->clock.step - step;
     run->steps = steps_wanted(run);
     status = run_log_write(run, true, error);
     run->unwritten |= status != 0;
@@ -364,6 +364,8 @@ static int finish(Run *run, int status, Error *error)
   } else if (status == BRECCIA_INTERRUPTED) {
     int bad = write_checkpoint(run, error);
     if (bad) status = bad;
+    if (!domain_observe(&model->domain, error))
+      update_peaks(model);      /* for the summary, and not for the checkpoint: the state is not written */
   } else if (!run->unwritten) { /* the last good state */
     write_checkpoint(run, error);
     write_results(run, error);

@@ -95,7 +95,7 @@ static void tell_stages(const Solver *s, const char *time, Text *text)
 /** What supports and loads exert in the end, with moments about the origin, and how far they are from balancing each other. */
 typedef struct Balance {
   Wrench reactions, loads;
-  double left; /* the largest component of their sum, over the sizes of all single forces */
+  double left; /* the largest component of their sum, over the sizes of all; or the most that they have been at rest */
 } Balance;
 
 static bool find_balance(const Solver *s, Balance *balance)
@@ -108,7 +108,9 @@ static bool find_balance(const Solver *s, Balance *balance)
     balance->reactions = reactions_sum(&reactions, s, NULL, NULL, origin);
     balance->loads = reactions_of_loads(s, origin);
     for (int k = 0; k < 3; ++k) left = fmax(left, fabs(balance->reactions.force[k] + balance->loads.force[k]));
-    balance->left = left > 0 ? left / (balance->reactions.size + balance->loads.size) : 0;
+    double all = balance->reactions.size + balance->loads.size;
+    if (s->type->exerted) all = fmax(all, s->type->exerted(s));
+    balance->left = left > 0 ? left / all : 0;
   }
   reactions_destroy(&reactions);
   return found;
@@ -122,6 +124,7 @@ static void add_vector(Text *text, const char *key, const double v[3])
 static void add_balance(const Solver *s, Text *text)
 {
   Balance balance;
+  Rest rest;
   if (!find_balance(s, &balance)) return;
   text_add(text, "  \"equilibrium\": {");
   add_vector(text, "reactions", balance.reactions.force);
@@ -131,8 +134,10 @@ static void add_balance(const Solver *s, Text *text)
   add_vector(text, "loads", balance.loads.force);
   text_add(text, ", ");
   add_vector(text, "moment of loads", balance.loads.moment);
-  text_add(text, ", ");
-  add_number(text, "left", balance.left);
+  if (!rest_find(s, &rest, NULL) && rest.meant && rest.reached) { /* what moves has inertia beside these */
+    text_add(text, ", ");
+    add_number(text, "left", balance.left);
+  }
   text_add(text, "},\n");
 }
 
@@ -325,7 +330,7 @@ void run_tell_outcome(Run *run, int status)
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);
   if (peaks->mean_low <= peaks->mean_high) { /* a state was written */
-    text_add(t, "largest in the states written: displacement ");
+    text_add(t, "largest in the states written and at the end: displacement ");
     quantity_describe(units_in_si(model->units, dimension_find("length"), peaks->displacement), "m", t);
     text_add(t, ", octahedral shear stress ");
     quantity_describe(stress * peaks->octahedral, "Pa", t);

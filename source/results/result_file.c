@@ -130,14 +130,15 @@ static int write_geometry(hid_t root, const Domain *d)
   const Particles *p = d->particles;
   double *positions = memory_plain(3 * (size_t)p->count, sizeof(double)),
          *spacings = memory_plain((size_t)p->count, sizeof(double));
-  uint8_t *lattices = memory_plain((size_t)p->count, 1);
-  int bad = !positions || !spacings || !lattices;
+  uint8_t *lattices = memory_plain((size_t)p->count, 1), *outside = memory_plain((size_t)p->count, 1);
+  int bad = !positions || !spacings || !lattices || !outside;
   for (int64_t n = 0; !bad && n < p->count; ++n) {
     for (int k = 0; k < 3; ++k) positions[3 * n + k] = p->position[k][p->place_of[n]];
     const Lattice *lattice = &d->body.lattices[p->block[p->place_of[n] / SLICE]];
     spacings[n] = lattice->spacing;
     lattices[n] = 0;
     while (strcmp(lattice_word(lattices[n]), lattice->type->name)) ++lattices[n];
+    outside[n] = body_outside(&d->body, n);
   }
   if (!bad) {
     bad |= dataset_create(root, "Points", H5T_IEEE_F64LE, 3, 4096);
@@ -151,6 +152,10 @@ static int write_geometry(hid_t root, const Domain *d)
     bad |= dataset_create(own, "Spacing", H5T_IEEE_F64LE, 1, 4096);
     bad |= dataset_create(own, "BrokenBonds", H5T_STD_I64LE, 3, 1024);
     bad |= dataset_write(own, "Spacing", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)p->count, spacings);
+    if (d->body.margin_of) {
+      bad |= dataset_create(own, "Outside", H5T_STD_U8LE, 1, 4096);
+      bad |= dataset_write(own, "Outside", H5T_NATIVE_UINT8, 1, 0, (hsize_t)p->count, outside);
+    }
     bad |= dataset_create(own, "Lattice", H5T_STD_U8LE, 1, 4096);
     bad |= dataset_write(own, "Lattice", H5T_NATIVE_UINT8, 1, 0, (hsize_t)p->count, lattices);
     Text names = {0};
@@ -163,6 +168,7 @@ static int write_geometry(hid_t root, const Domain *d)
   free(positions);
   free(spacings);
   free(lattices);
+  free(outside);
   return bad;
 }
 
@@ -455,7 +461,7 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   }
   const int64_t kept = file->writes ? file->steps[file->writes - 1] : -1;
   while (file->broken_written < d->broken_count && d->broken[file->broken_written].step <= kept) ++file->broken_written;
-  bool same = view.particles == file->particles;
+  bool same = view.rows == file->particles;
   result_view_close(&view);
   if (!same)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds another number of particles than the deck", file->path);

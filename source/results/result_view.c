@@ -107,11 +107,53 @@ static int read_heading(ResultView *view, Error *error)
   return BRECCIA_OK;
 }
 
+/** Keeps the rows of the body's particles of what is there for each row of the file. */
+static void keep_rows(const ResultView *view, double *values, int components)
+{
+  for (int64_t n = 0; view->row_of && n < view->particles; ++n)
+    for (int k = 0; k < components; ++k) values[n * components + k] = values[view->row_of[n] * components + k];
+}
+
+/** Finds which rows are of the body, and leaves the others out of all that was read. Files of bodies without such layers, and of earlier
+ *  versions, say nothing. */
+static int leave_outside(ResultView *view, Error *error)
+{
+  if (H5Lexists(view->file, "Breccia/Outside", H5P_DEFAULT) <= 0) return BRECCIA_OK;
+  uint8_t *outside = read_all(view, "Breccia/Outside", H5T_NATIVE_UINT8, 1, NULL, error);
+  if (!outside) return BRECCIA_USER_ERROR;
+  int64_t *number = memory_plain((size_t)view->rows + 1, sizeof(int64_t)); /* among the body's particles; -1: outside */
+  view->row_of = memory_plain((size_t)view->rows + 1, sizeof(int64_t));
+  int status =
+      number && view->row_of ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: Breccia/Outside");
+  if (!status) {
+    view->particles = 0;
+    for (int64_t row = 0; row < view->rows; ++row) {
+      number[row] = outside[row] ? -1 : view->particles;
+      if (!outside[row]) view->row_of[view->particles++] = row;
+    }
+    keep_rows(view, view->positions, 3);
+    keep_rows(view, view->spacings, 1);
+    for (int64_t n = 0; n < view->particles; ++n) view->lattice_numbers[n] = view->lattice_numbers[view->row_of[n]];
+    int64_t kept = 0;
+    for (int64_t k = 0; k < view->broken_count; ++k) {
+      const int64_t *bond = &view->broken[3 * k], a = bond[1], b = bond[2];
+      if (a < 0 || a >= view->rows || b < 0 || b >= view->rows || number[a] < 0 || number[b] < 0) continue;
+      memmove(&view->broken[3 * kept], (const int64_t[]){bond[0], number[a], number[b]}, 3 * sizeof(int64_t));
+      ++kept;
+    }
+    view->broken_count = kept;
+  }
+  free(outside);
+  free(number);
+  return status;
+}
+
 static int read_numbers(ResultView *view, Error *error)
 {
   int64_t steps = 0;
-  view->positions = read_all(view, "VTKHDF/Points", H5T_NATIVE_DOUBLE, sizeof(double), &view->particles, error);
+  view->positions = read_all(view, "VTKHDF/Points", H5T_NATIVE_DOUBLE, sizeof(double), &view->rows, error);
   if (!view->positions) return BRECCIA_USER_ERROR;
+  view->particles = view->rows;
   view->times = read_all(view, "VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps, error);
   if (!view->times) return BRECCIA_USER_ERROR;
   view->steps = (int)steps;
@@ -127,7 +169,8 @@ static int read_numbers(ResultView *view, Error *error)
         read_all(view, "Breccia/Frequencies", H5T_NATIVE_DOUBLE, sizeof(double), &view->frequency_count, error);
     if (!view->frequencies) return BRECCIA_USER_ERROR;
   }
-  return read_lattices(view, error);
+  const int status = read_lattices(view, error);
+  return status ? status : leave_outside(view, error);
 }
 
 /** Finishes what a killed run had begun to put into the file; where another run is at it now, it says so. */
@@ -187,6 +230,7 @@ void result_view_close(ResultView *view)
   free(view->lattice_numbers);
   free(view->broken);
   free(view->frequencies);
+  free(view->row_of);
   *view = (ResultView){.file = -1};
 }
 
@@ -234,8 +278,8 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
   hid_t space = H5Dget_space(set);
   int rank = H5Sget_simple_extent_dims(space, size, NULL);
   *components = rank > 1 ? (int)size[1] : 1;
-  hsize_t start[2] = {(hsize_t)step * (hsize_t)view->particles, 0}, count[2] = {(hsize_t)view->particles, size[1]};
-  double *values = memory_plain((size_t)view->particles * (size_t)*components, sizeof(double));
+  hsize_t start[2] = {(hsize_t)step * (hsize_t)view->rows, 0}, count[2] = {(hsize_t)view->rows, size[1]};
+  double *values = memory_plain((size_t)view->rows * (size_t)*components, sizeof(double));
   hid_t memory = H5Screate_simple(rank, count, NULL);
   int bad = !values || start[0] + count[0] > size[0] ||
             H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
@@ -244,7 +288,10 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
   H5Sclose(memory);
   H5Sclose(space);
   H5Dclose(set);
-  if (!bad) return values;
+  if (!bad) {
+    keep_rows(view, values, *components);
+    return values;
+  }
   snprintf(what, sizeof what, "%s at step %lld", path, (long long)view->step_numbers[step]);
   if (values)
     say_damaged(view, what, error);

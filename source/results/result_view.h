@@ -1,4 +1,5 @@
-/* Result files read back, for pictures and for runs that are taken up again. */
+/* Result files read back, for pictures and for runs that are taken up again. Particles are those of the body: layers that supports put outside
+ * it are left out, and the others counted without them. */
 #ifndef BRECCIA_RESULTS_RESULT_VIEW_H
 #define BRECCIA_RESULTS_RESULT_VIEW_H
 
@@ -10,14 +11,15 @@
 enum { MOST_LATTICES = 32 };
 
 typedef struct ResultView {
-  int64_t file; /* HDF5 handle */
-  int64_t particles;
+  int64_t file;            /* HDF5 handle */
+  int64_t particles, rows; /* of the body; of the file, with those outside it */
+  int64_t *row_of;         /* [particles] in the file; NULL: all rows are of the body */
   int steps;
   int64_t *step_numbers;
   double *times, *positions; /* [particles][3] */
   double spacing;
   double *spacings; /* [particles] */
-  int64_t *broken;  /* [broken_count][3]: step, and both particles, of bonds as they broke */
+  int64_t *broken;  /* [broken_count][3]: step, and both particles, of bonds of the body as they broke */
   int64_t broken_count;
   double *frequencies; /* [frequency_count] Hz: the steps are modes of vibration; NULL: states of a run */
   int64_t frequency_count;

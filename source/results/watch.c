@@ -1,13 +1,9 @@
-#include "results/watch.h"
+#include "results/watch_parts.h"
 
 #include "base/memory.h"
 #include "base/tensor.h"
-#include "solver/reactions.h"
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static void check_between(const DeckReader *reader, const void *section, const char *key, const NumberList *points)
 {
@@ -48,7 +44,8 @@ static const Field watch_fields[] = {
      .offset = offsetof(WatchSpec, force),
      .standard = "",
      .meaning =
-         "total force that bonds exert on these particles; minus the reaction where a motion is prescribed slowly",
+         "total force that bonds exert on these particles; at rest minus what else acts on them: loads, their weight, "
+         "and the reaction where a motion is prescribed",
      .section = &selection_section,
      .group = 'A'},
     {.key = "reaction on",
@@ -57,7 +54,7 @@ static const Field watch_fields[] = {
      .standard = "",
      .meaning =
          "total force that supports and prescribed motions exert on these particles, inertia and damping allowed "
-         "for, and its moment about their middle",
+         "for, and its moment about their middle; of a support, which mirrors, about the middle of its face",
      .section = &selection_section,
      .group = 'A'},
     {.key = "stress and strain of",
@@ -100,7 +97,7 @@ static const Field watch_fields[] = {
      .offset = offsetof(WatchSpec, load),
      .dimension = "load",
      .standard = "",
-     .meaning = "value of a named load",
+     .meaning = "value of a named load; 0 in stages in which it does not act",
      .group = 'A'},
     {.key = "reaction of",
      .kind = FIELD_NAME,
@@ -122,35 +119,6 @@ const Section watch_section = {.name = "watch",
                                .size = sizeof(WatchSpec),
                                FIELDS(watch_fields),
                                .check = check_watch};
-
-typedef struct Watch Watch;
-typedef struct Kind {
-  const char *columns; /* name:dimension, separated by commas */
-  void (*row)(const Watch *watch, const Solver *solver, double *values);
-} Kind;
-
-enum { MOST_COLUMNS = 16 };
-
-struct Watch {
-  const WatchSpec *spec;
-  const Kind *kind;
-  Kind own; /* of histories, whose columns the material names, and of loads */
-  char columns[1024];
-  int history[MOST_COLUMNS]; /* which numbers they are */
-  Selection selection;
-  int32_t ends[2];
-  const LoadSpec *load;
-  Reactions reactions;
-  uint8_t *on; /* [places] of reactions on a selection */
-  FILE *file;
-  char *path;
-  int64_t last_step;
-};
-
-struct Watches {
-  int count;
-  Watch *items;
-};
 
 static void mean(double *const from[3], const Selection *s, double *values)
 {
@@ -341,21 +309,20 @@ static int resolve_reaction(Watch *w, const Domain *domain, const Loading *loadi
       return BRECCIA_FAILURE;
     for (int64_t n = 0; n < w->selection.count; ++n) w->on[w->selection.places[n]] = 1;
   }
-  bool holds = false, mirrors = false, others = false;
+  bool known = !name;
+  for (int l = 0; l < loading->count && !known; ++l) {
+    const char *own = loading->loads[l].spec->name;
+    known = own && !strcmp(own, name);
+  }
+  if (!known) return BRECCIA_USER_ERROR; /* said when the deck was read (deck/names.h) */
+  bool holds = false;
   for (int c = 0; c < loading->constraint_count; ++c) {
     const Constraint *constraint = &loading->constraints[c];
     const Load *load = constraint->load;
     const bool named = name && load->spec->name && !strcmp(load->spec->name, name);
     holds |= named;
-    mirrors |= named && constraint->images;
-    others |= !named && constraint->images;
     for (int64_t n = 0; !name && n < load->selection.count; ++n) holds |= w->on[load->selection.places[n]] > 0;
   }
-  if (mirrors && others)
-    return node_error(
-        reader->document, section_node(w->spec, key), reader->error,
-        "reaction of: supports of several faces lean on each other outside the body, so that one alone is "
-        "not known; their sum is in the summary");
   if (holds) return BRECCIA_OK;
   return node_error(reader->document, section_node(w->spec, key), reader->error,
                     name
@@ -434,145 +401,11 @@ int watches_create(Watches **out, const Domain *domain, const Loading *loading, 
   return status;
 }
 
-static void write_header(FILE *file, const Kind *kind, const Units *units)
-{
-  char time[64], columns[1024], *rest = columns;
-  units_name(units, dimension_find("time"), time, sizeof time);
-  snprintf(columns, sizeof columns, "%s", kind->columns);
-  fprintf(file, "step,time (%s)", time);
-  while (*rest) {
-    char *colon = strchr(rest, ':'), *comma = strchr(colon, ','), unit[64];
-    *colon = 0;
-    if (comma) *comma = 0;
-    units_name(units, dimension_find(colon + 1), unit, sizeof unit);
-    if (*unit)
-      fprintf(file, ",%s (%s)", rest, unit);
-    else
-      fprintf(file, ",%s", rest);
-    rest = comma ? comma + 1 : colon + 1 + strlen(colon + 1);
-  }
-  fprintf(file, "\n");
-}
-
-/** Whether a text begins with the whole row of a step, with so many columns. */
-static bool is_row_of(const char *text, int64_t step, int columns)
-{
-  char *end;
-  const size_t length = strcspn(text, "\n");
-  if (!text[length] || strtoll(text, &end, 10) != step || *end != ',') return false;
-  int commas = 0;
-  for (size_t k = 0; k < length; ++k) commas += text[k] == ',';
-  return commas == columns + 1;
-}
-
-static int column_count(const Kind *kind)
+int watch_columns(const Kind *kind)
 {
   int columns = 1;
   for (const char *c = kind->columns; *c; ++c) columns += *c == ',';
   return columns;
-}
-
-/** Whether there is a row of a step that is done. */
-static bool is_due(const Watch *w, const Solver *solver, int64_t step)
-{
-  enum { USUAL = 10 };
-  if (w->spec->every > 0) return step % w->spec->every == 0;
-  return step % USUAL == 0 || solver_step_was_long(solver, step);
-}
-
-/** Cuts a history file behind the last row that is due and not beyond the step from which the run goes on. All rows since the run began must
- *  be there. */
-static int take_up_rows(Watch *w, const Solver *solver, int64_t began, Error *error)
-{
-  const int64_t step = solver->clock.step;
-  size_t length;
-  char *text = text_read_file(w->path, &length), *row = text ? strchr(text, '\n') : NULL;
-  if (!text)
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or run "
-                     "without --restart",
-                     w->path, strerror(errno), (long long)step);
-  const int columns = column_count(w->kind);
-  int64_t line = 2, missing = -1;
-  row = row ? row + 1 : text + length;
-  for (int64_t due = began; due <= step && missing < 0; ++due) {
-    if (!is_due(w, solver, due)) continue;
-    if (is_row_of(row, due, columns)) {
-      w->last_step = due;
-      row = strchr(row, '\n') + 1;
-      ++line;
-    } else
-      missing = due;
-  }
-  int status = BRECCIA_OK;
-  if (missing >= 0)
-    status = error_add(error, BRECCIA_USER_ERROR,
-                       "%s:%lld: expected the row of step %lld; the run goes on from step %lld and needs all rows up "
-                       "to there: put the file back as it was, or run without --restart",
-                       w->path, (long long)line, (long long)missing, (long long)step);
-  else if (truncate(w->path, row - text))
-    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-  free(text);
-  return status;
-}
-
-int watches_open(Watches *watches, const char *folder, const Units *units, const Solver *solver, int64_t began,
-                 bool resume, Error *error)
-{
-  for (int k = 0; k < watches->count; ++k) {
-    Watch *w = &watches->items[k];
-    char name[160];
-    text_file_name(w->spec->head.name, name, sizeof name);
-    free(w->path);
-    w->path = text_format("%s/%s.csv", folder, name);
-    if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
-    const int status = resume ? take_up_rows(w, solver, began, error) : BRECCIA_OK;
-    if (status) return status;
-    w->file = fopen(w->path, resume ? "a" : "w");
-    if (!w->file) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    if (!resume) write_header(w->file, w->kind, units);
-  }
-  return BRECCIA_OK;
-}
-
-int watches_settle(const Watches *watches, Error *error)
-{
-  for (int k = 0; k < watches->count; ++k) {
-    const Watch *w = &watches->items[k];
-    if (fflush(w->file) || (fsync(fileno(w->file)) && errno != EINVAL))
-      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-  }
-  return BRECCIA_OK;
-}
-
-int watches_write(Watches *watches, const Solver *solver, bool last, Error *error)
-{
-  for (int k = 0; k < watches->count; ++k) {
-    Watch *w = &watches->items[k];
-    if (w->last_step == solver->clock.step || (!last && !is_due(w, solver, solver->clock.step))) continue;
-    double values[MOST_COLUMNS];
-    const int columns = column_count(w->kind);
-    w->kind->row(w, solver, values);
-    fprintf(w->file, "%lld,%.10g", (long long)solver->clock.step, solver->clock.time);
-    for (int c = 0; c < columns; ++c) fprintf(w->file, ",%.17g", values[c]);
-    fprintf(w->file, "\n");
-    if (fflush(w->file))
-      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    w->last_step = solver->clock.step;
-  }
-  return BRECCIA_OK;
-}
-
-int watches_close(Watches *watches, Error *error)
-{
-  int status = BRECCIA_OK;
-  for (int k = 0; k < watches->count; ++k) {
-    Watch *w = &watches->items[k];
-    if (w->file && fclose(w->file) && !status)
-      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    w->file = NULL;
-  }
-  return status;
 }
 
 const char *watches_name(const Watches *watches, int k)
@@ -601,11 +434,6 @@ int watches_column(const Watches *watches, int k, int c, char *name, size_t size
 int watches_count(const Watches *watches)
 {
   return watches->count;
-}
-
-const char *watches_path(const Watches *watches, int k)
-{
-  return watches->items[k].path;
 }
 
 void watches_destroy(Watches **watches)

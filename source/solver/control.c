@@ -17,7 +17,8 @@ static void check_control(const DeckReader *reader, void *section)
   if (!c->displacement.node && !isnan(c->direction[0]))
     node_error(reader->document, section_node(c, "direction"), reader->error,
                "direction: only of 'displacement of'; an opening counts along the line between its points");
-  if (c->end) deck_number(reader, c->end, "to", c->bond.node ? "1" : "length", NULL, &c->to);
+  const char *dimension = c->bond.node ? "1" : "length", *range = c->bond.node || c->path.node ? "(0, inf)" : NULL;
+  if (c->end) deck_number(reader, c->end, "to", dimension, range, &c->to);
 }
 
 static const Field control_fields[] = {
@@ -120,15 +121,31 @@ static int measure_displacement(Control *c, const Body *body, const DeckReader *
   return status;
 }
 
+/** Calls `one` for each intact bond that may be measured, from both its ends. */
+static void each_bond(const Control *c, void (*one)(void *context, int64_t place, const Bond *bond), void *context)
+{
+  const Family *f = &c->domain->family;
+  for (int64_t slice = 0; slice < c->domain->particles->places / SLICE; ++slice)
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        const int64_t place = slice * SLICE + lane;
+        if (!(f->intact[slot] >> lane & 1) || !c->belongs[place]) continue;
+        const Bond bond = family_bond(f, slice, slot, lane);
+        if (c->belongs[bond.neighbour]) one(context, place, &bond);
+      }
+}
+
+static void note(void *any, int64_t place, const Bond *bond)
+{
+  (void)place, (void)bond;
+  *(bool *)any = true;
+}
+
 /** What a way is measured on, or a bond is looked for in. */
 static int measure_found(Control *c, const Reference *in, const DeckReader *reader, const SectionList *selections)
 {
   Selection selection;
-  int status = BRECCIA_OK;
-  if (!(c->spec->to > 0))
-    status = node_error(reader->document, section_node(c->spec, "to"), reader->error,
-                        "to: expected a number above 0, by which the body goes on");
-  if (!status) status = selection_create(&selection, &c->domain->body, reader, selections, in);
+  int status = selection_create(&selection, &c->domain->body, reader, selections, in);
   if (status) return status;
   const bool bond = in == &c->spec->bond;
   status = make_room(c, bond ? 2 : selection.count, reader->error);
@@ -136,7 +153,14 @@ static int measure_found(Control *c, const Reference *in, const DeckReader *read
   if (!status && bond) {
     c->belongs = memory_zeroed((size_t)c->domain->particles->places, 1, "control", reader->error);
     if (!c->belongs) status = BRECCIA_FAILURE;
+    bool any = false;
     for (int64_t n = 0; n < selection.count && !status; ++n) c->belongs[selection.places[n]] = 1;
+    if (!status) each_bond(c, note, &any);
+    if (!status && !any)
+      status = node_error(reader->document, section_node(c->spec, "stretch in"), reader->error,
+                          "stretch in: no bond has both its ends among these particles (%lld); take more of the body, "
+                          "or 'all: yes'",
+                          (long long)selection.count);
   }
   selection_destroy(&selection);
   return status;
@@ -145,7 +169,7 @@ static int measure_found(Control *c, const Reference *in, const DeckReader *read
 int control_create(Control *c, const ControlSpec *spec, const Domain *domain, const DeckReader *reader,
                    const SectionList *selections)
 {
-  *c = (Control){.spec = spec, .domain = domain};
+  *c = (Control){.spec = spec, .domain = domain, .reader = reader};
   if (!spec) return BRECCIA_OK;
   if (spec->opening.count) return measure_opening(c, &domain->body, reader);
   if (spec->displacement.node) return measure_displacement(c, &domain->body, reader, selections);
@@ -208,32 +232,71 @@ static void point_along(Control *c, double *const v[3])
     for (int k = 0; k < 3; ++k) c->weight[k][n] = v[k][c->places[n]] / sqrt(sum * (double)c->count);
 }
 
-/** Lets the value be the stretch of the bond that v stretches or shortens the most. */
+typedef struct Search {
+  Control *control;
+  double *const *v;
+  double most; /* stretch by v so far */
+} Search;
+
+/** Lets the value be the stretch of a bond, if v stretches or shortens it more than those before. One that v shortens stretches while the loads fall: a
+ *  stretched one of a crack that opens does; one that is shorter than it was would only do so for loads that turn round. */
+static void consider(void *context, int64_t place, const Bond *bond)
+{
+  Search *s = context;
+  Control *c = s->control;
+  double *const *u = c->domain->particles->displacement;
+  double along[3], stretch = 0, now = 0;
+  for (int k = 0; k < 3; ++k) {
+    along[k] = bond->xi[k] / (bond->length * bond->length);
+    stretch += along[k] * (s->v[k][bond->neighbour] - s->v[k][place]);
+    now += along[k] * (u[k][bond->neighbour] - u[k][place]);
+  }
+  if (!(fabs(stretch) > s->most) || (stretch < 0 && now <= 0)) return;
+  s->most = fabs(stretch);
+  c->places[0] = (int32_t)place;
+  c->places[1] = bond->neighbour;
+  for (int k = 0; k < 3; ++k) {
+    c->weight[k][0] = -along[k];
+    c->weight[k][1] = along[k];
+  }
+}
+
+static void consider_broken(Search *s)
+{
+  const Domain *d = s->control->domain;
+  const Particles *p = d->particles;
+  for (int64_t n = 0; n < d->broken_count; ++n) {
+    const int32_t a = p->place_of[d->broken[n].a], b = p->place_of[d->broken[n].b];
+    if (!s->control->belongs[a] || !s->control->belongs[b]) continue;
+    Bond bond = {.neighbour = b, .length = particles_distance(p, a, b)};
+    for (int k = 0; k < 3; ++k) bond.xi[k] = p->position[k][b] - p->position[k][a];
+    consider(s, a, &bond);
+  }
+}
+
+/** Largest component. */
+static double largest_of(const Particles *p, double *const v[3])
+{
+  double most = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) most = fmax(most, fabs(v[k][i]));
+  return most;
+}
+
+/** Lets the value be the stretch of the bond that v stretches or shortens the most. Where the body is torn, v moves its parts as they are, and what
+ *  bonds show of it are roundings: then a broken one is taken, across which the parts go on to open. */
 static void take_bond(Control *c, double *const v[3])
 {
-  const Family *f = &c->domain->family;
-  double most = 0;
-  for (int64_t slice = 0; slice < c->domain->particles->places / SLICE; ++slice)
-    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
-      for (int lane = 0; lane < SLICE; ++lane) {
-        const int64_t place = slice * SLICE + lane;
-        if (!(f->intact[slot] >> lane & 1) || !c->belongs[place]) continue;
-        const Bond bond = family_bond(f, slice, slot, lane);
-        if (!c->belongs[bond.neighbour]) continue;
-        double along[3], stretch = 0;
-        for (int k = 0; k < 3; ++k) {
-          along[k] = bond.xi[k] / (bond.length * bond.length);
-          stretch += along[k] * (v[k][bond.neighbour] - v[k][place]);
-        }
-        if (!(fabs(stretch) > most)) continue;
-        most = fabs(stretch);
-        c->places[0] = (int32_t)place;
-        c->places[1] = bond.neighbour;
-        for (int k = 0; k < 3; ++k) {
-          c->weight[k][0] = -along[k];
-          c->weight[k][1] = along[k];
-        }
-      }
+  const double roundings = 1e-6; /* of mean strains */
+  const Particles *p = c->domain->particles;
+  Search search = {c, v, 0};
+  double low[3], high[3], size = 0;
+  each_bond(c, consider, &search);
+  particles_bounds(p, low, high);
+  for (int k = 0; k < 3; ++k) size = fmax(size, high[k] - low[k]);
+  if (search.most * size > roundings * largest_of(p, v)) return;
+  search.most = 0;
+  consider_broken(&search);
 }
 
 static bool follows_path(const Control *c)
@@ -241,36 +304,60 @@ static bool follows_path(const Control *c)
   return c->spec->path.node;
 }
 
-/** Whether an increment begins with what is measured yet to be found. */
-static bool is_open(const Control *c)
-{
-  return c->spec->bond.node || (follows_path(c) && !c->on_way);
-}
-
 void control_begin(Control *c)
 {
   if (!c->spec) return;
   c->on_way = 0;
+  c->exerted = c->exerted_most = 0;
   c->from = control_shown(c);
 }
 
 double control_target(Control *c, double before, double after)
 {
   const double to = c->spec->to;
-  for (int k = 0; k < 3 && is_open(c); ++k) memset(c->weight[k], 0, sizeof(double) * (size_t)c->count);
+  c->open = c->spec->bond.node ? after > before : follows_path(c) && !c->on_way;
+  for (int k = 0; k < 3 && c->open; ++k) memset(c->weight[k], 0, sizeof(double) * (size_t)c->count);
   const double now = control_shown(c);
   c->step = follows_path(c) || c->spec->bond.node ? to * (after - before) : c->from + (to - c->from) * after - now;
   return now + c->step;
 }
 
-double control_aim(Control *c, double *const pulled[3])
+double control_aim(Control *c, double *const motion[3])
 {
-  if (!is_open(c)) return 0;
+  if (!c->open) return 0;
   if (follows_path(c))
-    point_along(c, pulled);
+    point_along(c, motion);
   else
-    take_bond(c, pulled);
+    take_bond(c, motion);
   return control_shown(c);
+}
+
+/** The key that says what is measured. */
+static const char *measure_key(const Control *c)
+{
+  const ControlSpec *s = c->spec;
+  return s->opening.count       ? "opening between"
+         : s->displacement.node ? "displacement of"
+         : s->bond.node         ? "stretch in"
+                                : "arc length of";
+}
+
+int control_check_answer(const Control *c, double *const motion[3], Error *error)
+{
+  const double least = 1e-7; /* of the largest motion: the longest beam that bends stretches by a thousandth of it */
+  const double most = largest_of(c->domain->particles, motion);
+  double weights = 0;
+  for (int64_t n = 0; n < c->count; ++n)
+    for (int k = 0; k < 3; ++k) weights += fabs(c->weight[k][n]);
+  if (most == 0)
+    return node_error(c->reader->document, c->spec->head.node, error,
+                      "control: the controlled loads move nothing: all that they act on is held; let them act on "
+                      "particles that can move");
+  if (!isfinite(most) || !(fabs(control_value(c, motion)) < least * weights * most)) return BRECCIA_OK;
+  return node_error(c->reader->document, section_node(c->spec, measure_key(c)), error,
+                    "%s: it does not change with the controlled loads, so that no factor of theirs can bring it about; "
+                    "take what they move, in the direction in which they do",
+                    measure_key(c));
 }
 
 void control_add(const Loading *loading, double change)
@@ -283,11 +370,41 @@ void control_accept(Control *c, const Loading *loading, double *const moved[3])
 {
   for (int l = 0; l < loading->count; ++l) {
     History *h = &loading->loads[l].history;
-    if (is_controlled(loading, &loading->loads[l])) h->most = fmax(h->most, fabs(h->found));
+    if (is_controlled(loading, &loading->loads[l]) && fabs(h->found) > fabs(h->most)) h->most = h->found;
   }
   if (!follows_path(c) || c->step == 0) return; /* bonds have broken on the way, which goes on */
   point_along(c, moved);
   ++c->on_way;
+}
+
+void control_note_exerted(Control *c, double force)
+{
+  c->exerted = force;
+  c->exerted_most = fmax(c->exerted_most, force);
+}
+
+bool control_is_spent(const Control *c)
+{
+  const double share = 1e-3;
+  return c->spec && c->spec->bond.node && c->domain->broken_count && c->exerted <= share * c->exerted_most;
+}
+
+void control_tell_torn(const Control *c, double time, Text *warning)
+{
+  const Domain *d = c->domain;
+  const Particles *p = d->particles;
+  const BrokenBond *bond = &d->broken[d->broken_count - 1];
+  const int32_t a = p->place_of[bond->a], b = p->place_of[bond->b];
+  char where[WHERE_SIZE];
+  double middle[3];
+  for (int k = 0; k < 3; ++k) middle[k] = (p->position[k][a] + p->position[k][b]) / 2;
+  node_where(c->reader->document, section_node(c->spec, "stretch in"), where, sizeof where);
+  text_add(
+      warning,
+      "%s%s: warning: stretch in: the body is torn at time %.6g, its last bond near [%.4g, %.4g, %.4g], and the "
+      "controlled loads exert less than a thousandth of their most: the stage ends here; to draw the parts further, "
+      "control an 'opening between' them",
+      warning->length ? "\n" : "", where, time, middle[0], middle[1], middle[2]);
 }
 
 void control_state(Control *c, StateList *list)
@@ -295,6 +412,10 @@ void control_state(Control *c, StateList *list)
   static const char *const axes[] = {"x", "y", "z"};
   if (!c->spec) return;
   state_add_number(list, "control at the begin", "length", STATE_COMMITTED, &c->from);
+  if (c->spec->bond.node) {
+    state_add_number(list, "controlled force", "force", STATE_COMMITTED, &c->exerted);
+    state_add_number(list, "controlled force at most", "force", STATE_COMMITTED, &c->exerted_most);
+  }
   if (!follows_path(c)) return;
   state_add_count(list, "increments of the path", STATE_COMMITTED, &c->on_way);
   for (int k = 0; k < 3; ++k)

@@ -26,13 +26,17 @@ extern const Section control_section;
 typedef struct Control {
   const ControlSpec *spec;
   const Domain *domain;
+  const DeckReader *reader;
   int32_t *places;   /* [count]; owned */
   double *weight[3]; /* [count]; owned; zeros as long as it is to be found */
   int64_t count;
   uint8_t *belongs; /* [places] whose bonds are looked at; owned; NULL: another measure */
   double from;      /* value at the begin of the stage */
   double step;      /* by how much it changes in the increment */
+  bool open;        /* what is measured is yet to be found in the increment; while bonds break in it, it stays */
   int64_t on_way;   /* increments that the path has taken */
+  double exerted,
+      exerted_most; /* by the controlled loads, with a crack that is followed by its stretch: now, and the most so far */
 } Control;
 
 /** @param[in] spec  NULL: no control; `control` is zero then. Destroy it in any case. */
@@ -49,9 +53,12 @@ void control_begin(Control *control);
  *  @param[in] before, after  parts of the stage that have gone at its begin and at its end */
 double control_target(Control *control, double before, double after);
 /** Finds what is measured, if it is yet to be found.
- *  @param[in] pulled  displacements where the factor of controlled loads grows by 1
+ *  @param[in] motion  displacements where the factor of controlled loads grows by 1
  *  @return by how much the value, and so its target, is another now */
-double control_aim(Control *control, double *const pulled[3]);
+double control_aim(Control *control, double *const motion[3]);
+
+/** Says so where the controlled loads do not change what is measured. @param[in] motion  as above */
+int control_check_answer(const Control *control, double *const motion[3], Error *error);
 
 /** Its value at a vector over places. */
 double control_value(const Control *control, double *const v[3]);
@@ -64,6 +71,13 @@ void control_add(const Loading *loading, double change);
 /** The body is at rest: notes how far these have been, and the way of a path.
  *  @param[in] moved  changes of displacements in the increment */
 void control_accept(Control *control, const Loading *loading, double *const moved[3]);
+
+/** Notes what the controlled loads exert at the end of an increment. */
+void control_note_exerted(Control *control, double force);
+/** Whether a crack that is followed by its stretch has torn the body: next to nothing is left of what they exerted. */
+bool control_is_spent(const Control *control);
+/** That the stage ends because of this. */
+void control_tell_torn(const Control *control, double time, Text *warning);
 
 /** Rows of what it keeps from one increment to the next. */
 void control_state(Control *control, StateList *list);

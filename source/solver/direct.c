@@ -256,7 +256,8 @@ static LinearForesight foresee(const LinearSolver *s)
                            .bytes = unknowns * (24 * row + 12 * pow(row, 2.0 / 3) * cbrt(unknowns))};
 }
 
-const LinearType direct_linear = {.suits = suits,
+const LinearType direct_linear = {.words = "factors of the stiffness",
+                                  .suits = suits,
                                   .create = create,
                                   .destroy = destroy,
                                   .prepare = prepare,

@@ -164,10 +164,10 @@ static void list_state(Solver *run, StateList *list)
   const int64_t places = s->domain->particles->places;
   state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration, places);
   state_add_vector(list, "damping force", "force", STATE_COMMITTED, s->drag, places);
-  state_add_number(list, "next step", "time", STATE_COMMITTED, &s->next);
+  state_add_number(list, "next step", "time", STATE_LEARNED, &s->next);
   newton_state(&s->newton, list);
   state_add_number(list, "largest displacements", "length", STATE_COMMITTED, &s->shift);
-  state_add_count(list, "cuts of steps", STATE_COMMITTED, &s->cuts);
+  state_add_count(list, "cuts of steps", STATE_LEARNED, &s->cuts);
 }
 
 static void destroy(Solver *run)
@@ -289,7 +289,7 @@ static void describe(const Solver *run, const char *time, Text *text)
   describe_stage(s->spec, time, text);
   text_add(text, " (%.3g times the stable step of explicit dynamics), for %lld unknowns, by %s",
            implicit_longest(s->spec) / s->stable, (long long)unknowns_count(&s->newton.linear.unknowns, none),
-           linear_solver_name(&s->newton.linear));
+           linear_solver_words(&s->newton.linear));
 }
 
 /** Accelerations that are kept are those of free particles: what is prescribed has its own. */

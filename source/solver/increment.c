@@ -111,8 +111,10 @@ static void accept(void *context)
 void increment_accept(Increment *i, double *const moved[3])
 {
   Domain *d = i->domain;
+  double most = 0;
   for (int k = 0; k < 3; ++k)
-    for (int64_t place = 0; place < d->particles->places; ++place) i->moved = fmax(i->moved, fabs(moved[k][place]));
+    for (int64_t place = 0; place < d->particles->places; ++place) most = fmax(most, fabs(moved[k][place]));
+  i->moved += most;
   team_run(accept, d);
   domain_commit_points(d);
   forces_commit(&d->forces);

@@ -8,7 +8,7 @@ typedef struct Increment {
   Domain *domain;
   StateCopy before;
   double *internal[3], *external[3]; /* forces per volume of bonds and of loads at its beginning */
-  double moved;                      /* largest component of any motion since bonds were judged */
+  double moved; /* sum over the increments since bonds were judged of the largest component of any motion in each */
 } Increment;
 
 /** Refuses what solvers that iterate have no place for.

@@ -64,6 +64,11 @@ bool ledger_is_doubtful(const Ledger *l)
   return l->trapped || l->unsound_steps > 0 || (l->fast_steps > 0 && l->fast_steps <= LASTING_FAST);
 }
 
+void ledger_note_paid(Ledger *l)
+{
+  l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
+}
+
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.
  *  The second bound is wide, because a step close to the stable one hardly follows the shortest waves. Works that have grown beyond all numbers
  *  say nothing, and speeds explode long before; so they are looked at by themselves. */
@@ -71,7 +76,6 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
   const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
   const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_dissipated(&d->forces);
-  l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
   const bool sound = isfinite(l->paid) && internal >= -most_given * l->paid && fracture >= -most_given * l->paid &&
                      l->between <= most_unexplained * l->paid;
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;

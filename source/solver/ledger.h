@@ -46,7 +46,10 @@ Energy ledger_energy(const Ledger *ledger, Domain *domain);
 /** Speed of the fastest waves of the materials of a body, as they are unharmed. */
 double ledger_wave_speed(const Domain *domain);
 
-/** After a step: fails if energy has come from nothing for some steps: bonds gave back more than they had received, or no work explains
+/** After a step: what loads and motions have put in so far. */
+void ledger_note_paid(Ledger *ledger);
+
+/** After a step, with what was paid noted: fails if energy has come from nothing for some steps: bonds gave back more than they had received, or no work explains
  *  the speeds; or if particles have become faster than anything explains (docs/theory.md 7). */
 int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, Error *error);
 

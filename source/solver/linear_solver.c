@@ -35,6 +35,11 @@ const char *linear_solver_name(const LinearSolver *s)
   return words[k + 1];
 }
 
+const char *linear_solver_words(const LinearSolver *s)
+{
+  return s->type->words ? s->type->words : linear_solver_name(s);
+}
+
 int linear_solver_create(LinearSolver *s, const char *word, Error *error)
 {
   s->is_free = !strcmp(word, "automatic");
@@ -60,7 +65,7 @@ LinearForesight linear_solver_foresee(const LinearSolver *s)
 
 void linear_solver_state(LinearSolver *s, StateList *list)
 {
-  state_add_count(list, "ways of equations given up", STATE_COMMITTED, &s->given_up);
+  state_add_count(list, "ways of equations given up", STATE_LEARNED, &s->given_up);
 }
 
 /** Takes the way that the state asks for. @return status of creating it */
@@ -87,7 +92,7 @@ static int take_instead(LinearSolver *s, double *const f[3], double *const v[3],
 {
   const LinearRecord before = *record;
   *record = (LinearRecord){0};
-  for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
+  vectors_clear(v, s->domain->particles->places);
   ++s->given_up;
   if (linear_solver_prepare(s, error) || s->type->solve(s, f, v, tolerance, record, error)) return BRECCIA_FAILURE;
   record->iterations += before.iterations;

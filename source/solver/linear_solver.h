@@ -23,6 +23,7 @@ typedef struct LinearForesight {
 /** A way to solve; the list is in linear_types.h. */
 typedef struct LinearType LinearType;
 struct LinearType {
+  const char *words;         /* what equations are solved by, where the key of the deck does not say it; or NULL */
   const LinearType *instead; /* where the deck does not say, and K turns out not to suit this one; or NULL */
   /** How well it suits the body: the way with the highest number is taken where the deck does not say; 0: not at all. */
   double (*suits)(const LinearSolver *solver);
@@ -75,7 +76,9 @@ void linear_solver_apply(LinearSolver *solver, double *const v[3], double *const
 /** What the way that is taken needs. */
 LinearForesight linear_solver_foresee(const LinearSolver *solver);
 
-/** Name of the way that is taken. */
+/** Name of the way that is taken, as in a deck. */
 const char *linear_solver_name(const LinearSolver *solver);
+/** The same as words that can stand behind "by". */
+const char *linear_solver_words(const LinearSolver *solver);
 
 #endif

@@ -68,11 +68,11 @@ static int say_inexact(double residual, Error *error)
 
 static int solve(Search *s, const double *column, double *answer, Error *error)
 {
-  /* Iterations may come to a stand before the first; beyond the second nothing can be found. */
+  /* Iterations may not come as far as the first; beyond the second nothing can be found. */
   const double accuracy = 1e-11, enough = 1e-6;
   LinearRecord record;
   unpack(s, column, s->from);
-  for (int k = 0; k < 3; ++k) memset(s->to[k], 0, sizeof(double) * (size_t)s->domain->particles->places);
+  vectors_clear(s->to, s->domain->particles->places);
   if (linear_solver_solve(&s->linear, s->from, s->to, accuracy, &record, error)) return BRECCIA_FAILURE;
   if (!(record.residual <= enough)) return say_inexact(record.residual, error);
   unknowns_clear_rest(&s->linear.unknowns, s->to);
@@ -201,14 +201,39 @@ static double find_residual(Search *s, const double *column, double square)
   return sqrt(left / whole);
 }
 
+/** Sum of mass u v over the body. */
+static double mass_product(const Search *s, const Mode *a, const Mode *b)
+{
+  const Particles *p = s->domain->particles;
+  double sum = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    if (body_outside(&s->domain->body, n)) continue;
+    const int32_t i = p->place_of[n];
+    for (int k = 0; k < 3; ++k) sum += p->density[i] * p->volume[i] * a->displacement[k][i] * b->displacement[k][i];
+  }
+  return sum;
+}
+
+/** Of modes of about one frequency every mixture is one: takes that which has nothing of those before. Lanczos' iteration gives it by itself, Arnoldi's
+ *  any other. */
+static void part_from_equals(const Search *s, double square, const double *squares, const Modes *modes, int n)
+{
+  const double equal = 1e-3;
+  for (int m = 0; m < n && !s->symmetric; ++m) {
+    if (fabs(square - squares[m]) > equal * (fabs(square) + s->linear.mass_factor)) continue;
+    const double part =
+        mass_product(s, &modes->modes[n], &modes->modes[m]) / mass_product(s, &modes->modes[m], &modes->modes[m]);
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < s->domain->particles->places; ++i)
+        modes->modes[n].displacement[k][i] -= part * modes->modes[m].displacement[k][i];
+  }
+}
+
 /** Mirror images outside the body follow it, and are no part of its mass. */
-static int take_mode(const Search *s, int from, Mode *mode, Error *error)
+static void finish_mode(const Search *s, Mode *mode)
 {
   const Particles *p = s->domain->particles;
   double moved[3] = {0}, mass = 0, squares = 0, largest = 0;
-  if (!vectors_make(mode->displacement, p->places, "modes", error)) return BRECCIA_FAILURE;
-  unpack(s, s->columns + (size_t)s->size * (size_t)from, mode->displacement);
-  unknowns_spread(&s->linear.unknowns, NAN, mode->displacement);
   for (int64_t n = 0; n < p->count; ++n) {
     if (body_outside(&s->domain->body, n)) continue;
     const int32_t i = p->place_of[n];
@@ -225,11 +250,26 @@ static int take_mode(const Search *s, int from, Mode *mode, Error *error)
     mode->share[k] = squares > 0 ? moved[k] * moved[k] / (mass * squares) : 0;
     for (int64_t i = 0; i < p->places && largest != 0; ++i) mode->displacement[k][i] /= largest;
   }
+}
+
+static int take_mode(const Search *s, int from, Mode *mode, Error *error)
+{
+  if (!vectors_make(mode->displacement, s->domain->particles->places, "modes", error)) return BRECCIA_FAILURE;
+  unpack(s, s->columns + (size_t)s->size * (size_t)from, mode->displacement);
+  unknowns_spread(&s->linear.unknowns, NAN, mode->displacement);
   return BRECCIA_OK;
 }
 
-/** @param[in] little  omega squared below which nothing is bent */
-static int take_modes(Search *s, double little, Modes *modes, Error *error)
+/** Omega squared up to which a mode cannot be told from one of none: so far that of some mode may lie from what was found, which leaves a residual,
+ *  and ten times as far where masses or stiffness are uneven. */
+static double hidden_square(const Search *s, double square, double residual)
+{
+  const double roundings = 1e-12; /* of the shift, which was taken off */
+  return fmax(10 * residual * fabs(square + s->linear.mass_factor), roundings * s->linear.mass_factor);
+}
+
+/** @param[in] squares  [wanted] room for omega squared of each */
+static int take_modes(Search *s, double *squares, Modes *modes, Error *error)
 {
   modes->modes = memory_zeroed((size_t)s->wanted, sizeof *modes->modes, "modes", error);
   if (!modes->modes) return BRECCIA_FAILURE;
@@ -241,17 +281,22 @@ static int take_modes(Search *s, double little, Modes *modes, Error *error)
       if (s->values[k] < s->values[from]) from = k;
     const double square = s->values[from];
     s->values[from] = INFINITY;
-    if (square < -little)
-      return error_add(error, BRECCIA_FAILURE, "the body gives way by itself: a mode has a negative stiffness");
+    squares[n] = square;
     if (fabs(s->imaginary[from]) > pair * (fabs(square) + s->linear.mass_factor))
       return error_add(error, BRECCIA_FAILURE,
                        "the modes could not be found: forces of mirror images outside a face join two of them; hold "
                        "layers by 'displacement' in place of 'support: {held: all}'");
     const double residual = find_residual(s, s->columns + (size_t)s->size * (size_t)from, square), enough = 1e-3;
     if (!(residual <= enough)) return say_inexact(residual, error);
-    modes->modes[n].frequency = square > little ? sqrt(square) / (2 * acos(-1)) : 0;
-    modes->rigid += square <= little;
+    const double hidden = hidden_square(s, square, residual);
+    if (square < -hidden)
+      return error_add(error, BRECCIA_FAILURE, "the body gives way by itself: a mode has a negative stiffness");
+    const bool rigid = n == modes->rigid && square <= hidden;
+    modes->modes[n].frequency = rigid ? 0 : sqrt(fmax(0, square)) / (2 * acos(-1));
+    modes->rigid += rigid;
     if (take_mode(s, from, &modes->modes[n], error)) return BRECCIA_FAILURE;
+    part_from_equals(s, square, squares, modes, n);
+    finish_mode(s, &modes->modes[n]);
   }
   return BRECCIA_OK;
 }
@@ -275,7 +320,7 @@ static double wave_square(const Domain *d)
 
 int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error *error)
 {
-  const double shift = 1e-2 * wave_square(d), little = 1e-7 * wave_square(d);
+  const double shift = 1e-2 * wave_square(d);
   Search s = {.domain = d,
               .axes = d->body.dimensions,
               .wanted = count,
@@ -303,7 +348,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
     library_threads_allow(before);
     pthread_mutex_unlock(&arpack);
   }
-  if (!status) status = take_modes(&s, little, modes, error);
+  if (!status) status = take_modes(&s, s.projected, modes, error);
   destroy(&s);
   domain_evaluate(d);
   return status;

@@ -1,4 +1,5 @@
 #include "solver/newton.h"
+#include "solver/vectors.h"
 
 #include "base/team.h"
 #include <math.h>
@@ -18,8 +19,8 @@ int newton_create(Newton *n, Error *error)
     failed |= !(n->moved[k] = places_array(places, "increments", error));
   }
   for (int k = 0; k < 3 && n->control; ++k) {
-    failed |= !(n->pull[k] = places_array(places, "controlled loads", error));
-    failed |= !(n->pulled[k] = places_array(places, "controlled loads", error));
+    failed |= !(n->unit_force[k] = places_array(places, "controlled loads", error));
+    failed |= !(n->unit_motion[k] = places_array(places, "controlled loads", error));
   }
   if (failed) return BRECCIA_FAILURE;
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
@@ -31,8 +32,8 @@ void newton_destroy(Newton *n)
     places_free(&n->force[k]);
     places_free(&n->change[k]);
     places_free(&n->moved[k]);
-    places_free(&n->pull[k]);
-    places_free(&n->pulled[k]);
+    places_free(&n->unit_force[k]);
+    places_free(&n->unit_motion[k]);
   }
   linear_solver_destroy(&n->linear);
 }
@@ -89,7 +90,7 @@ static bool add_motions(Newton *n, double time)
 {
   const Particles *p = n->domain->particles;
   const Unknowns *u = &n->linear.unknowns;
-  for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)p->places);
+  vectors_clear(n->change, p->places);
   unknowns_spread(u, time, n->change);
   if (unknowns_product(u, n->change, n->change) == 0) return false;
   /* Forces before they are gathered: those of the motions belong to the same sum. */
@@ -103,64 +104,15 @@ static bool add_motions(Newton *n, double time)
   return true;
 }
 
-static void apply_controlled(void *context)
-{
-  const Newton *n = context;
-  loading_apply_controlled(n->loading, n->domain->particles);
-}
-
-/** Forces on the unknowns where the factor of controlled loads grows by 1. Leaves zeros in `pulled`. */
-static void find_pull(Newton *n)
-{
-  double *const *room = n->pulled;
-  const Particles *p = n->domain->particles;
-  const Unknowns *u = &n->linear.unknowns;
-  for (int k = 0; k < 3; ++k) memset(room[k], 0, sizeof(double) * (size_t)p->places);
-  unknowns_spread_pull(u, room);
-  domain_linear_step(n->domain, room, n->pull);
-  loading_change(n->loading, p, room, n->pull);
-  for (int k = 0; k < 3; ++k) memcpy(room[k], p->external[k], sizeof(double) * (size_t)p->places);
-  team_run(apply_controlled, n);
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      n->pull[k][i] = p->volume[i] * (n->pull[k][i] + p->external[k][i]);
-      p->external[k][i] = room[k][i];
-      room[k][i] = 0;
-    }
-  unknowns_gather(u, n->pull);
-}
-
-/** Adds to the change that brings forces into balance what takes the measure of the control to its target, and finds the factor of the loads for it. */
-static NewtonOutcome follow_control(Newton *n, double accuracy, double *work, Error *error)
-{
-  const Particles *p = n->domain->particles;
-  LinearRecord linear;
-  find_pull(n);
-  if (linear_solver_solve(&n->linear, n->pull, n->pulled, accuracy, &linear, error)) return NEWTON_FAILED;
-  n->products += linear.iterations;
-  n->indefinite |= linear.indefinite;
-  unknowns_spread_pull(&n->linear.unknowns, n->pulled);
-  if (n->iterations == 1) n->target += control_aim(n->control, n->pulled);
-  const double grows = control_value(n->control, n->pulled);
-  const double more = (n->target - control_shown(n->control) - control_value(n->control, n->change)) / grows;
-  if (!isfinite(more)) return NEWTON_SINGULAR;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) n->change[k][i] += more * n->pulled[k][i];
-  n->more = more;
-  *work = unknowns_product(&n->linear.unknowns, n->change, n->force) +
-          more * unknowns_product(&n->linear.unknowns, n->change, n->pull);
-  return NEWTON_CONVERGED;
-}
-
 void newton_state(Newton *n, StateList *list)
 {
   state_add_number(list, "exerted force", "force", STATE_COMMITTED, &n->reference);
   if (!n->relaxes) linear_solver_state(&n->linear, list);
   if (!n->beside) return;
-  state_add_number(list, "stiffness factored", "1", STATE_COMMITTED, &n->factored_share);
-  state_add_number(list, "mass factored", "1", STATE_COMMITTED, &n->factored_mass);
-  state_add_count(list, "broken bonds when factored", STATE_COMMITTED, &n->factored_broken);
-  state_add_count(list, "stiffness follows", STATE_COMMITTED, &n->follows);
+  state_add_number(list, "stiffness factored", "1", STATE_LEARNED, &n->factored_share);
+  state_add_number(list, "mass factored", "1", STATE_LEARNED, &n->factored_mass);
+  state_add_count(list, "broken bonds when factored", STATE_LEARNED, &n->factored_broken);
+  state_add_count(list, "stiffness follows", STATE_LEARNED, &n->follows);
 }
 
 static bool keeps_factors(const Newton *n)
@@ -184,7 +136,7 @@ static int prepare(Newton *n, Error *error)
 {
   LinearSolver *l = &n->linear;
   const Domain *d = n->domain;
-  for (int k = 0; k < 3; ++k) memset(n->change[k], 0, sizeof(double) * (size_t)d->particles->places);
+  vectors_clear(n->change, d->particles->places);
   if (!keeps_factors(n)) {
     n->factored = false;
     return linear_solver_prepare(l, error);
@@ -219,7 +171,7 @@ static void move(Newton *n, double share)
       p->displacement[k][i] += share * n->change[k][i];
       n->moved[k][i] += share * n->change[k][i];
     }
-  if (n->control) control_add(n->loading, share * n->more);
+  if (n->control) control_add(n->loading, share * n->factor_change);
 }
 
 /** How closely the next linear equations are to be solved: no closer than what their linearity is worth, but for bodies that are elastic. */
@@ -322,13 +274,13 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
   n->indefinite = false;
-  for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
+  vectors_clear(n->moved, p->places);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
   const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
   double before = 0, first_work = 0;
-  for (int k = 0; k < 3; ++k) memset(n->moved[k], 0, sizeof(double) * (size_t)p->places);
+  vectors_clear(n->moved, p->places);
   double force = size_of(n, n->force);
   n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
   if (!moves && (force == 0 || force <= n->spec->residual * n->exerted)) {
@@ -356,7 +308,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     double start = unknowns_product(&n->linear.unknowns, n->change, n->force);
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
-    if (n->control && (outcome = follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
+    if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
     double share = 1, work;
     move(n, 1);
     outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);

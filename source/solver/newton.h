@@ -82,10 +82,9 @@ typedef struct Newton {
   double *force[3];  /* out of balance, on the unknowns */
   double *change[3]; /* of displacements in an iteration */
   double *moved[3];  /* in all iterations of an increment */
-  double more;       /* change of that factor in an iteration */
-  double *pull[3],
-      *pulled
-          [3]; /* forces where the factor of controlled loads grows by 1, and displacements from them; with control only */
+  /* With control only: */
+  double factor_change;                   /* of controlled loads, in an iteration */
+  double *unit_force[3], *unit_motion[3]; /* where that factor grows by 1: forces, and displacements from them */
   double reference; /* the most that loads and supports have exerted at any equilibrium of the stage so far */
   double exerted;   /* the same, or what they exert now if that is more */
   /* In dynamics of elastic bodies factors and preconditioners of their stiffness at the start, without displacements, serve for all steps of one length,
@@ -111,6 +110,16 @@ NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
+
+/** Adds to the change that brings forces into balance what takes the measure of the control to its target, and finds the factor of the loads for it
+ *  (newton_control.c). @param[out] work  of the forces out of balance along the change */
+NewtonOutcome newton_follow_control(Newton *newton, double accuracy, double *work, Error *error);
+
+/** Force that controlled loads exert on the body as it is: the sum of the sizes of their forces, and of what their motions take, each as a whole. */
+double newton_controlled_force(Newton *newton);
+
+/** Before the first step: says so where the controlled loads do nothing to what is measured (newton_control.c). */
+int newton_check_control(Newton *newton, Error *error);
 
 /** Tries what an increment will take (newton_cost.c). @param[out] cost  of one, and memory */
 int newton_measure(Newton *newton, StepCost *cost, Error *error);

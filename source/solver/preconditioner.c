@@ -43,7 +43,7 @@ typedef struct Probing {
   int probe;
 } Probing;
 
-static void sow(void *context, int64_t b)
+static void fill_with_signs(void *context, int64_t b)
 {
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
@@ -51,7 +51,7 @@ static void sow(void *context, int64_t b)
     for (int k = 0; k < 3; ++k) p->v[k][i] = p->solver->domain->particles->number[i] < 0 ? 0 : sign(p->probe, k, i);
 }
 
-static void reap(void *context, int64_t b)
+static void add_products(void *context, int64_t b)
 {
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
@@ -78,10 +78,10 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3]
   memset(m->diagonal, 0, sizeof(double) * (size_t)places);
   for (int probe = 0; probe < PROBES; ++probe) {
     Probing p = {s, v, kv, m->diagonal, probe};
-    team_each(d->batch_count, sow, &p);
+    team_each(d->batch_count, fill_with_signs, &p);
     linear_solver_apply(s, v, kv);
     unknowns_clear_rest(&s->unknowns, v);
-    team_each(d->batch_count, reap, &p);
+    team_each(d->batch_count, add_products, &p);
     for (int64_t i = 0; i < places && probe < 2; ++i)
       for (int k = 0; k < 3; ++k) cross[probe] += kv[k][i] * sign(1 - probe, k, i);
   }

@@ -27,6 +27,67 @@ static void add_force(Wrench *w, const Particles *p, int32_t i, const double for
   }
 }
 
+/* ---- several supports that mirror ----
+ *
+ * Images of different supports exert forces on each other, which are nothing to the body: of each support counts what its images do to particles inside.
+ * Images in a corner, behind two faces, belong to each along its own axis; by symmetry that is the whole of it where faces are held across. */
+
+/** Which support's the image is along an axis: of those behind whose faces it stands the one of that axis, or else its own. */
+static const LoadSpec *support_along(const Body *body, int64_t n, int axis)
+{
+  for (int64_t m = n; body_outside(body, m); m = body->image_of[m])
+    if (body->margins.items[body->margin_of[m]].axis == axis) return body->margins.items[body->margin_of[m]].owner;
+  return body->margins.items[body->margin_of[n]].owner;
+}
+
+/** Force on an image of the particles inside to which it has bonds. */
+static void find_pull(const Domain *d, int32_t i, double pull[3])
+{
+  const Particles *p = d->particles;
+  const int64_t slice = i / SLICE;
+  const int lane = i % SLICE;
+  for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot) {
+    if (!(d->family.intact[slot] >> lane & 1)) continue;
+    const int32_t other = family_bond(&d->family, slice, slot, lane).neighbour;
+    if (body_outside(&d->body, p->number[other])) continue;
+    double force[3];
+    domain_bond_force(d, slice, slot, lane, force);
+    for (int k = 0; k < 3; ++k) pull[k] += force[k] * p->volume[i] * p->volume[other];
+  }
+}
+
+static void add_images(Wrench *sum, const Domain *d, const char *load)
+{
+  for (int64_t n = 0; n < d->particles->count; ++n) {
+    if (!body_outside(&d->body, n)) continue;
+    bool counts[3];
+    for (int k = 0; k < 3; ++k) {
+      const LoadSpec *support = support_along(&d->body, n, k);
+      counts[k] = support->name && !strcmp(support->name, load);
+    }
+    if (!counts[0] && !counts[1] && !counts[2]) continue;
+    double pull[3] = {0};
+    find_pull(d, d->particles->place_of[n], pull);
+    for (int k = 0; k < 3; ++k) pull[k] = counts[k] ? -pull[k] : 0;
+    add_force(sum, d->particles, d->particles->place_of[n], pull);
+  }
+}
+
+/** Whether a load of a name is a support that mirrors, and another load is one, too. */
+static bool is_one_of_several(const Loading *loading, const char *load)
+{
+  bool own = false, others = false;
+  for (int c = 0; load && c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (!constraint->images) continue;
+    const char *name = constraint->load->spec->name;
+    const bool named = name && !strcmp(name, load);
+    own |= named;
+    others |= !named;
+  }
+  return own && others;
+}
+
 typedef struct Summing {
   double *const *force;
   const Solver *solver;
@@ -50,8 +111,11 @@ static void note_row(const Constraint *c, int64_t n, void *context)
   const int32_t i = c->load->selection.places[n];
   for (int k = 0; k < 3; ++k) s->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
   if (!counts(s, c, i)) return;
+  const int32_t other = c->images ? c->images[n] : i; /* the face is half way to what is mirrored */
+  if (other != i && body_outside(&s->solver->domain->body, p->number[other])) return; /* in a corner */
   ++s->rows;
-  for (int k = 0; k < 3; ++k) s->middle[k] += p->position[k][i] + p->displacement[k][i];
+  for (int k = 0; k < 3; ++k)
+    s->middle[k] += (p->position[k][i] + p->displacement[k][i] + p->position[k][other] + p->displacement[k][other]) / 2;
 }
 
 /** What balances a particle in one direction is taken off there, so that another row of that direction finds nothing any more. */
@@ -74,7 +138,10 @@ Wrench reactions_sum(const Reactions *r, const Solver *solver, const uint8_t *on
   Summing s = {.force = r->force, .solver = solver, .on = on, .load = load};
   unknowns_each_row(&u, note_row, &s);
   for (int k = 0; k < 3; ++k) s.sum.about[k] = about ? about[k] : s.rows ? s.middle[k] / (double)s.rows : 0;
-  unknowns_each_row(&u, add_row, &s);
+  if (is_one_of_several(solver->loading, load))
+    add_images(&s.sum, solver->domain, load);
+  else
+    unknowns_each_row(&u, add_row, &s);
   return s.sum;
 }
 

@@ -22,8 +22,10 @@ void reactions_destroy(Reactions *reactions);
 
 /** Sum of the reactions in the state held.
  *  @param[in] on     [places] 1: on these particles; NULL: on all
- *  @param[in] load   name of the load whose motions count; NULL: all motions that act
- *  @param[in] about  point of the moment, forces acting where particles are now; NULL: the middle of the particles, as they are now */
+ *  @param[in] load   name of the load whose motions count; NULL: all motions that act. Of several supports that mirror, what the bonds of its images
+ *                    with particles inside exert
+ *  @param[in] about  point of the moment, forces acting where particles are now; NULL: the middle of the particles, as they are
+ *                    now; of supports that mirror, of their faces */
 Wrench reactions_sum(const Reactions *reactions, const Solver *solver, const uint8_t *on, const char *load,
                      const double *about);
 

@@ -32,11 +32,6 @@ void relaxation_destroy(Relaxation *r)
   vectors_free(r->product);
 }
 
-static void clear(const Newton *n, double *const v[3])
-{
-  for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)n->domain->particles->places);
-}
-
 /** Conjugate gradients for the elastic body, with the mass as preconditioner.
  *  @param[in,out] f  right-hand side; then what is left of it
  *  @param[in,out] v  the answer is added; a vector of unknowns
@@ -75,8 +70,8 @@ static int prepare(Relaxation *r, Newton *n, Error *error)
   const Particles *p = n->domain->particles;
   uint64_t seed = 1;
   if (preconditioner_prepare(&r->mass, &n->linear, r->velocity, r->product, error)) return BRECCIA_FAILURE;
-  clear(n, r->momentum);
-  clear(n, n->change);
+  vectors_clear(r->momentum, n->domain->particles->places);
+  vectors_clear(n->change, n->domain->particles->places);
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->count; ++i) r->momentum[k][p->place_of[i]] = random_uniform(&seed) - 0.5;
   unknowns_gather(&n->linear.unknowns, r->momentum);
@@ -110,14 +105,14 @@ static int predict(Relaxation *r, Newton *n, double time, bool moves, Error *err
   elastic_step_prepare(&r->elastic, n->domain);
   if (r->prepared != time && prepare(r, n, error)) return BRECCIA_FAILURE;
   r->prepared = time;
-  clear(n, n->change);
+  vectors_clear(n->change, n->domain->particles->places);
   unknowns_spread(u, time, n->change);
   if (moves) add_motions(r, n);
-  clear(n, n->change);
+  vectors_clear(n->change, n->domain->particles->places);
   const double before = unknowns_product(u, n->force, n->force);
   answer_elastically(r, n, n->force, n->change, MOST_PREDICTING, 1e-2);
-  /* Where elastic stiffness is not symmetric, gradients may lead astray. */
-  if (!(unknowns_product(u, n->force, n->force) <= before)) clear(n, n->change);
+  /* Where elastic stiffness is not symmetric, gradients may raise what is left. */
+  if (!(unknowns_product(u, n->force, n->force) <= before)) vectors_clear(n->change, n->domain->particles->places);
   unknowns_spread(u, time, n->change);
   move(n, n->change);
   if (n->log) text_add(n->log, "    elastic prediction: %lld evaluations\n", (long long)n->products);
@@ -142,7 +137,7 @@ static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *da
   const double quotient = twice_kinetic > 0 ? fall / twice_kinetic : 0;
   if (quotient > highest) { /* stiffer than the elastic body: steps of 1 must not become unstable */
     r->scale *= 1.5 * quotient / highest;
-    clear(n, r->momentum);
+    vectors_clear(r->momentum, n->domain->particles->places);
   }
   *damping = 2 * sqrt(fmin(fmax(quotient, 0), 0.9));
   return NEWTON_CONVERGED;
@@ -160,10 +155,10 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   const Unknowns *u = &n->linear.unknowns;
   n->iterations = n->products = 0;
   n->indefinite = false;
-  clear(n, n->moved);
+  vectors_clear(n->moved, n->domain->particles->places);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  clear(n, n->change);
+  vectors_clear(n->change, n->domain->particles->places);
   unknowns_spread(u, time, n->change);
   const bool moves = unknowns_product(u, n->change, n->change) > 0;
   n->unbalanced_before = n->unbalanced = find_unbalanced(n);
@@ -173,7 +168,7 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
     n->unbalanced = find_unbalanced(n);
   }
   double damping = 0;
-  clear(n, r->momentum);
+  vectors_clear(r->momentum, n->domain->particles->places);
   while (n->unbalanced > n->spec->residual) {
     if (++n->iterations > most) return NEWTON_SLOW;
     if ((outcome = take_step(r, n, time, &damping, error)) != NEWTON_CONVERGED) return outcome;

@@ -66,6 +66,7 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   }
   for (int k = 0; k < 3; ++k) places_free(&free_force[k]);
   if (failed) return BRECCIA_FAILURE;
+  if (s->type->exerted) acting = fmax(acting, s->type->exerted(s)); /* nothing acts on what was unloaded, or is torn */
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
   rest->kinetic =
       s->ledger.paid > 0 ? fmax(0, s->ledger.kinetic) / s->ledger.paid : 0; /* a rounding below zero is none */

@@ -274,7 +274,37 @@ int solver_measure(Solver *s, StepCost *cost, Error *error)
 {
   const double most = 1.2; /* what a step does beside the forces takes 2 to 40 % of them (docs/performance.md) */
   *cost = (StepCost){.evaluations = most};
-  return s->type->measure ? s->type->measure(s, cost, error) : BRECCIA_OK;
+  const int status = s->type->measure ? s->type->measure(s, cost, error) : BRECCIA_OK;
+  double own = (double)(s->clock.stage_last - s->clock.step), all = own, others = 0;
+  for (int64_t k = s->clock.stage + 1; k < s->clock.stages; ++k) {
+    const SolverType *type = types[type_of(stage_of(s, k))];
+    double steps = 0, time = 0;
+    type->foresee(stage_of(s, k)->of[type_of(stage_of(s, k))], &s->clock, &steps, &time);
+    cost->least |= type->measure || steps == 0; /* tried are only the equations of the stage under way */
+    *(type == s->type ? &own : &others) += steps;
+    all += steps;
+  }
+  if (all > 0) {
+    cost->seconds *= own / all;
+    cost->evaluations = (own * cost->evaluations + others * most) / all;
+  }
+  return status;
+}
+
+bool solver_stage_rests(const Solver *s, int64_t stage)
+{
+  return types[type_of(stage_of(s, stage))]->rests;
+}
+
+double solver_time_in_motion(const Solver *s)
+{
+  double whole = solver_stage_rests(s, s->clock.stage) ? 0 : s->clock.stage_end - s->clock.stage_time;
+  for (int64_t k = s->clock.stage + 1; k < s->clock.stages; ++k) {
+    double steps = 0, time = 0;
+    types[type_of(stage_of(s, k))]->foresee(stage_of(s, k)->of[type_of(stage_of(s, k))], &s->clock, &steps, &time);
+    if (!solver_stage_rests(s, k)) whole += time;
+  }
+  return whole;
 }
 
 /** @param[in] step, time  at the end of the step in which the trap has sprung, if it has */
@@ -299,10 +329,12 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   const int failed = s->type->advance(s, warning, error);
   if (s->trap) trap_end();
   const int trapped = tell_trap(&trap, step, time + s->clock.time_step, error);
-  if (failed) return failed; /* and the state is a good one, even if a trap has sprung */
+  if (failed && s->clock.step < step) return failed; /* and the state is a good one, even if a trap has sprung */
   foresee(s);
   s->records[s->clock.stage].last_step = (double)s->clock.step;
   s->records[s->clock.stage].end = s->clock.time;
+  ledger_note_paid(&s->ledger);
+  if (failed) return failed;
   s->ledger.trapped = trapped;
   return trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, error);
 }

@@ -30,6 +30,7 @@ typedef struct SolverType SolverType;
 typedef struct StepCost {
   double evaluations, seconds; /* evaluations of forces, and what it takes beside them */
   double bytes;                /* beside the body and its formulations */
+  bool least;                  /* how much more nothing tells beforehand */
 } StepCost;
 
 /** How a stage went. */
@@ -47,6 +48,7 @@ typedef struct Solver {
   const SectionList *selections; /* those of the deck that have names */
   const DeckReader *reader;      /* for messages that point into the deck */
   bool force;                    /* accept a chosen step above the stable one */
+  bool loose;                    /* what nothing holds is told when a stage of statics begins, not before */
   bool trap;                     /* fail where a step divides by zero, overflows or does what is not defined */
   Clock clock;
   Ledger ledger;
@@ -86,6 +88,8 @@ struct SolverType {
   bool few_steps;
   /** Whether every step ends in equilibrium at rest. */
   bool rests;
+  /** The most that loads and supports have exerted at rest in the stage: forces out of balance are small beside it. NULL: what they exert now counts. */
+  double (*exerted)(const Solver *solver);
   /** Force of inertia and damping of the n-th particle of a motion along its direction, in the state held. NULL: there is none, at rest. */
   double (*inertia)(const Solver *solver, const Constraint *constraint, int64_t n);
   /** Steps and time that a stage with this section will take at most, by the stable step of the body as it is. */
@@ -109,6 +113,12 @@ const char *solver_stage_name(const Solver *solver, int64_t stage, char *name, s
 /** Whether a step, one that is done, was among few and long ones. */
 bool solver_step_was_long(const Solver *solver, int64_t step);
 
+/** Whether every step of a stage ends in equilibrium at rest, so that its time is none of a clock. */
+bool solver_stage_rests(const Solver *solver, int64_t stage);
+
+/** Time of the stage under way and of later ones in which the body may move, as far as it can be foreseen. */
+double solver_time_in_motion(const Solver *solver);
+
 /** How a stage goes and ends, in words. @param[in] time  unit of time */
 void solver_describe_stage(const Solver *solver, int64_t stage, const char *time, Text *text);
 
@@ -129,11 +139,14 @@ void solver_stop_at(Solver *solver, const double *times, int64_t count, bool aga
 /** Before the first step. */
 int solver_begin(Solver *solver, Error *error);
 
-/** What a step of the stage under way takes. Before the run; forces are to be evaluated again. */
+/** What a step takes, on the average over those of the stage under way and of later ones, and the memory of the stage under way. Later stages are
+ *  counted by the forces that they evaluate at least, or as steps of the stage under way, where the same solver takes them. Before the run; forces
+ *  are to be evaluated again. */
 int solver_measure(Solver *solver, StepCost *cost, Error *error);
 
-/** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit; where energies or
- *  a trap give the reason the step has been taken.
+/** One step of the stage under way. After a failure the reason is in `error`, and the state is that of the step before, to the bit, but for how its
+ *  equations are best solved. Where energies or a trap give the reason the step has been taken, and counts; so too at rest, where bonds have broken in it
+ *  and no equilibrium was found without them: the state is then one with these bonds broken that is not in equilibrium.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int solver_advance(Solver *solver, Text *warning, Error *error);
 

@@ -2,6 +2,7 @@
  * relaxation (relaxation.h), and bonds that break in between, the most loaded first. Histories of loads run in the time of the stage, which need not be one of a clock. */
 #include "solver/increment.h"
 #include "solver/relaxation.h"
+#include "solver/vectors.h"
 
 #include "base/memory.h"
 #include "base/team.h"
@@ -99,10 +100,10 @@ typedef struct Static {
 static void list_state(Solver *run, StateList *list)
 {
   Static *s = run->own;
-  state_add_number(list, "next increment", "time", STATE_COMMITTED, &s->next);
+  state_add_number(list, "next increment", "time", STATE_LEARNED, &s->next);
   newton_state(&s->newton, list);
   control_state(&s->control, list);
-  state_add_count(list, "cuts of increments", STATE_COMMITTED, &s->cuts);
+  state_add_count(list, "cuts of increments", STATE_LEARNED, &s->cuts);
 }
 
 static void destroy(Solver *run)
@@ -154,22 +155,32 @@ static double whole_increment(const StaticSpec *spec)
   return spec->end_time / (double)spec->increments;
 }
 
+static int check_hold(const Solver *run, const StaticSpec *spec, Error *error)
+{
+  const Unknowns unknowns = unknowns_of(run->domain, run->loading);
+  char motion[16];
+  if (!unknowns_are_loose(&unknowns, motion, sizeof motion)) return BRECCIA_OK;
+  return node_error(run->reader->document, spec->head.node, error,
+                    "static: nothing holds the body against moving %s as a whole; hold it by a support, a roller, a "
+                    "displacement or a spring",
+                    motion);
+}
+
 static int check(Solver *run, const void *section, Error *error)
 {
   const StaticSpec *spec = section;
-  const Unknowns unknowns = unknowns_of(run->domain, run->loading);
-  char motion[16];
-  const int status = increment_check(run, section, "find rest by 'explicit' with 'local damping'", error);
+  int status = increment_check(run, section, "find rest by 'explicit' with 'local damping'", error);
+  if (!status && !run->loose) status = check_hold(run, spec, error);
   if (status) return status;
-  if (unknowns_are_loose(&unknowns, motion, sizeof motion))
-    return node_error(run->reader->document, spec->head.node, error,
-                      "static: nothing holds the body against moving %s as a whole; hold it by a support, a roller, a "
-                      "displacement or a spring",
-                      motion);
   if (spec->control && !strcmp(spec->method, "relaxation"))
     return node_error(run->reader->document, section_node(spec, "control"), error,
                       "control: dynamic relaxation cannot find factors of loads; leave 'method: relaxation' out");
-  return control_check(spec->control, run->loading, run->reader, error);
+  if (spec != run->spec) { /* that of the stage under way has its own already */
+    Control control;
+    status = control_create(&control, spec->control, run->domain, run->reader, run->selections);
+    control_destroy(&control);
+  }
+  return status ? status : control_check(spec->control, run->loading, run->reader, error);
 }
 
 static void count_steps(const Solver *run)
@@ -184,8 +195,11 @@ static int plan(Solver *run, Text *warning, Error *error)
 {
   (void)warning;
   Static *s = run->own;
-  const int status = check(run, s->spec, error);
+  int status = check(run, s->spec, error);
   if (status) return status;
+  if (s->spec->control && !run->loose && run->clock.step == 0 && !domain_has_servers(s->domain) &&
+      (status = newton_check_control(&s->newton, error)))
+    return status;
   s->next = whole_increment(s->spec);
   run->clock.stable = INFINITY;
   run->clock.time_step = s->next;
@@ -207,6 +221,11 @@ static void foresee(const void *section, const Clock *clock, double *steps, doub
   *time += spec->end_time;
 }
 
+static double exerted(const Solver *run)
+{
+  return ((const Static *)run->own)->newton.reference;
+}
+
 static int measure(Solver *run, StepCost *cost, Error *error)
 {
   return newton_measure(&((Static *)run->own)->newton, cost, error);
@@ -215,7 +234,9 @@ static int measure(Solver *run, StepCost *cost, Error *error)
 static void describe_stage(const void *section, const char *time, Text *text)
 {
   const StaticSpec *spec = section;
-  text_add(text, "static, %lld increments of %.4g %s", (long long)spec->increments, whole_increment(spec), time);
+  (void)time; /* it runs in one of its own */
+  text_add(text, "static, %lld increment%s up to time %.4g", (long long)spec->increments,
+           spec->increments == 1 ? "" : "s", spec->end_time);
 }
 
 static void describe(const Solver *run, const char *time, Text *text)
@@ -223,20 +244,20 @@ static void describe(const Solver *run, const char *time, Text *text)
   const Static *s = run->own;
   Error *none = NULL;
   describe_stage(s->spec, time, text);
-  text_add(text, " for %lld unknowns, by %s", (long long)unknowns_count(&s->newton.linear.unknowns, none),
-           s->newton.relaxes ? "dynamic relaxation" : linear_solver_name(&s->newton.linear));
+  text_add(text, ", for %lld unknowns, by %s", (long long)unknowns_count(&s->newton.linear.unknowns, none),
+           s->newton.relaxes ? "dynamic relaxation" : linear_solver_words(&s->newton.linear));
 }
 
 /* ---- increments ---- */
 
 static int begin(Solver *run, Error *error)
 {
-  (void)error;
   Static *s = run->own;
   Particles *p = s->domain->particles;
+  if (run->loose && check_hold(run, s->spec, error)) return BRECCIA_USER_ERROR;
   run->ledger.damping_work += run->ledger.kinetic; /* of the stage before: it is at rest now */
   run->ledger.kinetic = 0;
-  for (int k = 0; k < 3; ++k) memset(p->velocity[k], 0, sizeof(double) * (size_t)p->places);
+  vectors_clear(p->velocity, p->places);
   control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
@@ -320,17 +341,42 @@ static int settle(Solver *run, NewtonOutcome *outcome, Error *error)
     const NewtonOutcome again = try_increment(s, s->clock->time, error);
     if (again == NEWTON_FAILED) return BRECCIA_FAILURE;
     if (again != NEWTON_CONVERGED) break; /* the next increment will see to it, or fail and say so */
-    if (s->newton.unbalanced_before < enough) break;
-    status = break_bonds(run, outcome, error);
+    const bool few = s->newton.unbalanced_before < enough;
+    const int64_t broken = s->domain->broken_count;
+    status =
+        break_bonds(run, outcome, error); /* what the stage leaves overloaded would stay whole if it was the last */
+    if (few && s->domain->broken_count == broken) break;
   }
   return status;
 }
 
+/** The stage ends now: the body is torn. */
+static void end_torn(Solver *run, Text *warning)
+{
+  const Static *s = run->own;
+  Clock *clock = &run->clock;
+  control_tell_torn(&s->control, clock->time, warning);
+  clock->ended = 1;
+  clock->stage_last = clock->step;
+  clock->stage_end = clock->time;
+}
+
+/** A step that has failed for good before anything came of it. */
+static int give_up(Static *s, double next, int64_t cuts)
+{
+  s->next = next;
+  s->cuts = cuts;
+  return BRECCIA_FAILURE;
+}
+
 static int advance(Solver *run, Text *warning, Error *error)
 {
-  (void)warning;
   Static *s = run->own;
   Clock *clock = &run->clock;
+  const double first = s->next;
+  const int64_t cuts = s->cuts;
+  const bool was_spent = control_is_spent(&s->control);
+  const int64_t broken = s->domain->broken_count;
   if (increment_keep(&s->increment, run, error)) return BRECCIA_FAILURE;
   s->newton.log = &run->log;
   NewtonOutcome outcome;
@@ -338,7 +384,7 @@ static int advance(Solver *run, Text *warning, Error *error)
     const double end = increment_end(run, s->next);
     text_add(&run->log, "increment %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, clock->time, end);
     outcome = try_increment(s, end, error);
-    if (outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
+    if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     if (outcome != NEWTON_CONVERGED) {
       char words[320];
       text_add(&run->log, "    no equilibrium: %s\n", newton_describe(&s->newton, outcome, words, sizeof words));
@@ -352,16 +398,17 @@ static int advance(Solver *run, Text *warning, Error *error)
     s->next = (end - clock->time) / 2;
     if (s->next < s->spec->smallest * whole_increment(s->spec)) {
       char words[320];
-      return error_add(error, BRECCIA_FAILURE,
-                       "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; the body may fail at "
-                       "this load: go on with a stage "
-                       "of 'explicit', or look at the loads and at the last pictures",
-                       clock->time, s->next, newton_describe(&s->newton, outcome, words, sizeof words));
+      error_add(error, BRECCIA_FAILURE,
+                "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; the body may fail at this "
+                "load: go on with a stage of 'explicit', or look at the loads and at the last pictures",
+                clock->time, s->next, newton_describe(&s->newton, outcome, words, sizeof words));
+      return give_up(s, first, cuts);
     }
   }
   const int64_t iterations = s->newton.iterations;
-  if (settle(run, &outcome, error)) return BRECCIA_FAILURE;
-  ++clock->step;
+  const int status = settle(run, &outcome, error);
+  ++clock->step; /* what was found in it is committed, whatever has become of the rest */
+  if (status) return BRECCIA_FAILURE;
   if (outcome != NEWTON_CONVERGED) {
     char words[320];
     return error_add(error, BRECCIA_FAILURE,
@@ -375,6 +422,10 @@ static int advance(Solver *run, Text *warning, Error *error)
   if (iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, whole_increment(s->spec));
   clock->ended = clock->time >= clock->stage_end - 1e-9 * whole_increment(s->spec);
   count_steps(run);
+  if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
+  /* Once without broken bonds it may be a load that changes its sign. */
+  const bool again = was_spent || s->domain->broken_count > broken;
+  if (!clock->ended && again && control_is_spent(&s->control)) end_torn(run, warning);
   if (clock->ended) increment_forget(&s->increment);
   return BRECCIA_OK;
 }
@@ -392,6 +443,7 @@ const SolverType static_solver = {.name = "static",
                                   .damps = damps,
                                   .few_steps = true,
                                   .rests = true,
+                                  .exerted = exerted,
                                   .foresee = foresee,
                                   .measure = measure,
                                   .describe = describe,

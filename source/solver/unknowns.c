@@ -2,6 +2,7 @@
 
 #include "base/team.h"
 #include "loading/constraint.h"
+#include "solver/vectors.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,11 +12,6 @@ Unknowns unknowns_of(const Domain *domain, const Loading *loading)
   Unknowns u = {.domain = domain, .loading = loading};
   for (int k = 0; k < 3; ++k) u.flat[k] = k >= domain->body.dimensions;
   return u;
-}
-
-static double along(double *const v[3], const double direction[3], int32_t i)
-{
-  return v[0][i] * direction[0] + v[1][i] * direction[1] + v[2][i] * direction[2];
 }
 
 static void add_along(double *const v[3], const double direction[3], int32_t i, double amount)
@@ -46,7 +42,7 @@ void unknowns_each_row(const Unknowns *u, void (*one)(const Constraint *constrai
 typedef struct Spreading {
   const Unknowns *unknowns;
   double time;
-  bool pulls; /* with motions of controlled loads, of factor 1 */
+  bool controlled; /* with motions of controlled loads, of factor 1 */
   double *const *v;
 } Spreading;
 
@@ -56,13 +52,13 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
   const int32_t i = c->load->selection.places[n];
   double *const *u = s->unknowns->domain->particles->displacement;
   double wanted = 0;
-  if (c->images) wanted = c->share * along(s->v, c->direction, c->images[n]);
-  if (s->pulls && history_is_controlled(&c->load->history)) wanted += c->value;
+  if (c->images) wanted = c->share * vectors_along(s->v, c->direction, c->images[n]);
+  if (s->controlled && history_is_controlled(&c->load->history)) wanted += c->value;
   if (!isnan(s->time)) {
-    wanted += constraint_displacement(c, s->time) + (c->from ? c->from[n] : 0) - along(u, c->direction, i);
-    if (c->images) wanted += c->share * along(u, c->direction, c->images[n]);
+    wanted += constraint_displacement(c, s->time) + (c->from ? c->from[n] : 0) - vectors_along(u, c->direction, i);
+    if (c->images) wanted += c->share * vectors_along(u, c->direction, c->images[n]);
   }
-  add_along(s->v, c->direction, i, wanted - along(s->v, c->direction, i));
+  add_along(s->v, c->direction, i, wanted - vectors_along(s->v, c->direction, i));
 }
 
 static void spread(const Unknowns *u, Spreading *s)
@@ -83,7 +79,7 @@ void unknowns_spread(const Unknowns *u, double time, double *const v[3])
   spread(u, &(Spreading){u, time, false, v});
 }
 
-void unknowns_spread_pull(const Unknowns *u, double *const v[3])
+void unknowns_spread_controlled(const Unknowns *u, double *const v[3])
 {
   spread(u, &(Spreading){u, NAN, true, v});
 }
@@ -94,7 +90,7 @@ static void clear_row(const Constraint *c, int64_t n, void *context)
 {
   double *const *v = context;
   const int32_t i = c->load->selection.places[n];
-  add_along(v, c->direction, i, -along(v, c->direction, i));
+  add_along(v, c->direction, i, -vectors_along(v, c->direction, i));
 }
 
 /** Ties hand on what all particles of a group get, or nothing. */

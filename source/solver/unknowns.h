@@ -33,7 +33,7 @@ int64_t unknowns_count(const Unknowns *unknowns, Error *error);
 void unknowns_spread(const Unknowns *unknowns, double time, double *const v[3]);
 
 /** The same with what motions of controlled loads do where their factor grows by 1, and nothing else that is prescribed. By one thread. */
-void unknowns_spread_pull(const Unknowns *unknowns, double *const v[3]);
+void unknowns_spread_controlled(const Unknowns *unknowns, double *const v[3]);
 
 /** Forces on all displacements to forces on the free ones: those on tied ones are handed on, all others taken off.
  *  @param[in,out] f  forces, not forces per volume */

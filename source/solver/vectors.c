@@ -1,6 +1,7 @@
 #include "solver/vectors.h"
 
 #include "base/team.h"
+#include <string.h>
 
 bool vectors_make(double *vector[3], int64_t places, const char *label, Error *error)
 {
@@ -12,6 +13,11 @@ bool vectors_make(double *vector[3], int64_t places, const char *label, Error *e
 void vectors_free(double *vector[3])
 {
   for (int k = 0; k < 3; ++k) places_free(&vector[k]);
+}
+
+void vectors_clear(double *const vector[3], int64_t places)
+{
+  for (int k = 0; k < 3; ++k) memset(vector[k], 0, sizeof(double) * (size_t)places);
 }
 
 typedef struct Sum {

@@ -100,6 +100,11 @@ refuse 's/steps: 10/steps: 10, damping: 2 kPa/' 19:40 "expected a damping rate, 
 refuse 's/steps: 10/steps: 10, damping: {ratio: 0.05}/' 19:31 "damping: missing key 'at'"
 refuse 's/displacement of: end/displacment of: end/' 21:9 "unknown key 'displacment of'; did you mean 'displacement of'?"
 refuse 's/displacement of: end/load: push/' 21:15 "there is no load 'push'; the deck defines 'pull'"
+refuse 's/displacement of: end/reaction of: push/' 21:22 "there is no load 'push'; the deck defines 'pull'"
+# one mistake, one line: what uses names whose definitions are wrongly written is not wrong
+refuse 's/^selections:/selection:/' 11:1 "unknown key 'selection'; did you mean 'selections'?"
+refuse 's/^loads:/load:/; s/displacement of: end/load: pull/' 17:1 "unknown key 'load'; did you mean 'loads'?"
+refuse 's/name: pull/nam: pull/; s/displacement of: end/reaction of: pull/' 18:6 "unknown key 'nam'; did you mean 'name'?"
 refuse 's/displacement of: end/opening between: [[0, 0, 0], [0, 0, 0]]/' 21:9 'the same particle is nearest to both points'
 refuse 's/displacement of: end/bond between: [[0, 0, 0], [1, 0, 0]]/' 21:9 'no bond joins'
 refuse 's/displacement, damage/displacement, colour/' 22:34 "there is no field 'colour'; the fields are displacement"

@@ -66,11 +66,18 @@ dam/dam/points.csv:$(cat "$work/tree/examples/dam/points.csv")"
 
 # The decks that pages show whole are decks.
 awk '/^```yaml$/{on = 1; text = ""; next} /^```$/{if (on && text ~ /(^|\n)body:/) print text > sprintf("%s-%d.yaml", out, ++n); on = 0} on{text = text $0 "\n"}' \
-  out="$work/shown" "$source/README.md" "$source/docs/deck.md"
+  out="$work/shown" "$source/README.md" "$source/docs/deck.md" "$source/docs/choosing.md"
 for deck in "$work"/shown-*.yaml; do
-  "$breccia" check "$deck" > "$work/out" 2>&1 || fail "a deck shown by README.md or docs/deck.md is refused: $(cat "$work/out")"
+  "$breccia" check "$deck" > "$work/out" 2>&1 || fail "a deck shown by README.md, docs/deck.md or docs/choosing.md is refused: $(cat "$work/out")"
   checks=$((checks + 1))
 done
+
+# Ground at rest has K0 of its law and the stress of its weight, and its displacements count from there.
+"$breccia" run "$(grep -l '^title: Ground at rest' "$work"/shown-*.yaml)" --output "$work/ground" > "$work/out" 2>&1 || fail "ground at rest: $(cat "$work/out")"
+awk -F, 'function near(a, b, t) {if (a - b > t || b - a > t) bad = 1} NR == 3 {near($9 / $10, 3 / 7, 1e-6); near($10, -1.9 * 9.81 * 3.125, 0.5)}
+  NR == 4 {near($9 / $10, 3 / 7, 1e-6)} END {exit bad || NR != 4}' "$work/ground/deep.csv" || fail "ground at rest: $(cat "$work/ground/deep.csv")"
+awk -F, 'NR == 3 && $4 > -1e-3 {bad = 1} NR == 4 && ($4 > 1e-9 || $4 < -1e-9) {bad = 1} END {exit bad || NR != 4}' "$work/ground/moved.csv" || fail "ground at rest: $(cat "$work/ground/moved.csv")"
+checks=$((checks + 3))
 
 sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
   fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"

@@ -21,25 +21,40 @@ watch: {end: {displacement of: {face: x+}, every: 5}, energy: {energy: yes, ever
 results: {number: 4, checkpoint steps: 25, precision: double, fields: [displacement, damage]}
 pictures: []
 Y
+# The same bar at rest: it is pulled in increments, bonds break between them, and it is unloaded.
+{
+  grep -E '^(title|materials|body|peridynamics|failure):' bar.yaml
+  cat << 'Y'
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 3}, displacement: [1.3e-3, free], history: {table: [[0, 0], [0.6, 1], [1, 0.4]]}}
+solve: {static: {increments: 10}}
+watch: {end: {displacement of: {face: x+}}, energy: {energy: yes, every: 3}}
+results: {number: 4, checkpoint steps: 3, precision: double, fields: [displacement, damage]}
+pictures: []
+Y
+} > rest.yaml
+deck=bar whole=whole within= # a file of the folder, or all of them
 run() { # run FOLDER [options]
-  "$breccia" run bar.yaml --quiet --threads 1 --output "$@" > out 2>&1
+  "$breccia" run $deck.yaml --quiet --threads 1 --output "$@" > out 2>&1
 }
 run whole || fail "the whole run failed: $(cat out)"
 [ "$(json whole/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks, the test is too tame"
 
 same() { # same FOLDER WHAT: all that a run leaves is as in the whole run
   checks=$((checks + 1))
-  cmp -s whole/end.csv "$1/end.csv" && cmp -s whole/energy.csv "$1/energy.csv" || fail "$2: histories differ"
-  "$build/tests/compare_results" whole/results.vtkhdf "$1/results.vtkhdf" > out || fail "$2: results differ: $(cat out)"
-  "$build/tests/compare_results" whole/checkpoint.h5 "$1/checkpoint.h5" > out || fail "$2: checkpoints differ: $(cat out)"
-  cmp -s whole/results.xdmf "$1/results.xdmf" || fail "$2: results.xdmf differs"
+  cmp -s $whole/end.csv "$1/end.csv" && cmp -s $whole/energy.csv "$1/energy.csv" || fail "$2: histories differ"
+  "$build/tests/compare_results" $whole/results.vtkhdf "$1/results.vtkhdf" > out || fail "$2: results differ: $(cat out)"
+  "$build/tests/compare_results" $whole/checkpoint.h5 "$1/checkpoint.h5" > out || fail "$2: checkpoints differ: $(cat out)"
+  cmp -s $whole/results.xdmf "$1/results.xdmf" || fail "$2: results.xdmf differs"
+  [ ! -e $whole/solution.txt ] || cmp -s $whole/solution.txt "$1/solution.txt" || fail "$2: solution.txt differs"
 }
 
 # fault NUMBER ERROR WORDS LASTS: one run that meets it, and what follows
 fault() {
   local what="call $1, $3$([ "$4" = 1 ] && echo ", for good")" status
   rm -rf faulty count
-  FAULT_FOLDER="$work/faulty" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" run faulty
+  FAULT_FOLDER="$work/faulty$within" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" run faulty
   status=$?
   if [ "$(wc -c < count)" -lt "$1" ]; then # on a fast disk states are copied more often than on a slow one
     equal "$what, which was not reached" $status 0
@@ -90,6 +105,15 @@ else
   done
 fi
 
+# What a checkpoint counts on is brought to the disk before it: results and histories once for each of the three checkpoints.
+for file in results.vtkhdf end.csv energy.csv; do
+  rm -f count
+  FAULT_FOLDER="$work/settled/$file" FAULT_COUNT="$work/count" LD_PRELOAD="$build/tests/libio_faults.so" run settled
+  settled=$(tr -dc s < count | wc -c)
+  [ "$settled" -ge 3 ] || fail "$file was brought to the disk $settled times, for 3 checkpoints"
+  checks=$((checks + 1))
+done
+
 # The same where results are large, and are written in place with a journal beside them.
 export FAULT_LARGER=300000000
 journals=0
@@ -106,6 +130,19 @@ else
 fi
 [ $journals -gt 0 ] || fail "no journal was left, the test is too tame"
 unset FAULT_LARGER
+
+deck=rest whole=still
+run still || fail "the run at rest failed: $(cat out)"
+[ "$(json still/summary.json broken_bonds)" -gt 0 ] || fail "no bond breaks at rest, the test is too tame"
+for within in '' /solution.txt; do # what it tells of its equations is written seldom
+  rm -f count
+  FAULT_FOLDER="$work/resting$within" FAULT_COUNT="$work/count" LD_PRELOAD="$build/tests/libio_faults.so" run resting
+  resting=$(wc -c < count)
+  [ "$resting" -gt 10 ] || fail "only $resting calls on resting$within were seen"
+  same resting "at rest"
+  for number in $(seq 3 "${IO_FAULTS:-$((resting / 6))}" "$resting"); do try $number 28 "No space left on device" $((number % 2)); done
+done
+deck=bar whole=whole within=
 
 # A folder that cannot be made: by a full disk it is a failure, by its name the user's mistake.
 FAULT_FOLDER="$work/deep" FAULT_AT=1 FAULT_ERROR=28 LD_PRELOAD="$build/tests/libio_faults.so" run deep/inner; equal "no folder: status" $? 1

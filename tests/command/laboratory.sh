@@ -33,6 +33,16 @@ printf '1,0,0,0,0.01,0,0\n' >> held.csv
 slow --strain held.csv 2> errors; equal "falling time: status" $? 2
 contains "falling time" "$(cat errors)" "row 3: time must be a number that does not fall"
 
+cat > stages-held.yaml <<'Y'
+material: {model: viscoelastic, density: 2 t/m3, shear modulus: 100 MPa, bulk modulus: 200 MPa, relaxing share: 0.5, relaxation time: 1 s}
+stages:
+  - {strain xy: 0.01, steps: 1}
+  - {strain xy: 0.01, steps: 4, duration: 2 s}
+Y
+"$breccia" material stages-held.yaml > slow.csv 2> errors || fail "stages that take time: $(cat errors)"
+near "stages, at once" "$(cell slow.csv 2 "stress xy")" 1e6 1e-9
+near "stages, held" "$(cell slow.csv last "stress xy")" 567667.641618306 1e-9
+
 # ---- strain is zero after consolidation ----
 # E = 40 MPa, nu = 0.3 at 100 kPa: the deviator is E times the axial strain, and that shortens by 100 kPa (1 - 2 nu) / E = 1e-3 before.
 elastic() { "$breccia" material --model elastic --set "Young modulus=40 MPa" --set "Poisson ratio=0.3" --units m,kN,s --confining 100 --steps 4 "$@"; }

@@ -149,7 +149,7 @@ WALKS = {
 
 # what differs from one good run to the next
 TIMES = re.compile(rb"[0-9.]+ ns per directed bond|[0-9.]+ s for [0-9]+ steps|\"(wall_seconds|ns_per_directed_bond_step)\": [0-9.e+-]+|"
-                   rb"about [0-9.]+ (s|min|h)|, [0-9]+ s$", re.M)
+                   rb"(about|at least) [0-9.]+ (s|min|h)|, [0-9]+ s$", re.M)
 
 
 # how it is told: by us, or by a file's message with the system's own words

@@ -3,6 +3,7 @@
 #include "breccia/breccia.h"
 #include "deck/resolve.h"
 #include "model/deck_layout.h"
+#include "model/plausibility.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +13,19 @@
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t most);
 
 enum { STEPS = 3, MOST_CELLS = 4000, MOST_SPACINGS = 10 };
+
+/** What the command tells of a deck. The lowest mode is looked for in bodies of few particles only: it takes as long as hundreds of steps. */
+static void tell(breccia_model *model)
+{
+  enum { MOST_SEARCHED = 100 };
+  Text words = {0};
+  breccia_model_overview(model);
+  if (breccia_model_particles(model) <= MOST_SEARCHED)
+    breccia_model_plausibility(model);
+  else
+    plausibility_describe(model, false, &words);
+  text_free(&words);
+}
 
 /** Cells of a block with the widest margin that supports can add; infinite if its lattice does not fit. */
 static double cells_of(const BlockSpec *block, int b, const PeridynamicsSpec *peridynamics, const DeckReader *reader)
@@ -78,8 +92,7 @@ static void run_deck(const char *deck)
     }
   } else {
     ++counts.built;
-    breccia_model_overview(model);
-    breccia_model_plausibility(model);
+    tell(model);
     for (int k = 0; k < STEPS; ++k)
       if (++counts.steps && breccia_model_step(model, 1, error)) {
         ++counts.failed;

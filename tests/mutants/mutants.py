@@ -4,11 +4,13 @@
 
 The working tree is copied to build/mutants/tree and built there once; each fault is compiled and tested in that copy. Faults come from
 universalmutator's rules for C, in lines that differ from the base; lines and faults are drawn by the seed, one fault to a line until all
-lines have had one. Faults that do not compile or give the same machine code do not count. Tests of units run first, quick ones before slow ones,
-then those of the command; the first failure ends them.
+lines have had one. Faults that do not compile or give the same machine code do not count. Tests of units run first, then those of the
+command; among them those that include headers of the fault's room, quick ones before slow ones. The first failure ends them. How long they
+take without a fault is kept for the next call, as long as no file changes.
 """
 import argparse
 import collections
+import hashlib
 import json
 import os
 import pathlib
@@ -24,11 +26,11 @@ import time
 TREE = pathlib.Path("build/mutants/tree")
 BUILD = TREE / "build/test"
 MUTATE = pathlib.Path(sys.executable).with_name("mutate")
-PATIENCE = 5  # times as long as without a fault, and a few seconds
+PATIENCE, LEAST = 5, 30  # times as long as without a fault, and seconds more: others may use the machine too
 SOURCES = ("source/*.c", "source/*.h")
 COMMENT = re.compile(r"/\*.*?\*/|//.*")
 
-Fault = collections.namedtuple("Fault", "file line before after text")
+Fault = collections.namedtuple("Fault", "file line before after")  # the whole line, and what takes its place
 
 
 def git(*words):
@@ -75,14 +77,11 @@ def code_lines(text):
 
 
 def faults_of(file, numbers):
-    """All that the tool makes of these lines of a file."""
+    """{line: all faults that the tool makes of it}, of these lines of a file."""
     source = pathlib.Path(file)
-    text = source.read_text()
-    numbers = numbers & code_lines(text)
-    if not numbers:
-        return []
     # The tool passes over lines that end with a comment.
-    faults, before = [], [COMMENT.sub("", line).rstrip() if n in numbers else line for n, line in enumerate(text.splitlines(), 1)]
+    before = [COMMENT.sub("", line).rstrip() if n in numbers else line for n, line in enumerate(source.read_text().splitlines(), 1)]
+    faults = collections.defaultdict(list)
     with tempfile.TemporaryDirectory() as folder:
         wanted, bare = pathlib.Path(folder) / "lines", pathlib.Path(folder) / source.name
         bare.write_text("\n".join(before) + "\n")
@@ -93,27 +92,33 @@ def faults_of(file, numbers):
         for mutant in sorted(pathlib.Path(folder).glob(f"{source.stem}.mutant.*")):
             after = mutant.read_text().splitlines()
             line = next((n for n, (a, b) in enumerate(zip(before, after)) if a != b), None)
-            if line is None or line + 1 not in numbers:
-                continue
-            more = len(after) - len(before)
-            faults.append(Fault(file, line + 1, before[line].strip(), " ".join(" ".join(after[line : line + 1 + max(0, more)]).split()), mutant.read_text()))
+            if line is not None and line + 1 in numbers:
+                more = len(after) - len(before)
+                faults[line + 1].append(Fault(file, line + 1, before[line], "\n".join(after[line : line + 1 + more])))
     return faults
 
 
-def draw(faults, seed):
-    """All faults in the order in which they are tried: one of each line, then a second one, and so on."""
-    lot, of_line = random.Random(seed), collections.defaultdict(list)
-    for fault in faults:
-        of_line[fault.file, fault.line].append(fault)
-    for of_one in of_line.values():
-        lot.shuffle(of_one)
-    order = []
-    while of_line:
-        places = sorted(of_line)
-        lot.shuffle(places)
-        order += [of_line[place].pop() for place in places]
-        of_line = {place: left for place, left in of_line.items() if left}
-    return order
+def draw(lines, seed, at_once=40):
+    """Yields the faults in the order in which they are tried: one of each line, then a second one, and so on."""
+    lot = random.Random(seed)
+    places = sorted((file, number) for file, numbers in lines.items() for number in numbers)
+    lot.shuffle(places)
+    left = {}
+    for first in range(0, len(places), at_once):
+        of_file = collections.defaultdict(set)
+        for file, number in places[first : first + at_once]:
+            of_file[file].add(number)
+        made = {file: faults_of(file, numbers) for file, numbers in of_file.items()}
+        for file, number in places[first : first + at_once]:
+            faults = made[file][number]
+            lot.shuffle(faults)
+            if faults:
+                yield faults.pop()
+            left[file, number] = faults
+    while any(left.values()):
+        for place in places:
+            if left[place]:
+                yield left[place].pop()
 
 
 def copy_tree():
@@ -147,44 +152,65 @@ def machine_code():
         return pathlib.Path(bare.name).read_bytes()
 
 
-def run_tests(names, seconds):
-    """The first test of these that fails or takes longer than its seconds, or None."""
-    for name in names:
-        call = ["ctest", "--test-dir", "build/test", "-R", f"^{name}$"]
-        with subprocess.Popen(call, cwd=TREE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as test:
-            try:
-                if test.wait(seconds[name]):
-                    return name
-            except subprocess.TimeoutExpired:
-                os.killpg(test.pid, signal.SIGKILL)
-                return f"{name}, which does not end"
-    return None
+def run_test(name, seconds):
+    """@return None, or how it failed"""
+    call = ["ctest", "--test-dir", "build/test", "-R", f"^{name}$"]
+    with subprocess.Popen(call, cwd=TREE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True) as test:
+        try:
+            return name if test.wait(seconds) else None
+        except subprocess.TimeoutExpired:
+            os.killpg(test.pid, signal.SIGKILL)
+            return f"{name}, which does not end"
 
 
 def measure_tests(pattern):
-    """{test: seconds}, without a fault; quick tests first, those of units before those of the command."""
+    """{test: seconds} without a fault."""
+    digest = hashlib.sha256(pattern.encode())
+    for there in sorted(TREE.rglob("*")):
+        if there.is_file() and there.relative_to(TREE).parts[0] != "build":
+            digest.update(str(there).encode() + there.read_bytes())
+    kept = pathlib.Path("build/mutants/seconds.json")
+    if kept.is_file() and (known := json.loads(kept.read_text()))["of"] == digest.hexdigest():
+        return known["seconds"]
     listed = subprocess.run(["ctest", "--test-dir", "build/test", "-R", pattern, "--show-only=json-v1"], cwd=TREE, check=True, capture_output=True, text=True).stdout
     seconds = {}
     for test in json.loads(listed)["tests"]:
         begin = time.monotonic()
-        if run_tests([test["name"]], {test["name"]: 1800}):
+        if run_test(test["name"], 1800):
             sys.exit(f"{test['name']} fails without a fault: mend that first")
         seconds[test["name"]] = time.monotonic() - begin
-    return dict(sorted(seconds.items(), key=lambda item: (not item[0].startswith("test_"), item[1])))
+    kept.write_text(json.dumps({"of": digest.hexdigest(), "seconds": seconds}))
+    return seconds
+
+
+def in_order(seconds, file):
+    """Tests as they are run for a fault in this file."""
+
+    def rank(name):
+        source = TREE / "tests/unit" / f"{name}.c"
+        room = file.split("/")[1]
+        return not source.is_file(), not (source.is_file() and f'#include "{room}/' in source.read_text()), seconds[name]
+
+    return sorted(seconds, key=rank)
 
 
 def try_fault(fault, seconds, whole):
     """What became of a fault: 'does not compile', 'same code', 'survives', or the test that noticed it."""
     place = TREE / fault.file
     text = place.read_text()
+    rows = text.splitlines()
+    rows[fault.line - 1] = fault.after
     try:
-        place.write_text(fault.text)
+        place.write_text("\n".join(rows) + "\n")
         if not build("breccia_command")[0]:
             return "does not compile"
         if machine_code() == whole:
             return "same code"
-        build()
-        return run_tests(seconds, {name: PATIENCE * spent + 5 for name, spent in seconds.items()}) or "survives"
+        for name in in_order(seconds, fault.file):
+            build(*([name] if name.startswith("test_") else []))
+            if failed := run_test(name, PATIENCE * seconds[name] + LEAST):
+                return failed
+        return "survives"
     finally:
         place.write_text(text)
 
@@ -199,23 +225,22 @@ def main():
     words.add_argument("files", nargs="*", help="only lines of these files")
     asked = words.parse_args()
     base = asked.base or default_base()
-    faults = [fault for file, numbers in sorted(changed_lines(base, asked.files).items()) for fault in faults_of(file, numbers)]
-    if not faults:
+    lines = {file: numbers & code_lines(pathlib.Path(file).read_text()) for file, numbers in changed_lines(base, asked.files).items()}
+    if not any(lines.values()):
         sys.exit(f"no line of code differs from {base}")
-    order = draw(faults, asked.seed)
-    print(f"{len(faults)} faults are possible in {len({(f.file, f.line) for f in faults})} lines that differ from {base}", flush=True)
+    print(f"{sum(map(len, lines.values()))} lines of code differ from {base}", flush=True)
     begin = time.monotonic()
     copy_tree()
-    options = ["-DBRECCIA_WARNINGS_AS_ERRORS=OFF"] + (["-DCMAKE_C_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else [])
+    options = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     subprocess.run(["cmake", "--preset", "test", *options], cwd=TREE, check=True, stdout=subprocess.DEVNULL)
     built, told = build()
     if not built:
         sys.exit(told)
     seconds, whole = measure_tests(asked.tests), machine_code()
     print(f"built, and {len(seconds)} tests are good, after {time.monotonic() - begin:.0f} s", flush=True)
-    tried, survivors, void = 0, [], 0
+    tried, survived, void = 0, 0, 0
     begin = time.monotonic()
-    for fault in order:
+    for fault in draw(lines, asked.seed):
         if tried == asked.count or time.monotonic() - begin > 60 * asked.minutes:
             break
         what = try_fault(fault, seconds, whole)
@@ -223,13 +248,12 @@ def main():
             void += 1
             continue
         tried += 1
-        print(f"{fault.file}:{fault.line}: {'survives' if what == 'survives' else 'noticed by ' + what}", flush=True)
-        if what == "survives":
-            survivors.append(fault)
+        survived += what == "survives"
+        told = "no test notices" if what == "survives" else f"noticed by {what}"
+        change = f"\n  - {fault.before.strip()}\n  + {' '.join(fault.after.split())}"
+        print(f"{tried}. {fault.file}:{fault.line}: {told}{change}", flush=True)
     build()  # the copy is left without a fault
-    print(f"\n{tried - len(survivors)} of {tried} faults were noticed ({void} more did not compile or changed nothing)")
-    for fault in sorted(survivors):
-        print(f"{fault.file}:{fault.line}: no test notices\n  - {fault.before}\n  + {fault.after}")
+    print(f"\n{tried - survived} of {tried} faults were noticed ({void} more did not compile or changed nothing)")
 
 
 if __name__ == "__main__":

@@ -147,6 +147,7 @@ static void no_flipped_byte_is_believed(void **state)
     assert_int_equal(take_up(model, CHECKPOINT_LAST, &this, words), BRECCIA_USER_ERROR);
     copy(whole, last);
   }
+  print_message("checkpoints: %lld flipped bytes and 25 cuts, all refused\n", (long long)count);
   assert_int_equal(take_up(model, CHECKPOINT_LAST, &this, words), 0);
   breccia_model_destroy(&model);
 }

@@ -420,6 +420,21 @@ static void two_readings_of_one_text_are_one_model(void **state)
   breccia_model_destroy(&b);
 }
 
+/** A mistake in what several sections take up is told once, and stops the checks of all of them. */
+static void mistakes_that_are_taken_up_stop_further_checks(void **state)
+{
+  (void)state;
+  char *words = refusal_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 1, Poisson ratio: 0.2}}\n"
+      "body:\n"
+      "  left: &part {material: m, lattice: squave, spacing: 1, thickness: 1, shape: {box: {particles: [4, 4]}}}\n"
+      "  right: {<<: *part, shape: {box: {from: [4, 0], to: [8, 4]}}}\n"
+      "solve: {explicit: {steps: 1}}\n");
+  assert_string_equal(words, "deck:3:38: lattice: 'squave' is not known; did you mean 'square'? (choose from cubic, "
+                             "face-centred cubic, square, hexagonal, line)");
+  free(words);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -437,6 +452,7 @@ int main(void)
       cmocka_unit_test(small_files_do_not_unfold_into_huge_ones),
       cmocka_unit_test(a_written_deck_reads_as_the_same_deck),
       cmocka_unit_test(two_readings_of_one_text_are_one_model),
+      cmocka_unit_test(mistakes_that_are_taken_up_stop_further_checks),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

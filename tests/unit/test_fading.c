@@ -97,6 +97,38 @@ static void few_increments_at_rest_spend_no_more(void **state)
   }
 }
 
+/** Bonds that are beyond their limit, counted from both ends. */
+static int64_t overloaded_bonds(const breccia_model *m)
+{
+  const Domain *d = &m->domain;
+  int64_t count = 0;
+  for (int64_t slice = 0; slice < d->particles->slices; ++slice)
+    for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        const Bond bond = family_bond(&d->family, slice, slot, lane);
+        count += (d->family.intact[slot] >> lane & 1) &&
+                 d->failure.criterion->exceeds(&d->failure, &d->family, slice, slot, &bond, lane);
+      }
+  return count;
+}
+
+/** What fades in an increment lets the crack open further; bonds that this overloads break in the same one. */
+static void at_rest_no_bond_is_left_beyond_its_limit(void **state)
+{
+  (void)state;
+  breccia_model *m = bar_of(mazars, "plane stress", "",
+                            "failure: {critical stretch: 2e-3}\n"
+                            "loads: [{on: {face: x-, layers: 3}, displacement: [-0.15e-3, 0], history: {ramp to: 1}},\n"
+                            "        {on: {face: x+, layers: 3}, displacement: [0.15e-3, 0], history: {ramp to: 1}}]\n"
+                            "solve: {static: {increments: 40}}\n");
+  while (!solver_is_done(&m->solver)) {
+    step_surely(m, 1);
+    if (overloaded_bonds(m)) fail_msg("%s", text_words(&m->solver.log));
+  }
+  assert_true(m->domain.broken_count > 50);
+  breccia_model_destroy(&m);
+}
+
 /** A rough strip footing of 2 m on clay of 1 kPa, ten particles wide; Prandtl: 5.14. @return what it carries per width at the end, and one increment before */
 static double pushed_footing(const char *fades, double *before)
 {
@@ -291,6 +323,7 @@ static void noise_in_a_half_torn_bar_does_not_grow(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(at_rest_no_bond_is_left_beyond_its_limit),
       cmocka_unit_test(bars_pulled_apart_spend_their_fracture_energy),
       cmocka_unit_test(few_increments_at_rest_spend_no_more),
       cmocka_unit_test(control_that_fades_with_yielding_leaves_a_limit_load),

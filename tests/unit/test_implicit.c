@@ -482,6 +482,25 @@ static void keys_that_contradict_each_other_are_refused(void **state)
   }
 }
 
+/** Equilibrium that is found only nearly makes accelerations err, whatever the step: cutting it further and further is of no use. */
+static void no_step_is_shorter_than_the_smallest(void **state)
+{
+  (void)state;
+  static const char *const residuals[] = {"1e-8", "1e-3"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m =
+        model_of(FLOWING "solve: {implicit: {end time: 0.06, time step: 4e-3, local error: 2e-3, residual: %s}}\n",
+                 residuals[k]);
+    while (!m->solver.clock.ended && m->solver.clock.step < 400) {
+      assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+      if (m->solver.clock.time_step < 0.999e-4 * 4e-3 && !m->solver.clock.ended)
+        fail_msg("a step of %g", m->solver.clock.time_step);
+    }
+    assert_true(m->solver.clock.ended);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -497,6 +516,7 @@ int main(void)
       cmocka_unit_test(a_body_that_turns_is_followed),
       cmocka_unit_test(accelerations_are_those_of_the_bonds_that_are_left),
       cmocka_unit_test(bonds_break_and_a_restart_goes_on_to_the_same_bits),
+      cmocka_unit_test(no_step_is_shorter_than_the_smallest),
       cmocka_unit_test(keys_that_contradict_each_other_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

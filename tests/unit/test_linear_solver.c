@@ -191,7 +191,7 @@ static double product(const Problem *p, double *const a[3], double *const b[3])
   return unknowns_product(&p->solver.unknowns, a, b);
 }
 
-/** Else conjugate gradients go astray. */
+/** Else conjugate gradients do not come to the solution. */
 static void the_preconditioner_is_symmetric_and_positive(void **state)
 {
   (void)state;

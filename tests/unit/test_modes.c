@@ -101,6 +101,54 @@ static void beams_between_mirrored_layers_bend_as_beams_do(void **state)
   }
 }
 
+static double overlap(const breccia_model *model, const Mode *a, const Mode *b)
+{
+  const Particles *p = model->domain.particles;
+  double product = 0, sizes[2] = {0};
+  for (int k = 0; k < 3; ++k)
+    for (int64_t n = 0; n < p->count; ++n) {
+      if (body_outside(&model->domain.body, n)) continue;
+      const int32_t i = p->place_of[n];
+      const double mass = p->density[i] * p->volume[i], u = a->displacement[k][i], v = b->displacement[k][i];
+      product += mass * u * v;
+      sizes[0] += mass * u * u;
+      sizes[1] += mass * v * v;
+    }
+  return fabs(product) / sqrt(sizes[0] * sizes[1]);
+}
+
+static void modes_between_mirrored_layers_are_nearly_orthogonal(void **state)
+{
+  (void)state;
+  /* A square plate held on all sides has pairs of modes of one frequency, whose stiffness is not symmetric. Those of a pair are parted; modes of
+   * different frequencies share what docs/choosing.md says. */
+  static const char *const kinds[] = {"correspondence", "ordinary"};
+  for (int f = 0; f < 2; ++f) {
+    breccia_model *m = model_of(
+        UNITS SOFT_SOLID
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [12, 12]}}}}\n"
+        "peridynamics: {formulation: %s, space: plane stress}\n"
+        "loads: [{on: {face: x-}, support: {held: all}}, {on: {face: x+}, support: {held: all}}, {on: {face: y-}, "
+        "support: {held: all}}, {on: {face: y+}, support: {held: all}}]\nsolve: {static: {increments: 1}}\n",
+        kinds[f]);
+    Modes modes = modes_of(m, 8);
+    int pairs = 0;
+    double most = 0;
+    for (int r = 0; r < 8; ++r)
+      for (int c = 0; c < r; ++c) {
+        const bool equal = fabs(modes.modes[r].frequency - modes.modes[c].frequency) < 1e-4 * modes.modes[r].frequency;
+        const double shared = overlap(m, &modes.modes[r], &modes.modes[c]);
+        pairs += equal;
+        if (equal) assert_near(shared, 0, 1e-9);
+        most = fmax(most, shared);
+      }
+    assert_true(pairs > 0);
+    assert_true(most < 0.05);
+    modes_destroy(&modes);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void a_free_body_moves_as_a_whole_in_so_many_ways(void **state)
 {
   (void)state;
@@ -122,23 +170,11 @@ static void a_free_body_moves_as_a_whole_in_so_many_ways(void **state)
        1}};
   for (int b = 0; b < 3; ++b) {
     breccia_model *m = model_of(UNITS "%ssolve: {explicit: {steps: 1}}\n", bodies[b].deck);
-    const Particles *p = m->domain.particles;
     Modes modes = modes_of(m, 8);
     assert_int_equal(modes.rigid, bodies[b].rigid);
     assert_true(modes.modes[modes.rigid].frequency > 1);
     for (int r = 0; r < 8; ++r)
-      for (int c = 0; c < r; ++c) { /* orthogonal by mass */
-        double product = 0, sizes[2] = {0};
-        for (int k = 0; k < 3; ++k)
-          for (int64_t i = 0; i < p->places; ++i) {
-            const double mass = p->density[i] * p->volume[i], u = modes.modes[r].displacement[k][i],
-                         v = modes.modes[c].displacement[k][i];
-            product += mass * u * v;
-            sizes[0] += mass * u * u;
-            sizes[1] += mass * v * v;
-          }
-        assert_near(product, 0, 1e-7 * sqrt(sizes[0] * sizes[1]));
-      }
+      for (int c = 0; c < r; ++c) assert_near(overlap(m, &modes.modes[r], &modes.modes[c]), 0, 1e-7); /* by mass */
     modes_destroy(&modes);
     breccia_model_destroy(&m);
   }
@@ -248,13 +284,73 @@ static void springs_ties_and_supports_are_felt(void **state)
   for (int k = 0; k < 2; ++k) {
     m = model_of(BAR
                  "loads: [{on: {nearest: [0, 0]}, tie: {to: {nearest: [3.95, 0]}}}%s]\nsolve: {explicit: {steps: 1}}\n",
-                 k ? ", {on: {all: yes}, spring: {stiffness: 1e-9}}" : "");
+                 k ? ", {on: {all: yes}, spring: {stiffness: 1e-12}}" : "");
     modes = modes_of(m, 3);
     assert_int_equal(modes.rigid, 1);
     assert_near(modes.modes[1].frequency, sqrt(1e6 / 2) / 4, 0.02 * sqrt(1e6 / 2) / 4);
     modes_destroy(&modes);
     breccia_model_destroy(&m);
   }
+}
+
+static void soft_springs_hold(void **state)
+{
+  (void)state;
+  /* 1e-9 and 1e-10 of the squared frequency of waves along the bar: omega^2 = k / m. In space a block on springs at all of its particles has six such
+   * modes, of which the shifts have one frequency. */
+  static const double stiffness[] = {2.4e-6, 2.4e-7};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        BAR "loads: [{on: {all: yes}, spring: {stiffness: %g}}]\nsolve: {explicit: {steps: 1}}\n", stiffness[k]);
+    Modes modes = modes_of(m, 2);
+    const double wanted = sqrt(stiffness[k] / 0.08) / (2 * acos(-1));
+    assert_int_equal(modes.rigid, 0);
+    assert_near(modes.modes[0].frequency, wanted, 0.01 * wanted);
+    modes_destroy(&modes);
+    breccia_model_destroy(&m);
+  }
+  breccia_model *m = model_of(UNITS SOFT_SOLID
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"
+                              "peridynamics: {formulation: correspondence, space: 3-D}\n"
+                              "loads: [{on: {all: yes}, spring: {stiffness: 1e-4}}]\nsolve: {explicit: {steps: 1}}\n");
+  Modes modes = modes_of(m, 7);
+  const double wanted = sqrt(1e-4 / (2 * 0.12)) / (2 * acos(-1));
+  assert_int_equal(modes.rigid, 0);
+  for (int n = 0; n < 6; ++n) assert_near(modes.modes[n].frequency, wanted, 0.2 * wanted);
+  assert_true(modes.modes[6].frequency > 100 * wanted);
+  modes_destroy(&modes);
+  breccia_model_destroy(&m);
+}
+
+static void what_is_loose_at_rest_has_modes_too(void **state)
+{
+  (void)state;
+  /* A deck of statics that nothing holds is refused, but where only modes are asked for. */
+  static const char deck[] = UNITS SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [9, 6]}}}}\n"
+      "peridynamics: {space: plane stress}\nsolve: {static: {increments: 1}}\n";
+  const breccia_options options = {.size = sizeof options, .loose = 1};
+  Error *error = breccia_error_create();
+  breccia_model *m;
+  char *words = refusal_of(deck);
+  assert_non_null(strstr(words, "nothing holds the body"));
+  free(words);
+  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
+  const breccia_modes wish = {.size = sizeof wish, .count = 4};
+  if (breccia_model_modes(m, &wish, error)) fail_msg("%s", breccia_error_text(error));
+  assert_non_null(strstr(breccia_model_outcome(m), "3 of them: nothing holds the body"));
+  breccia_model *soft =
+      model_of(UNITS SOFT_SOLID "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: "
+                                "{particles: [9, 6]}}}}\nperidynamics: {space: plane stress}\n"
+                                "loads: [{on: {all: yes}, spring: {stiffness: 1e-13}}]\nsolve: {static: {increments: "
+                                "1}}\n");
+  if (breccia_model_modes(soft, &wish, error)) fail_msg("%s", breccia_error_text(error));
+  assert_non_null(strstr(breccia_model_outcome(soft), "3 of them: only springs too soft to show"));
+  breccia_model_destroy(&soft);
+  assert_int_equal(breccia_model_step(m, 1, error), BRECCIA_USER_ERROR);
+  assert_non_null(strstr(breccia_error_text(error), "nothing holds the body"));
+  breccia_model_destroy(&m);
+  breccia_error_destroy(&error);
 }
 
 static void more_modes_than_unknowns_are_refused(void **state)
@@ -291,11 +387,14 @@ int main(void)
       cmocka_unit_test(a_bar_vibrates_at_odd_quarters_of_its_wave),
       cmocka_unit_test(a_cantilever_bends_as_beams_do),
       cmocka_unit_test(beams_between_mirrored_layers_bend_as_beams_do),
+      cmocka_unit_test(modes_between_mirrored_layers_are_nearly_orthogonal),
       cmocka_unit_test(a_free_body_moves_as_a_whole_in_so_many_ways),
       cmocka_unit_test(modes_are_those_of_elastic_laws),
       cmocka_unit_test(pictures_say_which_mode_they_show),
       cmocka_unit_test(results_of_runs_are_not_written_over),
       cmocka_unit_test(springs_ties_and_supports_are_felt),
+      cmocka_unit_test(soft_springs_hold),
+      cmocka_unit_test(what_is_loose_at_rest_has_modes_too),
       cmocka_unit_test(more_modes_than_unknowns_are_refused),
       cmocka_unit_test(modes_that_roundings_hide_are_not_told),
   };

@@ -146,17 +146,95 @@ static void a_crack_is_followed_wherever_it_runs(void **state)
 
 static void what_controls_nothing_is_refused(void **state)
 {
-  static const char *const cases[][2] = {
-      {"controlled: no", "deck:8:73: controlled: only 'yes' means something; a load without 'history' acts in full"},
-  };
   (void)state;
+  static const char *const up = "displacement of: {nearest: [0.55, 0.05]}, direction: [2, 1], to: 0.003",
+                           *const pull = "traction: [1, 0]", *const found = "controlled: yes";
+  const char *const cases[][4] = {
+      {pull, "controlled: no", up, "deck:8:73: controlled: only 'yes' means something"},
+      {pull, found, "stretch in: {nearest: [0.55, 0.05]}, to: 0.003",
+       "deck:9:79: stretch in: no bond has both its ends among these particles (1)"},
+      {pull, found, "stretch in: {all: yes}, to: 0", "deck:9:107: to: 0 is out of range; it must be greater than 0"},
+      {pull, found, "stretch in: {all: yes}, to: -0.003", "deck:9:107: to: -0.003 is out of range"},
+      {pull, found, "arc length of: {all: yes}, to: 0 m",
+       "deck:9:110: to: 0 m is out of range; it must be greater than 0"},
+      /* of a side that is held */
+      {pull, found, "displacement of: {nearest: [0.05, 0.05]}, direction: [1, 0], to: 0.003",
+       "deck:9:79: displacement of: it does not change with the controlled loads"},
+      /* through a mean that by symmetry stays where it is */
+      {pull, found, "displacement of: {face: x+, layers: 1}, direction: [0, 1], to: 0.003",
+       "deck:9:79: displacement of: it does not change with the controlled loads"},
+  };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    char deck[1200];
-    snprintf(deck, sizeof deck, PLATE, "traction: [1, 0]", cases[k][0], "direct",
-             ", control: {displacement of: {nearest: [0.55, 0.05]}, direction: [2, 1], to: 0.003}");
-    char *found = refusal_of(deck);
-    if (strncmp(found, cases[k][1], strlen(cases[k][1])) != 0) fail_msg("«%s», expected «%s»", found, cases[k][1]);
-    free(found);
+    char deck[1200], control[200];
+    snprintf(control, sizeof control, ", control: {%s}", cases[k][2]);
+    snprintf(deck, sizeof deck, PLATE, cases[k][0], cases[k][1], "direct", control);
+    char *words = refusal_of(deck);
+    if (strncmp(words, cases[k][3], strlen(cases[k][3])) != 0) fail_msg("«%s», expected «%s»", words, cases[k][3]);
+    free(words);
+  }
+  /* of a later stage */
+  char later[1200];
+  snprintf(later, sizeof later, PLATE, pull, found, "direct", "");
+  char *stages = strstr(later, "solve:");
+  strcpy(stages, "solve: [{static: {control: {stretch in: {all: yes}, to: 0.003}}},\n"
+                 "        {static: {control: {stretch in: {nearest: [0.55, 0.05]}, to: 0.003}}}]\n");
+  char *said = refusal_of(later);
+  if (!strstr(said, "deck:10:29: stretch in: no bond has both its ends")) fail_msg("%s", said);
+  free(said);
+  /* a load on particles that are held */
+  char *words = refusal_of(
+      "units: {length: m, force: kN, time: s}\n" SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, 6]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane stress}\n"
+      "loads:\n"
+      "  - {on: {face: x-, layers: 2}, displacement: [0, 0]}\n"
+      "  - {on: {face: x-, layers: 1}, traction: [3, 0], history: {controlled: yes}}\n"
+      "solve: {static: {control: {displacement of: {face: x+}, direction: [1, 0], to: 0.003}}}\n");
+  if (!strstr(words, "deck:8:18: control: the controlled loads move nothing")) fail_msg("%s", words);
+  free(words);
+}
+
+/** A brittle strip with a notch. Once it is in two its halves stay apart, and nothing is left to be followed. */
+static void a_torn_body_ends_the_stage(void **state)
+{
+  static const char *const loads[] = {"force: [1, 0]", "displacement: [1 mm, free]"};
+  (void)state;
+  for (int way = 0; way < 2; ++way) {
+    breccia_model *model = model_of("units: {length: m, force: kN, time: s}\n"
+                                    "materials: {m: {model: elastic-1d, density: 2.4, Young modulus: 30 GPa}}\n"
+                                    "body: {b: {material: m, lattice: square, spacing: 10 mm, thickness: 1,"
+                                    " shape: {box: {from: [0, 0], to: [0.3, 0.05]}}}}\n"
+                                    "cracks: [{cut: {line: [[0.15, 0], [0.15, 0.02]]}}]\n"
+                                    "peridynamics: {formulation: bond-based, space: plane stress}\n"
+                                    "failure: {critical stretch: 1e-3}\n"
+                                    "loads:\n"
+                                    "  - {on: {face: x-, layers: 3}, displacement: [0, 0]}\n"
+                                    "  - {on: {face: x+, layers: 3}, %s, history: {controlled: yes}}\n"
+                                    "solve: {static: {increments: 20, control: {stretch in: {all: yes}, to: 20e-3}}}\n",
+                                    loads[way]);
+    const Domain *d = &model->domain;
+    const Particles *p = d->particles;
+    const int32_t end = body_nearest(&d->body, (double[3]){0.295, 0.025, 0});
+    double most = 0, pull = 0;
+    while (!solver_is_done(&model->solver)) {
+      step(model, 1);
+      pull = 0;
+      for (int64_t n = 0; n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        if (p->position[0][i] > 0.2) pull -= p->volume[i] * p->internal[0][i];
+      }
+      most = fmax(most, pull);
+      assert_true(pull > -1e-3 * most); /* nobody pushes */
+    }
+    assert_true(pull < 1e-3 * most);
+    assert_true(p->displacement[0][end] > 2e-5);
+    assert_true(model->solver.clock.time < 1);
+    const char *words = strstr(breccia_model_warnings(model), "deck:10:44");
+    assert_non_null(words);
+    if (strncmp(words, "deck:10:44: warning: stretch in: the body is torn at time 0.", 60) ||
+        !strstr(words, "near [0.1"))
+      fail_msg("%s", words);
+    breccia_model_destroy(&model);
   }
 }
 
@@ -232,6 +310,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_factor_that_is_found_is_that_which_would_be_given),
       cmocka_unit_test(what_controls_nothing_is_refused),
+      cmocka_unit_test(a_torn_body_ends_the_stage),
       cmocka_unit_test(a_long_brittle_bar_snaps_back_and_spends_its_fracture_energy),
       cmocka_unit_test(a_crack_is_followed_wherever_it_runs),
       cmocka_unit_test(arc_length_goes_round_every_corner_of_a_flat_arch),

@@ -146,11 +146,67 @@ static void asking_beforehand_changes_nothing(void **state)
   for (int k = 0; k < 2; ++k) breccia_model_destroy(&models[k]);
 }
 
+#define SQUARE                                                                                                         \
+  "units: {length: m, force: kN, time: s}\n"                                                                           \
+  "materials: {m: {model: %s, density: 2, Young modulus: 1e4, Poisson ratio: 0.25%s}}\n"                               \
+  "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [12, 8]}}}}\n"      \
+  "peridynamics: {space: plane strain}\n"                                                                              \
+  "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}, {name: pull, on: {face: x+, layers: 1}, traction: [1, "  \
+  "0], history: {ramp to: 0.5}}]\n"
+
+/** Bodies whose steps at rest are as many as they seem are told a time, others the least. Time that is none of a clock is compared with no wave. */
+static void what_nothing_tells_beforehand_is_told_as_the_least(void **state)
+{
+  (void)state;
+  static const char rest[] = "the run: from rest to rest", grows[] = "grows over 500 ms of its stage, at rest\n";
+  static const struct {
+    const char *law, *keys, *solve, *time, *run, *load;
+  } cases[] = {
+      {"elastic", "", "{static: {increments: 4}}", " MB, about ", rest, grows},
+      {"j2", ", yield stress: 1e3", "{static: {increments: 4}}", " MB, at least ", rest, grows},
+      {"elastic", "", "{static: {increments: 4, method: relaxation}}", " MB, at least ", rest, grows},
+      {"elastic", "", "[{static: {increments: 4}}, {static: {increments: 2}}]", " MB, at least ", rest, grows},
+      {"elastic", "", "[{explicit: {end time: 1}}, {static: {increments: 2}}]", " MB, at least ",
+       "the run: 1 s beside stages at rest, ", "travel times of a wave: "},
+      {"elastic", "", "[{static: {increments: 4}}, {explicit: {end time: 1}}]", " MB, at least ",
+       "the run: 1 s beside stages at rest, ", grows},
+      {"elastic", "", "[{static: {increments: 4}}, {explicit: {steps: 9}}]", " MB, about ",
+       "the run: steps beside stages at rest", grows},
+      {"elastic", "", "{explicit: {end time: 1}}", " MB, about ", "the run: 1 s, ", "travel times of a wave: "}};
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    breccia_model *m = model_of(SQUARE "solve: %s\n", cases[c].law, cases[c].keys, cases[c].solve);
+    const char *overview = breccia_model_overview(m);
+    if (!strstr(overview, cases[c].time)) fail_msg("no '%s' in: %s", cases[c].time, overview);
+    const char *words = breccia_model_plausibility(m);
+    if (!strstr(words, cases[c].run)) fail_msg("no '%s' in: %s", cases[c].run, words);
+    if (!strstr(words, cases[c].load)) fail_msg("no '%s' in: %s", cases[c].load, words);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void steps_of_later_stages_count_as_what_they_are(void **state)
+{
+  (void)state;
+  /* 4 increments, then 12 of the same solver, or as many steps as the body needs; an evaluation of forces more for none of the first. */
+  static const char *const later[] = {"{static: {increments: 12}}", "{explicit: {time step: 1e-3, steps: 12}}"};
+  StepCost cost;
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(SQUARE "solve: [{static: {increments: 4}}, %s]\n", "elastic", "", later[k]);
+    assert_int_equal(m->solver.clock.steps, 16);
+    assert_int_equal(solver_measure(&m->solver, &cost, NULL), 0);
+    assert_near(cost.evaluations, k ? 1.2 * 12 / 16 : 0, 1e-12);
+    assert_true(cost.seconds > 0);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(expected_times_hold_within_a_factor_of_two),
       cmocka_unit_test(a_steady_run_is_told_exactly),
+      cmocka_unit_test(what_nothing_tells_beforehand_is_told_as_the_least),
+      cmocka_unit_test(steps_of_later_stages_count_as_what_they_are),
       cmocka_unit_test(asking_beforehand_changes_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

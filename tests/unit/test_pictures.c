@@ -280,11 +280,153 @@ static void what_is_no_number_is_grey(void **state)
   unsigned char *pixels = picture_pixels(&view, 3, &of_stress, &none, &w, &h, NULL); /* a field without any number */
   assert_non_null(pixels);
   free(pixels);
-  result_view_close(&view);
   double rgb[3];
-  const Scene scene = {.range = {-1, 1, true}};
+  Scene scene = {.range = {-1, 1, true}, .x1 = 24, .y1 = 12, .missing = 2};
+  assert_string_equal(page_lay_out(&scene, &view, 3, &of_stress).notes,
+                      "displacements ×3, grey: 2 particles without a number");
+  scene.missing = 0;
+  assert_string_equal(page_lay_out(&scene, &view, 3, &of_stress).notes, "displacements ×3");
+  result_view_close(&view);
   scene_colour(&scene, NAN, rgb);
   assert_true(rgb[0] == rgb[1] && rgb[1] == rgb[2] && rgb[0] < 0.7); /* darker than zero */
+}
+
+/** Mirror images beyond a support are no part of the body that people look at; the results keep them. */
+static void layers_outside_the_body_are_not_shown(void **state)
+{
+  (void)state;
+  char place[] = "held body of XXXXXX", path[80], words[80];
+  assert_non_null(mkdtemp(place));
+  breccia_model *model = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.25}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [9, 6]}}}}\n"
+      "peridynamics: {space: plane stress}\n"
+      "loads: [{on: {face: y-}, support: {held: all}}, {gravity: [0.01, -0.1]}]\n"
+      "solve: {static: {increments: 1}}\nresults: {number: 1, fields: [displacement]}\npictures: []\n");
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = place};
+  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+  const Particles *p = model->domain.particles;
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", place);
+  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  assert_int_equal(view.particles, 9 * 6);
+  assert_int_equal(view.rows, p->count);
+  assert_true(view.rows > view.particles);
+  int components;
+  double *u = result_view_read(&view, "displacement", view.steps - 1, &components, NULL, NULL), largest = 0;
+  assert_non_null(u);
+  int64_t own = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    if (body_outside(&model->domain.body, n)) continue;
+    for (int k = 0; k < 2; ++k) {
+      assert_true(view.positions[3 * own + k] == p->position[k][p->place_of[n]]);
+      assert_near(u[3 * own + k], p->displacement[k][p->place_of[n]], 1e-8); /* single precision in the file */
+      largest = fmax(largest, fabs(u[3 * own + k]));
+    }
+    ++own;
+  }
+  assert_true(own == view.particles && largest > 1e-4);
+  free(u);
+  result_view_close(&view);
+  breccia_model_destroy(&model);
+  snprintf(words, sizeof words, "rm -r '%s'", place);
+  assert_int_equal(system(words), 0);
+}
+
+/* Particles are drawn with the part of the plane that belongs to them, which turns and grows with its neighbours: a body whose turning is
+ * drawn so large that it comes out turned by 63 degrees and 2.2 times as large has no gaps. */
+static void bodies_that_turn_and_grow_have_no_gaps(void **state)
+{
+  (void)state;
+  char into[40], path[80];
+  snprintf(into, sizeof into, "%s/turned", folder);
+  breccia_model *model = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [14, 12]}}}}\n"
+      "peridynamics: {space: plane stress}\n"
+      "loads: [{on: {all: yes}, initial velocity: {rotation: [0, 0, 1]}}]\n"
+      "solve: {explicit: {steps: 1, time step: 1e-3}}\nresults: {number: 1, fields: [displacement]}\npictures: []\n");
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+  breccia_model_destroy(&model);
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  const PictureOptions o = {
+      .field = "displacement", .deformed = 2e3, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+  PictureSurvey all;
+  assert_int_equal(picture_survey(&view, 1, 1, true, &o, &all, NULL), 0);
+  int wide, high, gaps = 0;
+  unsigned char *pixels = picture_pixels(&view, 1, &o, &all, &wide, &high, NULL);
+  assert_non_null(pixels);
+  const int half = high / 6; /* within the body */
+  for (int y = high / 2 - half; y < high / 2 + half; ++y)
+    for (int x = wide * 45 / 100 - half; x < wide * 45 / 100 + half; ++x) {
+      const unsigned char *p = pixels + 4 * (y * wide + x);
+      gaps += p[0] == 255 && p[1] == 255 && p[2] == 255;
+    }
+  assert_int_equal(gaps, 0);
+  free(pixels);
+  result_view_close(&view);
+}
+
+/* One corner of a block moves a little, the one at large x, small y, large z: its colour tells where it is seen, and that it is hidden
+ * from behind. */
+static void bodies_in_space_stand_as_they_are_seen(void **state)
+{
+  (void)state;
+  char into[40], path[80];
+  snprintf(into, sizeof into, "%s/block", folder);
+  breccia_model *model =
+      model_of("materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+               "body: {b: {material: m, lattice: cubic, spacing: 1, shape: {box: {from: [0, 0, 0], to: [8, 6, 7]}}}}\n"
+               "loads: [{on: {inside: {box: {from: [6, 0, 5], to: [8, 2, 7]}}}, velocity: [0.01, 0, 0]}]\n"
+               "solve: {explicit: {steps: 1, time step: 0.01}}\nresults: {number: 1, fields: [displacement]}\n"
+               "pictures: []\n");
+  Error *error = breccia_error_create();
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+  if (breccia_model_run(model, &run, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  static const struct {
+    double azimuth, elevation;
+    int right, up;                                /* in which half of the block; 0: not seen */
+  } eyes[] = {{-90, 0, 1, 1},                     /* from small y: x goes to the right, z upwards */
+              {0, 0, -1, 1},                      /* from large x: y to the right */
+              {90, 0, 0, 0},                      /* from large y and from small x: hidden */
+              {180, 0, 0, 0},   {-90, 90, 1, -1}, /* from above: y upwards */
+              {-90, -90, 0, 0},                   /* from below */
+              {-60, 25, 1, 1}};
+  for (size_t k = 0; k < sizeof eyes / sizeof *eyes; ++k) {
+    const PictureOptions o = {
+        .field = "displacement", .azimuth = eyes[k].azimuth, .elevation = eyes[k].elevation, .low = NAN, .high = NAN};
+    PictureSurvey all;
+    assert_int_equal(picture_survey(&view, 0, 1, true, &o, &all, NULL), 0);
+    int wide, high, w, h, count = 0;
+    unsigned char *before = picture_pixels(&view, 0, &o, &all, &wide, &high, NULL);
+    unsigned char *after = picture_pixels(&view, 1, &o, &all, &w, &h, NULL);
+    assert_true(before && after && w == wide && h == high);
+    /* The body is what has the colour of zero before: dark, while the page is white. */
+    double body[2] = {0}, corner[2] = {0}, inside = 0;
+    for (int y = 80; y < high - 60; ++y)
+      for (int x = 0; x < wide - 130; ++x) {
+        const unsigned char *a = before + 4 * (y * wide + x), *b = after + 4 * (y * wide + x);
+        if (a[0] + a[1] + a[2] < 600) body[0] += x, body[1] += y, inside += 1;
+        if (abs(a[0] - b[0]) + abs(a[1] - b[1]) + abs(a[2] - b[2]) > 60) corner[0] += x, corner[1] += y, ++count;
+      }
+    assert_true(inside > 10000);
+    if (!eyes[k].right) assert_int_equal(count, 0);
+    if (eyes[k].right && (count < 500 || (corner[0] / count - body[0] / inside) * eyes[k].right < 20 ||
+                          (corner[1] / count - body[1] / inside) * eyes[k].up > -20))
+      fail_msg("from %g, %g: the corner is seen at %g, %g, the block at %g, %g", eyes[k].azimuth, eyes[k].elevation,
+               corner[0] / count, corner[1] / count, body[0] / inside, body[1] / inside);
+    free(before);
+    free(after);
+  }
+  result_view_close(&view);
 }
 
 /** Every dataset that results.xdmf names is there and holds the step's numbers. */
@@ -355,6 +497,9 @@ int main(void)
       cmocka_unit_test(all_times_of_a_field_have_one_colour_bar_and_one_framing),
       cmocka_unit_test(signed_fields_are_grey_at_zero_and_red_in_tension),
       cmocka_unit_test(what_is_no_number_is_grey),
+      cmocka_unit_test(layers_outside_the_body_are_not_shown),
+      cmocka_unit_test(bodies_that_turn_and_grow_have_no_gaps),
+      cmocka_unit_test(bodies_in_space_stand_as_they_are_seen),
       cmocka_unit_test(xdmf_names_a_whole_dataset_for_every_step),
       cmocka_unit_test(names_of_pictures_are_short),
   };

@@ -3,9 +3,10 @@
 
 #include "base/clock.h"
 #include "constitutive/remote/channel.h"
-#include "constitutive/remote/remote.h"
+#include "constitutive/remote/remote_parts.h"
 #include "constitutive/remote/server.h"
 
+#include <netinet/in.h>
 #include <poll.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -204,6 +205,79 @@ static void partial_trials_keep_the_state_of_the_others(void **state)
   end();
 }
 
+/** Takes up the points of a session from a checkpoint at this commit, as of a server that saves nothing.
+ *  @return what a client then is told of, or "" if it has them */
+static const char *take_up(Remote **remote, uint32_t session, double commit)
+{
+  static char words[500];
+  Error *error = breccia_error_create();
+  const double identity[IDENTITY] = {session, commit};
+  const int64_t starts[2] = {0, 2};
+  const char *addresses[1] = {where};
+  const RemoteSpec wishes = {.material = "steel",
+                             .command = strchr(steel, ' ') + 1,
+                             .stage = -1,
+                             .servers = addresses,
+                             .server_count = 1,
+                             .timeout = PATIENCE,
+                             .stress_unit = 1,
+                             .units = {"m", "N", "s"},
+                             .length = NAN};
+  int status = remote_open(remote, &wishes, error);
+  if (!status) {
+    (*remote)->saves = false;
+    (*remote)->state = 0;
+    status = remote_resume(*remote, starts, NULL, identity, error);
+  }
+  snprintf(words, sizeof words, "%s", status ? breccia_error_text(error) : "");
+  breccia_error_destroy(&error);
+  return words;
+}
+
+/* A commit goes with the trial that follows it. A checkpoint that counts one more than the server has therefore asks for the trial that is
+ * still there; one that counts less is older than what the server remembers, and no server goes back. */
+static void a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  Line line = connect_to(where);
+  say(&line, OPERATION_HELLO, 0, hello, "session: 0\n");
+  say(&line, OPERATION_CREATE, 2, steel, "components: 1\n");
+  const uint32_t session = line.session;
+  pull(&line, 0, 3 * YIELD_STRAIN, 0);
+  say(&line, OPERATION_COMMIT, 0, "", "");
+  pull(&line, 0, 5 * YIELD_STRAIN, 0); /* to be committed with the next one, which never comes */
+  channel_close(&line.channel);
+
+  static const struct {
+    double commit;
+    const char *words;
+  } table[] = {{0, "is at commit 1, the checkpoint at commit 0"}, /* the server is ahead */
+               {3, "is at commit 1, the checkpoint at commit 3"},
+               {2, ""}, /* one commit behind */
+               {1, "is at commit 2, the checkpoint at commit 1"},
+               {2, ""}};
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    Remote *remote = NULL;
+    const char *words = take_up(&remote, session, table[k].commit);
+    if (table[k].words[0] ? !strstr(words, table[k].words) : words[0])
+      fail_msg("checkpoint at commit %g: '%s'", table[k].commit, words);
+    if (!words[0]) { /* four times the yield strain has stayed in point 0, nothing in point 1 */
+      double *strains = remote_strains(remote, 0);
+      int64_t bad;
+      strains[0] = 4.5 * YIELD_STRAIN;
+      strains[1] = 0.25 * YIELD_STRAIN;
+      remote_post(remote, 0);
+      assert_true(remote_collect(remote, 0, &bad));
+      assert_near(remote_stresses(remote, 0)[0], 0.5 * YIELD_STRESS, 1e-6);
+      assert_near(remote_stresses(remote, 0)[1], 0.25 * YIELD_STRESS, 1e-6);
+    }
+    remote_close(&remote);
+  }
+  end();
+}
+
 /** The bulk modulus that a law is said to have, in the client's units. */
 static void bulk_is(Line *line, Operation operation, const char *units, double bulk)
 {
@@ -391,6 +465,7 @@ static void addresses_are_refused_in_words(void **state)
       {"tcp://127.0.0.1:80x", "'80x' is no port: expected a number from "},
       {"tcp://127.0.0.1:", "an address is tcp://HOST:PORT"},
       {"tcp://:80", "an address is tcp://HOST:PORT"},
+      {"tcp://[]:80", "an address is tcp://HOST:PORT"},
       {"unix:", "the path of a socket must have 1 to 107 characters"},
   };
   for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
@@ -407,6 +482,21 @@ static void addresses_are_refused_in_words(void **state)
   assert_null(channel_connect("tcp://127.0.0.1:0", 0, NULL, NULL, &words));
   assert_string_equal(text_words(&words), "'0' is no port: expected a number from 1 to 65535");
   text_free(&words);
+}
+
+static void hosts_with_colons_stand_in_brackets(void **state)
+{
+  (void)state;
+  const int s = socket(AF_INET6, SOCK_STREAM, 0);
+  const struct sockaddr_in6 loop = {.sin6_family = AF_INET6, .sin6_addr = IN6ADDR_LOOPBACK_INIT};
+  const bool there = s >= 0 && !bind(s, (const struct sockaddr *)(const void *)&loop, sizeof loop);
+  if (s >= 0) close(s);
+  if (!there) skip(); /* a machine without such addresses */
+  begin("tcp://[::1]:0", NULL);
+  Line client = connect_to(where);
+  say(&client, OPERATION_HELLO, 0, hello, "points: 0\n");
+  channel_close(&client.channel);
+  end();
 }
 
 static void write_file(const char *path)
@@ -480,6 +570,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(partial_trials_keep_the_state_of_the_others),
+      cmocka_unit_test(a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind),
       cmocka_unit_test(units_are_those_of_who_asks),
       cmocka_unit_test(strangers_cannot_speak_for_a_client),
       cmocka_unit_test(a_silent_client_of_datagrams_makes_room),
@@ -487,6 +578,7 @@ int main(void)
       cmocka_unit_test(silent_and_slow_clients_hold_nobody_up),
       cmocka_unit_test(first_frames_are_bounded),
       cmocka_unit_test(addresses_are_refused_in_words),
+      cmocka_unit_test(hosts_with_colons_stand_in_brackets),
       cmocka_unit_test(only_sockets_of_their_own_are_removed),
       cmocka_unit_test(a_server_ends_while_a_client_is_slow),
   };

@@ -156,7 +156,7 @@ static void no_flipped_byte_is_believed(void **state)
     flip(at, (int)(k % 8));
     text_free(&found);
   }
-  print_message("%lld of %lld flipped bytes were refused, the others changed nothing\n", (long long)refused,
+  print_message("results: %lld of %lld flipped bytes were refused, the others changed nothing\n", (long long)refused,
                 (long long)count);
   assert_true(refused > count / 2);
   text_free(&right);

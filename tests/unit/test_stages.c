@@ -1,6 +1,8 @@
 /* Runs in stages: loads, laws, damping and ends that change from one to the next. */
 #include "support.h"
 
+#include "deck/spelling.h"
+
 #include <unistd.h>
 
 static void run_all(breccia_model *model)
@@ -237,6 +239,93 @@ static void a_restart_in_any_stage_goes_on_to_the_same_bits(void **state)
   breccia_model_destroy(&whole);
 }
 
+static bool summary_has(const char *folder, const char *words)
+{
+  char path[80], text[8192];
+  snprintf(path, sizeof path, "%s/summary.json", folder);
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  text[fread(text, 1, sizeof text - 1, file)] = 0;
+  fclose(file);
+  return strstr(text, words);
+}
+
+/** The number in a column of each row of a history, up to `most`. @return how many */
+static int column_of(const char *folder, const char *name, int column, double *values, int most)
+{
+  char path[80], line[512];
+  int count = 0;
+  snprintf(path, sizeof path, "%s/%s.csv", folder, name);
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  assert_non_null(fgets(line, sizeof line, file));
+  while (count < most && fgets(line, sizeof line, file)) {
+    const char *at = line;
+    for (int c = 0; c < column; ++c) at = strchr(at, ',') + 1;
+    values[count++] = atof(at);
+  }
+  fclose(file);
+  return count;
+}
+
+/** In the second stage a push and a grip that moves: they are watched from the beginning, as nothing. */
+static void loads_of_later_stages_are_watched_from_the_beginning(void **state)
+{
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", command[64];
+  assert_non_null(mkdtemp(folder));
+  breccia_model *model =
+      model_of(BAR "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}]\n"
+                   "watch: {push: {load: push}, grip: {reaction of: grip}}\n"
+                   "solve:\n"
+                   "  - {static: {increments: 2}}\n"
+                   "  - static: {increments: 2}\n"
+                   "    loads:\n"
+                   "      - {name: push, on: {face: x+}, force: [2, 0], history: {ramp to: 1}}\n"
+                   "      - {name: grip, on: {nearest: [2, 0]}, displacement: [0.001, 0], history: {ramp to: 1}}\n");
+  Error *error = breccia_error_create();
+  const breccia_run run = {.size = sizeof run, .folder = folder};
+  if (breccia_model_run(model, &run, error)) fail_msg("%s", breccia_error_text(error));
+  double push[8], grip[8];
+  assert_int_equal(column_of(folder, "push", 3, push, 8), 5);
+  assert_int_equal(column_of(folder, "grip", 2, grip, 8), 5);
+  for (int k = 0; k < 3; ++k) assert_true(push[k] == 0 && grip[k] == 0);
+  assert_near(push[3], 1, 1e-12);
+  assert_near(push[4], 2, 1e-12);
+  assert_true(grip[3] > 0 && grip[4] > 1.9 * grip[3]);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&model);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
+/** A run of two steps, taken up and stopped at once: no state is written in it, and yet its last words are of the state in which it is. */
+static void a_run_that_is_stopped_says_how_far_it_has_come(void **state)
+{
+  static const int now = 1;
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", command[64];
+  assert_non_null(mkdtemp(folder));
+  Error *error = breccia_error_create();
+  breccia_run run = {.size = sizeof run, .folder = folder, .steps = 2};
+  for (run.restart = 0; run.restart < 2; ++run.restart, run.steps = 0, run.interrupted = &now) {
+    breccia_model *model = model_of(
+        BAR
+        "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {name: push, on: {face: x+}, along: {direction: "
+        "[1, 0], displacement: -2e-3}, history: {table: [[0, 0], [1, 1]]}}]\n"
+        "results: {every: 100}\n"
+        "solve: {static: {increments: 4}}\n");
+    assert_int_equal(breccia_model_run(model, &run, error), run.restart ? BRECCIA_INTERRUPTED : BRECCIA_OK);
+    const char *words = breccia_model_outcome(model);
+    assert_true(summary_has(folder, "\"left\": "));
+    if (!strstr(words, "at the end: displacement 1 mm") || !strstr(words, "peak -0.001 m")) fail_msg("%s", words);
+    breccia_model_destroy(&model);
+  }
+  breccia_error_destroy(&error);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 static void histories_have_a_row_for_each_long_step(void **state)
 {
   (void)state;
@@ -268,6 +357,7 @@ static void histories_have_a_row_for_each_long_step(void **state)
     }
     assert_null(fgets(line, sizeof line, file));
     fclose(file);
+    assert_true(summary_has(folder, "equilibrium") && !summary_has(folder, "\"left\"")); /* it vibrates */
     breccia_error_destroy(&error);
     snprintf(line, sizeof line, "rm -r %s", folder);
     assert_int_equal(system(line), 0);
@@ -363,6 +453,25 @@ static void a_stage_that_cannot_begin_leaves_the_one_before(void **state)
   assert_int_equal(system(command), 0);
 }
 
+/** A key that looks like one under which names are defined, wrongly written, would hide that a name is not there (deck/names.c). */
+static void no_key_is_taken_for_one_of_names(void **state)
+{
+  (void)state;
+  static const char *const defining[] = {"materials", "body", "selections", "loads", "solve"};
+  static const char *const name = "name";
+  for (int k = 0; k < deck_section.field_count; ++k)
+    for (size_t n = 0; n < sizeof defining / sizeof *defining; ++n)
+      if (strcmp(deck_section.fields[k].key, defining[n]) &&
+          spelling_nearest(deck_section.fields[k].key, &defining[n], 1))
+        fail_msg("%s is like %s", deck_section.fields[k].key, defining[n]);
+  for (int k = 0; k < solve_section.field_count; ++k)
+    if (strcmp(solve_section.fields[k].key, "loads") && spelling_nearest(solve_section.fields[k].key, &defining[3], 1))
+      fail_msg("%s is like loads", solve_section.fields[k].key);
+  for (int k = 0; k < load_section.field_count; ++k)
+    if (strcmp(load_section.fields[k].key, name) && spelling_nearest(load_section.fields[k].key, &name, 1))
+      fail_msg("%s is like name", load_section.fields[k].key);
+}
+
 static void what_does_not_fit_is_said(void **state)
 {
   (void)state;
@@ -402,10 +511,13 @@ int main(void)
       cmocka_unit_test(springs_blows_and_ties_begin_with_their_stage),
       cmocka_unit_test(in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break),
       cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
+      cmocka_unit_test(loads_of_later_stages_are_watched_from_the_beginning),
+      cmocka_unit_test(a_run_that_is_stopped_says_how_far_it_has_come),
       cmocka_unit_test(histories_have_a_row_for_each_long_step),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),
       cmocka_unit_test(laws_with_rates_do_not_see_where_a_stage_begins),
       cmocka_unit_test(a_stage_that_cannot_begin_leaves_the_one_before),
+      cmocka_unit_test(no_key_is_taken_for_one_of_names),
       cmocka_unit_test(what_does_not_fit_is_said),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

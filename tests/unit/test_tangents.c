@@ -226,11 +226,53 @@ static void tangents_of_plane_stress_are_derivatives_too(void **state)
   assert_true(most_skew > 0.05); /* laws that do not flow along their normal are among them */
 }
 
+/* With the weight 1 of elastic tangents every body answers as Hooke's, however far its laws have gone: in plane stress by
+ * E / (1 - nu^2) (1, nu), which is free across, in space by K + 4G/3 and K - 2G/3. */
+static void elastic_tangents_are_hookes(void **state)
+{
+  (void)state;
+  const PointsRun run = {0, 0, SLICE};
+  for (int n = 0; n < SAMPLES; ++n)
+    for (int plane = 0; plane < 2; ++plane) {
+      Material m = samples[n].make();
+      Points points = {0};
+      const PointsSpec spec = {.components = 6,
+                               .plane_stress = plane,
+                               .runs = &run,
+                               .run_count = 1,
+                               .materials = &m,
+                               .material_count = 1,
+                               .length = NAN};
+      assert_int_equal(points_create(&points, &spec, NULL), 0);
+      for (int i = 0; i < SLICE; ++i) points.strain[XX][i] = samples[n].strain;
+      points_keep_tangents(&points, true, NULL);
+      assert_int_equal(points_update(&points, 0, SLICE, points.strain, points.stress), -1);
+      points.elastic_weight = 1;
+      const double young = 9 * m.bulk * m.shear / (3 * m.bulk + m.shear), nu = young / (2 * m.shear) - 1,
+                   along = plane ? young / (1 - nu * nu) : m.bulk + 4 * m.shear / 3,
+                   across = plane ? nu * along : m.bulk - 2 * m.shear / 3;
+      double tangent[36];
+      points_tangent(&points, SLICE / 2, tangent);
+      for (int r = 0; r < 6; ++r)
+        for (int k = 0; k < 6; ++k) {
+          const bool normal = r < (plane ? 2 : 3) && k < (plane ? 2 : 3);
+          const double hooke = normal ? (r == k ? along : across) : r != k || (plane && r == ZZ) ? 0 : m.shear;
+          if (plane && r == k && (r == YZ || r == ZX)) continue; /* no such strains */
+          if (fabs(tangent[6 * r + k] - hooke) > 1e-12 * along)
+            fail_msg("%s%s: %g in row %d, column %d, expected %g", samples[n].name, plane ? " in plane stress" : "",
+                     tangent[6 * r + k], r, k, hooke);
+        }
+      points_destroy(&points);
+      material_destroy(&m);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tangents_are_derivatives_of_steps),
       cmocka_unit_test(tangents_of_plane_stress_are_derivatives_too),
+      cmocka_unit_test(elastic_tangents_are_hookes),
       cmocka_unit_test(the_walk_of_tangents_visits_every_region_of_the_cap),
       cmocka_unit_test(the_walk_of_tangents_visits_the_planes_edges_and_corners_of_mohr_and_coulomb),
   };

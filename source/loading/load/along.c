@@ -76,7 +76,7 @@ static double magnitude(const LoadValue *value)
 {
   double given;
   order_of(value->section, &given);
-  return fabs(given);
+  return given;
 }
 
 static const char *kind(const LoadValue *value, const char **dimension)

@@ -25,12 +25,12 @@ static void force(const Load *load, Particles *p, double factor)
 
 static double magnitude(const LoadValue *value)
 {
-  return fabs(value->number);
+  return value->number;
 }
 
 static LoadWords tell(const Load *load, const Particles *p)
 {
-  return (LoadWords){"a force in all of", magnitude(load->value) * face_area(load->own, load, p), "force", "N"};
+  return (LoadWords){"a force in all of", fabs(load->value->number) * face_area(load->own, load, p), "force", "N"};
 }
 
 const LoadType pressure_load = {

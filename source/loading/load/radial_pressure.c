@@ -97,7 +97,7 @@ static void force(const Load *load, Particles *p, double factor)
 
 static double magnitude(const LoadValue *value)
 {
-  return fabs(((const RadialPressureSpec *)value->section)->pressure);
+  return ((const RadialPressureSpec *)value->section)->pressure;
 }
 
 static const char *kind(const LoadValue *value, const char **dimension)
