@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-elements bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-elements bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -51,7 +51,11 @@ bench-peers: all
 	@sh scripts/setup.sh peers
 	@build/release/breccia_peers
 
-# Elastic bodies at rest beside finite elements of OpenSees; the a table of docs/performance.md.
+# What equations of bodies at rest cost, and what check tells of runs; two tables of docs/performance.md.
+bench-rest: all
+	@python3 -B bench/bodies_at_rest.py build/release docs/performance.md
+
+# Elastic bodies at rest beside finite elements of OpenSees; a table of docs/performance.md.
 bench-elements: all
 	@sh scripts/opensees.sh
 	@.venv/opensees/bin/python bench/finite_elements.py build/release/breccia docs/performance.md
