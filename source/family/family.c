@@ -44,16 +44,37 @@ static bool make_pattern(Pattern *pattern, const Family *family, const Lattice *
   return true;
 }
 
+static int refuse_reach(const Family *family, const Lattice *lattice, Error *error)
+{
+  return error_add(error, BRECCIA_USER_ERROR,
+                   "the horizon of %g reaches over %.3g spacings of %g: families would have more than %d bonds; take a "
+                   "smaller horizon, or blocks of like spacings",
+                   family->horizon, family->horizon / lattice->spacing, lattice->spacing, UINT16_MAX);
+}
+
+/** How many rows, layers and places along a row may be within reach to each side. Rows are shifted by less than one place for each row and layer.
+ *  @return false if they are so many that a family has too many bonds for certain: to count them would take too long */
+static bool find_extent(const Lattice *lattice, const int axes[3], double reach, int extent[3])
+{
+  static const double most = 64.0 * UINT16_MAX; /* shifted rows are looked for in up to 16 times the ball's places */
+  double further = 0, all = 1;
+  for (int n = 2; n >= 0; --n) {
+    const double along =
+        axes[n] < lattice->dimensions ? floor(reach / lattice->unit.size[axes[n]] * (1 + 1e-9)) + further : 0;
+    further += along;
+    all *= 2 * along + 1;
+    if (!(all <= most)) return false;
+    extent[n] = (int)along;
+  }
+  return true;
+}
+
 /** Lattice vectors of one block within reach, lattice row by lattice row. */
 static int add_patterns(Family *family, const Lattice *lattice, const FamilySpec *spec, double reach, Error *error)
 {
   const int axes[3] = {lattice->axis, lattice->across[0], lattice->across[1]};
-  int extent[3] = {0}, room = family->pattern_count; /* rows are shifted by less than one for each row and layer */
-  for (int n = 2, further = 0; n >= 0; --n) {
-    if (axes[n] < lattice->dimensions) extent[n] = (int)(reach / lattice->unit.size[axes[n]] * (1 + 1e-9)) + further;
-    further += extent[n];
-  }
-  int offset[3];
+  int extent[3], room = family->pattern_count, offset[3];
+  if (!find_extent(lattice, axes, reach, extent)) return refuse_reach(family, lattice, error);
   for (offset[axes[2]] = -extent[2]; offset[axes[2]] <= extent[2]; ++offset[axes[2]])
     for (offset[axes[1]] = -extent[1]; offset[axes[1]] <= extent[1]; ++offset[axes[1]]) {
       const int row_begins = family->pattern_count;
@@ -68,10 +89,7 @@ static int add_patterns(Family *family, const Lattice *lattice, const FamilySpec
         }
         family->patterns[family->pattern_count++] = pattern;
       }
-      if (family->pattern_count > UINT16_MAX)
-        return error_add(error, BRECCIA_USER_ERROR,
-                         "the horizon of %g reaches over so many spacings that a family would have more than %d bonds",
-                         family->horizon, UINT16_MAX);
+      if (family->pattern_count > UINT16_MAX) return refuse_reach(family, lattice, error);
     }
   return BRECCIA_OK;
 }

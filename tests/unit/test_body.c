@@ -310,6 +310,23 @@ static void blocks_of_unlike_thickness_or_area_are_refused(void **state)
   }
 }
 
+/** As of blocks drawn in unlike units. To count such families first took minutes, or passed the largest whole number. */
+static void spacings_that_differ_by_thousands_are_refused_at_once(void **state)
+{
+  (void)state;
+  for (double coarse = 1e3; coarse < 1e50; coarse *= coarse) {
+    char deck[512];
+    snprintf(deck, sizeof deck,
+             MATERIAL SOLVE
+             "body:\n  a: {material: m, spacing: %g, shape: {box: {particles: [4, 4, 4]}}}\n"
+             "  b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4], first particle: [-1, 0, 0]}}}\n",
+             coarse);
+    char *words = refusal_of(deck);
+    assert_non_null(strstr(words, "spacings of 0.1: families would have more than 65535 bonds"));
+    free(words);
+  }
+}
+
 static void selections_hold_what_they_say(void **state)
 {
   (void)state;
@@ -380,6 +397,7 @@ int main(void)
       cmocka_unit_test(parts_of_volumes_at_the_horizon_go_by_both_spacings),
       cmocka_unit_test(particles_on_top_of_each_other_are_refused),
       cmocka_unit_test(blocks_of_unlike_thickness_or_area_are_refused),
+      cmocka_unit_test(spacings_that_differ_by_thousands_are_refused_at_once),
       cmocka_unit_test(selections_hold_what_they_say),
       cmocka_unit_test(selections_join_others_have_them_in_common_and_leave_them_out),
       cmocka_unit_test(round_bodies_lie_in_the_middle_of_their_lattice),
