@@ -164,3 +164,13 @@ void assert_balanced(const breccia_model *m, double tolerance)
   const Energy e = solver_energy(&m->solver);
   if (!(e.imbalance < tolerance)) fail_msg("imbalance %g", e.imbalance);
 }
+
+StateCopy state_of(breccia_model *m)
+{
+  StateCopy copy;
+  StateList list = {0};
+  model_state(m, &list);
+  assert_int_equal(state_copy(&copy, &list, NULL), 0);
+  state_list_destroy(&list);
+  return copy;
+}

@@ -43,6 +43,8 @@ typedef struct Sums {
 Sums sums_of(const breccia_model *model);
 /** Fails unless the ledger of energies balances, as a share of the largest of them. */
 void assert_balanced(const breccia_model *model, double tolerance);
+/** What a checkpoint would hold; state_copy_destroy frees it. */
+StateCopy state_of(breccia_model *model);
 /** Compares every family with all pairs of the body tried one by one. */
 void assert_families_are_all_pairs(const breccia_model *model);
 /** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */

@@ -366,16 +366,6 @@ static void accelerations_are_those_of_the_bonds_that_are_left(void **state)
   breccia_model_destroy(&m);
 }
 
-static StateCopy state_of(breccia_model *m)
-{
-  StateCopy copy;
-  StateList list = {0};
-  model_state(m, &list);
-  assert_int_equal(state_copy(&copy, &list, NULL), 0);
-  state_list_destroy(&list);
-  return copy;
-}
-
 /** A step that comes to no equilibrium leaves nothing behind, whether a shorter one is tried after it or the run ends. */
 static void a_step_that_fails_is_taken_back(void **state)
 {

@@ -1,9 +1,8 @@
 /* Ordinary state-based peridynamics against closed forms, published figures, other formulations and its own invariants. */
 #include "base/random.h"
 #include "base/tensor.h"
-#include "formulation/ordinary.h"
+#include "ordinary_body.h"
 #include "solver/stable_step.h"
-#include "support.h"
 
 #define SOLVE "solve: {explicit: {steps: 1, time step: 1e-12}}\n"
 
@@ -12,25 +11,6 @@ static breccia_model *body_of(const char *material, const char *peridynamics, co
   return model_of("materials: {m: {model: elastic, density: 1, %s}}\nperidynamics: {formulation: ordinary, %s}\n"
                   "body: {b: {material: m, %s}}\n" SOLVE,
                   material, peridynamics, block);
-}
-
-static const Ordinary *ordinary_of(const breccia_model *m)
-{
-  return m->domain.regions[0].formulation;
-}
-
-static double weighted_volume(const breccia_model *m, int32_t place)
-{
-  return ordinary_of(m)->dimensions / ordinary_of(m)->inverse[place];
-}
-
-/** Particles nearer to the middle of the body than a share of its size each way. */
-static bool is_inside(const Particles *p, const double size[3], int32_t place, double from_faces)
-{
-  bool inside = true;
-  for (int k = 0; k < 3 && size[k] > 0; ++k)
-    inside &= p->position[k][place] > from_faces && p->position[k][place] < size[k] - from_faces;
-  return inside;
 }
 
 static void two_points_and_a_cube_have_the_forces_of_another_program(void **state)

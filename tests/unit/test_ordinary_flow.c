@@ -1,31 +1,11 @@
 /* Families that yield or relax, against another program, the laws in space and closed forms; and struck plates, elastic and flowing. */
 #include "base/tensor.h"
-#include "formulation/ordinary.h"
+#include "ordinary_body.h"
 #include "results/fields.h"
-#include "support.h"
 
 #define SOLVE "solve: {explicit: {steps: 1, time step: 1e-12}}\n"
 #define CUBE "spacing: 1, shape: {box: {particles: [17, 16, 15]}}"
 #define SQUARE "lattice: square, spacing: 1, thickness: 0.4, shape: {box: {particles: [19, 17]}}"
-
-static const Ordinary *ordinary_of(const breccia_model *m)
-{
-  return m->domain.regions[0].formulation;
-}
-
-static double weighted_volume(const breccia_model *m, int32_t place)
-{
-  return ordinary_of(m)->dimensions / ordinary_of(m)->inverse[place];
-}
-
-/** Particles nearer to the middle of the body than a share of its size each way. */
-static bool is_inside(const Particles *p, const double size[3], int32_t place, double from_faces)
-{
-  bool inside = true;
-  for (int k = 0; k < 3 && size[k] > 0; ++k)
-    inside &= p->position[k][place] > from_faces && p->position[k][place] < size[k] - from_faces;
-  return inside;
-}
 
 /** Pulls the second of two particles along x to u and takes a step. @return its pull on the first, as a tension */
 static double pull_to(breccia_model *m, double u)

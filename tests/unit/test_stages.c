@@ -159,16 +159,6 @@ static void in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break(void **
   breccia_model_destroy(&m);
 }
 
-static StateCopy state_of(breccia_model *m)
-{
-  StateCopy copy;
-  StateList list = {0};
-  model_state(m, &list);
-  assert_int_equal(state_copy(&copy, &list, NULL), 0);
-  state_list_destroy(&list);
-  return copy;
-}
-
 static void assert_same_state(const StateCopy *a, const StateCopy *b)
 {
   assert_int_equal(a->count, b->count);
