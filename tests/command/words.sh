@@ -1,0 +1,321 @@
+# What a person reads of a body before and after a run, whole lines of it, against closed forms and against counts and sums made here.
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+
+# lines WHAT FILE: each line of the input is a whole line of FILE
+lines() {
+  local line
+  while IFS= read -r line; do
+    checks=$((checks + 1))
+    grep -qxF -- "$line" "$2" || fail "$1: no line «$line» in: $(cat "$2")"
+  done
+}
+
+# near WHAT FOUND EXPECTED SHARE
+near() {
+  checks=$((checks + 1))
+  awk -v a="$2" -v b="$3" -v s="$4" 'BEGIN {d = a - b; if (d < 0) d = -d; m = b < 0 ? -b : b; exit !(a != "" && d <= s * m)}' || fail "$1: expected $3, found «$2»"
+}
+
+# figures FILE KEY: the number or the list of numbers at a key of a JSON file
+figures() {
+  sed -n "s/.*\"$2\": \[\([^]]*\)\].*/\1/p; t; s/.*\"$2\": \([-0-9.e+]*\).*/\1/p" "$1" | head -1 | tr -d ,
+}
+
+# ---- a bar of two materials ----
+cat > rod.yaml <<'Y'
+title: Rod
+units: {length: mm, force: N, time: ms}
+materials:
+  stiff: {model: elastic, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}
+  soft: {model: mazars, density: 1500 kg/m3, Young modulus: 15 GPa, Poisson ratio: 0.2, tensile strength: 3 MPa, fracture energy: 120 J/m2}
+body:
+  left: {material: stiff, spacing: 20, shape: {box: {from: [0, 0, 0], to: [400, 80, 80]}}}
+  right: {material: soft, spacing: 20, shape: {box: {from: [400, 0, 0], to: [600, 80, 80]}}}
+loads:
+  - {name: held, on: {face: x-}, displacement: [0, free, free]}
+  - {name: blow, on: {face: x+}, velocity: [1, 0, 0], history: {ramp to: 0.1 ms}}
+  - {name: waves, on: {face: x-}, body force: [0, 1e-6, 0], history: {ramp to: 1}}
+  - {on: {face: y+}, body force: [0, 1e-6, 0], history: {ramp to: 20}}
+solve: {explicit: {end time: 1}}
+pictures: []
+Y
+"$breccia" check rod.yaml > out 2> errors || fail "rod: $(cat errors)"
+# all pairs of 30 x 4 x 4 places nearer than 3.015 spacings
+awk 'BEGIN {for (n = 0; n < 480; ++n) for (m = 0; m < 480; ++m) {x = int(n / 16) - int(m / 16); if (x > 3 || x < -3) continue
+  y = int(n / 4) % 4 - int(m / 4) % 4; z = n % 4 - m % 4; d = x * x + y * y + z * z; if (d && d <= 9) ++own[n]}
+  few = 1e9; for (n = 0; n < 480; ++n) {all += own[n]; if (own[n] < few) few = own[n]; if (own[n] > most) most = own[n]}
+  printf "Rod: 480 particles, %d bonds, %d to %d per particle (mean %.1f), horizon 60.3 mm\n", all / 2, few, most, all / 480}' > counted
+lines "rod: bonds" out < counted
+# 33.3 GPa and 16.7 GPa across; 0.4 m of 2400 and 0.2 m of 1500 kg/m3; 600 mm at 3.727 km/s; sqrt(E / density) = 3.536 km/s
+lines "rod" out <<'Y'
+correspondence; stiff (elastic), soft (mazars); bonds do not break
+body: 600 mm x 80 mm x 80 mm, 8.064 kg; a wave travels through in 161 µs
+in SI units:
+  stiff: 2400 kg/m3, E 30 GPa, waves 3.73 km/s
+  soft: 1500 kg/m3, E 15 GPa, waves 3.33 km/s, fracture energy 120 J/m2, E G_F / f_t^2 200 mm (3.3 horizons)
+  lowest frequency of the free body: about 2.95 kHz along, 808 Hz in bending across its thinnest side; 'breccia modes' finds it as the body is held
+  load 'blow': grows over 100 µs, 0.621 travel times of a wave: a blow; a wave behind 1 m/s carries 8.94 MPa
+  load 'waves': grows over 1 ms, 6.21 travel times of a wave: waves will show
+  load in line 13: grows over 20 ms, 124 travel times of a wave: slow
+  the run: 1 ms, 6.21 travel times of a wave
+Y
+grep -q "load 'held'" out && fail "a support has a size: $(cat out)"
+"$breccia" run rod.yaml > out 2> errors || fail "run of the rod: $(cat errors)"
+s=rod/summary.json
+steps=$(figures $s steps)
+lines "rod: outcome" out <<Y
+load 'held': displacement
+load 'blow': velocity, peak 1 mm/ms
+load 'waves': body force, peak 1e-06 N/mm3
+written:
+  rod/deck.yaml (what was run)
+  rod/results.vtkhdf (and results.xdmf for older ParaView)
+  rod/summary.json
+Y
+contains "rod: end" "$(cat out)" "finished at step $steps of $steps, time 1 ms; "
+contains "rod: step" "$(cat out)" "$steps steps of $(figures $s time_step) ms ($(awk -v a="$(figures $s time_step)" -v b="$(figures $s stable_time_step)" 'BEGIN {printf "%.2f of the stable %.4g", a / b, b}')), "
+near "rod: time of a bond" "$(figures $s ns_per_directed_bond_step)" "$(awk -v t="$(figures $s wall_seconds)" -v b="$(figures $s bonds)" -v n="$steps" 'BEGIN {print 1e9 * t / (2 * b * n)}')" 0.02
+# a load of 20 ms has come to a twentieth after one; what does not end is as large as it is at the end of the run
+contains "rod: load without a name" "$(cat $s)" '{"name": "", "line": 13, "kind": "body force", "peak": 5e-08, "unit": "N/mm3"}'
+# energies: what is put in is what is there, and the words are those of the file, in joules
+near "rod: energies" "$(figures $s external)" "$(awk -v k="$(figures $s kinetic)" -v s="$(figures $s stored)" -v d="$(figures $s dissipated)" 'BEGIN {printf "%.12g", k + s + d}')" 1e-3
+near "rod: internal energy" "$(figures $s internal)" "$(awk -v s="$(figures $s stored)" -v d="$(figures $s dissipated)" 'BEGIN {printf "%.12g", s + d}')" 1e-9
+words=$(grep '^energy: ' out)
+said() { # said WORD: the number before its unit, in joules
+  echo "$words" | sed -n "s/.*$1 \([-0-9.e+]*\) \([mµk]*\)J.*/\1 \2/p" | awk '{print $1 * ($2 == "m" ? 1e-3 : $2 == "µ" ? 1e-6 : $2 == "k" ? 1e3 : 1)}'
+}
+for word in external kinetic stored dissipated fracture; do near "rod: said of $word" "$(said $word)" "$(awk -v e="$(figures $s $word)" 'BEGIN {print e / 1000}')" 0.006; done
+case $words in *friction* | *damping* | *"at the start"*) fail "what is none is told: $words" ;; esac
+contains "rod: largest" "$(cat out)" "largest in the states written and at the end: displacement 950 µm, octahedral shear stress " # 1 mm/ms over 1 ms, less half the ramp
+
+# ---- from rest to motion ----
+cat > staged.yaml <<'Y'
+title: Staged
+units: {length: m, force: kN, time: s}
+variables: {size: 2}
+materials: {m: {model: elastic, density: "${size}", Young modulus: 1e4, Poisson ratio: 0.25}}
+body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [12, 8]}}}}
+peridynamics: {space: plane strain}
+loads: [{on: {face: x-}, displacement: [0, 0]}, {name: pull, on: {face: x+}, traction: [1, 0], history: {ramp to: 0.5}}]
+solve:
+  - {name: slow, static: {increments: 4}}
+  - {name: fast, explicit: {steps: 40}, displacements: zero, laws: elastic, loads: [{name: more, on: {face: y+}, body force: [0, -1]}]}
+pictures: []
+Y
+"$breccia" check staged.yaml --set 'title="Two stages"' > out 2> errors || fail "stages: $(cat errors)"
+# 12 x 8 places of 0.1 m, 0.2 m thick; sqrt(12 MPa / 2 t/m3); a pull of 1 kPa on 0.8 m x 0.2 m
+lines "stages" out <<'Y'
+correspondence; m (elastic); bonds do not break
+body: 1.2 m x 800 mm, 384 kg; a wave travels through in 15.5 ms
+stage 'slow': static, 4 increments up to time 1
+stage 'fast': explicit, 40 steps, elastic, displacements from zero, 1 new load
+  m: 2000 kg/m3, E 10 MPa, waves 77.5 m/s
+  load 'pull': a force in all of 160 N; grows over 500 ms of its stage, at rest
+  load 'more': acts in full from the start
+  the run: steps beside stages at rest, which are as long as the body allows then
+Y
+contains "stages: steps" "$(cat out)" "44 steps at most, the first of 0.25 s, "
+contains "stages: title" "$(cat out)" "Two stages: 96 particles"
+"$breccia" run staged.yaml --set 'title=Two stages' > out 2> errors || fail "run of stages: $(cat errors)"
+s=staged/summary.json
+end=$(figures $s time)
+lines "stages: outcome" out <<Y
+stage 'slow': steps 0 to 4, time 0 to 1 s
+stage 'fast': steps 4 to 44, time 1 to $(printf %.6g "$end") s
+load 'pull': traction, peak 1 kPa
+load 'more': body force, peak 1 kN/m3
+  staged/solution.txt
+Y
+lines "stages: summary" $s <<Y
+  "title": "Two stages",
+  "completed": true,
+  "deck": "staged.yaml",
+  "settings": ["title=Two stages"],
+  "variables": {"size": "2"},
+  "stages": [{"name": "slow", "steps": [0, 4], "times": [0, 1], "at_rest": false}, {"name": "fast", "steps": [4, 44], "times": [1, $end], "at_rest": false}],
+  "first_broken_bond": null,
+  "broken_bonds": 0,
+Y
+# what loads exert in the end, with moments about the origin: 0.16 kN at half the height of 0.8 m, and -1 kN/m3 on the upper row of 1.2 m x 0.1 m x 0.2 m
+read -r x y z <<< "$(figures $s loads)"
+near "stages: loads along x" "$x" 0.16 1e-9
+near "stages: loads along y" "$y" -0.024 1e-9
+equal "stages: loads along z" "$z" 0
+near "stages: moment of loads" "$(figures $s 'moment of loads' | cut -d' ' -f3)" "$(awk 'BEGIN {print -0.16 * 0.4 - 0.024 * 0.6}')" 1e-3
+grep -q '"left"' $s && fail "what is in motion is told as if it were to balance: $(cat $s)"
+
+# ---- at rest: loads and reactions balance each other ----
+sed '/name: fast/d' staged.yaml > rest.yaml
+"$breccia" run rest.yaml > out 2> errors || fail "run at rest: $(cat errors)"
+s=rest/summary.json
+grep -q "^stage\|^at rest" out && [ "$(grep -c '^stage' out)" != 0 ] && fail "one stage is told as several: $(cat out)"
+contains "at rest" "$(cat out)" "at rest: forces out of balance are "
+contains "at rest: supports" "$(cat out)" "supports and prescribed motions exert [-0.16, "
+contains "at rest: loads" "$(cat out)" "kN, loads [0.16, 0, 0]; of all these forces "
+read -r x y z <<< "$(figures $s reactions)"
+near "at rest: reactions along x" "$x" -0.16 1e-6
+near "at rest: moment of reactions" "$(figures $s 'moment of reactions' | cut -d' ' -f3)" 0.064 1e-3
+checks=$((checks + 1))
+awk -v left="$(figures $s left)" 'BEGIN {exit !(left != "" && left < 1e-6)}' || fail "at rest: left is $(figures $s left)"
+grep -q '"stable_time_step"\|"stages"' $s && fail "a body at rest has a stable step, or one stage is listed: $(cat $s)"
+
+# ---- a state each second step, one for a picture, and a folder of pictures that cannot be made ----
+cat > block.yaml <<'Y'
+title: Block
+materials: {m: {model: elastic, density: 2400, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 4, 4]}}}}
+loads: [{name: pull, on: {face: x+}, body force: [1, 0, 0]}]
+solve: {explicit: {steps: 60}}
+results: {number: 30, fields: [displacement]}
+pictures: [{field: displacement, at: [0, 1e9]}, {field: displacement, at: [0, 0.5 ms], name: moved}]
+Y
+"$breccia" run block.yaml > out 2> errors || fail "block: $(cat errors)"
+# pictures of times behind the end are not made; several times of one name are told apart by them
+equal "block: pictures" "$(sed -n 's,^ *block/pictures/,,p' out | tr '\n' ' ')" "displacement-0ms.png moved-0ms.png moved-$(awk -v d="$(figures block/summary.json time_step)" 'BEGIN {
+  for (n = 0; n * d < 5e-4; ++n) continue
+  printf "%.3g", 1e3 * n * d}')ms.png "
+mkdir beside
+: > beside/pictures
+"$breccia" run block.yaml --output beside > out 2> errors
+equal "no folder for pictures: status" $? 1
+equal "no folder for pictures" "$(grep -v ^warning errors)" "beside/pictures: the folder cannot be made: File exists"
+contains "no folder for pictures: the rest is there" "$(cat out)" "beside/results.vtkhdf"
+
+# ---- wrong wishes: one line each, and status 2 ----
+# told WORDS ARGUMENTS
+told() {
+  local words=$1
+  shift
+  "$breccia" "$@" > out 2> errors
+  equal "$*: status" $? 2
+  equal "$*" "$(cat errors)" "$words"
+  equal "$*: nothing else" "$(cat out)" ""
+}
+movie="breccia plot: --movie shows a field at all written steps and names its file itself: leave out"
+told "breccia plot: --rate: written steps a second, above 0 and up to 120" plot block --movie a.mp4 --rate 0
+told "breccia plot: --rate: written steps a second, above 0 and up to 120" plot block --movie a.mp4 --rate 121
+told "breccia plot: --view: '3' should be two numbers with a colon between" plot block --view 3
+told "breccia plot: --range: '1:2:3' should be two numbers with a colon between" plot block --range 1:2:3
+told "breccia plot: --deformed: 'nan' is not a number" plot block --deformed nan
+told "breccia plot: --time: '1 s' is not a number" plot block --time "1 s"
+told "breccia: --size: '49' is not a whole number of at least 50" plot block --size 49
+told "breccia: --step: '-1' is not a whole number of at least 0" plot block --step=-1
+told "breccia: --step: '7x' is not a whole number of at least 0" plot block --step 7x
+told "step 7 was not written; these were: 0 ... 60 (32 states); --time takes the nearest" plot block --field displacement --step 7
+told "breccia plot: give one result folder (several with --curve); see 'breccia plot --help'" plot block block
+told "breccia plot: give one result folder (several with --curve); see 'breccia plot --help'" plot
+told "$movie --output" plot block --movie a.mp4 --output b.mp4
+told "$movie --time" plot block --movie a.mp4 --time 0
+told "$movie --step" plot block --movie a.mp4 --step 0
+told "$movie --curve and --energy" plot block --movie a.mp4 --energy
+told "$movie --curve and --energy" plot block --movie a.mp4 --curve end.x:end.y
+told "breccia study: give one deck; see 'breccia study --help'" study block.yaml block.yaml
+told "breccia: --jobs: '0' is not a whole number of at least 1" study block.yaml --vary a=1,2 --jobs 0
+told "breccia: --threads: '0' is not a whole number of at least 1" study block.yaml --vary a=1,2 --threads 0
+told "beside/pictures/a: the folder cannot be made: Not a directory" study block.yaml --vary solve.explicit.steps=1,2 --output beside/pictures/a
+told "breccia check: give one deck; see 'breccia check --help'" check
+told "breccia check: give one deck; see 'breccia check --help'" check block.yaml block.yaml
+told "breccia modes: give one deck; see 'breccia modes --help'" modes
+told "breccia: --count: '0' is not a whole number of at least 1" modes block.yaml --count 0
+told "breccia: --steps: '0' is not a whole number of at least 1" run block.yaml --steps 0
+told "breccia: --threads: '99999999999999999999' is not a whole number of at least 1" run block.yaml --threads 99999999999999999999
+told "breccia run: --output needs a value; see 'breccia run --help'" run --output
+curve="breccia material: a path of strains has no curve for"
+told "$curve --picture: give a --test, or leave it out" material --model elastic --strain a.csv --picture a.png
+told "$curve --against: give a --test, or leave it out" material --model elastic --strain a.csv --against a.csv
+told "breccia material: --picture: 'a.gif' should end in .png, .svg or .pdf" material --model elastic --test uniaxial --picture a.gif
+for words in "--model elastic" "--model elastic --strain a.csv --test uniaxial" "" "a.yaml b.yaml" "a.yaml --model elastic --test uniaxial"; do
+  told "breccia material: give a file TEST.yaml, or --model with --strain or --test; see 'breccia material --help'" material $words
+done
+for least in "cycles 0" "steps 1" "elastic-rows 0"; do
+  told "breccia: --${least% *}: '-1' is not a whole number of at least ${least#* }" material --model elastic --test uniaxial --${least% *} -1
+done
+told "breccia calibrate: give one file TEST.yaml; see 'breccia calibrate --help'" calibrate
+told "breccia calibrate: --picture: 'a.gif' should end in .png, .svg or .pdf" calibrate a.yaml --picture a.gif
+told "breccia schema: 'x' is one argument too many" schema x
+told "breccia new: give the name of the deck to write, like plate.yaml" new
+told "breccia new: give the name of the deck to write, like plate.yaml" new a b
+told "usage: breccia serve --listen ADDRESS [options]" serve
+told "usage: breccia serve --listen ADDRESS [options]" serve x --listen udp://127.0.0.1:0
+contains "help of a verb" "$("$breccia" help plot)" "usage: breccia plot RESULT ... [options]"
+
+# ---- threads of the cases of a study: the cores shared among the jobs, one at least, or as many as asked for ----
+all=$(figures block/summary.json threads)
+threads() {
+  rm -rf shared
+  "$breccia" study block.yaml --vary 'solve.explicit.steps=1,2,3' --result time --output shared "$@" > out 2> errors || fail "study $*: $(cat errors)"
+  sed -n 's/.*"threads": \([0-9]*\),/\1/p' shared/*/summary.json | sort -u
+}
+equal "one job" "$(threads)" "$all"
+equal "two jobs" "$(threads --jobs 2)" $((all > 2 ? all / 2 : 1))
+equal "more jobs than cases" "$(threads --jobs 99)" $((all > 3 ? all / 3 : 1))
+equal "threads asked for" "$(threads --jobs 2 --threads 3)" 3
+# quietly: the table and no more
+equal "a quiet study" "$("$breccia" study block.yaml --vary 'solve.explicit.steps=1,2,3' --result time --output shared --quiet)" "$(cat shared/table.txt)"
+
+# ---- a fit: how far points lie from it, across the curve and as a share of their ranges ----
+cat > fit.yaml <<'Y'
+units: {length: mm, force: N, time: s}
+material: {model: elastic-1d, density: 2e-9, Young modulus: 500}
+test: {kind: uniaxial, strain: 0.005, steps: 50}
+against: points.csv
+fit: {Young modulus: {from: 500, to: 2000}}
+Y
+awk 'BEGIN {for (k = 1; k <= 40; ++k) print k * 1e-4 "," k * 0.1}' > points.csv
+# points k / 39 along both axes and a line of slope s through zero: k (1 - s) / (39 sqrt(1 + s^2))
+off() { # off SLOPE: the root of the mean square, and the most
+  awk -v s="$1" 'BEGIN {for (k = 1; k <= 40; ++k) {d = k * (1 - s) / 39 / sqrt(1 + s * s); q += d * d / 40} printf "%.2f %.2f", 100 * sqrt(q), 100 * d}'
+}
+"$breccia" calibrate fit.yaml > out 2> errors || fail "calibrate: $(cat errors)"
+read -r before most <<< "$(off 0.5)"
+lines "a fit that is found" out <<< "40 points lie 0.00 % of their range from the curve (rms) and 0.00 % at most; with the file's values it was $before %."
+contains "a fit that is found: starts" "$(cat out)" "9 of 9 starts came as near. "
+contains "a fit that is found: value" "$(cat out)" "  Young modulus: 1000 N/mm2   (between 500 and 2000; "
+sed -i 's/to: 2000/to: 800/' fit.yaml
+"$breccia" calibrate fit.yaml > out 2> errors || fail "calibrate to an end: $(cat errors)"
+read -r mean most <<< "$(off 0.8)"
+lines "a fit at the end of its range" out <<< "40 points lie $mean % of their range from the curve (rms) and $most % at most; with the file's values it was $before %."
+contains "a fit at the end of its range: value" "$(cat out)" "; it stands at the end of its range)"
+
+# ---- help, completion and the manual page list the same options of each verb ----
+"$breccia" completion > completion.sh
+"$breccia" completion --man > page.1
+for verb in run study check modes new plot models material calibrate serve schema completion; do
+  options=$("$breccia" $verb --help | sed -n 's/^  \(--[a-z-]*\).*/\1/p')
+  equal "completion of $verb" "$(bash -c 'source completion.sh; COMP_WORDS=(breccia "$1" -); COMP_CWORD=2; _breccia; echo "${COMPREPLY[@]}"' _ $verb)" "--help $(echo $options)"
+  equal "page of $verb" "$(awk -v v=$verb '$1 == ".SS" {on = $2 == v} on && $1 == ".B" {print $2}' page.1 | tr -d '\\')" "$options"
+done
+
+# ---- bonds: a line for each block ----
+cat > bonds.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}
+body:
+  a: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}
+  b: {material: m, spacing: 0.1, shape: {box: {from: [0.6, 0, 0], to: [1, 0.5, 0.4]}}}
+peridynamics: {formulation: bond-based, calibration: uniaxial}
+solve: {explicit: {steps: 2}}
+Y
+"$breccia" check bonds.yaml > out 2> errors || fail "bonds: $(cat errors)"
+patch="a uniaxial patch shows 1.000 of the wanted modulus along the axes, [01][.][0-9]* along the diagonals of the faces, [01][.][0-9]* along those of space"
+for block in a b; do equal "bonds of block $block" "$(grep -cx "$block: $patch" out)" 1; done
+
+# ---- layers that a support puts outside the body are in no picture of it: where nothing moves it looks as if it were held by its own particles ----
+for held in "support: {held: all}" "displacement: [0, 0]"; do
+  cat > held.yaml <<Y
+title: Held
+materials: {m: {model: elastic, density: 2400, Young modulus: 30 GPa, Poisson ratio: 0.25}}
+body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [12, 6]}}}}
+peridynamics: {space: plane strain, formulation: ordinary}
+loads: [{on: {face: x-}, $held}]
+solve: {explicit: {steps: 2, time step: 1 us}}
+results: {fields: [velocity]}
+pictures: []
+Y
+  "$breccia" run held.yaml --quiet --output held 2> errors || fail "held: $(cat errors)"
+  "$breccia" plot held --field velocity --output "${held%%:*}.svg" > out 2>&1 || fail "picture of the held body: $(cat out)"
+done
+checks=$((checks + 1))
+cmp support.svg displacement.svg || fail "the picture of a body on a support shows what is outside the body"
+finish

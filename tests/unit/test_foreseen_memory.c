@@ -1,0 +1,67 @@
+/* The memory that `breccia check` foresees, against what the C library has given out for a body and its first step. */
+#include "support.h"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+static double given_out(void)
+{
+#ifdef __GLIBC__
+  const struct mallinfo2 told = mallinfo2();
+  return (double)(told.uordblks + told.hblkhd);
+#else
+  return 0;
+#endif
+}
+
+static const char body_of_laws[] =
+    "units: {length: m, force: kN, time: s}\n"
+    "materials: {m: {model: %s, density: 2, %s}}\n"
+    "body: {b: {material: m, %s}}\n"
+    "peridynamics: {formulation: %s}\n"
+    "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, body force: [1, 0, 0]}]\n"
+    "solve: {%s}\n";
+
+#define LATTICE "spacing: 0.1, shape: {box: {particles: [40, 30, 20]}}"
+#define SMALL "spacing: 0.1, shape: {box: {particles: [20, 20, 12]}}"
+#define ELASTIC "Young modulus: 1e4, Poisson ratio: 0.25"
+
+/** Arrays that are small beside those of particles, bonds and points are not counted beforehand. */
+static void a_body_takes_what_is_foreseen(void **state)
+{
+  (void)state;
+  const double least = 0.6, most = 1.05;
+  if (given_out() == 0 || under_sanitizers()) skip();
+  static const struct {
+    const char *law, *keys, *body, *formulation, *solve;
+  } cases[] = {
+      {"elastic", ELASTIC, LATTICE, "correspondence", "explicit: {steps: 9}"},
+      {"elastic", ELASTIC, LATTICE, "ordinary", "explicit: {steps: 9}"},
+      {"elastic-1d", "Young modulus: 1e4", LATTICE, "bond-based", "explicit: {steps: 9}"},
+      {"j2", ELASTIC ", yield stress: 1", LATTICE, "correspondence", "explicit: {steps: 9}"},
+      {"j2", ELASTIC ", yield stress: 1", LATTICE, "ordinary", "explicit: {steps: 9}"},
+      {"elastic-perfectly-plastic", "Young modulus: 1e4, yield stress: 1", LATTICE, "bond-based",
+       "explicit: {steps: 9}"},
+      {"elastic", ELASTIC, SMALL, "correspondence", "static: {increments: 1}"},
+      {"elastic", ELASTIC, SMALL, "ordinary", "static: {increments: 1, method: relaxation}"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    const double before = given_out();
+    breccia_model *m =
+        model_of(body_of_laws, cases[k].law, cases[k].keys, cases[k].body, cases[k].formulation, cases[k].solve);
+    assert_non_null(strstr(breccia_model_overview(m), " MB, "));
+    step_surely(m, 1);
+    const double taken = given_out() - before, foreseen = (double)domain_bytes(&m->domain) + m->solver_bytes;
+    if (!(foreseen > least * taken && foreseen < most * taken))
+      fail_msg("%s, %s, %s: %.2f MB foreseen, %.2f MB taken", cases[k].law, cases[k].formulation, cases[k].solve,
+               foreseen / 1e6, taken / 1e6);
+    breccia_model_destroy(&m);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_body_takes_what_is_foreseen)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
