@@ -188,7 +188,7 @@ size_t domain_particle_bytes(const Domain *d)
   size_t history = 0, tensors = 0;
   for (int r = 0; r < d->region_count; ++r) {
     history += d->regions[r].points.history_size;
-    if (d->regions[r].points.components == 6) tensors = 12;
+    if (d->regions[r].points.components == 6) tensors = d->initial_strain[0] ? 18 : 12;
   }
   return places * sizeof(double) * (15 + 2 + 1 + tensors) + places * sizeof(int32_t) * 2 + 2 * history * sizeof(double);
 }

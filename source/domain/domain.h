@@ -71,6 +71,8 @@ typedef struct Domain {
   int32_t *material; /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
+  double *initial_strain[6]; /* [places] what points that begin under stress add to their strains; NULL: none does */
+  double initial_energy;     /* that they store by it */
   /** [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
   uint8_t *gave_up;
   Region *regions;

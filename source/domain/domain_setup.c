@@ -289,6 +289,7 @@ void domain_destroy(Domain *d)
     }
     free(d->gave_up);
   }
+  for (int k = 0; k < 6; ++k) places_free(&d->initial_strain[k]);
   joint_destroy(&d->joint);
   regions_destroy(d);
   family_destroy(&d->family);

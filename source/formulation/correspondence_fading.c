@@ -96,11 +96,12 @@ static void set_hold(const Correspondence *c, int64_t slice, const double *facto
 /* ---- what a step finds ---- */
 
 /** Stiffness that four points have left, over their first one. */
-LANES_INLINE Lanes stiffness_left(const Material *m, const Sweep *sweep, int64_t here)
+LANES_INLINE Lanes stiffness_left(const Correspondence *c, const Material *m, const Sweep *sweep, int64_t here)
 {
   Lanes strain[6], work = {0}, deviators = {0};
   for (int k = 0; k < 6; ++k) {
     strain[k] = lanes_load(sweep->strain[k] + here);
+    if (c->points->initial[k]) strain[k] += lanes_load(c->points->initial[k] + sweep->first * SLICE + here);
     work += lanes_load(sweep->stress[k] + here) * strain[k];
   }
   const Lanes volume = strain[XX] + strain[YY] + strain[ZZ], mean = volume * lanes_set(1.0 / 3);
@@ -169,7 +170,7 @@ static void fade(const Correspondence *c, const Sweep *sweep)
     if (f->mark[slice]) set_hold(c, slice, f->next);
     for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; place += LANES) {
       const int64_t here = place - sweep->first * SLICE;
-      Lanes left = may ? stiffness_left(m, sweep, here) : one;
+      Lanes left = may ? stiffness_left(c, m, sweep, here) : one;
       if (!f->mark[slice]) {
         const LaneMask lost = left < one;
         if (!(lost[0] | lost[1] | lost[2] | lost[3])) continue;

@@ -10,4 +10,7 @@
 int support_margins(MarginList *list, const SectionList *loads, const SectionList *selections,
                     const SectionList *blocks, const Length *horizon, const DeckReader *reader);
 
+/** Whether the face of a margin slides along itself, so that it takes no shear. */
+bool support_slides(const Margin *margin);
+
 #endif

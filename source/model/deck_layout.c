@@ -94,6 +94,12 @@ static const Field deck_fields[] = {
    .section = &name##_section},
 #include "forces/kinds.h"
 #undef FORCES
+    {.key = "initial stress",
+     .kind = FIELD_ONE_OR_SECTIONS,
+     .offset = offsetof(DeckSpec, initial_stress),
+     .standard = "",
+     .meaning = "stresses with which particles begin, like those of ground at rest; none when absent",
+     .section = &initial_stress_section},
     {.key = "loads",
      .kind = FIELD_SECTIONS,
      .offset = offsetof(DeckSpec, loads),

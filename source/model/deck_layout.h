@@ -4,6 +4,7 @@
 
 #include "constitutive/law.h"
 #include "deck/describe.h"
+#include "domain/initial_stress.h"
 #include "results/picture.h"
 #include "results/results_spec.h"
 #include "results/watch.h"
@@ -18,7 +19,8 @@ typedef struct DeckSpec {
   SectionHead head;
   const char *title;
   UnitsSpec *units;
-  SectionList materials, body, selections, cracks, loads, solve, watches, pictures; /* solve: stages of SolveSpec */
+  SectionList materials, body, selections, cracks, initial_stress, loads, solve, watches,
+      pictures; /* solve: stages of SolveSpec */
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;
   void *forces[FORCES_KINDS];

@@ -163,6 +163,9 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
   if (model->domain.material_count == spec->materials.count && (bad = model_check_results(model))) status = bad;
   if (!status && unknown) status = BRECCIA_USER_ERROR;
   if (!status) status = stands ? keep_bonds(model, error) : BRECCIA_USER_ERROR;
+  if (!status)
+    status =
+        domain_begin_under(&model->domain, &model->loading, &model->reader, &spec->initial_stress, &spec->selections);
   if (status) return status;
   model->solver = (Solver){.domain = &model->domain,
                            .loading = &model->loading,

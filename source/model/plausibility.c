@@ -422,6 +422,21 @@ static void check_cracks(breccia_model *model)
   }
 }
 
+/** Only weight balances stresses that grow with depth. */
+static void check_ground(breccia_model *model)
+{
+  bool weight = false;
+  for (int k = 0; k < model->loading.count; ++k)
+    weight |= model->loading.loads[k].first == 0 && has_kind(model->loading.loads[k].spec, "gravity");
+  for (int n = 0; n < model->spec->initial_stress.count && !weight; ++n) {
+    const InitialStressSpec *item = model->spec->initial_stress.items[n];
+    if (!item->stress.values)
+      plausibility_say(model, section_node(item, "surface"),
+                       "surface: no gravity acts when the run begins, so that the ground heaves; add 'gravity' to the "
+                       "loads");
+  }
+}
+
 void plausibility_warn(breccia_model *model)
 {
   check_cracks(model);
@@ -433,6 +448,7 @@ void plausibility_warn(breccia_model *model)
     check_shaking(model, &model->loading.loads[k]);
   }
   check_grips(model);
+  check_ground(model);
 }
 
 void plausibility_describe(breccia_model *model, bool search, Text *text)

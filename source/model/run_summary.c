@@ -320,6 +320,7 @@ void run_tell_outcome(Run *run, int status)
                   {" + damping ", e.damping, e.damping != 0},
                   {" + numerical damping ", e.numerical, fabs(e.numerical) > 1e-9 * s->ledger.paid},
                   {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
+                  {" - stored at the start ", s->ledger.stored_at_start, s->ledger.stored_at_start > 0},
                   {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->ledger.paid}};
   for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
     if (!energies[k].told) continue;

@@ -239,7 +239,7 @@ static void fetch_ahead(const Points *points, const breccia_batch *batch, int va
   }
 }
 
-int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
+static int64_t update_rows(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
 {
   const int material = points->runs[points_run(points, first)].material;
   const Material *m = &points->materials[material];
@@ -262,6 +262,20 @@ int64_t points_update(Points *points, int64_t first, int count, double *const st
   make_batch(&batch, points, first, count, strain, stress);
   update_one_by_one(points, m, &batch, first, strain);
   return -1;
+}
+
+int64_t points_update(Points *points, int64_t first, int count, double *const strain[6], double *const stress[6])
+{
+  if (!points->initial[0]) return update_rows(points, first, count, strain, stress);
+  _Alignas(64) double whole[6][BATCH];
+  double *at[6];
+  for (int k = 0; k < 6; ++k) {
+    at[k] = whole[k];
+    for (int i = 0; i < count; ++i) whole[k][i] = strain[k][i] + points->initial[k][first + i];
+  }
+  const int64_t bad = update_rows(points, first, count, at, stress);
+  for (int i = 0; i < count && points->plane_stress; ++i) strain[ZZ][i] = whole[ZZ][i] - points->initial[ZZ][first + i];
+  return bad;
 }
 
 int points_keep_stresses(Points *points, bool keep, Error *error)
@@ -462,7 +476,7 @@ double points_softness(const Points *points, int64_t row)
     double product = 0;
     for (int k = 0; k < 6; ++k) {
       const double deviator = k < 3 ? before[k] - mean : before[k];
-      strain[k] = points->strain[k][row] +
+      strain[k] = points->strain[k][row] + (points->initial[k] ? points->initial[k][row] : 0) +
                   step * (deviator / m->shear * (k < 3 ? 0.5 : 1) + (k < 3 ? mean / (3 * m->bulk) : 0));
     }
     if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);

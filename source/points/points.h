@@ -30,6 +30,8 @@ typedef struct Points {
   double *strain[6], *stress[6]; /* [count] of points of six components */
   bool shares;                   /* these arrays, with other points */
   double *stress_before[6];      /* [count] while points_put_by has room */
+  /** [count] of points that begin under stress the strain at which their law has it, beside that of displacements; NULL: none does. Borrowed */
+  double *initial[6];
   double *committed, *trial;
   size_t history_size; /* numbers in each of them */
   Untouched *untouched;
@@ -69,6 +71,20 @@ typedef struct PointsSpec {
 
 int points_create(Points *points, const PointsSpec *spec, Error *error);
 void points_destroy(Points *points);
+
+/** A row whose law does not bear the stress under which it was to begin, and the one to which it came; -1: there is none. */
+typedef struct InitialMisfit {
+  int64_t row;
+  double reached[6];
+} InitialMisfit;
+
+/** Lets points of six components, none of them in a server, begin under stress. Laws are led to it elastically, and by their own path where it is
+ *  beyond yielding; what they remember of that is their first history.
+ *  @param[in] stress   [6][count] to begin under; rows of zeros begin as they are
+ *  @param[out] strain  [6][count] zeros before: of each row the strain at which its law has that stress; kept by the caller as long as the points
+ *  @return BRECCIA_USER_ERROR without a message for a misfit */
+int points_begin_under(Points *points, double *const stress[6], double *const strain[6], InitialMisfit *misfit,
+                       Error *error);
 
 /** Whether what must always hold of points does: runs in order, the last one up to the last row, histories behind each other. */
 bool points_is_valid(const Points *points);

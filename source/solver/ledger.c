@@ -66,7 +66,7 @@ bool ledger_is_doubtful(const Ledger *l)
 
 void ledger_note_paid(Ledger *l)
 {
-  l->paid = fmax(l->paid, l->kinetic_at_start + fabs(l->external_work));
+  l->paid = fmax(l->paid, l->kinetic_at_start + l->stored_at_start + fabs(l->external_work));
 }
 
 /** Stops a run whose energy comes from nothing: bonds that gave back more than they had received, or speeds that no work explains.
@@ -106,8 +106,8 @@ Energy ledger_energy(const Ledger *l, Domain *d)
   const bool elastic = domain_is_elastic(d);
   e.stored = domain_stored_energy(d) + forces_energy(&d->forces);
   if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
-  const double error = l->external_work + l->kinetic_at_start + l->between - l->kinetic - l->damping_work -
-                       l->numerical - e.stored - e.dissipated - e.fracture - e.friction;
+  const double error = l->external_work + l->kinetic_at_start + l->stored_at_start + l->between - l->kinetic -
+                       l->damping_work - l->numerical - e.stored - e.dissipated - e.fracture - e.friction;
   const double largest = l->paid > 0 ? l->paid : fmax(fmax(l->kinetic, fabs(l->bond_work)), fabs(e.fracture));
   e.imbalance = largest > 0 ? fabs(error) / largest : 0;
   return e;

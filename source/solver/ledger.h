@@ -12,18 +12,19 @@ typedef struct Ledger {
   double between;   /* kinetic energy at full steps exceeds what the works say by the sum of this (explicit.c) */
   double numerical; /* that schemes of implicit dynamics have taken out of vibrations */
   double kinetic_at_start;
-  double paid;           /* the most that loads, motions and speeds at the start have put in so far */
-  double wave;           /* fastest waves of its materials, as they are unharmed */
-  double given;          /* largest speed that the start and prescribed motions have given any particle so far */
-  double fastest;        /* largest component of any velocity in the middle of the last step */
-  double fast_from;      /* that some steps ago, where it is beyond its bound */
-  int64_t fast_steps;    /* up to now, in each of which it was beyond */
-  int64_t damped;        /* there has been damping: its work is more than roundings */
-  int64_t unsound_steps; /* up to now, in each of which energy has come from nothing */
-  bool trapped;          /* a floating-point trap has sprung in the last step */
+  double stored_at_start; /* of points that began under stress */
+  double paid;            /* the most that loads, motions and speeds at the start have put in so far */
+  double wave;            /* fastest waves of its materials, as they are unharmed */
+  double given;           /* largest speed that the start and prescribed motions have given any particle so far */
+  double fastest;         /* largest component of any velocity in the middle of the last step */
+  double fast_from;       /* that some steps ago, where it is beyond its bound */
+  int64_t fast_steps;     /* up to now, in each of which it was beyond */
+  int64_t damped;         /* there has been damping: its work is more than roundings */
+  int64_t unsound_steps;  /* up to now, in each of which energy has come from nothing */
+  bool trapped;           /* a floating-point trap has sprung in the last step */
 } Ledger;
 
-/** Where the work went: external + kinetic at the start + between = kinetic + stored + dissipated + fracture + friction + damping + numerical + error. */
+/** Where the work went: external + kinetic and stored at the start + between = kinetic + stored + dissipated + fracture + friction + damping + numerical + error. */
 typedef struct Energy {
   double kinetic;
   double internal;   /* stored + dissipated: work on bonds, less what went with broken ones */

@@ -6,6 +6,16 @@
 #include <stdio.h>
 #include <string.h>
 
+/** Where a body springs from stresses at which it began, they are what equilibrium is measured by: in the end nothing need act on it. */
+static double forces_at_start(const Domain *d)
+{
+  const Particles *p = d->particles;
+  double sum = 0;
+  for (int k = 0; k < 3 && d->initial_strain[0]; ++k)
+    for (int64_t i = 0; i < p->places; ++i) sum += p->volume[i] * p->internal[k][i] * p->volume[i] * p->internal[k][i];
+  return sqrt(sum);
+}
+
 int newton_create(Newton *n, Error *error)
 {
   const int64_t places = n->domain->particles->places;
@@ -23,6 +33,7 @@ int newton_create(Newton *n, Error *error)
     failed |= !(n->unit_motion[k] = places_array(places, "controlled loads", error));
   }
   if (failed) return BRECCIA_FAILURE;
+  n->reference = forces_at_start(n->domain);
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
 }
 

@@ -184,6 +184,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
   bool zeroes = false;
   s->clock.stages = s->stages->count;
   s->clock.stable = INFINITY;
+  s->ledger.stored_at_start = s->domain->initial_energy;
   s->records = memory_zeroed((size_t)s->clock.stages, sizeof *s->records, "stages", error);
   for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
@@ -263,9 +264,11 @@ int solver_begin(Solver *s, Error *error)
   s->ledger.damped |= s->type->damps(s);
   s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
   const int status = s->type->begin(s, error);
-  if (s->clock.stage == 0)
-    s->ledger.paid = s->ledger.kinetic_at_start = s->ledger.kinetic;
-  else if (s->loading->speeds_set) /* a blow from outside, or a loss where particles are tied that moved apart */
+  if (s->clock.stage == 0) {
+    s->ledger.kinetic_at_start = s->ledger.kinetic;
+    s->ledger.bond_work += s->ledger.stored_at_start; /* done before the run */
+    s->ledger.paid = s->ledger.kinetic + s->ledger.stored_at_start;
+  } else if (s->loading->speeds_set) /* a blow from outside, or a loss where particles are tied that moved apart */
     s->ledger.external_work += s->ledger.kinetic - kinetic;
   return status;
 }

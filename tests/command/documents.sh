@@ -77,7 +77,12 @@ done
 awk -F, 'function near(a, b, t) {if (a - b > t || b - a > t) bad = 1} NR == 3 {near($9 / $10, 3 / 7, 1e-6); near($10, -1.9 * 9.81 * 3.125, 0.5)}
   NR == 4 {near($9 / $10, 3 / 7, 1e-6)} END {exit bad || NR != 4}' "$work/ground/deep.csv" || fail "ground at rest: $(cat "$work/ground/deep.csv")"
 awk -F, 'NR == 3 && $4 > -1e-3 {bad = 1} NR == 4 && ($4 > 1e-9 || $4 < -1e-9) {bad = 1} END {exit bad || NR != 4}' "$work/ground/moved.csv" || fail "ground at rest: $(cat "$work/ground/moved.csv")"
-checks=$((checks + 3))
+# The same with a K0 of its own: stresses of the weight from the start, and next to no displacement.
+"$breccia" run "$(grep -l '^title: Ground with K0' "$work"/shown-*.yaml)" --output "$work/ground" > "$work/out" 2>&1 || fail "ground with K0: $(cat "$work/out")"
+awk -F, 'function near(a, b, t) {if (a - b > t || b - a > t) bad = 1} NR > 1 {near($9 / $10, 0.5, 1e-4); near($11 / $10, 0.5, 1e-4); near($10, -1.9 * 9.81 * 3.125, 0.01)}
+  END {exit bad || NR != 4}' "$work/ground/deep.csv" || fail "ground with K0: $(cat "$work/ground/deep.csv")"
+awk -F, 'NR == 3 && ($4 > 1e-5 || $4 < -1e-5) {bad = 1} END {exit bad || NR != 4}' "$work/ground/moved.csv" || fail "ground with K0: $(cat "$work/ground/moved.csv")"
+checks=$((checks + 5))
 
 sed -n '/^```yaml$/,/^```$/p' "$source/README.md" | sed '/^```/d' | cmp -s - "$source/examples/notched-beam/beam.yaml" ||
   fail "the deck that README.md shows is not examples/notched-beam/beam.yaml"

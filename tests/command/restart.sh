@@ -185,6 +185,28 @@ watch: {mouth: {opening between: [[0.04, 0], [0.05, 0]], every: 1}, energy: {ene
 results: {number: 4, precision: double}
 pictures: []
 Y
+# ground that begins under its weight, at rest and shaken
+cat > ground.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials:
+  s: {model: mohr-coulomb, density: 1.9, Young modulus: 40 MPa, Poisson ratio: 0.3, cohesion: 2 kPa, friction angle: 33 deg}
+body: {ground: {material: s, lattice: square, spacing: 0.25, thickness: 1, shape: {box: {from: [0, 0], to: [3, 2]}}}}
+peridynamics: {space: plane strain}
+initial stress: {surface: 2, K0: 0.5}
+loads:
+  - {gravity: [0, -9.81]}
+  - {on: {face: x-}, support: {held: across}}
+  - {on: {face: x+}, support: {held: across}}
+  - {on: {face: y-}, support: {held: all}}
+solve:
+  - {name: at rest, static: {increments: 2}}
+  - {name: loaded, displacements: zero, loads: [{on: {all of: [{face: y+}, {inside: {box: {from: [1, 0], to: [2, 2]}}}]}, force: [0, -30], history: {ramp to: 1}}],
+     static: {increments: 4}}
+  - {name: shaken, loads: [{base acceleration: [3, 0]}], explicit: {steps: 20}}
+watch: {mouth: {opening between: [[1.125, 1.875], [2.125, 1.875]], every: 1}, energy: {energy: yes, every: 1}}
+results: {number: 4, precision: double}
+pictures: []
+Y
 stop_at() { # stop_at DECK STEP ...: stopped there and taken up again, it ends as in one go
   local deck=$1 steps file again=
   shift
@@ -206,6 +228,7 @@ stop_at strip 2 4
 grep -q "the body does not resist some motion" whole-strip/solution.txt || fail "strip: no equations are hard to solve, the test is too tame"
 stop_at stages 4 8 16 31 44
 [ "$(json whole-stages/summary.json broken_bonds)" -gt 0 ] || fail "stages: no bond breaks, the test is too tame"
+stop_at ground 1 4 16
 # what the log tells of steps behind the checkpoint is cut
 "$breccia" run stages.yaml --output stopped-stages --steps 44 > out 2>&1
 head -c 2000 whole-stages/solution.txt >> stopped-stages/solution.txt

@@ -82,6 +82,25 @@ watch: {energy: {energy: yes, every: 10}}
 results: {number: 3, precision: double, checkpoint steps: 100}
 pictures: []
 Y
+# begins under stress, which hardens a part of it
+cat > stressed.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials:
+  hard: {model: j2, density: 2, Young modulus: 40 MPa, Poisson ratio: 0.3, yield stress: 80 kPa, hardening modulus: 5 MPa}
+body: {block: {material: hard, spacing: 0.1, shape: {box: {particles: [14, 7, 4]}}}}
+peridynamics: {formulation: correspondence}
+failure: {critical stretch: 0.004}
+initial stress:
+  - {on: {inside: {box: {from: [0, 0, 0], to: [0.7, 0.7, 0.4]}}}, stress: [-60, 10, -20, 25, 0, 5]}
+  - {on: {inside: {box: {from: [0.7, 0, 0], to: [1.4, 0.7, 0.4]}}}, stress: [-120, 10, 10, 0, 0, 0]}
+loads:
+  - {on: {face: x-, layers: 3}, velocity: [-2, 0, 0]}
+  - {on: {face: x+, layers: 3}, velocity: [2, 0, 0]}
+solve: {explicit: {steps: 120}}
+watch: {energy: {energy: yes, every: 10}}
+results: {number: 3, precision: double, checkpoint steps: 50}
+pictures: []
+Y
 cat > served.yaml <<Y
 units: {length: m, force: kN, time: s}
 materials:
@@ -109,7 +128,7 @@ for server in one two; do
 done
 several="2 3"
 [ -n "${BRECCIA_SANITIZED:-}" ] && several=3
-for deck in correspondence ordinary bonds regions served; do
+for deck in correspondence ordinary bonds regions stressed served; do
   run $deck 1
   for threads in $several; do
     run $deck $threads

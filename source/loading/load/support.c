@@ -117,6 +117,12 @@ int support_margins(MarginList *list, const SectionList *loads, const SectionLis
   return status;
 }
 
+bool support_slides(const Margin *margin)
+{
+  const SupportSpec *support = ((const LoadSpec *)margin->owner)->of[LOAD_support].section;
+  return !strcmp(support->held, "across");
+}
+
 static int create(Load *load, const LoadMaking *making)
 {
   const SupportSpec *spec = load->value->section;

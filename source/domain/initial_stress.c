@@ -1,0 +1,307 @@
+#include "domain/initial_stress.h"
+
+#include "base/tensor.h"
+#include "loading/support.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void check_initial_stress(const DeckReader *reader, void *section)
+{
+  const InitialStressSpec *s = section;
+  static const char *const of_ground[] = {"K0", "unit weight", "surcharge"};
+  const double *values = s->stress.values;
+  if (!values && isnan(s->k0))
+    node_error(
+        reader->document, s->head.node, reader->error,
+        "initial stress: missing key 'K0': horizontal stress over vertical stress, often 1 - sin(friction angle)");
+  for (int k = 0; k < 3 && values; ++k)
+    if (node_get(s->head.node, of_ground[k]))
+      node_error(reader->document, section_node(s, of_ground[k]), reader->error,
+                 "%s: belongs to 'surface', not to 'stress'; leave it out", of_ground[k]);
+  if (values && s->stress.count != 6)
+    node_error(reader->document, section_node(s, "stress"), reader->error,
+               "stress: expected six numbers, xx, yy, zz, xy, yz, zx; found %d", s->stress.count);
+}
+
+static const Field initial_stress_fields[] = {
+    {.key = "on",
+     .kind = FIELD_REFERENCE,
+     .offset = offsetof(InitialStressSpec, on),
+     .standard = "",
+     .meaning = "name of a selection, or a selection; the whole body when absent. Each particle is in one item at most",
+     .section = &selection_section},
+    {.key = "stress",
+     .kind = FIELD_NUMBERS,
+     .offset = offsetof(InitialStressSpec, stress),
+     .dimension = "stress",
+     .standard = "",
+     .meaning = "the same everywhere: [xx, yy, zz, xy, yz, zx], tension positive",
+     .group = 'A'},
+    {.key = "surface",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(InitialStressSpec, surface),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "ground at rest below a level surface of this height, along z in space and y in the plane (against "
+                "gravity, where that has another direction): vertical stress -(surcharge + unit weight times depth)",
+     .group = 'A'},
+    {.key = "K0",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(InitialStressSpec, k0),
+     .dimension = "1",
+     .standard = "",
+     .range = "[0, 10]",
+     .meaning = "of ground at rest: horizontal stress over vertical stress, in plane strain also across the plane"},
+    {.key = "unit weight",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(InitialStressSpec, unit_weight),
+     .dimension = "force per volume",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "of the ground; when absent its density times the gravity that acts when the run begins"},
+    {.key = "surcharge",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(InitialStressSpec, surcharge),
+     .dimension = "stress",
+     .standard = "0",
+     .range = "[0, inf)",
+     .meaning = "pressure on the surface, also of layers above that have items of their own"},
+};
+
+const Section initial_stress_section = {
+    .name = "initial stress",
+    .about = "Stresses with which particles begin, without displacements. Laws begin at them; strains in results count "
+             "from there. With correspondence.",
+    .size = sizeof(InitialStressSpec),
+    FIELDS(initial_stress_fields),
+    .check = check_initial_stress};
+
+/** What the particles of an item begin under. */
+typedef struct Item {
+  const InitialStressSpec *spec;
+  double weight; /* per volume */
+} Item;
+
+typedef struct Work {
+  Domain *domain;
+  const DeckReader *reader;
+  const SectionList *items;
+  int32_t *item_of; /* [particles] by number; -1: none */
+  double up[3], gravity;
+  Item *item;        /* [items] */
+  double *stress[6]; /* [places] */
+} Work;
+
+/** Gravity on the whole body when the run begins. */
+static void find_gravity(Work *w, const Loading *loading)
+{
+  double sum[3] = {0};
+  for (int n = 0; n < loading->count; ++n) {
+    const Load *load = &loading->loads[n];
+    const double *vector = load->spec->of[LOAD_gravity].point;
+    if (load->first > 0 || load->spec->on.node || !node_get(load->spec->head.node, "gravity")) continue;
+    for (int k = 0; k < 3; ++k) sum[k] += history_factor(&load->history, 0) * vector[k];
+  }
+  w->gravity = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  for (int k = 0; k < 3; ++k) w->up[k] = w->gravity > 0 ? -sum[k] / w->gravity : k == w->domain->body.dimensions - 1;
+}
+
+/** Notes whose particles are an item's. */
+static int mark(Work *w, int n, const SectionList *selections)
+{
+  static const Node everywhere = {.kind = NODE_MAP};
+  SelectionSpec all = {.head = {NULL, &everywhere}, .layers = 1, .nearest = {NAN, NAN, NAN}, .all = true};
+  const InitialStressSpec *spec = w->items->items[n];
+  const Body *body = &w->domain->body;
+  Reference on = spec->on;
+  if (!on.node) on = (Reference){NULL, &all, &everywhere};
+  Selection selection = {0};
+  int status = selection_create(&selection, body, w->reader, selections, &on);
+  for (int64_t k = 0; k < selection.count && !status; ++k) {
+    const Particles *p = &body->particles;
+    const int32_t place = selection.places[k], number = p->number[place];
+    const Region *region = domain_region(w->domain, place);
+    const Material *m = &w->domain->materials[w->domain->material[place / SLICE]];
+    const int before = w->item_of[number];
+    if (region->points.components != 6)
+      status =
+          node_error(w->reader->document, spec->head.node, w->reader->error,
+                     "initial stress: '%s' has no stress at its particles that could be given; expected "
+                     "'formulation: correspondence' for particle %d at [%g, %g, %g]",
+                     region->type->name, number, p->position[0][place], p->position[1][place], p->position[2][place]);
+    else if (m->remote)
+      status = node_error(w->reader->document, spec->head.node, w->reader->error,
+                          "initial stress: the law of material '%s' runs in a server, which cannot be led to it; take "
+                          "a law of this program, or a first stage under the weight",
+                          m->name);
+    else if (body_outside(body, number))
+      status = node_error(w->reader->document, spec->head.node, w->reader->error,
+                          "initial stress: layers outside a support follow the body inside; leave 'outside' out");
+    else if (before >= 0)
+      status = node_error(w->reader->document, spec->head.node, w->reader->error,
+                          "initial stress: particle %d at [%g, %g, %g] has one already, of line %d; let the selections "
+                          "under 'on' have no particle in common",
+                          number, p->position[0][place], p->position[1][place], p->position[2][place],
+                          ((const InitialStressSpec *)w->items->items[before])->head.node->line);
+    w->item_of[number] = n;
+  }
+  selection_destroy(&selection);
+  return status;
+}
+
+/** Components that a plane body cannot have. */
+static int check_space(const Work *w, const InitialStressSpec *spec)
+{
+  const bool plane = w->domain->body.dimensions == 2, plane_stress = w->domain->regions[0].points.plane_stress;
+  for (int k = 0; k < 6 && spec->stress.values; ++k) {
+    const bool never = plane && (k == YZ || k == ZX), not_here = plane_stress && k == ZZ;
+    if ((never || not_here) && spec->stress.values[k] != 0)
+      return node_error(w->reader->document, section_node(spec, "stress"), w->reader->error,
+                        "stress: %s is %g; expected 0 in %s", component_names[k], spec->stress.values[k],
+                        plane_stress ? "plane stress" : "the plane");
+  }
+  return BRECCIA_OK;
+}
+
+/** Weight of the ground of an item, which has one density if nothing else tells it. */
+static int find_weight(Work *w, int n)
+{
+  const InitialStressSpec *spec = w->items->items[n];
+  const Particles *p = &w->domain->body.particles;
+  Item *item = &w->item[n];
+  *item = (Item){spec, spec->unit_weight};
+  if (spec->stress.values || !isnan(spec->unit_weight)) return BRECCIA_OK;
+  if (w->gravity == 0)
+    return node_error(w->reader->document, section_node(spec, "surface"), w->reader->error,
+                      "surface: no gravity acts on the whole body when the run begins, from which the weight would "
+                      "follow; add 'gravity' to the loads, without a ramp, or say 'unit weight'");
+  for (int32_t k = 0; k < p->count; ++k) {
+    const int32_t place = p->place_of[k];
+    if (w->item_of[k] != n) continue;
+    const double weight = p->density[place] * w->gravity;
+    if (!isnan(item->weight) && weight != item->weight)
+      return node_error(w->reader->document, spec->head.node, w->reader->error,
+                        "initial stress: its particles have unit weights of %g and %g; give each layer an item with "
+                        "its own surface and what stands above as 'surcharge', or say 'unit weight'",
+                        item->weight, weight);
+    item->weight = weight;
+  }
+  return BRECCIA_OK;
+}
+
+/** Stress of an item at a place, which may lie outside the body. */
+static int find_stress(const Work *w, const Item *item, int32_t place, bool outside, double stress[6])
+{
+  const InitialStressSpec *spec = item->spec;
+  const Particles *p = &w->domain->body.particles;
+  double height = 0;
+  for (int k = 0; k < 6 && spec->stress.values; ++k) stress[k] = spec->stress.values[k];
+  if (spec->stress.values) return BRECCIA_OK;
+  for (int k = 0; k < 3; ++k) height += w->up[k] * p->position[k][place];
+  const double depth = spec->surface - height;
+  if (depth < -1e-6 * w->domain->body.largest_spacing && !outside)
+    return node_error(w->reader->document, section_node(spec, "surface"), w->reader->error,
+                      "surface: particle %d at [%g, %g, %g] stands %g above it; select the particles below with 'on', "
+                      "or raise the surface",
+                      p->number[place], p->position[0][place], p->position[1][place], p->position[2][place], -depth);
+  const double vertical = -spec->surcharge - item->weight * fmax(0, depth), across = spec->k0 * vertical;
+  for (int k = 0; k < 6; ++k) {
+    const int r = symmetric_row[k], s = symmetric_column[k];
+    stress[k] = (r == s ? across : 0) + (vertical - across) * w->up[r] * w->up[s];
+  }
+  if (w->domain->regions[0].points.plane_stress) stress[ZZ] = 0;
+  return BRECCIA_OK;
+}
+
+static int fill(const Work *w)
+{
+  const Body *body = &w->domain->body;
+  for (int32_t n = 0; n < body->particles.count; ++n) {
+    const int32_t place = body->particles.place_of[n];
+    bool slides[3] = {false};
+    int32_t inside = n;
+    for (; body_outside(body, inside); inside = body->image_of[inside]) {
+      const Margin *margin = &body->margins.items[body->margin_of[inside]];
+      slides[margin->axis] |= support_slides(margin);
+    }
+    if (w->item_of[inside] < 0) continue;
+    double stress[6] = {0};
+    if (find_stress(w, &w->item[w->item_of[inside]], place, inside != n, stress)) return BRECCIA_USER_ERROR;
+    for (int k = 0; k < 6; ++k) {
+      const int r = symmetric_row[k], s = symmetric_column[k];
+      w->stress[k][place] = r != s && slides[r] != slides[s] ? -stress[k] : stress[k];
+    }
+  }
+  return BRECCIA_OK;
+}
+
+static int tell_misfit(const Work *w, const InitialMisfit *misfit)
+{
+  const Particles *p = &w->domain->body.particles;
+  const int64_t row = misfit->row;
+  int32_t inside = p->number[row];
+  while (body_outside(&w->domain->body, inside)) inside = w->domain->body.image_of[inside];
+  const InitialStressSpec *spec = w->items->items[w->item_of[inside]];
+  const Material *m = &w->domain->materials[w->domain->material[row / SLICE]];
+  Text words[2] = {{0}, {0}};
+  for (int k = 0; k < 6; ++k) {
+    text_add(&words[0], "%s%g", k ? ", " : "", w->stress[k][row]);
+    text_add(&words[1], "%s%g", k ? ", " : "", misfit->reached[k]);
+  }
+  node_error(
+      w->reader->document, spec->head.node, w->reader->error,
+      "initial stress: the law %s of material '%s' does not bear [%s] of particle %d at [%g, %g, %g], it comes to "
+      "[%s]; give a stress within its strength",
+      m->law_name, m->name, text_words(&words[0]), p->number[row], p->position[0][row], p->position[1][row],
+      p->position[2][row], text_words(&words[1]));
+  text_free(&words[0]);
+  text_free(&words[1]);
+  return BRECCIA_USER_ERROR;
+}
+
+static int begin(Work *w, const Loading *loading, const SectionList *selections)
+{
+  Domain *d = w->domain;
+  Error *error = w->reader->error;
+  const Particles *p = d->particles;
+  w->item_of = memory_zeroed((size_t)p->count, sizeof *w->item_of, "initial stress", error);
+  w->item = memory_zeroed((size_t)w->items->count, sizeof *w->item, "initial stress", error);
+  for (int k = 0; k < 6; ++k) {
+    w->stress[k] = places_array(p->places, "initial stress", error);
+    d->initial_strain[k] = places_array(p->places, "initial stress", error);
+    if (!w->stress[k] || !d->initial_strain[k]) return BRECCIA_FAILURE;
+  }
+  if (!w->item_of || !w->item) return BRECCIA_FAILURE;
+  for (int32_t n = 0; n < p->count; ++n) w->item_of[n] = -1;
+  find_gravity(w, loading);
+  int status = BRECCIA_OK;
+  for (int n = 0; n < w->items->count && !status; ++n) {
+    status = mark(w, n, selections);
+    if (!status) status = check_space(w, w->items->items[n]);
+    if (!status) status = find_weight(w, n);
+  }
+  if (!status) status = fill(w);
+  for (int r = 0; r < d->region_count && !status; ++r) {
+    InitialMisfit misfit;
+    if (d->regions[r].points.components != 6) continue;
+    status = points_begin_under(&d->regions[r].points, w->stress, d->initial_strain, &misfit, error);
+    if (misfit.row >= 0) tell_misfit(w, &misfit);
+  }
+  if (status) return status;
+  domain_evaluate(d);
+  d->initial_energy = domain_stored_energy(d);
+  return BRECCIA_OK;
+}
+
+int domain_begin_under(Domain *d, const Loading *loading, const DeckReader *reader, const SectionList *items,
+                       const SectionList *selections)
+{
+  if (!items->count) return BRECCIA_OK;
+  Work work = {.domain = d, .reader = reader, .items = items};
+  const int status = begin(&work, loading, selections);
+  for (int k = 0; k < 6; ++k) places_free(&work.stress[k]);
+  free(work.item_of);
+  free(work.item);
+  return status;
+}

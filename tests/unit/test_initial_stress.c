@@ -1,0 +1,394 @@
+/* Bodies that begin under stress: what holds, springs, yields and is told then. */
+#include "support.h"
+
+#include "base/tensor.h"
+
+static void run_all(breccia_model *model)
+{
+  step_surely(model, INT64_MAX);
+}
+
+static double largest_displacement(const breccia_model *m)
+{
+  const Particles *p = m->domain.particles;
+  double most = 0;
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k) most = fmax(most, fabs(particles_moved(p, k, p->place_of[n])));
+  return most;
+}
+
+/** Largest internal force per volume of a particle of the body itself. */
+static double largest_force(const breccia_model *m)
+{
+  const Particles *p = m->domain.particles;
+  double most = 0;
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k)
+      if (!body_outside(&m->domain.body, n)) most = fmax(most, fabs(p->internal[k][p->place_of[n]]));
+  return most;
+}
+
+/** Fails unless each particle of the body has these stresses. */
+static void assert_stress(const breccia_model *m, const double stress[6], double tolerance)
+{
+  const Domain *d = &m->domain;
+  for (int64_t n = 0; n < d->particles->count; ++n)
+    for (int k = 0; k < 6; ++k)
+      if (!body_outside(&d->body, n)) assert_near(d->stress[k][d->particles->place_of[n]], stress[k], tolerance);
+}
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define ELASTIC UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+#define CUBE "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [7, 6, 8]}}}}\n"
+#define PLATE                                                                                                          \
+  "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.5, shape: {box: {particles: [9, 7]}}}}\n"
+/* What keeps a body from moving as a whole, and from nothing else. */
+#define THREE_POINTS                                                                                                   \
+  "loads: [{on: {nearest: [0, 0, 0]}, displacement: [0, 0, 0]},"                                                       \
+  " {on: {nearest: [9, 0, 0]}, displacement: [free, 0, 0]}, {on: {nearest: [0, 9, 0]}, displacement: [free, free, "    \
+  "0]}]\n"
+#define TWO_POINTS                                                                                                     \
+  "loads: [{on: {nearest: [0, 0]}, displacement: [0, 0]}, {on: {nearest: [9, 0]}, displacement: [free, 0]}]\n"
+#define AT_REST "solve: {static: {increments: 1, residual: 1e-12}}\n"
+
+static void a_body_held_on_all_sides_keeps_any_stress(void **state)
+{
+  (void)state;
+  const double stress[6] = {-300, -200, 150, 40, -30, 20};
+  for (int finite = 0; finite < 2; ++finite) {
+    Text faces = {0};
+    for (int k = 0; k < 6; ++k)
+      text_add(&faces, "%s{on: {face: %c%c}, support: {held: all}}", k ? ", " : "", "xyz"[k / 2], "-+"[k % 2]);
+    breccia_model *m =
+        model_of(ELASTIC CUBE "peridynamics: {space: 3-D, strain: %s}\n"
+                              "initial stress: {stress: [-300, -200, 150, 40, -30, 20]}\nloads: [%s]\n" AT_REST,
+                 finite ? "green-lagrange" : "small", text_words(&faces));
+    text_free(&faces);
+    assert_stress(m, stress, 1e-8);
+    assert_true(largest_force(m) < 1e-7); /* of 300 kPa over 0.1 m */
+    run_all(m);
+    assert_true(largest_displacement(m) < 1e-13);
+    assert_stress(m, stress, 1e-8);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_face_that_slides_takes_pressure_and_no_shear(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(ELASTIC CUBE "peridynamics: {space: 3-D}\ninitial stress: {stress: [-300, 0, 0, 40, 0, 0]}\n"
+                            "loads: [{on: {face: x-}, support: {held: across}}]\n"
+                            "solve: {explicit: {steps: 1}}\n");
+  const Particles *p = m->domain.particles;
+  double force[3] = {0};
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k) {
+      const int32_t i = p->place_of[n];
+      if (!body_outside(&m->domain.body, n)) force[k] += p->volume[i] * p->internal[k][i];
+    }
+  assert_near(force[0], 300 * 0.6 * 0.8, 1e-9);
+  assert_near(force[1], 0, 1e-9);
+  assert_near(force[2], 0, 1e-9);
+  breccia_model_destroy(&m);
+}
+
+/** Fails unless the particles have moved by a uniform strain from the one that is held, and the works and energies of that balance. */
+static void assert_springs(breccia_model *m, const double strain[6], const double stress[6])
+{
+  const Particles *p = m->domain.particles;
+  const int32_t held = particles_nearest(p, (const double[3]){0, 0, 0});
+  run_all(m);
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double x[3];
+    for (int k = 0; k < 3; ++k) x[k] = p->position[k][i] - p->position[k][held];
+    const double u[3] = {
+        strain[XX] * x[0] + strain[XY] * x[1] + strain[ZX] * x[2], strain[YY] * x[1] + strain[YZ] * x[2],
+        strain[ZZ] * x[2]}; /* as three points hold it: shear leaves the planes of y and z where they are */
+    for (int k = 0; k < m->domain.body.dimensions; ++k) assert_near(p->displacement[k][i], u[k], 1e-8);
+  }
+  assert_stress(m, stress, 1e-5);
+  assert_balanced(m, 1e-5);
+}
+
+static void a_body_let_go_springs_by_its_compliance(void **state)
+{
+  (void)state;
+  /* strain = -C^-1 stress; E = 1e4, nu = 1/4, G = 4000 */
+  const double s[6] = {-30, -20, 15, 4, -3, 2}, zero[6] = {0};
+  double strain[6], energy = 0;
+  for (int k = 0; k < 6; ++k) {
+    strain[k] = k < 3 ? -(1.25 * s[k] - 0.25 * (s[0] + s[1] + s[2])) / 1e4 : -s[k] / 4000;
+    energy -= 0.5 * s[k] * strain[k] * 0.7 * 0.6 * 0.8;
+  }
+  breccia_model *m = model_of(
+      ELASTIC CUBE
+      "peridynamics: {space: 3-D, strain: small}\ninitial stress: {stress: [-30, -20, 15, 4, -3, 2]}\n" THREE_POINTS
+          AT_REST);
+  assert_near(solver_energy(&m->solver).stored, energy, 1e-9 * energy);
+  assert_springs(m, strain, zero);
+  assert_true(solver_energy(&m->solver).stored < 1e-9 * energy);
+  assert_near(solver_energy(&m->solver).damping, energy, 1e-5 * energy);
+  breccia_model_destroy(&m);
+}
+
+static void a_plane_body_springs_in_its_plane(void **state)
+{
+  (void)state;
+  const double s[6] = {-30, -20, 0, 4, 0, 0}, shear = -4 / 4000.0, zero[6] = {0};
+  const double in_stress[6] = {-(s[0] - 0.25 * s[1]) / 1e4, -(s[1] - 0.25 * s[0]) / 1e4, 0, shear, 0, 0};
+  /* Across the plane -12 stays, and what contraction in the plane takes from it or adds: nu (0 - (xx + yy)). */
+  const double nu = 0.25, a = (1 - nu * nu) / 1e4, b = nu * (1 + nu) / 1e4;
+  const double in_strain[6] = {-(a * s[0] - b * s[1]), -(a * s[1] - b * s[0]), 0, shear, 0, 0},
+               left[6] = {0, 0, -12 - nu * (s[0] + s[1]), 0, 0, 0};
+  breccia_model *m =
+      model_of(ELASTIC PLATE "peridynamics: {space: plane stress, strain: small}\ninitial stress: {stress: [-30, -20, "
+                             "0, 4, 0, 0]}\n" TWO_POINTS AT_REST);
+  assert_springs(m, in_stress, zero);
+  breccia_model_destroy(&m);
+  m = model_of(ELASTIC PLATE
+               "peridynamics: {space: plane strain, strain: small}\ninitial stress: {stress: [-30, -20, -12, "
+               "4, 0, 0]}\n" TWO_POINTS AT_REST);
+  assert_springs(m, in_strain, left);
+  breccia_model_destroy(&m);
+}
+
+static void a_body_let_go_in_motion_keeps_its_energy(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(ELASTIC CUBE "peridynamics: {space: 3-D}\ninitial stress: {stress: [-30, -30, -30, 0, 0, 0]}\n"
+                            "solve: {explicit: {steps: 400, safety: 0.3}}\n");
+  const double energy = 900 / (2 * 1e4 / 1.5) * 0.7 * 0.6 * 0.8; /* p^2 / (2 K) */
+  double most = 0;
+  assert_near(solver_energy(&m->solver).stored, energy, 1e-3 * energy);
+  for (int k = 0; k < 100; ++k) {
+    step_surely(m, 4);
+    most = fmax(most, solver_energy(&m->solver).kinetic);
+    assert_balanced(m, 1e-3);
+  }
+  assert_true(most > 0.3 * energy && most < energy);
+  assert_near(solver_energy(&m->solver).external, 0, 1e-12);
+  breccia_model_destroy(&m);
+}
+
+/* ---- ground at rest ---- */
+
+#define SIDES                                                                                                          \
+  "{on: {face: x-}, support: {held: across}}, {on: {face: x+}, support: {held: across}}, {on: {face: y-}, support: "   \
+  "{held: across}}"
+
+static void ground_under_its_own_weight_stays_where_it_is(void **state)
+{
+  (void)state;
+  /* K0 = 0.8, where an elastic column would have 1/3; gravity at once: rho g H^2 / (2 M), M = 12000 */
+  static const char *const ways[] = {"static: {increments: 1}", "static: {increments: 1, method: relaxation}",
+                                     "implicit: {end time: 0.05, time step: 0.01}", "explicit: {steps: 200}"};
+  const double by_gravity = 2 * 10 * 4 * 4 / (2 * 12000.0);
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *m = model_of(
+        ELASTIC
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [8, 40]}}}}\n"
+        "peridynamics: {space: plane strain}\n"
+        "initial stress: {surface: 4, K0: 0.8}\n"
+        "loads: [{gravity: [0, -10]}, " SIDES "]\nsolve: {%s}\n",
+        ways[k]);
+    assert_string_equal(breccia_model_warnings(m), "");
+    run_all(m);
+    print_message("%s: moved %g of %g\n", ways[k], largest_displacement(m), by_gravity);
+    assert_true(largest_displacement(m) < 2e-3 * by_gravity); /* families at the surface are not whole */
+    const Domain *d = &m->domain;
+    for (int64_t n = 0; n < d->particles->count; ++n) {
+      const int32_t i = d->particles->place_of[n];
+      const double depth = 4 - d->particles->position[1][i];
+      if (body_outside(&d->body, n) || depth < 1) continue;
+      assert_near(d->stress[YY][i], -20 * depth, 0.2);
+      assert_near(d->stress[XX][i] / d->stress[YY][i], 0.8, 5e-3);
+      assert_near(d->stress[ZZ][i] / d->stress[YY][i], 0.8, 5e-3);
+    }
+    assert_balanced(m, 1e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void layers_stand_on_each_other_and_weigh_what_is_said(void **state)
+{
+  (void)state;
+  /* Weights of 20 and 30 along an inclined axis: gravity [0, -6, -8]; the lower block under a surcharge of 20 times its depth. */
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25},\n"
+      "            n: {model: elastic, density: 3, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+      "body: {up: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4], first particle: [0, 0, 0]}}},\n"
+      "       down: {material: n, spacing: 0.1, shape: {box: {particles: [4, 4, 4], first particle: [0, 0, -0.4]}}}}\n"
+      "initial stress:\n"
+      "  - {on: {block: up}, surface: 1, K0: 0.5}\n"
+      "  - {on: {block: down}, surface: 0.15, K0: 2, surcharge: 18, unit weight: 25}\n"
+      "loads: [{gravity: [0, -6, -8]}]\nsolve: {explicit: {steps: 1}}\n");
+  const Domain *d = &m->domain;
+  const Particles *p = d->particles;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const double height = 0.6 * p->position[1][i] + 0.8 * p->position[2][i];
+    const bool up = p->position[2][i] > -0.05;
+    const double v = up ? -20 * (1 - height) : -18 - 25 * (0.15 - height), h = up ? 0.5 * v : 2 * v;
+    const double expected[6] = {h, h + 0.36 * (v - h), h + 0.64 * (v - h), 0, 0.48 * (v - h), 0};
+    for (int k = 0; k < 6; ++k) assert_near(d->stress[k][i], expected[k], 1e-8);
+  }
+  breccia_model_destroy(&m);
+}
+
+static void stages_and_loads_go_on_from_it(void **state)
+{
+  (void)state;
+  /* 30 kPa on the surface of an elastic layer: 30 of vertical and 30 nu / (1 - nu) = 10 of horizontal stress more, p H / M of settlement. */
+  breccia_model *m = model_of(
+      ELASTIC
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [8, 20]}}}}\n"
+      "peridynamics: {space: plane strain, strain: small}\n"
+      "initial stress: {surface: 2, K0: 0.8}\n"
+      "loads: [{gravity: [0, -10]}, " SIDES "]\n"
+      "solve: [{laws: elastic, static: {increments: 1}},\n"
+      "        {displacements: zero, loads: [{on: {face: y+}, pressure: 30}], static: {increments: 2}}]\n");
+  run_all(m);
+  const Domain *d = &m->domain;
+  const int32_t i = particles_nearest(d->particles, (const double[3]){0.35, 0.85, 0});
+  assert_near(d->stress[YY][i], -20 * 1.15 - 30, 0.3);
+  assert_near(d->stress[XX][i], -16 * 1.15 - 10, 0.3);
+  assert_near(particles_moved(d->particles, 1, particles_nearest(d->particles, (const double[3]){0.35, 1.95, 0})),
+              -30 * 1.95 / 12000, 0.03 * 30 * 1.95 / 12000);
+  breccia_model_destroy(&m);
+}
+
+/* ---- laws ---- */
+
+/** A block between smooth walls under [-20, -80, -20] that is pressed together along y. */
+static breccia_model *oedometer(const char *law, double pressed)
+{
+  return model_of(UNITS "materials: {m: {density: 2, Young modulus: 1e4, Poisson ratio: 0.25, %s}}\n" PLATE
+                        "peridynamics: {space: plane strain, strain: small}\n"
+                        "initial stress: {stress: [-20, -80, -20, 0, 0, 0]}\n"
+                        "loads: [" SIDES ", {on: {face: y+}, support: {held: across, displacement: [0, %.17g]},"
+                        " history: {ramp to: 1}}]\n"
+                        "solve: {static: {increments: 4, residual: 1e-10}}\n",
+                  law, -0.7 * pressed);
+}
+
+static void a_plastic_law_yields_where_stress_and_strain_lead_it_together(void **state)
+{
+  (void)state;
+  /* Deviator stress 60 of 100 at first; it grows by 2 G = 8000 times the strain, up to 100; the mean stress by K = 20000 / 3 times the strain. */
+  for (int k = 0; k < 2; ++k) {
+    const double pressed = k ? 0.01 : 0.0045;
+    breccia_model *m = oedometer("model: j2, yield stress: 100", pressed);
+    run_all(m);
+    const double q = k ? 100 : 60 + 8000 * pressed, mean = -40 - 20000 / 3.0 * pressed;
+    assert_stress(m, (const double[6]){mean + q / 3, mean - 2 * q / 3, mean + q / 3, 0, 0, 0}, 1e-4);
+    /* q times the plastic deviator strain 2/3 (e - e_y), in the layers outside too */
+    const double volume = 0.01 * 0.5 * (double)m->domain.particles->count,
+                 dissipated = k ? 100 * 2 / 3.0 * (pressed - 0.005) * volume : 0;
+    assert_near(solver_energy(&m->solver).dissipated, dissipated, 0.02 * dissipated + 1e-6);
+    assert_balanced(m, 1e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_law_that_hardens_is_led_along_its_own_path(void **state)
+{
+  (void)state;
+  /* Deviator stress 60 is beyond 45, and H = 1000 leads to it with a plastic strain of 15 / 1000. From there on it yields at once: with a uniaxial
+   * strain e the deviator stress grows by 3 G H / (3 G + H) times 2/3 e. */
+  breccia_model *m = oedometer("model: j2, yield stress: 45, hardening modulus: 1000", 0.004);
+  const Domain *d = &m->domain;
+  assert_stress(m, (const double[6]){-20, -80, -20, 0, 0, 0}, 1e-6);
+  const int32_t i = particles_nearest(d->particles, (const double[3]){0.4, 0.3, 0});
+  run_all(m);
+  assert_near(d->stress[XX][i] - d->stress[YY][i], 60 + 8000 * 1000 / 13000.0 * 0.004, 1e-3);
+  assert_balanced(m, 1e-3);
+  breccia_model_destroy(&m);
+}
+
+static void control_does_not_fade_where_stress_was_there_before_strain(void **state)
+{
+  (void)state;
+  /* Concrete in compression that is pulled a little is as stiff as before, though stress and displacement work against each other. */
+  breccia_model *m = oedometer("model: mazars, tensile strength: 30, fracture energy: 0.1", -1e-4);
+  run_all(m);
+  const Region *region = &m->domain.regions[0];
+  assert_false(region->type->lags(region->formulation));
+  assert_stress(m, (const double[6]){-20 + 0.4, -80 + 1.2, -20 + 0.4, 0, 0, 0}, 1e-4);
+  breccia_model_destroy(&m);
+}
+
+/* ---- what is refused ---- */
+
+#define GROUND ELASTIC PLATE "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+
+static void what_cannot_be_meant_is_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *deck, *words;
+  } decks[] = {
+      {GROUND "initial stress: {surface: 1}\n", "missing key 'K0'"},
+      {GROUND "initial stress: {stress: [1, 2, 3]}\n", "expected six numbers, xx, yy, zz, xy, yz, zx; found 3"},
+      {GROUND "initial stress: {stress: [1, 2, 3, 4, 0, 0], K0: 0.5}\n", "K0: belongs to 'surface'"},
+      {GROUND "initial stress: {stress: [1, 2, 3, 4, 5, 0]}\n", "yz is 5; expected 0 in the plane"},
+      {GROUND "initial stress: {surface: 1, K0: 0.5}\n", "no gravity acts on the whole body when the run begins"},
+      {GROUND "initial stress: {surface: 1, K0: 0.5}\nloads: [{gravity: [0, -10], history: {ramp to: 1}}]\n",
+       "no gravity acts on the whole body when the run begins"},
+      {GROUND "initial stress: {surface: 0.6, K0: 0.5, unit weight: 20}\n", "stands 0.05 above it"},
+      {GROUND "initial stress: {surface: 1, K0: 0.5, unit weight: 20, stress: [0, 0, 0, 0, 0, 0]}\n", "stress"},
+      {GROUND "initial stress: {surface: 1, K0: -0.5, unit weight: 20}\n", "out of range"},
+      {GROUND "initial stress: [{stress: [1, 0, 0, 0, 0, 0]}, {on: {face: x-}, stress: [1, 0, 0, 0, 0, 0]}]\n",
+       "has one already, of line"},
+      {ELASTIC PLATE "peridynamics: {space: plane stress}\nsolve: {explicit: {steps: 1}}\n"
+                     "initial stress: {stress: [1, 0, 3, 0, 0, 0]}\n",
+       "zz is 3; expected 0 in plane stress"},
+      {ELASTIC PLATE "peridynamics: {space: plane strain, formulation: ordinary}\nsolve: {explicit: {steps: 1}}\n"
+                     "initial stress: {stress: [1, 0, 3, 0, 0, 0]}\n",
+       "expected 'formulation: correspondence' for particle 0"},
+      {UNITS
+       "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 50}}\n" PLATE
+       "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+       "initial stress: {stress: [-20, -80, -20, 0, 0, 0]}\n",
+       "the law j2 of material 'm' does not bear [-20, -80, -20, 0, 0, 0] of particle 0 at [0.05, 0.05, 0], it comes "
+       "to [-"},
+      {UNITS
+       "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25},\n"
+       "            n: {model: elastic, density: 3, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+       "body: {a: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}},\n"
+       "       b: {material: n, spacing: 0.1, shape: {box: {particles: [4, 4, 4], first particle: [0, 0, -0.4]}}}}\n"
+       "initial stress: {surface: 1, K0: 0.5}\nloads: [{gravity: [0, 0, -10]}]\nsolve: {explicit: {steps: 1}}\n",
+       "its particles have unit weights of 20 and 30"},
+  };
+  for (size_t k = 0; k < sizeof decks / sizeof *decks; ++k) {
+    char *words = refusal_of(decks[k].deck);
+    if (!strstr(words, decks[k].words)) fail_msg("deck %d is refused by '%s'", (int)k, words);
+    if (strchr(words, '\n')) fail_msg("deck %d is refused in two lines: %s", (int)k, words);
+    free(words);
+  }
+  breccia_model *m = model_of(GROUND "initial stress: {surface: 1, K0: 0.5, unit weight: 20}\n");
+  assert_non_null(strstr(breccia_model_warnings(m), "no gravity acts when the run begins"));
+  breccia_model_destroy(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_body_held_on_all_sides_keeps_any_stress),
+      cmocka_unit_test(a_face_that_slides_takes_pressure_and_no_shear),
+      cmocka_unit_test(a_body_let_go_springs_by_its_compliance),
+      cmocka_unit_test(a_plane_body_springs_in_its_plane),
+      cmocka_unit_test(a_body_let_go_in_motion_keeps_its_energy),
+      cmocka_unit_test(ground_under_its_own_weight_stays_where_it_is),
+      cmocka_unit_test(layers_stand_on_each_other_and_weigh_what_is_said),
+      cmocka_unit_test(stages_and_loads_go_on_from_it),
+      cmocka_unit_test(a_plastic_law_yields_where_stress_and_strain_lead_it_together),
+      cmocka_unit_test(a_law_that_hardens_is_led_along_its_own_path),
+      cmocka_unit_test(control_does_not_fade_where_stress_was_there_before_strain),
+      cmocka_unit_test(what_cannot_be_meant_is_told),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
