@@ -33,6 +33,8 @@ static void a_base_carries_the_weight_of_a_block(void **state)
     for (int k = 0; k < 2; ++k) assert_near(base.force[k], 0, 1e-8 * weight);
     for (int k = 0; k < 3; ++k) assert_near(base.moment[k], 0, 1e-8 * weight);
     assert_near(base.about[0], 0.3, 1e-12);
+    assert_true(base.size >= weight * (1 - 1e-8) && base.size < 2 * weight); /* it holds its particles together, too */
+    assert_near(reactions_of_loads(&model->solver, base.about).size, weight, 1e-8 * weight);
     const Wrench aside = sum_of(model, NULL, NULL, (const double[3]){0.1, 0, 0});
     assert_near(aside.moment[1], -0.2 * weight, 1e-8 * weight);
     assert_near(aside.moment[0], 0.25 * weight, 1e-8 * weight);

@@ -484,6 +484,26 @@ static void addresses_are_refused_in_words(void **state)
   text_free(&words);
 }
 
+static int count_call(void *context)
+{
+  ++*(int *)context;
+  return 0;
+}
+
+/** Between two tries to reach a server that is not there yet, 20 ms pass in sleep. */
+static void who_waits_for_a_server_sleeps_between_tries(void **state)
+{
+  (void)state;
+  const double seconds = 0.2, begin = clock_seconds();
+  Text words = {0};
+  int tries = 0;
+  assert_null(channel_connect("unix:/there is no such folder/socket", seconds, count_call, &tries, &words));
+  assert_true(clock_seconds() - begin >= seconds);
+  assert_true(tries <= 2 + seconds / 0.02);
+  assert_true(text_words(&words)[0]);
+  text_free(&words);
+}
+
 static void hosts_with_colons_stand_in_brackets(void **state)
 {
   (void)state;
@@ -578,6 +598,7 @@ int main(void)
       cmocka_unit_test(silent_and_slow_clients_hold_nobody_up),
       cmocka_unit_test(first_frames_are_bounded),
       cmocka_unit_test(addresses_are_refused_in_words),
+      cmocka_unit_test(who_waits_for_a_server_sleeps_between_tries),
       cmocka_unit_test(hosts_with_colons_stand_in_brackets),
       cmocka_unit_test(only_sockets_of_their_own_are_removed),
       cmocka_unit_test(a_server_ends_while_a_client_is_slow),
