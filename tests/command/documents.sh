@@ -18,6 +18,30 @@ contains "schema" "$(cat "$work/schema.json")" '"$schema": "https://json-schema.
 if command -v python3 > /dev/null; then
   python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$work/schema.json" || fail "the schema is not JSON"
 fi
+# It asks for the same keys of each section as the page does. Those of a material depend on its law.
+if command -v python3 > /dev/null; then
+  python3 - "$work/schema.json" "$work/deck.md" << 'END' || fail "the schema and docs/deck.md differ in what must be given"
+import json, re, sys
+sections, groups, required, name = json.load(open(sys.argv[1]))["$defs"], {}, {}, None
+for line in open(sys.argv[2]):
+    cells = line.split("|")
+    found = re.match(r"Exactly one of these \(.\): (.*)\.$", line)
+    if line.startswith("## "):
+        name = line[3:].strip()
+    elif found:
+        groups.setdefault(name, set()).update(re.findall("`([^`]*)`", found[1]))
+    elif len(cells) > 4 and cells[3].strip() == "**required**":
+        required.setdefault(name, set()).add(cells[1].strip(" `"))
+bad = len(groups) < 10 or len(required) < 10
+for name, section in sections.items():
+    chosen = {key for one in section.get("oneOf", []) for key in one["required"]}
+    if name != "material" and (chosen != groups.get(name, set()) or set(section["required"]) != required.get(name, set())):
+        print(f"{name}: one of {sorted(chosen)}, and {sorted(section['required'])}")
+        bad = True
+sys.exit(bad)
+END
+  checks=$((checks + 1))
+fi
 
 # Each example is in the command, as its folder has it, and is taken with nothing around it but what `new` writes.
 mkdir "$work/examples"

@@ -383,6 +383,28 @@ static void selections_join_others_have_them_in_common_and_leave_them_out(void *
   }
 }
 
+/** What a group leaves empty is said once, whatever else the selection asks for. */
+static void an_empty_group_is_said_once(void **state)
+{
+  (void)state;
+  static const char *const more[] = {
+      "", ", face: x+", ", nearest: [0, 0, 0]", ", any of: far", ", all of: far", ", except: end"};
+  for (size_t k = 0; k < sizeof more / sizeof *more; ++k) {
+    char deck[1024];
+    snprintf(deck, sizeof deck,
+             MATERIAL SOLVE "body: {a: {material: m, spacing: 1, shape: {box: {particles: [4, 4, 4]}}}, b: {material: "
+                            "m, spacing: 1, shape: {box: {from: [4, 0, 0], to: [8, 4, 4]}}}}\n"
+                            "selections: {end: {block: a, face: x-}, far: {block: b, face: x+}}\n"
+                            "loads: [{on: {block: b, group: end%s}, body force: [1, 0, 0]}]\n",
+             more[k]);
+    char *words = refusal_of(deck);
+    assert_non_null(
+        strstr(words, "the selection holds no particle; 'group' leaves none of the 64 that its other keys"));
+    assert_null(strchr(words, '\n'));
+    free(words);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -401,6 +423,7 @@ int main(void)
       cmocka_unit_test(selections_hold_what_they_say),
       cmocka_unit_test(selections_join_others_have_them_in_common_and_leave_them_out),
       cmocka_unit_test(round_bodies_lie_in_the_middle_of_their_lattice),
+      cmocka_unit_test(an_empty_group_is_said_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

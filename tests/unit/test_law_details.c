@@ -285,6 +285,32 @@ static void damage_of_mazars_never_heals(void **state)
   material_destroy(&m);
 }
 
+/** Damage in compression begins later than damage in tension where its rate is low; until then it takes nothing off the latter. */
+static void compression_of_mazars_mends_nothing(void **state)
+{
+  (void)state;
+  static const char *const compression[][2] = {{"compression share=1.2", "compression rate=1"},
+                                               {"compression share=1", "compression rate=1e-6"}};
+  static const double strains[][6] = {
+      {3e-4, -6e-4, 0}, {2e-4, 1e-4, -4e-4}, {0, 0, -2e-4, 5e-4}, {1.5e-4, -2e-4, 0, 0, 2e-4, 0}};
+  for (size_t n = 0; n < sizeof strains / sizeof *strains; ++n) {
+    double stress[2][6], whole[6];
+    for (int k = 0; k < 2; ++k) {
+      Material m = material_of("mazars", "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=3000",
+                               "fracture energy=0.1", "length=0.03", compression[k][0], compression[k][1], NULL);
+      Point p = point_start(&m);
+      point_try(&p, strains[n], stress[k], NULL, 0);
+      point_try(&p, strains[n], whole, NULL, 1);
+      point_stop(&p);
+      material_destroy(&m);
+    }
+    for (int k = 0; k < 6; ++k) {
+      assert_near(stress[0][k], stress[1][k], 1e-6 * 3000);
+      if (fabs(whole[k]) > 1000) assert_true(fabs(stress[0][k]) < 0.95 * fabs(whole[k]));
+    }
+  }
+}
+
 /* "hourglass": elastic; it remembers the time and the time step that it was told. */
 static int hourglass_values(const void *constants)
 {
@@ -344,6 +370,7 @@ int main(void)
       cmocka_unit_test(the_tangent_of_a_law_that_relaxes_is_that_of_its_step),
       cmocka_unit_test(laws_are_told_the_time_of_the_end_of_their_step),
       cmocka_unit_test(damage_of_mazars_never_heals),
+      cmocka_unit_test(compression_of_mazars_mends_nothing),
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
