@@ -31,5 +31,10 @@ int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *byt
 
 uint32_t checksum_of(const void *bytes, size_t size)
 {
-  return (uint32_t)crc32_z(crc32_z(0, NULL, 0), bytes, size);
+  return checksum_with(0, bytes, size);
+}
+
+uint32_t checksum_with(uint32_t sum, const void *bytes, size_t size)
+{
+  return (uint32_t)crc32_z(sum, bytes, size);
 }

@@ -13,5 +13,7 @@ int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *byt
 
 /** The same of bytes in memory. */
 uint32_t checksum_of(const void *bytes, size_t size);
+/** Of bytes that follow others. @param[in] sum  of those; 0 where there are none */
+uint32_t checksum_with(uint32_t sum, const void *bytes, size_t size);
 
 #endif

@@ -50,7 +50,8 @@ static bool read_table(Table *table, const char *path, Error *error)
     error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, text_why_unread(errno));
     return false;
   }
-  table->heading = table->text;
+  table->heading =
+      table->text + (!strncmp(table->text, "\xef\xbb\xbf", 3) ? 3 : 0); /* a mark that spreadsheets write */
   while (table->heading && *table->heading == '#') {
     table->heading = strchr(table->heading, '\n');
     if (table->heading) ++table->heading;
@@ -61,6 +62,35 @@ static bool read_table(Table *table, const char *path, Error *error)
   if (end > table->heading && end[-1] == '\r') end[-1] = 0;
   table->rows = end + 1;
   return true;
+}
+
+static int count_commas(const char *from, const char *end)
+{
+  int count = 0;
+  while ((from = memchr(from, ',', (size_t)(end - from)))) ++from, ++count;
+  return count;
+}
+
+/** Looks whether a row has cells behind the last column of the heading: a comma in its numbers would move all that follow it.
+ *  @return 0, or 1 after saying so */
+static int check_widths(const Table *table, const char *path, Error *error)
+{
+  const int commas = count_commas(table->heading, table->rows - 1);
+  int line = 2; /* counted from the one behind the heading, and those before it */
+  for (const char *c = table->text; c < table->heading; ++c) line += *c == '\n';
+  for (const char *row = table->rows, *next; *row; row = next, ++line) {
+    const char *end = row + strcspn(row, "\n");
+    next = end + (*end != 0);
+    while (end > row && strchr(", \t\r", end[-1])) --end; /* empty cells do no harm */
+    const int here = *row == '#' ? 0 : count_commas(row, end);
+    if (here <= commas) continue;
+    error_add(error, BRECCIA_USER_ERROR,
+              "%s:%d: has %d cells, but the heading names %d columns; write decimals with a point, and one number in "
+              "each cell",
+              path, line, here + 1, commas + 1);
+    return 1;
+  }
+  return 0;
 }
 
 static size_t most_rows(const Table *table)
@@ -99,6 +129,10 @@ double *csv_column(const char *path, const char *column, CsvState state, int *co
   if (index < 0) {
     error_add(error, BRECCIA_USER_ERROR, "%s: has no column '%s'; its columns are %s", path, column,
               table.rows ? table.heading : "none");
+    free(table.text);
+    return NULL;
+  }
+  if (state == CSV_FINISHED && check_widths(&table, path, error)) {
     free(table.text);
     return NULL;
   }

@@ -176,6 +176,7 @@ const char *text_why_unread(int number)
 {
   if (number == ESPIPE) return "it is a pipe or a device; expected a file";
   if (number == EFBIG) return "it is larger than 4 GB";
+  if (number == EILSEQ) return "it is not text: it holds a zero byte";
   return strerror(number);
 }
 
@@ -197,6 +198,12 @@ char *text_read_file(const char *path, size_t *length)
     content = NULL;
   }
   fclose(file);
+  if (content && !length &&
+      memchr(content, 0, n)) { /* what stands behind it would be lost on whoever takes it as words */
+    free(content);
+    content = NULL;
+    errno = EILSEQ;
+  }
   if (content) content[n] = 0;
   if (length) *length = n;
   return content;

@@ -46,7 +46,7 @@ char *text_beside(const char *path, const char *file);
 /** Opens a file for reading, but no pipe, device or folder: those may never end. @return -1, with the reason in errno */
 int text_open_file(const char *path);
 
-/** Reads a whole file, no pipe or device. @return its content, zero-terminated, to be freed; NULL with errno set on failure */
+/** Reads a whole file, no pipe or device; as words, without a zero byte, where no `length` is asked for. @return it, to be freed; NULL with errno */
 char *text_read_file(const char *path, size_t *length);
 
 /** Why text_read_file has read nothing. @param[in] number  what it left in errno */

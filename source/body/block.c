@@ -69,7 +69,7 @@ static const Field block_fields[] = {
      .offset = offsetof(BlockSpec, file),
      .standard = "",
      .meaning = "instead: a CSV file beside the deck with columns x, y, z, volume and, where wanted, group (a name), "
-                "in the deck's units, of particles that stand anywhere",
+                "in the deck's units or in those behind their names, like x (mm), of particles that stand anywhere",
      .group = 'A'},
 };
 

@@ -103,7 +103,7 @@ int cloud_read(Cloud *cloud, const DeckReader *reader, const Node *node, const c
   char *path = text_beside(node_file(reader->document, node), file);
   Error *reason = breccia_error_create();
   if (path) named_file_note(reader, file, path);
-  int status = path ? reader_of(file)->read(cloud, path, dimensions, reason) : BRECCIA_FAILURE;
+  int status = path ? reader_of(file)->read(cloud, path, dimensions, reader->units, reason) : BRECCIA_FAILURE;
   if (!path) error_add(reader->error, BRECCIA_FAILURE, "out of memory: %s", file);
   if (path && status)
     status = node_error(reader->document, node, reader->error, "file: %s", breccia_error_text(reason));

@@ -18,12 +18,13 @@ typedef struct Cloud {
 typedef struct BodyReader {
   const char *ending; /* of their names, with the point */
   const char *about;
-  /** Reads positions, as many coordinates as the body has dimensions, volumes and, where the file tells them, groups; in the deck's units.
+  /** Reads positions, as many coordinates as the body has dimensions, volumes and, where the file tells them, groups.
    *  @param[in]  path    of the file
+   *  @param[in]  units   of the deck, in which the numbers are given
    *  @param[out] cloud   zeros before; destroyed by the caller in any case
    *  @param[out] reason  what is wrong, in words that follow the file's place in the deck
    *  @return status */
-  int (*read)(Cloud *cloud, const char *path, int dimensions, Error *reason);
+  int (*read)(Cloud *cloud, const char *path, int dimensions, const Units *units, Error *reason);
 } BodyReader;
 
 /** @return the k-th kind, or NULL after the last */

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum {
   MODEL,
@@ -121,11 +122,34 @@ static int run_test(breccia_test *test, const char **values, breccia_error *erro
     if (!status) status = shown;
   }
   warn(breccia_test_doubts(test));
-  if (out && out != stdout && fclose(out) && !status) {
+  const bool bad = out && out != stdout && (ferror(out) | fclose(out));
+  struct stat there;
+  if (bad) {
     fprintf(stderr, "%s: cannot be written: %s\n", values[OUTPUT], strerror(errno));
-    status = BRECCIA_FAILURE;
+    if (!stat(values[OUTPUT], &there) && S_ISREG(there.st_mode)) remove(values[OUTPUT]);
+    if (!status) status = BRECCIA_FAILURE;
   }
   return status;
+}
+
+/** Whether two paths lead to one file. */
+static bool is_same_file(const char *a, const char *b)
+{
+  struct stat one, other;
+  return a && b && !stat(a, &one) && !stat(b, &other) && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+/** Whether the output would be written over what is read. @return 0, or 1 after saying so */
+static int check_output(const char **values, const char *file)
+{
+  const char *const inputs[] = {file, values[STRAIN], values[AGAINST]};
+  for (size_t k = 0; k < sizeof inputs / sizeof *inputs; ++k) {
+    if (!is_same_file(values[OUTPUT], inputs[k])) continue;
+    fprintf(stderr, "breccia material: --output: %s is read here and would be written over; give another name\n",
+            values[OUTPUT]);
+    return 1;
+  }
+  return 0;
 }
 
 /** Whether the options go together. @return 0, or 1 after saying what is wrong */
@@ -158,7 +182,7 @@ static int run(int argc, char **argv, const Verb *verb)
   const bool file = first >= 0 && argc - first == 1 && !values[MODEL];
   int status = first == -2 ? 0 : 2;
   breccia_error *error = breccia_error_create();
-  if (first >= 0 && !check_options(values, file, argc - first)) {
+  if (first >= 0 && !check_options(values, file, argc - first) && !check_output(values, file ? argv[first] : NULL)) {
     breccia_test *test = NULL;
     breccia_test_words words;
     if (file)

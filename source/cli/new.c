@@ -63,7 +63,10 @@ static int write_new(const char *path, const void *bytes, size_t length)
   }
   bool bad = fwrite(bytes, 1, length, file) != length;
   bad |= fclose(file) != 0;
-  if (bad) fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(errno));
+  if (bad) {
+    fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(errno));
+    remove(path);
+  }
   return bad;
 }
 

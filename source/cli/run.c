@@ -45,13 +45,34 @@ static void show_progress(void *context, int64_t step, int64_t steps, double lef
           (long long)steps, time);
 }
 
-/** How to go on: the same command with --restart. */
-static void tell_restart(const char *deck, const char *folder, const DeckSettings *settings)
+/** A word as a shell takes it, in quotation marks where it needs them. */
+static void print_word(const char *word)
 {
-  printf("'breccia run %s", deck);
-  for (int k = 0; k < settings->count; ++k) printf(" --set \"%s\"", settings->items[k]);
-  if (folder) printf(" --output %s", folder);
-  printf(" --restart' goes on from here\n");
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  const bool quoted = !*word || word[strspn(word, plain)];
+  if (quoted) putchar('"');
+  for (; *word; ++word) {
+    if (strchr("\"\\$`", *word)) putchar('\\');
+    putchar(*word);
+  }
+  if (quoted) putchar('"');
+}
+
+/** How to go on: the same command with --restart. */
+static void tell_restart(const char *deck, const char **values, const DeckSettings *settings)
+{
+  printf("'breccia run ");
+  if (*deck == '-') printf("./");
+  print_word(deck);
+  for (int k = 0; k < settings->count; ++k) {
+    printf(" --set ");
+    print_word(settings->items[k]);
+  }
+  if (values[OUTPUT]) {
+    printf(" --output ");
+    print_word(values[OUTPUT]);
+  }
+  printf("%s --restart' goes on from here\n", values[FORCE] ? " --force" : "");
 }
 
 static int run_deck(const char *deck, const char **values, const DeckSettings *settings)
@@ -108,7 +129,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
     const char *warnings = breccia_model_warnings(model);
     if (strlen(warnings) > told) fprintf(stderr, "%s\n", warnings + told + (warnings[told] == '\n'));
     if (*breccia_model_outcome(model)) printf("%s\n", breccia_model_outcome(model));
-    if (status == BRECCIA_INTERRUPTED) tell_restart(deck, values[OUTPUT], settings);
+    if (status == BRECCIA_INTERRUPTED) tell_restart(deck, values, settings);
   }
   breccia_model_destroy(&model);
   free(folder);

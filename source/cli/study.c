@@ -41,6 +41,12 @@ static void on_signal(int number)
   signal(number, SIG_DFL);
 }
 
+/* In a case. Its study may tell it again what it has heard by itself; Ctrl-C twice still ends it at once. */
+static void on_word_of_study(int number)
+{
+  interrupted = number;
+}
+
 typedef struct Job {
   pid_t process; /* 0: free */
   int which;
@@ -103,7 +109,10 @@ static int begin_case(Work *work, Job *job, int k, bool restart)
     fprintf(stderr, "breccia study: %s: no process can be started: %s\n", one.name, strerror(errno));
     return 1;
   }
-  if (!process) _exit(run_case(work, &one, restart));
+  if (!process) {
+    sigaction(SIGTERM, &(struct sigaction){.sa_handler = on_word_of_study}, NULL);
+    _exit(run_case(work, &one, restart));
+  }
   *job = (Job){process, k, time(NULL)};
   if (!work->quiet) printf("%d of %d: %s%s\n", k + 1, work->count, one.name, restart ? ", from its checkpoint" : "");
   fflush(stdout);
@@ -115,9 +124,11 @@ static void end_case(Work *work)
 {
   int status = 0;
   pid_t process;
-  while ((process = waitpid(-1, &status, 0)) < 0 && errno == EINTR)
-    for (int j = 0; j < work->job_count; ++j) /* Ctrl-C reaches them by itself */
-      if (interrupted == SIGTERM && work->jobs[j].process) kill(work->jobs[j].process, SIGTERM);
+  do { /* Ctrl-C reaches them by itself, a signal to this process alone does not */
+    for (int j = 0; j < work->job_count; ++j)
+      if (interrupted && work->jobs[j].process) kill(work->jobs[j].process, SIGTERM);
+    process = waitpid(-1, &status, 0);
+  } while (process < 0 && errno == EINTR);
   for (int j = 0; j < work->job_count; ++j) {
     Job *job = &work->jobs[j];
     if (process < 0 || job->process != process) continue;
@@ -252,6 +263,9 @@ static int run(int argc, char **argv, const Verb *verb)
     struct sigaction action = {.sa_handler = on_signal};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    struct sigaction before;
+    if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN) /* by nohup: to go on without a terminal */
+      sigaction(SIGHUP, &action, NULL);
     char *beside = values[OUTPUT] ? NULL : result_folder(argv[first]), *folder = values[OUTPUT]
                                                                                      ? words_of("%s", values[OUTPUT])
                                                                                  : beside ? words_of("%s-study", beside)

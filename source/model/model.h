@@ -38,7 +38,6 @@ struct breccia_model {
   double *stops;    /* those of them that steps of the program's own choice meet exactly */
   int64_t schedule_count;
   int64_t next_due;      /* the first of the schedule that is not written yet */
-  int64_t began;         /* the step at which the run began to write */
   int64_t last_due;      /* step of the last state that was due; -1: none */
   int64_t states_due;    /* how many were due since the run began */
   int64_t log_bytes;     /* of solution.txt, with what was told of all steps so far */

@@ -18,8 +18,8 @@ void model_state(breccia_model *model, StateList *list)
   for (size_t k = 0; k < sizeof largest / sizeof *largest; ++k)
     state_add_number(list, largest[k].name, largest[k].unit, STATE_COMMITTED, largest[k].value);
   state_add_count(list, "states of the stage written", STATE_COMMITTED, &model->next_due);
-  state_add_count(list, "step at which the run began", STATE_COMMITTED, &model->began);
   state_add_count(list, "step of the last state written", STATE_COMMITTED, &model->last_due);
   state_add_count(list, "states written", STATE_COMMITTED, &model->states_due);
   state_add_count(list, "bytes of solution.txt", STATE_COMMITTED, &model->log_bytes);
+  if (model->watches) watches_state(model->watches, list);
 }

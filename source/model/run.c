@@ -120,7 +120,7 @@ static int write_checkpoint(Run *run, Error *error)
   for (int r = 0; r < model->domain.region_count; ++r)
     if (!points_can_save(&model->domain.regions[r].points))
       return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
-  if (watches_settle(model->watches, error) || settle_results(run, error)) {
+  if (watches_settle(model->watches, error) || settle_results(run, error) || run_log_settle(run, error)) {
     run->unwritten = true;
     return BRECCIA_FAILURE;
   }
@@ -158,12 +158,32 @@ static int forget_earlier(const Run *run, Error *error)
   return status;
 }
 
+static const char deck_heading[] = "# What was run, by Breccia ";
+
+/** Looks whether what will be written would take the place of a file of the user's: a deck, or a table that the deck reads. */
+static int spare_files_of_others(const Run *run, Error *error)
+{
+  char *path = text_format("%s/deck.yaml", run->wish->folder), there[sizeof deck_heading] = "";
+  if (!path) return error_add(error, BRECCIA_FAILURE, "out of memory: deck.yaml");
+  const int file = text_open_file(path);
+  const ssize_t n = file < 0 ? 0 : read(file, there, sizeof there - 1);
+  int status = watches_spare(run->model->watches, run->wish->folder, text_words(&run->model->files), error);
+  if (!status && n > 0 && strncmp(there, deck_heading, sizeof there - 1) != 0)
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "%s: was not written by a run, and would be replaced by the deck as it is run: give it another "
+                       "name, or the results a folder of their own by --output",
+                       path);
+  if (file >= 0) close(file);
+  free(path);
+  return status;
+}
+
 /** The deck as it is run, beside its results. */
 static int write_deck(Run *run, Error *error)
 {
   const breccia_model *model = run->model;
   Text words = {0};
-  text_add(&words, "# What was run, by Breccia %s, from ", BRECCIA_VERSION);
+  text_add(&words, "%s%s, from ", deck_heading, BRECCIA_VERSION);
   text_add_json(&words, model->document->name);
   for (int k = 0; k < model->setting_count; ++k) {
     text_add(&words, " --set ");
@@ -236,10 +256,13 @@ static int open_files(Run *run, Error *error)
   breccia_model *model = run->model;
   const ResultNames names = {.fields = run->names.items,
                              .count = run->names.count,
-                             .single = !strcmp(model->spec->results->precision, "single")};
-  int status;
+                             .single = !strcmp(model->spec->results->precision, "single"),
+                             .deck = text_words(&model->deck)};
+  int status = spare_files_of_others(run, error);
+  if (status) return status;
   if (run->wish->restart) {
     status = check_states(run, error);
+    if (!status) status = run_log_check(run, error);
     if (!status)
       status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                   &names, model->last_due, error);
@@ -248,7 +271,6 @@ static int open_files(Run *run, Error *error)
     model->last_due = -1;
     model->states_due = 0;
     model->log_bytes = 0;
-    model->began = model->solver.clock.step;
     status = forget_earlier(run, error);
     if (!status)
       status = result_file_create(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
@@ -256,8 +278,8 @@ static int open_files(Run *run, Error *error)
   }
   if (!status) status = write_deck(run, error);
   if (!status)
-    status = watches_open(model->watches, run->wish->folder, model->units, &model->solver, model->began,
-                          run->wish->restart, error);
+    status = watches_open(model->watches, run->wish->folder, model->units,
+                          run->wish->restart ? model->solver.clock.step : -1, error);
   if (!status && run->wish->restart == BRECCIA_RESTART_BEFORE)
     status = checkpoint_return_to_before(run->wish->folder, error);
   return status;

@@ -30,6 +30,10 @@ int run_write_file(Run *run, const char *name, const Text *words, Error *error);
 
 /** Adds what the solver tells of its last step to solution.txt. @param[in] done  the step was taken; else a restart forgets it */
 int run_log_write(Run *run, bool done, Error *error);
+/** What was told before the checkpoint that a run goes on from must be there: else BRECCIA_USER_ERROR. */
+int run_log_check(const Run *run, Error *error);
+/** Brings it to the disk: a checkpoint must not be ahead of it when the machine goes down. */
+int run_log_settle(const Run *run, Error *error);
 int run_log_close(Run *run, Error *error);
 
 /** Pictures are made from the files, as `breccia plot` does.

@@ -43,6 +43,31 @@ int run_log_write(Run *run, bool done, Error *error)
   return bad ? tell_failure(run, errno, error) : BRECCIA_OK;
 }
 
+int run_log_check(const Run *run, Error *error)
+{
+  struct stat status;
+  const int64_t due = run->model->log_bytes;
+  char *path = due > 0 ? path_of(run) : NULL;
+  int bad = BRECCIA_OK;
+  if (path && stat(path, &status))
+    bad = error_add(error, BRECCIA_USER_ERROR,
+                    "%s: %s; the run goes on from step %lld and needs what was told up to "
+                    "there: put the file back, or run without --restart",
+                    path, strerror(errno), (long long)run->model->solver.clock.step);
+  else if (path && status.st_size < due)
+    bad = error_add(error, BRECCIA_USER_ERROR,
+                    "%s: has %lld bytes, but %lld were written before the checkpoint of step "
+                    "%lld; put the file back as it was, or run without --restart",
+                    path, (long long)status.st_size, (long long)due, (long long)run->model->solver.clock.step);
+  free(path);
+  return bad;
+}
+
+int run_log_settle(const Run *run, Error *error)
+{
+  return run->log && fsync(fileno(run->log)) && errno != EINVAL ? tell_failure(run, errno, error) : BRECCIA_OK;
+}
+
 int run_log_close(Run *run, Error *error)
 {
   const bool bad = run->log && fclose(run->log);

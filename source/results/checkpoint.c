@@ -216,7 +216,10 @@ int checkpoint_open(Checkpoint *c, const char *folder, CheckpointWhich which, co
   if (!c->path) return error_add(error, BRECCIA_FAILURE, "out of memory: checkpoint");
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   if (access(c->path, F_OK)) return say_way_out(c, folder, which, "there is no checkpoint to restart from", error);
-  const bool whole = !seal_is_broken(c->path);
+  const int broken = seal_is_broken(c->path);
+  if (broken < 0)
+    return error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", c->path, text_why_unread(errno));
+  const bool whole = !broken;
   if (whole) c->file = H5Fopen(c->path, H5F_ACC_RDONLY, H5P_DEFAULT);
   const int status = c->file >= 0 ? check_file(c->file, c->path, of, error) : STATE_MISFIT;
   if (status != STATE_MISFIT) return status;

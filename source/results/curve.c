@@ -96,21 +96,47 @@ static void last_part(const char *path, char *name)
   name[length] = 0;
 }
 
+/** @return whether a row begins with two numbers and a comma between; @param[out] first  whether it begins with a number at all */
+static bool read_point(const char *row, double *x, double *y, bool *first)
+{
+  char *end, *last;
+  *x = strtod(row, &end);
+  *first = end != row;
+  end += strspn(end, " \t");
+  if (!*first || *end != ',') return false;
+  *y = strtod(end + 1, &last);
+  const bool two = last != end + 1;
+  last += strspn(last, " \t\r");
+  return two && (*last == ',' || !*last);
+}
+
 int curve_points(const char *path, double **x, double **y, int *count, Error *error)
 {
   char *text = text_read_file(path, NULL);
   *x = *y = NULL;
   *count = 0;
-  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, strerror(errno));
+  if (!text) return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path, text_why_unread(errno));
   size_t rows = 1;
   for (const char *c = text; *c; ++c) rows += *c == '\n';
   *x = memory_plain(rows, sizeof(double));
   *y = memory_plain(rows, sizeof(double));
-  char *rest = NULL;
-  for (char *row = strtok_r(text, "\n", &rest); *x && *y && row; row = strtok_r(NULL, "\n", &rest))
-    if (sscanf(row, "%lf ,%lf", &(*x)[*count], &(*y)[*count]) == 2) ++*count;
+  int status = *x && *y ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: %s", path), line = 0;
+  for (char *row = text, *next; row && !status; row = next) {
+    next = strchr(row, '\n');
+    if (next) *next++ = 0;
+    ++line;
+    row += strspn(row, " \t\r");
+    bool number = false;
+    if (!*row || *row == '#') continue;
+    if (read_point(row, &(*x)[*count], &(*y)[*count], &number))
+      ++*count;
+    else if (number || *count) /* before the first point there may be a heading */
+      status = error_add(error, BRECCIA_USER_ERROR,
+                         "%s:%d: expected x and y with a comma between, and points in the numbers; found '%.60s'", path,
+                         line, row);
+  }
   free(text);
-  if (*count) return BRECCIA_OK;
+  if (status || *count) return status;
   return error_add(error, BRECCIA_USER_ERROR, "%s: no row begins with two numbers, x and y with a comma between", path);
 }
 

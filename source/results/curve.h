@@ -28,7 +28,7 @@ char *curve_of_energies(const char *folder, Error *error);
 /** A short file name without ending for a curve: its vertical watch over its horizontal one, or the one watch. */
 void curve_name(const char *curve, char *name, size_t size);
 
-/** The first two columns of a CSV file; rows that do not begin with two numbers are headings. To be freed, also after a failure. */
+/** The first two columns of a CSV file; before the first row of numbers there may be headings. To be freed, also after a failure. */
 int curve_points(const char *path, double **x, double **y, int *count, Error *error);
 
 #endif

@@ -140,6 +140,9 @@ int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char
     if ((v ? o->y : o->x).logarithmic && !has_positive(lines, count, v))
       return error_add(error, BRECCIA_USER_ERROR, "%s: its %s axis cannot be logarithmic: no value is above 0", path,
                        v ? "vertical" : "horizontal");
+  const Extent there = extent_of(lines, count, false, NAN, NAN);
+  if (!(there.least <= there.most))
+    return error_add(error, BRECCIA_USER_ERROR, "%s: not drawn: there is no point yet, or none that is a number", path);
   const char *dot = strrchr(path, '.');
   char *part = text_format("%s.part", path);
   Text script = {0};

@@ -1,5 +1,6 @@
 #include "results/result_file.h"
 
+#include "base/checksum.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/team.h"
@@ -17,6 +18,8 @@
 #include <sys/stat.h>
 
 enum { CHUNK_BYTES = 1 << 18 };
+
+static const char deck_checksum[] = "deck checksum"; /* attribute of the group Breccia */
 
 typedef struct Column {
   char name[64], unit[64];
@@ -241,6 +244,10 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
     bad |= attribute_text(own, ".", "title", title) | attribute_text(own, ".", "length unit", unit);
     units_name(units, dimension_find("time"), unit, sizeof unit);
     bad |= attribute_text(own, ".", "time unit", unit);
+    if (names->deck) {
+      const int64_t sum = checksum_of(names->deck, strlen(names->deck));
+      bad |= attribute_numbers(own, deck_checksum, H5T_NATIVE_INT64, 1, &sum);
+    }
     if (names->frequencies) {
       bad |= dataset_create(own, "Frequencies", H5T_IEEE_F64LE, 1, 64);
       bad |= dataset_write(own, "Frequencies", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)names->frequency_count,
@@ -447,6 +454,17 @@ static int cut(ResultFile *file, Hdf5File *h5)
   return bad | (H5Gclose(own) < 0) | (H5Gclose(data) < 0) | (H5Gclose(root) < 0);
 }
 
+/** Whether results that are to be taken up are of this deck: of the same one they have the same bits. */
+static bool is_of_deck(const ResultView *view, const char *deck)
+{
+  int64_t sum = -1;
+  const hid_t attribute = H5Aopen_by_name(view->file, "Breccia", deck_checksum, H5P_DEFAULT, H5P_DEFAULT);
+  if (attribute < 0) return false;
+  const bool read = H5Aread(attribute, H5T_NATIVE_INT64, &sum) >= 0;
+  H5Aclose(attribute);
+  return read && sum == (int64_t)checksum_of(deck, strlen(deck));
+}
+
 int result_file_resume(ResultFile **out, const char *folder, const Domain *d, const Units *units, const char *title,
                        const ResultNames *names, int64_t last, Error *error)
 {
@@ -462,9 +480,14 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   const int64_t kept = file->writes ? file->steps[file->writes - 1] : -1;
   while (file->broken_written < d->broken_count && d->broken[file->broken_written].step <= kept) ++file->broken_written;
   bool same = view.rows == file->particles;
+  const bool own = !names->deck || is_of_deck(&view, names->deck);
   result_view_close(&view);
   if (!same)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds another number of particles than the deck", file->path);
+  if (!own)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: holds results of another deck; put the file back as it was, or run without --restart",
+                     file->path);
   const int cause = whole_file_copy(file->path, file->part);
   if (cause) return give_up(file, strerror(cause), error);
   Hdf5File h5;

@@ -18,6 +18,7 @@ typedef struct ResultNames {
   const char *const *fields; /* of fields.c, or named history numbers */
   int count;
   bool single;
+  const char *deck; /* what is run; NULL where nothing will be taken up */
   const double *
       frequencies; /* [frequency_count] in Hz, of modes of vibration that stand in place of states: the n-th at time and step n; NULL: of a run */
   int frequency_count;

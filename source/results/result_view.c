@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 static void attribute_read_text(hid_t where, const char *name, char *words, size_t size)
 {
@@ -199,12 +199,13 @@ int result_view_open(ResultView *view, const char *path, Error *error)
   *view = (ResultView){.file = -1};
   if (finish_rest(path, error)) return BRECCIA_USER_ERROR;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  const int there = text_open_file(path); /* HDF5 would wait for a pipe, and does not tell why it cannot open a file */
+  if (there < 0)
+    return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
+                     errno == ENOENT || errno == ENOTDIR ? "there is no such file" : text_why_unread(errno));
+  close(there);
   view->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (view->file < 0) {
-    struct stat status;
-    if (stat(path, &status))
-      return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
-                       errno == ENOENT || errno == ENOTDIR ? "there is no such file" : strerror(errno));
     if (H5Fis_hdf5(path) <= 0) return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file", path);
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: is damaged: it is shorter than it was, or its beginning does not have the checksum written "

@@ -32,9 +32,10 @@ int seal_file(const char *path)
 int seal_is_broken(const char *path)
 {
   char words[SEAL_BYTES], there[SEAL_BYTES];
-  if (words_for(path, words)) return 1;
+  if (words_for(path, words)) return -1;
   const int file = open(path, O_RDONLY);
-  const int bad = file < 0 || pread(file, there, SEAL_BYTES, 0) != SEAL_BYTES || memcmp(words, there, SEAL_BYTES);
-  if (file >= 0) close(file);
+  if (file < 0) return -1;
+  const int bad = pread(file, there, SEAL_BYTES, 0) != SEAL_BYTES || memcmp(words, there, SEAL_BYTES);
+  close(file);
   return bad;
 }

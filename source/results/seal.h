@@ -9,7 +9,7 @@ enum { SEAL_BYTES = 512 }; /* the smallest user block */
 /** Fills the first SEAL_BYTES of a file and brings all of it to the disk. @return 0, or 1 with errno set */
 int seal_file(const char *path);
 
-/** @return 0 if no byte has changed since; 1 if the file is damaged, was never sealed, or cannot be read */
+/** @return 0 if no byte has changed since; 1 if the file is damaged or was never sealed; -1 with errno set if it cannot be read */
 int seal_is_broken(const char *path);
 
 #endif

@@ -384,6 +384,40 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
   return BRECCIA_USER_ERROR; /* said when the deck was read */
 }
 
+typedef struct FileOf { /* a history and the name of its file */
+  char name[WATCH_FILE];
+  int which;
+} FileOf;
+
+static int by_name(const void *a, const void *b)
+{
+  const FileOf *one = a, *other = b;
+  const int order = strcmp(one->name, other->name);
+  return order ? order : one->which - other->which;
+}
+
+/** Refuses histories that would be written into one file: names can differ in what names of files cannot hold. */
+static int check_files(const Watches *watches, const DeckReader *reader)
+{
+  FileOf *files = memory_zeroed((size_t)watches->count + 1, sizeof *files, "watches", reader->error);
+  int status = files ? BRECCIA_OK : BRECCIA_FAILURE;
+  for (int k = 0; files && k < watches->count; ++k) {
+    files[k].which = k;
+    text_file_name(watches_name(watches, k), files[k].name, WATCH_FILE);
+  }
+  if (files) qsort(files, (size_t)watches->count, sizeof *files, by_name);
+  for (int k = 1; files && k < watches->count; ++k) {
+    if (strcmp(files[k - 1].name, files[k].name) != 0) continue;
+    const Node where = node_of_key(watches->items[files[k].which].spec->head.node);
+    status =
+        node_error(reader->document, &where, reader->error,
+                   "watch: '%s' would be written into %s.csv, like '%s': give it another name",
+                   watches_name(watches, files[k].which), files[k].name, watches_name(watches, files[k - 1].which));
+  }
+  free(files);
+  return status;
+}
+
 int watches_create(Watches **out, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *specs, const SectionList *selections)
 {
@@ -394,11 +428,12 @@ int watches_create(Watches **out, const Domain *domain, const Loading *loading, 
   for (int k = 0; k < specs->count; ++k) {
     Watch *w = &watches->items[watches->count++];
     w->spec = specs->items[k];
-    w->last_step = -1;
+    w->last_step = w->kept_step = -1;
     int bad = resolve(w, domain, loading, reader, selections);
     if (bad) status = bad;
   }
-  return status;
+  const int bad = check_files(watches, reader);
+  return bad ? bad : status;
 }
 
 int watch_columns(const Kind *kind)

@@ -20,15 +20,21 @@ typedef struct Watches Watches;
 /** Resolves the watches of a deck on a body. */
 int watches_create(Watches **watches, const Domain *domain, const Loading *loading, const DeckReader *reader,
                    const SectionList *specs, const SectionList *selections);
-/** Opens <folder>/<name>.csv for each; with `resume` old files are kept up to the step at which the solver stands and continued. All their rows from the
- *  step on at which the run began must be there: else BRECCIA_USER_ERROR. */
-int watches_open(Watches *watches, const char *folder, const Units *units, const Solver *solver, int64_t began,
-                 bool resume, Error *error);
+/** Looks whether a history would be written over a table that the deck reads.
+ *  @param[in] files  what the deck reads, a line each (DeckReader) */
+int watches_spare(const Watches *watches, const char *folder, const char *files, Error *error);
+/** Opens <folder>/<name>.csv for each.
+ *  @param[in] resume  a step whose checkpoint has been taken up: the files are continued behind what they had then, which must be there as it was,
+ *  else BRECCIA_USER_ERROR; negative: they begin */
+int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume, Error *error);
+/** How far the files have been written. */
+void watches_state(Watches *watches, StateList *list);
 /** Brings all rows to the disk: a checkpoint must not be ahead of them when the machine goes down. */
 int watches_settle(const Watches *watches, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */
 int watches_write(Watches *watches, const Solver *solver, bool last, Error *error);
-/** Closes the files. @return BRECCIA_OK, or BRECCIA_FAILURE after a line about the first that could not be written to its end */
+/** Closes the files. @return BRECCIA_OK, or BRECCIA_FAILURE after a line about the first that could not be written to its end, or that somebody
+ *  else has removed or changed meanwhile */
 int watches_close(Watches *watches, Error *error);
 /** Names the c-th column of the k-th history; of one that could not be resolved only step and time are known.
  *  @return 0, or 1 after the last */

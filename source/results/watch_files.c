@@ -1,40 +1,33 @@
 /* Histories as CSV files: headings, rows, and how they are taken up again. */
 #include "results/watch_parts.h"
 
+#include "base/checksum.h"
 #include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-static void write_header(FILE *file, const Kind *kind, const Units *units)
+static void add_header(Text *text, const Kind *kind, const Units *units)
 {
   char time[64], columns[1024], *rest = columns;
   units_name(units, dimension_find("time"), time, sizeof time);
   snprintf(columns, sizeof columns, "%s", kind->columns);
-  fprintf(file, "step,time (%s)", time);
+  text_add(text, "step,time (%s)", time);
   while (*rest) {
     char *colon = strchr(rest, ':'), *comma = strchr(colon, ','), unit[64];
     *colon = 0;
     if (comma) *comma = 0;
     units_name(units, dimension_find(colon + 1), unit, sizeof unit);
     if (*unit)
-      fprintf(file, ",%s (%s)", rest, unit);
+      text_add(text, ",%s (%s)", rest, unit);
     else
-      fprintf(file, ",%s", rest);
+      text_add(text, ",%s", rest);
     rest = comma ? comma + 1 : colon + 1 + strlen(colon + 1);
   }
-  fprintf(file, "\n");
-}
-
-/** Whether a text begins with the whole row of a step, with so many columns. */
-static bool is_row_of(const char *text, int64_t step, int columns)
-{
-  char *end;
-  const size_t length = strcspn(text, "\n");
-  if (!text[length] || strtoll(text, &end, 10) != step || *end != ',') return false;
-  int commas = 0;
-  for (size_t k = 0; k < length; ++k) commas += text[k] == ',';
-  return commas == columns + 1;
+  text_add(text, "\n");
 }
 
 /** Whether there is a row of a step that is done. */
@@ -45,59 +38,111 @@ static bool is_due(const Watch *w, const Solver *solver, int64_t step)
   return step % USUAL == 0 || solver_step_was_long(solver, step);
 }
 
-/** Cuts a history file behind the last row that is due and not beyond the step from which the run goes on. All rows since the run began must
- *  be there. */
-static int take_up_rows(Watch *w, const Solver *solver, int64_t began, Error *error)
+/** Adds words to a history's file. @param[in] kept  whether they stay when the run is taken up again
+ *  @return 0, or 1 with errno set */
+static int put(Watch *w, const Text *words, bool kept)
 {
-  const int64_t step = solver->clock.step;
-  size_t length;
-  char *text = text_read_file(w->path, &length), *row = text ? strchr(text, '\n') : NULL;
-  if (!text)
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or run "
-                     "without --restart",
-                     w->path, strerror(errno), (long long)step);
-  const int columns = watch_columns(w->kind);
-  int64_t line = 2, missing = -1;
-  row = row ? row + 1 : text + length;
-  for (int64_t due = began; due <= step && missing < 0; ++due) {
-    if (!is_due(w, solver, due)) continue;
-    if (is_row_of(row, due, columns)) {
-      w->last_step = due;
-      row = strchr(row, '\n') + 1;
-      ++line;
-    } else
-      missing = due;
+  errno = ENOMEM;
+  if (words->failed) return 1;
+  w->bytes += (int64_t)words->length;
+  if (kept) {
+    w->kept_bytes = w->bytes;
+    w->kept_sum = checksum_with((uint32_t)w->kept_sum, text_words(words), words->length);
   }
+  return fwrite(text_words(words), 1, words->length, w->file) != words->length;
+}
+
+/** Cuts a history file behind what had been written of it at the checkpoint. All that must be there as it was. */
+static int take_up_rows(Watch *w, int64_t step, Error *error)
+{
+  size_t length = 0;
+  char *text = text_read_file(w->path, &length);
+  const int64_t kept = w->kept_bytes;
   int status = BRECCIA_OK;
-  if (missing >= 0)
+  if (!text)
     status = error_add(error, BRECCIA_USER_ERROR,
-                       "%s:%lld: expected the row of step %lld; the run goes on from step %lld and needs all rows up "
-                       "to there: put the file back as it was, or run without --restart",
-                       w->path, (long long)line, (long long)missing, (long long)step);
-  else if (truncate(w->path, row - text))
+                       "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or "
+                       "run without --restart",
+                       w->path, text_why_unread(errno), (long long)step);
+  else if ((int64_t)length < kept || checksum_of(text, (size_t)kept) != (uint32_t)w->kept_sum)
+    status =
+        error_add(error, BRECCIA_USER_ERROR,
+                  "%s: its rows up to step %lld, from which the run goes on, are not all as they were written; put "
+                  "the file back as it was, or run without --restart",
+                  w->path, (long long)step);
+  else if (truncate(w->path, (off_t)kept))
     status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+  w->bytes = kept;
+  w->last_step = w->kept_step;
   free(text);
   return status;
 }
 
-int watches_open(Watches *watches, const char *folder, const Units *units, const Solver *solver, int64_t began,
-                 bool resume, Error *error)
+static char *path_in(const char *folder, const Watch *w)
+{
+  char name[WATCH_FILE];
+  text_file_name(w->spec->head.name, name, sizeof name);
+  return text_format("%s/%s.csv", folder, name);
+}
+
+int watches_spare(const Watches *watches, const char *folder, const char *files, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < watches->count && *files && !status; ++k) {
+    char *path = path_in(folder, &watches->items[k]), *bytes = NULL;
+    uint32_t sum;
+    int64_t count;
+    if (path && !checksum_of_file(path, 0, &sum, &count)) bytes = text_format("%08" PRIx32 " %" PRId64 " ", sum, count);
+    for (const char *line = files; bytes && *line && !status; line += strcspn(line, "\n") + 1)
+      if (!strncmp(line, bytes, strlen(bytes)))
+        status = error_add(error, BRECCIA_USER_ERROR,
+                           "%s: is what the deck reads as '%.*s', and a history would be written over it: give the "
+                           "history another name, or the results a folder of their own by --output",
+                           path, (int)(strcspn(line, "\n") - strlen(bytes)), line + strlen(bytes));
+    free(bytes);
+    free(path);
+  }
+  return status;
+}
+
+int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume, Error *error)
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
-    char name[160];
-    text_file_name(w->spec->head.name, name, sizeof name);
     free(w->path);
-    w->path = text_format("%s/%s.csv", folder, name);
+    w->path = path_in(folder, w);
     if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
-    const int status = resume ? take_up_rows(w, solver, began, error) : BRECCIA_OK;
+    const int status = resume >= 0 ? take_up_rows(w, resume, error) : BRECCIA_OK;
     if (status) return status;
-    w->file = fopen(w->path, resume ? "a" : "w");
+    w->file = fopen(w->path, resume >= 0 ? "a" : "w");
     if (!w->file) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    if (!resume) write_header(w->file, w->kind, units);
+    if (resume >= 0) continue;
+    fcntl(fileno(w->file), F_SETFL, O_APPEND); /* what somebody else cuts off is missed then, and leaves no hole */
+    w->bytes = w->kept_sum = 0;
+    w->last_step = w->kept_step = -1;
+    Text heading = {0};
+    add_header(&heading, w->kind, units);
+    const int bad = put(w, &heading, true);
+    text_free(&heading);
+    if (bad) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
   }
   return BRECCIA_OK;
+}
+
+void watches_state(Watches *watches, StateList *list)
+{
+  for (int k = 0; k < watches->count; ++k) {
+    Watch *w = &watches->items[k];
+    const struct {
+      const char *what;
+      int64_t *value;
+    } rows[] = {{"bytes", &w->kept_bytes}, {"checksum", &w->kept_sum}, {"last step", &w->kept_step}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; ++r) {
+      char name[40];
+      snprintf(name, sizeof name, "history %d: %s", k + 1, rows[r].what);
+      state_add_count(list, name, STATE_COMMITTED, rows[r].value);
+    }
+  }
 }
 
 int watches_settle(const Watches *watches, Error *error)
@@ -117,15 +162,26 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
     if (w->last_step == solver->clock.step || (!last && !is_due(w, solver, solver->clock.step))) continue;
     double values[MOST_COLUMNS];
     const int columns = watch_columns(w->kind);
+    Text row = {0};
     w->kind->row(w, solver, values);
-    fprintf(w->file, "%lld,%.10g", (long long)solver->clock.step, solver->clock.time);
-    for (int c = 0; c < columns; ++c) fprintf(w->file, ",%.17g", values[c]);
-    fprintf(w->file, "\n");
-    if (fflush(w->file))
-      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    text_add(&row, "%lld,%.10g", (long long)solver->clock.step, solver->clock.time);
+    for (int c = 0; c < columns; ++c) text_add(&row, ",%.17g", values[c]);
+    text_add(&row, "\n");
+    const bool due = is_due(w, solver, solver->clock.step), bad = put(w, &row, due) || fflush(w->file);
+    text_free(&row);
+    if (bad) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
     w->last_step = solver->clock.step;
+    if (due) w->kept_step = w->last_step;
   }
   return BRECCIA_OK;
+}
+
+/** Whether what was written into a history's file is in the file of that name. */
+static bool is_in_place(const Watch *w)
+{
+  struct stat own, named;
+  return !fstat(fileno(w->file), &own) && !stat(w->path, &named) && own.st_ino == named.st_ino &&
+         own.st_dev == named.st_dev && own.st_size == w->bytes;
 }
 
 int watches_close(Watches *watches, Error *error)
@@ -133,8 +189,14 @@ int watches_close(Watches *watches, Error *error)
   int status = BRECCIA_OK;
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
+    const bool lost = w->file && !fflush(w->file) && !is_in_place(w);
     if (w->file && fclose(w->file) && !status)
       status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    if (lost && !status)
+      status = error_add(error, BRECCIA_FAILURE,
+                         "%s: was removed, replaced or changed while the run wrote it, and lacks rows; run again for "
+                         "them",
+                         w->path);
     w->file = NULL;
   }
   return status;

@@ -12,7 +12,7 @@ typedef struct Kind {
   void (*row)(const Watch *watch, const Solver *solver, double *values);
 } Kind;
 
-enum { MOST_COLUMNS = 16 };
+enum { MOST_COLUMNS = 16, WATCH_FILE = 160 }; /* WATCH_FILE: room for the name of a file, without its ending */
 
 struct Watch {
   const WatchSpec *spec;
@@ -27,7 +27,10 @@ struct Watch {
   uint8_t *on; /* [places] of reactions on a selection */
   FILE *file;
   char *path;
-  int64_t last_step;
+  int64_t last_step, bytes; /* of the last row in the file; of the whole file */
+  int64_t kept_step, kept_bytes,
+      kept_sum; /* the same of what stays when the run is taken up again, and its checksum: a row that is only
+                                              written because the run ends does not */
 };
 
 struct Watches {
