@@ -422,18 +422,69 @@ static void check_cracks(breccia_model *model)
   }
 }
 
+/** The particle of the body on which most acts when the run begins, of those that no load moves; and how much per volume. */
+static int32_t least_balanced(breccia_model *model, double *most)
+{
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  int32_t found = -1;
+  uint8_t *held = memory_zeroed((size_t)p->places, 1, "balance", NULL);
+  if (!held) return -1;
+  loading_mark_held(&model->loading, held);
+  domain_evaluate(d);
+  loading_apply(&model->loading, d->particles, 0);
+  *most = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double square = 0;
+    for (int k = 0; k < 3; ++k)
+      square += (p->internal[k][i] + p->external[k][i]) * (p->internal[k][i] + p->external[k][i]);
+    if (held[i] || body_outside(&d->body, n) || square <= *most * *most) continue;
+    *most = sqrt(square);
+    found = i;
+  }
+  free(held);
+  return found;
+}
+
+/** Warns where ground that begins under its weight is far from balance. At a free surface, where families are not whole, a third of the weight is
+ *  left; beside faces that are held in few layers, or not at all, several times of it. */
+static void check_balance(breccia_model *model, const InitialStressSpec *item)
+{
+  const double usual = 0.75; /* of the largest load */
+  const Particles *p = model->domain.particles;
+  double most, load = 0;
+  const int32_t at = least_balanced(model, &most);
+  if (at < 0) return;
+  for (int32_t n = 0; n < p->count; ++n) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += p->external[k][p->place_of[n]] * p->external[k][p->place_of[n]];
+    load = fmax(load, sqrt(square));
+  }
+  if (most <= usual * load) return;
+  plausibility_say(model, section_node(item, "surface"),
+                   "surface: the ground begins out of balance: on particle %d at [%g, %g, %g] acts %.3g per volume, "
+                   "beside loads of %.3g at most; hold its faces by 'support', or in layers two horizons deep, and "
+                   "expect a free face to move",
+                   p->number[at], p->position[0][at], p->position[1][at], p->position[2][at], most, load);
+}
+
 /** Only weight balances stresses that grow with depth. */
 static void check_ground(breccia_model *model)
 {
   bool weight = false;
   for (int k = 0; k < model->loading.count; ++k)
     weight |= model->loading.loads[k].first == 0 && has_kind(model->loading.loads[k].spec, "gravity");
-  for (int n = 0; n < model->spec->initial_stress.count && !weight; ++n) {
+  for (int n = 0; n < model->spec->initial_stress.count; ++n) {
     const InitialStressSpec *item = model->spec->initial_stress.items[n];
-    if (!item->stress.values)
-      plausibility_say(model, section_node(item, "surface"),
-                       "surface: no gravity acts when the run begins, so that the ground heaves; add 'gravity' to the "
-                       "loads");
+    if (item->stress.values) continue;
+    if (weight) {
+      check_balance(model, item);
+      return;
+    }
+    plausibility_say(model, section_node(item, "surface"),
+                     "surface: no gravity acts when the run begins, so that the ground heaves; add 'gravity' to the "
+                     "loads");
   }
 }
 

@@ -212,6 +212,40 @@ static void ground_under_its_own_weight_stays_where_it_is(void **state)
   }
 }
 
+/** What is told of ground whose faces are held in so many layers, and which is said to weigh this. */
+static char *warnings_of_held_ground(int layers, double weight)
+{
+  breccia_model *m = model_of(
+      ELASTIC
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [20, 16]}}}}\n"
+      "peridynamics: {space: plane strain}\n"
+      "initial stress: {surface: 1.6, K0: 0.5, unit weight: %g}\n"
+      "loads: [{gravity: [0, -10]}, {on: {face: x-, layers: %d}, roller: [1, 0]}, {on: {face: x+, layers: %d}, "
+      "roller: [1, 0]}, {on: {face: y-, layers: %d}, roller: [0, 1]}]\n"
+      "solve: {static: {increments: 1}}\n",
+      weight, layers, layers, layers);
+  char *words = text_format("%s", breccia_model_warnings(m));
+  breccia_model_destroy(&m);
+  return words;
+}
+
+static void ground_that_is_not_in_balance_is_told(void **state)
+{
+  (void)state;
+  const struct {
+    int layers;
+    double weight;
+    bool told;
+  } grounds[] = {{6, 20, false}, {3, 20, true}, {1, 20, true}, {6, 40, true}};
+  for (size_t k = 0; k < sizeof grounds / sizeof *grounds; ++k) {
+    char *words = warnings_of_held_ground(grounds[k].layers, grounds[k].weight);
+    if (grounds[k].told != (strstr(words, "the ground begins out of balance: on particle") != NULL))
+      fail_msg("ground %d: %s", (int)k, words);
+    assert_int_equal(!grounds[k].told, !*words);
+    free(words);
+  }
+}
+
 static void layers_stand_on_each_other_and_weigh_what_is_said(void **state)
 {
   (void)state;
@@ -383,6 +417,7 @@ int main(void)
       cmocka_unit_test(a_plane_body_springs_in_its_plane),
       cmocka_unit_test(a_body_let_go_in_motion_keeps_its_energy),
       cmocka_unit_test(ground_under_its_own_weight_stays_where_it_is),
+      cmocka_unit_test(ground_that_is_not_in_balance_is_told),
       cmocka_unit_test(layers_stand_on_each_other_and_weigh_what_is_said),
       cmocka_unit_test(stages_and_loads_go_on_from_it),
       cmocka_unit_test(a_plastic_law_yields_where_stress_and_strain_lead_it_together),
