@@ -56,6 +56,8 @@ lowest=$(numbers minus.svg | head -1)
 contains "minus: numbers" "$lowest" "-"
 contains "minus: numbers" " $(numbers plus.svg | tr '\n' ' ')" " ${lowest#-} "
 "$breccia" plot bar bar --curve "end.x:end.y" --overlay measured.csv --output curve.png > out 2>&1 || fail "overlay: $(cat out)"
+"$breccia" plot bar --curve "end.x:end.y" --overlay measured.csv --output curve.svg > out 2>&1 || fail "overlay: $(cat out)"
+for word in "bar" "measured"; do contains "legend of points laid over a curve" "$(cat curve.svg)" ">$word<"; done
 # units that read well, labels and titles that are asked for, legends by folder
 sed 's/units:.*//; 1i units: {length: m, force: kN, time: s}' bar.yaml > other.yaml
 "$breccia" run other.yaml > out 2>&1 || fail "other: $(cat out)"

@@ -251,6 +251,44 @@ static void test_arrays_are_all_named_and_what_is_written_to_them_counts(void **
   breccia_error_destroy(&error);
 }
 
+/** What is left out of a wish and has no default is asked for in words. */
+static void test_what_is_missing_is_asked_for(void **state)
+{
+  (void)state;
+  breccia_error *error = breccia_error_create();
+  breccia_model *model;
+  assert_int_equal(breccia_model_load_string(deck, "bar", NULL, &model, error), BRECCIA_OK);
+  breccia_plot plot;
+  breccia_plot_begin(&plot, sizeof plot);
+  const breccia_service nowhere = {.size = sizeof nowhere}, secret = {.size = sizeof secret,
+                                                                      .address = "udp://127.0.0.1:0",
+                                                                      .secret_file = "/no such file"};
+  const breccia_run run = {.size = sizeof run};
+  const breccia_study_plan plan = {.size = sizeof plan};
+  const breccia_test_words words = {.size = sizeof words};
+  breccia_study *study = NULL;
+  breccia_test *test = NULL;
+  const struct {
+    int status;
+    const char *words;
+  } cases[] = {{breccia_serve(&nowhere, error), "a service needs an address"},
+               {breccia_serve(&secret, error), "/no such file: no secret can be read there"},
+               {breccia_model_run(model, &run, error), "a run needs a folder"},
+               {breccia_study_create(&plan, &study, error), "a study needs a deck and a folder"},
+               {breccia_test_make(&words, &test, error), "a test in words needs a law, and a path or a kind of test"},
+               {breccia_plot_curve(NULL, 0, &plot, error), "a curve needs a folder with histories"},
+               {breccia_plot_movie("results", &plot, error), "a movie needs the path of an .mp4 file"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    assert_int_equal(cases[k].status, BRECCIA_USER_ERROR);
+    if (!strstr(breccia_error_text(error), cases[k].words))
+      fail_msg("no '%s' in: %s", cases[k].words, breccia_error_text(error));
+  }
+  assert_null(study);
+  assert_null(test);
+  breccia_model_destroy(&model);
+  breccia_error_destroy(&error);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -259,6 +297,7 @@ int main(void)
       cmocka_unit_test(test_a_struct_without_its_size_is_refused),
       cmocka_unit_test(test_an_older_and_a_newer_program_are_understood),
       cmocka_unit_test(test_arrays_are_all_named_and_what_is_written_to_them_counts),
+      cmocka_unit_test(test_what_is_missing_is_asked_for),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,6 +160,9 @@ static void what_controls_nothing_is_refused(void **state)
       /* of a side that is held */
       {pull, found, "displacement of: {nearest: [0.05, 0.05]}, direction: [1, 0], to: 0.003",
        "deck:9:79: displacement of: it does not change with the controlled loads"},
+      /* of two particles that are held alike */
+      {pull, found, "opening between: [[0.05, 0.05], [0.05, 0.25]], to: 0.003",
+       "deck:9:79: opening between: it does not change with the controlled loads"},
       /* through a mean that by symmetry stays where it is */
       {pull, found, "displacement of: {face: x+, layers: 1}, direction: [0, 1], to: 0.003",
        "deck:9:79: displacement of: it does not change with the controlled loads"},
