@@ -121,7 +121,8 @@ int read_options(int argc, char **argv, const Verb *verb, const char **values,
       return -2;
     }
     if (code != 0) {
-      const char *given = argv[optind - 1];
+      char letter[3] = {'-', (char)optopt, 0}; /* of short options the library tells no more */
+      const char *given = optopt > 0 ? letter : argv[optind - 1];
       if (code == ':')
         fprintf(stderr, "breccia %s: %s needs a value; see 'breccia %s --help'\n", verb->name, given, verb->name);
       else

@@ -249,6 +249,30 @@ static int directive_line(const char *text, size_t length)
   return 0;
 }
 
+/** Line at which a second document begins, or text behind the end of the first; 0 if there is none. The library reads the first and no more. */
+static int second_line(const char *text, size_t length)
+{
+  int line = 1;
+  bool something = false, ended = false;
+  for (size_t k = 0; k < length; ++line) {
+    const char *row = text + k, *end = memchr(row, '\n', length - k);
+    const size_t size = end ? (size_t)(end - row) : length - k;
+    const bool mark = size >= 3 && (size == 3 || strchr(" \t\r", row[3]));
+    size_t blanks = 0;
+    while (blanks < size && strchr(" \t\r", row[blanks])) ++blanks;
+    const bool empty = blanks == size || row[blanks] == '#';
+    if (!empty && ended) return line;
+    if (mark && !memcmp(row, "...", 3))
+      ended = true;
+    else if (mark && something && !memcmp(row, "---", 3))
+      return line;
+    else
+      something |= !empty;
+    k += size + 1;
+  }
+  return 0;
+}
+
 /** What to do about a message of the library, for people who know no YAML; "" if nothing is known. */
 static const char *yaml_advice(const char *message)
 {
@@ -294,6 +318,12 @@ static int parse_into(Builder *builder, Node *root, const char *text, size_t len
   if (directive)
     return error_add(error, BRECCIA_USER_ERROR, "%s:%d:1: not valid YAML for a deck: a line must not begin with %%",
                      name, directive);
+  const int second = second_line(text, length);
+  if (second)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s:%d:1: a file holds one deck, and what stands here would not be read: leave out the line '---' "
+                     "or '...', or put it into a file of its own",
+                     name, second);
   char *plain = hide_expressions(text, length, &length);
   if (!plain) return error_add(error, BRECCIA_FAILURE, "out of memory: deck");
   struct fy_diag_cfg quiet;

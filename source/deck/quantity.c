@@ -171,6 +171,8 @@ Units *units_create(const char *length, const char *force, const char *time, Err
     else {
       cv_converter *converter = ut_get_converter(units->base[k], standard);
       units->size[k] = converter ? cv_convert_double(converter, 1) : NAN;
+      if (converter && !(units->size[k] > 0))
+        text_add(&reason, "unit '%s' is none to count %s in: it must be greater than 0", names[k], what[k]);
       cv_free(converter);
     }
     ut_free(standard);

@@ -378,6 +378,16 @@ for content in '' '- a' 'words' '42' '%' '%TAG'; do
   equal "deck «$content»: exit status" $? 2
   contains "deck «$content»" "$(cat "$work/errors")" "deck.yaml:1:"
 done
+# What stands behind the first document of YAML, which is all that is read
+for ending in '---\ntitle: Another' '...\nwatch: {}' '--- # and more'; do
+  { cat "$work/good.yaml"; printf -- "$ending\n"; } > "$work/deck.yaml"
+  (cd "$work" && "$breccia" check deck.yaml > out 2> errors)
+  equal "$ending: exit status" $? 2
+  contains "$ending" "$(cat "$work/errors")" "a file holds one deck, and what stands here would not be read"
+done
+{ printf '# mine\n---\n'; cat "$work/good.yaml"; printf '...\n\n# the end\n'; } > "$work/deck.yaml"
+(cd "$work" && "$breccia" check deck.yaml > out 2> errors) || fail "a deck between marks: $(cat "$work/errors")"
+refuse 's/length: m/length: -1 m/' 2:1 "unit '-1 m' is none to count length in"
 # Files without an end, folders, and more than anybody writes: refused soon, with their place
 mkfifo "$work/pipe"
 for file in /dev/zero pipe .; do
