@@ -230,7 +230,7 @@ static int fill(const Work *w)
     if (find_stress(w, &w->item[w->item_of[inside]], place, inside != n, stress)) return BRECCIA_USER_ERROR;
     for (int k = 0; k < 6; ++k) {
       const int r = symmetric_row[k], s = symmetric_column[k];
-      w->stress[k][place] = r != s && slides[r] != slides[s] ? -stress[k] : stress[k];
+      w->stress[k][place] = r != s && slides[r] != slides[s] ? 0 - stress[k] : stress[k]; /* no -0 in messages */
     }
   }
   return BRECCIA_OK;

@@ -449,6 +449,11 @@ static void what_cannot_be_meant_is_told(void **state)
       {UNITS
        "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 50}}\n" PLATE
        "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+       "initial stress: {stress: [-20, -80, -20, 0, 0, 0]}\nloads: [{on: {face: x-}, support: {held: across}}]\n",
+       "does not bear [-20, -80, -20, 0, 0, 0] of particle"},
+      {UNITS
+       "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 50}}\n" PLATE
+       "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
        "initial stress: {stress: [-20, -80, -20, 0, 0, 0]}\n",
        "the law j2 of material 'm' does not bear [-20, -80, -20, 0, 0, 0] of particle 0 at [0.05, 0.05, 0], it comes "
        "to [-"},
