@@ -7,7 +7,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *bytes)
+int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes)
 {
   enum { PIECE = 1 << 18 }; /* stays in the cache */
   const int file = text_open_file(path);
@@ -15,7 +15,8 @@ int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *byt
   ssize_t n = piece ? 0 : -1;
   uLong crc = crc32(0, NULL, 0);
   *bytes = 0;
-  while (piece && (n = pread(file, piece, PIECE, (off_t)(from + *bytes))) != 0) {
+  while (piece && (n = pread(file, piece, (size_t)(most - *bytes < PIECE ? most - *bytes : PIECE),
+                             (off_t)(from + *bytes))) != 0) {
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) break;
     crc = crc32(crc, piece, (uInt)n);

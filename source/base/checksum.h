@@ -7,9 +7,10 @@
 
 /** CRC-32 of a file's bytes from `from` on: that of ISO 3309, which zlib computes. It tells any change that lies within 32 bits from all others.
  *  @param[in] path  a file, no pipe or device
+ *  @param[in] from, most  bytes before those that count, and how many count if there are as many
  *  @param[out] bytes  how many they are
  *  @return 0, or 1 with errno set */
-int checksum_of_file(const char *path, int64_t from, uint32_t *sum, int64_t *bytes);
+int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum, int64_t *bytes);
 
 /** The same of bytes in memory. */
 uint32_t checksum_of(const void *bytes, size_t size);

@@ -48,10 +48,15 @@ int whole_file_copy(const char *from, const char *to)
   return cause;
 }
 
-int folder_settle(const char *folder)
+int file_settle(int descriptor)
 {
-  const int file = open(folder, O_RDONLY);
-  const int bad = file < 0 || (fsync(file) && errno != EINVAL && errno != ENOTSUP);
+  return fsync(descriptor) && errno != EINVAL && errno != ENOTSUP;
+}
+
+int path_settle(const char *path)
+{
+  const int file = open(path, O_RDONLY | O_CLOEXEC);
+  const int bad = file < 0 || file_settle(file);
   const int cause = errno;
   if (file >= 0) close(file);
   errno = cause;
@@ -62,7 +67,7 @@ int folder_of_file_settle(const char *path)
 {
   const char *slash = strrchr(path, '/');
   char *folder = slash ? text_format("%.*s", (int)(slash - path) + 1, path) : text_format(".");
-  const int bad = !folder || folder_settle(folder);
+  const int bad = !folder || path_settle(folder);
   free(folder);
   return bad;
 }

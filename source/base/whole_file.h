@@ -10,9 +10,11 @@
 int whole_file_write(const char *path, const Text *words, Error *error);
 /** Copies a file over another one, or into a new one. @return 0, or errno of what failed: then `to` is worth nothing */
 int whole_file_copy(const char *from, const char *to);
-/** Brings the names in a folder to the disk; file systems that cannot do that for folders keep them in order themselves.
+/** Brings an open file to the disk; file systems that cannot do that, as some for folders, keep things in order themselves.
  *  @return 0, or 1 with errno set */
-int folder_settle(const char *folder);
+int file_settle(int descriptor);
+/** The same for a file, or the names in a folder. */
+int path_settle(const char *path);
 /** The same for the folder in which a file lies. */
 int folder_of_file_settle(const char *path);
 

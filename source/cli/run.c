@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { SET, OUTPUT, STEPS, THREADS, RESTART, RESTART_BEFORE, FORCE, TRAP, QUIET };
@@ -20,13 +21,24 @@ static const Option options[] = {
     {0},
 };
 
-/* A second signal ends the program at once. */
+/* A second signal ends the program at once; but those that send one to a program and to its group, as `timeout` does, mean one. */
 static volatile int interrupted;
+static struct timespec interrupted_at;
 
 static void on_signal(int number)
 {
+  static const double together = 0.5;
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const double since =
+      (double)(now.tv_sec - interrupted_at.tv_sec) + 1e-9 * (double)(now.tv_nsec - interrupted_at.tv_nsec);
+  if (!interrupted)
+    interrupted_at = now;
+  else if (since > together && number != SIGXCPU) { /* which the system sends every second, up to its hard limit */
+    signal(number, SIG_DFL);
+    raise(number);
+  }
   interrupted = 1;
-  if (number != SIGXCPU) signal(number, SIG_DFL); /* which the system sends again every second, up to its hard limit */
 }
 
 static void show_progress(void *context, int64_t step, int64_t steps, double left)

@@ -85,12 +85,10 @@ static int write_results(Run *run, Error *error)
 static int settle_results(const Run *run, Error *error)
 {
   char *path = text_format("%s/results.vtkhdf", run->wish->folder);
-  const int file = path ? open(path, O_RDONLY) : -1;
   int status = BRECCIA_OK;
-  if (file < 0 || (fsync(file) && errno != EINVAL))
+  if (!path || path_settle(path))
     status =
         error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", path ? path : "results.vtkhdf", strerror(errno));
-  if (file >= 0) close(file);
   free(path);
   return status;
 }
@@ -111,7 +109,9 @@ static int write_checkpoint(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   /* Where things go wrong the checkpoint before is the better one; of this very step it need not be written twice. */
-  if (ledger_is_doubtful(&model->solver.ledger) || run->checkpoint_step == model->solver.clock.step) return BRECCIA_OK;
+  if (ledger_is_doubtful(&model->solver.ledger) || model->solver.unbegun ||
+      run->checkpoint_step == model->solver.clock.step)
+    return BRECCIA_OK;
   if (result_file_show(run->results, error)) { /* a restart takes them up from there */
     run->unwritten = true;
     return BRECCIA_FAILURE;
@@ -149,12 +149,14 @@ int run_write_file(Run *run, const char *name, const Text *words, Error *error)
 /** Takes away what an earlier run in this folder left to go on from, and what it told: both are of results that are written over now. */
 static int forget_earlier(const Run *run, Error *error)
 {
+  static const char *const told[] = {"summary.json", "solution.txt"};
   int status = checkpoint_forget(run->wish->folder, error);
-  char *path = text_format("%s/summary.json", run->wish->folder);
-  if (!path || (unlink(path) && errno != ENOENT))
-    status =
-        error_add(error, BRECCIA_FAILURE, "%s: cannot be removed: %s", path ? path : "summary.json", strerror(errno));
-  free(path);
+  for (size_t k = 0; k < sizeof told / sizeof *told; ++k) {
+    char *path = text_format("%s/%s", run->wish->folder, told[k]);
+    if (!path || (unlink(path) && errno != ENOENT))
+      status = error_add(error, BRECCIA_FAILURE, "%s: cannot be removed: %s", path ? path : told[k], strerror(errno));
+    free(path);
+  }
   return status;
 }
 
@@ -225,6 +227,11 @@ static int check_states(const Run *run, Error *error)
   ResultView view;
   char *path = text_format("%s/results.vtkhdf", run->wish->folder);
   int status = path ? journal_finish(path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: results");
+  if (!status && access(path, F_OK))
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "%s: %s; the run goes on from step %lld and needs the states up to there: put the file back, or "
+                       "run without --restart, from the beginning",
+                       path, strerror(errno), (long long)model->solver.clock.step);
   if (!status) status = result_view_open(&view, path, error);
   if (!status) {
     bool last = model->last_due < 0;
@@ -233,7 +240,12 @@ static int check_states(const Run *run, Error *error)
       there += view.step_numbers[k] <= model->last_due;
       last |= view.step_numbers[k] == model->last_due;
     }
+    status = result_view_verify(&view, path, error);
     result_view_close(&view);
+    if (status) {
+      free(path);
+      return status;
+    }
     if (!last)
       status = error_add(error, BRECCIA_USER_ERROR,
                          "%s: lacks the state of step %lld, which was written before the checkpoint of step %lld; put "
@@ -263,7 +275,8 @@ static int open_files(Run *run, Error *error)
   if (run->wish->restart) {
     status = check_states(run, error);
     if (!status) status = run_log_check(run, error);
-    if (!status)
+    if (!status) status = watches_check(model->watches, run->wish->folder, model->solver.clock.step, error);
+    if (!status) /* all can be gone on from: what lies behind the checkpoint is cut off now */
       status = result_file_resume(&run->results, run->wish->folder, &model->domain, model->units, model->spec->title,
                                   &names, model->last_due, error);
   } else {
@@ -277,9 +290,7 @@ static int open_files(Run *run, Error *error)
                                   &names, error);
   }
   if (!status) status = write_deck(run, error);
-  if (!status)
-    status = watches_open(model->watches, run->wish->folder, model->units,
-                          run->wish->restart ? model->solver.clock.step : -1, error);
+  if (!status) status = watches_open(model->watches, run->wish->folder, model->units, run->wish->restart != 0, error);
   if (!status && run->wish->restart == BRECCIA_RESTART_BEFORE)
     status = checkpoint_return_to_before(run->wish->folder, error);
   return status;
@@ -323,8 +334,9 @@ static int due(Run *run, Error *error)
     ++model->states_due;
   }
   if (!status && write) status = write_results(run, error);
-  bool by_steps = r->checkpoint_steps > 0 && s->clock.step && s->clock.step % r->checkpoint_steps == 0;
-  if (!status && (by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
+  const bool stage_ends = s->clock.ended && !solver_is_done(s); /* the next one may fail to begin */
+  const bool by_steps = r->checkpoint_steps > 0 && s->clock.step && s->clock.step % r->checkpoint_steps == 0;
+  if (!status && (stage_ends || by_steps || clock_seconds() - run->last_checkpoint > r->checkpoint_seconds))
     status = write_checkpoint(run, error);
   return status;
 }
@@ -390,7 +402,7 @@ static int finish(Run *run, int status, Error *error)
       update_peaks(model);      /* for the summary, and not for the checkpoint: the state is not written */
   } else if (!run->unwritten) { /* the last good state */
     write_checkpoint(run, error);
-    write_results(run, error);
+    if (!model->solver.unbegun || model->solver.clock.stage == 0) write_results(run, error);
     write_histories(run, true, error);
   }
   if (close_files(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;

@@ -1,6 +1,8 @@
 /* solution.txt: how the equations of each increment were solved, of solvers that solve any. */
 #include "model/run.h"
 
+#include "base/whole_file.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,7 +67,7 @@ int run_log_check(const Run *run, Error *error)
 
 int run_log_settle(const Run *run, Error *error)
 {
-  return run->log && fsync(fileno(run->log)) && errno != EINVAL ? tell_failure(run, errno, error) : BRECCIA_OK;
+  return run->log && file_settle(fileno(run->log)) ? tell_failure(run, errno, error) : BRECCIA_OK;
 }
 
 int run_log_close(Run *run, Error *error)

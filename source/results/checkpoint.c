@@ -92,7 +92,7 @@ static int put_in_place(const char *folder, const char *part, const char *path, 
   int bad = access(path, F_OK) ? errno != ENOENT : (unlink(before) && errno != ENOENT) != 0;
   /* A second name first, so that there is no moment without a file at `path`; where files have one name only, there is a short one. */
   if (!bad && link(path, before) && errno != ENOENT) bad = rename(path, before) != 0;
-  return bad || rename(part, path) || folder_settle(folder);
+  return bad || rename(part, path) || path_settle(folder);
 }
 
 int checkpoint_write(const char *folder, const StateList *state, const CheckpointOf *of, Error *error)
@@ -257,7 +257,7 @@ int checkpoint_return_to_before(const char *folder, Error *error)
 {
   char *last = path_of(folder, CHECKPOINT_LAST), *before = path_of(folder, CHECKPOINT_BEFORE);
   int status = BRECCIA_OK;
-  if (!last || !before || rename(before, last) || folder_settle(folder))
+  if (!last || !before || rename(before, last) || path_settle(folder))
     status = error_add(error, BRECCIA_FAILURE, "%s: cannot be renamed: %s", before ? before : folder, strerror(errno));
   free(last);
   free(before);

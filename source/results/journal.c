@@ -171,7 +171,7 @@ static int put_in(int descriptor, const unsigned char *all)
     if (cause) return cause;
     all += place[1];
   }
-  return ftruncate(descriptor, (off_t)heading.end) || fsync(descriptor) ? errno : 0;
+  return ftruncate(descriptor, (off_t)heading.end) || file_settle(descriptor) ? errno : 0;
 }
 
 /** Writes the journal beside the file. @return 0, or errno: then it is not there */
@@ -179,7 +179,7 @@ static int write_journal(const Journal *j, const unsigned char *all, size_t size
 {
   const int file = open(j->part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   int cause = file < 0 ? errno : write_at(file, all, size, 0);
-  if (!cause && fsync(file)) cause = errno;
+  if (!cause && file_settle(file)) cause = errno;
   if (file >= 0 && close(file) && !cause) cause = errno;
   if (!cause && rename(j->part, j->path)) cause = errno;
   if (!cause && folder_of_file_settle(j->path)) {
@@ -194,7 +194,7 @@ int journal_commit(Journal *j, int descriptor, int64_t end)
 {
   struct stat status;
   size_t size;
-  if (fsync(descriptor) || fstat(descriptor, &status)) return errno;
+  if (file_settle(descriptor) || fstat(descriptor, &status)) return errno;
   unsigned char *all = compose(j, status.st_size, end, &size);
   int cause = all ? write_journal(j, all, size) : ENOMEM;
   if (cause)

@@ -52,7 +52,11 @@ static int write_cells(hid_t root, int64_t particles)
     hid_t group = H5Gcreate2(root, cell_kinds[k], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     const char *const names[] = {"NumberOfCells", "NumberOfConnectivityIds", "Offsets", "Connectivity"};
     const hsize_t rows[] = {1, 1, (hsize_t)cells + 1, (hsize_t)cells};
-    if (!numbers || group < 0) return 1;
+    if (!numbers || group < 0) {
+      free(numbers);
+      if (group >= 0) H5Gclose(group);
+      return 1;
+    }
     for (int n = 0; n < 4; ++n) {
       for (int64_t i = 0; i <= cells; ++i) numbers[i] = n < 2 ? cells : i;
       bad |= dataset_create(group, names[n], H5T_STD_I64LE, 1, rows[n] > 4096 ? 4096 : rows[n]);
@@ -187,7 +191,7 @@ static int give_up(ResultFile *file, const char *reason, Error *error)
 /** Puts the copy in the place of the file that others read. */
 static int put_in_place(ResultFile *file, Error *error)
 {
-  if (rename(file->part, file->path)) return give_up(file, strerror(errno), error);
+  if (path_settle(file->part) || rename(file->part, file->path)) return give_up(file, strerror(errno), error);
   file->hidden = false;
   return BRECCIA_OK;
 }

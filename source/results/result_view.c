@@ -197,7 +197,8 @@ static int finish_rest(const char *path, Error *error)
 int result_view_open(ResultView *view, const char *path, Error *error)
 {
   *view = (ResultView){.file = -1};
-  if (finish_rest(path, error)) return BRECCIA_USER_ERROR;
+  int status = finish_rest(path, error);
+  if (status) return status;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   const int there = text_open_file(path); /* HDF5 would wait for a pipe, and does not tell why it cannot open a file */
   if (there < 0)
@@ -213,9 +214,9 @@ int result_view_open(ResultView *view, const char *path, Error *error)
                      path);
   }
   const htri_t vtk = H5Lexists(view->file, "VTKHDF", H5P_DEFAULT), own = H5Lexists(view->file, "Breccia", H5P_DEFAULT);
-  int status = vtk < 0 || own < 0 ? say_damaged(view, "its list of groups", error)
-               : vtk && own       ? read_heading(view, error)
-                            : error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
+  status = vtk < 0 || own < 0 ? say_damaged(view, "its list of groups", error)
+           : vtk && own       ? read_heading(view, error)
+                              : error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
   if (!status) status = read_numbers(view, error);
   if (status) result_view_close(view);
   return status;

@@ -31,6 +31,8 @@ typedef struct ResultView {
 
 /** @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that tells what of the file is missing or damaged */
 int result_view_open(ResultView *view, const char *path, Error *error);
+/** Reads every dataset once. @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that names one that is not as it was written */
+int result_view_verify(const ResultView *view, const char *path, Error *error);
 void result_view_close(ResultView *view);
 /** The lattice that a particle stands on. */
 const LatticeType *result_view_lattice(const ResultView *view, int64_t particle);

@@ -1,6 +1,7 @@
 #include "results/seal.h"
 
 #include "base/checksum.h"
+#include "base/whole_file.h"
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -13,7 +14,7 @@ static int words_for(const char *path, char words[SEAL_BYTES])
   uint32_t sum;
   int64_t bytes;
   memset(words, 0, SEAL_BYTES);
-  if (checksum_of_file(path, SEAL_BYTES, &sum, &bytes)) return 1;
+  if (checksum_of_file(path, SEAL_BYTES, INT64_MAX, &sum, &bytes)) return 1;
   snprintf(words, SEAL_BYTES, "Breccia checkpoint\nbytes behind the first %d: %" PRId64 "\nCRC-32: %08" PRIx32 "\n",
            SEAL_BYTES, bytes, sum);
   return 0;
@@ -24,7 +25,7 @@ int seal_file(const char *path)
   char words[SEAL_BYTES];
   if (words_for(path, words)) return 1;
   const int file = open(path, O_WRONLY);
-  int bad = file < 0 || pwrite(file, words, SEAL_BYTES, 0) != SEAL_BYTES || fsync(file);
+  int bad = file < 0 || pwrite(file, words, SEAL_BYTES, 0) != SEAL_BYTES || file_settle(file);
   if (file >= 0 && close(file)) bad = 1;
   return bad;
 }

@@ -23,10 +23,12 @@ int watches_create(Watches **watches, const Domain *domain, const Loading *loadi
 /** Looks whether a history would be written over a table that the deck reads.
  *  @param[in] files  what the deck reads, a line each (DeckReader) */
 int watches_spare(const Watches *watches, const char *folder, const char *files, Error *error);
+/** Looks whether all that histories had at a checkpoint that has been taken up is there as it was. Nothing is changed.
+ *  @param[in] step  of the checkpoint */
+int watches_check(const Watches *watches, const char *folder, int64_t step, Error *error);
 /** Opens <folder>/<name>.csv for each.
- *  @param[in] resume  a step whose checkpoint has been taken up: the files are continued behind what they had then, which must be there as it was,
- *  else BRECCIA_USER_ERROR; negative: they begin */
-int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume, Error *error);
+ *  @param[in] resume  a checkpoint has been taken up: rows behind it are cut off, and the files continued; else they begin */
+int watches_open(Watches *watches, const char *folder, const Units *units, bool resume, Error *error);
 /** How far the files have been written. */
 void watches_state(Watches *watches, StateList *list);
 /** Brings all rows to the disk: a checkpoint must not be ahead of them when the machine goes down. */

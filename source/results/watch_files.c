@@ -2,6 +2,7 @@
 #include "results/watch_parts.h"
 
 #include "base/checksum.h"
+#include "base/whole_file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -52,37 +53,40 @@ static int put(Watch *w, const Text *words, bool kept)
   return fwrite(text_words(words), 1, words->length, w->file) != words->length;
 }
 
-/** Cuts a history file behind what had been written of it at the checkpoint. All that must be there as it was. */
-static int take_up_rows(Watch *w, int64_t step, Error *error)
-{
-  size_t length = 0;
-  char *text = text_read_file(w->path, &length);
-  const int64_t kept = w->kept_bytes;
-  int status = BRECCIA_OK;
-  if (!text)
-    status = error_add(error, BRECCIA_USER_ERROR,
-                       "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or "
-                       "run without --restart",
-                       w->path, text_why_unread(errno), (long long)step);
-  else if ((int64_t)length < kept || checksum_of(text, (size_t)kept) != (uint32_t)w->kept_sum)
-    status =
-        error_add(error, BRECCIA_USER_ERROR,
-                  "%s: its rows up to step %lld, from which the run goes on, are not all as they were written; put "
-                  "the file back as it was, or run without --restart",
-                  w->path, (long long)step);
-  else if (truncate(w->path, (off_t)kept))
-    status = error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-  w->bytes = kept;
-  w->last_step = w->kept_step;
-  free(text);
-  return status;
-}
-
 static char *path_in(const char *folder, const Watch *w)
 {
   char name[WATCH_FILE];
   text_file_name(w->spec->head.name, name, sizeof name);
   return text_format("%s/%s.csv", folder, name);
+}
+
+static int check_rows(const Watch *w, const char *path, int64_t step, Error *error)
+{
+  uint32_t sum;
+  int64_t count;
+  if (checksum_of_file(path, 0, w->kept_bytes, &sum, &count))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or "
+                     "run without --restart",
+                     path, text_why_unread(errno), (long long)step);
+  if (count < w->kept_bytes || sum != (uint32_t)w->kept_sum)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: its rows up to step %lld, from which the run goes on, are not all as they were written; put "
+                     "the file back as it was, or run without --restart",
+                     path, (long long)step);
+  return BRECCIA_OK;
+}
+
+int watches_check(const Watches *watches, const char *folder, int64_t step, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < watches->count && !status; ++k) {
+    char *path = path_in(folder, &watches->items[k]);
+    status = path ? check_rows(&watches->items[k], path, step, error)
+                  : error_add(error, BRECCIA_FAILURE, "out of memory: watches");
+    free(path);
+  }
+  return status;
 }
 
 int watches_spare(const Watches *watches, const char *folder, const char *files, Error *error)
@@ -92,7 +96,8 @@ int watches_spare(const Watches *watches, const char *folder, const char *files,
     char *path = path_in(folder, &watches->items[k]), *bytes = NULL;
     uint32_t sum;
     int64_t count;
-    if (path && !checksum_of_file(path, 0, &sum, &count)) bytes = text_format("%08" PRIx32 " %" PRId64 " ", sum, count);
+    if (path && !checksum_of_file(path, 0, INT64_MAX, &sum, &count))
+      bytes = text_format("%08" PRIx32 " %" PRId64 " ", sum, count);
     for (const char *line = files; bytes && *line && !status; line += strcspn(line, "\n") + 1)
       if (!strncmp(line, bytes, strlen(bytes)))
         status = error_add(error, BRECCIA_USER_ERROR,
@@ -105,18 +110,21 @@ int watches_spare(const Watches *watches, const char *folder, const char *files,
   return status;
 }
 
-int watches_open(Watches *watches, const char *folder, const Units *units, int64_t resume, Error *error)
+int watches_open(Watches *watches, const char *folder, const Units *units, bool resume, Error *error)
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
     free(w->path);
     w->path = path_in(folder, w);
     if (!w->path) return error_add(error, BRECCIA_FAILURE, "out of memory: watches");
-    const int status = resume >= 0 ? take_up_rows(w, resume, error) : BRECCIA_OK;
-    if (status) return status;
-    w->file = fopen(w->path, resume >= 0 ? "a" : "w");
-    if (!w->file) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
-    if (resume >= 0) continue;
+    w->file = fopen(w->path, resume ? "a" : "w");
+    if (!w->file || (resume && ftruncate(fileno(w->file), (off_t)w->kept_bytes)))
+      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
+    if (resume) {
+      w->bytes = w->kept_bytes;
+      w->last_step = w->kept_step;
+      continue;
+    }
     fcntl(fileno(w->file), F_SETFL, O_APPEND); /* what somebody else cuts off is missed then, and leaves no hole */
     w->bytes = w->kept_sum = 0;
     w->last_step = w->kept_step = -1;
@@ -149,7 +157,7 @@ int watches_settle(const Watches *watches, Error *error)
 {
   for (int k = 0; k < watches->count; ++k) {
     const Watch *w = &watches->items[k];
-    if (fflush(w->file) || (fsync(fileno(w->file)) && errno != EINVAL))
+    if (fflush(w->file) || file_settle(fileno(w->file)))
       return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
   }
   return BRECCIA_OK;

@@ -145,13 +145,13 @@ static int prepare(LinearSolver *s, Error *error)
     forget_factors(d);
     matrix_destroy(&d->matrix);
     status = matrix_create(&d->matrix, &s->unknowns, error);
-    d->broken = s->domain->broken_count;
     double **columns[] = {&d->from, &d->to, &d->residual};
     for (int k = 0; k < 3 && !status; ++k) {
       free(*columns[k]);
       if (!(*columns[k] = memory_zeroed((size_t)d->matrix.size + 1, sizeof(double), "direct solution", error)))
         status = BRECCIA_FAILURE;
     }
+    d->broken = status ? -1 : s->domain->broken_count;
   }
   if (!status) status = matrix_fill(&d->matrix, &s->unknowns, s->stiffness_share, s->mass_factor, error);
   if (status) return status;

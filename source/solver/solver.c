@@ -264,6 +264,7 @@ int solver_begin(Solver *s, Error *error)
   s->ledger.damped |= s->type->damps(s);
   s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
   const int status = s->type->begin(s, error);
+  s->unbegun = status != BRECCIA_OK;
   if (s->clock.stage == 0) {
     s->ledger.kinetic_at_start = s->ledger.kinetic;
     s->ledger.bond_work += s->ledger.stored_at_start; /* done before the run */

@@ -50,6 +50,7 @@ typedef struct Solver {
   bool force;                    /* accept a chosen step above the stable one */
   bool loose;                    /* what nothing holds is told when a stage of statics begins, not before */
   bool trap;                     /* fail where a step divides by zero, overflows or does what is not defined */
+  bool unbegun;                  /* the stage under way has failed to begin: no step can go on from what is there */
   Clock clock;
   Ledger ledger;
   const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */

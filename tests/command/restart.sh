@@ -309,9 +309,11 @@ same parts
 echo '805,0.1,0.2,0.3' >> parts/mouth.csv
 cp parts/mouth.csv mouth.kept; cp parts/energy.csv energy.kept; cp parts/results.vtkhdf results.kept
 refused() { # refused WHAT WORDS: with one line, and nothing lost by the attempt
+  rm -rf before; cp -r parts before
   "$breccia" run plate.yaml --output parts --restart > /dev/null 2> out; equal "$1: status" $? 2
   contains "$1" "$(cat out)" "$2"
   equal "$1: lines" "$(wc -l < out)" 1
+  diff -rq before parts || fail "$1: the attempt changed files"
   cp mouth.kept parts/mouth.csv; cp energy.kept parts/energy.csv; cp results.kept parts/results.vtkhdf
 }
 rm parts/mouth.csv; refused "a history is missing" "mouth.csv: No such file"

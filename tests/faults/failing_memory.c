@@ -43,7 +43,7 @@ static bool is_program(const void *caller)
 
 /* ---- what the program was given and has not given back ---- */
 
-enum { PLACES = 1 << 16, DEPTH = 6 };
+enum { PLACES = 1 << 18, DEPTH = 6 };
 
 static struct {
   const void *memory; /* NULL: free for ever; &gone: was given back */

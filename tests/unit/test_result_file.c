@@ -94,6 +94,21 @@ static int read_everything(Text *all, char *words)
   return status;
 }
 
+/** Whether a restart would go on from the file. */
+static bool is_whole(void)
+{
+  Error *error = breccia_error_create();
+  ResultView view;
+  int status = result_view_open(&view, path, error);
+  if (!status) {
+    status = result_view_verify(&view, path, error);
+    result_view_close(&view);
+  }
+  assert_int_equal(error_count(error), status != 0);
+  breccia_error_destroy(&error);
+  return !status;
+}
+
 static int begin(void **state)
 {
   (void)state;
@@ -140,6 +155,7 @@ static void no_flipped_byte_is_believed(void **state)
   int64_t refused = 0;
   assert_int_equal(read_everything(&right, words), 0);
   assert_true(strstr(text_words(&right), "face-centred cubic"));
+  assert_true(is_whole());
   for (int64_t k = 0; k < count; ++k) {
     const int64_t at = k * bytes / count + (k * 97) % (bytes / count);
     Text found = {0};
@@ -149,6 +165,7 @@ static void no_flipped_byte_is_believed(void **state)
         fail_msg("byte %lld of %lld flipped and believed", (long long)at, (long long)bytes);
     } else {
       ++refused;
+      if (is_whole()) fail_msg("byte %lld of %lld flipped, and a restart goes on", (long long)at, (long long)bytes);
       if (strncmp(words, path, strlen(path)) ||
           (!strstr(words, "is damaged: ") && !strstr(words, "is not a result file")))
         fail_msg("byte %lld of %lld: %s", (long long)at, (long long)bytes, words);

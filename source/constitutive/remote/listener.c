@@ -70,12 +70,13 @@ static int settle(Listener *l, Text *reason)
     l->address = text_format("%s", l->spec.address);
   }
   if ((l->transport != TRANSPORT_UDP && (listen(l->socket, GUESTS) || fcntl(l->socket, F_SETFL, O_NONBLOCK))) ||
-      getsockname(l->socket, (struct sockaddr *)&own, &size)) {
+      getsockname(l->socket, (struct sockaddr *)&own, &size) ||
+      (l->transport != TRANSPORT_UNIX && getnameinfo((struct sockaddr *)&own, size, host, sizeof host, port,
+                                                     sizeof port, NI_NUMERICHOST | NI_NUMERICSERV))) {
     text_add(reason, "%s", strerror(errno));
     return 1;
   }
   if (l->transport != TRANSPORT_UNIX) {
-    getnameinfo((struct sockaddr *)&own, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
     l->address = text_format(own.ss_family == AF_INET6 ? "%s://[%s]:%s" : "%s://%s:%s",
                              l->transport == TRANSPORT_TCP ? "tcp" : "udp", host, port);
   }
