@@ -720,7 +720,7 @@ def send_datagram(listener, frame, receiver):
 
 
 def is_loopback(host):
-    return host in ("localhost", "::1") or host.startswith("127.")
+    return host in ("localhost", "::1") or re.fullmatch(r"127(\.\d+){3}", host) is not None
 
 
 class SocketFile:

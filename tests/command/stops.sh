@@ -27,6 +27,15 @@ steps=$(json allowed/summary.json steps)
 cmp -s whole/end.csv allowed/end.csv || fail "processor time: histories differ"
 checks=$((checks + 2))
 
+# ---- two signals together, as `timeout` and some terminals send them, are one wish ----
+"$breccia" run bar.yaml --quiet --output twice > out 2>&1 &
+running=$!
+wait_for $running [ -s twice/end.csv ]
+kill -TERM $running; sleep 0.02; kill -TERM $running 2> /dev/null
+wait $running; equal "two signals: status" $? 130
+[ -e twice/checkpoint.h5 ] || fail "two signals: no checkpoint: $(cat out)"
+checks=$((checks + 1))
+
 # ---- files beyond the size that is allowed: a write that fails, the first one or the last ----
 "$breccia" run bar.yaml --quiet --output small --steps 300 > out 2>&1 || fail "small: $(cat out)"
 for size in 8 $(($(stat -c %s small/results.vtkhdf) / 1024 - 1)); do # kB

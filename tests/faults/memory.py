@@ -100,7 +100,7 @@ results: {number: 1, fields: [displacement, stress]}
 STAGES = REST.replace("solve: {static: {increments: 3}}", """\
 solve:
   - {name: pull, explicit: {steps: 3}}
-  - {name: swing, implicit: {end time: 2e-5, time step: 1e-5, Rayleigh damping: {ratio: 0.05, from: 3000, to: 20000}}}
+  - {name: swing, implicit: {end time: 1e-5, time step: 1e-5, Rayleigh damping: {ratio: 0.05, from: 3000, to: 20000}}}
 watch: {energy: {energy: yes, every: 1}}""")
 
 TEST = """\

@@ -207,7 +207,8 @@ def try_fault(fault, seconds, whole):
         if machine_code() == whole:
             return "same code"
         for name in in_order(seconds, fault.file):
-            build(*([name] if name.startswith("test_") else []))
+            if not build(*([name] if name.startswith("test_") else []))[0]:
+                return "does not compile"
             if failed := run_test(name, PATIENCE * seconds[name] + LEAST):
                 return failed
         return "survives"
