@@ -137,6 +137,14 @@ void step_surely(breccia_model *model, int64_t steps)
   breccia_error_destroy(&error);
 }
 
+void step_must_fail(breccia_model *model, const char *words)
+{
+  breccia_error *error = breccia_error_create();
+  assert_int_equal(breccia_model_step(model, INT64_MAX, error), BRECCIA_FAILURE);
+  if (!strstr(breccia_error_text(error), words)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+}
+
 Sums sums_of(const breccia_model *m)
 {
   const Particles *p = m->domain.particles;

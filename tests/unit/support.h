@@ -36,6 +36,8 @@ void deform_uniformly(breccia_model *model, const double f[9]);
 void compute_forces(breccia_model *model);
 /** Steps a model; fails the test with the error's words if a step fails. */
 void step_surely(breccia_model *model, int64_t steps);
+/** Steps a model to its end; fails the test unless a step fails with these words. */
+void step_must_fail(breccia_model *model, const char *words);
 /** Masses, volumes, momentum and moment of momentum about the origin, external force, and the mean displacement, of all particles. */
 typedef struct Sums {
   double mass, volume, momentum[3], turn[3], external[3], moved[3];
