@@ -135,6 +135,30 @@ void text_file_name(const char *words, char *name, size_t size)
   name[n] = 0;
 }
 
+size_t text_utf8(const char *text, size_t length)
+{
+  const unsigned char *bytes = (const unsigned char *)text;
+  size_t k = 0;
+  while (k < length) {
+    const unsigned first = bytes[k];
+    const size_t more = first < 0x80   ? 0
+                        : first < 0xc2 ? 4
+                        : first < 0xe0 ? 1
+                        : first < 0xf0 ? 2
+                        : first < 0xf5 ? 3
+                                       : 4;
+    if (more > 3 || more >= length - k) return k;
+    /* the second byte tells what is longer than it need be, half of a pair of UTF-16, or behind the last character */
+    const unsigned least = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+    const unsigned most = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+    if (more && (bytes[k + 1] < least || bytes[k + 1] > most)) return k;
+    for (size_t n = 2; n <= more; ++n)
+      if ((bytes[k + n] & 0xc0) != 0x80) return k;
+    k += more + 1;
+  }
+  return length;
+}
+
 char *text_beside(const char *path, const char *file)
 {
   const char *slash = path ? strrchr(path, '/') : NULL;

@@ -40,6 +40,9 @@ bool text_resembles(const char *word, const char *candidate, int distance);
 /** Copies `words` into `name` (size bytes) with everything but letters, digits, - and . replaced by -. */
 void text_file_name(const char *words, char *name, size_t size);
 
+/** @return how many bytes from the beginning are UTF-8 text (RFC 3629, section 4): `length` if all are */
+size_t text_utf8(const char *text, size_t length);
+
 /** Path of a file whose name, unless it begins at the root, is relative to the folder of another. To be freed. */
 char *text_beside(const char *path, const char *file);
 

@@ -362,6 +362,59 @@ static void what_a_deck_reuses_is_that_value(void **state)
   }
 }
 
+/** RFC 3629, section 4. The longest text in single quotes that the YAML library looks at byte by byte has 64 parts. */
+static void decks_that_are_not_utf_8_are_refused_with_their_place(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *bytes;
+    bool right;
+  } cases[] = {
+      {"\xc3\xa4", true}, /* a umlaut */
+      {"\xdf\xbf", true},
+      {"\xe0\xa0\x80", true},
+      {"\xe2\x82\xac", true}, /* euro */
+      {"\xed\x9f\xbf", true},
+      {"\xf0\x90\x80\x80", true},
+      {"\xf4\x8f\xbf\xbd", true},
+      {"\xe4", false},             /* a umlaut of Latin-1 */
+      {"\xd8\xd8", false},         /* a lead where the second byte should stand */
+      {"\x80", false},             /* no lead */
+      {"\xc1\xbf", false},         /* longer than it need be */
+      {"\xe0\x9f\xbf", false},     /* the same */
+      {"\xf0\x8f\xbf\xbf", false}, /* the same */
+      {"\xed\xa0\x80", false},     /* half of a pair of UTF-16 */
+      {"\xf4\x90\x80\x80", false}, /* behind the last character */
+      {"\xf8\x88\x80\x80\x80", false},
+      {"\xe2\x82", false},
+  };
+  Text quotes = {0};
+  for (int k = 0; k < 70; ++k) text_add(&quotes, "''");
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    const char *const decks[] = {"title: '\xc3\xa4%s%s'\n", "\xc3\xa4 title: %s%s\n", "title: a # \xc3\xa4 %s%s\n",
+                                 "'%s%s': a\n"};
+    const int columns[] = {10, 10, 14, 2};
+    for (size_t d = 0; d < sizeof decks / sizeof *decks; ++d) {
+      const bool quoted = decks[d][0] == '\'' || strchr(decks[d], '\'');
+      char *words, *deck = text_format(decks[d], quoted ? text_words(&quotes) : "", cases[k].bytes);
+      char *expected = text_format("deck:1:%d: byte 0x%02x is no UTF-8 text: save the file as UTF-8",
+                                   columns[d] + (quoted ? 140 : 0), (unsigned char)cases[k].bytes[0]);
+      Document *document = resolved(deck, NULL, &words);
+      if (cases[k].right ? !document : strcmp(words, expected) != 0)
+        fail_msg("case %zu, %s: «%s», expected «%s»", k, decks[d], words, cases[k].right ? "a deck" : expected);
+      document_destroy(&document);
+      free(words);
+      free(deck);
+      free(expected);
+    }
+  }
+  text_free(&quotes);
+  char *words;
+  assert_null(resolved("title: a\n", "title=\xe4", &words));
+  assert_string_equal(words, "--set title=\xe4: byte 0xe4 is no UTF-8 text");
+  free(words);
+}
+
 static void small_files_do_not_unfold_into_huge_ones(void **state)
 {
   (void)state;
@@ -456,6 +509,7 @@ int main(void)
       cmocka_unit_test(expressions_keep_the_units_of_quantities),
       cmocka_unit_test(wrong_expressions_are_refused_at_their_place),
       cmocka_unit_test(what_a_deck_reuses_is_that_value),
+      cmocka_unit_test(decks_that_are_not_utf_8_are_refused_with_their_place),
       cmocka_unit_test(small_files_do_not_unfold_into_huge_ones),
       cmocka_unit_test(a_written_deck_reads_as_the_same_deck),
       cmocka_unit_test(two_readings_of_one_text_are_one_model),
