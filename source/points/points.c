@@ -329,6 +329,8 @@ static void find_elastic_tangent(const Points *points, const Material *m, double
 static int make_tangents(Points *points, Error *error)
 {
   int64_t rows = 0;
+  free(points->tangent_first); /* of a call that got no memory for the rest */
+  free(points->elastic_tangent);
   points->tangent_first = memory_zeroed((size_t)points->run_count, sizeof(int64_t), "tangents", error);
   points->elastic_tangent = memory_zeroed((size_t)points->material_count, 36 * sizeof(double), "tangents", error);
   if (!points->tangent_first || !points->elastic_tangent) return BRECCIA_FAILURE;

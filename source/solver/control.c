@@ -304,6 +304,11 @@ static bool follows_path(const Control *c)
   return c->spec->path.node;
 }
 
+void control_open(Control *c)
+{
+  c->open = c->spec->bond.node || follows_path(c);
+}
+
 void control_begin(Control *c)
 {
   if (!c->spec) return;
@@ -353,7 +358,7 @@ int control_check_answer(const Control *c, double *const motion[3], Error *error
     return node_error(c->reader->document, c->spec->head.node, error,
                       "control: the controlled loads move nothing: all that they act on is held; let them act on "
                       "particles that can move");
-  if (!isfinite(most) || !(fabs(control_value(c, motion)) < least * weights * most)) return BRECCIA_OK;
+  if (!isfinite(most) || !(fabs(control_value(c, motion)) <= least * weights * most)) return BRECCIA_OK;
   return node_error(c->reader->document, section_node(c->spec, measure_key(c)), error,
                     "%s: it does not change with the controlled loads, so that no factor of theirs can bring it about; "
                     "take what they move, in the direction in which they do",

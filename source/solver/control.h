@@ -52,6 +52,8 @@ void control_begin(Control *control);
 /** What its value is to be after an increment; of one that is yet to be found, as if it was zero before.
  *  @param[in] before, after  parts of the stage that have gone at its begin and at its end */
 double control_target(Control *control, double before, double after);
+/** What is measured is yet to be found, where it is not given: as in an increment, before the first one. */
+void control_open(Control *control);
 /** Finds what is measured, if it is yet to be found.
  *  @param[in] motion  displacements where the factor of controlled loads grows by 1
  *  @return by how much the value, and so its target, is another now */

@@ -99,6 +99,7 @@ int newton_check_control(Newton *n, Error *error)
   if (domain_linearise(n->domain, error) || linear_solver_prepare(&n->linear, error) ||
       find_unit_motion(n, accuracy, error) != NEWTON_CONVERGED)
     return BRECCIA_FAILURE;
+  control_open(n->control);
   control_aim(n->control, n->unit_motion);
   n->linear.given_up = given_up;
   return control_check_answer(n->control, n->unit_motion, error);

@@ -54,6 +54,17 @@ contains "variable set" "$("$breccia" check block.yaml --set variables.n=8)" 'Bl
 "$breccia" run plain.yaml --quiet --output set --set 'body.block.spacing=25 mm' --restart 2> errors && fail "another deck goes on from a checkpoint"
 contains "restart of another deck" "$(cat errors)" 'was written with another deck'
 
+# Many names, half of them from a file: settings and expressions find each of them.
+for n in $(seq 1 30); do echo "theirs$n: $n"; done > many.yaml
+{
+  sed 's/^title: .*/title: Sum ${own1 + own30 + theirs1 + theirs29 + theirs30}/' plain.yaml
+  echo 'variables:'
+  for n in $(seq 1 30); do echo "  own$n: $n"; done
+  echo '  include: many.yaml'
+} > names.yaml
+contains "many names" "$("$breccia" check names.yaml)" 'Sum 91:'
+contains "many names, two of them set" "$("$breccia" check names.yaml --set variables.theirs29=129 --set variables.own30=1030)" 'Sum 1191:'
+
 # A key with a point in it is not the shorter one before the point, whichever stands first.
 for names in "rock rock.1" "rock.1 rock"; do
   for name in $names; do echo "  $name: {model: elastic, density: 2500 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}"; done > rocks

@@ -69,6 +69,8 @@ static void a_lattice_read_from_a_file_has_the_forces_of_the_lattice(void **stat
       {false, SOLID, "influence: gaussian, zero-energy control: {silling: 0.1}"},
       {false, SOLID, "strain: small, volume correction: partial, zero-energy control: {wan: 0.1}"},
       {true, SOLID, "space: plane stress, influence: cubic-spline, volume correction: partial-beyond"},
+      {false, SOLID, "formulation: ordinary, lattice weights: plain"},
+      {true, SOLID, "formulation: ordinary, lattice weights: plain, space: plane stress, influence: conical"},
       {false, FIBRE, "formulation: bond-based, calibration: continuum"},
       {false, FIBRE, "formulation: bond-based, calibration: continuum, influence: conical, volume correction: partial"},
       {true, FIBRE, "formulation: bond-based, calibration: continuum, space: plane strain"},

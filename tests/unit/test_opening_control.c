@@ -163,6 +163,11 @@ static void what_controls_nothing_is_refused(void **state)
       /* of two particles that are held alike */
       {pull, found, "opening between: [[0.05, 0.05], [0.05, 0.25]], to: 0.003",
        "deck:9:79: opening between: it does not change with the controlled loads"},
+      /* of bonds of this side */
+      {pull, found, "stretch in: {face: x-, layers: 2}, to: 0.003",
+       "deck:9:79: stretch in: it does not change with the controlled loads"},
+      {pull, found, "arc length of: {face: x-, layers: 2}, to: 3 mm",
+       "deck:9:79: arc length of: it does not change with the controlled loads"},
       /* through a mean that by symmetry stays where it is */
       {pull, found, "displacement of: {face: x+, layers: 1}, direction: [0, 1], to: 0.003",
        "deck:9:79: displacement of: it does not change with the controlled loads"},
