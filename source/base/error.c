@@ -1,5 +1,6 @@
 #include "base/error.h"
 
+#include "base/check.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include <stdarg.h>
@@ -57,6 +58,7 @@ static void cut_line(Text *line)
 
 int error_add(Error *error, int status, const char *format, ...)
 {
+  CHECK(*format);
   if (!error) return status;
   Text line = {0};
   va_list arguments;

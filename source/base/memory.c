@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include "base/check.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,7 @@ static void *out_of_memory(size_t count, size_t size, const char *label, Error *
 void *memory_zeroed(size_t count, size_t size, const char *label, Error *error)
 {
   enum { ALIGNMENT = 64 };
+  CHECK(*label);
   size_t bytes = 0;
   void *memory = NULL;
   if (!__builtin_mul_overflow(count, size, &bytes) && bytes < SIZE_MAX - ALIGNMENT)
@@ -36,6 +38,7 @@ void *memory_zeroed(size_t count, size_t size, const char *label, Error *error)
 
 void *memory_reserved(size_t count, size_t size, const char *label, Error *error)
 {
+  CHECK(*label);
   void *memory = calloc(count ? count : 1, size);
   return memory ? memory : out_of_memory(count, size, label, error);
 }

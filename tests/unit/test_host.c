@@ -214,6 +214,56 @@ static void test_an_older_and_a_newer_program_are_understood(void **state)
   breccia_error_destroy(&error);
 }
 
+/** Each struct that a program hands over is read by its size: none, or one with more behind it than is known. */
+static void test_every_struct_is_read_by_its_size(void **state)
+{
+  (void)state;
+  struct {
+    size_t size;
+    unsigned char rest[4096];
+  } none = {.size = 0}, more = {.size = sizeof more};
+  more.rest[sizeof more.rest - 1] = 1;
+  const void *const given[] = {&none, &more};
+  const char *const told[] = {"its size is not set; begin with {.size = sizeof(%s)",
+                              "asks for something that this library"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_error *error = breccia_error_create();
+    breccia_model *model, *refused;
+    assert_int_equal(breccia_model_load_string(deck, "bar", NULL, &model, error), BRECCIA_OK);
+    const breccia_law *law = given[k];
+    const breccia_options with_law = {.size = sizeof with_law, .laws = &law, .law_count = 1};
+    breccia_study *study = NULL;
+    breccia_test *test = NULL;
+    const struct {
+      int status;
+      const char *name;
+    } cases[] = {{breccia_model_load_string(deck, "bar", given[k], &refused, error), "breccia_options"},
+                 {breccia_model_load_string(deck, "bar", &with_law, &refused, error), "breccia_law"},
+                 {breccia_study_create(given[k], &study, error), "breccia_study_plan"},
+                 {breccia_serve(given[k], error), "breccia_service"},
+                 {breccia_plot_movie("results", given[k], error), "breccia_plot"},
+                 {breccia_test_make(given[k], &test, error), "breccia_test_words"},
+                 {breccia_model_run(model, given[k], error), "breccia_run"},
+                 {breccia_model_modes(model, given[k], error), "breccia_modes"}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; ++n) {
+      char words[160], end[120];
+      snprintf(end, sizeof end, told[k], cases[n].name);
+      snprintf(words, sizeof words, "%s: %s", cases[n].name, end);
+      assert_int_equal(cases[n].status, BRECCIA_USER_ERROR);
+      if (!strstr(breccia_error_text(error), words)) fail_msg("no '%s' in: %s", words, breccia_error_text(error));
+    }
+    assert_null(study);
+    assert_null(test);
+    breccia_array array = {.size = k ? sizeof(size_t) + sizeof(char *) : 0}; /* of an old program: it knows of a name */
+    array.components = 77;
+    assert_int_equal(breccia_model_array_at(model, 0, &array), k);
+    assert_int_equal(array.components, 77);
+    if (k) assert_string_equal(array.name, "position");
+    breccia_model_destroy(&model);
+    breccia_error_destroy(&error);
+  }
+}
+
 /* ---- arrays ---- */
 
 static void test_arrays_are_all_named_and_what_is_written_to_them_counts(void **state)
@@ -296,6 +346,7 @@ int main(void)
       cmocka_unit_test(test_numbers_have_points_in_every_country),
       cmocka_unit_test(test_a_struct_without_its_size_is_refused),
       cmocka_unit_test(test_an_older_and_a_newer_program_are_understood),
+      cmocka_unit_test(test_every_struct_is_read_by_its_size),
       cmocka_unit_test(test_arrays_are_all_named_and_what_is_written_to_them_counts),
       cmocka_unit_test(test_what_is_missing_is_asked_for),
   };
