@@ -8,8 +8,12 @@ if command -v python3 > /dev/null; then
   python3 "$source/scripts/drawings.py" "$work/pictures"
   diff -r "$work/pictures" "$source/docs/pictures" > /dev/null || fail "docs/pictures is not current: run 'make docs'"
 fi
+every=1 # of laws and decks: under the sanitizers some are enough
+[ -z "${BRECCIA_SANITIZED:-}" ] || every=4
+number=0
 for name in $("$breccia" models | sed -n '/^Formulations/q; s/^\([a-z0-9-]*\): .*/\1/p'); do
   [ -s "$source/docs/models/$name.png" ] || fail "docs/models/$name.png is missing: run 'make docs'"
+  [ $((number++ % every)) = 0 ] || continue
   "$breccia" material "$source/examples/materials/$name.yaml" > "$work/curve.csv" || fail "examples/materials/$name.yaml does not run"
   checks=$((checks + 1))
 done
@@ -46,6 +50,7 @@ fi
 # Each example is in the command, as its folder has it, and is taken with nothing around it but what `new` writes.
 mkdir "$work/examples"
 for deck in "$source"/examples/*/*.yaml; do
+  [ $((number++ % every)) = 0 ] || continue
   name=${deck#"$source/examples/"} name=${name%.yaml}
   folder=$work/examples/$name deck=$work/examples/$name/taken.yaml
   mkdir -p "$folder"
@@ -92,6 +97,7 @@ dam/dam/points.csv:$(cat "$work/tree/examples/dam/points.csv")"
 awk '/^```yaml$/{on = 1; text = ""; next} /^```$/{if (on && text ~ /(^|\n)body:/) print text > sprintf("%s-%d.yaml", out, ++n); on = 0} on{text = text $0 "\n"}' \
   out="$work/shown" "$source/README.md" "$source/docs/deck.md" "$source/docs/choosing.md"
 for deck in "$work"/shown-*.yaml; do
+  [ $((number++ % every)) = 0 ] || continue
   "$breccia" check "$deck" > "$work/out" 2>&1 || fail "a deck shown by README.md, docs/deck.md or docs/choosing.md is refused: $(cat "$work/out")"
   checks=$((checks + 1))
 done

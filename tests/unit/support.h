@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Whether this runs under the sanitizers, which make it five to ten times slower: numbers that hold for any body are then tried on fewer. */
+/** Whether this runs under the sanitizers, which make it five to ten times slower: what holds for any body, law or spacing is then tried on fewer. */
 bool under_sanitizers(void);
 
 /** A model from a deck given as text with %-directives; fails the test with the reader's words if it is refused. */
