@@ -250,7 +250,7 @@ done
 # interrupted and killed at random moments
 RANDOM=7
 signals="INT HUP TERM XCPU KILL"
-[ -n "${BRECCIA_SANITIZED:-}" ] && signals="TERM KILL"
+[ -n "${BRECCIA_SANITIZED:-}" ] && signals=TERM
 for signal in $signals; do
   rm -rf killed
   "$breccia" run plate.yaml --output killed > out 2>&1 &
