@@ -72,6 +72,7 @@ static int run(int argc, char **argv, const Verb *verb)
   const char *values[1];
   int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
+  if (refuse_more(argc, argv, verb, first, 0)) return 2;
   if (values[0])
     print_man();
   else

@@ -135,6 +135,13 @@ int read_options(int argc, char **argv, const Verb *verb, const char **values,
   return optind;
 }
 
+int refuse_more(int argc, char **argv, const Verb *verb, int first, int most)
+{
+  if (argc - first <= most) return 0;
+  fprintf(stderr, "breccia %s: '%s' is one argument too many\n", verb->name, argv[first + most]);
+  return 1;
+}
+
 int settings_begin(DeckSettings *settings, int option, int argc)
 {
   *settings = (DeckSettings){option, calloc((size_t)argc + 1, sizeof(char *)), 0};
@@ -173,13 +180,10 @@ static void print_help(FILE *out)
 
 static int obey(int argc, char **argv)
 {
-  const char *word = argc > 1 ? argv[1] : "--help";
-  if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
-    for (int k = 0; argc > 2 && verbs[k]; ++k)
-      if (!strcmp(verbs[k]->name, argv[2])) {
-        print_verb_help(verbs[k], stdout);
-        return 0;
-      }
+  const char *word = argc > 1 ? argv[1] : "--help", *names[MOST_VERBS];
+  const bool help = !strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help");
+  int count = 0;
+  if (help && argc <= 2) {
     print_help(stdout);
     return argc > 1 ? 0 : 2;
   }
@@ -187,11 +191,13 @@ static int obey(int argc, char **argv)
     printf("breccia %s\n", BRECCIA_VERSION);
     return 0;
   }
-  const char *names[MOST_VERBS];
-  int count = 0;
+  if (help) word = argv[2];
   for (; verbs[count]; ++count) {
-    if (!strcmp(verbs[count]->name, word)) return verbs[count]->run(argc - 1, argv + 1, verbs[count]);
     names[count] = verbs[count]->name;
+    if (strcmp(names[count], word) != 0) continue;
+    if (!help) return verbs[count]->run(argc - 1, argv + 1, verbs[count]);
+    print_verb_help(verbs[count], stdout);
+    return 0;
   }
   const char *nearest = breccia_nearest_word(word, names, count);
   if (nearest)

@@ -19,6 +19,7 @@ static int run(int argc, char **argv, const Verb *verb)
   const char *values[sizeof options / sizeof *options];
   int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
+  if (refuse_more(argc, argv, verb, first, 1)) return 2;
   breccia_error *error = breccia_error_create();
   const char *name = first < argc ? argv[first] : NULL;
   char *text = NULL;

@@ -56,7 +56,7 @@ static const Option options[] = {
 static int read_pair(const char *words, const char *option, double *a, double *b)
 {
   char tail;
-  if (sscanf(words, "%lf:%lf%c", a, b, &tail) == 2) return 0;
+  if (sscanf(words, "%lf:%lf%c", a, b, &tail) == 2 && isfinite(*a) && isfinite(*b)) return 0;
   fprintf(stderr, "breccia plot: --%s: '%s' should be two numbers with a colon between\n", option, words);
   return 1;
 }
@@ -112,8 +112,9 @@ static int read_plot(const char **values, breccia_plot *plot)
   if (values[DEFORMED] && read_number(values[DEFORMED], "deformed", &plot->deformed)) return 1;
   if (values[SIZE] && read_whole(values[SIZE], "size", 50, &size)) return 1;
   plot->pixels = (double)size;
-  if (values[RATE] && (read_number(values[RATE], "rate", &plot->rate) || !(plot->rate > 0 && plot->rate <= 120))) {
-    fprintf(stderr, "breccia plot: --rate: written steps a second, above 0 and up to 120\n");
+  if (values[RATE] && read_number(values[RATE], "rate", &plot->rate)) return 1;
+  if (values[RATE] && !(plot->rate > 0 && plot->rate <= 120)) {
+    fprintf(stderr, "breccia plot: --rate: '%s' is not above 0 and up to 120 written steps a second\n", values[RATE]);
     return 1;
   }
   if (values[RANGE] && !plot->each_range && read_pair(values[RANGE], "range", &plot->low, &plot->high)) return 1;

@@ -7,10 +7,7 @@ static int run(int argc, char **argv, const Verb *verb)
   const char *values[1];
   int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
-  if (first != argc) {
-    fprintf(stderr, "breccia schema: '%s' is one argument too many\n", argv[first]);
-    return 2;
-  }
+  if (refuse_more(argc, argv, verb, first, 0)) return 2;
   char *page = breccia_page(values[0] ? BRECCIA_PAGE_DECK : BRECCIA_PAGE_SCHEMA);
   const int status = print_page(page);
   breccia_text_free(page);

@@ -33,6 +33,9 @@ extern const Verb *const verbs[];
 int read_options(int argc, char **argv, const Verb *verb, const char **values,
                  void (*on_each)(void *context, int option, const char *value), void *context);
 
+/** For a verb of at most `most` arguments beside options: says which is too many. @param[in] first  what read_options returned @return 0, or 1 */
+int refuse_more(int argc, char **argv, const Verb *verb, int first, int most);
+
 /* What --set gives, which may stand several times. */
 typedef struct DeckSettings {
   int option;         /* its number in the verb's table */

@@ -131,6 +131,16 @@ done
 head -1 bar/end.csv > own/end.csv
 refused "a curve without a row" "no point" plot own --curve 'end.time : end.x' --output points.png
 
+# ---- arguments that nobody would look at ----
+refused "two models" "breccia models: 'j2' is one argument too many" models elastic j2
+refused "completion of something" "breccia completion: 'x' is one argument too many" completion x
+refused "a schema of something" "breccia schema: 'x' is one argument too many" schema x
+refused "help on no verb" "there is no verb 'plto'; did you mean 'plot'?" help plto
+refused "a rate in words" "--rate: 'x' is not a number" plot own --rate x
+refused "a rate of none" "--rate: '0' is not above 0 and up to 120 written steps a second" plot own --rate 0
+refused "a range that is no number" "--range: 'nan:1' should be two numbers with a colon between" plot own --field displacement --range nan:1
+refused "a view without an end" "--view: '0:inf' should be two numbers with a colon between" plot own --field displacement --view 0:inf
+
 # ---- what could not be written to its end has no name ----
 words=$( (ulimit -S -f 0 && exec "$breccia" new short.yaml) 2>&1 > /dev/null)
 equal "a new deck beyond the limit: status" $? 1
