@@ -419,12 +419,13 @@ static int finish(Run *run, int status, Error *error)
   text_free(&run->files);
   run->files = own;
   status = host_status(run->host, status, error);
-  int bad = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
-  if (bad && !status) status = bad;
-  bad = run->unwritten ? BRECCIA_OK : run_draw_pictures(run, error);
+  const int untold = run_write_summary(run, status, problem, run->unwritten ? NULL : error);
+  if (untold && !status) status = untold;
+  const int undrawn = run->unwritten ? BRECCIA_OK : run_draw_pictures(run, error);
+  run->unwritten |= untold != BRECCIA_OK;
   run_tell_outcome(run, status);
   free(problem);
-  return status ? status : bad;
+  return status ? status : undrawn;
 }
 
 static int run_whole(breccia_model *model, const breccia_run *wish, Error *error)

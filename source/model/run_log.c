@@ -74,5 +74,6 @@ int run_log_close(Run *run, Error *error)
 {
   const bool bad = run->log && fclose(run->log);
   run->log = NULL;
+  run->unwritten |= bad;
   return bad ? tell_failure(run, errno, error) : BRECCIA_OK;
 }

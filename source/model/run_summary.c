@@ -1,6 +1,7 @@
 /* What a run did: summary.json, and the same in words. */
 #include "model/run.h"
 
+#include "results/checkpoint.h"
 #include "solver/reactions.h"
 #include "solver/rest.h"
 #include <math.h>
@@ -294,6 +295,10 @@ void run_tell_outcome(Run *run, int status)
                                          : "finished",
            (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
            (long long)model->run_steps, nanoseconds_per_bond(model));
+  if (status && run->unwritten)
+    text_add(t, "once files can be written again, %s\n",
+             checkpoint_exists(run->wish->folder) ? "--restart goes on from the last checkpoint"
+                                                  : "begin it again: there is no checkpoint yet");
   tell_stages(s, time, t);
   for (int k = 0; k < model->loading.count; ++k)
     if (model->loading.loads[k].spec->name) tell_load(model, &model->loading.loads[k], t);

@@ -264,6 +264,17 @@ int checkpoint_return_to_before(const char *folder, Error *error)
   return status;
 }
 
+bool checkpoint_exists(const char *folder)
+{
+  bool found = false;
+  for (int which = CHECKPOINT_LAST; which <= CHECKPOINT_BEFORE; ++which) {
+    char *path = path_of(folder, (CheckpointWhich)which);
+    found |= path && !access(path, F_OK);
+    free(path);
+  }
+  return found;
+}
+
 int checkpoint_forget(const char *folder, Error *error)
 {
   static const char *const names[] = {"checkpoint.h5", "checkpoint-before.h5", "checkpoint.h5.part"};

@@ -39,6 +39,9 @@ void checkpoint_close(Checkpoint *checkpoint);
 /** Makes the one before the last one, which a run has been taken up from. */
 int checkpoint_return_to_before(const char *folder, Error *error);
 
+/** Whether a folder holds at least one of them. */
+bool checkpoint_exists(const char *folder);
+
 /** Removes both, and what a run that was killed left of a third. */
 int checkpoint_forget(const char *folder, Error *error);
 

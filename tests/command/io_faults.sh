@@ -12,7 +12,7 @@ title: Bar
 materials: {m: {model: elastic, Young modulus: 1 GPa, Poisson ratio: 0.2, density: 2000}}
 body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [12, 5]}}}}
 peridynamics: {space: plane strain}
-failure: {critical stretch: 0.002}
+failure: {critical stretch: 0.002, near grips: break}
 loads:
   - {on: {face: x-, layers: 3}, displacement: [0, free]}
   - {on: {face: x+, layers: 3}, velocity: [5, free]}
@@ -54,7 +54,8 @@ same() { # same FOLDER WHAT: all that a run leaves is as in the whole run
 fault() {
   local what="call $1, $3$([ "$4" = 1 ] && echo ", for good")" status
   rm -rf faulty count
-  FAULT_FOLDER="$work/faulty$within" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" run faulty
+  FAULT_FOLDER="$work/faulty$within" FAULT_COUNT="$work/count" FAULT_AT=$1 FAULT_ERROR=$2 FAULT_LASTS=$4 LD_PRELOAD="$build/tests/libio_faults.so" \
+    "$breccia" run $deck.yaml --threads 1 --output faulty > told 2> out
   status=$?
   if [ "$(wc -c < count)" -lt "$1" ]; then # on a fast disk states are copied more often than on a slow one
     equal "$what, which was not reached" $status 0
@@ -73,8 +74,11 @@ fault() {
     "$breccia" plot looked --field damage > out 2>&1 || fail "$what: cannot be looked at: $(cat out)"
     [ ! -e looked/results.vtkhdf.journal ] || fail "$what: the journal stays"
   fi
-  local again=
-  [ -e faulty/checkpoint.h5 ] && again=--restart
+  local again= how='begin it again'
+  [ -e faulty/checkpoint.h5 ] && again=--restart how='--restart goes on from the last checkpoint'
+  if grep -q '^stopped' told && ! grep -q "^once files can be written again, $how" told; then
+    fail "$what: how to go on is not told: $(cat told)"
+  fi
   run faulty $again || fail "$what: cannot be taken up: $(cat out)"
   same faulty "$what"
 }
