@@ -263,6 +263,54 @@ static void rows_of_an_intact_lattice_are_whole_to_its_ends(void **state)
   }
 }
 
+/** What a step that fails goes back to. */
+static void bodies_whose_bonds_are_mended_have_the_same_forces_to_the_bit(void **state)
+{
+  (void)state;
+  const char *const kinds[][2] = {{"bond-based", "elastic-1d, density: 1, Young modulus: 150"},
+                                  {"ordinary", "elastic, density: 1, Young modulus: 150, Poisson ratio: 0.3"},
+                                  {"correspondence", "elastic, density: 1, Young modulus: 150, Poisson ratio: 0.3"}};
+  const char *const shapes[] = {"lattice: square, thickness: 1, shape: {box: {from: [0, 0], to: [6, 6]}}",
+                                "lattice: square, thickness: 1, shape: {sphere: {centre: [5.2, 4.9], radius: 5}}",
+                                "shape: {box: {particles: [7, 5, 6]}}"};
+  for (int k = 0; k < 3; ++k)
+    for (int b = 0; b < 3; ++b) {
+      breccia_model *model = model_of("materials: {m: {model: %s}}\nbody: {b: {material: m, spacing: 1, %s}}\n"
+                                      "peridynamics: {formulation: %s, space: %s}\n"
+                                      "cracks: [{cut: {line: [[3, -1], [3, 2]]}}]\nsolve: {explicit: {steps: 1}}\n",
+                                      kinds[k][1], shapes[b], kinds[k][0], b < 2 ? "plane strain" : "3-D");
+      Domain *d = &model->domain;
+      const Particles *p = d->particles;
+      const size_t bytes = sizeof(double) * (size_t)p->places;
+      shake(model, 0.02);
+      compute_forces(model);
+      double *before[3];
+      for (int c = 0; c < 3; ++c) before[c] = memcpy(malloc(bytes), p->internal[c], bytes);
+      bool *broken = calloc((size_t)(p->count * p->count), 1); /* and not cut */
+      for (int deed = 0; deed < 2; ++deed) {
+        int64_t changed = 0;
+        for (int64_t n = 0; n < p->count; n += 5)
+          for (int64_t other = n % 3; other < p->count; other += 3) {
+            const int32_t ends[] = {p->place_of[n], p->place_of[other]};
+            bool *this_one = &broken[n * p->count + other];
+            if (deed ? !*this_one : !(*this_one = family_break(&d->family, ends[0], ends[1]))) continue;
+            if (deed) assert_true(family_mend(&d->family, ends[0], ends[1]));
+            ++changed;
+            for (int end = 0; end < 2; ++end)
+              if (d->regions[0].type->renew) d->regions[0].type->renew(d->regions[0].formulation, ends[end] / SLICE);
+          }
+        assert_true(changed > 20);
+        compute_forces(model);
+        const bool same = !memcmp(before[0], p->internal[0], bytes) && !memcmp(before[1], p->internal[1], bytes) &&
+                          !memcmp(before[2], p->internal[2], bytes);
+        if (same != (deed == 1)) fail_msg("%s, body %d, %s", kinds[k][0], b, deed ? "mended" : "broken");
+      }
+      free(broken);
+      for (int c = 0; c < 3; ++c) free(before[c]);
+      breccia_model_destroy(&model);
+    }
+}
+
 static void force_is_minus_the_gradient_of_the_energy(void **state)
 {
   (void)state;
@@ -460,6 +508,7 @@ int main(void)
       cmocka_unit_test(internal_forces_balance),
       cmocka_unit_test(sums_along_lattice_rows_give_the_forces_of_single_bonds),
       cmocka_unit_test(rows_of_an_intact_lattice_are_whole_to_its_ends),
+      cmocka_unit_test(bodies_whose_bonds_are_mended_have_the_same_forces_to_the_bit),
       cmocka_unit_test(force_is_minus_the_gradient_of_the_energy),
       cmocka_unit_test(control_resists_the_checkerboard_and_correspondence_alone_does_not),
       cmocka_unit_test(a_chequered_plane_body_is_held_too),
