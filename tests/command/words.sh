@@ -193,8 +193,8 @@ told() {
   equal "$*: nothing else" "$(cat out)" ""
 }
 movie="breccia plot: --movie shows a field at all written steps and names its file itself: leave out"
-told "breccia plot: --rate: written steps a second, above 0 and up to 120" plot block --movie a.mp4 --rate 0
-told "breccia plot: --rate: written steps a second, above 0 and up to 120" plot block --movie a.mp4 --rate 121
+told "breccia plot: --rate: '0' is not above 0 and up to 120 written steps a second" plot block --movie a.mp4 --rate 0
+told "breccia plot: --rate: '121' is not above 0 and up to 120 written steps a second" plot block --movie a.mp4 --rate 121
 told "breccia plot: --view: '3' should be two numbers with a colon between" plot block --view 3
 told "breccia plot: --range: '1:2:3' should be two numbers with a colon between" plot block --range 1:2:3
 told "breccia plot: --deformed: 'nan' is not a number" plot block --deformed nan
