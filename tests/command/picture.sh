@@ -132,6 +132,7 @@ PATH="$work/programs:$PATH" "$breccia" plot bar --field displacement --movie bar
 equal "movie" "$(cat out) $(cat bar.mp4)" "bar.mp4 made"
 size=$(grep -x '[0-9]*x[0-9]*' words)
 equal "frames" "$(cat bytes)" $((3 * ${size%x*} * ${size#*x} * 4))
+[ ${size%x*} -gt 300 ] && [ ${size#*x} -gt 200 ] || fail "a movie of $size pixels"
 equal "even pixels" "$((${size%x*} % 2)) $((${size#*x} % 2))" "0 0"
 for word in yuv420p libx264; do contains "movie" "$(cat words)" $word; done
 rm bar.mp4
@@ -159,6 +160,7 @@ wrong() { # wrong WORDS ARGUMENTS ...
   "$breccia" plot "$@" > out 2> errors
   equal "plot $*: status" $? 2
   contains "plot $*" "$(cat errors)" "$words"
+  equal "plot $*: lines: $(cat errors)" "$(wc -l < errors)" 1
 }
 wrong "there is no field 'colour'" bar --field colour
 wrong "choose one" bar --field stress
@@ -169,6 +171,7 @@ wrong "should end in .png, .svg or .pdf" bar --output picture.gif
 wrong "there is no such file" nowhere
 wrong "has no column 'q'" bar --curve end.q:end.x
 wrong "should be 'watch.column : watch.column'" bar --curve x:y
+wrong "should be 'watch.column : watch.column'" bar flat other --curve x:y
 wrong "two numbers" bar --range 3
 wrong "is not a result file" bar.yaml
 wrong "is not below the highest" bar --range 3:3

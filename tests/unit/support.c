@@ -60,13 +60,38 @@ void compute_forces(breccia_model *model)
 
 enum { MOST_WORDS = 64 };
 
+static double stress_scale = 1;
+
+void scale_stresses(double scale)
+{
+  stress_scale = scale;
+}
+
+/** "key=value" with a value of stress times the scale, to be freed. */
+static char *scaled_word(const breccia_law *law, const char *word)
+{
+  const char *value = strchr(word, '=');
+  double scale = 1;
+  for (int k = 0; value && k < law->parameter_count; ++k) {
+    const breccia_parameter *p = &law->parameters[k];
+    if (strlen(p->name) != (size_t)(value - word) || strncmp(p->name, word, strlen(p->name))) continue;
+    if (!strcmp(p->dimension, "stress") || !strcmp(p->dimension, "fracture energy")) scale = stress_scale;
+    if (!strcmp(p->dimension, "per stress")) scale = 1 / stress_scale;
+  }
+  if (scale == 1) return text_format("%s", word);
+  return text_format("%.*s=%.17g", (int)(value - word), word, scale * strtod(value + 1, NULL));
+}
+
 static int material_of_words(Material *material, const char *name, const char *const *words, int count, Error *error)
 {
   const breccia_law *law = law_find(NULL, name);
   assert_non_null(law);
   Units *units = units_create("m", "kN", "s", error);
   assert_non_null(units);
-  int status = material_from_words(material, law, words, count, units, "", error);
+  char *scaled[MOST_WORDS];
+  for (int k = 0; k < count; ++k) scaled[k] = scaled_word(law, words[k]);
+  int status = material_from_words(material, law, (const char *const *)scaled, count, units, "", error);
+  for (int k = 0; k < count; ++k) free(scaled[k]);
   units_destroy(&units);
   return status;
 }

@@ -51,6 +51,8 @@ StateCopy state_of(breccia_model *model);
 void assert_families_are_all_pairs(const breccia_model *model);
 /** A material of a law with parameters given as "name=value" words, ending in NULL; units m, kN, s. */
 Material material_of(const char *law, ...);
+/** From here on numbers of stress that material_of and material_refusal are given count so many times; a scale of 1 ends it. */
+void scale_stresses(double scale);
 /** Tries to prepare a material of "name=value" words with commas between. @return its status; `reason` tells why it is refused */
 int material_refusal(const char *law, const char *words, char *reason, size_t size);
 

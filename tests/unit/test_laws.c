@@ -200,6 +200,87 @@ static void points_of_a_batch_do_not_know_of_each_other(void **state)
   }
 }
 
+enum { CROWD = 37 };
+
+typedef struct Crowd { /* points of a law that are handed to it together */
+  Material m;
+  double *committed, *trial, stress[6][CROWD], tangent[CROWD * 36];
+} Crowd;
+
+static Crowd crowd_of(const Sample *sample, double scale)
+{
+  scale_stresses(scale);
+  Crowd c = {.m = sample->make()};
+  scale_stresses(1);
+  c.committed = calloc((size_t)c.m.history_values * CROWD + 1, sizeof(double));
+  c.trial = calloc((size_t)c.m.history_values * CROWD + 1, sizeof(double));
+  for (int i = 0; i < CROWD && c.m.law->begin; ++i) {
+    c.m.law->begin(c.m.constants, c.committed + c.m.history_values * i);
+    c.m.law->begin(c.m.constants, c.trial + c.m.history_values * i);
+  }
+  return c;
+}
+
+static void crowd_step(Crowd *c, double strain[6][CROWD])
+{
+  breccia_batch batch = {
+      .size = sizeof batch, .count = CROWD, .committed = c->committed, .trial = c->trial, .tangent = c->tangent};
+  for (int k = 0; k < 6; ++k) {
+    batch.strain[k] = strain[k];
+    batch.stress[k] = c->stress[k];
+  }
+  assert_int_equal(c->m.law->update(c->m.constants, &batch), -1);
+  double *other = c->committed;
+  c->committed = c->trial;
+  c->trial = other;
+}
+
+static void crowd_leave(Crowd *c)
+{
+  free(c->committed);
+  free(c->trial);
+  material_destroy(&c->m);
+}
+
+/** A law of stresses that are all so many times as large answers with such stresses, whether they are counted in Pa or in GPa: to the bit where
+ *  the factor is a power of 2. */
+static void laws_know_no_unit_of_stress(void **state)
+{
+  (void)state;
+  const double scales[] = {0x1p-40, 0x1p20};
+  for (int n = 0; n < 2 * SAMPLES; ++n) {
+    const Sample *sample = &samples[n / 2];
+    const double scale = scales[n % 2];
+    static Crowd a, b;
+    a = crowd_of(sample, 1);
+    b = crowd_of(sample, scale);
+    uint64_t seed = 31;
+    double strain[6][CROWD] = {{0}};
+    for (int step = 0; step < 60; ++step) {
+      for (int i = 0; i < CROWD; ++i) {
+        double e[6];
+        for (int k = 0; k < 6; ++k) e[k] = strain[k][i];
+        sample_wander(&seed, sample->strain, sample->strain / 5, e);
+        for (int k = 0; k < 6; ++k) strain[k][i] = e[k];
+      }
+      crowd_step(&a, strain);
+      crowd_step(&b, strain);
+      for (int i = 0; i < CROWD; ++i) {
+        for (int k = 0; k < 6; ++k)
+          if (b.stress[k][i] != scale * a.stress[k][i])
+            fail_msg("%s: stress %g, and %g of %g times as large ones in step %d", sample->name, a.stress[k][i],
+                     b.stress[k][i], scale, step);
+        for (int k = 0; k < 36; ++k)
+          if (b.tangent[36 * i + k] != scale * a.tangent[36 * i + k])
+            fail_msg("%s: tangent %g, and %g of %g times as large stresses in step %d", sample->name,
+                     a.tangent[36 * i + k], b.tangent[36 * i + k], scale, step);
+      }
+    }
+    crowd_leave(&a);
+    crowd_leave(&b);
+  }
+}
+
 static void closed_cycles_of_strain_take_work(void **state)
 {
   (void)state;
@@ -376,6 +457,7 @@ int main(void)
       cmocka_unit_test(a_trial_can_be_repeated_and_leaves_the_committed_state_alone),
       cmocka_unit_test(stress_and_history_do_not_hang_on_the_tangent),
       cmocka_unit_test(points_of_a_batch_do_not_know_of_each_other),
+      cmocka_unit_test(laws_know_no_unit_of_stress),
       cmocka_unit_test(closed_cycles_of_strain_take_work),
       cmocka_unit_test(smaller_steps_change_little),
       cmocka_unit_test(plane_stress_holds_whatever_the_path),

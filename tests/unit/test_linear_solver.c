@@ -230,6 +230,42 @@ static breccia_model *cube(const char *formulation, const char *material, int n,
                   material, formulation, n, n, n, more);
 }
 
+/** The diagonal that random signs tell is that of the stiffness, in the whole of a body of many batches: up to what stands beside it, which averages out. */
+static void random_signs_tell_the_diagonal(void **state)
+{
+  (void)state;
+  Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
+  Preconditioner m = {0};
+  double *v[3], *kv[3], told[2] = {0}, found[2] = {0};
+  const int64_t places = p.domain->particles->places;
+  assert_true(p.domain->batch_count > 4);
+  assert_true(vectors_make(v, places, "test", NULL) && vectors_make(kv, places, "test", NULL));
+  assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
+  assert_int_equal(preconditioner_prepare(&m, &p.solver, v, kv, NULL), 0);
+  for (int64_t i = 0; i < places; i += 17) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) memset(v[j], 0, sizeof(double) * (size_t)places);
+      v[k][i] = 1;
+      unknowns_clear_rest(&p.solver.unknowns, v);
+      if (v[k][i] != 1) continue; /* it is held */
+      linear_solver_apply(&p.solver, v, kv);
+      sum += kv[k][i] / 3;
+    }
+    if (sum == 0) continue;
+    told[i > places / 2] += m.diagonal[i];
+    found[i > places / 2] += sum;
+  }
+  for (int half = 0; half < 2; ++half) {
+    print_message("diagonal %g by signs, %g by products\n", told[half], found[half]);
+    assert_true(found[half] > 0);
+    assert_near(told[half] / found[half], 1, 0.2);
+  }
+  preconditioner_destroy(&m);
+  vectors_free(v), vectors_free(kv);
+  forget(&p);
+}
+
 /** Pulled and bent at the far face, so that the whole body answers. */
 static void load_far_face(Problem *p, int n)
 {
@@ -495,6 +531,7 @@ int main(void)
       cmocka_unit_test(factors_start_no_threads), /* first: where they do those of others may be there already */
       cmocka_unit_test(answers_are_those_of_a_dense_solution),
       cmocka_unit_test(the_preconditioner_is_symmetric_and_positive),
+      cmocka_unit_test(random_signs_tell_the_diagonal),
       cmocka_unit_test(the_number_of_products_does_not_grow_with_the_body),
       cmocka_unit_test(answers_have_the_same_bits_for_any_number_of_threads),
       cmocka_unit_test(broken_bodies_are_solved),

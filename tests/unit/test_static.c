@@ -243,7 +243,10 @@ static void laws_with_tangents_converge_quadratically(void **state)
       quick |= residual[n - 1] < 0.1 && residual[n] < 30 * residual[n - 1] * residual[n - 1] + 1e-12 &&
                residual[n - 1] > 1e-7;
     }
-    if (!plastic || !quick || count > 8) fail_msg("%s:\n%s", laws_with_tangents[l].law, text_words(&model->solver.log));
+    /* Such corrections are taken whole: to look for a better share of them would take forces that nobody needs. */
+    const bool cut = strstr(text_words(&model->solver.log), "of it taken") != NULL;
+    if (!plastic || !quick || cut || count > 8)
+      fail_msg("%s:\n%s", laws_with_tangents[l].law, text_words(&model->solver.log));
     breccia_model_destroy(&model);
   }
 }

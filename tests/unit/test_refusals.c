@@ -1,0 +1,181 @@
+/* Decks that cannot be meant: each is a good one with one line in place of another, and is refused in that line with words that say why. */
+#include "support.h"
+
+typedef struct Parts {
+  const char *material, *body, *horizon, *loads, *solve, *more;
+} Parts;
+
+static const Parts good = {
+    "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}",
+    "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}",
+    "peridynamics: {space: 3-D}",
+    "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}]",
+    "solve: {explicit: {steps: 1}}",
+    "title: Good",
+};
+
+#define PLATE "material: m, lattice: square, thickness: 0.2, spacing: 0.1, shape: {box: {particles: [9, 7]}}"
+#define CONTROLLED "{on: {face: x+, layers: 1}, traction: [1, 0, 0], history: {controlled: yes}}"
+#define HELD "{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}"
+
+static const struct Case {
+  Parts parts; /* those that differ from the good deck */
+  int line;
+  const char *words;
+} cases[] = {
+    /* what is not there */
+    {{.body = "body: {}"}, 2, "body: no block is given"},
+    {{.material = "materials: {m: {model: , density: 2}}"}, 1, "model: expected words"},
+    {{.loads = "loads: [{displacement: [0, 0, 0]}]"}, 4, "missing key 'on'"},
+    /* what is of another kind */
+    {{.more = "title: [Good]"}, 6, "title: expected words"},
+    {{.more = "title: ''"}, 6, "title: expected words"},
+    {{.body = "body: {b: {material: [m], spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}"}, 2, "expected a name"},
+    {{.more = "watch: {e: {energy: perhaps}}"}, 6, "energy: expected yes or no, found perhaps"},
+    {{.more = "watch: {e: {energy: [yes]}}"}, 6, "energy: expected yes or no"},
+    {{.body = "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: 6}}}}"}, 2, "particles: expected"},
+    {{.body = "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4, 3]}}}}"},
+     2,
+     "particles: expected"},
+    {{.more = "results: {fields: damage}"}, 6, "fields: expected"},
+    {{.more = "results: {fields: [[damage]]}"}, 6, "fields: expected words"},
+    {{.loads = "loads: [{on: {all: yes}, body force: [1, 0, 0], history: {table: [[0, 1], 2]}}]"},
+     4,
+     "table: expected"},
+    {{.more = "variables: {dx: [1, 2]}"}, 6, "variables: 'dx' is no single value"},
+    /* bodies */
+    {{.body = "body: {b: {material: m, lattice: line, spacing: 0.1, shape: {box: {particles: [6, 1]}}}}"},
+     2,
+     "a line needs the 'area'"},
+    {{.body = "body: {b: {material: m, area: 1, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}"},
+     2,
+     "'area' goes with 'lattice: line'"},
+    {{.body = "body: {b: {material: m, thickness: 1, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}"},
+     2,
+     "'thickness' goes with a square or hexagonal lattice"},
+    {{.body = "body: {b: {material: m, lattice: square, spacing: 0.1, shape: {box: {particles: [6, 5]}}}}"},
+     2,
+     "a square lattice needs the 'thickness'"},
+    {{.body = "body: {a: {" PLATE "}, b: {material: m, spacing: 0.1, shape: {box: {from: [3, 0, 0], to: [4, 1, 1]}}}}",
+      .horizon = "peridynamics: {space: plane strain}"},
+     2,
+     "lattices of space, of the plane and lines cannot stand in one body"},
+    {{.body = "body: {b: {material: m, spacing: 0.1, shape: {cylinder: {from: [1, 1, 1], to: [1, 1, 1], radius: 1}}}}"},
+     2,
+     "'from' and 'to' are the same point"},
+    {{.body = "body: {b: {material: m, spacing: 0.1, shape: {polygon: {corners: [[0, 0], [1, 1]]}}}}"},
+     2,
+     "polygon: needs at least 3 corners"},
+    {{.body = "body: {b: {material: m, spacing: 0.1, shape: {polygon: {corners: [[0, 0], [1, 0], [1, 1]], bottom: 1, "
+              "top: 1}}}}"},
+     2,
+     "polygon: 'top' must be above 'bottom'"},
+    {{.body = "body: {b: {material: m, spacing: 0.1, shape: {difference: [{box: {from: [0, 0, 0], to: [1, 1, 1]}}]}}}"},
+     2,
+     "difference: needs at least two shapes"},
+    {{.more = "cracks: [{cut: {line: [[0, 0]]}}]"}, 6, "line: needs at least two points"},
+    {{.more = "cracks: [{cut: {polygon: [[0, 0, 0], [1, 0, 0]]}}]"}, 6, "polygon: needs at least three corners"},
+    {{.more = "cracks: [{cut: {polygon: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.1]]}}]"},
+     6,
+     "polygon: corner 4 does not lie in the plane of the first three"},
+    {{.more = "cracks: [{remove: {sphere: {centre: [0, 0, 0], radius: 0.1}}, cut faces: yes}]"},
+     6,
+     "cut faces: works for a box only"},
+    {{.more = "cracks: [{cut: {line: [[0, 0], [1, 1]]}, cut faces: yes}]"}, 6, "cut faces: goes with 'remove'"},
+    /* loads */
+    {{.loads = "loads: [{on: {all: yes}, spring: {stiffness: 1, direction: [0, 0, 0]}}]"},
+     4,
+     "direction: must not be zero"},
+    {{.loads = "loads: [{on: {all: yes}, body force: [1, 0, 0], area: 1}]"}, 4, "area: only a 'traction' has one"},
+    {{.loads = "loads: [" CONTROLLED "]"}, 4, "no stage in which the load acts finds its factor"},
+    {{.body = "body: {b: {material: m, lattice: hexagonal, thickness: 0.2, spacing: 0.1, shape: {box: {from: [0, 0], "
+              "to: [1, 1]}}}}",
+      .horizon = "peridynamics: {space: plane strain}",
+      .loads = "loads: [{on: {face: x-}, support: {held: all}}]"},
+     4,
+     "is not its own mirror image"},
+    {{.loads = "loads: [{on: {all: yes}, body force: [1, 0, 0], history: {product: []}}]"},
+     4,
+     "product: the list is empty"},
+    {{.loads = "loads: [{on: {all: yes}, body force: [1, 0, 0], history: {sum: [{controlled: yes}, {ramp to: 1}]}}]"},
+     4,
+     "a factor that is found by control has no place in it"},
+    /* solution and results */
+    {{.solve = "solve: {static: {increments: 2, control: {opening between: [[0, 0, 0]], to: 1}}}",
+      .loads = "loads: [" HELD ", " CONTROLLED "]"},
+     5,
+     "opening between: expected two points, found 1"},
+    {{.solve = "solve: {static: {increments: 2, control: {opening between: [[0, 0, 0], [0, 0, 0]], to: 1}}}",
+      .loads = "loads: [" HELD ", " CONTROLLED "]"},
+     5,
+     "the same particle is nearest to both points"},
+    {{.solve = "solve: {static: {increments: 2, control: {displacement of: {face: x+}, to: 1}}}",
+      .loads = "loads: [" HELD ", " CONTROLLED "]"},
+     5,
+     "missing key 'direction'"},
+    {{.solve = "solve: {static: {increments: 2, control: {displacement of: {face: x+}, direction: [0, 0, 0], to: 1}}}",
+      .loads = "loads: [" HELD ", " CONTROLLED "]"},
+     5,
+     "direction: has no length"},
+    {{.solve = "solve: {static: {increments: 2, control: {opening between: [[0, 0, 0], [1, 0, 0]], direction: [1, 0, "
+               "0], to: 1}}}",
+      .loads = "loads: [" HELD ", " CONTROLLED "]"},
+     5,
+     "direction: only of 'displacement of'"},
+    {{.solve = "solve: {static: {increments: 2, control: {displacement of: {face: x+}, direction: [1, 0, 0], to: 1}}}"},
+     5,
+     "no load of this stage has a factor to be found"},
+    {{.solve = "solve: {static: {method: relaxation, increments: 2, control: {displacement of: {face: x+}, direction: "
+               "[1, 0, 0], to: 1}}}",
+      .loads = "loads: [" HELD ", " CONTROLLED "]"},
+     5,
+     "dynamic relaxation cannot find factors of loads"},
+    {{.solve = "solve: {explicit: {steps: 20000000}}", .more = "results: {every: 1}"},
+     6,
+     "states are too many to write"},
+    {{.more = "pictures: [{field: damage, range: [1, 1]}]"},
+     6,
+     "range: the lowest value 1 is not below the highest, 1"},
+    {{.more = "watch: {e: {opening between: [[0, 0, 0]]}}"}, 6, "expected two points, found 1"},
+    {{.more = "units: {length: m, force: kN, time: furlong}"}, 6, "furlong"},
+};
+
+static char *deck_of(const Parts *p)
+{
+  return text_format("%s\n%s\n%s\n%s\n%s\n%s\n", p->material ? p->material : good.material,
+                     p->body ? p->body : good.body, p->horizon ? p->horizon : good.horizon,
+                     p->loads ? p->loads : good.loads, p->solve ? p->solve : good.solve, p->more ? p->more : good.more);
+}
+
+static void what_cannot_be_meant_is_refused_in_its_line(void **state)
+{
+  (void)state;
+  int bad = 0;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *deck = deck_of(&cases[k].parts), *words = refusal_of(deck), *place = text_format("deck:%d:", cases[k].line);
+    if (strncmp(words, place, strlen(place)) || !strstr(words, cases[k].words) || strchr(words, '\n')) {
+      print_error("expected '%s ... %s' in one line, found '%s'\n", place, cases[k].words, words);
+      ++bad;
+    }
+    free(deck), free(words), free(place);
+  }
+  assert_int_equal(bad, 0);
+}
+
+static void the_deck_that_they_differ_from_is_good(void **state)
+{
+  (void)state;
+  char *deck = deck_of(&(Parts){0});
+  breccia_model *model = model_of("%s", deck);
+  breccia_model_destroy(&model);
+  free(deck);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_deck_that_they_differ_from_is_good),
+      cmocka_unit_test(what_cannot_be_meant_is_refused_in_its_line),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
