@@ -1,6 +1,7 @@
 #include "loading/load.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define LOAD(name, key, kind, dimension, meaning) extern const LoadType name##_load;
 #define LOAD_SECTION(name, key, meaning)                                                                               \
@@ -125,6 +126,7 @@ void load_destroy(Load *load)
   selection_destroy(&load->selection);
   selection_destroy(&load->other);
   history_destroy(&load->history);
+  free(load->held);
 }
 
 double load_factor(const Load *load, double time)

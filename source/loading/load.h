@@ -3,6 +3,7 @@
 #define BRECCIA_LOADING_LOAD_H
 
 #include "body/selection.h"
+#include "constitutive/material.h"
 #include "formulation/operator.h"
 #include "loading/history.h"
 
@@ -32,6 +33,15 @@ extern const Section load_section;
 
 typedef struct LoadType LoadType;
 
+/** What forces against velocities need of a step under way. */
+typedef struct LoadMotion {
+  double *const *velocity; /* [3][places]; NULL: the body is at rest, and they do not act */
+  double lag;              /* by which these velocities are before the displacements */
+  double damping;          /* mass-proportional, that acts until then [1/time] */
+  double
+      rate; /* what the velocity at the end of a step changes with the displacement there; 0 where none is solved for */
+} LoadMotion;
+
 typedef struct Load {
   const LoadType *type;
   const LoadSpec *spec;
@@ -42,6 +52,9 @@ typedef struct Load {
   int64_t first, behind;      /* acts in the stages first .. behind - 1 */
   double begin;               /* time of the run from which its history counts */
   History history;
+  LoadMotion motion;
+  uint8_t *
+      held; /* [particles] bits of the axes along which motions are prescribed in the stage under way; of types that brake */
   void *own; /* what the type keeps */
 } Load;
 
@@ -95,6 +108,8 @@ typedef struct LoadMaking {
   const Body *body;
   const DeckReader *reader;
   const SectionList *selections;
+  const Material *materials;
+  const int32_t *material; /* [slices] number of each one's */
 } LoadMaking;
 
 struct LoadType {
@@ -108,6 +123,14 @@ struct LoadType {
   const double *(*vector)(const LoadValue *value);
   /** Adds its forces per volume to the external ones, at displacements and velocities as held, by all threads. NULL: it is no force. */
   void (*force)(const Load *load, Particles *particles, double factor);
+  /** Adds its forces per volume against velocities, after those of all other loads and at the internal forces held, by all threads. `time` is
+   *  since it began. NULL: there are none. */
+  void (*brake)(Load *load, Particles *particles, const LoadMotion *motion, double time);
+  /** After a step in which particles have moved by `factor` times `moved`: takes what `brake` found last as what stands at its end, and books its
+   *  work. By one thread; with `brake`. */
+  void (*settle)(Load *load, const Particles *particles, double *const moved[3], double factor);
+  /** Energy that it has taken by braking. With `brake`. */
+  double (*dissipated)(const Load *load);
   /** When it begins. @return whether it has changed velocities. May be NULL. */
   bool (*begin)(Load *load, Particles *particles);
   /** Adds to changes of external forces per volume what they change with changes v of displacements. NULL: nothing. */
@@ -134,9 +157,9 @@ int load_create(Load *load, const LoadSpec *spec, const LoadMaking *making);
 void load_destroy(Load *load);
 
 /** Resolves the loads of a deck on a body; says where a selection is empty or motions of one stage contradict each other.
- *  @param[in] loads  those of the deck, from the first stage on */
-int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
-                   const LoadStage *stages, int stage_count, const SectionList *selections);
+ *  @param[in] making  with the loading
+ *  @param[in] loads   those of the deck, from the first stage on */
+int loading_create(const LoadMaking *making, const SectionList *loads, const LoadStage *stages, int stage_count);
 void loading_destroy(Loading *loading);
 
 /** Lets the loads of a stage act, those of other stages not. */
@@ -169,6 +192,13 @@ void loading_change(const Loading *loading, const Particles *particles, double *
 
 /** By all threads: gives tied particles one velocity and acceleration, where roundings or prescribed motions part them. */
 void loading_keep_ties(const Loading *loading, Particles *particles, double *const acceleration[3]);
+
+/** Tells loads that brake of the step under way. */
+void loading_move(const Loading *loading, const LoadMotion *motion);
+/** By one thread, at the end of a step or, with factor 0, at the start of a stage: LoadType.settle of all loads that act. */
+void loading_settle(const Loading *loading, const Particles *particles, double *const moved[3], double factor);
+/** Energy that loads have taken by braking, those that have ended too. */
+double loading_dissipated(const Loading *loading);
 
 /** Energy that springs hold. */
 double loading_energy(const Loading *loading, const Particles *particles);

@@ -69,26 +69,27 @@ static int check_lasting(const Loading *loading, const DeckReader *reader)
   return status;
 }
 
-int loading_create(Loading *loading, const Body *body, const DeckReader *reader, const SectionList *loads,
-                   const LoadStage *stages, int stage_count, const SectionList *selections)
+int loading_create(const LoadMaking *making, const SectionList *loads, const LoadStage *stages, int stage_count)
 {
+  Loading *loading = making->loading;
+  const Particles *particles = &making->body->particles;
+  const DeckReader *reader = making->reader;
   *loading = (Loading){0};
   size_t most = (size_t)loads->count;
   for (int s = 0; s < stage_count; ++s) most += (size_t)stages[s].loads->count;
   loading->loads = memory_zeroed(most, sizeof(Load), "loads", reader->error);
   loading->constraints = memory_zeroed(3 * most, sizeof(Constraint), "loads", reader->error);
   if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
-  const LoadMaking making = {loading, body, reader, selections};
-  int status = add_loads(&making, loads, 0);
+  int status = add_loads(making, loads, 0);
   for (int s = 0; s < stage_count; ++s) {
     int bad = end_named(loading, reader, &stages[s], s);
     if (bad) status = bad;
-    bad = add_loads(&making, stages[s].loads, s);
+    bad = add_loads(making, stages[s].loads, s);
     if (bad) status = bad;
   }
   if (!status) status = check_lasting(loading, reader);
-  if (!status) status = constraints_check(loading, &body->particles, reader);
-  return status ? status : ties_check(loading, &body->particles, reader);
+  if (!status) status = constraints_check(loading, particles, reader);
+  return status ? status : ties_check(loading, particles, reader);
 }
 
 void loading_destroy(Loading *loading)
@@ -104,9 +105,30 @@ void loading_destroy(Loading *loading)
   *loading = (Loading){0};
 }
 
+/** Axes along which motions of the stage under way are prescribed to particles of a load. */
+static void find_held(const Loading *loading, const Load *load, const Particles *p)
+{
+  memset(load->held, 0, (size_t)load->selection.count);
+  for (int c = 0; c < loading->constraint_count; ++c) {
+    const Constraint *constraint = &loading->constraints[c];
+    if (!load_acts(loading, constraint->load)) continue;
+    int axes = 0;
+    for (int k = 0; k < 3; ++k) axes |= (constraint->direction[k] != 0) << k;
+    const Selection *a = &load->selection, *b = &constraint->load->selection;
+    for (int64_t n = 0, m = 0; n < a->count && m < b->count;) { /* numbers ascend in both */
+      if (a->places[n] == b->places[m]) load->held[n] |= (uint8_t)axes;
+      const bool next = p->number[a->places[n]] <= p->number[b->places[m]];
+      n += next;
+      m += !next;
+    }
+  }
+}
+
 int loading_enter(Loading *loading, const Particles *p, int64_t stage, Error *error)
 {
   loading->stage = stage;
+  for (int l = 0; l < loading->count; ++l)
+    if (loading->loads[l].held) find_held(loading, &loading->loads[l], p);
   return tie_groups_make(loading, p, error);
 }
 
@@ -119,6 +141,7 @@ void loading_begin(Loading *loading, Particles *p, double time)
 {
   loading->speeds_set = false;
   bool ties = false;
+  loading_move(loading, &(LoadMotion){0});
   for (int k = 0; k < loading->count; ++k) {
     Load *load = &loading->loads[k];
     if (load->first != loading->stage) continue;
@@ -188,7 +211,7 @@ static void clear_all(const Loading *loading, Particles *p)
 {
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
-    if ((!load->type->force && load->type != &tie_load) || !load_acts(loading, load)) continue;
+    if ((!load->type->force && !load->type->brake && load->type != &tie_load) || !load_acts(loading, load)) continue;
     clear(&load->selection, p);
     clear(&load->other, p);
   }
@@ -211,6 +234,11 @@ void loading_apply_untied(const Loading *loading, Particles *p, double time)
     const Load *load = &loading->loads[l];
     if (load->type->force && load_acts(loading, load)) load->type->force(load, p, load_factor(load, time));
   }
+  for (int l = 0; l < loading->count; ++l) {
+    Load *load = &loading->loads[l];
+    if (load->type->brake && load->motion.velocity && load_acts(loading, load))
+      load->type->brake(load, p, &load->motion, time - load->begin);
+  }
 }
 
 void loading_apply(const Loading *loading, Particles *p, double time)
@@ -230,6 +258,27 @@ void loading_change(const Loading *loading, const Particles *p, double *const v[
 void loading_keep_ties(const Loading *loading, Particles *p, double *const acceleration[3])
 {
   tie_groups_keep(loading->ties, p, acceleration);
+}
+
+void loading_move(const Loading *loading, const LoadMotion *motion)
+{
+  for (int l = 0; l < loading->count; ++l) loading->loads[l].motion = *motion;
+}
+
+void loading_settle(const Loading *loading, const Particles *p, double *const moved[3], double factor)
+{
+  for (int l = 0; l < loading->count; ++l) {
+    Load *load = &loading->loads[l];
+    if (load->type->settle && load_acts(loading, load)) load->type->settle(load, p, moved, factor);
+  }
+}
+
+double loading_dissipated(const Loading *loading)
+{
+  double sum = 0;
+  for (int l = 0; l < loading->count; ++l)
+    if (loading->loads[l].type->dissipated) sum += loading->loads[l].type->dissipated(&loading->loads[l]);
+  return sum;
 }
 
 double loading_energy(const Loading *loading, const Particles *p)

@@ -118,8 +118,13 @@ static int create_loading(breccia_model *model, Error *error)
     const SolveSpec *stage = spec->solve.items[k];
     stages[k] = (LoadStage){&stage->loads, &stage->without, stage};
   }
-  const int status = loading_create(&model->loading, &model->domain.body, &model->reader, &spec->loads, stages,
-                                    spec->solve.count, &spec->selections);
+  const LoadMaking making = {.loading = &model->loading,
+                             .body = &model->domain.body,
+                             .reader = &model->reader,
+                             .selections = &spec->selections,
+                             .materials = model->domain.materials,
+                             .material = model->domain.material};
+  const int status = loading_create(&making, &spec->loads, stages, spec->solve.count);
   free(stages);
   return status;
 }

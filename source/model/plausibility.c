@@ -366,7 +366,9 @@ static void check_jump(breccia_model *model, const Load *load)
 static void check_shaking(breccia_model *model, const Load *load)
 {
   static const double most = 30, gravity = 9.81; /* m/s2 */
-  if (!has_kind(load->spec, "base acceleration") && !has_kind(load->spec, "acceleration")) return;
+  if (!has_kind(load->spec, "base acceleration") && !has_kind(load->spec, "acceleration") &&
+      !has_kind(load->spec, "outcrop acceleration"))
+    return;
   const double peak = fabs(plausibility_in_si(model, "acceleration", load_magnitude(load->spec)) *
                            history_peak(&load->history, model->solver.clock.end_time - load->begin));
   if (peak > most)
@@ -375,6 +377,16 @@ static void check_shaking(breccia_model *model, const Load *load)
         "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
         "load's value is what 1 in it means",
         load->node->key, peak, peak / gravity);
+}
+
+/** Whoever lets the ground settle first must hold it by something else. */
+static void check_dashpots(breccia_model *model, const Load *load)
+{
+  if (load->type->brake && solver_stage_rests(&model->solver, load->first))
+    plausibility_say(model, load->node,
+                     "%s: they hold nothing in a stage at rest; let a support or a prescribed motion hold the body "
+                     "there, and dashpots begin with the stage that shakes",
+                     load->node->key);
 }
 
 /** Bonds near particles that are moved carry most, and break there first. */
@@ -497,6 +509,7 @@ void plausibility_warn(breccia_model *model)
   for (int k = 0; k < model->loading.count; ++k) {
     check_jump(model, &model->loading.loads[k]);
     check_shaking(model, &model->loading.loads[k]);
+    check_dashpots(model, &model->loading.loads[k]);
   }
   check_grips(model);
   check_ground(model);

@@ -298,7 +298,9 @@ static int begin(Solver *run, Error *error)
   Domain *d = s->domain;
   domain_tell_time(d, s->clock->time, 0); /* laws with rates answered to the last step of the stage before already */
   domain_evaluate(d);
+  loading_move(s->loading, &(LoadMotion){.velocity = d->particles->velocity});
   loading_apply(s->loading, d->particles, s->clock->time);
+  loading_settle(s->loading, d->particles, d->particles->velocity, 0);
   const Particles *p = d->particles;
   s->ledger->kinetic = 0;
   for (int k = 0; k < 3; ++k)
@@ -335,6 +337,7 @@ static void take_step(void *context)
   if (!is_sound(s)) return;
   domain_accept(d);
   loading_apply(s->loading, d->particles, end);
+  TEAM_SINGLE loading_settle(s->loading, d->particles, d->particles->velocity, s->clock->time_step);
   TEAM_FOR (b, d->batch_count) kick(s, b);
   TEAM_SINGLE
   {
@@ -355,6 +358,9 @@ static int advance(Solver *run, Text *warning, Error *error)
   if (status) return status;
   const double start = s->clock->time;
   explicit_foresee_motions(s);
+  loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
+                                         .lag = s->clock->time_step / 2,
+                                         .damping = s->spec->damping});
   team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);
   s->ledger->fastest = s->motion / (s->clock->time - start);

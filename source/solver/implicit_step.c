@@ -206,7 +206,9 @@ int implicit_begin(Solver *run, Error *error)
   domain_tell_time(s->domain, run->clock.time, 0);
   if (find_drag(s, p->velocity, s->drag, error)) return BRECCIA_FAILURE;
   domain_evaluate(s->domain);
+  loading_move(s->loading, &(LoadMotion){.velocity = p->velocity});
   newton_apply_loads(&s->newton, run->clock.time);
+  loading_settle(s->loading, p, p->velocity, 0);
   find_accelerations(s);
   s->ledger->kinetic = kinetic_energy(p, p->velocity);
   for (int k = 0; k < 3; ++k)
@@ -247,6 +249,7 @@ static void finish_step(Implicit *s)
   const Unknowns *u = &s->newton.linear.unknowns;
   double fastest = 0;
   book(s);
+  loading_settle(s->loading, p, s->newton.moved, 1);
   find_error(s);
   increment_accept(&s->increment, s->newton.moved);
   for (int k = 0; k < 3; ++k)
@@ -270,6 +273,7 @@ static NewtonOutcome try_step(Implicit *s, double end, double *found, Error *err
   linear->stiffness_share = spec->damping.stiffness * rate;
   linear->mass_factor = 1 / ((1 + spec->alpha) * spec->beta * dt * dt) + spec->damping.mass * rate;
   increment_begin(&s->increment);
+  loading_move(s->loading, &(LoadMotion){.velocity = s->velocity, .rate = rate});
   domain_tell_time(s->domain, end, dt);
   domain_mix_tangents(s->domain, linear->stiffness_share / (1 + linear->stiffness_share));
   const NewtonOutcome outcome = newton_solve(&s->newton, end, error);

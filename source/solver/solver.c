@@ -347,8 +347,10 @@ Energy solver_energy(const Solver *s)
 {
   Energy e = ledger_energy(&s->ledger, s->domain);
   const double springs = loading_energy(s->loading, s->domain->particles); /* their work is among that of loads */
+  const double dashpots = loading_dissipated(s->loading);                  /* what these take too */
   e.stored += springs;
-  e.external += springs;
+  e.damping += dashpots;
+  e.external += springs + dashpots;
   return e;
 }
 

@@ -16,6 +16,7 @@ LOAD(traction, "traction", FIELD_POINT, "stress",
      "force per area of the face that 'on' selects, spread over its layers; or of 'area'")
 LOAD_SECTION(radial_pressure, "radial pressure", "on a round surface, away from its axis or towards it")
 LOAD_SECTION(spring, "spring", "springs to the ground or to other particles")
+LOAD_SECTION(dashpots, "dashpots", "a face through which waves leave, and an earthquake may come in")
 LOAD(displacement, "displacement", FIELD_FREE_POINT, "length", "prescribed displacement")
 LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")
 LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",
