@@ -25,6 +25,9 @@ static const char body_of_laws[] =
 
 #define LATTICE "spacing: 0.1, shape: {box: {particles: [40, 30, 20]}}"
 #define SMALL "spacing: 0.1, shape: {box: {particles: [20, 20, 12]}}"
+/* Beside it a lattice that is its continuation nowhere: bonds between the two, and in it, are listed one by one. */
+#define LATTICES                                                                                                       \
+  LATTICE "}, c: {material: m, spacing: 0.1, shape: {box: {from: [4.03, 0.02, 0.01], to: [6.03, 2.02, 2.01]}}"
 #define ELASTIC "Young modulus: 1e4, Poisson ratio: 0.25"
 
 /** Arrays that are small beside those of particles, bonds and points are not counted beforehand. */
@@ -43,6 +46,9 @@ static void a_body_takes_what_is_foreseen(void **state)
       {"j2", ELASTIC ", yield stress: 1", LATTICE, "ordinary", "explicit: {steps: 9}"},
       {"elastic-perfectly-plastic", "Young modulus: 1e4, yield stress: 1", LATTICE, "bond-based",
        "explicit: {steps: 9}"},
+      {"elastic", ELASTIC, LATTICES, "correspondence", "explicit: {steps: 9}"},
+      {"elastic", ELASTIC, LATTICES, "ordinary", "explicit: {steps: 9}"},
+      {"elastic-1d", "Young modulus: 1e4", LATTICES, "bond-based", "explicit: {steps: 9}"},
       {"elastic", ELASTIC, SMALL, "correspondence", "static: {increments: 1}"},
       {"elastic", ELASTIC, SMALL, "ordinary", "static: {increments: 1, method: relaxation}"},
   };

@@ -448,10 +448,28 @@ static void every_law_in_space_is_among_the_samples(void **state)
   }
 }
 
+/** What programs read of the laws that they are offered. */
+static void every_law_says_what_it_is(void **state)
+{
+  (void)state;
+  for (int k = 0; breccia_law_at(k); ++k) {
+    const breccia_law *law = breccia_law_at(k);
+    assert_true(law->name && *law->name);
+    if (law->size != sizeof(breccia_law)) fail_msg("%s: its size is %d", law->name, (int)law->size);
+    const char *const words[] = {law->about, law->source, law->maturity};
+    for (int w = 0; w < 3; ++w)
+      if (!words[w] || !*words[w]) fail_msg("%s: it lacks words", law->name);
+    for (int p = 0; p < law->parameter_count; ++p)
+      if (!law->parameters[p].name || !law->parameters[p].dimension || !law->parameters[p].meaning)
+        fail_msg("%s: its parameter %d lacks words", law->name, p + 1);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_law_in_space_is_among_the_samples),
+      cmocka_unit_test(every_law_says_what_it_is),
       cmocka_unit_test(a_million_steps_of_any_size_stay_finite_and_inside),
       cmocka_unit_test(stress_turns_with_the_strain),
       cmocka_unit_test(a_trial_can_be_repeated_and_leaves_the_committed_state_alone),

@@ -12,7 +12,7 @@ static char folder[] = "/tmp/breccia-results-XXXXXX", path[64], whole[64];
 static void write_results(void)
 {
   breccia_model *model = model_of(
-      "units: {length: m, force: kN, time: s}\n" SOFT_SOLID "body:\n"
+      "title: A bar is torn\nunits: {length: m, force: kN, time: s}\n" SOFT_SOLID "body:\n"
       "  a: {material: m, spacing: 1, shape: {box: {particles: [12, 4, 3]}}}\n"
       "  b: {material: m, lattice: face-centred cubic, spacing: 1, shape: {box: {particles: [4, 4, 4], first particle: "
       "[20, 0, 0]}}}\n"
@@ -180,6 +180,24 @@ static void no_flipped_byte_is_believed(void **state)
 }
 
 /** A picture of another field shows displacements too: damaged ones do not turn into the shape at the start. */
+static void what_was_written_of_the_run_is_read_back(void **state)
+{
+  (void)state;
+  ResultView view;
+  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  assert_string_equal(view.title, "A bar is torn");
+  assert_string_equal(view.length_unit, "m");
+  assert_string_equal(view.time_unit, "s");
+  assert_int_equal(view.plane, 0);
+  assert_int_equal(view.steps, 6);
+  assert_int_equal(view.particles, 12 * 4 * 3 + 4 * 4 * 4);
+  assert_int_equal(view.step_numbers[0], 0);
+  for (int k = 1; k < view.steps; ++k)
+    assert_true(view.step_numbers[k] > view.step_numbers[k - 1] && view.times[k] > view.times[k - 1]);
+  for (int64_t n = 0; n < view.particles; ++n) assert_true(view.spacings[n] == 1);
+  result_view_close(&view);
+}
+
 static void a_picture_does_not_leave_out_a_damaged_displacement(void **state)
 {
   (void)state;
@@ -216,7 +234,8 @@ static void a_picture_does_not_leave_out_a_damaged_displacement(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(no_flipped_byte_is_believed),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(what_was_written_of_the_run_is_read_back),
+                                     cmocka_unit_test(no_flipped_byte_is_believed),
                                      cmocka_unit_test(a_picture_does_not_leave_out_a_damaged_displacement)};
   return cmocka_run_group_tests(tests, begin, end);
 }
