@@ -173,11 +173,11 @@ static void find_received(Domain *d)
     const Points *points = &region->points;
     StoredEnergy energy;
     region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
-    for (int k = 0; k < 6 && points->components == 6; ++k) {
+    for (int k = 0; k < 6 && points_on_particles(points); ++k) {
       torn->strain[k] = points->strain[k][torn->place];
       torn->stress[k] = points->stress[k][torn->place];
     }
-    torn->elastic = points->components == 6 ? points_elastic_energy(points, torn->place) : 0;
+    torn->elastic = points_on_particles(points) ? points_elastic_energy(points, torn->place) : 0;
     torn->received = energy.received + energy.control +
                      energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
     torn->share = region->type->shares(region->formulation)[torn->place];
@@ -195,14 +195,14 @@ static void find_left(Domain *d, const Region *region)
     StoredEnergy energy;
     double strain[6] = {0}, stress[6] = {0};
     region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
-    for (int k = 0; k < 6 && points->components == 6; ++k) {
+    for (int k = 0; k < 6 && points_on_particles(points); ++k) {
       strain[k] = points->strain[k][torn->place];
       stress[k] = points->stress[k][torn->place];
     }
     torn->control = energy.control;
     const double density = torn->elastic + half_work(torn->stress, stress, torn->strain, strain);
     /* of points not as their laws unload, which laws in servers are not asked */
-    torn->stored = points->components == 6 ? energy.weight * density : energy.stored;
+    torn->stored = points_on_particles(points) ? energy.weight * density : energy.stored;
     torn->carried = energy.received + energy.weight * (density - half_work(stress, nothing, energy.was, energy.strain));
   }
 }

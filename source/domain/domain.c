@@ -12,7 +12,7 @@ double domain_history(const Domain *d, int64_t place, int k)
   const Region *region = domain_region(d, place);
   if (!region->points.components)
     return region->type->history ? region->type->history(region->formulation, place, k) : 0;
-  if (region->points.components == 6) return points_history(&region->points, place)[k];
+  if (points_on_particles(&region->points)) return points_history(&region->points, place)[k];
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
   double sum = 0;
@@ -30,7 +30,7 @@ double domain_history(const Domain *d, int64_t place, int k)
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
 {
   const Region *region = domain_region(d, place);
-  if (region->points.components == 6) {
+  if (points_on_particles(&region->points)) {
     for (int k = 0; k < 6; ++k) {
       strain[k] = region->points.strain[k][place];
       stress[k] = region->points.stress[k][place];
@@ -52,7 +52,7 @@ static void observe(void *context, int64_t n)
   Domain *d = context;
   int32_t place = d->particles->place_of[n];
   double strain[6], stress[6];
-  if (domain_region(d, place)->points.components == 6) return;
+  if (points_on_particles(&domain_region(d, place)->points)) return;
   domain_look(d, place, strain, stress);
   for (int k = 0; k < 6; ++k) {
     d->strain[k][place] = strain[k];
@@ -62,7 +62,7 @@ static void observe(void *context, int64_t n)
 
 int domain_observe(Domain *d, Error *error)
 {
-  if (d->region_count == 1 && d->regions[0].points.components == 6) return BRECCIA_OK;
+  if (d->region_count == 1 && points_on_particles(&d->regions[0].points)) return BRECCIA_OK;
   for (int k = 0; k < 6; ++k) {
     if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
     if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
@@ -185,12 +185,16 @@ double domain_damage(const Domain *d, int32_t place)
 size_t domain_particle_bytes(const Domain *d)
 {
   size_t places = (size_t)d->particles->places;
-  size_t history = 0, tensors = 0;
+  size_t history = 0, tensors = 0, bonds = 0;
   for (int r = 0; r < d->region_count; ++r) {
     history += d->regions[r].points.history_size;
-    if (d->regions[r].points.components == 6) tensors = d->initial_strain[0] ? 18 : 12;
+    if (points_on_particles(&d->regions[r].points))
+      tensors = d->initial_strain[0] ? 18 : 12;
+    else if (d->regions[r].points.components == 6)
+      bonds += 12 * (size_t)d->regions[r].points.count;
   }
-  return places * sizeof(double) * (15 + 2 + 1 + tensors) + places * sizeof(int32_t) * 2 + 2 * history * sizeof(double);
+  return places * sizeof(double) * (15 + 2 + 1 + tensors) + places * sizeof(int32_t) * 2 +
+         (2 * history + bonds) * sizeof(double);
 }
 
 size_t domain_bytes(const Domain *d)

@@ -209,9 +209,10 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
+  regions_take_fibres(d, reader, spec->materials);
   status = check_space(d, reader, spec);
   double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
-  const BondLength of = {space, influence, horizon};
+  const BondLength of = {space, influence, horizon, d->body.largest_spacing};
   int bad = domain_create_materials(d, reader, spec, &of);
   if (bad) status = bad;
   if (status) return status;
@@ -265,7 +266,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                                     .particles = d->particles,
                                     .family = &d->family,
                                     .points = &region->points,
-                                    .bonds = region->points.components == 1 ? &region->bonds : NULL,
+                                    .bonds = region->points.on_bonds ? &region->bonds : NULL,
                                     .materials = d->materials,
                                     .material_count = d->material_count,
                                     .material = d->material,
@@ -282,7 +283,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 void domain_destroy(Domain *d)
 {
   forces_destroy(&d->forces);
-  if (d->region_count > 1 || (d->region_count && d->regions[0].points.components != 6)) {
+  if (d->region_count > 1 || (d->region_count && !points_on_particles(&d->regions[0].points))) {
     for (int k = 0; k < 6; ++k) {
       places_free(&d->strain[k]);
       places_free(&d->stress[k]);

@@ -93,7 +93,7 @@ void domain_state(Domain *d, StateList *list)
   particles_state(d->particles, list);
   state_add_vector(list, "force", "force per volume", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
                    d->particles->internal, d->particles->places);
-  if ((d->region_count > 1 || d->regions[0].points.components != 6) && d->strain[0]) show_strains(d, list);
+  if ((d->region_count > 1 || !points_on_particles(&d->regions[0].points)) && d->strain[0]) show_strains(d, list);
   if (d->gave_up)
     state_add(list,
               &(StateRow){.unit = "1",

@@ -124,7 +124,7 @@ static int mark(Work *w, int n, const SectionList *selections)
     const Region *region = domain_region(w->domain, place);
     const Material *m = &w->domain->materials[w->domain->material[place / SLICE]];
     const int before = w->item_of[number];
-    if (region->points.components != 6)
+    if (!points_on_particles(&region->points))
       status =
           node_error(w->reader->document, spec->head.node, w->reader->error,
                      "initial stress: '%s' has no stress at its particles that could be given; expected "
@@ -284,7 +284,7 @@ static int begin(Work *w, const Loading *loading, const SectionList *selections)
   if (!status) status = fill(w);
   for (int r = 0; r < d->region_count && !status; ++r) {
     InitialMisfit misfit;
-    if (d->regions[r].points.components != 6) continue;
+    if (!points_on_particles(&d->regions[r].points)) continue;
     status = points_begin_under(&d->regions[r].points, w->stress, d->initial_strain, &misfit, error);
     if (misfit.row >= 0) tell_misfit(w, &misfit);
   }

@@ -67,6 +67,7 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
 {
   const Particles *p = d->particles;
   PointsSpec spec = {.components = region->type->components,
+                     .on_bonds = region->type->on_bonds,
                      .plane_stress = space == SPACE_PLANE_STRESS,
                      .materials = d->materials,
                      .material_count = d->material_count,
@@ -74,9 +75,11 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
                      .length = region_length(region->type, of)};
   region->is_linear = is_linear(d, region);
   if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear)) spec.components = 0;
-  if (spec.components == 1 && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
+  if (!spec.components) spec.on_bonds = false;
+  const bool on_particles = spec.components == 6 && !spec.on_bonds;
+  if (spec.on_bonds && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
     return BRECCIA_FAILURE;
-  if (spec.components == 6 && d->region_count > 1) {
+  if (on_particles && d->region_count > 1) {
     if (create_tensors(d, error)) return BRECCIA_FAILURE;
     spec.strain = d->strain;
     spec.stress = d->stress;
@@ -85,27 +88,26 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   int status = BRECCIA_OK;
   for (int64_t s = 0; s < p->slices && !status && spec.components; ++s) {
     if (is_foreign(region->foreign, s * SLICE)) continue;
-    if (spec.components == 6) runs.rows = s * SLICE;
-    status = spec.components == 6 ? add_rows(&runs, d->material[s], SLICE, error)
-                                  : add_bonds(d, &region->bonds, s, &runs, error);
+    if (on_particles) runs.rows = s * SLICE;
+    status =
+        on_particles ? add_rows(&runs, d->material[s], SLICE, error) : add_bonds(d, &region->bonds, s, &runs, error);
   }
   uint8_t *present = status ? NULL : memory_zeroed((size_t)runs.rows, 1, "points", error);
   if (!present) status = BRECCIA_FAILURE;
-  for (int64_t i = 0; i < runs.rows && !status && spec.components == 6; ++i)
+  for (int64_t i = 0; i < runs.rows && !status && on_particles; ++i)
     present[i] = p->number[i] >= 0 && !is_foreign(region->foreign, i);
-  if (spec.components == 1 && !status) bond_list_mark(&region->bonds, &d->family, present);
+  if (spec.on_bonds && !status) bond_list_mark(&region->bonds, &d->family, present);
   spec.runs = runs.runs;
   spec.run_count = runs.count;
   spec.present = present;
   if (!status) status = points_create(&region->points, &spec, error);
-  for (int k = 0; k < 6 && spec.components == 6; ++k) {
+  for (int k = 0; k < 6 && on_particles; ++k) {
     d->strain[k] = region->points.strain[k];
     d->stress[k] = region->points.stress[k];
   }
   free(runs.runs);
   free(present);
   if (status || !may_give_up) return status;
-  d->gave_up =
-      spec.components == 6 ? region->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
+  d->gave_up = on_particles ? region->points.gave_up : memory_zeroed((size_t)p->places, 1, "failed laws", error);
   return d->gave_up ? BRECCIA_OK : BRECCIA_FAILURE;
 }

@@ -86,6 +86,31 @@ bool region_has_material(const Domain *d, const Region *region, const char *mate
   return false;
 }
 
+/** Components of the law of a material that the deck names; commands of OpenSees say it by their first word. */
+static int components_of(const DeckReader *reader, const MaterialSpec *spec)
+{
+  const breccia_law *law = spec->model ? law_find(reader->context, spec->model) : NULL;
+  if (law) return law->components;
+  return spec->opensees && !strncmp(spec->opensees, "uniaxialMaterial", strlen("uniaxialMaterial")) ? 1 : 6;
+}
+
+void regions_take_fibres(Domain *d, const DeckReader *reader, const SectionList *materials)
+{
+  for (int r = 0; r < d->region_count; ++r) {
+    Region *region = &d->regions[r];
+    bool any = false, fibres = region->type->fibres != NULL;
+    for (int k = 0; k < materials->count && fibres; ++k) {
+      const MaterialSpec *spec = materials->items[k];
+      if (!region_has_material(d, region, spec->head.name)) continue;
+      any = true;
+      fibres &= components_of(reader, spec) == 1;
+    }
+    if (!fibres || !any) continue;
+    region->type = region->type->fibres;
+    region->keys = NULL;
+  }
+}
+
 int regions_find_borders(Domain *d, Error *error)
 {
   const Family *f = &d->family;

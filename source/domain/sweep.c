@@ -65,7 +65,7 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   Sweep sweep = {
       .first = slices->first, .last = slices->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
   if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
-  for (int k = 0; k < 6 && points->components == 6; ++k) {
+  for (int k = 0; k < 6 && points_on_particles(points); ++k) {
     sweep.strain[k] = purpose->at ? change + k * BATCH : points->strain[k] + first;
     sweep.stress[k] = purpose->at ? change + (6 + k) * BATCH : points->stress[k] + first;
   }
@@ -75,7 +75,7 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
     points_send(points, first, count, sweep.strain);
     return;
   }
-  if (points->components == 6) {
+  if (points_on_particles(points)) {
     if (purpose->at)
       points_change(points, first, count, sweep.strain, sweep.stress);
     else if (!purpose->no_law)
@@ -107,12 +107,24 @@ static int64_t owner_of(const Domain *d, const Region *region, int64_t slice, in
   return slice * SLICE + lane;
 }
 
+/** Laws of a batch of rows. @return `failed`, or if it is -1 the owner of a bond whose law could not be integrated */
+static int64_t update_bonds(Domain *d, Region *region, const Sweep *sweep, int64_t failed)
+{
+  Points *points = &region->points;
+  const int64_t bad = points_update(points, sweep->row, sweep->rows, sweep->strain, sweep->stress);
+  if (points->gave_up) mark_ends(d, region, sweep->first, sweep->row, sweep->rows);
+  return bad >= 0 && failed < 0 ? owner_of(d, region, sweep->first, bad) : failed;
+}
+
 /** The points on bonds of a batch of places, in batches of rows of one slice and material. */
 static void run_bonds(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
-  _Alignas(64) double carry[CARRY * BATCH], strain[BATCH], stress[BATCH];
-  Sweep sweep = {.carry = carry, .strain = {strain}, .stress = {stress}};
+  _Alignas(64) double carry[CARRY * BATCH], change[12 * BATCH];
   Points *points = &region->points;
+  const int components = points->components;
+  const bool kept = components == 6 && !purpose->at; /* strains and stresses stay in the rows */
+  Sweep sweep = {.carry = carry, .no_law = purpose->no_law, .at = purpose->at};
+  if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   const BondList *bonds = &region->bonds;
   int64_t failed = -1;
   for (int64_t slice = d->batches[batch].first; slice < d->batches[batch].last; ++slice) {
@@ -123,25 +135,30 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
       sweep.rows = left < BATCH ? (int)left : BATCH;
       sweep.first = slice;
       sweep.last = slice + 1;
+      for (int k = 0; k < components; ++k) {
+        sweep.strain[k] = kept ? points->strain[k] + sweep.row : change + k * BATCH;
+        sweep.stress[k] = kept ? points->stress[k] + sweep.row : change + (6 + k) * BATCH;
+      }
       run_phases(region, group->from, group->law, &sweep, purpose);
       if (send) {
         points_send(points, sweep.row, sweep.rows, sweep.strain);
         continue;
       }
-      const int64_t bad = points_update(points, sweep.row, sweep.rows, sweep.strain, sweep.stress);
-      if (bad >= 0 && failed < 0) failed = owner_of(d, region, slice, bad);
-      if (points->gave_up) mark_ends(d, region, slice, sweep.row, sweep.rows);
+      if (purpose->at)
+        points_change(points, sweep.row, sweep.rows, sweep.strain, sweep.stress);
+      else if (!purpose->no_law)
+        failed = update_bonds(d, region, &sweep, failed);
       run_phases(region, group->law, group->to, &sweep, purpose);
     }
   }
-  d->batch_failed[batch] = failed;
+  if (!purpose->at && !purpose->no_law) d->batch_failed[batch] = failed;
 }
 
 static void run_group(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
-  if (group->law < 0 || region->points.components != 1)
+  if (group->law < 0 || !region->points.on_bonds)
     run_places(d, region, group, batch, purpose, send);
-  else if (!purpose->at && !purpose->no_law)
+  else if (region->points.components == 6 || (!purpose->at && !purpose->no_law)) /* fibres keep their pulls */
     run_bonds(d, region, group, batch, purpose, send);
 }
 

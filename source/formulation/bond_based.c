@@ -92,7 +92,8 @@ static void *create(const FormulationParts *parts, Error *error)
                    .foreign = parts->foreign,
                    .space = parts->space,
                    .influence = parts->influence};
-  const BondBasedSpec *spec = parts->keys;
+  static const BondBasedSpec standard = {.calibration = "uniform-expansion", .surface_correction = "none"};
+  const BondBasedSpec *spec = parts->keys ? parts->keys : &standard;
   int calibration = 0;
   while (strcmp(calibrations[calibration], spec->calibration)) ++calibration;
   const Family *f = b->family;
@@ -284,6 +285,7 @@ const FormulationType formulation_bond_based = {
     .source = "Silling 2000; Silling and Askari 2005",
     .maturity = "verified against closed forms on lattices",
     .components = 1,
+    .on_bonds = true,
     .bond_lengths = true,
     .joins = true,
     .section = &bond_based_section,

@@ -27,7 +27,8 @@ static double continuum_constant(const BondLength *of, double young, double thic
 
 double bond_continuum_constant(const BondBased *b, double young)
 {
-  return continuum_constant(&(BondLength){b->space, b->influence, b->family->horizon}, young, body_section(b->body));
+  return continuum_constant(&(BondLength){.space = b->space, .influence = b->influence, .horizon = b->family->horizon},
+                            young, body_section(b->body));
 }
 
 /* Symmetric tensors of rank four as matrices in Mandel's components, so that inverse and product keep their meaning. */

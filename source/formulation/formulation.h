@@ -31,7 +31,7 @@ enum { CARRY = 9 };
 
 /** What a formulation works on; borrowed. */
 typedef struct FormulationParts {
-  const void *keys; /* of its own section */
+  const void *keys; /* of its own section; NULL: those of another formulation stand in the deck, and defaults count */
   Space space;
   const Influence *influence;
   const Body *body;
@@ -64,7 +64,7 @@ static inline bool block_is_foreign(const uint8_t *foreign, const Particles *par
 typedef struct BondLength {
   Space space;
   const Influence *influence;
-  double horizon;
+  double horizon, spacing; /* spacing: the coarsest */
 } BondLength;
 
 /** Energy of the deformation of a place or of a bond [energy]. What was received is what is stored less half of what the forces of the moment
@@ -129,15 +129,18 @@ typedef struct Phase {
 
 enum { MOST_PHASES = 8 };
 
-typedef struct FormulationType {
+typedef struct FormulationType FormulationType;
+struct FormulationType {
   const char *name, *about, *source, *maturity;
-  int components;         /* of laws: 6, at points in space on particles, or 1, on bonds */
-  bool row_sums;          /* neighbours read sums along lattice rows */
-  bool bond_lengths;      /* lengths of stored bonds are read in sweeps */
-  bool keeps_no_points;   /* what laws say of themselves is all that the formulation needs of them */
-  bool joins;             /* it minds which places are foreign, so that a body may have others beside it */
-  bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
-  const Section *section; /* its keys, which stand among those of peridynamics */
+  int components;                /* of laws: 6, strain in space, or 1 */
+  bool on_bonds;                 /* points are on bonds; otherwise on particles */
+  const FormulationType *fibres; /* what it is with laws of one strain; NULL: it takes none */
+  bool row_sums;                 /* neighbours read sums along lattice rows */
+  bool bond_lengths;             /* lengths of stored bonds are read in sweeps */
+  bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
+  bool joins;                    /* it minds which places are foreign, so that a body may have others beside it */
+  bool may_stiffen;              /* the largest eigenvalue of stiffness over mass may grow as bonds break */
+  const Section *section;        /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */
   bool (*takes)(const breccia_law *law);
   /** Refuses parameters of a law that it takes, with the reason. NULL: takes all. */
@@ -199,11 +202,13 @@ typedef struct FormulationType {
   /** Critical stretch of bonds with which a plane crack takes a fracture energy. NULL: none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
+  /** Why it cannot go through explicit steps, or NULL where it can. NULL: it always can. */
+  const char *(*refuses_explicit)(const void *formulation);
   /** Adds what a user should know before a run, as one line; NULL: nothing. */
   void (*describe)(const void *formulation, Text *text);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);
-} FormulationType;
+};
 
 /** @return the k-th formulation, or NULL after the last */
 const FormulationType *formulation_at(int k);

@@ -2,3 +2,4 @@
 FORMULATION(correspondence)
 FORMULATION(bond_based)
 FORMULATION(ordinary)
+FORMULATION(hybrid)

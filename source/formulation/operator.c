@@ -60,10 +60,15 @@ static void deformation(const Operator *point, double *const u[3], double f[9])
   for (int k = 0; k < 3; ++k) f[4 * k] += 1;
 }
 
-/** The matrix from a displacement of place l to the strain; rows beyond the point's components are not filled. */
-static void strain_matrix(const Operator *point, const double f[9], int l, double b[6][3])
+/** Vectors by which the stress acts on a place. */
+static const double *acting(const Operator *point, int l)
 {
-  const double *g = point->places[l].g;
+  return point->acts_apart ? point->places[l].act : point->places[l].g;
+}
+
+/** The matrix from a displacement of place l, by its vector g, to the strain; rows beyond the point's components are not filled. */
+static void strain_matrix(const Operator *point, const double f[9], int l, const double g[3], double b[6][3])
+{
   if (point->components < 6) {
     memcpy(b[0], g, 3 * sizeof *g);
     memcpy(b[1], point->places[l].second, 3 * sizeof *g);
@@ -83,7 +88,7 @@ void operator_strain(const Operator *point, double *const u[3], double *const v[
   deformation(point, u, f);
   for (int l = 0; l < point->count; ++l) {
     const int32_t place = point->places[l].place;
-    strain_matrix(point, f, l, b);
+    strain_matrix(point, f, l, point->places[l].g, b);
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < point->components; ++k) strain[k] += b[k][i] * v[i][place];
   }
@@ -109,7 +114,7 @@ void operator_add_forces(const Operator *point, double *const u[3], double *cons
   }
   for (int l = 0; l < point->count; ++l) {
     const OperatorPlace *p = &point->places[l];
-    strain_matrix(point, f, l, b);
+    strain_matrix(point, f, l, acting(point, l), b);
     shaped(point, l, kg);
     for (int i = 0; i < 3; ++i) {
       double sum = 0;
@@ -136,18 +141,21 @@ static void against_first(const Operator *point, int l, double k[9])
 
 /** What the stiffness of a place needs. */
 typedef struct Prepared {
-  double b[6][3], tangent_b[6][3]; /* from its displacement to strain, and to stress */
+  double b[6][3],
+      tangent_b[6][3]; /* from stress to its force, but for the volume, and from its displacement to stress */
   double stress_g[3], kg[3];
 } Prepared;
 
 static void prepare(const Operator *point, const double f[9], int l, Prepared *p)
 {
   const int n = point->components;
+  double b[6][3];
   memset(p, 0, sizeof *p);
-  strain_matrix(point, f, l, p->b);
+  strain_matrix(point, f, l, acting(point, l), p->b);
+  strain_matrix(point, f, l, point->places[l].g, b);
   for (int r = 0; r < n; ++r)
     for (int s = 0; s < n; ++s)
-      for (int i = 0; i < 3; ++i) p->tangent_b[r][i] += point->tangent[n * r + s] * p->b[s][i];
+      for (int i = 0; i < 3; ++i) p->tangent_b[r][i] += point->tangent[n * r + s] * b[s][i];
   shaped(point, l, p->kg);
   for (int i = 0; i < 3 && n == 6 && point->finite; ++i)
     for (int j = 0; j < 3; ++j) p->stress_g[i] += point->stress[symmetric_place[3 * i + j]] * point->places[l].g[j];
@@ -180,7 +188,7 @@ void operator_stiffness(const Operator *point, double *const u[3], int a, int b,
   deformation(point, u, f);
   prepare(point, f, a, &pa);
   prepare(point, f, b, &pb);
-  through_point(point, &pa, point->places[a].g, &pb, k);
+  through_point(point, &pa, acting(point, a), &pb, k);
   for (int l = 1; l < point->count; ++l) {
     const bool both = (a == l || !a) && (b == l || !b);
     if (!both) continue;
@@ -199,7 +207,7 @@ int operator_matrix(const Operator *point, double *const u[3], double *k, Error 
   for (int l = 0; l < count; ++l) prepare(point, f, l, &all[l]);
   for (int a = 0; a < count; ++a)
     for (int b = 0; b < count; ++b)
-      through_point(point, &all[a], point->places[a].g, &all[b], k + 9 * ((int64_t)count * a + b));
+      through_point(point, &all[a], acting(point, a), &all[b], k + 9 * ((int64_t)count * a + b));
   for (int l = 1; l < count; ++l) {
     against_first(point, l, part);
     add(k, part, -1);

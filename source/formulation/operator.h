@@ -4,7 +4,8 @@
  *   delta E = sym F^T sum delta u_l (x) g_l,   F = I + G,
  * and the force on place l is -V F S g_l. With one component (bonds, states of a family) delta E = sum delta u_l . g_l with vectors g_l that turn
  * with the deformation: delta g_l = turn_l (I - n n)(delta u_l - delta u_0), n = g_l / |g_l|; the force is -V S g_l. With two components the second one has
- * vectors of its own and a stress of 0, but a part in the tangent (families that flow). The g_l add up to nothing. Beside the point may stand springs between the first place and the others, and what they lack of a uniform
+ * vectors of its own and a stress of 0, but a part in the tangent (families that flow). The g_l add up to nothing. Where the stress acts by other vectors
+ * than those of the strain (`acts_apart`), the force on place l is -V F S a_l, and the stiffness is not symmetric. Beside the point may stand springs between the first place and the others, and what they lack of a uniform
  * deformation: the control of zero-energy modes has the energy V/2 (sum w_l C : eta_l (x) eta_l - C : G K G^T). */
 #ifndef BRECCIA_FORMULATION_OPERATOR_H
 #define BRECCIA_FORMULATION_OPERATOR_H
@@ -16,6 +17,7 @@
 typedef struct OperatorPlace {
   int32_t place;
   double g[3], second[3], turn; /* second: of the second of two components */
+  double act[3];                /* by which the stress of six components acts, where that is not g */
   double pull[3];               /* force on the first place from a spring to this one */
   double spring[6]; /* its stiffness: change of the pull with this place's displacement less the first one's */
 } OperatorPlace;
@@ -23,6 +25,7 @@ typedef struct OperatorPlace {
 typedef struct Operator {
   int components; /* 6, 2, 1, or 0: there is no point, but maybe springs */
   bool finite;    /* strain of finite deformation */
+  bool acts_apart;
   int count, capacity;
   OperatorPlace *places;         /* [count], owned; the first is the one to which the point belongs */
   double volume;                 /* for which the point stands */

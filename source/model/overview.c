@@ -136,7 +136,8 @@ static void describe_limit(const breccia_model *model, int material, Text *text)
     units_name(model->units, dimension_find(criterion->dimension), unit, sizeof unit);
     text_add(text, " %s", unit);
   }
-  const BondLength lengths = {peridynamics_space(model->spec->peridynamics), failure->influence, d->family.horizon};
+  const BondLength lengths = {peridynamics_space(model->spec->peridynamics), failure->influence, d->family.horizon,
+                              d->body.largest_spacing};
   for (int r = 0; criterion->describe && r < d->region_count; ++r) {
     const LimitsOf of = {.type = d->regions[r].type,
                          .lengths = &lengths,

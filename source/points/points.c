@@ -41,6 +41,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
 {
   *points = (Points){.components = spec->components,
                      .plane_stress = spec->plane_stress,
+                     .on_bonds = spec->on_bonds,
                      .materials = spec->materials,
                      .material_count = spec->material_count,
                      .run_count = spec->run_count};
@@ -151,17 +152,21 @@ static int histories_resume(void *owner, const double *numbers, int64_t count, E
 void points_state(Points *points, const char *of, StateList *list)
 {
   static const StateCare histories = {.ready = histories_ready, .resume = histories_resume};
-  StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .count = points->count};
+  const char *const strain = points->on_bonds ? "bond strain" : "strain", *const stress = points->on_bonds
+                                                                                              ? "bond stress"
+                                                                                              : "stress";
+  StateRow row = {
+      .kind = STATE_NUMBERS, .entity = points->on_bonds ? STATE_OF_POINT : STATE_OF_PLACE, .count = points->count};
   for (int k = 0; k < 6 && points->strain[0] && !points->shares; ++k) {
     row.unit = "1";
     row.values = points->strain[k];
     /* Across the plane of plane stress the law finds it, from where it was. */
     row.role = k == ZZ && points->plane_stress ? STATE_TRIED : STATE_FOLLOWS;
-    state_add(list, &row, "strain", component_names[k]);
+    state_add(list, &row, strain, component_names[k]);
     row.unit = "stress";
     row.values = points->stress[k];
     row.role = points_are_linear(points) ? STATE_FOLLOWS : STATE_COMMITTED; /* points_put_by */
-    state_add(list, &row, "stress", component_names[k]);
+    state_add(list, &row, stress, component_names[k]);
   }
   row = (StateRow){.unit = "1", .kind = STATE_NUMBERS, .role = STATE_COMMITTED};
   row.count = (int64_t)points->identity_size;

@@ -26,6 +26,7 @@ typedef struct Untouched Untouched;       /* rows that remember nothing yet (poi
 typedef struct Points {
   int components; /* 6 or 1; 0: there are no points, because all laws are linear */
   bool plane_stress;
+  bool on_bonds; /* rows are those of a bond list; otherwise those of six components are places */
   int64_t count;
   double *strain[6], *stress[6]; /* [count] of points of six components */
   bool shares;                   /* these arrays, with other points */
@@ -56,9 +57,15 @@ typedef struct Points {
   size_t identity_size;
 } Points;
 
+/** Whether rows are places, and strain and stress are those of particles. */
+static inline bool points_on_particles(const Points *points)
+{
+  return points->components == 6 && !points->on_bonds;
+}
+
 typedef struct PointsSpec {
   int components;
-  bool plane_stress;
+  bool plane_stress, on_bonds;
   const PointsRun *runs; /* borrowed while points are made */
   int64_t run_count;
   const Material *materials; /* borrowed for good */

@@ -39,7 +39,7 @@ void element_stiffness(int axes, const double size[3], ElementStiffness *s)
 static void find_tangent(const Region *region, int axes, int32_t place, ElementModuli *m)
 {
   double d[36], normal = 0, beside = 0, shear = 0;
-  if (region->points.components != 6 || region->is_linear || !region->points.tangent) return;
+  if (!points_on_particles(&region->points) || region->is_linear || !region->points.tangent) return;
   points_tangent(&region->points, place, d);
   for (int r = 0; r < axes; ++r)
     for (int k = 0; k < axes; ++k) *(r == k ? &normal : &beside) += d[6 * r + k];

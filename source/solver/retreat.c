@@ -16,7 +16,7 @@ static int32_t first_bad_particle(const Particles *p)
 static const char *describe_failed_law(const Domain *d, int64_t place, char *words, size_t size)
 {
   const Material *m = &d->materials[d->material[place / SLICE]];
-  if (domain_region(d, place)->points.components != 6) {
+  if (!points_on_particles(&domain_region(d, place)->points)) {
     snprintf(words, size, "the law %s of material '%s' could not be integrated in one of its bonds", m->law_name,
              m->name);
     return words;

@@ -105,11 +105,14 @@ int stable_step(Domain *d, double *step, Error *error)
     failed |= !(base_f[k] = places_array(places, "stable step", error));
     for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_array(places, "stable step", error));
   }
-  bool tensors = false;
-  for (int r = 0; r < d->region_count; ++r) tensors |= d->regions[r].points.components == 6;
-  for (int k = 0; k < 6 && tensors; ++k) {
-    failed |= !(trial.strain[k] = places_array(places, "stable step", error));
-    failed |= !(trial.stress[k] = places_array(places, "stable step", error));
+  int64_t rows = 0; /* of points with tensors: one set for all of them, as those of several regions share theirs */
+  for (int r = 0; r < d->region_count; ++r)
+    if (d->regions[r].points.components == 6)
+      rows = rows > d->regions[r].points.count ? rows : d->regions[r].points.count;
+  if (rows && rows < places) rows = places;
+  for (int k = 0; k < 6 && rows; ++k) {
+    failed |= !(trial.strain[k] = places_array(rows, "stable step", error));
+    failed |= !(trial.stress[k] = places_array(rows, "stable step", error));
   }
   if (failed) goto done;
 

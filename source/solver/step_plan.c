@@ -138,11 +138,24 @@ static int64_t whole_steps(const Explicit *s)
   return isnan(s->fixed) ? 0 : (int64_t)floor((s->clock->stage_end - s->clock->stage_time) / s->fixed + 1e-6);
 }
 
+/** Refuses formulations that free motions make grow. */
+static int check_formulations(const Solver *run, const ExplicitSpec *spec, Error *error)
+{
+  const Domain *d = run->domain;
+  for (int r = 0; r < d->region_count; ++r) {
+    const Region *region = &d->regions[r];
+    const char *why = region->type->refuses_explicit ? region->type->refuses_explicit(region->formulation) : NULL;
+    if (why) return node_error(run->reader->document, spec->head.node, error, "explicit: %s", why);
+  }
+  return BRECCIA_OK;
+}
+
 int explicit_plan(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
   const ExplicitSpec *spec = s->spec;
-  int status = find_stable_step(s, error);
+  int status = check_formulations(run, spec, error);
+  if (!status) status = find_stable_step(s, error);
   if (status || (status = check_time_step(run, spec, s->clock->stable, warning, error))) return status;
   s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
   const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
@@ -175,8 +188,9 @@ double explicit_last_step(const Explicit *s)
 int explicit_check(Solver *run, const void *spec, Error *error)
 {
   double stable;
-  if (isnan(((const ExplicitSpec *)spec)->time_step)) return BRECCIA_OK;
-  const int status = find_damped(run->domain, run->loading, spec, &stable, error);
+  int status = check_formulations(run, spec, error);
+  if (status || isnan(((const ExplicitSpec *)spec)->time_step)) return status;
+  status = find_damped(run->domain, run->loading, spec, &stable, error);
   return status ? status : check_time_step(run, spec, stable, NULL, error);
 }
 

@@ -70,6 +70,14 @@ static const struct Covered {
       {"plane strain", "lattice weights: plain", BODIES},
       {"plane stress", "volume correction: partial-beyond", BODIES},
       {"plane stress", "influence: conical", BODIES}}},
+    {"hybrid",
+     {{"3-D", "form: variational", BODIES},
+      {"3-D", "form: variational, strain: small, influence: inverse, own bond: 0.7", BODIES},
+      {"3-D", "form: pairwise, influence: conical", BODIES},
+      {"plane strain", "form: variational, volume correction: partial", BODIES},
+      {"plane strain", "form: pairwise, strain: small", BODIES},
+      {"plane stress", "form: variational", BODIES},
+      {"plane stress", "form: pairwise", BODIES}}},
 };
 
 #define CUT "cracks: [{cut: {line: [[3.05, -9], [3.05, 2.1]]}}]\n"
@@ -125,7 +133,7 @@ static breccia_model *body(const char *formulation, const Law *law, const Settin
     snprintf(shapes, sizeof shapes, "a: {material: m, %s}", blocks[0]);
   breccia_model *model =
       model_of("materials: {m: {model: %s, density: 1, %s}}\nperidynamics: {formulation: %s, space: %s, horizon: 2.5, "
-               "%s}\nbody: {%s}\n%ssolve: {explicit: {steps: 1, time step: 1e-6}}\n",
+               "%s}\nbody: {%s}\n%ssolve: {implicit: {end time: 1}}\n",
                law->name, law->words, formulation, setting->space, setting->words, shapes, line ? "" : CUT);
   if (number == SCATTERED) remove(FILE_NAME);
   return model;
@@ -342,7 +350,7 @@ static void check_strains(Domain *d, const Vectors *v, double h)
   for (int64_t i = 0; i < p->places; ++i) {
     double change[6];
     const Region *region = domain_region(d, i);
-    if (region->points.components != 6) continue;
+    if (!points_on_particles(&region->points)) continue;
     assert_int_equal(region->type->point(region->formulation, i, &point, NULL), 0);
     operator_strain(&point, p->displacement, v->of, change);
     for (int k = 0; k < 6 && point.components; ++k)
@@ -393,7 +401,7 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
       work += f.of[k][i] * v.of[k][i];
       size += fabs(f.of[k][i] * v.of[k][i]);
     }
-  if (law->elastic) assert_near(work, -(energies[1] - energies[0]) / (2 * h), 1e-6 * size);
+  if (law->elastic && !strstr(name, "pairwise")) assert_near(work, -(energies[1] - energies[0]) / (2 * h), 1e-6 * size);
   move(d, &v, -h);
   if (d->strain[0]) check_strains(d, &v, h);
   forget(&f);
