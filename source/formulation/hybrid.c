@@ -86,7 +86,8 @@ static void destroy(void *formulation)
   free(h->met_first);
   free(h->met);
   free(h->tried);
-  for (int k = 0; k < 9; ++k) places_free(&h->force[k]);
+  places_free(&h->force);
+  places_free(&h->shown);
   free(h);
 }
 
@@ -107,10 +108,10 @@ static void *create(const FormulationParts *parts, Error *error)
                 .own = spec->own,
                 .dimensions = parts->body->dimensions,
                 .hidden = {-1, -1}};
-  bool failed = hybrid_measure(h, error) != BRECCIA_OK;
-  for (int k = 0; k < (h->pairwise ? 3 : 9) && !failed; ++k)
-    failed = !(h->force[k] = places_array(h->bonds->count, "forces of bonds", error));
-  if (!failed) return h;
+  if (!hybrid_measure(h, error) &&
+      (h->force = places_array(HYBRID_FORCE * h->bonds->count, "forces of bonds", error)) &&
+      (h->shown = places_array(LANES * h->particles->places, "displacements", error)))
+    return h;
   destroy(h);
   return NULL;
 }
@@ -139,8 +140,26 @@ void hybrid_strain(const Hybrid *h, const double g[9], double strain[6])
   }
 }
 
-/** G of a row at displacements u, as it is now; 0 of rows that carry nothing. */
-static void present_gradient(const Hybrid *h, int64_t row, double *const u[3], double gradient[9])
+static int64_t show_displacements(void *formulation, const Sweep *sweep)
+{
+  const Hybrid *h = formulation;
+  for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; ++place)
+    for (int k = 0; k < 3; ++k) h->shown[LANES * place + k] = h->particles->displacement[k][place];
+  return -1;
+}
+
+/** G of a row by the displacements shown, 0 if it carries nothing, column by column. */
+LANES_INLINE void shown_gradient(const Hybrid *h, int64_t row, Lanes column[3])
+{
+  column[0] = column[1] = column[2] = lanes_set(0);
+  for (int64_t n = h->first[row]; n < h->first[row + 1] && !h->idle[row]; ++n) {
+    const Lanes u = lanes_load(h->shown + LANES * (int64_t)h->member[n]);
+    for (int j = 0; j < 3; ++j) column[j] += u * lanes_set(h->g[n][j]);
+  }
+}
+
+/** G of a row at other displacements. */
+static void gradient_at(const Hybrid *h, int64_t row, double *const u[3], double gradient[9])
 {
   if (h->idle[row])
     memset(gradient, 0, 9 * sizeof *gradient);
@@ -149,16 +168,17 @@ static void present_gradient(const Hybrid *h, int64_t row, double *const u[3], d
 }
 
 /** Strains of a batch of rows, and G for the next phase. In a linearised step changes of both. */
-static int64_t deform(void *formulation, const Sweep *sweep)
+BRECCIA_CLONES
+static void deform_rows(const Hybrid *h, const Sweep *sweep)
 {
-  const Hybrid *h = formulation;
   for (int i = 0; i < sweep->rows; ++i) {
     double g[9], strain[6];
-    present_gradient(h, sweep->row + i, h->particles->displacement, g);
-    for (int k = 0; k < 9; ++k) sweep->carry[k * BATCH + i] = g[k];
+    Lanes column[3];
+    shown_gradient(h, sweep->row + i, column);
+    for (int k = 0; k < 9; ++k) sweep->carry[k * BATCH + i] = g[k] = column[k % 3][k / 3];
     if (sweep->at && h->finite) { /* of E at G, with the change g: sym (I + G)^T g */
       double at[9];
-      present_gradient(h, sweep->row + i, sweep->at, at);
+      gradient_at(h, sweep->row + i, sweep->at, at);
       for (int k = 0; k < 6; ++k) {
         const int r = symmetric_row[k], s = symmetric_column[k];
         strain[k] = g[3 * r + s] + g[3 * s + r];
@@ -175,6 +195,11 @@ static int64_t deform(void *formulation, const Sweep *sweep)
     for (int k = 0; k < 6; ++k)
       if (k != ZZ || !h->points->plane_stress) sweep->strain[k][i] = strain[k];
   }
+}
+
+static int64_t deform(void *formulation, const Sweep *sweep)
+{
+  deform_rows(formulation, sweep);
   return -1;
 }
 
@@ -206,41 +231,46 @@ static int64_t respond(void *formulation, const Sweep *sweep)
     if (sweep->at && h->finite) {
       double held[9];
       full_tensor(h->points->stress, (int)row, held);
-      present_gradient(h, row, sweep->at, at);
+      gradient_at(h, row, sweep->at, at);
       add_deformed(at, stress, true, p);
       add_deformed(g, held, false, p);
     } else {
       add_deformed(h->finite ? g : nothing, stress, true, p);
     }
-    const bool idle = h->idle[row];
-    for (int k = 0; k < 9 && !h->pairwise; ++k) h->force[k][row] = idle ? 0 : h->volume[row] * p[k];
-    for (int k = 0; k < 3 && h->pairwise; ++k) {
-      const double *a = h->area[row];
-      h->force[k][row] = idle ? 0 : p[3 * k] * a[0] + p[3 * k + 1] * a[1] + p[3 * k + 2] * a[2];
+    const double *a = h->area[row], factor = h->idle[row] ? 0 : h->pairwise ? 1 : h->volume[row];
+    double *to = h->force + HYBRID_FORCE * row;
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3 && !h->pairwise; ++j) to[LANES * j + k] = factor * p[3 * k + j];
+      if (h->pairwise) to[k] = factor * (p[3 * k] * a[0] + p[3 * k + 1] * a[1] + p[3 * k + 2] * a[2]);
     }
   }
   return -1;
 }
 
 /** Forces on a batch of particles from the points that they have a part in. */
-static int64_t resist(void *formulation, const Sweep *sweep)
+BRECCIA_CLONES
+static void resist_places(const Hybrid *h, const Sweep *sweep)
 {
-  const Hybrid *h = formulation;
   const Particles *p = h->particles;
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; ++place) {
-    double sum[3] = {0};
+    Lanes sum = lanes_set(0);
     for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
       const HybridMeeting *met = &h->met[n];
+      const double *force = h->force + HYBRID_FORCE * (int64_t)met->row;
       if (h->pairwise) {
-        for (int k = 0; k < 3; ++k) sum[k] += met->member ? -h->force[k][met->row] : h->force[k][met->row];
+        sum += lanes_set(met->member ? -1 : 1) * lanes_load(force);
         continue;
       }
       const double *g = h->g[h->first[met->row] + met->member];
-      for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j) sum[k] -= h->force[3 * k + j][met->row] * g[j];
+      for (int j = 0; j < 3; ++j) sum -= lanes_load(force + LANES * j) * lanes_set(g[j]);
     }
     for (int k = 0; k < 3; ++k) p->internal[k][place] = p->volume[place] > 0 ? sum[k] / p->volume[place] : 0;
   }
+}
+
+static int64_t resist(void *formulation, const Sweep *sweep)
+{
+  resist_places(formulation, sweep);
   return -1;
 }
 
@@ -287,9 +317,9 @@ static size_t bytes(const void *formulation)
 {
   const Hybrid *h = formulation;
   const size_t rows = (size_t)h->bonds->count, places = (size_t)h->particles->places;
-  return rows * (sizeof *h->first + sizeof *h->area + sizeof *h->volume + 1 + (h->pairwise ? 3 : 9) * sizeof(double)) +
-         (size_t)h->first[rows] * (sizeof *h->member + sizeof *h->g) + places * sizeof *h->met_first +
-         (size_t)h->met_first[places] * sizeof *h->met;
+  return rows * (sizeof *h->first + sizeof *h->area + sizeof *h->volume + 1 + HYBRID_FORCE * sizeof(double)) +
+         (size_t)h->first[rows] * (sizeof *h->member + sizeof *h->g) +
+         places * (sizeof *h->met_first + LANES * sizeof(double)) + (size_t)h->met_first[places] * sizeof *h->met;
 }
 
 extern const FormulationType formulation_bond_based;
@@ -310,9 +340,11 @@ const FormulationType formulation_hybrid = {
     .create = create,
     .destroy = destroy,
     .renew = hybrid_renew,
-    .phases = {{.run = deform, .reads = OF_DISPLACEMENTS, .writes = OF_STRAINS, .of_neighbours = OF_DISPLACEMENTS},
-               {.run = respond, .reads = OF_STRESSES, .writes = OF_STATES},
-               {.run = resist, .writes = OF_FORCES, .of_neighbours = OF_STATES}},
+    .phases =
+        {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
+         {.run = deform, .reads = OF_DISPLACEMENTS, .writes = OF_STRAINS, .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN},
+         {.run = respond, .reads = OF_STRESSES, .writes = OF_STATES},
+         {.run = resist, .writes = OF_FORCES, .of_neighbours = OF_STATES}},
     .linearise = linearise,
     .half_state = hybrid_half_state,
     .point_count = hybrid_point_count,

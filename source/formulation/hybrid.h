@@ -10,6 +10,8 @@
 
 #include "formulation/formulation.h"
 
+enum { HYBRID_FORCE = 3 * LANES };
+
 /** A point of which a place is a member. */
 typedef struct HybridMeeting {
   int32_t row;
@@ -36,7 +38,10 @@ typedef struct Hybrid {
   uint8_t *idle;      /* [rows] 1: it carries nothing: no bond, a broken one, or its members span no space any more */
   int64_t *met_first; /* [places + 1] */
   HybridMeeting *met; /* of each place, in the order of rows */
-  double *force[9];   /* [rows] F S times the volume; pairwise: force on the owner, three numbers */
+  /** [rows][HYBRID_FORCE] F S times the volume, column by column; pairwise the force on the owner alone. What bonds read of one another lies together:
+   *  in arrays of one component each most of the time was waiting for them. */
+  double *force;
+  double *shown;      /* [places][LANES] displacements, for the same reason */
   double (*tried)[3]; /* [most members of a row] for geometries that are tried out, by one thread */
   int32_t hidden[2];  /* two places whose bond counts as broken meanwhile; -1: none */
 } Hybrid;
@@ -48,6 +53,11 @@ int hybrid_measure(Hybrid *hybrid, Error *error);
 bool hybrid_weigh(const Hybrid *hybrid, int64_t row, double (*g)[3]);
 /** Bonds of a slice have broken or were mended. */
 void hybrid_renew(void *formulation, int64_t slice);
+/** Component (k, j) of F S times the volume of a row; of pairwise bonds component k of the force with j = 0. */
+static inline double hybrid_force(const Hybrid *h, int64_t row, int k, int j)
+{
+  return h->force[HYBRID_FORCE * row + LANES * j + k];
+}
 /** Number of places that a row has as members. */
 static inline int hybrid_members(const Hybrid *h, int64_t row)
 {

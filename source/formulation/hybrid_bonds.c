@@ -44,8 +44,8 @@ static void member_force(const Hybrid *h, int64_t row, int member, double force[
   const double *g = h->g[h->first[row] + member];
   for (int k = 0; k < 3; ++k) {
     force[k] = 0;
-    if (h->pairwise && member < 2) force[k] = member ? -h->force[k][row] : h->force[k][row];
-    for (int j = 0; j < 3 && !h->pairwise; ++j) force[k] -= h->force[3 * k + j][row] * g[j];
+    if (h->pairwise && member < 2) force[k] = (member ? -1 : 1) * hybrid_force(h, row, k, 0);
+    for (int j = 0; j < 3 && !h->pairwise; ++j) force[k] -= hybrid_force(h, row, k, j) * g[j];
   }
 }
 
