@@ -141,5 +141,5 @@ void domain_put_stresses_by(Domain *d)
   Points *points = &d->regions[0].points; /* those of several regions are one set of arrays, and are noted */
   if (!points->stress_before[0]) return;
   points_put_by(points);
-  for (int k = 0; k < 6; ++k) d->stress[k] = points->stress[k];
+  for (int k = 0; k < 6 && points_on_particles(points); ++k) d->stress[k] = points->stress[k];
 }

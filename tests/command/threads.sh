@@ -82,6 +82,25 @@ watch: {energy: {energy: yes, every: 10}}
 results: {number: 3, precision: double, checkpoint steps: 100}
 pictures: []
 Y
+# points in space on bonds, of two materials, some of which yield
+cat > hybrid.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials:
+  hard: {model: j2, density: 2, Young modulus: 40 MPa, Poisson ratio: 0.3, yield stress: 80 kPa, hardening modulus: 5 MPa}
+  soft: {model: elastic, density: 2, Young modulus: 30 MPa, Poisson ratio: 0.2}
+body:
+  left: {material: hard, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [0.7, 0.6, 0.3]}}}
+  right: {material: soft, spacing: 0.1, shape: {box: {from: [0.7, 0, 0], to: [1.4, 0.6, 0.3]}}}
+peridynamics: {formulation: hybrid, horizon: 1.5 spacings}
+failure: {critical stretch: 0.004}
+loads:
+  - {on: {face: x-, layers: 2}, velocity: [-2, 0, 0]}
+  - {on: {face: x+, layers: 2}, velocity: [2, 0, 0]}
+solve: {explicit: {steps: 120}}
+watch: {energy: {energy: yes, every: 10}}
+results: {number: 3, precision: double, checkpoint steps: 50}
+pictures: []
+Y
 # begins under stress, which hardens a part of it
 cat > stressed.yaml <<'Y'
 units: {length: m, force: kN, time: s}
@@ -128,7 +147,7 @@ for server in one two; do
 done
 several="2 3"
 [ -n "${BRECCIA_SANITIZED:-}" ] && several=3
-for deck in correspondence ordinary bonds regions stressed served; do
+for deck in correspondence ordinary bonds regions hybrid stressed served; do
   run $deck 1
   for threads in $several; do
     run $deck $threads
