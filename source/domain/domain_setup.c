@@ -60,6 +60,7 @@ static int create_failure(Domain *d, const DeckReader *reader, const FailureSpec
   double *limit = memory_zeroed((size_t)d->material_count, sizeof(double), "failure", reader->error);
   bool *present = memory_zeroed((size_t)d->material_count, sizeof(bool), "failure", reader->error);
   int status = limit && present ? create_failure_parts(d, lengths->influence, reader->error) : BRECCIA_FAILURE;
+  d->failure.keys = spec ? spec->keys : NULL;
   for (int k = 0; k < d->material_count && !status; ++k) d->failure.limit[k] = INFINITY;
   for (int r = 0; r < d->region_count && !status; ++r) {
     for (int k = 0; k < d->material_count; ++k)

@@ -2,3 +2,4 @@
  * the one of decks that do not say which. */
 CRITERION(critical_stretch)
 CRITERION(critical_energy)
+CRITERION(critical_stress)

@@ -68,6 +68,7 @@ typedef struct FailureRegion {
 
 struct Failure {
   const Criterion *criterion; /* NULL: bonds do not break */
+  const void *keys;           /* of the criterion, borrowed from the deck; NULL: the deck gives none */
   double *limit;              /* [materials] infinite: never; a bond between two has the smaller one */
   const int32_t *material;    /* [slices] */
   int material_count;

@@ -189,6 +189,10 @@ struct FormulationType {
   /** How a bond has changed as its particle sees it: y less the reference vector, turned as the particle's family has turned. Half of its product
    *  with the half state is the particle's share of the bond's energy. NULL: y - |xi| y / |y|, for forces along bonds. */
   void (*elongation)(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
+  /** Tension across the section of a bond and shear along it, of the stress answered last; those of a turned body stay the same. NULL: bonds have no
+   *  section. */
+  void (*section_stress)(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
+                         double *shear);
   /** From now on keeps what `elongation` and `energy_room` need. NULL: nothing. */
   int (*keep_turns)(void *formulation, Error *error);
   /** Looks for bonds of which a slice's own particles hold more than half of an energy. NULL: nobody knows.

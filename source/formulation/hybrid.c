@@ -354,6 +354,7 @@ const FormulationType formulation_hybrid = {
     .stored_energy = hybrid_stored_energy,
     .bond_energy = hybrid_bond_energy,
     .elongation = hybrid_elongation,
+    .section_stress = hybrid_section_stress,
     .characteristic_length = hybrid_characteristic_length,
     .former_bonds = former_bonds,
     .refuses_explicit = refuses_explicit,

@@ -78,6 +78,8 @@ void hybrid_stored_energy(const void *formulation, int64_t place, double time, S
 void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                         StoredEnergy *energy);
 void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
+void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
+                           double *shear);
 void hybrid_place_gradient(const void *formulation, int64_t place, double f[9]);
 void hybrid_stress(const void *formulation, int64_t place, double stress[6]);
 double hybrid_characteristic_length(const BondLength *of);

@@ -128,6 +128,26 @@ void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int
   }
 }
 
+void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
+                           double *shear)
+{
+  const Hybrid *h = formulation;
+  int64_t rows[2];
+  bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
+  double stress[6], normal[3], square = 0, traction = 0;
+  for (int k = 0; k < 6; ++k) stress[k] = (h->points->stress[k][rows[0]] + h->points->stress[k][rows[1]]) / 2;
+  for (int k = 0; k < 3; ++k) square += h->area[rows[0]][k] * h->area[rows[0]][k];
+  for (int k = 0; k < 3; ++k) normal[k] = h->area[rows[0]][k] / sqrt(square);
+  *tension = 0;
+  for (int k = 0; k < 3; ++k) {
+    double t = 0;
+    for (int j = 0; j < 3; ++j) t += stress[symmetric_place[3 * k + j]] * normal[j];
+    traction += t * t;
+    *tension += t * normal[k];
+  }
+  *shear = sqrt(fmax(0, traction - *tension * *tension));
+}
+
 /* ---- energies ---- */
 
 static bool counts(const Hybrid *h, int k)

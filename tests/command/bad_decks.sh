@@ -234,7 +234,7 @@ refuse "$bars; s/{model: elastic-1d, density: 1, Young modulus: 1 GPa}/{model: e
   16:22 "'elastic-brittle' of material 'clay' says by itself what bonds carry"
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, zero-energy control: {none: yes}}/" 15:41 'zero-energy control: is for correspondence'
 refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, calibration: elastic}/" 15:54 "calibration: 'elastic' is not known; choose from continuum, uniform-expansion, uniaxial"
-refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, strain: small}/" 15:41 'strain: is for correspondence; bond-based does not have it: leave it out'
+refuse "$bars; s/^peri.*/peridynamics: {formulation: bond-based, strain: small}/" 15:41 'strain: is for correspondence, hybrid; bond-based does not have it: leave it out'
 refuse 's/^peri.*/peridynamics: {strian: small}/' 15:16 "unknown key 'strian'; did you mean 'strain'?"
 refuse 's/^peri.*/peridynamics: {formulation: bonds, strian: small}/' 15:29 "formulation: 'bonds' is not known"
 refuse 's/^peri.*/peridynamics: {surface correction: energy}/' 15:16 'surface correction: is for bond-based; correspondence does not have it: leave it out'

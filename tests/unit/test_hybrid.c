@@ -218,6 +218,43 @@ static void breaking_keeps_its_books(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Bonds break at the tension across their section, or at the shear along it: a plate that is pulled evenly breaks across the pull first, one that is
+ *  sheared by bonds that stand as the shear does. */
+static void bonds_break_at_stresses_on_their_section(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *words;
+    double f[9];
+    bool breaks;
+  } of[] = {{"bond tensile strength: 1", {1 + 0.98e-4, 0, 0, 0, 1, 0, 0, 0, 1}, false},
+            {"bond tensile strength: 1", {1 + 1.02e-4, 0, 0, 0, 1, 0, 0, 0, 1}, true},
+            {"bond tensile strength: 9, bond shear strength: 0.5", {1 + 0.98e-4, 0, 0, 0, 1, 0, 0, 0, 1}, false},
+            {"bond tensile strength: 9, bond shear strength: 0.5", {1 + 1.02e-4, 0, 0, 0, 1, 0, 0, 0, 1}, true}};
+  for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
+    breccia_model *
+        m = /* without a Poisson ratio the stress is E times the strain; the diagonal has half of it as tension and as shear */
+        model_of(UNITS
+                 "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0}}\n"
+                 "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: {particles: "
+                 "[9, 7]}}}}\n"
+                 "peridynamics: {formulation: hybrid, space: plane strain, horizon: 1.5 spacings}\n"
+                 "failure: {criterion: critical bond stress, %s}\n"
+                 "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                 of[k].words);
+    deform_uniformly(m, of[k].f);
+    compute_forces(m);
+    step_surely(m, 1);
+    assert_int_equal(m->domain.broken_count > 0, of[k].breaks);
+    breccia_model_destroy(&m);
+  }
+  char *refusal =
+      refusal_of(UNITS SOFT_SOLID "body: {b: {material: m, spacing: 1, shape: {box: {particles: [3, 3, 3]}}}}\n"
+                                  "failure: {criterion: critical bond stress, bond tensile strength: 1}\n" EXPLICIT);
+  assert_non_null(strstr(refusal, "bonds of correspondence have no stress on a section"));
+  free(refusal);
+}
+
 /** Tension stiffness of a law that softens goes through its end without control: a bar pulled apart spends about its fracture energy. The length over
  *  which the law spreads it is that of docs/theory.md 5: 1.207 spacings at 1.5 in the plane. */
 static void a_torn_bar_spends_its_fracture_energy(void **state)
@@ -260,6 +297,7 @@ int main(void)
       cmocka_unit_test(free_bodies_keep_their_energy),
       cmocka_unit_test(fibres_are_bond_based),
       cmocka_unit_test(breaking_keeps_its_books),
+      cmocka_unit_test(bonds_break_at_stresses_on_their_section),
       cmocka_unit_test(a_torn_bar_spends_its_fracture_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
