@@ -72,14 +72,20 @@ double increment_end(const Solver *run, double length)
   return end;
 }
 
-static void note_places(void *context)
+static void note_rows(void *context)
+{
+  Increment *i = context;
+  const Domain *d = i->domain;
+  TEAM_FOR (b, d->batch_count) state_note_places(&i->before, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
+}
+
+static void note_forces(void *context)
 {
   Increment *i = context;
   const Domain *d = i->domain;
   const Particles *p = d->particles;
   TEAM_FOR (b, d->batch_count) {
     const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
-    state_note_places(&i->before, first, last);
     for (int k = 0; k < 3; ++k) {
       memcpy(i->internal[k] + first, p->internal[k] + first, sizeof(double) * (size_t)(last - first));
       memcpy(i->external[k] + first, p->external[k] + first, sizeof(double) * (size_t)(last - first));
@@ -87,11 +93,17 @@ static void note_places(void *context)
   }
 }
 
-void increment_begin(Increment *i)
+void increment_begin_again(Increment *i)
 {
   state_note_others(&i->before);
-  team_run(note_places, i);
+  team_run(note_rows, i);
   domain_put_stresses_by(i->domain);
+}
+
+void increment_begin(Increment *i)
+{
+  team_run(note_forces, i);
+  increment_begin_again(i);
 }
 
 void increment_retreat(Increment *i)

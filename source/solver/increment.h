@@ -28,7 +28,9 @@ double increment_end(const Solver *solver, double length);
 
 /** Notes the state, so that it can be had back. */
 void increment_begin(Increment *increment);
-/** The state as it was noted. */
+/** The same where an increment is solved again: forces stay noted as they were at its beginning. */
+void increment_begin_again(Increment *increment);
+/** The state as it was noted; of loads, what they exerted when forces were noted. */
 void increment_retreat(Increment *increment);
 /** What laws and forces remember of the increment is so from now on.
  *  @param[in] moved  changes of displacements in it */

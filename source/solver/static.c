@@ -83,6 +83,13 @@ const Section static_section = {.name = "static",
                                 .size = sizeof(StaticSpec),
                                 FIELDS(static_fields)};
 
+/** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these
+ *  two, whatever was tried on the way. */
+typedef struct Way {
+  double *moved[3];        /* made where an increment is solved again; else what Newton's method has moved is all */
+  double bonds, given_off; /* works booked of it */
+} Way;
+
 typedef struct Static {
   Domain *domain;
   const Loading *loading;
@@ -93,6 +100,7 @@ typedef struct Static {
   Relaxation relaxation; /* empty where Newton's method serves */
   Control control;
   Increment increment;
+  Way way;
   double next;  /* length of the increment to be tried next */
   int64_t cuts; /* in the stage */
 } Static;
@@ -111,6 +119,7 @@ static void destroy(Solver *run)
   Static *s = run->own;
   newton_destroy(&s->newton);
   relaxation_destroy(&s->relaxation);
+  vectors_free(s->way.moved);
   control_destroy(&s->control);
   increment_destroy(&s->increment);
   free(s);
@@ -265,33 +274,43 @@ static int begin(Solver *run, Error *error)
 }
 
 /** Works by the trapezium rule. Forces out of balance at the beginning, of a load that was there already or of bonds that have broken, do work that the
- *  body gives off on its way to rest. */
-static void book(Static *s)
+ *  body gives off on its way to rest.
+ *  @param[in] moved  on the whole way */
+static void book(Static *s, double *const moved[3])
 {
   const Particles *p = s->domain->particles;
-  double *const *moved = s->newton.moved, bonds = 0;
+  const Increment *begin = &s->increment;
+  double *const *before = s->newton.change; /* forces out of balance: of corrections nothing is wanted any more */
+  double bonds = 0;
   for (int64_t b = 0; b < s->domain->batch_count; ++b) {
     double part = 0;
     for (int k = 0; k < 3; ++k)
       for (int64_t i = s->domain->batches[b].first * SLICE; i < s->domain->batches[b].last * SLICE; ++i) {
-        part -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * moved[k][i];
-        s->increment.internal[k][i] = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]);
+        part -= 0.5 * p->volume[i] * (begin->internal[k][i] + p->internal[k][i]) * moved[k][i];
+        before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
       }
     bonds += part;
   }
-  unknowns_gather(&s->newton.linear.unknowns,
-                  s->increment.internal); /* what was out of balance: nobody needs the forces any more */
-  const double given_off = 0.5 * (unknowns_product(&s->newton.linear.unknowns, s->increment.internal, moved) +
+  unknowns_gather(&s->newton.linear.unknowns, before);
+  const double given_off = 0.5 * (unknowns_product(&s->newton.linear.unknowns, before, moved) +
                                   unknowns_product(&s->newton.linear.unknowns, s->newton.force, moved));
-  s->ledger->bond_work += bonds;
-  s->ledger->damping_work += given_off;
-  s->ledger->external_work += bonds + given_off;
+  s->ledger->bond_work += bonds - s->way.bonds;
+  s->ledger->damping_work += given_off - s->way.given_off;
+  s->ledger->external_work += bonds + given_off - s->way.bonds - s->way.given_off;
+  s->way.bonds = bonds;
+  s->way.given_off = given_off;
 }
 
-/** One try to come to equilibrium at a time of the run. */
-static NewtonOutcome try_increment(Static *s, double end, Error *error)
+/** One try to come to equilibrium at a time of the run.
+ *  @param[in] again  it goes on with the way of the try before, which came to equilibrium at the same time */
+static NewtonOutcome try_increment(Static *s, double end, bool again, Error *error)
 {
-  increment_begin(&s->increment);
+  if (again) {
+    increment_begin_again(&s->increment);
+  } else {
+    increment_begin(&s->increment);
+    s->way.bonds = s->way.given_off = 0;
+  }
   domain_tell_time(s->domain, end, end - s->clock->time);
   if (s->spec->control) {
     const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
@@ -302,12 +321,25 @@ static NewtonOutcome try_increment(Static *s, double end, Error *error)
                         : newton_solve(&s->newton, end, error);
   if (outcome != NEWTON_CONVERGED) {
     increment_retreat(&s->increment);
+    if (again) newton_apply_loads(&s->newton, s->clock->time);
     return outcome;
   }
-  book(s);
+  if (again) vectors_combine(s->domain, 1, s->way.moved, 1, s->newton.moved);
+  book(s, again ? s->way.moved : s->newton.moved);
   if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
   increment_accept(&s->increment, s->newton.moved);
   return outcome;
+}
+
+/** Once more at the same time, on the way of the last try, which came to equilibrium.
+ *  @param[in] anew  it was the first on this way */
+static int try_again(Static *s, bool anew, NewtonOutcome *outcome, Error *error)
+{
+  const int64_t places = s->domain->particles->places;
+  if (!s->way.moved[0] && !vectors_make(s->way.moved, places, "static solver", error)) return BRECCIA_FAILURE;
+  if (anew) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
+  *outcome = try_increment(s, s->clock->time, true, error);
+  return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
 /** Lets bonds break and the body find equilibrium again, in turn, until no bond is beyond its limit.
@@ -321,7 +353,7 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
          (broken = increment_break(&s->increment, s->clock, s->spec->bonds_at_once)) > 0) {
     if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
     text_add(&run->log, "  %lld bonds break\n", (long long)broken);
-    *outcome = try_increment(s, s->clock->time, error);
+    *outcome = try_increment(s, s->clock->time, false, error);
     if (*outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
   }
   return BRECCIA_OK;
@@ -336,16 +368,18 @@ static int settle(Solver *run, NewtonOutcome *outcome, Error *error)
   const double enough = 1e-2; /* of forces out of balance: what comes of so few is left to the next increment */
   Static *s = run->own;
   int status = break_bonds(run, outcome, error);
+  bool anew = true; /* the last try began a way */
   for (int k = 0; k < MOST && !status && *outcome == NEWTON_CONVERGED && domain_lags(s->domain); ++k) {
     text_add(&run->log, "  again, with the control of zero-energy modes as it is now\n");
-    const NewtonOutcome again = try_increment(s, s->clock->time, error);
-    if (again == NEWTON_FAILED) return BRECCIA_FAILURE;
+    NewtonOutcome again;
+    if (try_again(s, anew, &again, error)) return BRECCIA_FAILURE;
     if (again != NEWTON_CONVERGED) break; /* the next increment will see to it, or fail and say so */
     const bool few = s->newton.unbalanced_before < enough;
     const int64_t broken = s->domain->broken_count;
     status =
         break_bonds(run, outcome, error); /* what the stage leaves overloaded would stay whole if it was the last */
-    if (few && s->domain->broken_count == broken) break;
+    anew = s->domain->broken_count != broken;
+    if (few && !anew) break;
   }
   return status;
 }
@@ -383,7 +417,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   for (;;) {
     const double end = increment_end(run, s->next);
     text_add(&run->log, "increment %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, clock->time, end);
-    outcome = try_increment(s, end, error);
+    outcome = try_increment(s, end, false, error);
     if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     if (outcome != NEWTON_CONVERGED) {
       char words[320];

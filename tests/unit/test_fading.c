@@ -80,8 +80,12 @@ static void few_increments_at_rest_spend_no_more(void **state)
   const struct {
     const char *law, *space;
     int increments;
-  } bars[] = {{mazars, "plane stress", 20}, {plasticity, "plane strain", 11}};
-  for (int k = 0; k < 2; ++k) {
+  } bars[] = {{plasticity, "plane strain", 20},
+              {mazars, "plane stress", 20},
+              {plasticity, "plane strain", 30},
+              {flowing, "plane strain", 20}};
+  const int count = under_sanitizers() ? 1 : 4;
+  for (int k = 0; k < count; ++k) {
     char drawn[400];
     snprintf(drawn, sizeof drawn,
              "loads: [{on: {face: x-, layers: 3}, displacement: [-0.15e-3, 0], history: {ramp to: 1}},\n"
