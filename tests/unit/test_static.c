@@ -228,6 +228,7 @@ static const struct {
     {"mazars, Young modulus: 30e6, Poisson ratio: 0.2, tensile strength: 3000, fracture energy: 0.1", "correspondence",
      "[0, 0, 0.0004]"},
     {"j2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10", "ordinary", "[0, 0, 0.01]"},
+    {"j2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening modulus: 1e3", "hybrid", "[0, 0, 0.01]"},
     {"menegotto-pinto, Young modulus: 2e8, yield stress: 2e5", "bond-based", "[0.003, 0, 0]"},
     {"concrete02, compressive strength: 34000", "bond-based", "[-0.001, 0, 0.0004]"},
     {"kent-scott-park, compressive strength: 34000", "bond-based", "[-0.001, 0, 0.0004]"},
