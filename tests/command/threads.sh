@@ -92,10 +92,10 @@ body:
   left: {material: hard, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [0.7, 0.6, 0.3]}}}
   right: {material: soft, spacing: 0.1, shape: {box: {from: [0.7, 0, 0], to: [1.4, 0.6, 0.3]}}}
 peridynamics: {formulation: hybrid, horizon: 1.5 spacings}
-failure: {critical stretch: 0.004}
+failure: {critical stretch: 0.004, near grips: hold}
 loads:
-  - {on: {face: x-, layers: 2}, velocity: [-2, 0, 0]}
-  - {on: {face: x+, layers: 2}, velocity: [2, 0, 0]}
+  - {on: {face: x-, layers: 2}, velocity: [-0.6, 0, 0], history: {ramp to: 1 ms}}
+  - {on: {face: x+, layers: 2}, velocity: [0.6, 0, 0], history: {ramp to: 1 ms}}
 solve: {explicit: {steps: 120}}
 watch: {energy: {energy: yes, every: 10}}
 results: {number: 3, precision: double, checkpoint steps: 50}
