@@ -28,6 +28,14 @@ run plate-with-hole/plate --set "variables.dx=10 mm"
 near "widening of the hole" "$(value plate/side 3)" "$(exact "1000 * 0.1 / 210e6 * 0.65 * (1.05 * (1 + (2.7 / 1.3 - 1) / 2) + (2 + 2.7 / 1.3) / 1.05 - 1.05 ^ -3)")" 0.025
 near "stress above the hole" "$(value plate/edge 9)" "$(exact "1000 * (1 + 0.5 / 1.05 ^ 2 + 1.5 / 1.05 ^ 4)")" 0.08
 
+# Timoshenko and Goodier: P L^3 / (3 E I) + (4 + 5 nu) P h^2 L / (24 E I), and P (L / 2) (h / 4) / I; last column's centres half a spacing before the end
+for form in variational pairwise; do
+  run cantilever/cantilever --set "peridynamics.form=$form" --set "variables.layers=1.5"
+  near "deflection of the cantilever, $form" "$(awk "BEGIN {printf \"%.10g\", 2 * $(value cantilever/end 4) - $(value cantilever/last-two 4)}")" -0.01708333 0.02
+  near "stress in the cantilever, $form" "$(value cantilever/quarter 9)" 18750 0.02
+  rm -r "$work/cantilever"
+done
+
 # The opening to which rest.yaml comes by damping, in 6000 steps
 run plate-with-crack/static
 near "opening of the crack" "$(value static/mouth 4)" 0.0033157288 1e-6
