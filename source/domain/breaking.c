@@ -141,9 +141,27 @@ static void raise_limits(Domain *d, const Moment *moment)
   *beyond = above ? high : low;
 }
 
+/** Breaks intact bonds that can carry nothing any more, since others around them broke: what counts bonds, and contact, should know. Slices beside
+ *  broken bonds are among the suspects. @return whether there were any */
+static bool break_stranded(Domain *d, const Moment *moment)
+{
+  const Family *f = &d->family;
+  const int64_t before = d->broken_count;
+  for (int64_t s = 0; s < d->particles->slices; ++s) {
+    const Region *region = domain_region(d, s * SLICE);
+    if (!d->suspects[s] || !region->type->can_carry) continue;
+    for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane)
+        if (f->intact[slot] >> lane & 1 && !region->type->can_carry(region->formulation, s, slot, lane))
+          break_bond(d, s, slot, lane, family_bond(f, s, slot, lane).neighbour, moment);
+  }
+  return d->broken_count > before;
+}
+
 static void break_suspects(Domain *d, const Moment *moment)
 {
   judge(d, moment, BREAK_THEM);
+  while (d->broken_count > d->broken_before && !d->out_of_memory && break_stranded(d, moment)) continue;
   uint8_t *gave_up = d->gave_up;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     if (!d->suspects[s]) continue;

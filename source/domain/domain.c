@@ -125,6 +125,14 @@ const char *domain_server_problem(const Domain *d)
   return "";
 }
 
+const char *domain_flutters(const Domain *d)
+{
+  const char *why = NULL;
+  for (int r = 0; r < d->region_count && !why; ++r)
+    if (d->regions[r].type->flutters) why = d->regions[r].type->flutters(d->regions[r].formulation);
+  return why;
+}
+
 bool domain_may_stiffen(const Domain *d)
 {
   bool may = false;

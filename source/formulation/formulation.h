@@ -206,8 +206,10 @@ struct FormulationType {
   /** Critical stretch of bonds with which a plane crack takes a fracture energy. NULL: none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
-  /** Why it cannot go through explicit steps, or NULL where it can. NULL: it always can. */
-  const char *(*refuses_explicit)(const void *formulation);
+  /** Why a free body would gain energy as it moves unless its shortest waves are damped, or NULL where it would not. NULL: it never would. */
+  const char *(*flutters)(const void *formulation);
+  /** Whether an intact bond can carry anything by the bonds that are left around it; those that cannot break with the others. NULL: all can. */
+  bool (*can_carry)(const void *formulation, int64_t slice, int64_t slot, int lane);
   /** Adds what a user should know before a run, as one line; NULL: nothing. */
   void (*describe)(const void *formulation, Text *text);
   /** Bytes beyond particles, families and points. */

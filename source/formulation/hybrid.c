@@ -280,12 +280,12 @@ static int linearise(void *formulation, Error *error)
   return BRECCIA_OK;
 }
 
-static const char *refuses_explicit(const void *formulation)
+static const char *flutters(const void *formulation)
 {
   const Hybrid *h = formulation;
   if (!h->pairwise) return NULL;
   return "hybrid bonds in 'form: pairwise' gain energy in free motion, because their stiffness is not symmetric near "
-         "surfaces: expected 'form: variational' in explicit stages";
+         "surfaces";
 }
 
 static FormerBonds former_bonds(const void *formulation)
@@ -357,7 +357,8 @@ const FormulationType formulation_hybrid = {
     .section_stress = hybrid_section_stress,
     .characteristic_length = hybrid_characteristic_length,
     .former_bonds = former_bonds,
-    .refuses_explicit = refuses_explicit,
+    .flutters = flutters,
+    .can_carry = hybrid_can_carry,
     .describe = describe,
     .bytes = bytes,
 };

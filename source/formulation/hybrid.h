@@ -69,6 +69,9 @@ void hybrid_gradient(const Hybrid *hybrid, int64_t row, const double (*g)[3], do
 /** The strain that follows from it, with engineering shear. */
 void hybrid_strain(const Hybrid *hybrid, const double gradient[9], double strain[6]);
 
+/** As FormulationType describes it: whether the members of a bond's points still span space. */
+bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane);
+
 /** As FormulationType describes them (hybrid_bonds.c). */
 void hybrid_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                        double state[3]);

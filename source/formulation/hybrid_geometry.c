@@ -108,6 +108,14 @@ void hybrid_renew(void *formulation, int64_t slice)
       if (h->pairwise || h->met[n].member < 2) renew_row(h, h->met[n].row);
 }
 
+bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane)
+{
+  const Hybrid *h = formulation;
+  int64_t rows[2];
+  bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
+  return hybrid_weigh(h, rows[0], h->tried);
+}
+
 /* ---- as the body begins ---- */
 
 /** K of a place with the weights of areas: w xi (x) xi / L. */
@@ -251,7 +259,7 @@ static int refuse(const Hybrid *h, int32_t place, const char *what, Error *error
   return error_add(
       error, BRECCIA_USER_ERROR,
       "particle %d at [%g, %g, %g] %s that span no %s, so that there is no strain; the horizon is %g: give "
-      "a longer horizon, at least 1.5 spacings, or the body at least two layers in every direction",
+      "a longer horizon, or the body at least two layers in every direction",
       p->number[place], p->position[0][place], p->position[1][place], p->position[2][place], what,
       h->dimensions == 2 ? "plane" : "space", h->family->horizon);
 }

@@ -221,6 +221,10 @@ static int check(Solver *run, const void *section, Error *error)
   if (steps > 1e15)
     return node_error(run->reader->document, section_node(spec, "time step"), error,
                       "time step: %.3g steps are too many", steps);
+  const char *flutters = domain_flutters(run->domain);
+  if (flutters && !(spec->stiffness_damping > 0))
+    return node_error(run->reader->document, spec->head.node, error,
+                      "implicit: %s: expected 'form: variational', or 'stiffness damping'", flutters);
   return increment_check(run, section, "take 'explicit'", error);
 }
 

@@ -141,13 +141,10 @@ static int64_t whole_steps(const Explicit *s)
 /** Refuses formulations that free motions make grow. */
 static int check_formulations(const Solver *run, const ExplicitSpec *spec, Error *error)
 {
-  const Domain *d = run->domain;
-  for (int r = 0; r < d->region_count; ++r) {
-    const Region *region = &d->regions[r];
-    const char *why = region->type->refuses_explicit ? region->type->refuses_explicit(region->formulation) : NULL;
-    if (why) return node_error(run->reader->document, spec->head.node, error, "explicit: %s", why);
-  }
-  return BRECCIA_OK;
+  const char *why = domain_flutters(run->domain);
+  if (!why) return BRECCIA_OK;
+  return node_error(run->reader->document, spec->head.node, error,
+                    "explicit: %s: expected 'form: variational' in explicit stages", why);
 }
 
 int explicit_plan(Solver *run, Text *warning, Error *error)
