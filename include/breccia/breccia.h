@@ -400,6 +400,65 @@ BRECCIA_API int breccia_study_report(breccia_study *study, breccia_error *error)
 BRECCIA_API const char *breccia_study_table(const breccia_study *study);
 BRECCIA_API const char *breccia_study_files(const breccia_study *study);
 
+/* ---- motions of the ground and of bodies: intensity, response spectra, transfer functions ---- */
+
+typedef struct breccia_motion breccia_motion;
+
+/** Where a motion stands: accelerations, or velocities, which are differentiated. */
+typedef struct breccia_motion_file {
+  size_t size;
+  const char *
+      path; /* .AT2 or .VT2 as the PEER database writes them; two columns, times and values; or, with `column`, a CSV file with a heading */
+  const char *column; /* which one holds the values; NULL: the file has no heading, or is of the database */
+  const char *times;  /* which one holds the times, with a column; NULL: "time" */
+  const char *
+      unit; /* of values where the file does not say it: "g", "m/s2", "cm/s"; NULL: it does. Times are in s where it says nothing */
+} breccia_motion_file;
+
+BRECCIA_API int breccia_motion_load(const breccia_motion_file *file, breccia_motion **motion, breccia_error *error);
+BRECCIA_API void breccia_motion_destroy(breccia_motion **motion);
+
+typedef struct breccia_motion_wish {
+  size_t size;
+  double damping;           /* of oscillators, share of the critical one, 0 to below 1; NaN: 0.05 */
+  double shortest, longest; /* periods in s; NaN: 0.01 and 10 */
+  int periods;              /* at equal ratios from the shortest to the longest; 0: 60 in each tenfold */
+  double smoothing;         /* bandwidth of Konno and Ohmachi's window; 0: amplitudes of single frequencies; NaN: 40 */
+} breccia_motion_wish;
+
+/** Finds what the motion is. @param[in] over  the motion below it, over which it is held; NULL: none. It is read, and not kept
+ *  @param[in] wish  NULL: what each NaN and 0 of it stands for */
+BRECCIA_API int breccia_motion_analyse(breccia_motion *motion, const breccia_motion *over,
+                                       const breccia_motion_wish *wish, breccia_error *error);
+
+typedef struct breccia_intensity { /* in m and s */
+  size_t size;
+  double acceleration, velocity, displacement; /* largest sizes; from rest, without a correction of the baseline */
+  double arias;                                /* pi / (2 g) times the integral of squared accelerations */
+  double from, to;                             /* times at which 5 and 95 % of that have come; NaN of no motion */
+} breccia_intensity;
+
+/** @return 0 if the struct has no size, else 1 */
+BRECCIA_API int breccia_motion_intensity(const breccia_motion *motion, breccia_intensity *intensity);
+
+enum {
+  BRECCIA_MOTION_HISTORY,  /* time, acceleration, velocity, displacement, Husid's curve */
+  BRECCIA_MOTION_RESPONSE, /* period, displacement, pseudo-velocity, pseudo-acceleration, acceleration */
+  BRECCIA_MOTION_FOURIER, /* frequency, amplitude; of two motions the other's amplitude, and the ratio: the transfer function,
+                            * NaN where the other has less than a thousandth of its largest amplitude */
+};
+/** Columns of what was found: "period (s)", "displacement (m)" ... @return NULL after the last */
+BRECCIA_API const char *breccia_motion_heading(const breccia_motion *motion, int table, int column);
+BRECCIA_API const double *breccia_motion_column(const breccia_motion *motion, int table, int column); /* [rows] */
+BRECCIA_API int breccia_motion_rows(const breccia_motion *motion, int table);
+
+/** The same for people, in some lines; "" before it was found. */
+BRECCIA_API const char *breccia_motion_words(const breccia_motion *motion);
+/** Writes the tables and pictures of them to a folder, which is made if need be. */
+BRECCIA_API int breccia_motion_write(breccia_motion *motion, const char *folder, breccia_error *error);
+/** Names of the files written, a line each. */
+BRECCIA_API const char *breccia_motion_files(const breccia_motion *motion);
+
 /* ---- the library's own laws for other programs ---- */
 
 typedef struct breccia_service {

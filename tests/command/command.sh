@@ -5,7 +5,7 @@ cd "$work"
 "$breccia" --version > out; equal "version: status" $? 0
 contains "version" "$(cat out)" "breccia 0."
 "$breccia" --help > out; equal "help: status" $? 0
-for verb in run check modes new plot models material calibrate schema completion; do
+for verb in run check modes new plot spectrum models material calibrate schema completion; do
   contains "help" "$(cat out)" "  $verb "
   "$breccia" $verb --help > verb 2>&1; equal "$verb --help: status" $? 0
   contains "$verb --help" "$(cat verb)" "usage: breccia $verb"
@@ -45,6 +45,36 @@ sed 's/particles: \[80, 1\]/particles: [4001, 1]/' damped.yaml > long.yaml
 "$breccia" check long.yaml > out 2>&1; contains "check: large body" "$(cat out)" "'breccia modes' finds it as the body is held"
 "$breccia" modes bar.yaml --count 500 > out 2>&1; equal "modes: too many: status" $? 2
 contains "modes: too many" "$(cat out)" "500 modes are too many for a body with 77 unknowns"
+
+# spectrum: a record in g, the history of a run over it, files, and what is wrong
+awk 'BEGIN {print "PEER\nHILL\nACCELERATION IN UNITS OF G\nNPTS= 2000, DT= .005 SEC"; for (k = 0; k < 2000; ++k) print 0.2 * sin(4 * 3.14159265 * k * 0.005)}' > hill.AT2
+"$breccia" spectrum hill.AT2 > out 2>&1; equal "spectrum: status" $? 0
+contains "spectrum: intensity" "$(cat out)" "largest acceleration              1.961 m/s2"
+contains "spectrum: in g" "$(cat out)" "                                  0.2 g"
+contains "spectrum: resonance" "$(cat out)" "oscillators with 5 % of critical damping: pseudo-acceleration 19.5"
+for file in motion.csv response-spectrum.csv fourier.csv husid.png acceleration.png response-spectrum.png fourier.png; do
+  [ -s hill-spectrum/$file ] || fail "spectrum: $file is missing: $(ls hill-spectrum)"
+done
+equal "spectrum: heading" "$(head -1 hill-spectrum/response-spectrum.csv)" "period (s),displacement (m),pseudo-velocity (m/s),pseudo-acceleration (m/s2),acceleration (m/s2)"
+cat > shaken.yaml <<'END'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic-1d, Young modulus: 8e4, density: 2}}
+body: {bar: {material: m, lattice: line, spacing: 1, area: 1, shape: {box: {particles: [20, 1]}}}}
+peridynamics: {formulation: bond-based, space: 1-D, horizon: 3.015 spacings, surface correction: energy}
+selections: {base: {face: x-}, top: {face: x+}}
+loads: [{on: base, acceleration: [9.80665, 0], history: {file: {name: hill.AT2}}}]
+solve: {explicit: {end time: 10}}
+watch: {base: {velocity of: base, every: 1}, top: {velocity of: top, every: 1}}
+END
+"$breccia" run shaken.yaml --quiet > out 2>&1; equal "spectrum: run" $? 0
+"$breccia" spectrum shaken/base.csv hill.AT2 --column x --output same > out 2>&1; equal "spectrum of a run: status" $? 0
+awk -F, '$1 > 1.5 && $1 < 2.5 {if ($4 < 0.97 || $4 > 1.03) exit 1; n = 1} END {exit !n}' same/fourier.csv || fail "spectrum: a base does not move as its record says: $(cat same/fourier.csv)"
+"$breccia" spectrum shaken/top.csv shaken/base.csv --column x > out 2>&1; equal "spectrum of a column: status" $? 0
+contains "spectrum of a column" "$(cat out)" "top over base: amplitudes "
+[ -s shaken/top-spectrum/transfer.png ] || fail "spectrum: no picture of a transfer function"
+equal "spectrum: heading of two" "$(head -1 shaken/top-spectrum/fourier.csv)" "frequency (Hz),amplitude (m/s),amplitude below (m/s),ratio"
+"$breccia" spectrum hill.AT2 --periods 0.5:0.5 --damping 0.02 --count 1 --output one > out 2>&1; equal "spectrum: one period" $? 0
+equal "spectrum: rows of one period" "$(wc -l < one/response-spectrum.csv)" 2
 
 # new, check, run: the starter deck works as it comes
 "$breccia" new plate.yaml > out; equal "new: status" $? 0

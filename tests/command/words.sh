@@ -218,6 +218,14 @@ told "breccia check: give one deck; see 'breccia check --help'" check
 told "breccia check: give one deck; see 'breccia check --help'" check block.yaml block.yaml
 told "breccia modes: give one deck; see 'breccia modes --help'" modes
 told "breccia: --count: '0' is not a whole number of at least 1" modes block.yaml --count 0
+told "breccia spectrum: give a file, or two of which the first is held over the other; see 'breccia spectrum --help'" spectrum
+told "breccia spectrum: 'c' is one argument too many" spectrum a b c
+told "breccia spectrum: --below-column: there is no second file" spectrum a --below-column x
+told "breccia spectrum: --damping: '5 %' is not a number" spectrum a --damping '5 %'
+told "breccia spectrum: --smoothing: 'much' is not a number" spectrum a --smoothing much
+told "breccia spectrum: --periods: '1' should be two numbers with a colon between" spectrum a --periods 1
+told "breccia: --count: '0' is not a whole number of at least 1" spectrum a --count 0
+told "no-such.AT2: No such file or directory" spectrum no-such.AT2
 told "breccia: --steps: '0' is not a whole number of at least 1" run block.yaml --steps 0
 told "breccia: --threads: '99999999999999999999' is not a whole number of at least 1" run block.yaml --threads 99999999999999999999
 told "breccia run: --output needs a value; see 'breccia run --help'" run --output
@@ -281,7 +289,7 @@ contains "a fit at the end of its range: value" "$(cat out)" "; it stands at the
 # ---- help, completion and the manual page list the same options of each verb ----
 "$breccia" completion > completion.sh
 "$breccia" completion --man > page.1
-for verb in run study check modes new plot models material calibrate serve schema completion; do
+for verb in run study check modes new plot spectrum models material calibrate serve schema completion; do
   options=$("$breccia" $verb --help | sed -n 's/^  \(--[a-z-]*\).*/\1/p')
   equal "completion of $verb" "$(bash -c 'source completion.sh; COMP_WORDS=(breccia "$1" -); COMP_CWORD=2; _breccia; echo "${COMPREPLY[@]}"' _ $verb)" "--help $(echo $options)"
   equal "page of $verb" "$(awk -v v=$verb '$1 == ".SS" {on = $2 == v} on && $1 == ".B" {print $2}' page.1 | tr -d '\\')" "$options"

@@ -234,6 +234,7 @@ static void test_every_struct_is_read_by_its_size(void **state)
     const breccia_options with_law = {.size = sizeof with_law, .laws = &law, .law_count = 1};
     breccia_study *study = NULL;
     breccia_test *test = NULL;
+    breccia_motion *motion = NULL;
     const struct {
       int status;
       const char *name;
@@ -243,6 +244,7 @@ static void test_every_struct_is_read_by_its_size(void **state)
                  {breccia_serve(given[k], error), "breccia_service"},
                  {breccia_plot_movie("results", given[k], error), "breccia_plot"},
                  {breccia_test_make(given[k], &test, error), "breccia_test_words"},
+                 {breccia_motion_load(given[k], &motion, error), "breccia_motion_file"},
                  {breccia_model_run(model, given[k], error), "breccia_run"},
                  {breccia_model_modes(model, given[k], error), "breccia_modes"}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; ++n) {
@@ -254,6 +256,7 @@ static void test_every_struct_is_read_by_its_size(void **state)
     }
     assert_null(study);
     assert_null(test);
+    assert_null(motion);
     breccia_array array = {.size = k ? sizeof(size_t) + sizeof(char *) : 0}; /* of an old program: it knows of a name */
     array.components = 77;
     assert_int_equal(breccia_model_array_at(model, 0, &array), k);

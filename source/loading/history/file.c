@@ -1,13 +1,11 @@
 /* Histories from files: records in the format of the PEER database, tables with a heading, two plain columns. */
 #include "loading/history/correction.h"
 
-#include "base/csv.h"
 #include "base/memory.h"
 #include "deck/named_file.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 typedef struct BandSpec {
   SectionHead head;
@@ -128,62 +126,6 @@ const Section file_history_section = {.name = "file history",
                                       .size = sizeof(FileSpec),
                                       FIELDS(file_fields)};
 
-/** Size of the unit in parentheses behind a column's name, in the deck's unit of time; 1 where there is none. */
-static double unit_of_times(const char *label, const DeckReader *reader)
-{
-  const char *open = strchr(label, '('), *end = open ? strchr(open, ')') : NULL;
-  double size = 1;
-  if (!end) return 1;
-  char *words = text_format("1 %.*s", (int)(end - open - 1), open + 1);
-  Text ignored = {0};
-  if (!words || units_read(reader->units, dimension_find("time"), words, &size, &ignored)) size = NAN;
-  text_free(&ignored);
-  free(words);
-  return size;
-}
-
-static int read_columns(Record *record, const FileSpec *spec, const char *path, const DeckReader *reader, Error *error)
-{
-  char label[128];
-  int count;
-  double *times = csv_column(path, spec->times, CSV_FINISHED, &count, label, error);
-  double *values = times ? csv_column(path, spec->column, CSV_FINISHED, &count, NULL, error) : NULL;
-  double *rows = values ? memory_zeroed((size_t)(2 * count), sizeof *rows, "record", error) : NULL;
-  const double unit = times ? unit_of_times(label, reader) : 1;
-  if (isnan(unit)) error_add(error, BRECCIA_USER_ERROR, "%s: '%s' has no unit of time", path, label);
-  for (int k = 0; rows && k < count; ++k) {
-    rows[2 * k] = times[k] * unit;
-    rows[2 * k + 1] = values[k];
-  }
-  free(times);
-  free(values);
-  *record = (Record){rows, count};
-  return error_count(error) ? BRECCIA_USER_ERROR : BRECCIA_OK;
-}
-
-/** Times ascend, and every cell is a number. */
-static int check_rows(const Record *record, const char *path, Error *error)
-{
-  const double *row = record->rows;
-  if (record->count < 2)
-    return error_add(error, BRECCIA_USER_ERROR, "%s: holds %d rows of numbers; a history needs two at least", path,
-                     record->count);
-  for (int k = 0; k < record->count; ++k) {
-    if (!isfinite(row[2 * k]) || !isfinite(row[2 * k + 1]))
-      return error_add(error, BRECCIA_USER_ERROR, "%s: row %d of its numbers lacks a time or a value", path, k + 1);
-    if (k && row[2 * k] <= row[2 * k - 2])
-      return error_add(error, BRECCIA_USER_ERROR, "%s: times must grow from row to row; row %d has %g after %g", path,
-                       k + 1, row[2 * k], row[2 * k - 2]);
-  }
-  return BRECCIA_OK;
-}
-
-static bool is_peer(const char *name)
-{
-  const char *ending = strrchr(name, '.');
-  return ending && (!strcasecmp(ending, ".at2") || !strcasecmp(ending, ".vt2") || !strcasecmp(ending, ".dt2"));
-}
-
 /** Says it where the steps of a record are not as what follows needs them. */
 static int check_steps(const Record *record, const FileSpec *spec, const char *key, const DeckReader *reader)
 {
@@ -240,13 +182,10 @@ static int create(History *h, const DeckReader *reader)
   Error *words = breccia_error_create();
   Record record = {0};
   int status = path && words ? BRECCIA_OK : BRECCIA_FAILURE;
-  if (!status && spec->column)
-    status = read_columns(&record, spec, path, reader, words);
-  else if (!status && is_peer(spec->name))
-    status = record_read_peer(&record, path, reader->units, words);
-  else if (!status)
-    status = record_read_plain(&record, path, words);
-  if (!status) status = check_rows(&record, path, words);
+  if (!status) {
+    const RecordFile file = {.path = path, .column = spec->column, .times = spec->times, .units = reader->units};
+    status = record_read(&record, &file, NULL, words);
+  }
   if (status)
     node_error(reader->document, node, reader->error, "file: %s", words ? breccia_error_text(words) : "out of memory");
   else

@@ -9,11 +9,17 @@ typedef struct Record {
   int count;
 } Record;
 
-/** A record of the PEER ground motion database: four lines of heading, the last with the number of values and the time step in seconds
- *  (NPTS= 4000, DT= .005 SEC, or 4000 .005 NPTS, DT), then the values. The first is of time 0. */
-int record_read_peer(Record *record, const char *path, const Units *units, Error *error);
+enum { RECORD_LABEL = 128 };
 
-/** Rows of two numbers, time and value, parted by blanks, tabs, commas or semicolons; lines that begin with no number are headings and remarks. */
-int record_read_plain(Record *record, const char *path, Error *error);
+typedef struct RecordFile {
+  const char *path;
+  const char *column,
+      *times;         /* of a CSV file with a heading; column NULL: a PEER record by its ending, or two plain columns */
+  const Units *units; /* in whose unit of time the times come out */
+} RecordFile;
+
+/** Reads two rows or more with ascending times. Values stay in the unit of the file; that of times may stand behind the name of their column.
+ *  @param[out] label  name of the values with their unit in parentheses, as far as the file says it, RECORD_LABEL bytes; may be NULL */
+int record_read(Record *record, const RecordFile *file, char *label, Error *error);
 
 #endif
