@@ -26,7 +26,8 @@ const Section damping_section = {.name = "damping",
                                  .size = sizeof(DampingSpec),
                                  FIELDS(damping_fields)};
 
-double damping_rate(const NumberOrSection *given)
+/** The rate c of a number or a section [1/time]. */
+static double rate_of(const NumberOrSection *given)
 {
   const DampingSpec *spec = given->section;
   return spec ? 4 * acos(-1) * spec->ratio * spec->at : given->value;
@@ -58,8 +59,26 @@ const Section rayleigh_section = {.name = "Rayleigh damping",
                                   .size = sizeof(RayleighSpec),
                                   FIELDS(rayleigh_fields)};
 
-Rayleigh rayleigh_of(const RayleighSpec *spec)
+static Rayleigh rayleigh_of(const RayleighSpec *spec)
 {
   const double from = 2 * acos(-1) * spec->from, to = 2 * acos(-1) * spec->to, twice = 2 * spec->ratio;
   return (Rayleigh){.mass = twice * from * to / (from + to), .stiffness = twice / (from + to)};
+}
+
+Rayleigh damping_of(const DampingKeys *keys, const DeckReader *reader, const void *section)
+{
+  if (!keys->rayleigh) return (Rayleigh){rate_of(&keys->mass), keys->stiffness};
+  static const char *const others[] = {"damping", "stiffness damping"};
+  const Node *whole = ((const SectionHead *)section)->node;
+  for (int k = 0; k < 2; ++k)
+    if (section_node(section, others[k]) != whole)
+      node_error(reader->document, section_node(section, others[k]), reader->error,
+                 "%s: 'Rayleigh damping' says it already; leave one of them out", others[k]);
+  return rayleigh_of(keys->rayleigh);
+}
+
+void damping_describe(const Rayleigh *damping, const char *time, Text *text)
+{
+  if (damping->mass > 0) text_add(text, ", damping %.4g 1/%s", damping->mass, time);
+  if (damping->stiffness > 0) text_add(text, ", stiffness damping %.4g %s", damping->stiffness, time);
 }

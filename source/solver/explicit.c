@@ -12,13 +12,13 @@
 
 static bool is_damped(const ExplicitSpec *spec)
 {
-  return spec->damping > 0 || spec->local_damping > 0;
+  return spec->damping.mass > 0 || spec->damping.stiffness > 0 || spec->local_damping > 0;
 }
 
 static void check_explicit(const DeckReader *reader, void *section)
 {
   ExplicitSpec *spec = section;
-  spec->damping = damping_rate(&spec->damping_given);
+  spec->damping = damping_of(&spec->damping_given, reader, section);
   if (!isnan(spec->rest) && !is_damped(spec))
     node_error(reader->document, section_node(section, "rest"), reader->error,
                "rest: without 'damping' or 'local damping' a body does not come to rest");
@@ -54,15 +54,7 @@ static const Field explicit_fields[] = {
      .range = "(0, inf)",
      .meaning = "the run, or this stage of it, ends at this time, if need be with a shorter last step",
      .group = 'A'},
-    {.key = "damping",
-     .kind = FIELD_NUMBER_OR_SECTION,
-     .offset = offsetof(ExplicitSpec, damping_given),
-     .dimension = "damping rate",
-     .standard = "0",
-     .range = "[0, inf)",
-     .meaning =
-         "mass-proportional damping: a rate c (force density - c rho v), or a ratio of critical damping at a frequency",
-     .section = &damping_section},
+    DAMPING_FIELDS(ExplicitSpec, damping_given),
     {.key = "local damping",
      .kind = FIELD_NUMBER,
      .offset = offsetof(ExplicitSpec, local_damping),
@@ -91,6 +83,9 @@ static void list_state(Solver *run, StateList *list)
   Explicit *s = run->own;
   state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration,
                    s->domain->particles->places);
+  if (s->viscous.time > 0)
+    state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag,
+                     s->domain->particles->places);
   state_add_number(list, "fixed step", "time", STATE_TRIED, &s->fixed);
   state_add_number(list, "plan from", "time", STATE_TRIED, &s->plan.from);
   state_add_number(list, "plan to", "time", STATE_TRIED, &s->plan.to);
@@ -123,7 +118,7 @@ static int create(Solver *run, Error *error)
   s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", error);
   s->motions = memory_zeroed((size_t)run->loading->constraint_count, sizeof *s->motions, "motions", error);
   if (failed || !s->sums || !s->parts || !s->motions) return BRECCIA_FAILURE;
-  return BRECCIA_OK;
+  return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
 static void forget_before(Explicit *s)
@@ -154,6 +149,7 @@ static void destroy(Solver *run)
   free(s->sums);
   free(s->parts);
   free(s->motions);
+  stiffness_damping_destroy(&s->viscous);
   forget_before(s);
   free(s);
   run->own = NULL;
@@ -182,7 +178,7 @@ static void describe_stage(const void *section, const char *time, Text *text)
     text_add(text, "%lld steps", (long long)spec->steps);
   else
     text_add(text, "%g %s", spec->end_time, time);
-  if (spec->damping > 0) text_add(text, ", damping %g 1/%s", spec->damping, time);
+  damping_describe(&spec->damping, time, text);
   if (spec->local_damping > 0) text_add(text, ", local damping %g", spec->local_damping);
 }
 
@@ -225,7 +221,7 @@ BRECCIA_CLONES
 static void kick_and_drift(Explicit *s, int64_t batch)
 {
   const Particles *p = s->domain->particles;
-  const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(s->spec->damping), one_half = lanes_set(0.5);
+  const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(s->spec->damping.mass), one_half = lanes_set(0.5);
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
   for (int k = 0; k < 3; ++k)
@@ -255,7 +251,8 @@ BRECCIA_CLONES
 static void kick(Explicit *s, int64_t batch)
 {
   const Particles *p = s->domain->particles;
-  double c = s->spec->damping;
+  const double c = s->spec->damping.mass;
+  const bool stiff = s->viscous.time > 0;
   const Lanes dt = lanes_set(s->clock->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
   const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->clock->time_step)), viscous = lanes_set(c);
   Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0}, between = {0};
@@ -266,6 +263,7 @@ static void kick(Explicit *s, int64_t batch)
       Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->density + i);
       Lanes volume = lanes_load(p->volume + i), force = fi + fe, size = local * lanes_absolute(force);
       Lanes drag = lanes_where(half > lanes_set(0), size) - lanes_where(half < lanes_set(0), size);
+      if (stiff) drag += lanes_load(s->viscous.drag[k] + i);
       Lanes acceleration = (force - drag) / density, end = (half + one_half * dt * acceleration) * slow;
       Lanes work = one_half * dt * half * volume;
       bond -= fi * work;
@@ -319,16 +317,36 @@ static bool is_sound(const Explicit *s)
   return isfinite(d->force_sum) && d->failed_place < 0 && !forces_failed(&d->forces) && !d->out_of_memory;
 }
 
-static void take_step(void *context)
+/** Displacements at the end of the step. */
+static void move(void *context)
+{
+  Explicit *s = context;
+  const Domain *d = s->domain;
+  TEAM_FOR (b, d->batch_count) {
+    const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
+    state_note_places(&s->before, first, last);
+    if (s->viscous.time > 0) stiffness_damping_note(&s->viscous, d, first, last);
+    kick_and_drift(s, b);
+  }
+  explicit_prescribe_displacements(s);
+}
+
+/** What loads say to the forces of bonds, and of their damping. */
+static void apply_loads(Explicit *s, double end)
+{
+  Domain *d = s->domain;
+  if (s->viscous.time > 0) stiffness_damping_take_off(&s->viscous, d);
+  loading_apply(s->loading, d->particles, end);
+  if (s->viscous.time > 0) stiffness_damping_put_back(&s->viscous, d);
+  TEAM_SINGLE loading_settle(s->loading, d->particles, d->particles->velocity, s->clock->time_step);
+}
+
+/** Bonds that break, forces, velocities at the end of the step. */
+static void answer(void *context)
 {
   Explicit *s = context;
   Domain *d = s->domain;
   const double end = explicit_time_after_step(s);
-  TEAM_FOR (b, d->batch_count) {
-    state_note_places(&s->before, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
-    kick_and_drift(s, b);
-  }
-  explicit_prescribe_displacements(s);
   domain_break(
       d, &(Moment){
              .step = s->clock->step + 1, .time = end, .time_step = s->clock->time_step, .motion = sqrt(3) * s->motion});
@@ -336,8 +354,7 @@ static void take_step(void *context)
   domain_forces(d);
   if (!is_sound(s)) return;
   domain_accept(d);
-  loading_apply(s->loading, d->particles, end);
-  TEAM_SINGLE loading_settle(s->loading, d->particles, d->particles->velocity, s->clock->time_step);
+  apply_loads(s, end);
   TEAM_FOR (b, d->batch_count) kick(s, b);
   TEAM_SINGLE
   {
@@ -347,6 +364,12 @@ static void take_step(void *context)
   }
   explicit_prescribe_velocities(s);
   loading_keep_ties(s->loading, d->particles, s->acceleration);
+}
+
+static void take_step(void *context)
+{
+  move(context);
+  answer(context);
 }
 
 static int advance(Solver *run, Text *warning, Error *error)
@@ -360,8 +383,13 @@ static int advance(Solver *run, Text *warning, Error *error)
   explicit_foresee_motions(s);
   loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
                                          .lag = s->clock->time_step / 2,
-                                         .damping = s->spec->damping});
-  team_run(take_step, s);
+                                         .damping = s->spec->damping.mass});
+  if (s->viscous.time > 0) {
+    team_run(move, s);
+    stiffness_damping_find(&s->viscous, s->domain, s->clock->time_step);
+    team_run(answer, s);
+  } else
+    team_run(take_step, s);
   if (!is_sound(s)) return explicit_retreat(s, error);
   s->ledger->fastest = s->motion / (s->clock->time - start);
   domain_commit_points(s->domain);

@@ -3,13 +3,15 @@
 #ifndef BRECCIA_SOLVER_EXPLICIT_H
 #define BRECCIA_SOLVER_EXPLICIT_H
 
+#include "solver/damping.h"
 #include "solver/solver.h"
+#include "solver/stiffness_damping.h"
 
 typedef struct ExplicitSpec {
   SectionHead head;
   double time_step, safety, end_time, local_damping, rest;
-  NumberOrSection damping_given;
-  double damping; /* the rate c */
+  DampingKeys damping_given;
+  Rayleigh damping; /* from these */
   int64_t steps;
 } ExplicitSpec;
 
@@ -24,6 +26,7 @@ typedef struct Explicit {
   Ledger *ledger;
   bool force; /* accept a chosen step above the stable one */
   double *acceleration[3];
+  StiffnessDamping viscous; /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {
     double from, to;

@@ -48,14 +48,7 @@ static void check_implicit(const DeckReader *reader, void *section)
 {
   ImplicitSpec *spec = section;
   check_scheme(reader, spec);
-  spec->damping = (Rayleigh){damping_rate(&spec->mass_damping), spec->stiffness_damping};
-  if (!spec->rayleigh) return;
-  static const char *const others[] = {"damping", "stiffness damping"};
-  for (int k = 0; k < 2; ++k)
-    if (is_given(spec, others[k]))
-      node_error(reader->document, section_node(spec, others[k]), reader->error,
-                 "%s: 'Rayleigh damping' says it already; leave one of them out", others[k]);
-  spec->damping = rayleigh_of(spec->rayleigh);
+  spec->damping = damping_of(&spec->damping_given, reader, section);
 }
 
 static const Field implicit_fields[] = {
@@ -120,29 +113,7 @@ static const Field implicit_fields[] = {
      .meaning = "of Hilber, Hughes and Taylor, as Abaqus counts it (OpenSees says 1 + alpha): beta = (1 - alpha)^2 / 4 "
                 "and gamma = 1/2 - alpha follow; the fastest vibrations keep (1 + alpha) / (1 - alpha) of their size "
                 "in a step"},
-    {.key = "damping",
-     .kind = FIELD_NUMBER_OR_SECTION,
-     .offset = offsetof(ImplicitSpec, mass_damping),
-     .dimension = "damping rate",
-     .standard = "0",
-     .range = "[0, inf)",
-     .meaning = "mass-proportional damping: a rate c (force density - c rho v), or a ratio of critical damping at a "
-                "frequency",
-     .section = &damping_section},
-    {.key = "stiffness damping",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(ImplicitSpec, stiffness_damping),
-     .dimension = "time",
-     .standard = "0",
-     .range = "[0, inf)",
-     .meaning = "stiffness-proportional damping: this time b, force - b K0 v, with the stiffness of laws before they "
-                "yield or soften and of the bonds that are left; a ratio of pi b f at a frequency f"},
-    {.key = "Rayleigh damping",
-     .kind = FIELD_SECTION,
-     .offset = offsetof(ImplicitSpec, rayleigh),
-     .standard = "",
-     .meaning = "both at once",
-     .section = &rayleigh_section},
+    DAMPING_FIELDS(ImplicitSpec, damping_given),
     NEWTON_FIELDS(ImplicitSpec, newton),
 };
 
@@ -222,7 +193,7 @@ static int check(Solver *run, const void *section, Error *error)
     return node_error(run->reader->document, section_node(spec, "time step"), error,
                       "time step: %.3g steps are too many", steps);
   const char *flutters = domain_flutters(run->domain);
-  if (flutters && !(spec->stiffness_damping > 0))
+  if (flutters && !(spec->damping.stiffness > 0))
     return node_error(run->reader->document, spec->head.node, error,
                       "implicit: %s: expected 'form: variational', or 'stiffness damping'", flutters);
   return increment_check(run, section, "take 'explicit'", error);
@@ -282,8 +253,7 @@ static void describe_stage(const void *section, const char *time, Text *text)
   else
     text_add(text, "implicit, Newmark with beta %.4g and gamma %.3g", spec->beta, spec->gamma);
   text_add(text, ", %g %s by steps of at most %.4g", spec->end_time, time, implicit_longest(spec));
-  if (spec->damping.mass > 0) text_add(text, ", damping %.4g 1/%s", spec->damping.mass, time);
-  if (spec->damping.stiffness > 0) text_add(text, ", stiffness damping %.4g %s", spec->damping.stiffness, time);
+  damping_describe(&spec->damping, time, text);
 }
 
 static void describe(const Solver *run, const char *time, Text *text)

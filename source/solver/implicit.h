@@ -10,9 +10,7 @@ typedef struct ImplicitSpec {
   SectionHead head;
   double end_time, time_step, smallest, local_error, beta, gamma, alpha;
   const char *scheme;
-  NumberOrSection mass_damping;
-  double stiffness_damping;
-  RayleighSpec *rayleigh;
+  DampingKeys damping_given;
   Rayleigh damping; /* from these */
   NewtonSpec newton;
 } ImplicitSpec;

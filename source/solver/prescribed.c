@@ -76,7 +76,8 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
 {
   const Particles *p = s->domain->particles;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
-  double dt = s->clock->time_step, c = s->spec->damping, bond = 0, external = 0, damping = 0, between = 0, largest = 0;
+  double dt = s->clock->time_step, c = s->spec->damping.mass, bond = 0, external = 0, damping = 0, between = 0,
+         largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
@@ -145,7 +146,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
 {
   const Particles *p = s->domain->particles;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
-  double dt = s->clock->time_step, c = s->spec->damping, external = 0, damping = 0, kinetic = 0, between = 0;
+  double dt = s->clock->time_step, c = s->spec->damping.mass, external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
@@ -189,5 +190,7 @@ double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t
   const double before = constraint_displacement(constraint, time - dt), now = constraint_displacement(constraint, time),
                after = constraint_displacement(constraint, time + dt);
   const double acceleration = (after - 2 * now + before) / (dt * dt), rate = (after - before) / (2 * dt);
-  return p->density[i] * p->volume[i] * (acceleration + s->spec->damping * rate);
+  double drag = 0; /* of stiffness */
+  for (int k = 0; k < 3 && s->viscous.time > 0; ++k) drag += constraint->direction[k] * s->viscous.drag[k][i];
+  return p->volume[i] * (drag + p->density[i] * (acceleration + s->spec->damping.mass * rate));
 }

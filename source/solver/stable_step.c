@@ -3,43 +3,11 @@
 #include "base/random.h"
 #include "base/team.h"
 #include "base/tridiagonal.h"
+#include "solver/aside.h"
 #include <math.h>
 #include <string.h>
 
 enum { MOST_ITERATIONS = 40, VECTORS = 3 };
-
-/* Arrays that stand in for the domain's own while displacements are tried out. */
-typedef struct Trial {
-  double *displacement[3], *internal[3], *strain[6], *stress[6];
-} Trial;
-
-static void swap(double **a, double **b)
-{
-  double *c = *a;
-  *a = *b;
-  *b = c;
-}
-
-static void exchange(Domain *d, Trial *t)
-{
-  for (int k = 0; k < 3; ++k) {
-    swap(&d->particles->displacement[k], &t->displacement[k]);
-    swap(&d->particles->internal[k], &t->internal[k]);
-  }
-  for (int k = 0; k < 6; ++k) {
-    double *strain = NULL, *stress = NULL; /* regions with points on particles share theirs */
-    for (int r = 0; r < d->region_count; ++r) {
-      Points *points = &d->regions[r].points;
-      if (points->components != 6) continue;
-      strain = points->strain[k];
-      stress = points->stress[k];
-      points->strain[k] = t->strain[k];
-      points->stress[k] = t->stress[k];
-    }
-    t->strain[k] = strain;
-    t->stress[k] = stress;
-  }
-}
 
 static double mass_product(const Domain *d, double *const a[3], double *const b[3])
 {
@@ -57,7 +25,7 @@ static double mass_product(const Domain *d, double *const a[3], double *const b[
 
 typedef struct Iteration { /* of Lanczos' method */
   Domain *domain;
-  Trial *trial;
+  Aside *aside;
   double *const *base_u, *const *base_f; /* displacements u and forces f(u) */
   double **previous, **current, **next;
   double h, alpha, beta;
@@ -69,13 +37,13 @@ static void apply(void *context)
   const Iteration *n = context;
   Domain *d = n->domain;
   for (int k = 0; k < 3; ++k)
-    TEAM_FOR (i, d->particles->places) n->trial->displacement[k][i] = n->base_u[k][i] + n->h * n->current[k][i];
-  TEAM_SINGLE exchange(d, n->trial);
+    TEAM_FOR (i, d->particles->places) n->aside->displacement[k][i] = n->base_u[k][i] + n->h * n->current[k][i];
+  TEAM_SINGLE aside_exchange(n->aside, d);
   domain_forces(d);
-  TEAM_SINGLE exchange(d, n->trial);
+  TEAM_SINGLE aside_exchange(n->aside, d);
   for (int k = 0; k < 3; ++k)
     TEAM_FOR (i, d->particles->places)
-      n->next[k][i] = (n->base_f[k][i] - n->trial->internal[k][i]) / (n->h * d->particles->density[i]);
+      n->next[k][i] = (n->base_f[k][i] - n->aside->internal[k][i]) / (n->h * d->particles->density[i]);
 }
 
 static void orthogonalize(void *context)
@@ -96,23 +64,12 @@ static void normalize(void *context)
 int stable_step(Domain *d, double *step, Error *error)
 {
   int64_t places = d->particles->places;
-  Trial trial = {0};
+  Aside aside;
   double *base_f[3] = {0}, *v[VECTORS][3] = {{0}};
-  int failed = 0;
+  int failed = aside_create(&aside, d, "stable step", error) != BRECCIA_OK;
   for (int k = 0; k < 3; ++k) {
-    failed |= !(trial.displacement[k] = places_array(places, "stable step", error));
-    failed |= !(trial.internal[k] = places_array(places, "stable step", error));
     failed |= !(base_f[k] = places_array(places, "stable step", error));
     for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_array(places, "stable step", error));
-  }
-  int64_t rows = 0; /* of points with tensors: one set for all of them, as those of several regions share theirs */
-  for (int r = 0; r < d->region_count; ++r)
-    if (d->regions[r].points.components == 6)
-      rows = rows > d->regions[r].points.count ? rows : d->regions[r].points.count;
-  if (rows && rows < places) rows = places;
-  for (int k = 0; k < 6 && rows; ++k) {
-    failed |= !(trial.strain[k] = places_array(rows, "stable step", error));
-    failed |= !(trial.stress[k] = places_array(rows, "stable step", error));
   }
   if (failed) goto done;
 
@@ -120,12 +77,12 @@ int stable_step(Domain *d, double *step, Error *error)
   const bool elastic = domain_in_elastic_stage(d);
   domain_set_elastic_stage(d, true);
   Iteration it = {
-      .domain = d, .trial = &trial, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1], .next = v[2]};
-  for (int k = 0; k < 3; ++k) memcpy(trial.displacement[k], u[k], sizeof(double) * (size_t)places);
-  exchange(d, &trial);
+      .domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1], .next = v[2]};
+  for (int k = 0; k < 3; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
+  aside_exchange(&aside, d);
   domain_evaluate(d);
-  exchange(d, &trial);
-  for (int k = 0; k < 3; ++k) memcpy(base_f[k], trial.internal[k], sizeof(double) * (size_t)places);
+  aside_exchange(&aside, d);
+  for (int k = 0; k < 3; ++k) memcpy(base_f[k], aside.internal[k], sizeof(double) * (size_t)places);
 
   uint64_t seed = 1;
   for (int k = 0; k < 3; ++k)
@@ -164,15 +121,10 @@ int stable_step(Domain *d, double *step, Error *error)
   else /* with what Lanczos' method may still lack after its stopping test */
     *step = 2 / sqrt(largest * 1.005 + forces_eigenvalue(&d->forces));
 done:
+  aside_destroy(&aside);
   for (int k = 0; k < 3; ++k) {
-    places_free(&trial.displacement[k]);
-    places_free(&trial.internal[k]);
     places_free(&base_f[k]);
     for (int n = 0; n < VECTORS; ++n) places_free(&v[n][k]);
-  }
-  for (int k = 0; k < 6; ++k) {
-    places_free(&trial.strain[k]);
-    places_free(&trial.stress[k]);
   }
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }

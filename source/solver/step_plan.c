@@ -12,7 +12,8 @@ static double longest_step(const Explicit *s)
 }
 
 /** Damping shortens the stable step: local damping by 1 / sqrt(1 + its share), as its force changes sign with the velocity;
- *  mass-proportional damping leaves it, but is followed only by steps of up to its own time (docs/theory.md 7). */
+ *  mass-proportional damping leaves it, but is followed only by steps of up to its own time; stiffness-proportional damping works with
+ *  velocities that lag behind (docs/theory.md 7). */
 static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpec *spec, double *stable, Error *error)
 {
   const int status = stable_step(domain, stable, error);
@@ -21,7 +22,8 @@ static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpe
   if (springs > 0) *stable = 2 / sqrt(4 / (*stable * *stable) + springs);
   if (!isfinite(*stable)) return BRECCIA_OK;
   *stable /= sqrt(1 + spec->local_damping);
-  if (spec->damping > 0) *stable = fmin(*stable, 1 / spec->damping);
+  if (spec->damping.stiffness > 0) *stable = stiffness_damping_step(spec->damping.stiffness, *stable);
+  if (spec->damping.mass > 0) *stable = fmin(*stable, 1 / spec->damping.mass);
   return BRECCIA_OK;
 }
 
@@ -147,11 +149,31 @@ static int check_formulations(const Solver *run, const ExplicitSpec *spec, Error
                     "explicit: %s: expected 'form: variational' in explicit stages", why);
 }
 
+/** Damping by stiffness asks laws for elastic forces beside those of the step. */
+static int check_stiffness_damping(const Solver *run, const ExplicitSpec *spec, Error *error)
+{
+  const Material *served = domain_without_trials(run->domain);
+  if (!(spec->damping.stiffness > 0)) return BRECCIA_OK;
+  const char *key = spec->damping_given.rayleigh ? "Rayleigh damping" : "stiffness damping";
+  const Node *node = section_node(spec, key);
+  if (run->domain->forces.count)
+    return node_error(run->reader->document, node, error,
+                      "%s: contact has no place in it yet; leave 'contact' out, or take 'damping' alone", key);
+  if (served)
+    return node_error(run->reader->document, node, error,
+                      "%s: it tries strains beside those of the step, and the server of material '%s' cannot take a "
+                      "trial back; take 'damping' alone, a server that can (docs/material-server.md), or a law of this "
+                      "program",
+                      key, served->name);
+  return BRECCIA_OK;
+}
+
 int explicit_plan(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
   const ExplicitSpec *spec = s->spec;
   int status = check_formulations(run, spec, error);
+  if (!status) status = check_stiffness_damping(run, spec, error);
   if (!status) status = find_stable_step(s, error);
   if (status || (status = check_time_step(run, spec, s->clock->stable, warning, error))) return status;
   s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
@@ -186,6 +208,7 @@ int explicit_check(Solver *run, const void *spec, Error *error)
 {
   double stable;
   int status = check_formulations(run, spec, error);
+  if (!status) status = check_stiffness_damping(run, spec, error);
   if (status || isnan(((const ExplicitSpec *)spec)->time_step)) return status;
   status = find_damped(run->domain, run->loading, spec, &stable, error);
   return status ? status : check_time_step(run, spec, stable, NULL, error);

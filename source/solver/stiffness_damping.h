@@ -1,0 +1,34 @@
+/* Damping in proportion to the stiffness K0 of laws before they yield or soften, in explicit steps: b times the change of elastic forces in a step over its
+ * length, so with the velocity in its middle. From u to u' an elastic body gives up b / dt (f(u) - f(u')) (u' - u), never less than nothing. */
+#ifndef BRECCIA_SOLVER_STIFFNESS_DAMPING_H
+#define BRECCIA_SOLVER_STIFFNESS_DAMPING_H
+
+#include "solver/aside.h"
+
+typedef struct StiffnessDamping {
+  double time;     /* b; 0: there is none, and no array */
+  Aside aside;     /* where elastic forces are found */
+  double *was[3];  /* displacements before the step */
+  double *drag[3]; /* [places] force per volume against the motion, as found last */
+  double *left[3]; /* internal forces less these, for loads that look at all forces */
+} StiffnessDamping;
+
+/** `damping` is zero; destroy it in any case. */
+int stiffness_damping_create(StiffnessDamping *damping, double time, const Domain *domain, Error *error);
+void stiffness_damping_destroy(StiffnessDamping *damping);
+
+/** Before displacements change, of the places first .. last - 1; by any thread. */
+void stiffness_damping_note(StiffnessDamping *damping, const Domain *domain, int64_t first, int64_t last);
+
+/** When displacements are those at the end of the step and nothing else is yet: finds the drag. By one thread, which has the team work.
+ *  @param[in] step  its length */
+void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double step);
+
+/** Puts internal forces less drag in the place of internal forces, and back: by all threads. */
+void stiffness_damping_take_off(StiffnessDamping *damping, Domain *domain);
+void stiffness_damping_put_back(StiffnessDamping *damping, Domain *domain);
+
+/** The longest stable step with it, of a body whose longest is `stable` without (docs/theory.md 7). */
+double stiffness_damping_step(double time, double stable);
+
+#endif
