@@ -135,6 +135,7 @@ static void add_margins(Lattice *lattice, int b, const MarginList *margins)
     const Margin *margin = &margins->items[m];
     if (margin->block != b) continue;
     lattice->margin[margin->axis][margin->high] = margin->layers;
+    lattice->repeats[margin->axis] = margin->repeats;
     lattice->cells[margin->axis] += margin->layers;
     if (!margin->high) lattice->origin[margin->axis] -= (double)margin->layers * lattice->unit.size[margin->axis];
   }

@@ -8,11 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Where along an axis a cell lies: -1 before the shape, 1 behind it. @param[in,out] cell  mirrored into the shape's part of the lattice */
-static int mirror(const Lattice *lattice, int axis, int64_t *cell)
+/** Where along an axis a cell lies: -1 before the shape, 1 behind it.
+ *  @param[in,out] cell  mirrored, or moved by whole periods, into the shape's part of the lattice */
+static int fold(const Lattice *lattice, int axis, int64_t *cell)
 {
   const int64_t first = lattice->margin[axis][0], behind = lattice->cells[axis] - lattice->margin[axis][1];
   const int side = *cell < first ? -1 : *cell >= behind;
+  const int64_t period = behind - first;
+  if (lattice->repeats[axis]) {
+    if (side) *cell = first + ((*cell - first) % period + period) % period;
+    return side;
+  }
   if (side < 0) *cell = 2 * first - 1 - *cell;
   if (side > 0) *cell = 2 * behind - 1 - *cell;
   return side;
@@ -37,7 +43,7 @@ static bool cell_present(const Body *body, const BlockSpec *block, const Lattice
   for (int k = 0; k < 3; ++k) {
     if (given[k] >= lattice->cells[k]) return false;
     cell[k] = given[k];
-    mirror(lattice, k, &cell[k]);
+    fold(lattice, k, &cell[k]);
     if (cell[k] < lattice->margin[k][0] || cell[k] >= lattice->cells[k] - lattice->margin[k][1]) return false;
   }
   lattice_point(lattice, cell, point);
@@ -182,8 +188,7 @@ static void mark_margins(Body *body, int b)
     for (int m = 0; number >= 0 && m < body->margins.count; ++m) {
       const Margin *margin = &body->margins.items[m];
       int64_t image[3] = {cell[0], cell[1], cell[2]};
-      if (margin->block != b || mirror(lattice, margin->axis, &image[margin->axis]) != (margin->high ? 1 : -1))
-        continue;
+      if (margin->block != b || fold(lattice, margin->axis, &image[margin->axis]) != (margin->high ? 1 : -1)) continue;
       body->margin_of[number] = m;
       body->image_of[number] = number_of_cell(body, lattice, image);
     }

@@ -39,7 +39,7 @@ typedef struct Body {
   int32_t *group_of;       /* [particles] by number; -1: in none. NULL if no file names any */
   MarginList margins;      /* owned */
   int32_t *margin_of;      /* [particles] by number: which margin it belongs to, -1: none. NULL if there are none */
-  int32_t *image_of;       /* [particles] by number: of a margin the particle whose mirror image it is */
+  int32_t *image_of;       /* [particles] by number: of a margin the particle whose image it is */
 } Body;
 
 /** The particle nearest to a point, those in margins left out. @return its place */

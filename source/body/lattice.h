@@ -26,6 +26,8 @@ typedef struct Lattice {
   double plane[3];  /* distance of the planes of particles across x, y, z */
   double origin[3]; /* particle of cell (0, 0, 0) */
   int64_t cells[3];
+  bool repeats
+      [3]; /* along each axis: what lies outside the shape is the lattice inside once more, and not its mirror image */
   int64_t margin[3][2]; /* how many of them lie outside the shape along each axis: before the others, behind them */
   int axis, across[2];  /* axis of the rows, and the two others in ascending order */
   double shift

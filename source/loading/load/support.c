@@ -1,6 +1,8 @@
 /* A face that is held where it is, and not in the middle of held layers: particles stand outside it as mirror images of those inside, and move
  * as these do, mirrored: the other way in the directions that are held, u = 2 g(t) - u of the particle inside, and the same way in the others. Between
- * two images the displacement is g(t) at the face; and families there find the strain going on beyond it. */
+ * two images the displacement is g(t) at the face; and families there find the strain going on beyond it.
+ * Where the body is periodic along an axis, the layers outside both its faces are those inside the other one, and move as these do: forces inside are then
+ * those of a body that goes on for ever, as every family within two horizons of a face is whole. */
 #include "loading/support.h"
 #include "base/memory.h"
 
@@ -18,7 +20,7 @@ typedef struct SupportSpec {
 
 static const char *held_word(int k)
 {
-  static const char *const words[] = {"all", "across", NULL};
+  static const char *const words[] = {"all", "across", "periodic", NULL};
   return words[k];
 }
 
@@ -27,7 +29,10 @@ static const Field support_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(SupportSpec, held),
      .meaning =
-         "all: the face does not move; across: it slides along itself without friction, as in a plane of symmetry",
+         "all: the face does not move; across: it slides along itself without friction, as in a plane of symmetry; "
+         "periodic: it is not held, but the body goes on beyond it and the face opposite as it is, again and again: "
+         "what "
+         "leaves by one comes in by the other, of which nothing is said",
      .choice = held_word},
     {.key = "displacement",
      .kind = FIELD_POINT,
@@ -71,6 +76,26 @@ static int find_block(const SelectionSpec *on, const SectionList *blocks)
   return -1;
 }
 
+static bool is_periodic(const SupportSpec *spec)
+{
+  return !strcmp(spec->held, "periodic");
+}
+
+/** One layer outside a face after the other. */
+static int add_one(MarginList *list, const Margin *margin, const Node *node, const DeckReader *reader)
+{
+  for (int m = 0; m < list->count; ++m)
+    if (list->items[m].block == margin->block && list->items[m].axis == margin->axis &&
+        list->items[m].high == margin->high)
+      return node_error(reader->document, node, reader->error, "support: this face has one already, of line %d",
+                        ((const LoadSpec *)list->items[m].owner)->head.node->line);
+  Margin *grown = memory_grown(list->items, (size_t)(list->count + 1), sizeof *grown);
+  if (!grown) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: supports");
+  list->items = grown;
+  list->items[list->count++] = *margin;
+  return BRECCIA_OK;
+}
+
 static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList *selections, const SectionList *blocks,
                       const Length *horizon, const DeckReader *reader)
 {
@@ -91,17 +116,17 @@ static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList 
         block->head.name);
   const int axis = on->face[0] - 'x';
   const double reach = horizon->in_spacings ? horizon->value : horizon->value / block->spacing;
-  const Margin margin = {spec, b, axis, on->face[1] == '+',
-                         support->layers > 0 ? support->layers : 2 * (int64_t)fmin(floor(reach + 1e-6), 500)};
-  for (int m = 0; m < list->count; ++m)
-    if (list->items[m].block == b && list->items[m].axis == axis && list->items[m].high == margin.high)
-      return node_error(reader->document, node, reader->error, "support: this face has one already, of line %d",
-                        ((const LoadSpec *)list->items[m].owner)->head.node->line);
-  Margin *grown = memory_grown(list->items, (size_t)(list->count + 1), sizeof *grown);
-  if (!grown) return error_add(reader->error, BRECCIA_FAILURE, "out of memory: supports");
-  list->items = grown;
-  list->items[list->count++] = margin;
-  return BRECCIA_OK;
+  const bool periodic = is_periodic(support);
+  Margin margin = {.owner = spec,
+                   .block = b,
+                   .axis = axis,
+                   .high = on->face[1] == '+',
+                   .layers = support->layers > 0 ? support->layers : 2 * (int64_t)fmin(floor(reach + 1e-6), 500),
+                   .repeats = periodic};
+  const int status = add_one(list, &margin, node, reader);
+  if (status || !periodic) return status;
+  margin.high = !margin.high;
+  return add_one(list, &margin, node, reader);
 }
 
 int support_margins(MarginList *list, const SectionList *loads, const SectionList *selections,
@@ -123,6 +148,32 @@ bool support_slides(const Margin *margin)
   return !strcmp(support->held, "across");
 }
 
+/** Whether a particle stands in a margin that this support asked for. */
+static bool is_own(const Body *body, int64_t n, const LoadSpec *spec)
+{
+  return body_outside(body, n) && body->margins.items[body->margin_of[n]].owner == spec;
+}
+
+/** The particles outside, and those that they follow. */
+static int list_images(Load *load, const LoadMaking *making)
+{
+  const Body *body = making->body;
+  Error *error = making->reader->error;
+  Support *support = load->own;
+  int64_t count = 0;
+  for (int64_t n = 0; n < body->particles.count; ++n) count += is_own(body, n, load->spec);
+  selection_destroy(&load->selection);
+  load->selection.places = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
+  support->images = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
+  if (!load->selection.places || !support->images) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < body->particles.count; ++n) {
+    if (!is_own(body, n, load->spec)) continue;
+    support->images[load->selection.count] = body->particles.place_of[body->image_of[n]];
+    load->selection.places[load->selection.count++] = body->particles.place_of[n];
+  }
+  return BRECCIA_OK;
+}
+
 static int create(Load *load, const LoadMaking *making)
 {
   const SupportSpec *spec = load->value->section;
@@ -132,40 +183,32 @@ static int create(Load *load, const LoadMaking *making)
   while (margin < body->margins.count && body->margins.items[margin].owner != load->spec) ++margin;
   if (margin == body->margins.count) return BRECCIA_USER_ERROR; /* said when the margins were found */
   const int axis = body->margins.items[margin].axis;
-  Support *support = load->own = memory_zeroed(1, sizeof *support, "supports", error);
-  if (!support) return BRECCIA_FAILURE;
-  int64_t count = 0;
-  for (int64_t n = 0; n < body->particles.count; ++n) count += body->margin_of[n] == margin;
-  if (!count)
+  if (!(load->own = memory_zeroed(1, sizeof(Support), "supports", error))) return BRECCIA_FAILURE;
+  const int status = list_images(load, making);
+  if (status) return status;
+  if (!load->selection.count)
     return node_error(
         making->reader->document, load->node, error,
         "support: block '%s' has no particles at its face %c%c, where the box around its shape ends; let the "
         "first shape of a 'difference' end at the face",
         body->blocks[body->margins.items[margin].block]->head.name, "xyz"[axis],
         body -> margins.items[margin].high ? '+' : '-');
-  selection_destroy(&load->selection);
-  load->selection.places = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
-  support->images = memory_zeroed((size_t)count, sizeof(int32_t), "supports", error);
-  if (!load->selection.places || !support->images) return BRECCIA_FAILURE;
-  for (int64_t n = 0; n < body->particles.count; ++n) {
-    if (body->margin_of[n] != margin) continue;
-    support->images[load->selection.count] = body->particles.place_of[body->image_of[n]];
-    load->selection.places[load->selection.count++] = body->particles.place_of[n];
-  }
   for (int k = 0; k < body->dimensions; ++k) {
-    const bool held = !strcmp(spec->held, "all") || k == axis;
+    const bool periodic = is_periodic(spec), held = !periodic && (!strcmp(spec->held, "all") || k == axis);
     const double moved = isnan(spec->displacement[k]) ? 0 : spec->displacement[k];
     double direction[3] = {0};
     direction[k] = 1;
     if (!held && moved != 0)
       return node_error(making->reader->document, load->node, making->reader->error,
-                        "support: a face that is held across slides along itself; its displacement along %c must be 0",
+                        periodic ? "support: faces of a periodic body are not held; leave 'displacement' out"
+                                 : "support: a face that is held across slides along itself; its displacement along "
+                                   "%c must be 0",
                         "xyz"[k]);
     load_constrain(load, making, direction, 2 * moved, 0);
     Constraint *constraint = &making->loading->constraints[making->loading->constraint_count - 1];
-    constraint->images = support->images;
+    constraint->images = ((Support *)load->own)->images;
     constraint->share = held ? -1 : 1;
-    constraint->moved = memory_zeroed((size_t)count, sizeof(double), "supports", error);
+    constraint->moved = memory_zeroed((size_t)load->selection.count, sizeof(double), "supports", error);
     if (!constraint->moved) return BRECCIA_FAILURE;
   }
   return BRECCIA_OK;
