@@ -6,6 +6,7 @@
 #include "deck/describe.h"
 #include "domain/initial_stress.h"
 #include "results/picture.h"
+#include "results/profile.h"
 #include "results/results_spec.h"
 #include "results/watch.h"
 #include "solver/solver.h"
@@ -19,7 +20,7 @@ typedef struct DeckSpec {
   SectionHead head;
   const char *title;
   UnitsSpec *units;
-  SectionList materials, body, selections, cracks, initial_stress, loads, solve, watches,
+  SectionList materials, body, selections, cracks, initial_stress, loads, solve, watches, profiles,
       pictures; /* solve: stages of SolveSpec */
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;

@@ -164,6 +164,8 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
     bad = watches_create(&model->watches, &model->domain, &model->loading, &model->reader, &spec->watches,
                          &spec->selections);
     if (bad) status = bad;
+    bad = profiles_create(&model->profiles, &model->domain, &model->reader, &spec->profiles, &spec->selections);
+    if (bad) status = bad;
   }
   if (model->domain.material_count == spec->materials.count && (bad = model_check_results(model))) status = bad;
   if (!status && unknown) status = BRECCIA_USER_ERROR;
@@ -272,6 +274,7 @@ void breccia_model_destroy(breccia_model **out)
   if (!out || !*out) return;
   breccia_model *model = *out;
   watches_destroy(&model->watches);
+  profiles_destroy(&model->profiles);
   solver_destroy(&model->solver);
   loading_destroy(&model->loading);
   domain_destroy(&model->domain);

@@ -28,6 +28,7 @@ struct breccia_model {
   Loading loading;
   Solver solver;
   Watches *watches;
+  Profiles *profiles;
   Text warnings, overview, plausibility, outcome, stage;
   Outlook outlook;
   double solver_bytes; /* that the solver takes, once that is expected */

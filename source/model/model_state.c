@@ -22,4 +22,5 @@ void model_state(breccia_model *model, StateList *list)
   state_add_count(list, "states written", STATE_COMMITTED, &model->states_due);
   state_add_count(list, "bytes of solution.txt", STATE_COMMITTED, &model->log_bytes);
   if (model->watches) watches_state(model->watches, list);
+  if (model->profiles) profiles_state(model->profiles, list);
 }

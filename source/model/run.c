@@ -326,6 +326,7 @@ static int due(Run *run, Error *error)
   const Solver *s = &model->solver;
   const ResultsSpec *r = model->spec->results;
   int status = write_histories(run, false, error);
+  profiles_note(model->profiles, s);
   bool write = r->every > 0 && s->clock.step % r->every == 0;
   for (; model_has_passed(model, model->next_due, s->clock.time); ++model->next_due) write = true;
   write |= s->clock.ended && s->clock.stages > 1;
@@ -415,6 +416,10 @@ static int finish(Run *run, int status, Error *error)
   text_add(&own, "  %s/deck.yaml (what was run)\n  %s/results.vtkhdf (and results.xdmf for older ParaView)\n",
            run->wish->folder, run->wish->folder);
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
+  if (!run->unwritten && profiles_write(model->profiles, run->wish->folder, model->units, &own, error)) {
+    run->unwritten = true;
+    if (!status) status = BRECCIA_FAILURE;
+  }
   text_add(&own, "%s", text_words(&run->logs));
   text_free(&run->files);
   run->files = own;

@@ -123,6 +123,19 @@ static void draw(Run *run, const ResultView *view, const PictureSpec *spec, Outc
   breccia_error_destroy(&own);
 }
 
+/** Pictures of a profile; the same holds of what cannot be drawn. */
+static void draw_profile(Run *run, int k, const char *folder, Outcome *outcome)
+{
+  const breccia_model *model = run->model;
+  Error *own = breccia_error_create();
+  bool no_gnuplot = false;
+  const int status = profiles_draw(model->profiles, k, folder, model->units, &run->files, &no_gnuplot, own);
+  const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
+  if (unwritten) outcome->status = BRECCIA_FAILURE;
+  if (status) error_add(unwritten ? outcome->error : outcome->warnings, status, "%s", breccia_error_text(own));
+  breccia_error_destroy(&own);
+}
+
 static void draw_all(Run *run, const ResultView *view, Outcome *outcome)
 {
   static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
@@ -151,6 +164,7 @@ int run_draw_pictures(Run *run, Error *error)
     outcome.status = BRECCIA_FAILURE;
   else {
     if (view.steps) draw_all(run, &view, &outcome);
+    for (int k = 0; k < profiles_count(model->profiles); ++k) draw_profile(run, k, folder, &outcome);
     result_view_close(&view);
   }
   if (error_count(outcome.warnings))

@@ -35,6 +35,8 @@ void watches_state(Watches *watches, StateList *list);
 int watches_settle(const Watches *watches, Error *error);
 /** Writes a row to each file that is due at the solver's step; `last` makes all due. */
 int watches_write(Watches *watches, const Solver *solver, bool last, Error *error);
+/** Whether something that is looked at every so many steps (as the key of histories says; -1: as is usual) is due at a step that is done. */
+bool watch_is_due(int64_t every, const Solver *solver, int64_t step);
 /** Closes the files. @return BRECCIA_OK, or BRECCIA_FAILURE after a line about the first that could not be written to its end, or that somebody
  *  else has removed or changed meanwhile */
 int watches_close(Watches *watches, Error *error);

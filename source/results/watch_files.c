@@ -31,11 +31,10 @@ static void add_header(Text *text, const Kind *kind, const Units *units)
   text_add(text, "\n");
 }
 
-/** Whether there is a row of a step that is done. */
-static bool is_due(const Watch *w, const Solver *solver, int64_t step)
+bool watch_is_due(int64_t every, const Solver *solver, int64_t step)
 {
   enum { USUAL = 10 };
-  if (w->spec->every > 0) return step % w->spec->every == 0;
+  if (every > 0) return step % every == 0;
   return step % USUAL == 0 || solver_step_was_long(solver, step);
 }
 
@@ -167,7 +166,8 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
 {
   for (int k = 0; k < watches->count; ++k) {
     Watch *w = &watches->items[k];
-    if (w->last_step == solver->clock.step || (!last && !is_due(w, solver, solver->clock.step))) continue;
+    if (w->last_step == solver->clock.step || (!last && !watch_is_due(w->spec->every, solver, solver->clock.step)))
+      continue;
     double values[MOST_COLUMNS];
     const int columns = watch_columns(w->kind);
     Text row = {0};
@@ -175,7 +175,8 @@ int watches_write(Watches *watches, const Solver *solver, bool last, Error *erro
     text_add(&row, "%lld,%.10g", (long long)solver->clock.step, solver->clock.time);
     for (int c = 0; c < columns; ++c) text_add(&row, ",%.17g", values[c]);
     text_add(&row, "\n");
-    const bool due = is_due(w, solver, solver->clock.step), bad = put(w, &row, due) || fflush(w->file);
+    const bool due = watch_is_due(w->spec->every, solver, solver->clock.step),
+               bad = put(w, &row, due) || fflush(w->file);
     text_free(&row);
     if (bad) return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
     w->last_step = solver->clock.step;

@@ -182,6 +182,7 @@ solve:
   - {name: shake, explicit: {steps: 20, stiffness damping: 1e-7}}
   - {name: rest, static: {method: relaxation, increments: 4}}
 watch: {mouth: {opening between: [[0.04, 0], [0.05, 0]], every: 1}, energy: {energy: yes, every: 1}}
+profiles: {strip: {of: {all: yes}, along: x}}
 results: {number: 4, precision: double}
 pictures: []
 Y
@@ -229,6 +230,8 @@ stop_at strip 2 4
 grep -q "the body does not resist some motion" whole-strip/solution.txt || fail "strip: no equations are hard to solve, the test is too tame"
 stop_at stages 4 8 16 31 44
 [ "$(json whole-stages/summary.json broken_bonds)" -gt 0 ] || fail "stages: no bond breaks, the test is too tame"
+cmp -s whole-stages/profiles/strip.csv stopped-stages/profiles/strip.csv || fail "stages: a profile differs"
+[ "$(wc -l < whole-stages/profiles/strip.csv)" = 19 ] || fail "stages: a profile of 18 layers: $(cat whole-stages/profiles/strip.csv)"
 stop_at ground 1 4 16
 # what the log tells of steps behind the checkpoint is cut
 "$breccia" run stages.yaml --output stopped-stages --steps 44 > out 2>&1
