@@ -19,6 +19,9 @@ static void a_column_has_the_frequencies_of_a_layer(void **state)
       {SOIL, "lattice: square, thickness: 1, spacing: 1, shape: {box: {from: [0, 0], to: [4, 20]}}",
        "space: plane strain, horizon: 2.015 spacings, formulation: ordinary",
        "{on: {face: x+}, support: {held: periodic}}", 200, 2e-3},
+      {SOIL, "lattice: square, thickness: 1, spacing: 1, shape: {box: {from: [0, 0], to: [4, 20]}}",
+       "space: plane strain, horizon: 2.015 spacings, formulation: hybrid",
+       "{on: {face: x-}, support: {held: periodic}}", 200, 5e-3},
       {FIBRES, "lattice: square, thickness: 1, spacing: 1, shape: {box: {from: [0, 0], to: [2, 20]}}",
        "space: plane stress, formulation: bond-based", "{on: {face: x-}, support: {held: periodic}}", 193.65, 0.02},
       {SOIL, "spacing: 1, shape: {box: {from: [0, 0, 0], to: [2, 20, 3]}}", "horizon: 1.5 spacings",
@@ -98,10 +101,10 @@ static void push(breccia_model *m)
 static void one_period_moves_as_two(void **state)
 {
   (void)state;
-  static const char *const formulations[] = {"correspondence", "ordinary", "bond-based"};
+  static const char *const formulations[] = {"correspondence", "ordinary", "bond-based", "hybrid"};
   static const char *const solvers[] = {"explicit: {end time: 0.04, time step: 5e-4}",
                                         "implicit: {end time: 0.04, time step: 2e-3, local error: 1, residual: 1e-11}"};
-  for (int f = 0; f < 3; ++f)
+  for (int f = 0; f < 4; ++f)
     for (int s = 0; s < (f ? 1 : 2); ++s) {
       breccia_model *pieces[2];
       double momentum[2] = {0};
