@@ -3,6 +3,7 @@
 #include "support.h"
 
 #include <complex.h>
+#include <unistd.h>
 
 /* A bar of 20 m with waves of 200 m/s, density 2 and area 1: a shear column of these numbers has the same equations. */
 #define BAR                                                                                                            \
@@ -122,6 +123,74 @@ static void soil_is_amplified_by_two_point_damping(void **state)
   }
   assert_near(amplification(2.5, alpha, b), 1 / sinh(pi * ratio / 2),
               0.02 * 12.7); /* as with damping alike at all frequencies */
+}
+
+/** A motion in a file of its own, of velocities. */
+static breccia_motion *motion_of(FILE *file, const char *path)
+{
+  const breccia_motion_file from = {.size = sizeof from, .path = path, .unit = "m/s"};
+  breccia_motion *motion = NULL;
+  breccia_error *error = breccia_error_create();
+  fclose(file);
+  if (breccia_motion_load(&from, &motion, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  unlink(path);
+  return motion;
+}
+
+static double burst(double t)
+{
+  return t <= 0 || t >= 0.4 ? 0 : sin(2 * pi * 6 * t) * fmin(5 * t, 2 - 5 * t);
+}
+
+/** One burst tells the whole transfer function: frequencies of the layer within 2 %, amplification within 5 % of the closed form. */
+static void a_burst_tells_the_transfer_function(void **state)
+{
+  (void)state;
+  const double ratio = 0.05, from = 2.5, to = 7.5, alpha = 4 * pi * ratio * from * to / (from + to),
+               b = ratio / (pi * (from + to));
+  breccia_model *m =
+      model_of(BAR "loads:\n  - {on: {face: x-}, support: {held: all}}\n"
+                   "  - {base acceleration: [1, 0], history: {sine: {frequency: 6 Hz, envelope: [[0, 0], "
+                   "[0.2, 1], [0.4, 0]]}}}\n"
+                   "solve: {explicit: {end time: 8, safety: 0.9, Rayleigh damping: {ratio: %g, from: "
+                   "%g, to: %g}}}\n",
+               ratio, from, to);
+  const Particles *p = m->domain.particles;
+  int32_t top = p->place_of[0];
+  for (int64_t k = 0; k < p->count; ++k)
+    if (p->position[0][p->place_of[k]] > p->position[0][top]) top = p->place_of[k];
+  char paths[2][32] = {"/tmp/breccia-XXXXXX", "/tmp/breccia-XXXXXX"};
+  FILE *files[2];
+  for (int k = 0; k < 2; ++k) assert_non_null(files[k] = fdopen(mkstemp(paths[k]), "w"));
+  double ground = 0;
+  while (!solver_is_done(&m->solver)) { /* the ground's velocity by the trapezium rule over many points of a step */
+    const double t = breccia_model_time(m);
+    fprintf(files[0], "%.17g %.17g\n", t, p->velocity[0][top] + ground);
+    fprintf(files[1], "%.17g %.17g\n", t, ground);
+    step_surely(m, 1);
+    const double step = breccia_model_time(m) - t;
+    for (int k = 0; k < 8; ++k) ground += step / 16 * (burst(t + k * step / 8) + burst(t + (k + 1) * step / 8));
+  }
+  breccia_motion *above = motion_of(files[0], paths[0]), *below = motion_of(files[1], paths[1]);
+  const breccia_motion_wish wish = {.size = sizeof wish, .damping = 0.05, .shortest = 1, .longest = 1, .smoothing = 0};
+  breccia_error *error = breccia_error_create();
+  if (breccia_motion_analyse(above, below, &wish, error)) fail_msg("%s", breccia_error_text(error));
+  const int rows = breccia_motion_rows(above, BRECCIA_MOTION_FOURIER);
+  const double *f = breccia_motion_column(above, BRECCIA_MOTION_FOURIER, 0),
+               *found = breccia_motion_column(above, BRECCIA_MOTION_FOURIER, 3);
+  for (int n = 1; n <= 2; ++n) {
+    const double wanted = (2 * n - 1) * 2.5;
+    int peak = 0;
+    for (int k = 0; k < rows; ++k)
+      if (f[k] > wanted - 1.5 && f[k] < wanted + 1.5 && (!peak || found[k] > found[peak])) peak = k;
+    assert_near(f[peak], wanted, 0.02 * wanted);
+    assert_near(found[peak], amplification(wanted, alpha, b), 0.05 * amplification(wanted, alpha, b));
+  }
+  breccia_motion_destroy(&above);
+  breccia_motion_destroy(&below);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
 }
 
 /** Solids that yield or are damaged are damped by their elastic stiffness, in explicit as in implicit steps. */
@@ -257,6 +326,7 @@ int main(void)
       cmocka_unit_test(modes_decay_by_their_ratios),
       cmocka_unit_test(tied_rows_decay_by_their_ratio),
       cmocka_unit_test(soil_is_amplified_by_two_point_damping),
+      cmocka_unit_test(a_burst_tells_the_transfer_function),
       cmocka_unit_test(what_yields_is_damped_by_its_elastic_stiffness),
       cmocka_unit_test(the_stable_step_is_shorter),
       cmocka_unit_test(bonds_break_as_without),
