@@ -124,7 +124,8 @@ static void raise_limits(Domain *d, const Moment *moment)
   double *beyond = &d->failure.beyond, low = 0, high = 0.5;
   int64_t above;
   if (!moment->most || !d->failure.criterion || judge(d, moment, COUNT_THEM) <= most) return;
-  while (*beyond = high, (above = judge(d, moment, COUNT_THEM)) > most) {
+  const double endless = 1e30; /* bonds of laws that gave up count whatever the limits are */
+  while (*beyond = high, (above = judge(d, moment, COUNT_THEM)) > most && high < endless) {
     low = high;
     high *= 2;
   }
@@ -152,8 +153,11 @@ static bool break_stranded(Domain *d, const Moment *moment)
     if (!d->suspects[s] || !region->type->can_carry) continue;
     for (int64_t slot = f->first[s]; slot < f->first[s + 1] && !d->out_of_memory; ++slot)
       for (int lane = 0; lane < SLICE; ++lane)
-        if (f->intact[slot] >> lane & 1 && !region->type->can_carry(region->formulation, s, slot, lane))
-          break_bond(d, s, slot, lane, family_bond(f, s, slot, lane).neighbour, moment);
+        if (f->intact[slot] >> lane & 1 && !region->type->can_carry(region->formulation, s, slot, lane)) {
+          const int32_t neighbour = family_bond(f, s, slot, lane).neighbour;
+          const uint8_t *kept = d->failure.kept;
+          if (!kept || !(kept[s * SLICE + lane] & kept[neighbour])) break_bond(d, s, slot, lane, neighbour, moment);
+        }
   }
   return d->broken_count > before;
 }

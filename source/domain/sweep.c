@@ -98,11 +98,13 @@ static void mark_ends(Domain *d, const Region *region, int64_t slice, int64_t ro
   }
 }
 
-/** Place of the owner of a bond's row. */
+/** Place of the owner of a bond's row, most likely in a slice; servers tell of any row. */
 static int64_t owner_of(const Domain *d, const Region *region, int64_t slice, int64_t row)
 {
   int64_t slot;
   int lane;
+  while (slice && row < region->bonds.first[slice]) --slice;
+  while (row >= region->bonds.first[slice + 1]) ++slice;
   bond_list_bond(&region->bonds, &d->family, slice, row, &slot, &lane);
   return slice * SLICE + lane;
 }

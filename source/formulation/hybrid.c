@@ -192,8 +192,10 @@ static void deform_rows(const Hybrid *h, const Sweep *sweep)
       }
       if (!sweep->at) hybrid_strain(h, g, strain);
     }
+    /* A bond that has broken keeps its strain: laws are still asked, and one that jumps to 0 may not be integrated. */
+    const bool stays = h->idle[sweep->row + i] && !sweep->at;
     for (int k = 0; k < 6; ++k)
-      if (k != ZZ || !h->points->plane_stress) sweep->strain[k][i] = strain[k];
+      if (!stays && (k != ZZ || !h->points->plane_stress)) sweep->strain[k][i] = strain[k];
   }
 }
 

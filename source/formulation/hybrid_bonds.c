@@ -237,17 +237,25 @@ static double lost(const Hybrid *h, int64_t row, double time)
           work(h, point.stress, point.was, strain) - work(h, stress, point.was, strain));
 }
 
-/** What the points of which both ends of a bond are members have lost; those are all that its break changes. */
+/** Number of a place among the members of a row, or -1. */
+static int member_of(const Hybrid *h, int64_t row, int32_t place)
+{
+  for (int n = 0; n < hybrid_members(h, row); ++n)
+    if (h->member[h->first[row] + n] == place) return n;
+  return -1;
+}
+
+/** What the points of which both ends of a bond are members, one of them as an end, have lost; those are all that its break changes. Of pairwise bonds places
+ *  know only the points of which they are an end. */
 static double lost_by_all(const Hybrid *h, int32_t a, int32_t b, double time)
 {
   double sum = 0;
   for (int64_t n = h->met_first[a]; n < h->met_first[a + 1]; ++n) {
-    const int64_t row = h->met[n].row;
-    const int32_t *member = h->member + h->first[row];
-    bool other = false;
-    for (int k = 0; k < hybrid_members(h, row); ++k) other |= member[k] == b;
-    if (other && (h->met[n].member < 2 || member[0] == b || member[1] == b)) sum += lost(h, row, time);
+    const int there = member_of(h, h->met[n].row, b);
+    if (there >= 0 && (h->met[n].member < 2 || there < 2)) sum += lost(h, h->met[n].row, time);
   }
+  for (int64_t n = h->met_first[b]; n < h->met_first[b + 1] && h->pairwise; ++n)
+    if (member_of(h, h->met[n].row, a) >= 2) sum += lost(h, h->met[n].row, time);
   return sum;
 }
 
@@ -317,7 +325,11 @@ void hybrid_stress(const void *formulation, int64_t place, double stress[6])
  *  strains all points whose members stand on both of its sides, and they follow their law to its end. */
 double hybrid_characteristic_length(const BondLength *of)
 {
-  const int axes = of->space == SPACE_3D ? 3 : 2, reach = (int)(of->horizon / of->spacing * (1 + 1e-9));
+  const int axes = of->space == SPACE_3D ? 3 : 2;
+  const double most =
+      axes == 3 ? 10 : 40; /* spacings, beyond which bodies are refused, or nobody would wait for this */
+  if (!(of->horizon <= most * of->spacing)) return NAN;
+  const int reach = (int)(of->horizon / of->spacing * (1 + 1e-9));
   const double square = pow(of->horizon / of->spacing * (1 + 1e-9), 2);
   double sum = 0, whole = 0;
   int from[3], c[3];

@@ -113,7 +113,7 @@ bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int 
   const Hybrid *h = formulation;
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-  return hybrid_weigh(h, rows[0], h->tried);
+  return h->volume[rows[0]] == 0 || hybrid_weigh(h, rows[0], h->tried);
 }
 
 /* ---- as the body begins ---- */
@@ -294,7 +294,8 @@ static int create_areas(Hybrid *h, Error *error)
         h->area[row][k] = share * p->volume[owner] * bond.weight / bond.length * (own[k] + their[k]);
         h->volume[row] += h->area[row][k] * bond.xi[k] / h->dimensions;
       }
-      if (!hybrid_weigh(h, row, h->g + h->first[row]))
+      h->idle[row] = h->volume[row] == 0; /* influence may end at the horizon */
+      if (!h->idle[row] && !hybrid_weigh(h, row, h->g + h->first[row]))
         status = refuse(h, owner, "has a bond whose two ends see particles", error);
     }
   free(shape);

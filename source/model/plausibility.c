@@ -149,7 +149,8 @@ static void check_material(breccia_model *model, int k)
   const CriticalEnergySpec *energy = critical_energy_spec(model->spec->failure);
   if (energy && !isnan(energy->fracture_energy))
     check_fracture_energy(model, m, energy->fracture_energy, section_node(energy, "fracture energy"));
-  const bool softens = m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
+  const bool controlled = points_on_particles(&model->domain.regions[0].points);
+  const bool softens = controlled && m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
   if (softens && !(m->softening_energy > 0) && !isfinite(model->domain.failure.limit[k]))
     plausibility_say(
         model, section_node(spec, "model"),

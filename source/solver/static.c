@@ -332,12 +332,12 @@ static NewtonOutcome try_increment(Static *s, double end, bool again, Error *err
 }
 
 /** Once more at the same time, on the way of the last try, which came to equilibrium.
- *  @param[in] anew  it was the first on this way */
-static int try_again(Static *s, bool anew, NewtonOutcome *outcome, Error *error)
+ *  @param[in] first  it was the first on this way */
+static int try_again(Static *s, bool first, NewtonOutcome *outcome, Error *error)
 {
   const int64_t places = s->domain->particles->places;
   if (!s->way.moved[0] && !vectors_make(s->way.moved, places, "static solver", error)) return BRECCIA_FAILURE;
-  if (anew) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
+  if (first) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
   *outcome = try_increment(s, s->clock->time, true, error);
   return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;
 }
@@ -368,18 +368,18 @@ static int settle(Solver *run, NewtonOutcome *outcome, Error *error)
   const double enough = 1e-2; /* of forces out of balance: what comes of so few is left to the next increment */
   Static *s = run->own;
   int status = break_bonds(run, outcome, error);
-  bool anew = true; /* the last try began a way */
+  bool first = true; /* the last try began a way */
   for (int k = 0; k < MOST && !status && *outcome == NEWTON_CONVERGED && domain_lags(s->domain); ++k) {
     text_add(&run->log, "  again, with the control of zero-energy modes as it is now\n");
     NewtonOutcome again;
-    if (try_again(s, anew, &again, error)) return BRECCIA_FAILURE;
+    if (try_again(s, first, &again, error)) return BRECCIA_FAILURE;
     if (again != NEWTON_CONVERGED) break; /* the next increment will see to it, or fail and say so */
     const bool few = s->newton.unbalanced_before < enough;
     const int64_t broken = s->domain->broken_count;
     status =
         break_bonds(run, outcome, error); /* what the stage leaves overloaded would stay whole if it was the last */
-    anew = s->domain->broken_count != broken;
-    if (few && !anew) break;
+    first = s->domain->broken_count != broken;
+    if (few && !first) break;
   }
   return status;
 }
