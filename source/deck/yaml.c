@@ -17,6 +17,7 @@ typedef struct Builder {
   const char *file; /* NULL: the document's own */
   bool setting;
   Error *error;
+  const char *text; /* that the library reads, with expressions hidden */
   int failed;
   int aliases; /* being followed */
 } Builder;
@@ -82,18 +83,46 @@ static void place_at(const Builder *builder, Node *node, struct fy_node *from)
   node->column = mark->column + 1;
 }
 
+/** What stands between single quotation marks: two of them mean one, a line's end with the blanks around it a blank, and each empty line
+ *  below it a line's end (YAML 1.2, 7.3.2). libfyaml 0.7 loses characters where quotation marks follow each other. */
+static char *single_quoted(Arena *arena, const char *text, size_t length)
+{
+  char *copy = arena_copy(arena, text, length);
+  size_t n = 0;
+  for (size_t k = 0; copy && k < length;) {
+    if (text[k] != '\n' && text[k] != '\r') {
+      k += text[k] == '\'';
+      copy[n++] = text[k++];
+      continue;
+    }
+    size_t ends = 0;
+    while (n && (copy[n - 1] == ' ' || copy[n - 1] == '\t')) --n;
+    for (; k < length && strchr(" \t\r\n", text[k]); ++k) ends += text[k] == '\n';
+    if (ends < 2) copy[n++] = ' ';
+    for (; ends > 1; --ends) copy[n++] = '\n';
+  }
+  if (copy) copy[n] = 0;
+  return copy;
+}
+
 static void build_scalar(Builder *builder, struct fy_node *from, Node *node)
 {
-  size_t length = 0;
-  const char *text = from ? fy_node_get_scalar(from, &length) : "";
-  char *copy = arena_copy(builder->document->arena, text ? text : "", text ? length : 0);
+  Arena *arena = builder->document->arena;
+  struct fy_token *token =
+      from && fy_node_get_style(from) == FYNS_SINGLE_QUOTED ? fy_node_get_scalar_token(from) : NULL;
+  const struct fy_mark *start = token ? fy_token_start_mark(token) : NULL,
+                       *end = token ? fy_token_end_mark(token) : NULL;
+  size_t length = start && end ? end->input_pos - start->input_pos : 0;
+  const char *text = start && end ? builder->text + start->input_pos : from ? fy_node_get_scalar(from, &length) : NULL;
+  if (!text) text = "", length = 0;
+  char *copy = (start && end ? single_quoted : arena_copy)(arena, text, length);
   node->kind = NODE_SCALAR;
   node->text = copy;
   if (!copy) {
     builder->failed = 1;
     return;
   }
-  if (memchr(copy, 0, length)) refuse(builder, node, "a zero byte in the text");
+  if (memchr(text, 0, length)) refuse(builder, node, "a zero byte in the text");
   if (strchr(copy, '$')) show_expressions(copy);
 }
 
@@ -354,7 +383,7 @@ int yaml_parse(Document *document, Node *root, const char *text, size_t length, 
     tell_problem(name, setting, diagnostics, error);
   } else {
     const int before = error_count(error);
-    Builder builder = {.document = document, .file = root->file, .setting = setting, .error = error};
+    Builder builder = {.document = document, .file = root->file, .setting = setting, .error = error, .text = plain};
     root->line = root->column = setting ? 0 : 1;
     build(&builder, fy_document_root(yaml), root, 0);
     failed = builder.failed;

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 limit=${FUZZ_RUNS:+-runs=$FUZZ_RUNS}
 limit=${limit:--max_total_time=$1}
-# libfyaml loses what it grows for a text of more than 64 parts, as '' is in single quotes. Only here: elsewhere what we lose of a deck is to be seen.
+# libfyaml loses what it grows for a text of more than 64 parts, as \\n is between double quotation marks. Only here: elsewhere what we lose of a deck is to be seen.
 { cat tests/leaks.txt && echo leak:libfyaml; } > build/fuzz/leaks.txt
 fuzz() { # fuzz TARGET LONGEST FOLDER [options]: inputs of so many bytes at most, from those in the folder
   target=$1 longest=$2 folder=$3
