@@ -1,22 +1,62 @@
-/* What the parts of hybrid peridynamics share: the table entry and sweeps (hybrid.c), the geometry of bonds (hybrid_geometry.c), single bonds,
- * places and their energies (hybrid_bonds.c).
+/* What the parts of hybrid peridynamics share: the table entry (hybrid.c), sweeps (hybrid_sweep.c), the geometry of bonds (hybrid_geometry.c, of those
+ * along lattices hybrid_table.c), single bonds, places and their energies (hybrid_bonds.c).
  *
  * Every bond has a material point in space at its middle. Its strain follows from the particles that both of its ends see, S = (H_A + A) and (H_B + B):
  *   G = sum over C in S of u_C (x) g_C,
  * a least-squares fit over S that is made exact along the bond, so that G xi = eta and no pattern of short waves goes unseen (docs/theory.md 5).
- * Points are the rows of the region's bond list; a bond of two materials has two rows, each for half of its volume. */
+ * Points are the rows of the region's bond list; a bond of two materials has two rows, each for half of its volume.
+ *
+ * Bonds of a lattice slot whose members all stand in the same lattice have their geometry in a table of distinct ones: members are lattice vectors from the
+ * owner A, and all of them but A are neighbours of A, so that the bases of A's slots lead to eight members at once. What a slice's points exert is
+ * summed in the slice for each lattice vector, and from there by lattice rows into windows, from which places take it. All other rows are *listed*: they
+ * have places and vectors of their own. */
 #ifndef BRECCIA_FORMULATION_HYBRID_H
 #define BRECCIA_FORMULATION_HYBRID_H
 
 #include "formulation/formulation.h"
 
-enum { HYBRID_FORCE = 3 * LANES };
+enum {
+  HYBRID_FORCE = 3 * LANES,
+  HYBRID_NEAR = 256, /* lattice vectors from a place, itself among them; rows of lattices with more are listed */
+  HYBRID_WIDTH = 24  /* numbers of a component of a window, at most; so are those of lattices that would need more */
+};
 
-/** A point of which a place is a member. */
-typedef struct HybridMeeting {
-  int32_t row;
-  int32_t member; /* its number among the members of the row */
-} HybridMeeting;
+/** Bonds along a lattice of one pattern, with the same members and the same section. */
+typedef struct HybridGeometry {
+  double area[3]; /* of the section of the bond, from the owner to the other end */
+  double volume;  /* for which the point stands */
+  int64_t first;  /* of its members in `near`, `key` and `g` of the table */
+  int16_t count;  /* members; 0: it carries nothing */
+  int16_t near;   /* of the other end */
+  bool
+      mirrored; /* members 2 n and 2 n + 1 stand opposite each other about the middle, so that their g are too; a last one stands there */
+} HybridGeometry;
+
+typedef struct HybridTable {
+  HybridGeometry *geometry;
+  uint16_t *
+      near; /* [members] lattice vectors from the owner: 0: itself, n + 1: pattern n of its lattice. The owner, the other end, the others */
+  uint16_t *key;   /* [members] the same in ascending order */
+  double (*g)[3];  /* [members] */
+  int32_t *bucket; /* [buckets] of geometries by what they are made of, or -1 */
+  int64_t members, member_room;
+  int32_t count, room, buckets, kept; /* kept: how many there were when those that no bond has were last thrown away */
+} HybridTable;
+
+/** Lattice vectors of one block: 0 is none, n + 1 is pattern n of the block. */
+typedef struct HybridLattice {
+  int count;           /* 0: bonds of the block are listed */
+  int16_t *difference; /* [count][count] (a, b): the vector b - a, or -1 */
+  uint8_t *window;     /* [count] number of the lattice row to which it leads */
+  int windows, along;  /* rows; vector's reach along them, in places */
+} HybridLattice;
+
+/** Numbers of a window that lanes of a slice take. */
+typedef struct HybridShare {
+  int32_t window;
+  int16_t from;  /* number of the window for lane 0 */
+  uint8_t lanes; /* that have one */
+} HybridShare;
 
 typedef struct Hybrid {
   const Particles *particles;
@@ -30,44 +70,125 @@ typedef struct Hybrid {
   bool pairwise; /* the stress of a point acts on the two ends of its bond only */
   double own;    /* share of the correction by the bond itself, beta; 1: G xi = eta */
   int dimensions;
-  int64_t *first;     /* [rows + 1] of the members of a row */
+  int32_t hidden[2]; /* two places whose bond counts as broken meanwhile; -1: none */
+
+  HybridTable table;
+  HybridLattice *lattice;  /* [blocks] */
+  int32_t *group;          /* [owned slots] geometry of all eight bonds, or -1 less the entry in `mixed` */
+  uint8_t *active;         /* [owned slots] bonds that carry something and are not listed */
+  int32_t (*mixed)[SLICE]; /* geometries; -1: there was never a bond; -2 less the number of a listed row */
+  int32_t mixed_count, mixed_room;
+  int windows, width;   /* of a slice; numbers of one component of a window */
+  double *window;       /* [slices][windows][3][width] force on the places of a lattice row, by the points of a slice */
+  int64_t *share_first; /* [slices + 1] */
+  HybridShare *share;
+
+  int64_t listed;     /* rows, those of single bonds first */
+  int64_t *row;       /* [listed] */
+  int64_t *first;     /* [listed + 1] of the members of a row */
   int32_t *member;    /* places: of each row the owner of its bond, the other end, then those that both see */
   double (*g)[3];     /* [members] 0 of those that a broken bond hides */
-  double (*area)[3];  /* [rows] of the section of the bond, from the owner to the other end */
-  double *volume;     /* [rows] for which the point stands; 0: there is no bond */
-  uint8_t *idle;      /* [rows] 1: it carries nothing: no bond, a broken one, or its members span no space any more */
-  int64_t *met_first; /* [places + 1] */
-  HybridMeeting *met; /* of each place, in the order of rows */
-  /** [rows][HYBRID_FORCE] F S times the volume, column by column; pairwise the force on the owner alone. What bonds read of one another lies together:
+  double (*area)[3];  /* [listed] */
+  double *volume;     /* [listed] 0: there is no bond */
+  uint8_t *idle;      /* [listed] 1: it carries nothing: no bond, a broken one, or its members span no space any more */
+  int64_t *met_first; /* [places + 1] of the listed rows that a place is a member of, or NULL: none are listed */
+  struct HybridMet {
+    int32_t number, member;
+  } * met;
+  /** [listed][HYBRID_FORCE] F S times the volume, column by column; pairwise the force on the owner alone. What bonds read of one another lies together:
    *  in arrays of one component each most of the time was waiting for them. */
   double *force;
-  double *shown;      /* [places][LANES] displacements, for the same reason */
-  double (*tried)[3]; /* [most members of a row] for geometries that are tried out, by one thread */
-  int32_t hidden[2];  /* two places whose bond counts as broken meanwhile; -1: none */
+  double *shown;      /* [places][LANES] displacements, for the same reason; NULL: no rows are listed */
+  double (*tried)[3]; /* [most members of a listed row] for geometries that are tried out, by one thread */
 } Hybrid;
+
+/** Where a row stands. */
+typedef struct HybridRow {
+  int64_t slice, slot, group; /* group: number of the owned slot, or -1: it is a single bond */
+  int64_t listed;             /* number, or -1: its geometry is in the table */
+  int32_t geometry;           /* or -1: there was never a bond */
+  int lane;
+} HybridRow;
+
+/** A row with what its strain is made of, wherever that is kept. */
+typedef struct HybridView {
+  bool idle; /* no more is known then but area and volume, and of listed rows members */
+  int count;
+  const int32_t *member;
+  const double (*g)[3];
+  double area[3], volume;
+  int32_t near[HYBRID_NEAR];
+  double tried[HYBRID_NEAR][3];
+} HybridView;
 
 /** Members, vectors, areas and volumes of all bonds, as the body begins. Refuses bodies whose bonds see too few particles. */
 int hybrid_measure(Hybrid *hybrid, Error *error);
-/** Vectors g of the members of a row by the bonds that are intact now. @param[out] g  [members]
- *  @return false: there is none, and the point carries nothing */
-bool hybrid_weigh(const Hybrid *hybrid, int64_t row, double (*g)[3]);
 /** Bonds of a slice have broken or were mended. */
 void hybrid_renew(void *formulation, int64_t slice);
-/** Component (k, j) of F S times the volume of a row; of pairwise bonds component k of the force with j = 0. */
-static inline double hybrid_force(const Hybrid *h, int64_t row, int k, int j)
-{
-  return h->force[HYBRID_FORCE * row + LANES * j + k];
-}
-/** Number of places that a row has as members. */
-static inline int hybrid_members(const Hybrid *h, int64_t row)
-{
-  return (int)(h->first[row + 1] - h->first[row]);
-}
+void hybrid_forget(Hybrid *hybrid);
+size_t hybrid_bytes(const void *formulation);
 
-/** G of a row at displacements u, row by row, by vectors of its members. */
-void hybrid_gradient(const Hybrid *hybrid, int64_t row, const double (*g)[3], double *const u[3], double gradient[9]);
+HybridRow hybrid_row(const Hybrid *hybrid, int64_t row);
+void hybrid_view(const Hybrid *hybrid, int64_t row, HybridView *view);
+void hybrid_view_at(const Hybrid *hybrid, const HybridRow *at, HybridView *view);
+/** The same by the bonds that are intact now. @return false: it carries nothing */
+bool hybrid_view_anew(const Hybrid *hybrid, const HybridRow *at, HybridView *view);
+/** Volume of a point that carries something; 0 of others. */
+double hybrid_volume(const Hybrid *hybrid, const HybridRow *at);
+
+/** Goes through the rows of a place's intact bonds. */
+typedef struct HybridRows {
+  int64_t place, row;
+  int64_t slot, owner; /* of the bond; slice of its owner */
+  bool more;           /* its second row is still to come */
+} HybridRows;
+HybridRows hybrid_rows(const Hybrid *hybrid, int64_t place);
+/** @return false: there are no more */
+bool hybrid_rows_next(const Hybrid *hybrid, HybridRows *rows, HybridRow *at);
+
+/* ---- between the two kinds of geometry ---- */
+
+/** K^-1 of all places by the weights of areas. */
+typedef double HybridShape[6];
+/** Section of the bond of a lane, as the body begins. */
+void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],
+                       double *volume);
+/** Inverse of a symmetric tensor of the body's space; rows and columns across the plane are those of 1.
+ *  @return false where it is as flat as no strain can be found in */
+bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
+/** Adds what the bond itself says: g - own (g . xi) xi / L^2, and own xi / L^2 of its ends. */
+void hybrid_correct(const Hybrid *h, int count, const double xi[3], double (*g)[3]);
+
+/** Makes room for lattices and groups; all bonds of lattice slots are absent. */
+int hybrid_lattices_create(Hybrid *h, Error *error);
+/** Before geometries are made: the bond of a lane is listed. */
+int hybrid_group_list(Hybrid *h, int64_t group, int lane, int64_t number);
+/** Geometries of an owned slot as the body begins. @return the lane whose members span no space, -1: all do, -2: there is no memory */
+int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int64_t group);
+/** Where places take what points of lattice slots exert. */
+int hybrid_windows_create(Hybrid *h, Error *error);
+/** Bonds of lattice slots around a slice have broken or were mended. */
+void hybrid_groups_renew(Hybrid *h, int64_t slice);
+void hybrid_lattices_destroy(Hybrid *h);
+size_t hybrid_lattices_bytes(const Hybrid *h);
+/** Members of a lane of an owned slot by the bonds that are intact now, in the order of a geometry's. @return false: it carries nothing */
+bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view);
+
+/** G of a row at displacements u, row by row. */
+void hybrid_gradient(const HybridView *view, double *const u[3], double gradient[9]);
 /** The strain that follows from it, with engineering shear. */
 void hybrid_strain(const Hybrid *hybrid, const double gradient[9], double strain[6]);
+/** Its change with the change g of a gradient `at`. */
+void hybrid_strain_change(const Hybrid *hybrid, const double at[9], const double g[9], double strain[6]);
+/** F S of a gradient and a stress; or its change F dS + dG S. @param[in] at, held  gradient and stress that change, or NULL */
+void hybrid_first_stress(const Hybrid *hybrid, const double g[9], const double stress[6], const double *at,
+                         const double *held, double p[9]);
+
+/** Phases, as FormulationType describes them (hybrid_sweep.c). */
+int64_t hybrid_show(void *formulation, const Sweep *sweep);
+int64_t hybrid_deform(void *formulation, const Sweep *sweep);
+int64_t hybrid_respond(void *formulation, const Sweep *sweep);
+int64_t hybrid_resist(void *formulation, const Sweep *sweep);
 
 /** As FormulationType describes it: whether the members of a bond's points still span space. */
 bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane);

@@ -14,23 +14,24 @@ int64_t hybrid_point_count(const void *formulation)
 int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *error)
 {
   const Hybrid *h = formulation;
+  HybridView view;
   operator_clear(point);
-  if (h->idle[row]) return BRECCIA_OK;
-  const int count = hybrid_members(h, row);
-  for (int n = 0; n < count; ++n) {
-    const double *g = h->g[h->first[row] + n];
+  hybrid_view(h, row, &view);
+  if (view.idle) return BRECCIA_OK;
+  for (int n = 0; n < view.count; ++n) {
+    const double *g = view.g[n];
     if (n > 1 && g[0] == 0 && g[1] == 0 && g[2] == 0) continue; /* hidden */
-    OperatorPlace *place = operator_add(point, h->member[h->first[row] + n], error);
+    OperatorPlace *place = operator_add(point, view.member[n], error);
     if (!place) return BRECCIA_FAILURE;
     for (int k = 0; k < 3; ++k) {
       place->g[k] = g[k];
-      if (n < 2) place->act[k] = (n ? 1 : -1) * h->area[row][k] / h->volume[row];
+      if (n < 2) place->act[k] = (n ? 1 : -1) * view.area[k] / view.volume;
     }
   }
   point->components = 6;
   point->finite = h->finite;
   point->acts_apart = h->pairwise;
-  point->volume = h->volume[row];
+  point->volume = view.volume;
   for (int k = 0; k < 6; ++k) point->stress[k] = h->points->stress[k][row];
   points_tangent(h->points, row, point->tangent);
   return BRECCIA_OK;
@@ -38,41 +39,64 @@ int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *e
 
 /* ---- forces between two particles ---- */
 
-/** Force of a point on one of its members, of the state or step evaluated last. */
-static void member_force(const Hybrid *h, int64_t row, int member, double force[3])
+/** F S of a row times its volume, of the state evaluated last; in a linearised step its change. */
+static void find_stress(const Hybrid *h, int64_t row, const HybridView *view, double *const *at, double p[9])
 {
-  const double *g = h->g[h->first[row] + member];
+  double g[9], g0[9], strain[6], stress[6], held[6], tangent[36];
+  hybrid_gradient(view, h->particles->displacement, g);
+  for (int k = 0; k < 6; ++k) held[k] = stress[k] = h->points->stress[k][row];
+  if (at) {
+    hybrid_gradient(view, at, g0);
+    hybrid_strain_change(h, g0, g, strain);
+    points_tangent(h->points, row, tangent);
+    for (int k = 0; k < 6; ++k) {
+      stress[k] = 0;
+      for (int j = 0; j < 6; ++j) stress[k] += tangent[6 * k + j] * strain[j];
+    }
+  }
+  hybrid_first_stress(h, g, stress, at ? g0 : NULL, held, p);
+  for (int k = 0; k < 9; ++k) p[k] *= view->idle ? 0 : view->volume;
+}
+
+/** Force of a point on one of its members. */
+static void member_force(const Hybrid *h, const HybridView *view, const double p[9], int member, double force[3])
+{
   for (int k = 0; k < 3; ++k) {
     force[k] = 0;
-    if (h->pairwise && member < 2) force[k] = (member ? -1 : 1) * hybrid_force(h, row, k, 0);
-    for (int j = 0; j < 3 && !h->pairwise; ++j) force[k] -= hybrid_force(h, row, k, j) * g[j];
+    for (int j = 0; j < 3 && !h->pairwise; ++j) force[k] -= p[3 * k + j] * view->g[member][j];
+    for (int j = 0; j < 3 && h->pairwise && member < 2 && !view->idle; ++j)
+      force[k] += (member ? -1 : 1) * p[3 * k + j] * view->area[j] / view->volume;
   }
+}
+
+/** Number of a place among the members, or their count. */
+static int member_of(const HybridView *view, int32_t place)
+{
+  int n = 0;
+  while (n < view->count && view->member[n] != place) ++n;
+  return n;
 }
 
 /** Half of what a member that is no end receives comes from each of the two ends; the rest passes between these. So shared out, forces come in pairs along
  *  the bonds that there are.
- *  @param[in] met    how a place has a part in a point
- *  @param[in] other  another place
- *  @param[in,out] force  on the place, from the other one */
-static void add_pair(const Hybrid *h, const HybridMeeting *met, int32_t other, double force[3])
+ *  @param[in,out] force  on a place, from another one, by one point */
+static void add_pair(const Hybrid *h, int64_t row, const HybridView *view, double *const *at, const int32_t places[2],
+                     double force[3])
 {
-  const int64_t row = met->row, first = h->first[row];
-  const int count = hybrid_members(h, row);
-  int there = 0;
-  double part[3];
-  while (there < count && h->member[first + there] != other) ++there;
-  if (there == count) return;
-  if (met->member >= 2 && there >= 2) return;
-  const int sole = met->member >= 2 ? met->member : there; /* the one that is no end */
+  const int here = member_of(view, places[0]), there = member_of(view, places[1]);
+  double part[3], p[9];
+  if (view->idle || here == view->count || there == view->count) return;
+  find_stress(h, row, view, at, p);
+  const int sole = here >= 2 ? here : there; /* the one that is no end */
   if (sole >= 2) {
-    member_force(h, row, sole, part);
-    for (int k = 0; k < 3; ++k) force[k] += (met->member >= 2 ? 0.5 : -0.5) * part[k];
+    member_force(h, view, p, sole, part);
+    for (int k = 0; k < 3; ++k) force[k] += (here >= 2 ? 0.5 : -0.5) * part[k];
     return;
   }
-  member_force(h, row, met->member, part);
+  member_force(h, view, p, here, part);
   for (int k = 0; k < 3; ++k) force[k] += part[k];
-  for (int n = 2; n < count && !h->pairwise; ++n) {
-    member_force(h, row, n, part);
+  for (int n = 2; n < view->count && !h->pairwise; ++n) {
+    member_force(h, view, p, n, part);
     for (int k = 0; k < 3; ++k) force[k] += 0.5 * part[k];
   }
 }
@@ -80,21 +104,27 @@ static void add_pair(const Hybrid *h, const HybridMeeting *met, int32_t other, d
 void hybrid_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                        double state[3])
 {
-  (void)at;
   const Hybrid *h = formulation;
-  const int64_t place = slice * SLICE + lane;
-  const int32_t other = family_bond(h->family, slice, slot, lane).neighbour;
+  const int32_t places[2] = {(int32_t)(slice * SLICE + lane), family_bond(h->family, slice, slot, lane).neighbour};
   double force[3] = {0};
-  for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) add_pair(h, &h->met[n], other, force);
-  const double volumes = h->particles->volume[place] * h->particles->volume[other];
+  for (int end = 0; end < 2; ++end) {
+    HybridRow row;
+    HybridView view;
+    for (HybridRows rows = hybrid_rows(h, places[end]); hybrid_rows_next(h, &rows, &row);) {
+      hybrid_view_at(h, &row, &view);
+      if (!end || member_of(&view, places[0]) >= 2) add_pair(h, rows.row, &view, at, places, force);
+    }
+  }
+  const double volumes = h->particles->volume[places[0]] * h->particles->volume[places[1]];
   for (int k = 0; k < 3; ++k) state[k] = 0.5 * force[k] / volumes;
 }
 
 /** Gradient I + G of a bond's point. */
 static void bond_gradient(const Hybrid *h, int64_t row, double f[9])
 {
-  memset(f, 0, 9 * sizeof *f);
-  if (!h->idle[row]) hybrid_gradient(h, row, (const double(*)[3])(h->g + h->first[row]), h->particles->displacement, f);
+  HybridView view;
+  hybrid_view(h, row, &view);
+  hybrid_gradient(&view, h->particles->displacement, f);
   for (int k = 0; k < 3; ++k) f[4 * k] += 1;
 }
 
@@ -134,10 +164,12 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
   const Hybrid *h = formulation;
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
+  const HybridRow at = hybrid_row(h, rows[0]);
+  const double *area = at.listed >= 0 ? h->area[at.listed] : h->table.geometry[at.geometry].area;
   double stress[6], normal[3], square = 0, traction = 0;
   for (int k = 0; k < 6; ++k) stress[k] = (h->points->stress[k][rows[0]] + h->points->stress[k][rows[1]]) / 2;
-  for (int k = 0; k < 3; ++k) square += h->area[rows[0]][k] * h->area[rows[0]][k];
-  for (int k = 0; k < 3; ++k) normal[k] = h->area[rows[0]][k] / sqrt(square);
+  for (int k = 0; k < 3; ++k) square += area[k] * area[k];
+  for (int k = 0; k < 3; ++k) normal[k] = area[k] / sqrt(square);
   *tension = 0;
   for (int k = 0; k < 3; ++k) {
     double t = 0;
@@ -193,7 +225,7 @@ typedef struct PointInStep {
   double now[6];            /* strain at its end, by the members that it began with */
 } PointInStep;
 
-static PointInStep look(const Hybrid *h, int64_t row)
+static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view)
 {
   PointInStep point;
   double g[9];
@@ -201,61 +233,52 @@ static PointInStep look(const Hybrid *h, int64_t row)
     point.stress[k] = h->points->stress[k][row];
     point.was[k] = h->points->strain[k][row];
   }
-  hybrid_gradient(h, row, (const double(*)[3])(h->g + h->first[row]), h->particles->displacement, g);
+  hybrid_gradient(view, h->particles->displacement, g);
   hybrid_strain(h, g, point.now);
   return point;
-}
-
-/** Energy that a point had received until the end of the step under way: works summed by the trapezium rule find it gone there. */
-static double received(const Hybrid *h, int64_t row)
-{
-  const PointInStep point = look(h, row);
-  return h->volume[row] * (density(h, row) + work(h, point.stress, point.was, point.now) / 2);
 }
 
 /** Energy that a point has lost in the step under way by the bonds that are broken, beyond what its law will see: works go by the strain with all members
  *  to the end of the step and then without, the law goes straight (docs/theory.md 4, "What a breaking bond takes with it").
  *  @param[in] time  of the step */
-static double lost(const Hybrid *h, int64_t row, double time)
+static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double time)
 {
   const Particles *p = h->particles;
-  if (h->idle[row]) return 0;
-  if (!hybrid_weigh(h, row, h->tried)) return received(h, row);
-  const PointInStep point = look(h, row);
-  const double(*g)[3] = (const double(*)[3])h->tried;
-  double after[9] = {0}, before[9] = {0}, strain[6], first[6], stress[6];
-  const int32_t *member = h->member + h->first[row];
-  hybrid_gradient(h, row, g, p->displacement, after);
-  for (int n = 0; n < hybrid_members(h, row); ++n)
+  HybridView view, left;
+  hybrid_view_at(h, at, &view);
+  if (view.idle) return 0;
+  const PointInStep point = look(h, row, &view);
+  /* What it had received until the end of the step: works summed by the trapezium rule find it gone there. */
+  if (!hybrid_view_anew(h, at, &left))
+    return view.volume * (density(h, row) + work(h, point.stress, point.was, point.now) / 2);
+  double after[9], before[9] = {0}, strain[6], first[6], stress[6];
+  hybrid_gradient(&left, p->displacement, after);
+  for (int n = 0; n < left.count; ++n)
     for (int k = 0; k < 9; ++k)
-      before[k] += (p->displacement[k / 3][member[n]] - time * p->velocity[k / 3][member[n]]) * g[n][k % 3];
+      before[k] +=
+          (p->displacement[k / 3][left.member[n]] - time * p->velocity[k / 3][left.member[n]]) * left.g[n][k % 3];
   hybrid_strain(h, after, strain);
   hybrid_strain(h, before, first);
   foresee_stress(h, row, point.stress, point.was, strain, stress);
-  return h->volume[row] / 2 *
+  return view.volume / 2 *
          (work(h, point.stress, point.was, point.now) + work(h, stress, first, strain) -
           work(h, point.stress, point.was, strain) - work(h, stress, point.was, strain));
 }
 
-/** Number of a place among the members of a row, or -1. */
-static int member_of(const Hybrid *h, int64_t row, int32_t place)
-{
-  for (int n = 0; n < hybrid_members(h, row); ++n)
-    if (h->member[h->first[row] + n] == place) return n;
-  return -1;
-}
-
-/** What the points of which both ends of a bond are members, one of them as an end, have lost; those are all that its break changes. Of pairwise bonds places
- *  know only the points of which they are an end. */
-static double lost_by_all(const Hybrid *h, int32_t a, int32_t b, double time)
+/** What the points of which both ends of a bond are members have lost; those are all that its break changes. Of points that an earlier break of the step has
+ *  taken from a place this one takes nothing more. */
+static double lost_by_all(const Hybrid *h, const int32_t places[2], double time)
 {
   double sum = 0;
-  for (int64_t n = h->met_first[a]; n < h->met_first[a + 1]; ++n) {
-    const int there = member_of(h, h->met[n].row, b);
-    if (there >= 0 && (h->met[n].member < 2 || there < 2)) sum += lost(h, h->met[n].row, time);
+  for (int end = 0; end < 2; ++end) {
+    HybridRow row;
+    HybridView view;
+    for (HybridRows rows = hybrid_rows(h, places[end]); hybrid_rows_next(h, &rows, &row);) {
+      hybrid_view_at(h, &row, &view);
+      const int other = member_of(&view, places[!end]);
+      if (other < view.count && (!end || other >= 2)) sum += lost(h, rows.row, &row, time);
+    }
   }
-  for (int64_t n = h->met_first[b]; n < h->met_first[b + 1] && h->pairwise; ++n)
-    if (member_of(h, h->met[n].row, a) >= 2) sum += lost(h, h->met[n].row, time);
   return sum;
 }
 
@@ -270,15 +293,18 @@ void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, in
                         StoredEnergy *energy)
 {
   Hybrid *h = (Hybrid *)(uintptr_t)formulation; /* its bond counts as broken meanwhile */
-  const int32_t place = (int32_t)(slice * SLICE + lane), other = family_bond(h->family, slice, slot, lane).neighbour;
+  const int32_t places[2] = {(int32_t)(slice * SLICE + lane), family_bond(h->family, slice, slot, lane).neighbour};
   int64_t rows[2];
   *energy = (StoredEnergy){0};
-  for (int n = 0; n < rows_of(h, slice, slot, lane, rows); ++n)
-    if (!h->idle[rows[n]]) energy->stored += h->volume[rows[n]] * density(h, rows[n]);
-  const double before = lost_by_all(h, place, other, time);
-  h->hidden[0] = place;
-  h->hidden[1] = other;
-  energy->received = lost_by_all(h, place, other, time) - before;
+  for (int n = 0; n < rows_of(h, slice, slot, lane, rows); ++n) {
+    const HybridRow at = hybrid_row(h, rows[n]);
+    const double volume = hybrid_volume(h, &at);
+    if (volume > 0) energy->stored += volume * density(h, rows[n]);
+  }
+  const double before = lost_by_all(h, places, time);
+  h->hidden[0] = places[0];
+  h->hidden[1] = places[1];
+  energy->received = lost_by_all(h, places, time) - before;
   h->hidden[0] = h->hidden[1] = -1;
 }
 
@@ -287,38 +313,45 @@ void hybrid_stored_energy(const void *formulation, int64_t place, double time, S
   (void)time;
   const Hybrid *h = formulation;
   *energy = (StoredEnergy){0};
-  for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n)
-    if (h->met[n].member < 2 && !h->idle[h->met[n].row])
-      energy->stored += 0.5 * h->volume[h->met[n].row] * density(h, h->met[n].row);
+  HybridRow at;
+  for (HybridRows rows = hybrid_rows(h, place); hybrid_rows_next(h, &rows, &at);) {
+    const double volume = hybrid_volume(h, &at);
+    if (volume > 0) energy->stored += 0.5 * volume * density(h, rows.row);
+  }
 }
 
 /* ---- what people see of particles ---- */
 
-/** Mean of numbers of the points on a place's bonds, by their volumes. */
-static double mean_of(const Hybrid *h, int64_t place, const double *numbers)
+/** Means of numbers of the points on a place's bonds, by their volumes. */
+static void find_means(const Hybrid *h, int64_t place, double *const *numbers, int count, double *mean)
 {
-  double sum = 0, whole = 0;
-  for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
-    const int64_t row = h->met[n].row;
-    if (h->met[n].member >= 2 || h->idle[row]) continue;
-    sum += h->volume[row] * numbers[row];
-    whole += h->volume[row];
+  double whole = 0;
+  HybridRow at;
+  memset(mean, 0, sizeof *mean * (size_t)count);
+  for (HybridRows rows = hybrid_rows(h, place); hybrid_rows_next(h, &rows, &at);) {
+    const double volume = hybrid_volume(h, &at);
+    if (!(volume > 0)) continue;
+    for (int k = 0; k < count; ++k) mean[k] += volume * numbers[k][rows.row];
+    whole += volume;
   }
-  return whole > 0 ? sum / whole : 0;
+  for (int k = 0; k < count && whole > 0; ++k) mean[k] /= whole;
 }
 
 void hybrid_place_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Hybrid *h = formulation;
+  double across;
   const ShapeTensor shape = shape_tensor(h->family, (int32_t)place, h->dimensions, 0);
   shape_gradient(h->family, (int32_t)place, shape.inverse, f);
-  if (h->points->plane_stress) f[8] = sqrt(fmax(0, 1 + 2 * mean_of(h, place, h->points->strain[ZZ])));
+  if (!h->points->plane_stress) return;
+  find_means(h, place, &h->points->strain[ZZ], 1, &across);
+  f[8] = sqrt(fmax(0, 1 + 2 * across));
 }
 
 void hybrid_stress(const void *formulation, int64_t place, double stress[6])
 {
   const Hybrid *h = formulation;
-  for (int k = 0; k < 6; ++k) stress[k] = mean_of(h, place, h->points->stress[k]);
+  find_means(h, place, h->points->stress, 6, stress);
 }
 
 /** How far members of a bond's point stand apart along the first axis, over all bonds of a square or cubic lattice by their volumes: a crack across that axis

@@ -1,4 +1,4 @@
-/* Which particles give a bond its strain, by which vectors, and how large its section is. */
+/* Which particles give a bond its strain, by which vectors, and how large its section is: of listed bonds, and for those who ask of any bond. */
 #include "formulation/hybrid.h"
 
 #include "base/memory.h"
@@ -14,9 +14,7 @@ static bool sees(const Hybrid *h, int32_t a, int32_t b)
   return family_joins(h->family, a, b);
 }
 
-/** Inverse of a symmetric tensor of the body's space; rows and columns across the plane are those of 1.
- *  @return false where it is as flat as no strain can be found in */
-static bool invert(const Hybrid *h, double m[6], double inverse[6])
+bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6])
 {
   const double flat = 1e-6;
   double value[3], vector[9], largest = 0, least = INFINITY;
@@ -42,8 +40,7 @@ static void times(const double a[6], const double v[3], double to[3])
   }
 }
 
-/** Adds what the bond itself says: g - own (g . xi) xi / L^2, and own xi / L^2 of its ends. */
-static void correct(const Hybrid *h, int count, const double xi[3], double (*g)[3])
+void hybrid_correct(const Hybrid *h, int count, const double xi[3], double (*g)[3])
 {
   double square = 0;
   for (int k = 0; k < 3; ++k) square += xi[k] * xi[k];
@@ -54,13 +51,14 @@ static void correct(const Hybrid *h, int count, const double xi[3], double (*g)[
   }
 }
 
-bool hybrid_weigh(const Hybrid *h, int64_t row, double (*g)[3])
+/** Vectors g of the members of a listed row by the bonds that are intact now. @return false: there is none, and the point carries nothing */
+static bool weigh(const Hybrid *h, int64_t number, double (*g)[3])
 {
   const Particles *p = h->particles;
-  const int32_t *member = h->member + h->first[row];
-  const int count = hybrid_members(h, row);
+  const int32_t *member = h->member + h->first[number];
+  const int count = (int)(h->first[number + 1] - h->first[number]);
   memset(g, 0, sizeof *g * (size_t)count);
-  if (h->volume[row] == 0 || !sees(h, member[0], member[1])) return false;
+  if (h->volume[number] == 0 || !sees(h, member[0], member[1])) return false;
   double middle[3] = {0}, whole = 0, m[6] = {0}, inverse[6], xi[3];
   for (int n = 0; n < count; ++n) {
     if (!sees(h, member[n], member[0]) || !sees(h, member[n], member[1])) continue;
@@ -83,7 +81,7 @@ bool hybrid_weigh(const Hybrid *h, int64_t row, double (*g)[3])
     for (int k = 0; k < 6; ++k) m[k] += volume * from[symmetric_row[k]] * from[symmetric_column[k]];
     for (int k = 0; k < 3; ++k) g[n][k] = volume * from[k];
   }
-  if (!invert(h, m, inverse)) {
+  if (!hybrid_invert(h, m, inverse)) {
     memset(g, 0, sizeof *g * (size_t)count);
     return false;
   }
@@ -91,29 +89,149 @@ bool hybrid_weigh(const Hybrid *h, int64_t row, double (*g)[3])
     const double from[3] = {g[n][0], g[n][1], g[n][2]};
     times(inverse, from, g[n]);
   }
-  correct(h, count, xi, g);
+  hybrid_correct(h, count, xi, g);
   return true;
-}
-
-static void renew_row(Hybrid *h, int64_t row)
-{
-  h->idle[row] = !hybrid_weigh(h, row, h->g + h->first[row]);
 }
 
 void hybrid_renew(void *formulation, int64_t slice)
 {
   Hybrid *h = formulation;
-  for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE; ++place)
-    for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n)
-      if (h->pairwise || h->met[n].member < 2) renew_row(h, h->met[n].row);
+  for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE && h->met_first; ++place)
+    for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
+      const int64_t number = h->met[n].number;
+      if (h->met[n].member < 2) h->idle[number] = !weigh(h, number, h->g + h->first[number]);
+    }
+  hybrid_groups_renew(h, slice);
+}
+
+/* ---- rows one by one ---- */
+
+static HybridRow row_of(const Hybrid *h, int64_t slice, int64_t row)
+{
+  const BondList *l = h->bonds;
+  HybridRow at = {.slice = slice, .group = -1, .listed = -1, .geometry = -1};
+  bond_list_bond(l, h->family, at.slice, row, &at.slot, &at.lane);
+  const int64_t n = row - l->first[at.slice], owned = l->owned_first[at.slice + 1] - l->owned_first[at.slice];
+  if (n >= SLICE * owned) {
+    at.listed = l->single_first[at.slice] + n - SLICE * owned;
+    return at;
+  }
+  at.group = l->owned_first[at.slice] + n / SLICE;
+  const int32_t whole = h->group[at.group], geometry = whole < 0 ? h->mixed[-1 - whole][at.lane] : whole;
+  at.listed = geometry < -1 ? -2 - geometry : -1;
+  at.geometry = geometry < -1 ? -1 : geometry;
+  return at;
+}
+
+HybridRow hybrid_row(const Hybrid *h, int64_t row)
+{
+  int64_t slice = 0, high = h->particles->slices;
+  while (high - slice > 1) {
+    const int64_t middle = (slice + high) / 2;
+    if (h->bonds->first[middle] <= row)
+      slice = middle;
+    else
+      high = middle;
+  }
+  return row_of(h, slice, row);
+}
+
+static void view_listed(const Hybrid *h, int64_t number, HybridView *view)
+{
+  view->idle = h->idle[number];
+  view->count = (int)(h->first[number + 1] - h->first[number]);
+  view->member = h->member + h->first[number];
+  view->g = (const double(*)[3])(h->g + h->first[number]);
+  memcpy(view->area, h->area[number], sizeof view->area);
+  view->volume = h->volume[number];
+}
+
+void hybrid_view_at(const Hybrid *h, const HybridRow *at, HybridView *view)
+{
+  view->idle = true;
+  view->count = 0;
+  view->volume = 0;
+  if (at->listed >= 0) {
+    view_listed(h, at->listed, view);
+    return;
+  }
+  if (at->geometry < 0) return;
+  const Family *f = h->family;
+  const HybridGeometry *geometry = &h->table.geometry[at->geometry];
+  const int begin = f->pattern_begin[h->particles->block[at->slice]] - 1;
+  view->idle = !geometry->count;
+  view->count = geometry->count;
+  view->member = view->near;
+  view->g = (const double(*)[3])(h->table.g + geometry->first);
+  memcpy(view->area, geometry->area, sizeof view->area);
+  view->volume = geometry->volume;
+  int32_t base[HYBRID_NEAR];
+  base[0] = (int32_t)(at->slice * SLICE);
+  for (int64_t slot = f->first[at->slice]; slot < f->stored[at->slice]; ++slot)
+    base[f->pattern[slot] - begin] = f->base[slot];
+  for (int n = 0; n < view->count; ++n) view->near[n] = base[h->table.near[geometry->first + n]] + at->lane;
+}
+
+void hybrid_view(const Hybrid *h, int64_t row, HybridView *view)
+{
+  const HybridRow at = hybrid_row(h, row);
+  hybrid_view_at(h, &at, view);
+}
+
+bool hybrid_view_anew(const Hybrid *h, const HybridRow *at, HybridView *view)
+{
+  hybrid_view_at(h, at, view);
+  if (at->listed < 0) return at->geometry >= 0 && hybrid_group_weigh(h, at, view);
+  view->g = (const double(*)[3])h->tried;
+  return weigh(h, at->listed, h->tried);
 }
 
 bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane)
 {
   const Hybrid *h = formulation;
   int64_t rows[2];
+  HybridView view;
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-  return h->volume[rows[0]] == 0 || hybrid_weigh(h, rows[0], h->tried);
+  const HybridRow at = hybrid_row(h, rows[0]);
+  return hybrid_view_anew(h, &at, &view) || view.volume == 0;
+}
+
+HybridRows hybrid_rows(const Hybrid *h, int64_t place)
+{
+  return (HybridRows){.place = place, .slot = h->family->first[place / SLICE] - 1};
+}
+
+bool hybrid_rows_next(const Hybrid *h, HybridRows *rows, HybridRow *at)
+{
+  const Family *f = h->family;
+  const int64_t slice = rows->place / SLICE;
+  const int lane = (int)(rows->place % SLICE);
+  int64_t both[2];
+  if (rows->more) {
+    rows->more = false;
+    bond_list_rows(h->bonds, f, slice, rows->slot, lane, both);
+    rows->row = both[0] == rows->row ? both[1] : both[0];
+    *at = row_of(h, rows->owner, rows->row);
+    return true;
+  }
+  do {
+    if (++rows->slot >= f->first[slice + 1]) return false;
+  } while (!(f->intact[rows->slot] >> lane & 1));
+  const int64_t other = rows->slot < f->stored[slice] ? f->base[rows->slot] + lane
+                                                      : f->neighbour[(int64_t)f->base[rows->slot] * SLICE + lane];
+  bond_list_rows(h->bonds, f, slice, rows->slot, lane, both);
+  rows->owner = (rows->place < other ? rows->place : other) / SLICE;
+  rows->more = both[0] != both[1];
+  rows->row = both[0];
+  *at = row_of(h, rows->owner, rows->row);
+  return true;
+}
+
+double hybrid_volume(const Hybrid *h, const HybridRow *at)
+{
+  if (at->listed >= 0) return h->idle[at->listed] ? 0 : h->volume[at->listed];
+  const HybridGeometry *geometry = at->geometry >= 0 ? &h->table.geometry[at->geometry] : NULL;
+  return geometry && geometry->count ? geometry->volume : 0;
 }
 
 /* ---- as the body begins ---- */
@@ -131,7 +249,7 @@ static bool find_shape(const Hybrid *h, int32_t place, double inverse[6])
     for (int c = 0; c < 6; ++c)
       k[c] += bond.weight / bond.length * bond.xi[symmetric_row[c]] * bond.xi[symmetric_column[c]];
   }
-  return invert(h, k, inverse);
+  return hybrid_invert(h, k, inverse);
 }
 
 typedef struct Neighbours {
@@ -171,46 +289,83 @@ static int find_common(const Hybrid *h, int32_t other, Neighbours *n, Error *err
   return BRECCIA_OK;
 }
 
-/** Owner and neighbour of a row; -1: it has no bond. */
-static int32_t owner_of(const Hybrid *h, int64_t slice, int64_t row, Bond *bond)
+/** Whether both ends of a lattice bond see a place that stands elsewhere. */
+static bool see_beyond(const Hybrid *h, int64_t slice, int lane, int32_t other)
 {
-  int64_t slot;
-  int lane;
-  bond_list_bond(h->bonds, h->family, slice, row, &slot, &lane);
-  if (!(h->family->intact[slot] >> lane & 1)) return -1;
-  *bond = family_bond(h->family, slice, slot, lane);
-  return (int32_t)(slice * SLICE + lane);
+  const Family *f = h->family;
+  if (f->stored[other / SLICE] == f->first[other / SLICE + 1]) return false;
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    if (f->intact[slot] >> lane & 1 && family_joins(f, other, family_bond(f, slice, slot, lane).neighbour)) return true;
+  return false;
 }
 
-/** Members of all rows: counted, or written. */
+/** Lists the bonds of a slice that lie along a lattice but have no place in the table. */
+static int list_slice(Hybrid *h, int64_t slice, int64_t *room, Error *error)
+{
+  const Family *f = h->family;
+  const BondList *l = h->bonds;
+  const bool whole = h->lattice[h->particles->block[slice]].count > 0;
+  if (whole && f->stored[slice] == f->first[slice + 1]) return BRECCIA_OK;
+  for (int64_t group = l->owned_first[slice]; group < l->owned_first[slice + 1]; ++group)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int64_t slot = f->first[slice] + l->owned[group];
+      if (!(f->intact[slot] >> lane & 1) || (whole && !see_beyond(h, slice, lane, f->base[slot] + lane))) continue;
+      if (h->listed == *room) {
+        int64_t *grown = memory_grown(h->row, (size_t)(*room = 2 * *room + 64), sizeof *grown);
+        if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: members of bonds");
+        h->row = grown;
+      }
+      h->row[h->listed] = l->first[slice] + SLICE * (group - l->owned_first[slice]) + lane;
+      if (hybrid_group_list(h, group, lane, h->listed++))
+        return error_add(error, BRECCIA_FAILURE, "out of memory: members of bonds");
+    }
+  return BRECCIA_OK;
+}
+
+static int list_rows(Hybrid *h, Error *error)
+{
+  const BondList *l = h->bonds;
+  const int64_t slices = h->particles->slices;
+  int64_t room = l->single_first[slices];
+  h->row = memory_zeroed((size_t)room, sizeof *h->row, "members of bonds", error);
+  if (!h->row) return BRECCIA_FAILURE;
+  for (int64_t slice = 0; slice < slices; ++slice)
+    for (int64_t n = l->single_first[slice]; n < l->single_first[slice + 1]; ++n)
+      h->row[h->listed++] = l->first[slice + 1] - (l->single_first[slice + 1] - n);
+  for (int64_t slice = 0; slice < slices; ++slice)
+    if (list_slice(h, slice, &room, error)) return BRECCIA_FAILURE;
+  return BRECCIA_OK;
+}
+
+/** Members of listed rows: counted, or written. */
 static int list_members(Hybrid *h, Neighbours *n, bool write, Error *error)
 {
   int status = BRECCIA_OK;
   n->of = 0;
   memset(n->mark, 0, sizeof *n->mark * (size_t)h->particles->places);
-  for (int64_t slice = 0; slice < h->particles->slices; ++slice)
-    for (int64_t row = h->bonds->first[slice]; row < h->bonds->first[slice + 1] && !status; ++row) {
-      Bond bond;
-      const int32_t owner = owner_of(h, slice, row, &bond);
-      if (owner < 0) continue;
-      mark_neighbours(h, owner, n);
-      status = find_common(h, bond.neighbour, n, error);
-      if (!write) {
-        h->first[row + 1] = n->count + 2;
-        continue;
-      }
-      int32_t *to = h->member + h->first[row];
-      to[0] = owner;
-      to[1] = bond.neighbour;
-      memcpy(to + 2, n->found, sizeof *to * (size_t)n->count);
+  for (int64_t number = 0; number < h->listed && !status; ++number) {
+    const HybridRow at = hybrid_row(h, h->row[number]);
+    if (!(h->family->intact[at.slot] >> at.lane & 1)) continue;
+    const int32_t owner = (int32_t)(at.slice * SLICE + at.lane),
+                  other = family_bond(h->family, at.slice, at.slot, at.lane).neighbour;
+    mark_neighbours(h, owner, n);
+    status = find_common(h, other, n, error);
+    if (!write) {
+      h->first[number + 1] = n->count + 2;
+      continue;
     }
-  for (int64_t row = 0; row < h->bonds->count && !write; ++row) h->first[row + 1] += h->first[row];
+    int32_t *to = h->member + h->first[number];
+    to[0] = owner;
+    to[1] = other;
+    if (n->count) memcpy(to + 2, n->found, sizeof *to * (size_t)n->count);
+  }
+  for (int64_t number = 0; number < h->listed && !write; ++number) h->first[number + 1] += h->first[number];
   return status;
 }
 
 static int create_members(Hybrid *h, Error *error)
 {
-  const size_t rows = (size_t)h->bonds->count, places = (size_t)h->particles->places;
+  const size_t rows = (size_t)h->listed, places = (size_t)h->particles->places;
   Neighbours n = {.mark = memory_zeroed(places, sizeof(int32_t), "members of bonds", error)};
   h->first = memory_zeroed(rows + 1, sizeof *h->first, "members of bonds", error);
   int status = n.mark && h->first ? list_members(h, &n, false, error) : BRECCIA_FAILURE;
@@ -220,9 +375,9 @@ static int create_members(Hybrid *h, Error *error)
     h->g = memory_zeroed(members, sizeof *h->g, "members of bonds", error);
     status = h->member && h->g ? list_members(h, &n, true, error) : BRECCIA_FAILURE;
   }
-  int most = 0;
-  for (size_t row = 0; row < rows && !status; ++row)
-    if (hybrid_members(h, (int64_t)row) > most) most = hybrid_members(h, (int64_t)row);
+  int64_t most = 0;
+  for (size_t k = 0; k < rows && !status; ++k)
+    if (h->first[k + 1] - h->first[k] > most) most = h->first[k + 1] - h->first[k];
   if (!status && !(h->tried = memory_zeroed((size_t)most, sizeof *h->tried, "members of bonds", error)))
     status = BRECCIA_FAILURE;
   free(n.mark);
@@ -230,18 +385,18 @@ static int create_members(Hybrid *h, Error *error)
   return status;
 }
 
-/** Of each place the rows that it is a member of; where stress acts on ends only, of which it is an end. */
+/** Of each place the listed rows that it is a member of; where stress acts on ends only, of which it is an end. */
 static int create_meetings(Hybrid *h, Error *error)
 {
-  const int64_t places = h->particles->places, rows = h->bonds->count;
+  const int64_t places = h->particles->places;
   h->met_first = memory_zeroed((size_t)places + 2, sizeof *h->met_first, "members of bonds", error);
   if (!h->met_first) return BRECCIA_FAILURE;
   for (int turn = 0; turn < 2; ++turn) {
-    for (int64_t row = 0; row < rows; ++row)
-      for (int n = 0; n < hybrid_members(h, row) && (!h->pairwise || n < 2); ++n) {
-        const int32_t place = h->member[h->first[row] + n];
+    for (int64_t number = 0; number < h->listed; ++number)
+      for (int n = 0; n < h->first[number + 1] - h->first[number] && (!h->pairwise || n < 2); ++n) {
+        const int32_t place = h->member[h->first[number] + n];
         if (turn)
-          h->met[h->met_first[place + 1]++] = (HybridMeeting){(int32_t)row, n};
+          h->met[h->met_first[place + 1]++] = (struct HybridMet){(int32_t)number, n};
         else
           ++h->met_first[place + 2];
       }
@@ -253,7 +408,7 @@ static int create_meetings(Hybrid *h, Error *error)
   return BRECCIA_OK;
 }
 
-static int refuse(const Hybrid *h, int32_t place, const char *what, Error *error)
+static int refuse(const Hybrid *h, int64_t place, const char *what, Error *error)
 {
   const Particles *p = h->particles;
   return error_add(
@@ -264,47 +419,98 @@ static int refuse(const Hybrid *h, int32_t place, const char *what, Error *error
       h->dimensions == 2 ? "plane" : "space", h->family->horizon);
 }
 
-/** Section a = w V (K_A^-1 + K_B^-1) xi / L and volume a . xi / d of each bond: the volumes add up to that of the body, and a uniform stress passes
- *  through it exactly, whatever its shape (docs/theory.md 5.3). */
-static int create_areas(Hybrid *h, Error *error)
+/* Section a = w V (K_A^-1 + K_B^-1) xi / L and volume a . xi / d of each bond: the volumes add up to that of the body, and a uniform stress passes
+ * through it exactly, whatever its shape (docs/theory.md 5.3). */
+void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],
+                       double *volume)
 {
-  const Particles *p = h->particles;
-  double(*shape)[6] = memory_zeroed((size_t)p->places, sizeof *shape, "areas of bonds", error);
-  h->area = memory_zeroed((size_t)h->bonds->count, sizeof *h->area, "areas of bonds", error);
-  h->volume = memory_zeroed((size_t)h->bonds->count, sizeof *h->volume, "areas of bonds", error);
-  h->idle = memory_zeroed((size_t)h->bonds->count, 1, "areas of bonds", error);
-  int status = shape && h->area && h->volume && h->idle ? BRECCIA_OK : BRECCIA_FAILURE;
-  for (int32_t n = 0; n < p->count && !status; ++n)
-    if (!find_shape(h, p->place_of[n], shape[p->place_of[n]])) status = refuse(h, p->place_of[n], "has bonds", error);
-  for (int64_t slice = 0; slice < p->slices && !status; ++slice)
-    for (int64_t row = h->bonds->first[slice]; row < h->bonds->first[slice + 1] && !status; ++row) {
-      Bond bond;
-      const int32_t owner = owner_of(h, slice, row, &bond);
-      h->idle[row] = owner < 0;
-      if (owner < 0) continue;
-      int64_t slot, rows[2];
-      int lane;
-      bond_list_bond(h->bonds, h->family, slice, row, &slot, &lane);
-      bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-      const double share = rows[0] == rows[1] ? 1 : 0.5;
-      double own[3], their[3];
-      times(shape[owner], bond.xi, own);
-      times(shape[bond.neighbour], bond.xi, their);
-      for (int k = 0; k < 3; ++k) {
-        h->area[row][k] = share * p->volume[owner] * bond.weight / bond.length * (own[k] + their[k]);
-        h->volume[row] += h->area[row][k] * bond.xi[k] / h->dimensions;
-      }
-      h->idle[row] = h->volume[row] == 0; /* influence may end at the horizon */
-      if (!h->idle[row] && !hybrid_weigh(h, row, h->g + h->first[row]))
-        status = refuse(h, owner, "has a bond whose two ends see particles", error);
+  const int64_t owner = slice * SLICE + lane;
+  const Bond bond = family_bond(h->family, slice, slot, lane);
+  int64_t rows[2];
+  bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
+  const double share = rows[0] == rows[1] ? 1 : 0.5;
+  double own[3], their[3];
+  times(shape[owner], bond.xi, own);
+  times(shape[bond.neighbour], bond.xi, their);
+  *volume = 0;
+  for (int k = 0; k < 3; ++k) {
+    area[k] = share * h->particles->volume[owner] * bond.weight / bond.length * (own[k] + their[k]);
+    *volume += area[k] * bond.xi[k] / h->dimensions;
+  }
+}
+
+static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
+{
+  h->area = memory_zeroed((size_t)h->listed, sizeof *h->area, "areas of bonds", error);
+  h->volume = memory_zeroed((size_t)h->listed, sizeof *h->volume, "areas of bonds", error);
+  h->idle = memory_zeroed((size_t)h->listed, 1, "areas of bonds", error);
+  if (!h->area || !h->volume || !h->idle) return BRECCIA_FAILURE;
+  for (int64_t number = 0; number < h->listed; ++number) {
+    const HybridRow at = hybrid_row(h, h->row[number]);
+    h->idle[number] = !(h->family->intact[at.slot] >> at.lane & 1);
+    if (h->idle[number]) continue;
+    hybrid_section_of(h, shape, at.slice, at.slot, at.lane, h->area[number], &h->volume[number]);
+    h->idle[number] = h->volume[number] == 0; /* influence may end at the horizon */
+    if (!h->idle[number] && !weigh(h, number, h->g + h->first[number]))
+      return refuse(h, at.slice * SLICE + at.lane, "has a bond whose two ends see particles", error);
+  }
+  return BRECCIA_OK;
+}
+
+static int measure_lattices(Hybrid *h, const HybridShape *shape, Error *error)
+{
+  const BondList *l = h->bonds;
+  for (int64_t slice = 0; slice < h->particles->slices; ++slice)
+    for (int64_t group = l->owned_first[slice]; group < l->owned_first[slice + 1]; ++group) {
+      const int bad = hybrid_group_create(h, shape, slice, h->family->first[slice] + l->owned[group], group);
+      if (bad < -1) return error_add(error, BRECCIA_FAILURE, "out of memory: geometries of bonds");
+      if (bad >= 0) return refuse(h, slice * SLICE + bad, "has a bond whose two ends see particles", error);
     }
-  free(shape);
-  return status;
+  return BRECCIA_OK;
 }
 
 int hybrid_measure(Hybrid *h, Error *error)
 {
-  int status = create_members(h, error);
-  if (!status) status = create_meetings(h, error);
-  return status ? status : create_areas(h, error);
+  const Particles *p = h->particles;
+  HybridShape *shape = memory_zeroed((size_t)p->places, sizeof *shape, "areas of bonds", error);
+  int status = shape ? hybrid_lattices_create(h, error) : BRECCIA_FAILURE;
+  if (!status) status = list_rows(h, error);
+  if (!status && h->listed) status = create_members(h, error);
+  if (!status && h->listed) status = create_meetings(h, error);
+  for (int32_t n = 0; n < p->count && !status; ++n)
+    if (!find_shape(h, p->place_of[n], shape[p->place_of[n]])) status = refuse(h, p->place_of[n], "has bonds", error);
+  if (!status) status = measure_listed(h, (const HybridShape *)shape, error);
+  if (!status) status = measure_lattices(h, (const HybridShape *)shape, error);
+  free(shape);
+  return status ? status : hybrid_windows_create(h, error);
+}
+
+void hybrid_forget(Hybrid *h)
+{
+  hybrid_lattices_destroy(h);
+  free(h->row);
+  free(h->first);
+  free(h->member);
+  free(h->g);
+  free(h->area);
+  free(h->volume);
+  free(h->idle);
+  free(h->met_first);
+  free(h->met);
+  free(h->tried);
+  places_free(&h->force);
+  places_free(&h->shown);
+}
+
+size_t hybrid_bytes(const void *formulation)
+{
+  const Hybrid *h = formulation;
+  const size_t rows = (size_t)h->listed, places = (size_t)h->particles->places;
+  const size_t each =
+      sizeof *h->row + sizeof *h->first + sizeof *h->area + sizeof *h->volume + 1 + HYBRID_FORCE * sizeof *h->force;
+  const size_t listed = rows ? rows * each + (size_t)h->first[rows] * (sizeof *h->member + sizeof *h->g) +
+                                   places * (sizeof *h->met_first + LANES * sizeof *h->shown) +
+                                   (size_t)h->met_first[places] * sizeof *h->met
+                             : 0;
+  return listed + hybrid_lattices_bytes(h);
 }

@@ -1,0 +1,428 @@
+/* The sweeps of hybrid peridynamics: eight bonds of a lattice slot at once, from displacements to forces; listed bonds one by one.
+ *
+ * A slice's bonds along the lattice lead from places side by side to places side by side, so that a member of the eight bonds of a slot is the base of
+ * another slot and a vector g that all eight share. Where their geometries differ, at the ends of rows and beside cracks, the slot is gone through once for each
+ * of these, and lanes of others are left as they are. */
+#include "formulation/hybrid.h"
+
+#include "base/tensor.h"
+#include <string.h>
+
+/** What the loops over a slice's slots need at hand. */
+typedef struct SliceOf {
+  const Hybrid *h;
+  const Sweep *sweep;
+  int64_t first;             /* group of the first row */
+  int groups;                /* whole slots among the rows; listed single bonds follow */
+  int32_t base[HYBRID_NEAR]; /* place of lane 0's member, by lattice vector */
+} SliceOf;
+
+/** Rows of a slice: those of lattice slots come first, and batches of rows divide none. */
+LANES_INLINE void find_slice(const Hybrid *h, const Sweep *sweep, SliceOf *s)
+{
+  const Family *f = h->family;
+  const BondList *l = h->bonds;
+  const int64_t slice = sweep->first, owned = l->owned_first[slice + 1] - l->owned_first[slice],
+                from = sweep->row - l->first[slice], left = SLICE * owned - from;
+  s->h = h;
+  s->sweep = sweep;
+  s->first = l->owned_first[slice] + from / SLICE;
+  s->groups = left <= 0 ? 0 : (int)((left < sweep->rows ? left : sweep->rows) / SLICE);
+  if (!s->groups || !h->lattice[h->particles->block[slice]].count) return;
+  const int begin = f->pattern_begin[h->particles->block[slice]] - 1;
+  s->base[0] = (int32_t)(slice * SLICE);
+  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
+    s->base[f->pattern[slot] - begin] = f->base[slot];
+}
+
+/** The next geometry of half a slot and the lanes that have it, of those that are left. */
+LANES_INLINE const HybridGeometry *next_geometry(const Hybrid *h, int64_t group, int half, unsigned *left,
+                                                 unsigned *lanes)
+{
+  const int32_t whole = h->group[group];
+  *lanes = *left;
+  *left = 0;
+  if (whole >= 0) return &h->table.geometry[whole];
+  const int32_t *mixed = h->mixed[-1 - whole] + half, first = mixed[__builtin_ctz(*lanes)];
+  for (int lane = 0; lane < LANES; ++lane)
+    if (mixed[lane] != first) *left |= *lanes & 1u << lane;
+  *lanes &= ~*left;
+  return &h->table.geometry[first];
+}
+
+/** Number of the listed row of a lane, or -1. */
+LANES_INLINE int64_t listed_at(const Hybrid *h, int64_t group, int lane)
+{
+  const int32_t whole = h->group[group];
+  return whole >= 0 || h->mixed[-1 - whole][lane] >= -1 ? -1 : -2 - (int64_t)h->mixed[-1 - whole][lane];
+}
+
+/** Number of the listed row of row i of a batch, or -1. */
+static int64_t listed_of(const SliceOf *s, int i)
+{
+  if (i < SLICE * s->groups) return listed_at(s->h, s->first + i / SLICE, i % SLICE);
+  const BondList *l = s->h->bonds;
+  return l->single_first[s->sweep->first + 1] - (l->first[s->sweep->first + 1] - (s->sweep->row + i));
+}
+
+/** G of half of a slot. */
+LANES_INLINE void lane_gradient(const SliceOf *s, const HybridGeometry *geometry, double *const u[3], int lane,
+                                Lanes g[9])
+{
+  const double(*vector)[3] = (const double(*)[3])(s->h->table.g + geometry->first);
+  const uint16_t *near = s->h->table.near + geometry->first;
+  for (int k = 0; k < 9; ++k) g[k] = lanes_set(0);
+  if (geometry->mirrored) {
+    for (int n = 0; n + 1 < geometry->count; n += 2) {
+      const int64_t a = s->base[near[n]] + lane, b = s->base[near[n + 1]] + lane;
+      for (int k = 0; k < 3; ++k) {
+        const Lanes apart = lanes_load(u[k] + a) - lanes_load(u[k] + b);
+        for (int j = 0; j < 3; ++j) g[3 * k + j] += apart * lanes_set(vector[n][j]);
+      }
+    }
+    return;
+  }
+  for (int n = 0; n < geometry->count; ++n)
+    for (int k = 0; k < 3; ++k) {
+      const Lanes moved = lanes_load(u[k] + s->base[near[n]] + lane);
+      for (int j = 0; j < 3; ++j) g[3 * k + j] += moved * lanes_set(vector[n][j]);
+    }
+}
+
+/** Numbers of the lanes of a mask; the others are kept. */
+LANES_INLINE void store_where(double *to, LaneMask mask, bool whole, Lanes value)
+{
+  lanes_store(to, whole ? value : lanes_choose(mask, value, lanes_load(to)));
+}
+
+/** Strains of half a slot. In a linearised step their change, with the change g of G. */
+LANES_INLINE void deform_half(const SliceOf *s, const HybridGeometry *geometry, int at, int lane, unsigned lanes,
+                              bool linear)
+{
+  const Sweep *sweep = s->sweep;
+  const bool finite = s->h->finite;
+  const LaneMask mask = lanes_mask(lanes);
+  Lanes g[9], g0[9];
+  lane_gradient(s, geometry, s->h->particles->displacement, lane, g);
+  if (linear && finite) lane_gradient(s, geometry, sweep->at, lane, g0);
+  for (int k = 0; k < 9; ++k) store_where(sweep->carry + k * BATCH + at, mask, lanes == 15, g[k]);
+  for (int k = 0; k < 6; ++k) {
+    const int r = symmetric_row[k], c = symmetric_column[k];
+    if (k == ZZ && s->h->points->plane_stress) continue; /* that strain is the law's affair */
+    Lanes strain = g[3 * r + c] + g[3 * c + r];
+    if (finite && !linear) strain += g[r] * g[c] + g[3 + r] * g[3 + c] + g[6 + r] * g[6 + c];
+    for (int j = 0; j < 3 && finite && linear; ++j)
+      strain += g0[3 * j + r] * g[3 * j + c] + g[3 * j + r] * g0[3 * j + c];
+    store_where(sweep->strain[k] + at, mask, lanes == 15, k < 3 ? strain * lanes_set(0.5) : strain);
+  }
+}
+
+static void deform_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t number)
+{
+  double g[9] = {0}, at[9] = {0}, strain[6];
+  Lanes column[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n) {
+    const Lanes u = lanes_load(h->shown + LANES * (int64_t)h->member[n]);
+    for (int j = 0; j < 3; ++j) column[j] += u * lanes_set(h->g[n][j]);
+    for (int k = 0; k < 9 && sweep->at; ++k) at[k] += sweep->at[k / 3][h->member[n]] * h->g[n][k % 3];
+  }
+  for (int k = 0; k < 9; ++k) sweep->carry[k * BATCH + i] = g[k] = column[k % 3][k / 3];
+  if (sweep->at)
+    hybrid_strain_change(h, at, g, strain);
+  else
+    hybrid_strain(h, g, strain);
+  const bool stays = h->idle[number] && !sweep->at; /* as of broken bonds along lattices */
+  for (int k = 0; k < 6; ++k)
+    if (!stays && (k != ZZ || !h->points->plane_stress)) sweep->strain[k][i] = strain[k];
+}
+
+/** Half a slot of which rows carry nothing. A bond that has broken keeps its strain: laws are still asked, and one that jumps to 0 may not be
+ *  integrated. */
+LANES_INLINE void clear_half(const Hybrid *h, const Sweep *sweep, int at, bool linear)
+{
+  for (int k = 0; k < 9; ++k) lanes_store(sweep->carry + k * BATCH + at, lanes_set(0));
+  for (int k = 0; k < 6 && linear; ++k)
+    if (k != ZZ || !h->points->plane_stress) lanes_store(sweep->strain[k] + at, lanes_set(0));
+}
+
+LANES_INLINE void deform_groups(const SliceOf *s, bool linear)
+{
+  const Hybrid *h = s->h;
+  for (int n = 0; n < s->groups; ++n)
+    for (int lane = 0; lane < SLICE; lane += LANES) {
+      const int64_t group = s->first + n;
+      unsigned left = (unsigned)h->active[group] >> lane & 15u, lanes;
+      if (left != 15) clear_half(h, s->sweep, SLICE * n + lane, linear);
+      while (left) {
+        const HybridGeometry *geometry = next_geometry(h, group, lane, &left, &lanes);
+        deform_half(s, geometry, SLICE * n + lane, lane, lanes, linear);
+      }
+    }
+}
+
+BRECCIA_CLONES
+static void deform_rows(const Hybrid *h, const Sweep *sweep)
+{
+  const Sweep own = *sweep; /* so that stores are seen not to change it */
+  SliceOf s;
+  find_slice(h, &own, &s);
+  if (own.at)
+    deform_groups(&s, true);
+  else
+    deform_groups(&s, false);
+  for (int i = h->mixed_count ? 0 : SLICE * s.groups; i < own.rows && h->listed; ++i) {
+    const int64_t number = listed_of(&s, i);
+    if (number >= 0) deform_listed(h, &own, i, number);
+  }
+}
+
+int64_t hybrid_show(void *formulation, const Sweep *sweep)
+{
+  const Hybrid *h = formulation;
+  for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE && h->listed; ++place)
+    for (int k = 0; k < 3; ++k) h->shown[LANES * place + k] = h->particles->displacement[k][place];
+  return -1;
+}
+
+int64_t hybrid_deform(void *formulation, const Sweep *sweep)
+{
+  deform_rows(formulation, sweep);
+  return -1;
+}
+
+/* ---- what bonds exert ---- */
+
+/** Numbers that are kept of a component of what a lattice vector's places receive: eight, between zeros as far as windows reach. */
+enum { MOST_ROOM = 2 * HYBRID_WIDTH - SLICE };
+
+/** F S, or its change, of half a slot. */
+LANES_INLINE void lane_stress(const SliceOf *s, const HybridGeometry *geometry, int at, int lane, bool linear,
+                              Lanes p[9])
+{
+  const Sweep *sweep = s->sweep;
+  const bool finite = s->h->finite;
+  Lanes g[9], g0[9], stress[6], held[6];
+  for (int k = 0; k < 6; ++k) stress[k] = lanes_load(sweep->stress[k] + at);
+  for (int k = 0; k < 9 && finite; ++k) g[k] = lanes_load(sweep->carry + k * BATCH + at);
+  if (linear && finite) {
+    lane_gradient(s, geometry, sweep->at, lane, g0);
+    for (int k = 0; k < 6; ++k) held[k] = lanes_load(s->h->points->stress[k] + sweep->row + at);
+  }
+  for (int r = 0; r < 3; ++r)
+    for (int k = 0; k < 3; ++k) {
+      p[3 * r + k] = stress[symmetric_place[3 * r + k]];
+      for (int j = 0; finite && j < 3; ++j)
+        p[3 * r + k] += g[3 * r + j] * (linear ? held : stress)[symmetric_place[3 * j + k]];
+      for (int j = 0; finite && linear && j < 3; ++j)
+        p[3 * r + k] += g0[3 * r + j] * stress[symmetric_place[3 * j + k]];
+    }
+}
+
+LANES_INLINE void add_to(double *to, Lanes value)
+{
+  lanes_store(to, lanes_load(to) + value);
+}
+
+/** Adds what half a slot exerts on its members.
+ *  @param[in,out] sums  of lane 0 by vector, [3][room] numbers each */
+LANES_INLINE void respond_half(const SliceOf *s, const HybridGeometry *geometry, int at, int lane, unsigned lanes,
+                               double *sums, int room, bool linear)
+{
+  const Hybrid *h = s->h;
+  const double(*vector)[3] = (const double(*)[3])(h->table.g + geometry->first);
+  const uint16_t *near = h->table.near + geometry->first;
+  Lanes p[9];
+  lane_stress(s, geometry, at, lane, linear, p);
+  const Lanes factor = lanes_set(h->pairwise ? 1 : geometry->volume);
+  for (int k = 0; k < 9; ++k) p[k] = lanes == 15 ? p[k] * factor : lanes_where(lanes_mask(lanes), p[k] * factor);
+  if (h->pairwise) {
+    for (int k = 0; k < 3; ++k) {
+      const Lanes force = p[3 * k] * lanes_set(geometry->area[0]) + p[3 * k + 1] * lanes_set(geometry->area[1]) +
+                          p[3 * k + 2] * lanes_set(geometry->area[2]);
+      add_to(sums + k * room + lane, force);
+      add_to(sums + (3 * (int64_t)geometry->near + k) * room + lane, -force);
+    }
+    return;
+  }
+  const int step = geometry->mirrored ? 2 : 1;
+  for (int n = 0; n + step <= geometry->count; n += step) {
+    double *a = sums + 3 * (int64_t)near[n] * room + lane, *b = sums + 3 * (int64_t)near[n + step - 1] * room + lane;
+    for (int k = 0; k < 3; ++k) {
+      const Lanes force = p[3 * k] * lanes_set(vector[n][0]) + p[3 * k + 1] * lanes_set(vector[n][1]) +
+                          p[3 * k + 2] * lanes_set(vector[n][2]);
+      lanes_store(a + k * room, lanes_load(a + k * room) - force);
+      if (step == 2) add_to(b + k * room, force);
+    }
+  }
+}
+
+LANES_INLINE void respond_groups(const SliceOf *s, double *sums, int room, bool linear)
+{
+  const Hybrid *h = s->h;
+  for (int n = 0; n < s->groups; ++n)
+    for (int lane = 0; lane < SLICE; lane += LANES) {
+      unsigned left = (unsigned)h->active[s->first + n] >> lane & 15u, lanes;
+      while (left) {
+        const HybridGeometry *geometry = next_geometry(h, s->first + n, lane, &left, &lanes);
+        respond_half(s, geometry, SLICE * n + lane, lane, lanes, sums, room, linear);
+      }
+    }
+}
+
+/** Fills one window from what the places of the vectors to its lattice row receive. */
+LANES_INLINE void fill_window(const SliceOf *s, const double *sums, int room, int width, const int32_t *vectors,
+                              int count, bool again, double *to)
+{
+  const int spare = width - SLICE;
+  int32_t first = INT32_MAX;
+  for (int m = 0; m < count; ++m)
+    if (s->base[vectors[m]] < first) first = s->base[vectors[m]];
+  Lanes sum[3][HYBRID_WIDTH / LANES];
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < width / LANES; ++i) sum[k][i] = again ? lanes_load(to + k * width + LANES * i) : lanes_set(0);
+  for (int m = 0; m < count; ++m) {
+    const double *from = sums + 3 * (int64_t)vectors[m] * room + spare - (s->base[vectors[m]] - first);
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < width / LANES; ++i) sum[k][i] += lanes_load(from + k * room + LANES * i);
+  }
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < width / LANES; ++i) lanes_store(to + k * width + LANES * i, sum[k][i]);
+}
+
+/** Adds up by lattice rows what the places of all vectors receive. */
+LANES_INLINE void fill_windows(const SliceOf *s, const double *sums, int room)
+{
+  const Hybrid *h = s->h;
+  const Family *f = h->family;
+  const int64_t slice = s->sweep->first, last = f->stored[slice];
+  const int block = h->particles->block[slice], begin = f->pattern_begin[block] - 1, width = h->width;
+  const HybridLattice *lattice = &h->lattice[block];
+  const bool again = s->sweep->row > h->bonds->first[slice];
+  int64_t slot = f->first[slice];
+  for (int n = 0; n < lattice->windows; ++n) { /* vectors of one row follow each other, but for the place itself */
+    int32_t vectors[HYBRID_WIDTH];
+    int count = 0;
+    if (lattice->window[0] == n) vectors[count++] = 0;
+    for (; slot < last && lattice->window[f->pattern[slot] - begin] == n; ++slot)
+      vectors[count++] = f->pattern[slot] - begin;
+    double *to = h->window + (slice * h->windows + n) * 3 * width;
+    if (!count) continue;
+    if (width == 3 * LANES) /* reaches of two places at most; loops of known length keep their sums in registers */
+      fill_window(s, sums, room, 3 * LANES, vectors, count, again, to);
+    else
+      fill_window(s, sums, room, width, vectors, count, again, to);
+  }
+}
+
+BRECCIA_CLONES
+static void respond_lattice(const Hybrid *h, const Sweep *sweep)
+{
+  const Sweep own = *sweep;
+  const HybridLattice *lattice = &h->lattice[h->particles->block[own.first]];
+  SliceOf s;
+  find_slice(h, &own, &s);
+  if (!s.groups || !lattice->count) return;
+  _Alignas(64) double sums[3 * HYBRID_NEAR * MOST_ROOM];
+  const int room = 2 * h->width - SLICE;
+  memset(sums, 0, sizeof *sums * (size_t)(3 * lattice->count * room));
+  if (own.at)
+    respond_groups(&s, sums + h->width - SLICE, room, true);
+  else
+    respond_groups(&s, sums + h->width - SLICE, room, false);
+  fill_windows(&s, sums, room);
+}
+
+static void full_tensor(double *const of[6], int64_t i, double to[6])
+{
+  for (int k = 0; k < 6; ++k) to[k] = of[k][i];
+}
+
+static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t number)
+{
+  double stress[6], held[6], p[9], g[9], at[9] = {0};
+  full_tensor(sweep->stress, i, stress);
+  for (int k = 0; k < 9; ++k) g[k] = sweep->carry[k * BATCH + i];
+  if (sweep->at) {
+    full_tensor(h->points->stress, sweep->row + i, held);
+    for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n)
+      for (int k = 0; k < 9; ++k) at[k] += sweep->at[k / 3][h->member[n]] * h->g[n][k % 3];
+  }
+  hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
+  const double *a = h->area[number], factor = h->idle[number] ? 0 : h->pairwise ? 1 : h->volume[number];
+  double *to = h->force + HYBRID_FORCE * number;
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3 && !h->pairwise; ++j) to[LANES * j + k] = factor * p[3 * k + j];
+    if (h->pairwise) to[k] = factor * (p[3 * k] * a[0] + p[3 * k + 1] * a[1] + p[3 * k + 2] * a[2]);
+  }
+}
+
+int64_t hybrid_respond(void *formulation, const Sweep *sweep)
+{
+  const Hybrid *h = formulation;
+  respond_lattice(h, sweep);
+  if (!h->listed) return -1;
+  SliceOf s;
+  find_slice(h, sweep, &s);
+  for (int i = h->mixed_count ? 0 : SLICE * s.groups; i < sweep->rows; ++i) {
+    const int64_t number = listed_of(&s, i);
+    if (number >= 0) respond_listed(h, sweep, i, number);
+  }
+  return -1;
+}
+
+/* ---- forces ---- */
+
+/** Force on a place from the listed points that it has a part in. */
+LANES_INLINE Lanes listed_force(const Hybrid *h, int64_t place)
+{
+  Lanes sum = lanes_set(0);
+  for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
+    const struct HybridMet *met = &h->met[n];
+    const double *force = h->force + HYBRID_FORCE * (int64_t)met->number;
+    if (h->pairwise) {
+      sum += lanes_set(met->member ? -1 : 1) * lanes_load(force);
+      continue;
+    }
+    const double *g = h->g[h->first[met->number] + met->member];
+    for (int j = 0; j < 3; ++j) sum -= lanes_load(force + LANES * j) * lanes_set(g[j]);
+  }
+  return sum;
+}
+
+BRECCIA_CLONES
+static void resist_slices(const Hybrid *h, const Sweep *sweep)
+{
+  const Particles *p = h->particles;
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
+    Lanes sum[2][3] = {{{0}}};
+    for (int64_t n = h->share_first[slice]; n < h->share_first[slice + 1]; ++n) {
+      const HybridShare *share = &h->share[n];
+      const double *from = h->window + (int64_t)share->window * (3 * h->width) + share->from;
+      for (int half = 0; half < 2; ++half) {
+        const unsigned bits = (unsigned)share->lanes >> (LANES * half) & 15u;
+        if (bits == 15)
+          for (int k = 0; k < 3; ++k) sum[half][k] += lanes_load(from + k * h->width + LANES * half);
+        else if (bits)
+          for (int k = 0; k < 3; ++k) sum[half][k] += lanes_load_some(from + k * h->width + LANES * half, bits);
+      }
+    }
+    for (int lane = 0; lane < SLICE && h->listed; ++lane) {
+      const Lanes more = listed_force(h, slice * SLICE + lane);
+      for (int k = 0; k < 3; ++k) sum[lane / LANES][k][lane % LANES] += more[k];
+    }
+    for (int half = 0; half < 2; ++half) {
+      const int64_t place = slice * SLICE + LANES * half;
+      const Lanes volume = lanes_load(p->volume + place);
+      const LaneMask there = (LaneMask)(volume > lanes_set(0));
+      for (int k = 0; k < 3; ++k)
+        lanes_store(p->internal[k] + place,
+                    lanes_where(there, sum[half][k] / lanes_choose(there, volume, lanes_set(1))));
+    }
+  }
+}
+
+int64_t hybrid_resist(void *formulation, const Sweep *sweep)
+{
+  resist_slices(formulation, sweep);
+  return -1;
+}
