@@ -13,22 +13,26 @@ enum { MOST_THREADS = 12 }; /* numbers of threads that are tried: 1, 2, 4 ... al
 
 typedef struct Case {
   const char *formulation, *law, *words;
-  void (*plain)(Plain *plain);
-  bool limit; /* the law has none: bonds get a critical stretch */
+  void (*plain)(Plain *plain); /* NULL: not written */
+  bool limit;                  /* the law has none: bonds get a critical stretch */
+  const char *horizon;         /* in spacings */
 } Case;
 
 static const Case cases[] = {
     {"bond-based", "elastic-brittle", "model: elastic-brittle, Young modulus: 150 MPa, tensile strength: 7.5 MPa",
-     plain_bonds, false},
+     plain_bonds, false, "3.015"},
     {"bond-based", "bilinear-softening",
      "model: bilinear-softening, Young modulus: 150 MPa, tensile strength: 75 kPa, fracture energy: 1 kN/m",
-     plain_bonds, false},
+     plain_bonds, false, "3.015"},
     {"correspondence", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", plain_correspondence,
-     true},
+     true, "3.015"},
     {"correspondence", "multi-yield-j2",
      "model: multi-yield-j2, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30",
-     plain_correspondence, true},
-    {"ordinary", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.3", plain_ordinary, true},
+     plain_correspondence, true, "3.015"},
+    {"ordinary", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.3", plain_ordinary, true,
+     "3.015"},
+    {"hybrid", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", NULL, true, "1.5"},
+    {"hybrid", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", NULL, true, "2.015"},
 };
 
 typedef struct BenchBody {
@@ -52,11 +56,12 @@ static breccia_model *load(const char *folder, const BenchBody *body, const Case
   Text deck = {0};
   text_add(&deck,
            "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, %s}}\n"
-           "peridynamics: {formulation: %s, space: %s}\nbody: {b: {material: m, spacing: 0.03, %s}}\n%s"
+           "peridynamics: {formulation: %s, space: %s, horizon: %s spacings}\nbody: {b: {material: m, spacing: 0.03, "
+           "%s}}\n%s"
            "%ssolve: {explicit: {steps: 1000000}}\n"
            "loads: [{on: {face: x+, layers: 3}, body force: [400, 0, 0], history: {ramp to: 0.02}}, {on: {face: x-, "
            "layers: 3}, velocity: [0, 0, 0]}]\n",
-           c->words, c->formulation, body->space, body->block, body->cracks,
+           c->words, c->formulation, body->space, c->horizon, body->block, body->cracks,
            c->limit ? "failure: {critical stretch: 0.05}\n" : "");
   char *name = text_format("%s/deck", folder);
   breccia_model *model = NULL;
@@ -124,7 +129,7 @@ static double search_seconds(const Domain *d)
 static void measure(breccia_model *model, const Case *c, const int *threads, int threads_count, Times *t)
 {
   Domain *d = &model->domain;
-  Plain *plain = plain_create(d);
+  Plain *plain = c->plain ? plain_create(d) : NULL;
   const int64_t steps = (int64_t)(2e7 / (double)d->family.bonds) + 1;
   for (int r = -1; r < REPEATS; ++r) {
     int at = r < 0 ? 0 : r;
@@ -132,14 +137,19 @@ static void measure(breccia_model *model, const Case *c, const int *threads, int
     t->force[at] = force_seconds(d, 1);
     t->law[at] = law_seconds(d);
     double start = clock_seconds();
-    c->plain(plain);
+    if (plain) c->plain(plain);
     t->plain[at] = clock_seconds() - start;
     t->ratio[at] = t->plain[at] / (t->force[at] - (strcmp(c->law, "elastic") ? t->law[at] : 0));
     t->share[at] = t->step[0][at] / t->force[at];
     t->speedup[at] = t->step[0][at] / t->step[threads_count - 1][at];
   }
   t->search = search_seconds(d);
-  plain_destroy(plain);
+  if (plain) plain_destroy(plain);
+}
+
+static size_t formulation_bytes(const Domain *d)
+{
+  return d->regions[0].type->bytes ? d->regions[0].type->bytes(d->regions[0].formulation) : 0;
 }
 
 /** True if forces have the same bits for all numbers of threads. */
@@ -183,12 +193,15 @@ int main(int count, char **words)
   printf("Ceilings of the machine: %.1f GFLOP/s fused multiply-add on one thread; triad %.1f GB/s on one thread, %.1f "
          "GB/s on %d.\n\n",
          flops, one, many, all);
-  printf("| formulation, law | body | particles | bytes | search | plain | force | plain / ours | step | step / force "
+  printf("| formulation, law | horizon / spacing | body | particles | bytes | search | plain | force | plain / ours | "
+         "step | step / force "
          "| step, %d "
-         "threads | speed-up | law | bits |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+         "threads | speed-up | law | bits |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
          all);
-  fprintf(csv, "formulation,law,body,particles,bonds,bytes per bond,search ns per bond,plain ns per bond,force ns per "
-               "bond,ratio,law ns per point,same bits");
+  fprintf(
+      csv,
+      "formulation,law,horizon,body,particles,bonds,bytes per bond,search ns per bond,plain ns per bond,force ns per "
+      "bond,ratio,law ns per point,same bits");
   for (int k = 0; k < threads_count; ++k) fprintf(csv, ",step ns per bond on %d threads", threads[k]);
   fprintf(csv, "\n");
   int failed = 0;
@@ -205,18 +218,18 @@ int main(int count, char **words)
       const bool bits = same_bits(d, threads, threads_count);
       failed |= !bits;
       const double bonds = (double)d->family.bonds, unit = 1e9 / bonds,
-                   bytes = (double)family_bytes(&d->family) / bonds;
+                   bytes = (double)(family_bytes(&d->family) + formulation_bytes(d)) / bonds;
       double step[MOST_THREADS];
       for (int k = 0; k < threads_count; ++k) step[k] = unit * median(t.step[k], REPEATS);
       const double plain = unit * median(t.plain, REPEATS), force = unit * median(t.force, REPEATS),
                    ratio = median(t.ratio, REPEATS), law = 1e9 * median(t.law, REPEATS) / (double)d->particles->count;
-      printf("| %s, %s | %s | %lld | %.2f | %.0f | %.1f | %.2f | %.1f | %.2f | %.2f | %.2f | %.2f | %.0f | %s |\n",
-             cases[c].formulation, cases[c].law, bodies[b].name, (long long)d->particles->count, bytes, unit * t.search,
-             plain, force, ratio, step[0], median(t.share, REPEATS), step[threads_count - 1],
+      printf("| %s, %s | %s | %s | %lld | %.2f | %.0f | %.1f | %.2f | %.1f | %.2f | %.2f | %.2f | %.2f | %.0f | %s |\n",
+             cases[c].formulation, cases[c].law, cases[c].horizon, bodies[b].name, (long long)d->particles->count,
+             bytes, unit * t.search, plain, force, ratio, step[0], median(t.share, REPEATS), step[threads_count - 1],
              median(t.speedup, REPEATS), law, bits ? "equal" : "DIFFER");
-      fprintf(csv, "%s,%s,%s,%lld,%.0f,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%d", cases[c].formulation, cases[c].law,
-              bodies[b].name, (long long)d->particles->count, bonds, bytes, unit * t.search, plain, force, ratio, law,
-              bits);
+      fprintf(csv, "%s,%s,%s,%s,%lld,%.0f,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%d", cases[c].formulation, cases[c].law,
+              cases[c].horizon, bodies[b].name, (long long)d->particles->count, bonds, bytes, unit * t.search, plain,
+              force, ratio, law, bits);
       for (int k = 0; k < threads_count; ++k) fprintf(csv, ",%.4g", step[k]);
       fprintf(csv, "\n");
       fflush(stdout);
