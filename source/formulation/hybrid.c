@@ -36,7 +36,7 @@ static const Field hybrid_fields[] = {
      .meaning =
          "variational: the stress of a bond acts on all particles that its strain comes from, so that momenta and "
          "energy are kept; pairwise: on its two ends only, as published, with a stiffness that is not symmetric: "
-         "for static and implicit stages",
+         "needs stiffness damping where it moves",
      .choice = form_word},
     {.key = "strain",
      .kind = FIELD_CHOICE,
@@ -92,6 +92,7 @@ static void *create(const FormulationParts *parts, Error *error)
                 .points = parts->points,
                 .bonds = parts->bonds,
                 .materials = parts->materials,
+                .foreign = parts->foreign,
                 .space = parts->space,
                 .finite = !strcmp(spec->strain, "green-lagrange"),
                 .pairwise = !strcmp(spec->form, "pairwise"),
@@ -206,6 +207,7 @@ const FormulationType formulation_hybrid = {
     .maturity = "verified against closed forms and uniform fields",
     .components = 6,
     .on_bonds = true,
+    .joins = true,
     .fibres = &formulation_bond_based,
     .may_stiffen = true,
     .section = &hybrid_section,

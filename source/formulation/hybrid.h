@@ -65,6 +65,8 @@ typedef struct Hybrid {
   const Points *points;
   const BondList *bonds;
   const Material *materials;
+  const uint8_t *
+      foreign; /* as in FormulationParts; bonds to such places have half of their section here, and those between them never break */
   Space space;
   bool finite;
   bool pairwise; /* the stress of a point acts on the two ends of its bond only */
@@ -139,7 +141,8 @@ double hybrid_volume(const Hybrid *hybrid, const HybridRow *at);
 /** Goes through the rows of a place's intact bonds. */
 typedef struct HybridRows {
   int64_t place, row;
-  int64_t slot, owner; /* of the bond; slice of its owner */
+  int64_t slot, owner; /* of the place's bond; slice of the bond's owner */
+  bool alone;          /* its other end is of another formulation */
   bool more;           /* its second row is still to come */
 } HybridRows;
 HybridRows hybrid_rows(const Hybrid *hybrid, int64_t place);
@@ -148,7 +151,7 @@ bool hybrid_rows_next(const Hybrid *hybrid, HybridRows *rows, HybridRow *at);
 
 /* ---- between the two kinds of geometry ---- */
 
-/** K^-1 of all places by the weights of areas. */
+/** K^-1 of all places by the weights of areas; 0 where a family of another formulation is flat. */
 typedef double HybridShape[6];
 /** Section of the bond of a lane, as the body begins. */
 void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],

@@ -77,9 +77,15 @@ static int member_of(const HybridView *view, int32_t place)
   return n;
 }
 
-/** Half of what a member that is no end receives comes from each of the two ends; the rest passes between these. So shared out, forces come in pairs along
- *  the bonds that there are.
- *  @param[in,out] force  on a place, from another one, by one point */
+/** Share of what a member that is no end receives that comes from an end: half, and of bonds to places of other formulations all from the own end. So
+ *  shared out, forces come in pairs along the bonds that there are, of which one end at least is an own place. The rest passes between the two ends. */
+static double share_of_end(const Hybrid *h, const HybridView *view, int end)
+{
+  if (is_foreign(h->foreign, view->member[end])) return 0;
+  return is_foreign(h->foreign, view->member[!end]) ? 1 : 0.5;
+}
+
+/** @param[in,out] force  on a place, from another one, by one point */
 static void add_pair(const Hybrid *h, int64_t row, const HybridView *view, double *const *at, const int32_t places[2],
                      double force[3])
 {
@@ -89,15 +95,17 @@ static void add_pair(const Hybrid *h, int64_t row, const HybridView *view, doubl
   find_stress(h, row, view, at, p);
   const int sole = here >= 2 ? here : there; /* the one that is no end */
   if (sole >= 2) {
+    const double share = share_of_end(h, view, here >= 2 ? there : here);
     member_force(h, view, p, sole, part);
-    for (int k = 0; k < 3; ++k) force[k] += (here >= 2 ? 0.5 : -0.5) * part[k];
+    for (int k = 0; k < 3; ++k) force[k] += (here >= 2 ? share : -share) * part[k];
     return;
   }
+  const double share = share_of_end(h, view, here);
   member_force(h, view, p, here, part);
   for (int k = 0; k < 3; ++k) force[k] += part[k];
   for (int n = 2; n < view->count && !h->pairwise; ++n) {
     member_force(h, view, p, n, part);
-    for (int k = 0; k < 3; ++k) force[k] += 0.5 * part[k];
+    for (int k = 0; k < 3; ++k) force[k] += share * part[k];
   }
 }
 
@@ -115,8 +123,9 @@ void hybrid_half_state(const void *formulation, double *const *at, int64_t slice
       if (!end || member_of(&view, places[0]) >= 2) add_pair(h, rows.row, &view, at, places, force);
     }
   }
+  const double share = is_foreign(h->foreign, places[1]) ? 1 : 0.5; /* others give what is theirs */
   const double volumes = h->particles->volume[places[0]] * h->particles->volume[places[1]];
-  for (int k = 0; k < 3; ++k) state[k] = 0.5 * force[k] / volumes;
+  for (int k = 0; k < 3; ++k) state[k] = share * force[k] / volumes;
 }
 
 /** Gradient I + G of a bond's point. */
@@ -316,7 +325,7 @@ void hybrid_stored_energy(const void *formulation, int64_t place, double time, S
   HybridRow at;
   for (HybridRows rows = hybrid_rows(h, place); hybrid_rows_next(h, &rows, &at);) {
     const double volume = hybrid_volume(h, &at);
-    if (volume > 0) energy->stored += 0.5 * volume * density(h, rows.row);
+    if (volume > 0) energy->stored += (rows.alone ? 1 : 0.5) * volume * density(h, rows.row);
   }
 }
 

@@ -9,7 +9,7 @@
 /** Whether two places see each other, or are one. */
 static bool sees(const Hybrid *h, int32_t a, int32_t b)
 {
-  if (a == b) return true;
+  if (a == b || (is_foreign(h->foreign, a) && is_foreign(h->foreign, b))) return true;
   if ((a == h->hidden[0] && b == h->hidden[1]) || (a == h->hidden[1] && b == h->hidden[0])) return false;
   return family_joins(h->family, a, b);
 }
@@ -99,7 +99,7 @@ void hybrid_renew(void *formulation, int64_t slice)
   for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE && h->met_first; ++place)
     for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
       const int64_t number = h->met[n].number;
-      if (h->met[n].member < 2) h->idle[number] = !weigh(h, number, h->g + h->first[number]);
+      if (h->met[n].member < 2 || h->foreign) h->idle[number] = !weigh(h, number, h->g + h->first[number]);
     }
   hybrid_groups_renew(h, slice);
 }
@@ -201,26 +201,39 @@ HybridRows hybrid_rows(const Hybrid *h, int64_t place)
   return (HybridRows){.place = place, .slot = h->family->first[place / SLICE] - 1};
 }
 
-bool hybrid_rows_next(const Hybrid *h, HybridRows *rows, HybridRow *at)
+/** The next slot of the place whose bond has rows. @param[out] other  its other end */
+static bool next_slot(const Hybrid *h, HybridRows *rows, int64_t *other)
 {
   const Family *f = h->family;
   const int64_t slice = rows->place / SLICE;
   const int lane = (int)(rows->place % SLICE);
-  int64_t both[2];
+  while (++rows->slot < f->first[slice + 1]) {
+    if (!(f->intact[rows->slot] >> lane & 1)) continue;
+    *other = rows->slot < f->stored[slice] ? f->base[rows->slot] + lane
+                                           : f->neighbour[(int64_t)f->base[rows->slot] * SLICE + lane];
+    if (!is_foreign(h->foreign, rows->place) || !is_foreign(h->foreign, *other)) return true;
+  }
+  return false;
+}
+
+bool hybrid_rows_next(const Hybrid *h, HybridRows *rows, HybridRow *at)
+{
+  const Family *f = h->family;
+  int64_t both[2], other;
   if (rows->more) {
     rows->more = false;
-    bond_list_rows(h->bonds, f, slice, rows->slot, lane, both);
+    bond_list_rows(h->bonds, f, rows->place / SLICE, rows->slot, (int)(rows->place % SLICE), both);
     rows->row = both[0] == rows->row ? both[1] : both[0];
     *at = row_of(h, rows->owner, rows->row);
     return true;
   }
-  do {
-    if (++rows->slot >= f->first[slice + 1]) return false;
-  } while (!(f->intact[rows->slot] >> lane & 1));
-  const int64_t other = rows->slot < f->stored[slice] ? f->base[rows->slot] + lane
-                                                      : f->neighbour[(int64_t)f->base[rows->slot] * SLICE + lane];
-  bond_list_rows(h->bonds, f, slice, rows->slot, lane, both);
-  rows->owner = (rows->place < other ? rows->place : other) / SLICE;
+  if (!next_slot(h, rows, &other)) return false;
+  const bool from_there = is_foreign(h->foreign, rows->place);
+  rows->alone = from_there || is_foreign(h->foreign, other);
+  const int64_t from = from_there ? other : rows->place;
+  const int64_t slot = from_there ? family_slot(f, (int32_t)other, (int32_t)rows->place) : rows->slot;
+  bond_list_rows(h->bonds, f, from / SLICE, slot, (int)(from % SLICE), both);
+  rows->owner = (rows->alone || from < other ? from : other) / SLICE;
   rows->more = both[0] != both[1];
   rows->row = both[0];
   *at = row_of(h, rows->owner, rows->row);
@@ -428,10 +441,10 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice,
   const Bond bond = family_bond(h->family, slice, slot, lane);
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-  const double share = rows[0] == rows[1] ? 1 : 0.5;
+  const double share = rows[0] == rows[1] && !is_foreign(h->foreign, bond.neighbour) ? 1 : 0.5;
   double own[3], their[3];
   times(shape[owner], bond.xi, own);
-  times(shape[bond.neighbour], bond.xi, their);
+  times(shape[bond.neighbour][XX] > 0 ? shape[bond.neighbour] : shape[owner], bond.xi, their);
   *volume = 0;
   for (int k = 0; k < 3; ++k) {
     area[k] = share * h->particles->volume[owner] * bond.weight / bond.length * (own[k] + their[k]);
@@ -478,7 +491,8 @@ int hybrid_measure(Hybrid *h, Error *error)
   if (!status && h->listed) status = create_members(h, error);
   if (!status && h->listed) status = create_meetings(h, error);
   for (int32_t n = 0; n < p->count && !status; ++n)
-    if (!find_shape(h, p->place_of[n], shape[p->place_of[n]])) status = refuse(h, p->place_of[n], "has bonds", error);
+    if (!find_shape(h, p->place_of[n], shape[p->place_of[n]]) && !is_foreign(h->foreign, p->place_of[n]))
+      status = refuse(h, p->place_of[n], "has bonds", error);
   if (!status) status = measure_listed(h, (const HybridShape *)shape, error);
   if (!status) status = measure_lattices(h, (const HybridShape *)shape, error);
   free(shape);

@@ -1,22 +1,29 @@
 #include "solver/aside.h"
 
+#include "base/memory.h"
+#include <stdlib.h>
+
 int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
 {
   const int64_t places = d->particles->places;
-  int64_t rows = 0;
   bool failed = false;
-  *a = (Aside){0};
+  *a = (Aside){.tensors = memory_zeroed((size_t)d->region_count, sizeof *a->tensors, label, error),
+               .region_count = d->region_count};
   for (int k = 0; k < 3; ++k) {
     failed |= !(a->displacement[k] = places_array(places, label, error));
     failed |= !(a->internal[k] = places_array(places, label, error));
   }
-  for (int r = 0; r < d->region_count;
-       ++r) /* points with tensors: one set for all of them, as several regions share theirs */
-    if (d->regions[r].points.components == 6 && d->regions[r].points.count > rows) rows = d->regions[r].points.count;
-  if (rows && rows < places) rows = places;
-  for (int k = 0; k < 6 && rows; ++k) {
-    failed |= !(a->strain[k] = places_array(rows, label, error));
-    failed |= !(a->stress[k] = places_array(rows, label, error));
+  if (!a->tensors || failed) return BRECCIA_FAILURE;
+  for (int r = 0; r < d->region_count; ++r) {
+    AsideTensors *t = &a->tensors[r];
+    const Points *points = &d->regions[r].points;
+    if (points->components != 6) continue;
+    const int64_t rows = points->on_bonds || points->count > places ? points->count : places;
+    while (d->regions[t->shares].points.strain[0] != points->strain[0]) ++t->shares;
+    for (int k = 0; k < 6 && t->shares == r; ++k) {
+      failed |= !(t->strain[k] = places_array(rows, label, error));
+      failed |= !(t->stress[k] = places_array(rows, label, error));
+    }
   }
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
@@ -27,10 +34,13 @@ void aside_destroy(Aside *a)
     places_free(&a->displacement[k]);
     places_free(&a->internal[k]);
   }
-  for (int k = 0; k < 6; ++k) {
-    places_free(&a->strain[k]);
-    places_free(&a->stress[k]);
-  }
+  for (int r = 0; r < a->region_count && a->tensors; ++r)
+    for (int k = 0; k < 6; ++k) {
+      places_free(&a->tensors[r].strain[k]);
+      places_free(&a->tensors[r].stress[k]);
+    }
+  free(a->tensors);
+  a->tensors = NULL;
 }
 
 static void swap(double **a, double **b)
@@ -46,17 +56,17 @@ void aside_exchange(Aside *a, Domain *d)
     swap(&d->particles->displacement[k], &a->displacement[k]);
     swap(&d->particles->internal[k], &a->internal[k]);
   }
-  for (int k = 0; k < 6; ++k) {
-    double *strain = NULL, *stress = NULL; /* regions with points on particles share theirs */
-    for (int r = 0; r < d->region_count; ++r) {
-      Points *points = &d->regions[r].points;
-      if (points->components != 6) continue;
-      strain = points->strain[k];
-      stress = points->stress[k];
-      points->strain[k] = a->strain[k];
-      points->stress[k] = a->stress[k];
+  for (int r = 0; r < d->region_count; ++r) {
+    AsideTensors *t = &a->tensors[r];
+    Points *points = &d->regions[r].points, *first = &d->regions[t->shares].points;
+    for (int k = 0; k < 6 && points->components == 6; ++k) {
+      if (t->shares == r) {
+        swap(&points->strain[k], &t->strain[k]);
+        swap(&points->stress[k], &t->stress[k]);
+      } else {
+        points->strain[k] = first->strain[k];
+        points->stress[k] = first->stress[k];
+      }
     }
-    a->strain[k] = strain;
-    a->stress[k] = stress;
   }
 }

@@ -5,10 +5,17 @@
 
 #include "domain/domain.h"
 
+/** Of the points of a region with strain in space. */
+typedef struct AsideTensors {
+  int shares; /* the first region that has the same arrays: those on particles have one set for all of them */
+  double *strain[6], *stress[6];
+} AsideTensors;
+
 typedef struct Aside {
   double *displacement[3]; /* at which forces are found */
   double *internal[3];     /* those */
-  double *strain[6], *stress[6];
+  AsideTensors *tensors;   /* [region_count] */
+  int region_count;
 } Aside;
 
 /** @param[in] label  what it is for, in words. @return BRECCIA_OK or BRECCIA_FAILURE; destroy it in any case */

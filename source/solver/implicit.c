@@ -195,7 +195,8 @@ static int check(Solver *run, const void *section, Error *error)
   const char *flutters = domain_flutters(run->domain);
   if (flutters && !(spec->damping.stiffness > 0))
     return node_error(run->reader->document, spec->head.node, error,
-                      "implicit: %s: expected 'form: variational', or 'stiffness damping'", flutters);
+                      "implicit: %s: expected 'form: variational', 'stiffness damping' or 'Rayleigh damping'",
+                      flutters);
   return increment_check(run, section, "take 'explicit'", error);
 }
 

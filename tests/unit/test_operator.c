@@ -164,6 +164,13 @@ static const Couple couples[] = {
     {"plane stress", "", {{"bond-based", &fibre[1]}, {"correspondence", &solid[0]}}},
     {"plane stress", "", {{"correspondence", &solid[0]}, {"ordinary", &solid[0]}}},
     {"plane stress", "", {{"ordinary", &solid[1]}, {"correspondence", &solid[4]}}},
+    {"3-D", "", {{"hybrid", &solid[0]}, {"correspondence", &solid[1]}}},
+    {"3-D", "influence: conical,", {{"bond-based", &fibre[2]}, {"hybrid", &solid[1]}}},
+    {"3-D", "", {{"hybrid", &solid[3]}, {"hybrid, strain: small", &solid[0]}}},
+    {"plane strain", "", {{"ordinary", &solid[1]}, {"hybrid, own bond: 0.7", &solid[3]}}},
+    {"plane strain", "", {{"hybrid, form: pairwise", &solid[1]}, {"correspondence", &solid[0]}}},
+    {"plane stress", "", {{"hybrid", &solid[1]}, {"bond-based", &fibre[0]}}},
+    {"plane stress", "", {{"hybrid", &solid[0]}, {"hybrid", &solid[4]}}},
 };
 
 static breccia_model *coupled_body(const Couple *c)
@@ -171,7 +178,8 @@ static breccia_model *coupled_body(const Couple *c)
   const char *const *blocks = *c->space == 'p' ? plane_bodies[0] : space_bodies[0];
   return model_of("materials: {m: {model: %s, density: 1, %s}, n: {model: %s, density: 1, %s}}\nperidynamics: {space: "
                   "%s, horizon: 2.5, %s formulation: %s, regions: {more: {blocks: [b], formulation: %s}}}\nbody: {a: "
-                  "{material: m, %s}, b: {material: n, %s}}\n" CUT "solve: {explicit: {steps: 1, time step: 1e-6}}\n",
+                  "{material: m, %s}, b: {material: n, %s}}\n" CUT
+                  "solve: {implicit: {end time: 1, stiffness damping: 1e-6}}\n",
                   c->of[0].law->name, c->of[0].law->words, c->of[1].law->name, c->of[1].law->words, c->space, c->words,
                   c->of[0].formulation, c->of[1].formulation, blocks[0], blocks[1]);
 }
