@@ -104,6 +104,7 @@ static void describe_stages(const breccia_model *model, const char *time, Text *
            time);
   if (isfinite(s->clock.stable))
     text_add(text, " (%.2f of the stable %.4g)", s->clock.time_step / s->clock.stable, s->clock.stable);
+  if (!solver_foresees_steps(s)) text_add(text, ", besides those of explicit stages");
 }
 
 /** Each with its particles, where there are several. */

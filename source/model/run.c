@@ -342,7 +342,7 @@ static int due(Run *run, Error *error)
   return status;
 }
 
-/** Steps at which to stop: as many as wished for, or as the run has as far as it can be foreseen. */
+/** Steps to tell the progress by: as many as wished for, or as the run has as far as it can be foreseen. */
 static int64_t steps_wanted(const Run *run)
 {
   const int64_t wished = run->wish->steps, steps = run->model->solver.clock.steps;
@@ -357,12 +357,19 @@ static void begin_stage(breccia_model *model)
     ++model->next_due;
 }
 
+/** Steps of later stages may be unknown as yet, so that only a wish ends the run before its last stage. */
+static bool goes_on(const Run *run)
+{
+  const Solver *s = &run->model->solver;
+  return !solver_is_done(s) && (run->wish->steps <= 0 || s->clock.step < run->wish->steps);
+}
+
 static int loop(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   Solver *s = &model->solver;
   int status = run->wish->restart ? BRECCIA_OK : due(run, error);
-  while (!status && !solver_is_done(s) && s->clock.step < run->steps) {
+  while (!status && goes_on(run)) {
     /* Where energy comes from nothing or speeds are absurd, some steps more show whether it goes on. */
     if (run->wish->interrupted && __atomic_load_n(run->wish->interrupted, __ATOMIC_RELAXED) &&
         !ledger_is_doubtful(&s->ledger))

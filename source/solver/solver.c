@@ -295,6 +295,17 @@ int solver_measure(Solver *s, StepCost *cost, Error *error)
   return status;
 }
 
+bool solver_foresees_steps(const Solver *s)
+{
+  bool known = true;
+  for (int64_t k = s->clock.stage + 1; k < s->clock.stages; ++k) {
+    double steps = 0, time = 0;
+    types[type_of(stage_of(s, k))]->foresee(stage_of(s, k)->of[type_of(stage_of(s, k))], &s->clock, &steps, &time);
+    known &= steps > 0 || time == 0;
+  }
+  return known;
+}
+
 bool solver_stage_rests(const Solver *s, int64_t stage)
 {
   return types[type_of(stage_of(s, stage))]->rests;

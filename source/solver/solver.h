@@ -114,6 +114,9 @@ const char *solver_stage_name(const Solver *solver, int64_t stage, char *name, s
 /** Whether a step, one that is done, was among few and long ones. */
 bool solver_step_was_long(const Solver *solver, int64_t step);
 
+/** Whether it can be foreseen how many steps later stages take at most: not of explicit ones where no stable step has been measured. */
+bool solver_foresees_steps(const Solver *solver);
+
 /** Whether every step of a stage ends in equilibrium at rest, so that its time is none of a clock. */
 bool solver_stage_rests(const Solver *solver, int64_t stage);
 

@@ -354,6 +354,35 @@ static void histories_have_a_row_for_each_long_step(void **state)
   }
 }
 
+/** Of explicit steps behind others, whose number no one can foresee, all are done. */
+static void explicit_steps_behind_long_ones_are_done(void **state)
+{
+  (void)state;
+  const char *const before[] = {"static: {increments: 2}", "implicit: {end time: 1e-3, time step: 5e-4}"};
+  for (int k = 0; k < 2; ++k) {
+    char folder[] = "/tmp/breccia-XXXXXX", deck[1024], line[64];
+    double times[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(deck, sizeof deck,
+             BAR "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {gravity: [20, 0, 0]}]\n"
+                 "watch: {end: {displacement of: {nearest: [1, 0, 0]}}}\n"
+                 "solve: [{%s}, {explicit: {end time: 5e-3}}]\n",
+             before[k]);
+    breccia_model *model = model_of(deck);
+    breccia_run run = {.size = sizeof(breccia_run), .folder = folder};
+    Error *error = breccia_error_create();
+    assert_false(solver_foresees_steps(&model->solver));
+    if (breccia_model_run(model, &run, error)) fail_msg("%s", breccia_error_text(error));
+    assert_true(summary_has(folder, "\"completed\": true"));
+    const int count = column_of(folder, "end", 1, times, 64);
+    assert_near(times[count - 1], k ? 6e-3 : 1.005, 1e-9);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&model);
+    snprintf(line, sizeof line, "rm -r %s", folder);
+    assert_int_equal(system(line), 0);
+  }
+}
+
 static void one_stage_in_a_list_is_the_same_as_no_list(void **state)
 {
   (void)state;
@@ -504,6 +533,7 @@ int main(void)
       cmocka_unit_test(loads_of_later_stages_are_watched_from_the_beginning),
       cmocka_unit_test(a_run_that_is_stopped_says_how_far_it_has_come),
       cmocka_unit_test(histories_have_a_row_for_each_long_step),
+      cmocka_unit_test(explicit_steps_behind_long_ones_are_done),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),
       cmocka_unit_test(laws_with_rates_do_not_see_where_a_stage_begins),
       cmocka_unit_test(a_stage_that_cannot_begin_leaves_the_one_before),
