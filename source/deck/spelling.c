@@ -92,6 +92,8 @@ static const struct {
     {"fix", "displacement", " (0 holds a direction and 'free' leaves it, like [0, free])"},
     {"fixed", "displacement", " (0 holds a direction and 'free' leaves it, like [0, free])"},
     {"pressure", "force", " (the total force, which the particles share by volume)"},
+    {"hydrostatic pressure", "water pressure", ""},
+    {"hydrostatic", "water pressure", ""},
     {"traction", "force", " (the total force, which the particles share by volume)"},
     {"amplitude", "history", ""},
     {"radius", "horizon", ""},

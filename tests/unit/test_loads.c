@@ -77,6 +77,35 @@ static void pressure_from_both_ends_stresses_a_bar_by_itself(void **state)
   breccia_model_destroy(&m);
 }
 
+static void water_presses_by_its_depth(void **state)
+{
+  (void)state;
+  /* On faces of 2 x 1, with water up to s = 1.5, where two cells of height h meet: the resultant w s^2 / 2 is exact, and its moment about the foot,
+   * w s^3 / 6, is found with w s h^2 / 12 too much, as pressure is one in each cell. */
+  const struct {
+    const char *lattice, *to, *more, *face;
+    int up;
+  } bodies[] = {{"cubic", "[0.4, 1, 2]", "", "x-", 2}, {"square", "[0.4, 2]", ", thickness: 1", "x+", 1}};
+  for (int b = 0; b < 2; ++b) {
+    breccia_model *m = model_of(
+        SOFT "body: {b: {material: m, lattice: %s, spacing: 0.1, shape: {box: {from: [0, 0%s], to: %s}}%s}}\n"
+             "loads: [{on: {face: %s, layers: 2}, water pressure: {surface: 1.5, unit weight: 8}}]\n"
+             "peridynamics: {space: %s}\nsolve: {explicit: {steps: 1}}\n",
+        bodies[b].lattice, b ? "" : ", 0", bodies[b].to, bodies[b].more, bodies[b].face, b ? "plane strain" : "3-D");
+    assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+    const Sums s = sums_of(m);
+    const Particles *p = m->domain.particles;
+    assert_near(s.external[0], (b ? -1 : 1) * 8 * 1.5 * 1.5 / 2, 1e-12);
+    double moment = 0;
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      moment += p->external[0][i] * p->volume[i] * p->position[bodies[b].up][i];
+    }
+    assert_near(fabs(moment), 8 * 1.5 * (1.5 * 1.5 + 0.1 * 0.1 / 2) / 6, 1e-12);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void radial_pressure_pushes_half_a_pipe_by_its_diameter(void **state)
 {
   (void)state;
@@ -384,6 +413,8 @@ static void what_does_not_fit_is_said(void **state)
       {"{on: {all: yes}, pressure: 3}", "pressure: acts on a face: 'on' must say which, like {face: x+}"},
       {"{on: {all: yes}, traction: [1, 0, 0]}", "or 'area' how large it is"},
       {"{on: {face: x+}, pressure: 3, area: 2}", "area: only a 'traction' has one"},
+      {"{on: {all: yes}, water pressure: {surface: 3}}", "water pressure: acts on a face"},
+      {"{on: {face: x+}, water pressure: {surface: -1}}", "surface: all particles of the face stand above it"},
       {"{on: {all: yes}, radial pressure: {pressure: 3, area: 1, centre: [0.05, 0.05, 0]}}",
        "a particle stands on the axis"},
       {"{on: {all: yes}, radial pressure: {pressure: 3, area: 1, centre: [0, 0, 0], axis: [0, 0, 0]}}",
@@ -436,6 +467,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(pressure_and_traction_have_the_resultant_of_their_face),
       cmocka_unit_test(pressure_from_both_ends_stresses_a_bar_by_itself),
+      cmocka_unit_test(water_presses_by_its_depth),
       cmocka_unit_test(radial_pressure_pushes_half_a_pipe_by_its_diameter),
       cmocka_unit_test(the_ground_moves_as_seen_from_itself),
       cmocka_unit_test(on_inclined_rollers_a_body_slides_without_friction),

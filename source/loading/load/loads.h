@@ -14,6 +14,7 @@ LOAD(pressure, "pressure", FIELD_NUMBER, "stress",
      "on the face that 'on' selects, inwards, spread over its layers; its direction stays as the body turns")
 LOAD(traction, "traction", FIELD_POINT, "stress",
      "force per area of the face that 'on' selects, spread over its layers; or of 'area'")
+LOAD_SECTION(water_pressure, "water pressure", "of water at rest on the face that 'on' selects, growing with depth")
 LOAD_SECTION(radial_pressure, "radial pressure", "on a round surface, away from its axis or towards it")
 LOAD_SECTION(spring, "spring", "springs to the ground or to other particles")
 LOAD_SECTION(dashpots, "dashpots", "a face through which waves leave, and an earthquake may come in")
