@@ -1,4 +1,4 @@
-# Writes the decks of examples/*/*.yaml, each with the CSV files that it names, into a C file for `breccia new --example`.
+# Writes the decks of examples/*/*.yaml, each with the CSV files and records of earthquakes that it names, into a C file for `breccia new --example`.
 # cmake -DSOURCE=<folder of the sources> -DDECKS=<decks, relative, between semicolons> -DOUTPUT=<file> -P embed_examples.cmake
 set(arrays "")
 set(rows "")
@@ -7,7 +7,7 @@ foreach(deck IN LISTS DECKS)
   get_filename_component(folder ${deck} DIRECTORY)
   get_filename_component(name ${deck} NAME)
   file(READ ${SOURCE}/${deck} words)
-  string(REGEX MATCHALL "[A-Za-z0-9_.-]+\\.csv" companions "${words}")
+  string(REGEX MATCHALL "[A-Za-z0-9_.-]+\\.(csv|AT2)" companions "${words}")
   list(REMOVE_DUPLICATES companions)
   set(files "")
   foreach(file IN ITEMS ${name} LISTS companions)
