@@ -40,10 +40,12 @@ void domain_look(const Domain *d, int64_t place, double strain[6], double stress
   double f[9];
   region->type->stress(region->formulation, place, stress);
   region->type->gradient(region->formulation, place, f);
+  const bool small = region->type->takes_small_strain && region->type->takes_small_strain(region->formulation);
   for (int k = 0; k < 6; ++k) {
-    int r = symmetric_row[k], s = symmetric_column[k];
-    double green = f[r] * f[s] + f[3 + r] * f[3 + s] + f[6 + r] * f[6 + s] - (r == s);
-    strain[k] = k < 3 ? green / 2 : green;
+    const int r = symmetric_row[k], s = symmetric_column[k];
+    const double twice = small ? f[3 * r + s] + f[3 * s + r] - 2 * (r == s)
+                               : f[r] * f[s] + f[3 + r] * f[3 + s] + f[6 + r] * f[6 + s] - (r == s);
+    strain[k] = k < 3 ? twice / 2 : twice;
   }
 }
 

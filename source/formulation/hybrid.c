@@ -161,6 +161,12 @@ static int linearise(void *formulation, Error *error)
   return BRECCIA_OK;
 }
 
+static bool takes_small_strain(const void *formulation)
+{
+  const Hybrid *h = formulation;
+  return !h->finite;
+}
+
 static const char *flutters(const void *formulation)
 {
   const Hybrid *h = formulation;
@@ -227,6 +233,7 @@ const FormulationType formulation_hybrid = {
     .point_count = hybrid_point_count,
     .point = hybrid_point,
     .gradient = hybrid_place_gradient,
+    .takes_small_strain = takes_small_strain,
     .stress = hybrid_stress,
     .stored_energy = hybrid_stored_energy,
     .bond_energy = hybrid_bond_energy,

@@ -75,6 +75,31 @@ static void uniform_tension_leaves_free_surfaces_in_peace(void **state)
     }
 }
 
+/** Strains that are told are those that laws take: of shear, small strain has none along the axes. */
+static void strains_told_are_those_of_laws(void **state)
+{
+  (void)state;
+  static const char *const strains[] = {"small", "green-lagrange"};
+  const double shear = 0.01;
+  for (int s = 0; s < 2; ++s) {
+    breccia_model *m = model_of(
+        UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
+              "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: "
+              "{particles: [12, 9]}}}}\n"
+              "peridynamics: {formulation: hybrid, space: plane strain, horizon: 1.5 spacings, strain: %s}\n" IMPLICIT,
+        strains[s]);
+    deform_uniformly(m, (double[9]){1, shear, 0, 0, 1, 0, 0, 0, 1});
+    compute_forces(m);
+    for (int64_t n = 0; n < m->domain.particles->count; ++n) {
+      double strain[6], stress[6];
+      domain_look(&m->domain, m->domain.particles->place_of[n], strain, stress);
+      const double expected[6] = {0, s ? shear * shear / 2 : 0, 0, shear, 0, 0};
+      for (int k = 0; k < 6; ++k) assert_near(strain[k], expected[k], 1e-14);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
 static void a_turned_body_carries_nothing(void **state)
 {
   (void)state;
@@ -364,6 +389,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(uniform_tension_leaves_free_surfaces_in_peace),
+      cmocka_unit_test(strains_told_are_those_of_laws),
       cmocka_unit_test(a_turned_body_carries_nothing),
       cmocka_unit_test(no_wave_goes_unseen),
       cmocka_unit_test(parted_halves_are_strangers),
