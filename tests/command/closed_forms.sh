@@ -36,6 +36,13 @@ for form in variational pairwise; do
   rm -r "$work/cantilever"
 done
 
+# Clay sheared to 0.9 of its strength: the corner of its backbone, in the middle by equilibrium and at the top as the traction stands for bonds cut off
+run soil-column-static/column --set "variables.dx=0.5 m"
+strain=$(exact "sqrt(1.5) * (3 / 5970 * 27 / (60e3 * 3 / 5970 - 27) - (3 / 5970 * 1.5 / (60e3 * 3 / 5970 - 1.5) - 1.5 / 60e3))")
+near "strain of the column of clay" "$(value column/middle 6)" "$strain" 1e-6
+near "stress in the column of clay" "$(value column/middle 12)" "$(exact "0.9 * sqrt(1.5) * 30")" 1e-6
+near "top of the column of clay" "$(value column/top 3)" "$(exact "9.75 * $strain")" 1e-6
+
 # The opening to which rest.yaml comes by damping, in 6000 steps
 run plate-with-crack/static
 near "opening of the crack" "$(value static/mouth 4)" 0.0033157288 1e-6
