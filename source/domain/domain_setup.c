@@ -185,6 +185,7 @@ static bool forgets_spacings(const PeridynamicsSpec *spec, const Body *body)
   const Node *node = section_node(spec, "horizon");
   const double number = spec->horizon.value, spacings = number / body->largest_spacing;
   const bool plain = node->kind == NODE_SCALAR && node->text[strspn(node->text, "0123456789.")] == 0;
+  if (isnan(number)) return false;
   const bool odd = spacings < 1 || (spacings > 20 && body->dimensions > 1);
   return !spec->horizon.in_spacings && plain && number >= 1.4 && number <= 8 && odd;
 }
@@ -212,7 +213,8 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if (status) return status;
   regions_take_fibres(d, reader, spec->materials);
   status = check_space(d, reader, spec);
-  double horizon = pd->horizon.value * (pd->horizon.in_spacings ? d->body.largest_spacing : 1);
+  const Length wanted = peridynamics_horizon(pd);
+  const double horizon = wanted.value * (wanted.in_spacings ? d->body.largest_spacing : 1);
   const BondLength of = {space, influence, horizon, d->body.largest_spacing};
   int bad = domain_create_materials(d, reader, spec, &of);
   if (bad) status = bad;

@@ -82,9 +82,10 @@ static const Field peridynamics_fields[] = {
      .kind = FIELD_LENGTH,
      .offset = offsetof(PeridynamicsSpec, horizon),
      .dimension = "length",
-     .standard = "3.015 spacings",
+     .standard = "",
      .range = "(0, inf)",
-     .meaning = "radius of interaction; spacings are those of the coarsest block"},
+     .meaning = "radius of interaction; spacings are those of the coarsest block; when absent 2.015 spacings for "
+                "`hybrid`, 3.015 for all others"},
     {.key = "influence",
      .kind = FIELD_CHOICE,
      .offset = offsetof(PeridynamicsSpec, influence),
@@ -122,6 +123,19 @@ Space peridynamics_space(const PeridynamicsSpec *spec)
   int k = 0;
   while (strcmp(spaces[k], spec->space)) ++k;
   return (Space)k;
+}
+
+Length peridynamics_horizon(const PeridynamicsSpec *spec)
+{
+  const double usual = 3.015; /* spacings */
+  double longest = 0;
+  if (!isnan(spec->horizon.value)) return spec->horizon;
+  for (int r = -1; r < spec->regions.count; ++r) {
+    const RegionSpec *region = r < 0 ? NULL : spec->regions.items[r];
+    const double own = formulation_find(region ? region->formulation : spec->formulation)->horizon;
+    longest = fmax(longest, own > 0 ? own : usual);
+  }
+  return (Length){longest, true};
 }
 
 double micromodulus(const Body *body, double young, double horizon)

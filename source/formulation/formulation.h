@@ -26,6 +26,8 @@ typedef struct RegionSpec {
 extern const Section peridynamics_section;
 
 Space peridynamics_space(const PeridynamicsSpec *spec);
+/** The horizon of the deck, or where it gives none the longest that its formulations want. */
+Length peridynamics_horizon(const PeridynamicsSpec *spec);
 
 enum { CARRY = 9 };
 
@@ -135,6 +137,7 @@ struct FormulationType {
   int components;                /* of laws: 6, strain in space, or 1 */
   bool on_bonds;                 /* points are on bonds; otherwise on particles */
   const FormulationType *fibres; /* what it is with laws of one strain; NULL: it takes none */
+  double horizon;                /* in spacings, where the deck gives none; 0: 3.015 */
   bool row_sums;                 /* neighbours read sums along lattice rows */
   bool bond_lengths;             /* lengths of stored bonds are read in sweeps */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */

@@ -213,6 +213,7 @@ const FormulationType formulation_hybrid = {
     .maturity = "verified against closed forms and uniform fields",
     .components = 6,
     .on_bonds = true,
+    .horizon = 2.015,
     .joins = true,
     .fibres = &formulation_bond_based,
     .may_stiffen = true,

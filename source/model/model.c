@@ -99,11 +99,11 @@ static int keep_bonds(breccia_model *model, Error *error)
 static int find_margins(const breccia_model *model, MarginList *margins)
 {
   const DeckSpec *spec = model->spec;
-  const Length *horizon = &spec->peridynamics->horizon;
-  int status = support_margins(margins, &spec->loads, &spec->selections, &spec->body, horizon, &model->reader);
+  const Length horizon = peridynamics_horizon(spec->peridynamics);
+  int status = support_margins(margins, &spec->loads, &spec->selections, &spec->body, &horizon, &model->reader);
   for (int k = 0; k < spec->solve.count; ++k) {
     const SolveSpec *stage = spec->solve.items[k];
-    const int bad = support_margins(margins, &stage->loads, &spec->selections, &spec->body, horizon, &model->reader);
+    const int bad = support_margins(margins, &stage->loads, &spec->selections, &spec->body, &horizon, &model->reader);
     if (bad) status = bad;
   }
   return status;

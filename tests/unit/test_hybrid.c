@@ -218,6 +218,29 @@ static void ends_of_a_broken_bond_are_hidden_from_each_other(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Formulations say the horizon that they want; where there are several the longest counts, and that of the deck before all. */
+static void horizons_are_those_of_the_formulation(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *words;
+    double spacings;
+  } cases[] = {{"formulation: hybrid", 2.015},
+               {"formulation: ordinary", 3.015},
+               {"formulation: hybrid, regions: {more: {blocks: [b], formulation: correspondence}}", 3.015},
+               {"formulation: hybrid, horizon: 1.5 spacings", 1.5},
+               {"formulation: hybrid, horizon: 0.6", 2.4}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of(
+        UNITS SOFT_SOLID "body: {a: {material: m, spacing: 0.25, shape: {box: {particles: [4, 3, 3]}}}, b: {material: "
+                         "m, spacing: 0.25, shape: {box: {from: [1, 0, 0], to: [2, 0.75, 0.75]}}}}\n"
+                         "peridynamics: {%s}\nsolve: {explicit: {steps: 1}}\n",
+        cases[k].words);
+    assert_near(m->domain.family.horizon, 0.25 * cases[k].spacings, 1e-12);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** A free body that begins to swing keeps its energy; the pairwise form, which would not, is refused unless damping holds its short waves. */
 static void free_bodies_keep_their_energy(void **state)
 {
@@ -394,6 +417,7 @@ int main(void)
       cmocka_unit_test(no_wave_goes_unseen),
       cmocka_unit_test(parted_halves_are_strangers),
       cmocka_unit_test(ends_of_a_broken_bond_are_hidden_from_each_other),
+      cmocka_unit_test(horizons_are_those_of_the_formulation),
       cmocka_unit_test(free_bodies_keep_their_energy),
       cmocka_unit_test(fibres_are_bond_based),
       cmocka_unit_test(breaking_keeps_its_books),
