@@ -46,6 +46,14 @@ near "top of the column of clay" "$(value column/top 3)" "$(exact "9.75 * $strai
 # The opening to which rest.yaml comes by damping, in 6000 steps
 run plate-with-crack/static
 near "opening of the crack" "$(value static/mouth 4)" 0.0033157288 1e-6
+# The same plate by hybrid bonds: finite elements 3.343 mm; of fibres, with their E over 0.925172, 3.292 mm (orthotropic elements)
+run plate-with-crack-1d-3d/rest
+near "opening of the crack, laws in space" "$(value rest/mouth 4)" 0.003343 0.02
+sed 's/model: elastic, \(.*\)Young modulus: 150 MPa, Poisson ratio: 0.25/model: elastic-1d, \1Young modulus: 162.132 MPa/; s/form: variational, strain: small, //' \
+  "$source/examples/plate-with-crack-1d-3d/rest.yaml" > fibres.yaml
+"$breccia" run fibres.yaml --quiet > out 2>&1 || fail "plate of fibres: $(cat out)"
+near "opening of the crack, fibres" "$(value fibres/mouth 4)" 0.003292 0.002
+
 # Prandtl: (2 + pi) s_u on 1 m x 1 m, s_u = 100 kPa; 5 particles under half of the footing carry 12 % more
 run footing/footing --set "variables.dx=200 mm" --set "variables.settlement=9 mm" --set "solve.static.increments=6"
 near "limit load of the footing" "$(cut -d, -f4 footing/footing.csv | sort -gr | head -1)" 514.16 0.13
