@@ -1,4 +1,4 @@
-# Writes the decks of examples/*/*.yaml, each with the CSV files and records of earthquakes that it names, into a C file for `breccia new --example`.
+# Writes the decks of examples/*/*.yaml, each with the CSV files and records (.AT2) that it names, into a C file for `breccia new --example`.
 # cmake -DSOURCE=<folder of the sources> -DDECKS=<decks, relative, between semicolons> -DOUTPUT=<file> -P embed_examples.cmake
 set(arrays "")
 set(rows "")
