@@ -39,10 +39,11 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
   const DeckReader *reader = of->reader;
   const Node *node = section_node(spec, "criterion");
   if (!of->type->section_stress)
-    return node_error(reader->document, node, reader->error,
-                      "criterion: bonds of %s have no stress on a section; expected 'formulation: hybrid', or "
-                      "'criterion: critical stretch'",
-                      of->type->name);
+    return node_error(
+        reader->document, node, reader->error,
+        "criterion: bonds of %s have no stress on a section; expected 'formulation: hybrid' with laws for "
+        "strain in space, or 'criterion: critical stretch'",
+        of->type->name);
   if (isnan(spec->tensile))
     return node_error(reader->document, node, reader->error, "failure: give 'bond tensile strength'");
   for (int k = 0; k < of->material_count; ++k) limit[k] = spec->tensile;

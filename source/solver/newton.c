@@ -246,6 +246,19 @@ static bool has_converged(const Newton *n, double correction, double work, doubl
   return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
 }
 
+/** Whether displacements are beyond all reason: factors of a stiffness that is singular but for rounding give such ones, in balance. */
+static bool is_carried_away(const Particles *p)
+{
+  const double most = 1e3; /* sizes of the body */
+  double low[3], high[3], size = 0, farthest = 0;
+  particles_bounds(p, low, high);
+  for (int k = 0; k < 3; ++k) {
+    size = fmax(size, high[k] - low[k]);
+    for (int64_t i = 0; i < p->places; ++i) farthest = fmax(farthest, fabs(p->displacement[k][i]));
+  }
+  return farthest > most * size;
+}
+
 /** How an increment comes on. */
 typedef struct Pace {
   double least;    /* forces out of balance so far */
@@ -332,6 +345,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     tell(n, correction, energy, share, &linear);
     if (has_converged(n, correction, work, first_work)) {
+      if (is_carried_away(p)) return NEWTON_SINGULAR;
       n->reference = n->exerted;
       return NEWTON_CONVERGED;
     }

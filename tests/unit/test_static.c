@@ -326,6 +326,26 @@ static void a_step_that_fails_before_anything_broke_does_not_count(void **state)
   breccia_model_destroy(&model);
 }
 
+/** Patterns that nothing resists, of correspondence without control: factors that are singular but for rounding lead them away by 1e14 m, in balance. */
+static void a_body_that_is_carried_away_finds_no_equilibrium(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS "materials: {m: {model: multi-yield-j2, density: 1.5, shear modulus: 6e4, bulk modulus: 1e5, octahedral "
+            "strength: 30, peak octahedral strain: 0.1, surfaces: 20}}\n"
+            "body: {b: {material: m, lattice: square, spacing: 0.25, thickness: 1, shape: {box: {from: [0, 0], to: [2, "
+            "10]}}}}\n"
+            "peridynamics: {formulation: correspondence, space: plane strain, strain: small, horizon: 2.015 spacings, "
+            "zero-energy control: {none: yes}}\n"
+            "loads: [{on: {face: y-}, support: {held: all}}, {on: {face: x-}, support: {held: periodic}},"
+            " {on: {face: y+}, traction: [33.07, 0], history: {ramp to: 1}}]\n"
+            "solve: {static: {increments: 18, residual: 1e-10, equations: direct, smallest increment: 0.01}}\n");
+  step_must_fail(model, "no equilibrium beyond time 0.");
+  const Particles *p = model->domain.particles;
+  for (int64_t i = 0; i < p->places; ++i) assert_true(fabs(p->displacement[0][i]) < 1e4);
+  breccia_model_destroy(&model);
+}
+
 /** A brittle strip that a growing force tears: the bonds that broke are gone, so the step counts, and what loads have paid in it too. */
 static void a_step_in_which_bonds_broke_counts_though_it_fails(void **state)
 {
@@ -436,6 +456,7 @@ int main(void)
       cmocka_unit_test(a_bar_that_flows_carries_its_strength_and_no_more),
       cmocka_unit_test(a_step_that_fails_before_anything_broke_does_not_count),
       cmocka_unit_test(a_step_in_which_bonds_broke_counts_though_it_fails),
+      cmocka_unit_test(a_body_that_is_carried_away_finds_no_equilibrium),
       cmocka_unit_test(an_unloaded_body_is_at_rest),
       cmocka_unit_test(a_loose_body_is_refused),
   };
