@@ -18,16 +18,17 @@
 enum {
   HYBRID_FORCE = 3 * LANES,
   HYBRID_NEAR = 256, /* lattice vectors from a place, itself among them; rows of lattices with more are listed */
-  HYBRID_WIDTH = 24  /* numbers of a component of a window, at most; so are those of lattices that would need more */
+  HYBRID_WIDTH = 24  /* numbers of a component of a window, at most; rows of lattices that would need more are listed */
 };
 
-/** Bonds along a lattice of one pattern, with the same members and the same section. */
+/** Bonds of one block along one lattice vector, with the same members and the same section. */
 typedef struct HybridGeometry {
   double area[3]; /* of the section of the bond, from the owner to the other end */
   double volume;  /* for which the point stands */
   int64_t first;  /* of its members in `near`, `key` and `g` of the table */
   int16_t count;  /* members; 0: it carries nothing */
-  int16_t near;   /* of the other end */
+  int16_t other;  /* lattice vector of the other end */
+  int32_t block;  /* which numbers lattice vectors in its own way */
   bool
       mirrored; /* members 2 n and 2 n + 1 stand opposite each other about the middle, so that their g are too; a last one stands there */
 } HybridGeometry;
@@ -162,7 +163,7 @@ bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
 /** Adds what the bond itself says: g - own (g . xi) xi / L^2, and own xi / L^2 of its ends. */
 void hybrid_correct(const Hybrid *h, int count, const double xi[3], double (*g)[3]);
 
-/** Makes room for lattices and groups; all bonds of lattice slots are absent. */
+/** Makes room for lattices and groups, which mean nothing until bonds are listed and geometries made. */
 int hybrid_lattices_create(Hybrid *h, Error *error);
 /** Before geometries are made: the bond of a lane is listed. */
 int hybrid_group_list(Hybrid *h, int64_t group, int lane, int64_t number);

@@ -210,10 +210,11 @@ static double work(const Hybrid *h, const double stress[6], const double from[6]
   return sum;
 }
 
-/** Stress after a change of strain, if the point went on as it would unload. */
+/** Stress after a change of strain: what the law will say, or where it cannot be asked, if the point went on as it would unload. */
 static void foresee_stress(const Hybrid *h, int64_t row, const double was[6], const double from[6], const double to[6],
                            double stress[6])
 {
+  if (points_try_stress(h->points, row, to, stress)) return;
   const Material *m = points_material(h->points, row);
   const double soft = points_softness(h->points, row), lame = m->bulk - 2 * m->shear / 3;
   const double mean = h->points->plane_stress ? 2 * m->shear * lame / (lame + 2 * m->shear) : lame;
@@ -354,7 +355,7 @@ void hybrid_place_gradient(const void *formulation, int64_t place, double f[9])
   shape_gradient(h->family, (int32_t)place, shape.inverse, f);
   if (!h->points->plane_stress) return;
   find_means(h, place, &h->points->strain[ZZ], 1, &across);
-  f[8] = sqrt(fmax(0, 1 + 2 * across));
+  f[8] = h->finite ? sqrt(fmax(0, 1 + 2 * across)) : 1 + across;
 }
 
 void hybrid_stress(const void *formulation, int64_t place, double stress[6])

@@ -99,7 +99,9 @@ void hybrid_renew(void *formulation, int64_t slice)
   for (int64_t place = slice * SLICE; place < (slice + 1) * SLICE && h->met_first; ++place)
     for (int64_t n = h->met_first[place]; n < h->met_first[place + 1]; ++n) {
       const int64_t number = h->met[n].number;
-      if (h->met[n].member < 2 || h->foreign) h->idle[number] = !weigh(h, number, h->g + h->first[number]);
+      const bool to_others =
+          is_foreign(h->foreign, h->member[h->first[number] + 1]); /* whose breaks are not told here */
+      if (h->met[n].member < 2 || to_others) h->idle[number] = !weigh(h, number, h->g + h->first[number]);
     }
   hybrid_groups_renew(h, slice);
 }
@@ -398,7 +400,7 @@ static int create_members(Hybrid *h, Error *error)
   return status;
 }
 
-/** Of each place the listed rows that it is a member of; where stress acts on ends only, of which it is an end. */
+/** Of each place the listed rows that it is a member of; where stress acts on ends only, and all breaks are told to both of them, of which it is an end. */
 static int create_meetings(Hybrid *h, Error *error)
 {
   const int64_t places = h->particles->places;
@@ -406,7 +408,7 @@ static int create_meetings(Hybrid *h, Error *error)
   if (!h->met_first) return BRECCIA_FAILURE;
   for (int turn = 0; turn < 2; ++turn) {
     for (int64_t number = 0; number < h->listed; ++number)
-      for (int n = 0; n < h->first[number + 1] - h->first[number] && (!h->pairwise || n < 2); ++n) {
+      for (int n = 0; n < h->first[number + 1] - h->first[number] && (!h->pairwise || h->foreign || n < 2); ++n) {
         const int32_t place = h->member[h->first[number] + n];
         if (turn)
           h->met[h->met_first[place + 1]++] = (struct HybridMet){(int32_t)number, n};

@@ -240,7 +240,7 @@ LANES_INLINE void respond_half(const SliceOf *s, const HybridGeometry *geometry,
       const Lanes force = p[3 * k] * lanes_set(geometry->area[0]) + p[3 * k + 1] * lanes_set(geometry->area[1]) +
                           p[3 * k + 2] * lanes_set(geometry->area[2]);
       add_to(sums + k * room + lane, force);
-      add_to(sums + (3 * (int64_t)geometry->near + k) * room + lane, -force);
+      add_to(sums + (3 * (int64_t)geometry->other + k) * room + lane, -force);
     }
     return;
   }
@@ -380,6 +380,7 @@ LANES_INLINE Lanes listed_force(const Hybrid *h, int64_t place)
     const struct HybridMet *met = &h->met[n];
     const double *force = h->force + HYBRID_FORCE * (int64_t)met->number;
     if (h->pairwise) {
+      if (met->member >= 2) continue;
       sum += lanes_set(met->member ? -1 : 1) * lanes_load(force);
       continue;
     }

@@ -180,9 +180,9 @@ static uint64_t mixed_in(uint64_t hash, uint64_t value)
   return hash ^ hash >> 29;
 }
 
-static uint64_t hash_of(int other, int count, const uint16_t *key, const double area[3])
+static uint64_t hash_of(int block, int other, int count, const uint16_t *key, const double area[3])
 {
-  uint64_t hash = mixed_in((uint64_t)other, (uint64_t)count), bits[3];
+  uint64_t hash = mixed_in(mixed_in((uint64_t)block, (uint64_t)other), (uint64_t)count), bits[3];
   memcpy(bits, area, sizeof bits);
   for (int n = 0; n < count; ++n) hash = mixed_in(hash, key[n]);
   for (int k = 0; k < 3; ++k) hash = mixed_in(hash, bits[k]);
@@ -192,7 +192,7 @@ static uint64_t hash_of(int other, int count, const uint16_t *key, const double 
 static uint64_t hash_at(const HybridTable *t, int32_t n)
 {
   const HybridGeometry *geometry = &t->geometry[n];
-  return hash_of(geometry->near, geometry->count, t->key + geometry->first, geometry->area);
+  return hash_of(geometry->block, geometry->other, geometry->count, t->key + geometry->first, geometry->area);
 }
 
 static void put_in_bucket(HybridTable *t, int32_t n)
@@ -210,12 +210,17 @@ static bool grow(void *array, size_t count, size_t size)
   return grown != NULL;
 }
 
-static bool fill_buckets(HybridTable *t, int32_t buckets)
+static void fill_buckets(HybridTable *t)
+{
+  for (int32_t n = 0; n < t->buckets; ++n) t->bucket[n] = -1;
+  for (int32_t n = 0; n < t->count; ++n) put_in_bucket(t, n);
+}
+
+static bool make_buckets(HybridTable *t, int32_t buckets)
 {
   if (!grow(&t->bucket, (size_t)buckets, sizeof *t->bucket)) return false;
   t->buckets = buckets;
-  for (int32_t n = 0; n < buckets; ++n) t->bucket[n] = -1;
-  for (int32_t n = 0; n < t->count; ++n) put_in_bucket(t, n);
+  fill_buckets(t);
   return true;
 }
 
@@ -233,7 +238,7 @@ static bool make_room(HybridTable *t, int members)
       return false;
     t->member_room = room;
   }
-  return 2 * (t->count + 1) <= t->buckets || fill_buckets(t, t->buckets ? 2 * t->buckets : 4 * FIRST_ROOM);
+  return 2 * (t->count + 1) <= t->buckets || make_buckets(t, t->buckets ? 2 * t->buckets : 4 * FIRST_ROOM);
 }
 
 /** Vectors g of members, opposite ones side by side where each has one. @return false: they span no space */
@@ -292,11 +297,12 @@ static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volum
 {
   HybridTable *t = &h->table;
   for (int turn = 0; turn < 2; ++turn) { /* the second one for members that turn out to span no space */
-    uint64_t at = hash_of(m->other, m->count, m->key, area);
+    uint64_t at = hash_of(m->block, m->other, m->count, m->key, area);
     for (; t->buckets && t->bucket[at & (uint64_t)(t->buckets - 1)] >= 0; ++at) {
       const int32_t n = t->bucket[at & (uint64_t)(t->buckets - 1)];
       const HybridGeometry *found = &t->geometry[n];
-      if (found->near == m->other && found->count == m->count && !memcmp(found->area, area, sizeof found->area) &&
+      if (found->block == m->block && found->other == m->other && found->count == m->count &&
+          !memcmp(found->area, area, sizeof found->area) &&
           !memcmp(t->key + found->first, m->key, sizeof *m->key * (size_t)m->count))
         return n;
     }
@@ -309,7 +315,8 @@ static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volum
                            .volume = volume,
                            .first = t->members,
                            .count = (int16_t)m->count,
-                           .near = (int16_t)m->other,
+                           .other = (int16_t)m->other,
+                           .block = m->block,
                            .mirrored = m->count && m->mirrored};
   if (m->count) {
     memcpy(t->near + t->members, m->near, sizeof *t->near * (size_t)m->count);
@@ -358,7 +365,7 @@ static void tidy(Hybrid *h)
       if (h->mixed[n][lane] >= 0) h->mixed[n][lane] = now[h->mixed[n][lane]];
   free(now);
   t->count = t->kept = count;
-  fill_buckets(t, t->buckets);
+  fill_buckets(t);
 }
 
 /* ---- which members bonds have ---- */

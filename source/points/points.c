@@ -448,6 +448,24 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
   return stress;
 }
 
+bool points_try_stress(const Points *points, int64_t row, const double strain[6], double stress[6])
+{
+  const Material *m = points_material(points, row);
+  double whole[6], scratch[MOST_VALUES], *at[6], *to[6];
+  if (m->remote || m->history_values > MOST_VALUES) return false;
+  for (int k = 0; k < 6; ++k) {
+    whole[k] = strain[k] + (points->initial[k] ? points->initial[k][row] : 0);
+    at[k] = &whole[k];
+    to[k] = &stress[k];
+  }
+  breccia_batch batch;
+  make_batch(&batch, points, row, 1, at, to);
+  batch.trial = scratch;
+  batch.tangent = NULL;
+  if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
+  return update_batch(points, m, &batch, at) < 0;
+}
+
 double points_elastic_energy(const Points *points, int64_t row)
 {
   const Material *m = points_material(points, row);

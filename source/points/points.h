@@ -127,6 +127,9 @@ void points_change(const Points *points, int64_t first, int count, double *const
 /** Stress of a point of one strain; histories stay as they are.
  *  @param[out] tangent  its slope, and by the elastic weight Young's modulus; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
 double points_try(const Points *points, int64_t row, double strain, double *tangent);
+/** Stress of a point of six strains at a strain, from its committed history, which stays. In plane stress the strain across it is found.
+ *  @return false where nobody can tell without a trace (laws in servers, very long histories), or the law gives up */
+bool points_try_stress(const Points *points, int64_t row, const double strain[6], double stress[6]);
 
 /** Energy per volume that a point in space would give back if it unloaded with its first moduli. */
 double points_elastic_energy(const Points *points, int64_t row);

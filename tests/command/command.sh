@@ -85,7 +85,7 @@ contains "new over a file" "$(cat out)" "exists already"
 "$breccia" new --example > out; equal "new --example: status" $? 0
 contains "new --example" "$(grep 'plate-with-crack/clay ' out)" "Plate of clay with an edge crack"
 contains "new --example, laboratory" "$(sed -n '/laboratory/,$p' out)" "  materials/cap "
-equal "new --example: examples" "$(grep -c '^  [a-z-]*/' out)" "$(ls "$source"/examples/*/*.yaml | grep -cvE -- '-(none|one)\.yaml')"
+equal "new --example: examples" "$(grep -c '^  [a-z0-9-]*/' out)" "$(ls "$source"/examples/*/*.yaml | grep -cvE -- '-(none|one)\.yaml')"
 "$breccia" new --example clay mine.yaml > out; equal "new --example clay: status" $? 0
 cmp -s mine.yaml "$source/examples/plate-with-crack/clay.yaml" || fail "new --example clay writes another deck"
 "$breccia" new --example cap cap.yaml > out; contains "new --example of a test" "$(cat out)" "'breccia material cap.yaml' runs it"

@@ -1,5 +1,7 @@
 /* Hybrid peridynamics: what uniform strain, turning, short waves, cuts and free motion must do to it. */
 #include "formulation/hybrid.h"
+
+#include "base/tensor.h"
 #include "support.h"
 
 #include <unistd.h>
@@ -95,6 +97,55 @@ static void strains_told_are_those_of_laws(void **state)
       domain_look(&m->domain, m->domain.particles->place_of[n], strain, stress);
       const double expected[6] = {0, s ? shear * shear / 2 : 0, 0, shear, 0, 0};
       for (int k = 0; k < 6; ++k) assert_near(strain[k], expected[k], 1e-14);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Across plane stress, too, where the law says the strain. */
+static void strain_across_plane_stress_is_that_of_the_law(void **state)
+{
+  (void)state;
+  const double along = 0.02, across = -0.3 / 0.7 * along; /* -nu / (1 - nu) of the strain in the plane */
+  breccia_model *m = plate("variational, strain: small", "plane stress", 1.5, "");
+  deform_uniformly(m, (double[9]){1 + along, 0, 0, 0, 1, 0, 0, 0, 1});
+  compute_forces(m);
+  for (int64_t n = 0; n < m->domain.particles->count; ++n) {
+    double strain[6], stress[6];
+    domain_look(&m->domain, m->domain.particles->place_of[n], strain, stress);
+    assert_near(strain[ZZ], across, 1e-9);
+  }
+  breccia_model_destroy(&m);
+}
+
+/** Blocks number the vectors of their lattices along their longest side: a frame of two must see even strain as even, in whatever order they stand. */
+static void blocks_that_run_in_different_directions_strain_alike(void **state)
+{
+  (void)state;
+  static const char *const blocks[] = {"a: {%s, shape: {box: {from: [0, 0], to: [2.4, 0.8]}}}",
+                                       "b: {%s, shape: {box: {from: [0, 0.8], to: [0.8, 3.2]}}}"};
+  const double f[9] = {0.01, 0.02, 0, -0.03, 0.005, 0, 0, 0, 0};
+  for (int order = 0; order < 2; ++order) {
+    const char *each = "material: m, lattice: square, spacing: 0.1, thickness: 1";
+    char both[2][200];
+    for (int k = 0; k < 2; ++k) snprintf(both[k], sizeof both[k], blocks[k], each);
+    breccia_model *m =
+        model_of(UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
+                       "body: {%s, %s}\n"
+                       "peridynamics: {formulation: hybrid, space: plane stress, strain: small}\n" IMPLICIT,
+                 both[order], both[!order]);
+    const Particles *p = m->domain.particles;
+    const Hybrid *h = formulation_of(m);
+    for (int64_t i = 0; i < p->places; ++i)
+      for (int k = 0; k < 3; ++k)
+        p->displacement[k][i] = f[3 * k] * p->position[0][i] + f[3 * k + 1] * p->position[1][i];
+    for (int64_t row = 0; row < h->bonds->count; ++row) {
+      HybridView view;
+      double g[9];
+      hybrid_view(h, row, &view);
+      if (view.idle) continue;
+      hybrid_gradient(&view, p->displacement, g);
+      for (int k = 0; k < 9; ++k) assert_near(g[k], f[k], 1e-13);
     }
     breccia_model_destroy(&m);
   }
@@ -339,6 +390,45 @@ static void breaking_keeps_its_books(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Books of breaking foresee stresses by the law itself: those of points that yield are those that the next evaluation gives. */
+static void stresses_are_foreseen_by_the_law(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        UNITS
+        "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening "
+        "modulus: 100}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [9, 7]}}}}\n"
+        "peridynamics: {formulation: hybrid, space: %s}\n"
+        "loads: [{on: {face: x-, layers: 2}, velocity: [-1, 0]}, {on: {face: x+, layers: 2}, velocity: [1, 0.5]}]\n"
+        "solve: {explicit: {steps: 60}}\n",
+        k ? "plane stress" : "plane strain");
+    Domain *d = &m->domain;
+    Points *points = &d->regions[0].points;
+    const Hybrid *h = formulation_of(m);
+    step_surely(m, 60);
+    for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement[0][i] *= 1.2;
+    domain_evaluate(d);
+    int64_t asked = 0;
+    for (int64_t row = 0; row < points->count; ++row) {
+      double strain[6], stress[6], size = 0, off = 0;
+      const HybridRow at = hybrid_row(h, row);
+      if (!(d->family.intact[at.slot] >> at.lane & 1)) continue;
+      for (int c = 0; c < 6; ++c) strain[c] = points->strain[c][row];
+      assert_true(points_try_stress(points, row, strain, stress));
+      for (int c = 0; c < 6; ++c) {
+        size = fmax(size, fabs(points->stress[c][row]));
+        off = fmax(off, fabs(points->stress[c][row] - stress[c]));
+      }
+      if (!(off <= 1e-9 * size)) fail_msg("row %lld: off by %g of %g", (long long)row, off, size);
+      asked += size > 5;
+    }
+    assert_true(asked > 50);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Bonds break at the tension across their section, or at the shear along it: a plate that is pulled evenly breaks across the pull first, one that is
  *  sheared by bonds that stand as the shear does. */
 static void bonds_break_at_stresses_on_their_section(void **state)
@@ -413,6 +503,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(uniform_tension_leaves_free_surfaces_in_peace),
       cmocka_unit_test(strains_told_are_those_of_laws),
+      cmocka_unit_test(strain_across_plane_stress_is_that_of_the_law),
+      cmocka_unit_test(blocks_that_run_in_different_directions_strain_alike),
       cmocka_unit_test(a_turned_body_carries_nothing),
       cmocka_unit_test(no_wave_goes_unseen),
       cmocka_unit_test(parted_halves_are_strangers),
@@ -421,6 +513,7 @@ int main(void)
       cmocka_unit_test(free_bodies_keep_their_energy),
       cmocka_unit_test(fibres_are_bond_based),
       cmocka_unit_test(breaking_keeps_its_books),
+      cmocka_unit_test(stresses_are_foreseen_by_the_law),
       cmocka_unit_test(bonds_break_at_stresses_on_their_section),
       cmocka_unit_test(a_torn_bar_spends_its_fracture_energy),
   };
