@@ -1,5 +1,6 @@
 /* What the parts of hybrid peridynamics share: the table entry (hybrid.c), sweeps (hybrid_sweep.c), the geometry of bonds (hybrid_geometry.c, of those
- * along lattices hybrid_table.c), single bonds, places and their energies (hybrid_bonds.c).
+ * along lattices hybrid_table.c, where these exert forces hybrid_windows.c), rows and their members one by one (hybrid_rows.c), single bonds and places
+ * (hybrid_bonds.c), and what breaking bonds take with them (hybrid_breaking.c).
  *
  * Every bond has a material point in space at its middle. Its strain follows from the particles that both of its ends see, S = (H_A + A) and (H_B + B):
  *   G = sum over C in S of u_C (x) g_C,
@@ -139,6 +140,14 @@ bool hybrid_view_anew(const Hybrid *hybrid, const HybridRow *at, HybridView *vie
 /** Volume of a point that carries something; 0 of others. */
 double hybrid_volume(const Hybrid *hybrid, const HybridRow *at);
 
+/** Number of a place among the members, or their count. */
+static inline int hybrid_member_of(const HybridView *view, int32_t place)
+{
+  int n = 0;
+  while (n < view->count && view->member[n] != place) ++n;
+  return n;
+}
+
 /** Goes through the rows of a place's intact bonds. */
 typedef struct HybridRows {
   int64_t place, row;
@@ -157,11 +166,16 @@ typedef double HybridShape[6];
 /** Section of the bond of a lane, as the body begins. */
 void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],
                        double *volume);
-/** Inverse of a symmetric tensor of the body's space; rows and columns across the plane are those of 1.
- *  @return false where it is as flat as no strain can be found in */
-bool hybrid_invert(const Hybrid *h, double m[6], double inverse[6]);
-/** Adds what the bond itself says: g - own (g . xi) xi / L^2, and own xi / L^2 of its ends. */
-void hybrid_correct(const Hybrid *h, int count, const double xi[3], double (*g)[3]);
+/** Vectors of members from their distances from the middle, each times its weight, and the moment of these distances: the fit, and what the bond itself
+ *  says, made exact along it: g - own (g . xi) xi / L^2, and own xi / L^2 of its two ends, which come first.
+ *  @param[in,out] g  [count]. @return false where the members span no space */
+bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3]);
+
+/** Lattice vector of a slot: 0 is none, n + 1 is pattern n of the block. */
+static inline int hybrid_vector(const Hybrid *h, int block, int64_t slot)
+{
+  return h->family->pattern[slot] - h->family->pattern_begin[block] + 1;
+}
 
 /** Makes room for lattices and groups, which mean nothing until bonds are listed and geometries made. */
 int hybrid_lattices_create(Hybrid *h, Error *error);
@@ -169,7 +183,7 @@ int hybrid_lattices_create(Hybrid *h, Error *error);
 int hybrid_group_list(Hybrid *h, int64_t group, int lane, int64_t number);
 /** Geometries of an owned slot as the body begins. @return the lane whose members span no space, -1: all do, -2: there is no memory */
 int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int64_t group);
-/** Where places take what points of lattice slots exert. */
+/** Where places take what points of lattice slots exert (hybrid_windows.c). */
 int hybrid_windows_create(Hybrid *h, Error *error);
 /** Bonds of lattice slots around a slice have broken or were mended. */
 void hybrid_groups_renew(Hybrid *h, int64_t slice);
@@ -202,14 +216,16 @@ void hybrid_half_state(const void *formulation, double *const *at, int64_t slice
                        double state[3]);
 int64_t hybrid_point_count(const void *formulation);
 int hybrid_point(const void *formulation, int64_t number, Operator *point, Error *error);
-void hybrid_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
-void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
-                        StoredEnergy *energy);
 void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
 void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
                            double *shear);
 void hybrid_place_gradient(const void *formulation, int64_t place, double f[9]);
 void hybrid_stress(const void *formulation, int64_t place, double stress[6]);
 double hybrid_characteristic_length(const BondLength *of);
+
+/** As FormulationType describes them (hybrid_breaking.c). */
+void hybrid_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
+void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
+                        StoredEnergy *energy);
 
 #endif

@@ -24,11 +24,6 @@ static const Pattern *pattern_of(const Hybrid *h, int block, int vector)
   return &h->family->patterns[h->family->pattern_begin[block] + vector - 1];
 }
 
-static int vector_of(const Hybrid *h, int block, int64_t slot)
-{
-  return h->family->pattern[slot] - h->family->pattern_begin[block] + 1;
-}
-
 static int difference(const HybridLattice *lattice, int a, int b)
 {
   return lattice->difference[a * lattice->count + b];
@@ -247,7 +242,7 @@ static bool weigh(const Hybrid *h, Members *m)
   const HybridLattice *lattice = &h->lattice[m->block];
   uint16_t opposite[HYBRID_NEAR] = {0};
   bool there[HYBRID_NEAR] = {false};
-  double middle[3] = {0}, moment[6] = {0}, inverse[6];
+  double middle[3] = {0}, moment[6] = {0};
   int count = 2, centre = -1;
   for (int n = 0; n < m->count; ++n) there[m->key[n]] = true;
   m->mirrored = true;
@@ -278,15 +273,7 @@ static bool weigh(const Hybrid *h, Members *m)
     for (int k = 0; k < 3; ++k) m->g[n][k] -= middle[k];
     for (int k = 0; k < 6; ++k) moment[k] += m->g[n][symmetric_row[k]] * m->g[n][symmetric_column[k]];
   }
-  if (!hybrid_invert(h, moment, inverse)) return false;
-  for (int n = 0; n < count; ++n) {
-    const double from[3] = {m->g[n][0], m->g[n][1], m->g[n][2]};
-    for (int k = 0; k < 3; ++k) {
-      m->g[n][k] = 0;
-      for (int j = 0; j < 3; ++j) m->g[n][k] += inverse[symmetric_place[3 * k + j]] * from[j];
-    }
-  }
-  hybrid_correct(h, count, xi, m->g);
+  if (!hybrid_fit(h, count, moment, xi, m->g)) return false;
   for (int n = 0; n + 1 < count && m->mirrored; n += 2)
     for (int k = 0; k < 3; ++k) m->g[n + 1][k] = -m->g[n][k];
   return true;
@@ -378,12 +365,12 @@ static unsigned intact_of(const Hybrid *h, int block, int64_t slice, int vector)
   int64_t low = f->first[slice], high = f->stored[slice];
   while (low < high) {
     const int64_t middle = (low + high) / 2;
-    if (vector_of(h, block, middle) < vector)
+    if (hybrid_vector(h, block, middle) < vector)
       low = middle + 1;
     else
       high = middle;
   }
-  return low < f->stored[slice] && vector_of(h, block, low) == vector ? f->intact[low] : 0;
+  return low < f->stored[slice] && hybrid_vector(h, block, low) == vector ? f->intact[low] : 0;
 }
 
 static bool is_hidden(const Hybrid *h, int64_t a, int64_t b)
@@ -397,14 +384,14 @@ static bool is_hidden(const Hybrid *h, int64_t a, int64_t b)
 static int find_members(const Hybrid *h, int64_t slice, int64_t slot, uint16_t *key, uint8_t *lanes)
 {
   const Family *f = h->family;
-  const int block = h->particles->block[slice], other = vector_of(h, block, slot);
+  const int block = h->particles->block[slice], other = hybrid_vector(h, block, slot);
   const int64_t base = f->base[slot], next = base / SLICE;
   const int shift = (int)(base % SLICE);
   int count = 1;
   key[0] = 0;
   lanes[0] = f->intact[slot];
   for (int64_t to = f->first[slice]; to < f->stored[slice]; ++to) {
-    const int vector = vector_of(h, block, to), from_other = difference(&h->lattice[block], other, vector);
+    const int vector = hybrid_vector(h, block, to), from_other = difference(&h->lattice[block], other, vector);
     if (from_other < 0) continue;
     unsigned seen = f->intact[slot] & f->intact[to];
     if (to != slot)
@@ -434,7 +421,7 @@ bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
   Members m = {.block = h->particles->block[at->slice]};
   uint16_t key[HYBRID_NEAR];
   uint8_t lanes[HYBRID_NEAR];
-  m.other = vector_of(h, m.block, at->slot);
+  m.other = hybrid_vector(h, m.block, at->slot);
   take_lane(&m, find_members(h, at->slice, at->slot, key, lanes), key, lanes, at->lane);
   view->count = m.count;
   view->member = view->near;
@@ -443,7 +430,7 @@ bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
   for (int n = 0; n < m.count; ++n) {
     const int64_t slot = h->family->first[at->slice];
     int64_t to = slot;
-    while (m.near[n] && vector_of(h, m.block, to) != m.near[n]) ++to;
+    while (m.near[n] && hybrid_vector(h, m.block, to) != m.near[n]) ++to;
     view->near[n] = (int32_t)((m.near[n] ? h->family->base[to] : at->slice * SLICE) + at->lane);
     memcpy(view->tried[n], m.g[n], sizeof m.g[n]);
   }
@@ -493,7 +480,7 @@ int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int6
   Members m = {.block = h->particles->block[slice]};
   uint16_t key[HYBRID_NEAR];
   uint8_t lanes[HYBRID_NEAR];
-  m.other = vector_of(h, m.block, slot);
+  m.other = hybrid_vector(h, m.block, slot);
   int32_t geometry[SLICE];
   const int count = h->lattice[m.block].count ? find_members(h, slice, slot, key, lanes) : 0;
   for (int lane = 0; lane < SLICE; ++lane) {
@@ -520,7 +507,7 @@ static void renew_group(Hybrid *h, int64_t slice, int64_t slot, int64_t group)
   uint16_t key[HYBRID_NEAR];
   uint8_t lanes[HYBRID_NEAR];
   if (!h->lattice[m.block].count) return;
-  m.other = vector_of(h, m.block, slot);
+  m.other = hybrid_vector(h, m.block, slot);
   int32_t geometry[SLICE];
   const int count = find_members(h, slice, slot, key, lanes);
   for (int lane = 0; lane < SLICE; ++lane) {
@@ -555,76 +542,4 @@ void hybrid_groups_renew(Hybrid *h, int64_t slice)
     }
   }
   tidy(h);
-}
-
-/* ---- windows ---- */
-
-/** First places of the windows of a slice, and those behind the last. @param[out] begin, end  [windows]; begin: INT32_MAX for windows that nothing is in
- *  @return numbers that the longest needs */
-static int find_windows(const Hybrid *h, int64_t slice, int32_t *begin, int32_t *end)
-{
-  const Family *f = h->family;
-  const int block = h->particles->block[slice];
-  const HybridLattice *lattice = &h->lattice[block];
-  int longest = 0;
-  for (int n = 0; n < lattice->windows; ++n) {
-    begin[n] = INT32_MAX;
-    end[n] = INT32_MIN;
-  }
-  begin[lattice->window[0]] = (int32_t)(slice * SLICE);
-  end[lattice->window[0]] = begin[lattice->window[0]] + SLICE;
-  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-    const int n = lattice->window[vector_of(h, block, slot)];
-    if (f->base[slot] < begin[n]) begin[n] = f->base[slot];
-    if (f->base[slot] + SLICE > end[n]) end[n] = f->base[slot] + SLICE;
-  }
-  for (int n = 0; n < lattice->windows; ++n)
-    if (begin[n] < INT32_MAX && end[n] - begin[n] > longest) longest = end[n] - begin[n];
-  return longest;
-}
-
-static bool exerts(const Hybrid *h, int64_t slice)
-{
-  return h->bonds->owned_first[slice + 1] > h->bonds->owned_first[slice] &&
-         h->lattice[h->particles->block[slice]].count;
-}
-
-int hybrid_windows_create(Hybrid *h, Error *error)
-{
-  const int64_t slices = h->particles->slices;
-  int32_t begin[HYBRID_NEAR], end[HYBRID_NEAR];
-  for (int block = 0; block < h->body->block_count; ++block)
-    if (h->lattice[block].windows > h->windows) h->windows = h->lattice[block].windows;
-  for (int64_t slice = 0; slice < slices; ++slice) {
-    const int needed = exerts(h, slice) ? find_windows(h, slice, begin, end) : 0;
-    if (needed > h->width) h->width = (needed + LANES - 1) / LANES * LANES;
-  }
-  h->share_first = memory_zeroed((size_t)slices + 2, sizeof *h->share_first, "windows of bonds", error);
-  h->window = places_array(slices * h->windows * 3 * h->width, "windows of bonds", error);
-  if (!h->share_first || !h->window) return BRECCIA_FAILURE;
-  for (int turn = 0; turn < 2; ++turn) { /* counted, then written */
-    for (int64_t slice = 0; slice < slices; ++slice) {
-      if (!exerts(h, slice)) continue;
-      find_windows(h, slice, begin, end);
-      const int windows = h->lattice[h->particles->block[slice]].windows;
-      for (int n = 0; n < windows; ++n)
-        for (int64_t to = begin[n] < 0 ? 0 : begin[n] / SLICE;
-             begin[n] < INT32_MAX && to < slices && to * SLICE < end[n]; ++to) {
-          const int64_t from = to * SLICE - begin[n];
-          uint8_t lanes = 0;
-          for (int lane = 0; lane < SLICE; ++lane)
-            if (from + lane >= 0 && from + lane < end[n] - begin[n]) lanes |= (uint8_t)(1u << lane);
-          if (!turn)
-            ++h->share_first[to + 2];
-          else
-            h->share[h->share_first[to + 1]++] =
-                (HybridShare){.window = (int32_t)(slice * h->windows + n), .from = (int16_t)from, .lanes = lanes};
-        }
-    }
-    if (turn) break;
-    for (int64_t slice = 0; slice < slices; ++slice) h->share_first[slice + 2] += h->share_first[slice + 1];
-    h->share = memory_zeroed((size_t)h->share_first[slices + 1], sizeof *h->share, "windows of bonds", error);
-    if (!h->share) return BRECCIA_FAILURE;
-  }
-  return BRECCIA_OK;
 }

@@ -345,7 +345,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     tell(n, correction, energy, share, &linear);
     if (has_converged(n, correction, work, first_work)) {
-      if (is_carried_away(p)) return NEWTON_SINGULAR;
+      if (!n->beside && is_carried_away(p)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
       n->reference = n->exerted;
       return NEWTON_CONVERGED;
     }
