@@ -63,6 +63,17 @@ static const struct {
     {"microstrain", "1e-6"}, {"deg", "arc_degree"},   {"kgf", "9.80665 N"},    {"tf", "9806.65 N"},
 };
 
+/** Whether a word begins here with which the library moves the zero of a unit: "m from 2". */
+static bool shifts(const char *words, const char *at)
+{
+  static const char *const known[] = {"from", "after", "since", "ref"};
+  for (size_t k = 0; k < sizeof known / sizeof *known; ++k)
+    if (at > words && isspace((unsigned char)at[-1]) && !strncasecmp(at, known[k], strlen(known[k])) &&
+        isspace((unsigned char)at[strlen(known[k])]))
+      return true;
+  return false;
+}
+
 ut_unit *units_parse(const Units *units, const char *words, Text *reason)
 {
   for (const char *c = words; *c; ++c) {
@@ -92,7 +103,7 @@ ut_unit *units_parse(const Units *units, const char *words, Text *reason)
       text_add(reason, "unit '%s': 'rpm' is an angle by time to some; write turns per second as Hz", words);
       return NULL;
     }
-    if (*c == '@' || !strncmp(c, "since", 5)) {
+    if (*c == '@' || shifts(words, c)) {
       text_add(reason, "unit '%s': units with an origin are not understood here", words);
       return NULL;
     }

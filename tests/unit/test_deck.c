@@ -130,16 +130,120 @@ static void other_words_and_slips_lead_to_the_name_meant(void **state)
   assert_int_equal(text_distance("abc", ""), 3);
 }
 
-static void intervals_hold_their_closed_ends_only(void **state)
+/** What engineers' notes and other programs call the things of a deck, among names that are none of them. */
+static void words_of_others_lead_to_ours(void **state)
 {
   (void)state;
-  assert_true(interval_contains("[0, 1)", 0));
-  assert_false(interval_contains("[0, 1)", 1));
-  assert_false(interval_contains("(0, inf)", 0));
-  assert_true(interval_contains("(0, inf)", 1e300));
-  char words[64];
-  interval_describe("(0, 0.5]", words, sizeof words);
-  assert_string_equal(words, "greater than 0 and at most 0.5");
+  static const char weight[] = " (mass per volume: the weight divided by g)",
+                    held[] = " (0 holds a direction and 'free' leaves it, like [0, free])",
+                    total[] = " (the total force, which the particles share by volume)",
+                    disc[] = " (in the plane a disc is one)", mises[] = " (J2 plasticity is that of von Mises)";
+  const struct {
+    const char *ours, *others, *remark; /* with commas between */
+  } cases[] = {
+      {"Young modulus", "E,elastic modulus,Modulus of Elasticity,youngs", ""},
+      {"Poisson ratio", "nu,\u03bd,v,poisson", ""},
+      {"shear modulus", "G,mu", ""},
+      {"bulk modulus", "K", ""},
+      {"density", "rho,\u03c1,mass density", ""},
+      {"density", "unit weight,gamma", weight},
+      {"cohesion", "c,su", ""},
+      {"undrained strength", "su", ""},
+      {"friction angle", "phi", ""},
+      {"dilation angle", "psi,dilatancy angle", ""},
+      {"compressive strength", "fc,f_c,fck,fcm", ""},
+      {"tensile strength", "ft,f_t,fctm", ""},
+      {"yield stress", "fy,f_y,sigma_y,yield strength", ""},
+      {"fracture energy", "Gf,G_f,Gc", ""},
+      {"critical stretch", "s0,sc,stretch", ""},
+      {"model", "type,law,constitutive model", ""},
+      {"spacing", "dx,h,mesh size,grid spacing", ""},
+      {"face-centred cubic", "fcc,close-packed", ""},
+      {"hexagonal", "triangular", ""},
+      {"cubic", "simple cubic", ""},
+      {"horizon", "delta,radius", ""},
+      {"time step", "dt,timestep", ""},
+      {"end time", "t_end,tend,total time,duration", ""},
+      {"steps", "nsteps,number of steps", ""},
+      {"body", "geometry,blocks,parts,mesh", ""},
+      {"selections", "sets,groups", ""},
+      {"any of", "union", ""},
+      {"all of", "intersection", ""},
+      {"except", "difference,without", ""},
+      {"group", "selection", ""},
+      {"cracks", "notches", ""},
+      {"failure", "damage,fracture", ""},
+      {"loads", "boundary conditions,bcs,supports", ""},
+      {"solve", "solver,analysis", ""},
+      {"watch", "outputs,histories", ""},
+      {"results", "output", ""},
+      {"pictures", "plots", ""},
+      {"displacement", "fix,fixed", held},
+      {"displacement", "u,disp", ""},
+      {"force", "pressure,traction", total},
+      {"water pressure", "hydrostatic pressure,hydrostatic", ""},
+      {"history", "amplitude", ""},
+      {"to", "size", ""},
+      {"centre", "center", ""},
+      {"sphere", "circle,disc,disk", disc},
+      {"box", "rectangle,cuboid,block", ""},
+      {"stress and strain of", "stress of,strain of", ""},
+      {"force on", "reaction,reaction of", ""},
+      {"at", "frequency", ""},
+      {"zero-energy control", "control,hourglass control", ""},
+      {"x-", "-x,left", ""},
+      {"x+", "+x,right", ""},
+      {"y-", "-y", ""},
+      {"y+", "+y", ""},
+      {"z-", "-z", ""},
+      {"z+", "+z", ""},
+      {"plane stress", "2d", " (or 'plane strain')"},
+      {"3-D", "3d", ""},
+      {"1-D", "1d", ""},
+      {"correspondence", "NOSB,state-based", ""},
+      {"bond-based", "bond,BBPD", ""},
+      {"j2", "von mises,mises", mises},
+      {"j2", "plastic", ""},
+      {"j2", "steel", " (of bonds 'steel-bilinear', 'menegotto-pinto')"},
+      {"elastic", "linear elastic,linear,hooke", ""},
+      {"damage-plasticity", "CDP", ""},
+      {"damage-plasticity", "concrete",
+       " (or 'mazars'; of bonds 'bilinear-softening', 'exponential-softening', 'concrete02')"},
+      {"multi-yield-j2", "clay", " (or 'bounding-surface-clay')"},
+      {"mohr-coulomb", "soil", " (or 'drucker-prager', 'cap', 'multi-yield-j2')"},
+      {"von Mises stress", "von mises,mises,mises stress,equivalent stress", ""},
+      {"stress", "sigma", ""},
+      {"strain", "epsilon", ""},
+      {"mean stress", "pressure", ""},
+      {"deformation gradient", "F", ""},
+      {"stress xx", "s11", ""},
+      {"stress yy", "s22", ""},
+      {"stress zz", "s33", ""},
+      {"stress xy", "s12", ""},
+      {"stress yz", "s23", ""},
+      {"stress zx", "s31", ""},
+      {"strain xx", "e11", ""},
+      {"strain yy", "e22", ""},
+      {"strain zz", "e33", ""},
+      {"strain xy", "g12", ""},
+      {"strain yz", "g23", ""},
+      {"strain zx", "g31", ""},
+      {"xx", "11", ""},
+      {"yy", "22", ""},
+      {"zz", "33", ""},
+      {"xy", "12", ""},
+      {"yz", "23", ""},
+      {"zx", "31", ""},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k)
+    for (const char *at = cases[k].others; *at; at += strcspn(at, ","), at += *at == ',') {
+      char word[40];
+      snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
+      const char *const names[] = {"aaaaaaaaaaaaaaaaaaaa", cases[k].ours, "zzzzzzzzzzzzzzzzzzzz"},
+                        *found = spelling_nearest(word, names, 3), *remark = spelling_remark(word, cases[k].ours);
+      if (!found || strcmp(found, cases[k].ours)) fail_msg("'%s' leads to %s, not to '%s'", word, found, cases[k].ours);
+      if (strcmp(remark, cases[k].remark)) fail_msg("'%s' has the remark '%s'", word, remark);
+    }
 }
 
 static void positions_of_nodes_are_those_of_the_text(void **state)
@@ -544,7 +648,7 @@ int main(void)
       cmocka_unit_test(unit_names_read_like_an_engineers),
       cmocka_unit_test(numbers_in_si_units_read_as_people_say_them),
       cmocka_unit_test(other_words_and_slips_lead_to_the_name_meant),
-      cmocka_unit_test(intervals_hold_their_closed_ends_only),
+      cmocka_unit_test(words_of_others_lead_to_ours),
       cmocka_unit_test(positions_of_nodes_are_those_of_the_text),
       cmocka_unit_test(all_errors_of_a_deck_come_in_one_go),
       cmocka_unit_test(expressions_keep_the_units_of_quantities),
