@@ -400,6 +400,23 @@ static void wrong_expressions_are_refused_at_their_place(void **state)
       {"${n +}", "deck:2:14: title: the expression ends where a number is expected"},
       {"${}", "deck:2:11: title: nothing stands in ${}"},
       {"${n", "deck:2:9: title: '${n' has no '}' on its line"},
+      {"${2 ** 3}", "deck:2:14: title: write ^ for powers"},
+      {"${3 + #}", "deck:2:15: title: expected a number, a variable or '(', found '#'"},
+      {"${n # 2}", "deck:2:13: title: expected an operator (+ - * / ^), found '#'"},
+      {"${3 n}", "deck:2:13: title: expected an operator before 'n'"},
+      {"${min(1, 2 s, 3)}",
+       "deck:2:11: title: a plain number and a time cannot be compared; give every quantity its unit"},
+      {"${min(1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17)}", "deck:2:54: title: min takes at most 16 numbers"},
+      {"${a23456789_123456789_123456789_123456789_123456789_123456789_123}",
+       "deck:2:11: title: there is no variable 'a23456789_123456789_123456789_123456789_123456789_123456789_123'; the "
+       "deck's "
+       "variables are width, n, E, nu, phi, f, law, a"},
+      {"${a23456789_123456789_123456789_123456789_123456789_123456789_1234}",
+       "deck:2:11: title: a name has at most 63 letters"},
+      {"${(((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((1)))))}", "deck:2:71: title: nested too deeply"},
+      {"${-------------------------------------------------------------1}", "deck:2:70: title: nested too deeply"},
+      {"${10 N/a}",
+       "deck:2:16: title: 'a' is a variable and a unit too; write (10 N)/a for the variable, or give it a longer name"},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     char *found = reckoned(cases[k][0]);
@@ -449,6 +466,31 @@ static void what_a_deck_reuses_is_that_value(void **state)
       {"title: a\n", "title.b=2", "--set title.b=2: 'b' would stand below the single value 'a'"},
       {"title: a\n", "title", "--set title: expected key.path=value, like 'solve.explicit.end time=5 ms'"},
       {"title: a\n", "title=", "--set title=: no value is given behind '='"},
+      {"loads: [{on: a}, {name: push, on: b}, {name: pull, on: b}]\n", "loads.pus.on=c",
+       "--set loads.pus.on=c: there is no item 'pus' in a list of 3; items go by their numbers from 1, or by name: "
+       "'push', 'pull'"},
+      {"loads: [{on: a}, {on: b}]\n", "loads.0.on=c",
+       "--set loads.0.on=c: there is no item '0' in a list of 2; items go by their numbers from 1"},
+      {"loads: [{on: a}, {on: b}]\n", "loads.2.on=c", "loads:\n  - {on: a}\n  - {on: c}\n"},
+      {"[a]\n", "title=b", "--set title=b: the deck has no keys"},
+      {"title: a\n", ".title=b", "--set .title=b: '.title' has an empty part"},
+      {"title: a\n", "title.=b", "--set title.=b: 'title.' has an empty part"},
+      {"title: a\n", "solve..steps=b", "--set solve..steps=b: 'solve..steps' has an empty part"},
+      {"title: a\n", "=b", "--set =b: expected key.path=value, like 'solve.explicit.end time=5 ms'"},
+      {"materials: {m: {}}\n", "materials.n.density=2",
+       "--set materials.n.density=2: there is no 'n'; the keys here are m"},
+      {"materials: {}\n", "materials.n.density=2",
+       "--set materials.n.density=2: there is no 'n'; nothing stands there"},
+      {"watch: {a: {energy: yes}}\n", "watch.a.energy=no", "watch:\n  a:\n    energy: no\n"},
+      {"[a, b]: 1\n", NULL, "deck:1:2: a key must be words"},
+      {"", NULL, "deck:1:1: the deck is empty; 'breccia new' writes one to start from"},
+      {"title: a\n%TAG\n", NULL, "deck:2:1: not valid YAML for a deck: a line must not begin with %"},
+      {"title: a\n---\ntitle: b\n", NULL,
+       "deck:2:1: a file holds one deck, and what stands here would not be read: leave out the line '---' or '...', or "
+       "put it into a file of its own"},
+      {"title: a\n...\n\n# but\nb\n", NULL,
+       "deck:5:1: a file holds one deck, and what stands here would not be read: leave out the line '---' or '...', or "
+       "put it into a file of its own"},
       {"title: a\n", "title=[1", "--set title=[1: not valid YAML: flow sequence without a closing bracket"},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {

@@ -311,6 +311,105 @@ static void units_are_those_of_who_asks(void **state)
   end();
 }
 
+/** A trial of some points, as many strains as bytes are sent of. */
+static void try_points(Line *line, uint32_t flags, uint32_t first, uint32_t count, size_t bytes, const char *words)
+{
+  uint8_t body[400] = {0};
+  memcpy(body, &first, sizeof first);
+  ask(line, OPERATION_TRIAL, flags, count, body, bytes, words);
+}
+
+static void what_a_server_cannot_do_is_said_and_changes_nothing(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  Line line = connect_to(where);
+  say(&line, OPERATION_HELLO, 0, hello, "session: 0\npoints: 0\ncommits: 0\n");
+  say(&line, OPERATION_COMMIT, 0, "", "session 0 is not held here");
+  say(&line, OPERATION_CREATE, 4194305, steel, "4194305 points are more than a server takes (4194304)");
+  say(&line, OPERATION_CREATE, 2, "command: steel; Young modulus=1\n",
+      "there is no law 'steel'; a command is 'LAW; KEY=VALUE; ...' with one of ");
+  say(&line, OPERATION_CREATE, 2, "command: elastic-1d; Young modulus=1\nstage: 2\n",
+      "a stage is 0 (elastic) or 1 (plastic)");
+  say(&line, OPERATION_CREATE, 2, "command: elastic-1d\n", "missing 'Young modulus=...'");
+  say(&line, OPERATION_CREATE, 2, steel, "components: 1\n");
+  const uint32_t session = line.session;
+  assert_true(session != 0);
+  pull(&line, 0, 3 * YIELD_STRAIN, 0);
+  line.session = session + 1;
+  say(&line, OPERATION_COMMIT, 0, "", "session ");
+  assert_non_null(strstr(line.text, " is not held here"));
+  line.session = session;
+  say(&line, (Operation)77, 0, "", "operation 77 is unknown");
+  try_points(&line, 0, 0, 1, 4, "1 strains were announced, and 4 bytes came");
+  try_points(&line, 0, 0, 2, 16, "2 strains were announced, and 16 bytes came");
+  try_points(&line, 0, 1, 2, 24, "points 1 to 2 were asked for; there are 2");
+  try_points(&line, 0, 2, 1, 16, "points 2 to 2 were asked for; there are 2");
+  ask(&line, OPERATION_SAVE, 0, 3, (uint32_t[2]){0}, 8,
+      "histories of 3 points from 0 on were asked for; there are 2 points");
+  ask(&line, OPERATION_SAVE, 0, 2, (uint32_t[2]){1}, 8,
+      "histories of 2 points from 1 on were asked for; there are 2 points");
+  ask(&line, OPERATION_RESTORE, 0, 1, (uint32_t[2]){0}, 8, "histories of 1 points from 0 on");
+  /* Of another version it takes nothing, whoever speaks. */
+  Text words = {0};
+  channel_payload(line.channel, 0);
+  const Frame frame = {
+      .version = FRAME_VERSION + 1, .operation = OPERATION_COMMIT, .sequence = ++line.sequence, .session = session};
+  assert_int_equal(channel_send(line.channel, &frame, PATIENCE, &words), CHANNEL_OK);
+  hear(&line);
+  assert_string_equal(line.text, "this server speaks version 1 of the protocol, the client version 2");
+  assert_int_equal(line.operation, OPERATION_ERROR);
+  /* The trial of before is there still, and the other point has none. */
+  say(&line, OPERATION_COMMIT, 0, "", "");
+  assert_near(pull(&line, 0, 2 * YIELD_STRAIN, 0), 0, 1e-6);
+  assert_near(pull(&line, 1, 0.5 * YIELD_STRAIN, 0), 0.5 * YIELD_STRESS, 1e-6);
+  say(&line, OPERATION_STATISTICS, 0, "", "evaluations: 3\ncommits: 1\n");
+  channel_close(&line.channel);
+  end();
+}
+
+static void a_law_is_told_whole_and_saved_and_restored(void **state)
+{
+  (void)state;
+  char path[128];
+  begin_at_file(path);
+  Line line = connect_to(where);
+  say(&line, OPERATION_HELLO, 0, hello, "program: breccia serve\nversion: ");
+  say(&line, OPERATION_PROBE, 0, " command: \ncommand: elastic-brittle ; Young modulus=5 ; tensile strength=10;\n",
+      "components: 1\nbulk: 3.3333333333333335\nshear: 2\nfailure: 2\nstate: 1\niterates: 1\nsaves: 1\nsession: 0\n");
+  say(&line, OPERATION_PROBE, 0, "command: elastic; bulk modulus=5; shear modulus=3\n",
+      "components: 6\nbulk: 5\nshear: 3\nfailure: inf\nstate: 0\niterates: 1\nsaves: 1\nsession: 0\n");
+  say(&line, OPERATION_LAWS, 0, "", "space: elastic ");
+  const char *uniaxial = strstr(line.text, "\nuniaxial: elastic-1d ");
+  assert_non_null(uniaxial);
+  for (int k = 0; breccia_law_at(k); ++k) {
+    char name[64];
+    snprintf(name, sizeof name, " %s", breccia_law_at(k)->name);
+    const char *found = line.text;
+    while ((found = strstr(found, name)) && !strchr(" \n", found[strlen(name)])) ++found;
+    if (!found || (found > uniaxial) != (breccia_law_at(k)->components == 1)) fail_msg("%s: %s", name, line.text);
+  }
+  /* What is saved of one point is restored into the other; a trial that was under way is forgotten. */
+  double saved, body[2];
+  say(&line, OPERATION_CREATE, 2, steel, "components: 1\n");
+  pull(&line, 1, 3 * YIELD_STRAIN, 0);
+  say(&line, OPERATION_COMMIT, 0, "", "");
+  ask(&line, OPERATION_SAVE, 0, 1, (uint32_t[2]){1}, 8, "");
+  assert_int_equal(line.count, 1);
+  memcpy(&saved, line.text, sizeof saved);
+  assert_near(saved, 2 * YIELD_STRAIN, 1e-15);
+  pull(&line, 1, 9 * YIELD_STRAIN, 0);
+  memset(body, 0, sizeof body);
+  body[1] = saved;
+  ask(&line, OPERATION_RESTORE, 0, 1, body, sizeof body, "");
+  assert_int_equal(line.operation, OPERATION_RESTORE | OPERATION_ANSWER);
+  say(&line, OPERATION_COMMIT, 0, "", "there is no trial to commit");
+  for (uint32_t k = 0; k < 2; ++k) assert_near(pull(&line, k, 2.5 * YIELD_STRAIN, 0), 0.5 * YIELD_STRESS, 1e-6);
+  channel_close(&line.channel);
+  end();
+}
+
 /* ---- who is served ---- */
 
 static void strangers_cannot_speak_for_a_client(void **state)
@@ -592,6 +691,8 @@ int main(void)
       cmocka_unit_test(partial_trials_keep_the_state_of_the_others),
       cmocka_unit_test(a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind),
       cmocka_unit_test(units_are_those_of_who_asks),
+      cmocka_unit_test(what_a_server_cannot_do_is_said_and_changes_nothing),
+      cmocka_unit_test(a_law_is_told_whole_and_saved_and_restored),
       cmocka_unit_test(strangers_cannot_speak_for_a_client),
       cmocka_unit_test(a_silent_client_of_datagrams_makes_room),
       cmocka_unit_test(who_does_not_know_the_secret_holds_nothing),
