@@ -418,18 +418,86 @@ static void a_strain_that_is_no_number_is_reported(void **state)
   }
 }
 
+/** Strains far beyond any strength, of one point and of so many that lanes are left over: Hooke's law, and its tangent. */
 static void the_elastic_stage_is_elastic(void **state)
 {
   (void)state;
+  enum { MOST = 6 };
   for (int n = 0; n < SAMPLES; ++n) {
     Material m = samples[n].make();
-    Point p = point_start(&m);
     const double lambda = m.bulk - 2 * m.shear / 3;
-    double s[6], strain[6] = {2e-2, -1e-2, 5e-3, 1e-2, 3e-2, -2e-2};
-    point_try(&p, strain, s, NULL, 1);
-    for (int k = 0; k < 6; ++k)
-      assert_near(s[k], (k < 3 ? 2 : 1) * m.shear * strain[k] + (k < 3 ? lambda * 1.5e-2 : 0), 1e-10 * fabs(s[k]));
-    point_stop(&p);
+    const size_t values = (size_t)m.history_values;
+    for (int count = 1; count <= MOST; ++count) {
+      double strain[6][MOST], stress[6][MOST], tangent[36 * MOST];
+      double *committed = calloc(values * MOST + 1, sizeof(double)), *trial = calloc(values * MOST + 1, sizeof(double));
+      breccia_batch batch = {.size = sizeof batch,
+                             .count = count,
+                             .committed = committed,
+                             .trial = trial,
+                             .tangent = tangent,
+                             .elastic_stage = 1};
+      for (int i = 0; i < count; ++i) {
+        static const double some[6] = {2e-2, -1e-2, 5e-3, 1e-2, 3e-2, -2e-2};
+        for (int k = 0; k < 6; ++k) strain[k][i] = some[(k + i) % 6] * (i % 2 ? -1 : 1);
+        if (m.law->begin) {
+          m.law->begin(m.constants, committed + values * (size_t)i);
+          m.law->begin(m.constants, trial + values * (size_t)i);
+        }
+      }
+      for (int k = 0; k < 6; ++k) {
+        batch.strain[k] = strain[k];
+        batch.stress[k] = stress[k];
+      }
+      assert_int_equal(m.law->update(m.constants, &batch), -1);
+      for (int i = 0; i < count; ++i) {
+        const double volume = strain[0][i] + strain[1][i] + strain[2][i];
+        for (int k = 0; k < 6; ++k) {
+          const double expected = (k < 3 ? 2 : 1) * m.shear * strain[k][i] + (k < 3 ? lambda * volume : 0);
+          assert_near(stress[k][i], expected, 1e-12 * m.bulk);
+          for (int c = 0; c < 6; ++c)
+            assert_near(tangent[36 * i + 6 * k + c],
+                        (k < 3 && c < 3 ? lambda : 0) + (k == c ? (k < 3 ? 2 : 1) * m.shear : 0), 1e-10 * m.bulk);
+        }
+      }
+      free(committed);
+      free(trial);
+    }
+    material_destroy(&m);
+  }
+}
+
+/** What histories are called, where people may want to see them. */
+static void laws_tell_what_they_remember(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *law, *names; /* with their places */
+  } wanted[] = {
+      {"viscoelastic", ""},
+      {"elastic", ""},
+      {"j2", "6 equivalent plastic strain;"},
+      {"multi-yield-j2", "12 active surface;"},
+      {"cap", "6 cap parameter;"},
+      {"drucker-prager", "6 equivalent plastic strain;"},
+      {"mohr-coulomb", ""},
+      {"bounding-surface-clay", "18 distance to the bounding surface;"},
+      {"damage-plasticity", "6 plastic strain in tension;7 plastic strain in compression;8 material damage;"},
+      {"mazars", "0 equivalent strain;1 material damage;"},
+  };
+  for (int n = 0; n < SAMPLES; ++n) {
+    Material m = samples[n].make();
+    size_t which = 0;
+    while (which < sizeof wanted / sizeof *wanted && strcmp(wanted[which].law, m.law->name)) ++which;
+    if (which == sizeof wanted / sizeof *wanted) fail_msg("nobody says what '%s' remembers", m.law->name);
+    Text names = {0};
+    for (int k = 0; k < m.history_values && m.law->history_name; ++k) {
+      char name[64] = "?";
+      m.law->history_name(m.constants, k, name, sizeof name);
+      if (*name) text_add(&names, "%d %s;", k, name);
+    }
+    if (strcmp(text_words(&names), wanted[which].names)) fail_msg("%s: %s", m.law->name, text_words(&names));
+    assert_true(isinf(material_failure_strain(&m)));
+    text_free(&names);
     material_destroy(&m);
   }
 }
@@ -481,6 +549,7 @@ int main(void)
       cmocka_unit_test(plane_stress_holds_whatever_the_path),
       cmocka_unit_test(a_strain_that_is_no_number_is_reported),
       cmocka_unit_test(the_elastic_stage_is_elastic),
+      cmocka_unit_test(laws_tell_what_they_remember),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

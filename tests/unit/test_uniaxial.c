@@ -209,6 +209,93 @@ static void every_law_that_remembers_is_among_these(void **state)
   }
 }
 
+/** Whatever the strain and however many points: E strain, and nothing is remembered but where the point was. */
+static void the_elastic_stage_is_elastic(void **state)
+{
+  (void)state;
+  enum { MOST = 9 };
+  const double young[LAWS] = {3e7, 3e7, 27e6, 2e8, 2e8, 2e8, 2e8, 2e8, 30e6, 30e6, 30e6, 30e6};
+  for (int k = 0; k < LAWS; ++k) {
+    Material m = any(k);
+    assert_near(material_young(&m), young[k], 1e-12 * young[k]);
+    const int values = m.history_values;
+    const bool remembers = k < 8 && k != 3; /* its last strain and stress */
+    for (int count = 1; count <= MOST; ++count) {
+      double strain[MOST], stress[MOST], tangent[MOST], *committed = calloc((size_t)(values * count), sizeof(double)),
+                                                        *trial = calloc((size_t)(values * count), sizeof(double));
+      for (int i = 0; i < count; ++i) {
+        strain[i] = 0.02 * (i % 2 ? -1 : 1) * (1 + i);
+        if (m.law->begin) m.law->begin(m.constants, committed + values * i);
+        for (int v = 0; v < values; ++v) trial[values * i + v] = 77;
+        if (m.law->begin) memcpy(trial + values * i, committed + values * i, sizeof(double) * (size_t)values);
+      }
+      const breccia_batch batch = {.size = sizeof batch,
+                                   .count = count,
+                                   .strain = {strain},
+                                   .stress = {stress},
+                                   .committed = committed,
+                                   .trial = trial,
+                                   .tangent = tangent,
+                                   .elastic_stage = 1};
+      assert_int_equal(m.law->update(m.constants, &batch), -1);
+      for (int i = 0; i < count; ++i) {
+        if (fabs(stress[i] - young[k] * strain[i]) > 1e-12 * young[k] || fabs(tangent[i] - young[k]) > 1e-12 * young[k])
+          fail_msg("%s: %g at a strain of %g, tangent %g", m.law->name, stress[i], strain[i], tangent[i]);
+        for (int v = remembers ? 2 : 0; v < values; ++v)
+          assert_near(trial[values * i + v], committed[values * i + v], 0);
+        if (!remembers) continue;
+        assert_near(trial[values * i], strain[i], 0);
+        assert_near(trial[values * i + 1], stress[i], 0);
+      }
+      free(committed);
+      free(trial);
+    }
+    material_destroy(&m);
+  }
+}
+
+/** What is told of a law: what its histories are called, and the strain at which nothing is left. */
+static void laws_tell_what_they_remember_and_when_they_fail(void **state)
+{
+  (void)state;
+  const double length = 0.03, peak = 1e-4, energy = 0.1 / length / 3000; /* of a softening law: G_F / l f_t */
+  /* Areas below the curves beyond the peak; of the exponential one by its parameters k = 25, alpha = 0.25. */
+  const double area = (0.25 / 2 + 1 + 1 / expm1(-25) + 1. / 25) / 1.25;
+  const struct {
+    const char *names; /* with their places */
+    double failure;
+  } wanted[LAWS] = {
+      {"2 largest compressive strain;", INFINITY},
+      {"2 largest compressive strain;3 largest tensile strain;", INFINITY},
+      {"2 largest compressive strain;", INFINITY},
+      {"0 plastic strain;", INFINITY},
+      {"2 least strain;3 largest strain;", INFINITY},
+      {"2 least strain;3 largest strain;", INFINITY},
+      {"2 least strain;3 largest strain;", INFINITY},
+      {"2 least strain;3 largest strain;10 failed;", 0.01},
+      {"0 bond damage;", peak + (energy - peak / 2) / 0.5},
+      {"0 bond damage;", peak + (energy - peak / 2) / area},
+      {"0 bond damage;", NAN}, /* test below */
+      {"0 bond damage;", sqrt(2 * 0.1 / (30e6 * length))},
+  };
+  for (int k = 0; k < LAWS; ++k) {
+    Material m = any(k);
+    Text names = {0};
+    for (int v = 0; v < m.history_values; ++v) {
+      char name[64] = "?";
+      m.law->history_name(m.constants, v, name, sizeof name);
+      if (*name) text_add(&names, "%d %s;", v, name);
+    }
+    assert_string_equal(text_words(&names), wanted[k].names);
+    if (isinf(wanted[k].failure))
+      assert_true(isinf(material_failure_strain(&m)));
+    else if (!isnan(wanted[k].failure))
+      assert_near(material_failure_strain(&m), wanted[k].failure, 1e-12);
+    text_free(&names);
+    material_destroy(&m);
+  }
+}
+
 static void a_million_steps_of_any_size_stay_finite(void **state)
 {
   (void)state;
@@ -482,6 +569,8 @@ int main(void)
       cmocka_unit_test(tangents_are_derivatives),
       cmocka_unit_test(walks_of_chance_never_make_energy_or_leave_the_curve),
       cmocka_unit_test(curves_that_would_snap_back_are_refused),
+      cmocka_unit_test(the_elastic_stage_is_elastic),
+      cmocka_unit_test(laws_tell_what_they_remember_and_when_they_fail),
       cmocka_unit_test(a_million_steps_of_any_size_stay_finite),
       cmocka_unit_test(tangents_of_all_laws_are_derivatives),
       cmocka_unit_test(a_trial_can_be_repeated),
