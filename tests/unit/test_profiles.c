@@ -70,6 +70,43 @@ static void a_swing_is_told_at_its_largest(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Shear on planes across x has the parts xy and zx, and so on round: of a strain whose six parts are all others, along each axis. */
+static void shear_is_that_across_the_axis(void **state)
+{
+  (void)state;
+  const double f[9] = {1.0001, 3e-4, 2e-4, 0, 0.9998, 5e-4, 7e-4, 0, 1.0003};
+  const double xy = 3e-4, yz = 5e-4, zx = 9e-4;
+  const double across[3] = {hypot(xy, zx), hypot(xy, yz), hypot(yz, zx)};
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: elastic, Young modulus: 2e5, Poisson ratio: 0.25, density: 2}}\n"
+      "body: {b: {material: m, spacing: 1, shape: {box: {particles: [5, 6, 7]}}}}\n"
+      "peridynamics: {strain: small}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\npictures: []\n"
+      "profiles: {a: {of: {all: yes}, along: x}, b: {of: {all: yes}, along: y}, c: {of: {all: yes}, along: z}}\n");
+  char folder[] = "/tmp/breccia-XXXXXX", words[160], path[160];
+  assert_non_null(mkdtemp(folder));
+  deform_uniformly(m, f);
+  const breccia_run run = {.size = sizeof run, .folder = folder};
+  assert_int_equal(breccia_model_run(m, &run, NULL), 0);
+  for (int k = 0; k < 3; ++k) {
+    int count = 0;
+    snprintf(path, sizeof path, "%s/profiles/%c.csv", folder, "abc"[k]);
+    double *strain = csv_column(path, "shear strain", CSV_FINISHED, &count, words, NULL),
+           *stress = csv_column(path, "shear stress", CSV_FINISHED, &count, words, NULL);
+    assert_true(strain && stress);
+    assert_int_equal(count, 5 + k);
+    for (int n = 0; n < count; ++n) {
+      assert_near(strain[n], across[k], 1e-9);
+      assert_near(stress[n], 8e4 * across[k], 1e-4);
+    }
+    free(strain);
+    free(stress);
+  }
+  snprintf(words, sizeof words, "rm -r %s", folder);
+  assert_int_equal(system(words), 0);
+  breccia_model_destroy(&m);
+}
+
 static void wrong_profiles_are_refused(void **state)
 {
   (void)state;
@@ -94,6 +131,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_swing_is_told_at_its_largest),
+      cmocka_unit_test(shear_is_that_across_the_axis),
       cmocka_unit_test(wrong_profiles_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -340,9 +340,27 @@ static void results_hold_every_broken_bond_in_its_order(void **state)
       "units: {length: m, force: kN, time: s}\n" SOFT_SOLID
       "body: {b: {material: m, spacing: 1, shape: {box: {particles: [12, 4, 3]}}}}\nfailure: {critical stretch: "
       "0.01}\nloads: [{on: {face: x-, layers: 2}, velocity: [0, 0, 0]}, {on: {face: x+, layers: 2}, velocity: [3, "
-      "0, 0]}]\nsolve: {explicit: {steps: 100}}\nresults: {every: 1}\n");
+      "0, 0]}]\nsolve: {explicit: {steps: 100}}\nresults: {every: 1}\nwatch: {worn: {damage of: {all: yes}, every: "
+      "100}}\n");
   char path[80], file[112];
   run_into(m, "broken", path, sizeof path);
+  /* and histories the mean and the largest share of broken bonds */
+  const Particles *p = m->domain.particles;
+  int rows;
+  double mean = 0, most = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const double damage = domain_damage(&m->domain, p->place_of[n]);
+    mean += damage / (double)p->count;
+    most = fmax(most, damage);
+  }
+  assert_true(most > 3 * mean && mean > 0 && domain_damage(&m->domain, p->place_of[p->count - 1]) < most);
+  snprintf(file, sizeof file, "%s/worn.csv", path);
+  double *means = csv_column(file, "mean", CSV_FINISHED, &rows, NULL, NULL),
+         *largest = csv_column(file, "largest", CSV_FINISHED, &rows, NULL, NULL);
+  assert_near(means[rows - 1], mean, 1e-14);
+  assert_near(largest[rows - 1], most, 1e-14);
+  free(means);
+  free(largest);
   snprintf(file, sizeof file, "%s/results.vtkhdf", path);
   ResultView view;
   assert_int_equal(result_view_open(&view, file, NULL), 0);

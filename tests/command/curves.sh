@@ -1,0 +1,245 @@
+# Curves and movies as they are handed to the programs that draw them: whole scripts, written down here from what the histories hold.
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+mkdir programs one two
+cat > programs/gnuplot <<'Y'
+#!/bin/sh
+cat > script
+cat script >> scripts
+printf '</svg> IEND %%%%EOF' > "$(sed -n "s/^set output '\(.*\)'/\1/p" script)"
+Y
+cat > programs/ffmpeg <<'Y'
+#!/bin/sh
+cat > frames
+for word; do echo "$word"; last=$word; done > words
+echo made > "$last"
+Y
+chmod +x programs/*
+PATH="$work/programs:$PATH"
+
+# script ARGUMENTS: the script of a plot is the input, but for the words that all scripts share
+script() {
+  "$breccia" plot "$@" > out 2> errors || fail "plot $*: $(cat errors)"
+  grep -v '^set \(format\|grid\|border\|zeroaxis\|datafile\)' script > found
+  cat > wanted
+  checks=$((checks + 1))
+  diff wanted found > difference || fail "plot $*: $(cat difference)"
+}
+
+printf 'step,time (s),x (kN),y (kN)\n0,0,0,0\n10,0.01,2,-1\n20,0.03,4,1\n30,0.04,nan,3\n' > one/grip.csv
+printf 'step,time (s),x (kN),y (kN)\n0,0,1,0\n10,0.01,-2,5\n' > two/grip.csv
+printf 'step,time (s),distance (m)\n10,0.01,0.001\n15,0.02,0.002\n20,0.03,0.004\n' > one/gap.csv
+printf 'x,y\n0.005,1\n# a word\n0.02, 3.5\n' > 'the wall.csv'
+# columns differ in colour, folders in dashes, measured points are black circles; what is no number is left out; a little room around
+script one two --curve "grip.time : grip.x, -grip.y" --overlay 'the wall.csv' --title "It's one" --output a.svg <<'Y'
+$data0 << END
+0 0
+10 2
+30 4
+END
+$data1 << END
+0 -0
+10 1
+30 -1
+40 -3
+END
+$data2 << END
+0 1
+10 -2
+END
+$data3 << END
+0 -0
+10 -5
+END
+$data4 << END
+5 1
+20 3.5
+END
+set terminal svg size 800,520 font "sans,12"
+set output 'a.svg.part'
+set title 'It''s one' noenhanced
+set xlabel 'Time [ms]' noenhanced
+set ylabel 'Grip [kN]' noenhanced
+set key outside right top Left reverse samplen 2.5
+set xrange [0:40.8]
+set yrange [-5.45:4.45]
+plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'one: x' noenhanced, $data1 using 1:2 with lines lw 2 dt 1 lc rgb "#c8501e" title 'one: -y' noenhanced, $data2 using 1:2 with lines lw 2 dt 2 lc rgb "#3b3f87" title 'two: x' noenhanced, $data3 using 1:2 with lines lw 2 dt 2 lc rgb "#c8501e" title 'two: -y' noenhanced, $data4 using 1:2 with points pt 6 ps 1.3 lw 1.5 lc rgb "#000000" title 'the wall' noenhanced
+Y
+# rows of the same steps; the upright axis reaches over what the range shows
+script one --curve "gap.distance : grip.x" --range 0.002:0.01 --log x --output b.png <<'Y'
+$data0 << END
+1 2
+4 4
+END
+set terminal pngcairo size 800,520 font "sans,12"
+set output 'b.png.part'
+set title '' noenhanced
+set xlabel 'Gap, distance [mm]' noenhanced
+set logscale x
+set ylabel 'Grip, x [kN]' noenhanced
+unset key
+set xrange [2:10]
+set yrange [3.8:4.2]
+plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'one' noenhanced
+Y
+# several folders and one column: colours tell the folders; a legend of long words lies below; two of one name are told by their paths
+mkdir -p "a folder of a longer name" deep
+cp two/grip.csv "a folder of a longer name"
+cp -r one deep
+script one deep/one/ "a folder of a longer name" --curve "grip.step : grip.x" --log y --x-label "Steps 'n all" --output b.pdf <<'Y'
+$data0 << END
+0 0
+10 2
+20 4
+END
+$data1 << END
+0 0
+10 2
+20 4
+END
+$data2 << END
+0 1
+10 -2
+END
+set terminal pdfcairo size 16.5cm,10.7cm font "sans,11"
+set output 'b.pdf.part'
+set title '' noenhanced
+set xlabel 'Steps ''n all' noenhanced
+set ylabel 'Grip, x [kN]' noenhanced
+set logscale y
+set key outside below center Left reverse maxcols 2 samplen 2.5
+set rmargin 4
+set xrange [0:20.4]
+plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'one' noenhanced, $data1 using 1:2 with lines lw 2 dt 1 lc rgb "#c8501e" title 'deep/one/' noenhanced, $data2 using 1:2 with lines lw 2 dt 1 lc rgb "#21918c" title 'a folder of a longer name' noenhanced
+Y
+# columns of several watches have no common name at the axis; an axis of one value has room, one that ends at zero ends there
+printf 'step,time (s),value (kN)\n0,0,7\n10,0.01,7\n' > one/pull.csv
+script one --curve "grip.y : grip.y, pull.value" --y-label '' --output c.svg <<'Y'
+$data0 << END
+0 0
+-1 -1
+1 1
+3 3
+END
+$data1 << END
+0 7
+-1 7
+END
+set terminal svg size 800,520 font "sans,12"
+set output 'c.svg.part'
+set title '' noenhanced
+set xlabel 'Grip, y [kN]' noenhanced
+set ylabel '' noenhanced
+set key outside right top Left reverse samplen 2.5
+set xrange [-1.08:3.08]
+set yrange [-1.4:7.4]
+plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'grip, y' noenhanced, $data1 using 1:2 with lines lw 2 dt 1 lc rgb "#c8501e" title 'pull' noenhanced
+Y
+script one --curve "pull.time : -pull.value" --output c.svg <<'Y'
+$data0 << END
+0 -7
+10 -7
+END
+set terminal svg size 800,520 font "sans,12"
+set output 'c.svg.part'
+set title '' noenhanced
+set xlabel 'Time [ms]' noenhanced
+set ylabel '-pull [kN]' noenhanced
+unset key
+set xrange [0:10.2]
+set yrange [-7.35:-6.65]
+plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'one' noenhanced
+Y
+# energies: of the first such file by name, all in its unit that are not nothing throughout
+mkdir ledgers
+printf 'step,time (s),kinetic (kJ),internal (kJ),dissipated (kJ),external (kJ),imbalance,broken bonds\n0,0,0,0,0,0,0,0\n1,1,1,-2,0,3,0.5,9\n' > ledgers/second.csv
+sed 's/,1,-2,0,3,/,4,4,0,8,/' ledgers/second.csv > ledgers/first.csv
+printf 'step,time (s),kinetic (kJ)\n0,0,7\n' > ledgers/a.csv
+script ledgers --energy --output e.svg <<'Y'
+$data0 << END
+0 0
+1 4
+END
+$data1 << END
+0 0
+1 4
+END
+$data2 << END
+0 0
+1 8
+END
+set terminal svg size 800,520 font "sans,12"
+set output 'e.svg.part'
+set title '' noenhanced
+set xlabel 'Time [s]' noenhanced
+set ylabel 'First [kJ]' noenhanced
+set key outside right top Left reverse samplen 2.5
+set xrange [0:1.02]
+set yrange [0:8.4]
+plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'kinetic' noenhanced, $data1 using 1:2 with lines lw 2 dt 1 lc rgb "#c8501e" title 'internal' noenhanced, $data2 using 1:2 with lines lw 2 dt 1 lc rgb "#21918c" title 'external' noenhanced
+Y
+# points that cannot be read are refused in their line
+overlay() { # overlay ROWS WORDS
+  printf "$1" > points.csv
+  "$breccia" plot one --curve "grip.time : grip.x" --overlay points.csv --output o.svg > out 2> errors
+  equal "points «$1»: status" $? 2
+  contains "points «$1»" "$(cat errors)" "points.csv$2"
+}
+overlay 'x,y\n1,2\nx,y\n' ":3: expected x and y with a comma between, and points in the numbers; found 'x,y'"
+overlay '1;2\n' ":1: expected x and y"
+overlay '1,2\n\n# words\n 3, \n' ":4: expected x and y"
+overlay 'x,y\n' ": no row begins with two numbers, x and y with a comma between"
+
+# ---- a run: profiles along an axis in space, and a movie of what fades ----
+cat > block.yaml <<'Y'
+title: Block
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 4, 4]}}}}
+loads: [{on: {all: yes}, initial velocity: {translation: [1, 0, 0]}}]
+solve: {explicit: {end time: 0.034, time step: 1 ms, damping: 300}}
+profiles: {wall: {of: {all: yes}, along: x, every: 1}}
+results: {number: 34, fields: [velocity]}
+pictures: []
+Y
+sed -i '/^pictures/d' block.yaml
+rm -f scripts
+"$breccia" run block.yaml > out 2> errors || fail "block: $(cat errors)"
+for kind in displacement velocity acceleration shear-strain shear-stress; do
+  contains "profiles" "$(cat out)" "  block/pictures/wall-$kind.png"
+done
+equal "profiles: places" "$(sed -n '2,$s/,.*//p' block/profiles/wall.csv | tr '\n' ' ')" "0.05 0.15 0.25 0.35 0.45 "
+equal "profiles: labels" "$(sed -n "s/^set xlabel '\(.*\) \[.*/\1/p" scripts | tr '\n' ';')" \
+  "Largest displacement;Largest velocity;Largest acceleration;Largest shear strain;Largest shear stress;"
+equal "profiles: height" "$(grep -c "^set ylabel 'X \[m\]' noenhanced" scripts)" 5
+equal "profiles: titles" "$(grep -c "^set title 'wall' noenhanced" scripts)" 5
+equal "profiles: lines" "$(grep '^plot' scripts | grep -o "rgb \"[^ ]* title '[^']*'" | tr '\n' ';')" "$(for k in displacement velocity acceleration; do
+  printf "rgb \"#3b3f87\" title '$k x';rgb \"#c8501e\" title '$k y';rgb \"#21918c\" title '$k z';"; done; printf "rgb \"#3b3f87\" title 'shear strain';rgb \"#3b3f87\" title 'shear stress';")"
+# numbers of a picture are those of the file: velocities of at most 1 m/s
+equal "profiles: numbers" "$(sed -n "/^set title/q; /^.data0/d; /^END/,\$d; p" script | awk '{print $2}' | tr '\n' ' ')" "0.05 0.15 0.25 0.35 0.45 "
+
+movie() { # movie OPTIONS: made of all states, its words in one line
+  "$breccia" plot block --field velocity --size 60 --movie fade.mp4 "$@" > out 2> errors || fail "movie $*: $(cat errors)"
+  tr '\n' ' ' < words
+}
+"$breccia" plot block --field velocity --step last --output one.png > out 2>&1 || fail "picture: $(cat out)"
+usual=$(movie)
+size=$(grep -x '[0-9]*x[0-9]*' words)
+bytes=$((${size%x*} * ${size#*x} * 4))
+# 35 states in about ten seconds
+equal "movie" "$usual" "-nostdin -y -loglevel error -f rawvideo -pixel_format bgr0 -video_size $size -framerate 4 -i pipe:0 -r 25 -c:v libx264 -crf 20 -pix_fmt yuv420p -movflags +faststart -f mp4 fade.mp4.part "
+equal "frames" "$(wc -c < frames)" $((35 * bytes))
+mv frames all
+equal "a slow movie" "$(movie --rate 9 | grep -o 'framerate .* -c:v')" "framerate 9 -i pipe:0 -r 25 -c:v"
+equal "a fast movie" "$(movie --rate 30 | grep -o 'framerate .* -c:v')" "framerate 30 -i pipe:0 -r 30 -c:v"
+# colours of each frame by itself: the first and fastest looks the same, the last, which has all but come to rest, does not
+movie --range each > out
+same() { cmp -s <(tail -c +$((($1) * bytes + 1)) all | head -c $bytes) <(tail -c +$((($1) * bytes + 1)) frames | head -c $bytes); }
+same 0 || fail "the first frame has other colours when each has its own"
+same 34 && fail "the last frame has the colours of all when each has its own"
+checks=$((checks + 2))
+sed 's/number: 34/number: 1/' block.yaml > short.yaml
+"$breccia" run short.yaml > out 2> errors || fail "short: $(cat errors)"
+"$breccia" plot short --field velocity --movie fade.mp4 > out 2> errors || fail "two states make a movie: $(cat errors)"
+contains "at least two a second" "$(tr '\n' ' ' < words)" "-framerate 2 -i"
+finish
