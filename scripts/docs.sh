@@ -4,6 +4,7 @@ set -eu
 breccia=build/release/breccia
 $breccia schema --markdown > docs/deck.md
 $breccia models --markdown > docs/models.md
+sh scripts/command_page.sh $breccia > docs/command.md
 python3 scripts/drawings.py docs/pictures
 mkdir -p docs/models
 for file in examples/materials/*.yaml; do

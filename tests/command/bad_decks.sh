@@ -362,6 +362,23 @@ contains "stiff contact" "$(cat "$work/errors")" "two.yaml:10:36: stiffness: fac
 two 0.08 0 "solve: {explicit: {steps: 3, safety: 0.5}}
 contact: {stiffness: 10}"
 equal "stiff contact, half the step: warnings" "$(cat "$work/errors")" ""
+# each limit from its two sides: friction and stiffness of 2, 0.55 of the stable step, gaps of 0.75 and overlaps of 0.25 spacings
+two 0.08 0 "$standard
+contact: {friction: 2.01}"
+contains "much friction" "$(cat "$work/errors")" "friction: 2.01 is more than"
+for safety in 0.54 0.56; do
+  two 0.08 0 "solve: {explicit: {steps: 3, safety: $safety}}
+contact: {stiffness: 2.01}"
+  equal "stiff contact at $safety of the step: warnings" "$(grep -c 'stiffness: faces 2.01 times as stiff' "$work/errors")" "$(echo $safety | grep -c 6)"
+done
+two 0.0148 0 "$standard"
+equal "a narrow gap: warnings" "$(cat "$work/errors")" ""
+two 0.0152 0 "$standard"
+contains "a gap" "$(cat "$work/errors")" "blocks 'a' and 'b' are 15.2 mm apart"
+two -0.0148 0 "$standard"
+equal "a slight overlap: warnings" "$(cat "$work/errors")" ""
+two -0.0152 0.1 "$standard"
+contains "an overlap" "$(cat "$work/errors")" "overlap: 5 particles of the first stand inside the second, 5 of the second inside the first,"
 
 # Plane decks with keys of space, and the reverse; brackets and dashes
 refuse 's/to: \[1, 0.5, 0.3\]/to: [1, 0.5]/' 10:13 "box: it has no size along z; give points three numbers, or take 'lattice: square' for a plane body"

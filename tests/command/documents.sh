@@ -4,6 +4,8 @@
 cmp -s "$work/deck.md" "$source/docs/deck.md" || fail "docs/deck.md is not current: run 'make docs'"
 "$breccia" models --markdown > "$work/models.md"
 cmp -s "$work/models.md" "$source/docs/models.md" || fail "docs/models.md is not current: run 'make docs'"
+sh "$source/scripts/command_page.sh" "$breccia" > "$work/command.md"
+cmp -s "$work/command.md" "$source/docs/command.md" || fail "docs/command.md is not current: run 'make docs'"
 if command -v python3 > /dev/null; then
   python3 "$source/scripts/drawings.py" "$work/pictures"
   diff -r "$work/pictures" "$source/docs/pictures" > /dev/null || fail "docs/pictures is not current: run 'make docs'"

@@ -1,0 +1,120 @@
+/* Warnings of what no real thing has begin where they say, and name the unit that was meant: each limit from both its sides. */
+#include "support.h"
+
+#include "base/text.h"
+
+/** A small body of one material of this name and these keys, and more sections. */
+static breccia_model *body_of(const char *name, const char *keys, const char *more)
+{
+  return model_of(
+      "units: {length: m, force: kN, time: s}\nmaterials: {%s: {%s}}\n"
+      "body: {b: {material: %s, lattice: square, spacing: 0.01, thickness: 0.1, shape: {box: {particles: [8, 6]}}}}\n"
+      "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n%s",
+      name, keys, name, more);
+}
+
+#define ELASTIC(density, young) "model: elastic, Poisson ratio: 0.2, density: " density ", Young modulus: " young
+#define STRONG(density, young, strength, energy)                                                                       \
+  "model: mazars, Poisson ratio: 0.2, density: " density ", Young modulus: " young ", tensile strength: " strength     \
+  ", fracture energy: " energy
+#define BRITTLE(energy) "failure: {fracture energy: " energy "}\n"
+#define BOUND(energy) "failure: {criterion: critical bond energy, fracture energy: " energy "}\n"
+#define USUAL ELASTIC("1 t/m3", "1 GPa")
+#define SHAKEN(key, value) "loads: [{on: {face: y-}, " key ": [" value ", 0], history: {sine: {frequency: 1 MHz}}}]\n"
+#define LITTLE "is little for concrete, which has 60 to 200 N/m"
+#define MUCH "is much for concrete, which has 60 to 200 N/m"
+
+static const struct {
+  const char *name, *keys, *more, *warning; /* NULL: there is none */
+} rows[] = {
+    {"m", USUAL, "", NULL},
+    {"m", ELASTIC("101 kg/m3", "100 MPa"), "", NULL},
+    {"m", ELASTIC("99 kg/m3", "100 MPa"), "", "density: 99 kg/m3; materials like it have 100 kg/m3 to 25000 kg/m3"},
+    {"m", ELASTIC("24900 kg/m3", "9 GPa"), "", NULL},
+    {"m", ELASTIC("25.1", "9 GPa"), "", "density: 25.1 is 25100 kg/m3; materials like it"},
+    {"m", ELASTIC("0.4 kg/m3", "9 GPa"), "", "; did you mean '0.4 t/m3'? In m, kN, s that is 0.4"},
+    {"m", ELASTIC("0.2 kg/m3", "9 GPa"), "", "100 kg/m3 to 25000 kg/m3"}, /* and no unit makes it usual */
+    {"m", ELASTIC("19000 t/m3", "9 GPa"), "", "; did you mean '19000 kg/m3'? In m, kN, s that is 19"},
+    {"m", ELASTIC("101 kg/m3", "11 kPa"), "", NULL},
+    {"m", ELASTIC("101 kg/m3", "9 kPa"), "",
+     "Young modulus: 9 kPa; materials like it have 10 kPa to 1 TPa; did you mean '9 GPa'? In m, kN, s that is 9e+06"},
+    {"m", ELASTIC("20000 kg/m3", "0.99 TPa"), "", NULL},
+    {"m", ELASTIC("20000 kg/m3", "1.01 TPa"), "", "to 1 TPa; did you mean '1.01 GPa'?"},
+    {"m", ELASTIC("101 kg/m3", "600 Pa"), "", "; did you mean '600 MPa'? In m, kN, s that is 6e+05"},
+    {"m", ELASTIC("101 kg/m3", "6e5 mPa"), "", "; did you mean '600000 kPa'? In m, kN, s that is 6e+05"},
+    {"m", ELASTIC("101 kg/m3", "6e8 uPa"), "", "; did you mean '6e+08 Pa'? In m, kN, s that is 6e+05"},
+    {"m", "model: elastic, density: 1, bulk modulus: 1.1e12, shear modulus: 1.1e12", "",
+     "Young's modulus that follows: 1.1e12 is "},
+    {"B-Beton", ELASTIC("2.4", "1.1 GPa"), "", NULL},
+    {"B-Beton", ELASTIC("2.4", "0.9 GPa"), "",
+     "Young modulus: 0.9 GPa is 900 MPa; materials like it have 1 GPa to 200 GPa"},
+    {"hormigon", ELASTIC("2.4", "190 GPa"), "", NULL},
+    {"Mortar", ELASTIC("2.4", "210 GPa"), "", "have 1 GPa to 200 GPa"},
+    {"cementos", ELASTIC("2.4", "210 MPa"), "", "have 1 GPa to 200 GPa"},
+    /* waves of sqrt(M / density), M = E / 0.9 */
+    {"m", ELASTIC("200 kg/m3", "18.1 kPa"), "", NULL},
+    {"m", ELASTIC("200 kg/m3", "17.9 kPa"), "",
+     "material 'm': waves would run at 9.97 m/s; in known materials they run at 10 to 15000 m/s: look at density and "
+     "stiffness"},
+    {"m", ELASTIC("4.45", "0.9 TPa"), "", NULL},
+    {"m", ELASTIC("4.43", "0.9 TPa"), "", "waves would run at 1.5e+04 m/s"},
+    /* strength beside stiffness */
+    {"m", STRONG("2", "10 GPa", "499 MPa", "900 N/mm"), "", NULL},
+    {"m", STRONG("2", "10 GPa", "510 MPa", "900 N/mm"), "",
+     "tensile strength: it is 0.051 of Young's modulus, so that the material stretches by 5 % before it breaks"},
+    /* fracture energies of anything, and of concrete by its name or its numbers */
+    {"m", USUAL, BOUND("0.11"), NULL},
+    {"m", USUAL, BOUND("1.1e-4"), NULL},
+    {"m", USUAL, BOUND("0.9e-4"), "fracture energy: 0.9e-4 is 90 mJ/m2; materials like it have 100 mJ/m2 to 1 MJ/m2"},
+    {"m", USUAL, BOUND("990"), NULL},
+    {"m", USUAL, BOUND("1010"), "; did you mean '1010 N/m'? In m, kN, s that is 1.01"},
+    {"m", USUAL, BOUND("0.05 N/m"), "; did you mean '0.05 N/mm'? In m, kN, s that is 0.05"},
+    {"m", STRONG("2.4", "30 GPa", "3 MPa", "41 N/m"), "", NULL},
+    {"m", STRONG("2.4", "30 GPa", "3 MPa", "39 N/m"), "", "fracture energy: 39 N/m " LITTLE},
+    {"m", STRONG("2.4", "30 GPa", "3 MPa", "399 N/m"), "", NULL},
+    {"m", STRONG("2.4", "30 GPa", "3 MPa", "401 N/m"), "", "fracture energy: 401 N/m " MUCH},
+    {"m", STRONG("2.4", "14.9 GPa", "3 MPa", "401 N/m"), "", NULL},
+    {"m", STRONG("2.4", "15.1 GPa", "3 MPa", "401 N/m"), "", MUCH},
+    {"m", STRONG("2.4", "49.9 GPa", "3 MPa", "401 N/m"), "", MUCH},
+    {"m", STRONG("2.4", "50.1 GPa", "3 MPa", "401 N/m"), "", NULL},
+    {"m", STRONG("1.99", "30 GPa", "3 MPa", "401 N/m"), "", NULL},
+    {"m", STRONG("2.01", "30 GPa", "3 MPa", "401 N/m"), "", MUCH},
+    {"m", STRONG("2.59", "30 GPa", "3 MPa", "401 N/m"), "", MUCH},
+    {"m", STRONG("2.61", "30 GPa", "3 MPa", "401 N/m"), "", NULL},
+    {"m", STRONG("2.4", "30 GPa", "0.99 MPa", "401 N/m"), "", NULL},
+    {"m", STRONG("2.4", "30 GPa", "1.01 MPa", "401 N/m"), "", MUCH},
+    {"m", STRONG("2.4", "30 GPa", "5.9 MPa", "401 N/m"), "", MUCH},
+    {"m", STRONG("2.4", "30 GPa", "6.1 MPa", "401 N/m"), "", NULL},
+    {"old concrete", ELASTIC("2.4", "8 GPa"), BOUND("0.41"), MUCH},
+    {"old concrete", ELASTIC("2.4", "8 GPa"), BOUND("0.039"), LITTLE},
+    /* shaking */
+    {"m", USUAL, SHAKEN("acceleration", "29.9"), NULL},
+    {"m", USUAL, SHAKEN("acceleration", "30.1"),
+     "acceleration: its peak is 30.1 m/s2, 3.07 times gravity; earthquakes stay below 3: look at the unit of the "
+     "record, "
+     "the load's value is what 1 in it means"},
+    {"m", USUAL, SHAKEN("acceleration", "-30.1"), "its peak is 30.1 m/s2"},
+    {"m", USUAL, "loads: [{base acceleration: [18, 24.1]}]\n", "base acceleration: its peak is 30.1 m/s2"},
+    {"m", USUAL, "loads: [{on: {face: y-}, dashpots: {outcrop acceleration: [-31, 0]}}]\n", ": its peak is 31 m/s2"},
+    {"m", USUAL, "loads: [{on: {face: y-}, velocity: [31, 0]}]\n", NULL},
+};
+
+static void limits_are_where_they_say(void **state)
+{
+  (void)state;
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    breccia_model *m = body_of(rows[k].name, rows[k].keys, rows[k].more);
+    const char *words = breccia_model_warnings(m);
+    if (!rows[k].warning && *words) fail_msg("%s %s: no warning was expected: %s", rows[k].keys, rows[k].more, words);
+    if (rows[k].warning &&
+        (!strstr(words, rows[k].warning) || strchr(words, '\n') || strncmp(words, "warning: deck:", 14)))
+      fail_msg("%s %s: expected '%s', found: %s", rows[k].keys, rows[k].more, rows[k].warning, words);
+    breccia_model_destroy(&m);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
