@@ -309,6 +309,18 @@ Y
 patch="a uniaxial patch shows 1.000 of the wanted modulus along the axes, [01][.][0-9]* along the diagonals of the faces, [01][.][0-9]* along those of space"
 for block in a b; do equal "bonds of block $block" "$(grep -cx "$block: $patch" out)" 1; done
 
+# ---- ground under stress: the upper three rows of five, at 10, 30 and 50 kPa downwards and half of that to the sides ----
+cat > ground.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}
+body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [3, 5]}}}}
+peridynamics: {space: plane strain}
+initial stress: [{on: {face: y+, layers: 3}, surface: 5, K0: 0.5, unit weight: 20}]
+solve: {explicit: {steps: 2}}
+Y
+"$breccia" check ground.yaml > out 2> errors || fail "ground: $(cat errors)"
+lines "ground" out <<< "9 particles begin under stress, mean -33.33 to -6.667 kPa"
+
 # ---- layers that a support puts outside the body are in no picture of it: where nothing moves it looks as if it were held by its own particles ----
 for held in "support: {held: all}" "displacement: [0, 0]"; do
   cat > held.yaml <<Y

@@ -184,6 +184,33 @@ static void what_nothing_tells_beforehand_is_told_as_the_least(void **state)
   }
 }
 
+/** From fractions of a second to hours. */
+static void the_time_is_told_in_a_unit_that_suits(void **state)
+{
+  (void)state;
+  static const struct {
+    double unit, slack; /* seconds; half of the last digit */
+    const char *word;
+  } words[] = {{1, 0.51, "s"}, {60, 31, "min"}, {3600, 181, "h"}};
+  bool met[3] = {false};
+  for (double steps = 1; steps < 1e13; steps *= 10) {
+    breccia_model *m = model_of(SQUARE "solve: {explicit: {time step: 1e-6, steps: %.0f}}\n", "elastic", "", steps);
+    const char *about = strstr(breccia_model_overview(m), " MB, about ");
+    const Task task = model_task(m, 0, m->solver.clock.steps, 0);
+    const double seconds = outlook_left(&m->outlook, &task);
+    assert_non_null(about);
+    char *unit;
+    const double told = strtod(about + strlen(" MB, about "), &unit);
+    const int which = seconds < 100 ? 0 : seconds < 6000 ? 1 : 2;
+    met[which] = true;
+    const double slack = seconds < 10 ? 0.051 : words[which].slack;
+    if (strcmp(unit + 1, words[which].word) != 0 || !(fabs(told * words[which].unit - seconds) <= slack))
+      fail_msg("%g s are told as '%s'", seconds, about);
+    breccia_model_destroy(&m);
+  }
+  assert_true(met[0] && met[1] && met[2]);
+}
+
 static void steps_of_later_stages_count_as_what_they_are(void **state)
 {
   (void)state;
@@ -206,6 +233,7 @@ int main(void)
       cmocka_unit_test(expected_times_hold_within_a_factor_of_two),
       cmocka_unit_test(a_steady_run_is_told_exactly),
       cmocka_unit_test(what_nothing_tells_beforehand_is_told_as_the_least),
+      cmocka_unit_test(the_time_is_told_in_a_unit_that_suits),
       cmocka_unit_test(steps_of_later_stages_count_as_what_they_are),
       cmocka_unit_test(asking_beforehand_changes_nothing),
   };
