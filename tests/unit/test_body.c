@@ -44,6 +44,156 @@ static void shapes_have_the_volumes_of_geometry(void **state)
   }
 }
 
+/** A point that goes out through a face of a shape is inside until it is the tolerance away; the box around the shape ends where its outermost faces do. */
+static void shapes_hold_points_up_to_their_faces(void **state)
+{
+  (void)state;
+  const double r = sqrt(0.5);
+  const struct {
+    const char *shape;
+    double low[3], high[3]; /* of the box around it */
+    struct {
+      double at[3], out[3]; /* a place on a face, and the way out of it */
+    } faces[6];
+    int count;
+  } cases[] = {
+      {"box: {from: [1, 2, 3], to: [2, 4, 6]}",
+       {1, 2, 3},
+       {2, 4, 6},
+       {{{1, 3, 4}, {-1}},
+        {{2, 3, 4}, {1}},
+        {{1.5, 2, 4}, {0, -1}},
+        {{1.5, 4, 4}, {0, 1}},
+        {{1.5, 3, 3}, {0, 0, -1}},
+        {{1.5, 3, 6}, {0, 0, 1}}},
+       6},
+      {"box: {particles: [2, 3, 4], first particle: [1, 1, 1]}",
+       {0.5, 0.5, 0.5},
+       {2.5, 3.5, 4.5},
+       {{{0.5, 2, 2}, {-1}},
+        {{2.5, 2, 2}, {1}},
+        {{1, 0.5, 2}, {0, -1}},
+        {{1, 3.5, 2}, {0, 1}},
+        {{1, 2, 0.5}, {0, 0, -1}},
+        {{1, 2, 4.5}, {0, 0, 1}}},
+       6},
+      {"box: {particles: [2, 3, 4]}",
+       {0, 0, 0},
+       {2, 3, 4},
+       {{{0, 2, 2}, {-1}}, {{2, 2, 2}, {1}}, {{1, 3, 2}, {0, 1}}, {{1, 2, 4}, {0, 0, 1}}},
+       4},
+      {"sphere: {centre: [1, 2, 3], radius: 2}",
+       {-1, 0, 1},
+       {3, 4, 5},
+       {{{-1, 2, 3}, {-1}}, {{1, 4, 3}, {0, 1}}, {{1, 2, 5}, {0, 0, 1}}, {{1 + 2 * r, 2 + 2 * r, 3}, {r, r}}},
+       4},
+      {"cylinder: {from: [1, 2, 3], to: [1, 2, 7], radius: 2}",
+       {-1, 0, 3},
+       {3, 4, 7},
+       {{{-1, 2, 4}, {-1}}, {{1, 4, 6}, {0, 1}}, {{1, 2, 3}, {0, 0, -1}}, {{2, 3, 7}, {0, 0, 1}}},
+       4},
+      {"cylinder: {from: [4, 1, 0], to: [1, 4, 0], radius: 1}",
+       {1 - r, 1 - r, -1},
+       {4 + r, 4 + r, 1},
+       {{{4, 1, 0.5}, {r, -r}}, {{1, 4, 0.5}, {-r, r}}, {{2.5 + r, 2.5 + r, 0}, {r, r}}, {{2.5, 2.5, 1}, {0, 0, 1}}},
+       4},
+      {"polygon: {corners: [[1, 1], [4, 1], [4, 5], [1, 3]], bottom: 2, top: 3}",
+       {1, 1, 2},
+       {4, 5, 3},
+       {{{2, 2, 2}, {0, 0, -1}}, {{2, 2, 3}, {0, 0, 1}}},
+       2},
+      {"polygon: {corners: [[1, 1], [4, 1], [4, 5], [1, 3]]}",
+       {1, 1, 0},
+       {4, 5, 1},
+       {{{2, 2, 0}, {0, 0, -1}}, {{2, 2, 1}, {0, 0, 1}}},
+       2},
+      {"union: [{sphere: {centre: [0, 0, 0], radius: 1}}, {box: {from: [0, 0, 0], to: [3, 2, 2]}}]",
+       {-1, -1, -1},
+       {3, 2, 2},
+       {{{-1, 0, 0}, {-1}}, {{3, 1, 1}, {1}}, {{2, 2, 1}, {0, 1}}, {{0, 0, -1}, {0, 0, -1}}},
+       4},
+      {"difference: [{box: {from: [0, 0, 0], to: [9, 9, 9]}}, {sphere: {centre: [4, 4, 4], radius: 1}}, {box: {from: "
+       "[6, 6, 6], to: [8, 8, 8]}}]",
+       {0, 0, 0},
+       {9, 9, 9},
+       {{{5, 4, 4}, {-1}}, {{4, 3, 4}, {0, 1}}, {{6, 7, 7}, {1}}, {{7, 8, 7}, {0, -1}}},
+       4},
+  };
+  Units *units = units_create("m", "N", "s", NULL);
+  Lattice lattice = {0};
+  lattice_measure(&lattice, lattice_find("cubic"), 1);
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    Error *error = breccia_error_create();
+    Document *document = document_parse(cases[c].shape, strlen(cases[c].shape), "deck", error);
+    const DeckReader reader = {.document = document, .units = units, .error = error};
+    const Shape *shape = section_read(&reader, document->root, &shape_section);
+    assert_string_equal(breccia_error_text(error), "");
+    double low[3], high[3];
+    shape_bounds(shape, &lattice.unit, low, high);
+    for (int k = 0; k < 3; ++k) {
+      assert_near(low[k], cases[c].low[k], 1e-12);
+      assert_near(high[k], cases[c].high[k], 1e-12);
+    }
+    for (int f = 0; f < cases[c].count; ++f)
+      for (int step = -3; step <= 3; ++step) {
+        const double beyond = 0.05 * step, tolerance = 0.075;
+        double point[3];
+        for (int k = 0; k < 3; ++k) point[k] = cases[c].faces[f].at[k] + beyond * cases[c].faces[f].out[k];
+        if (shape_contains(shape, &lattice.unit, 3, point, tolerance) != (beyond < tolerance))
+          fail_msg("%s: face %d, %g beyond it", cases[c].shape, f, beyond);
+        if (step && shape_contains(shape, &lattice.unit, 3, point, 0) != (step < 0))
+          fail_msg("%s: face %d, %g beyond it, without tolerance", cases[c].shape, f, beyond);
+      }
+    document_destroy(&document);
+    breccia_error_destroy(&error);
+  }
+  units_destroy(&units);
+  /* A polygon with a dent, and points left and right of all its edges. */
+  static const double corners[] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 2, 1, 0, 0, 4, 0};
+  for (double x = -0.95; x < 5; x += 0.1)
+    for (double y = -0.95; y < 5; y += 0.1) {
+      const double roof = x < 2 ? 4 - 1.5 * x : 1 + 1.5 * (x - 2);
+      assert_int_equal(polygon_contains(corners, 5, x, y), x > 0 && x < 4 && y > 0 && y < roof);
+    }
+}
+
+/** Layers of a face are as thick as the brick of a particle, on any lattice and any of its faces. */
+static void layers_of_faces_are_counted_alike_on_all_sides(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *lattice, *space;
+    int faces;
+  } cases[] = {{"cubic", "3-D", 6},
+               {"face-centred cubic", "3-D", 6},
+               {"square, thickness: 1", "plane strain", 4},
+               {"hexagonal, thickness: 1", "plane strain", 4}};
+  static const char *const faces[] = {"x-", "x+", "y-", "y+", "z-", "z+"};
+  for (size_t c = 0; c < 4; ++c)
+    for (int f = 0; f < cases[c].faces; ++f)
+      for (int layers = 1; layers <= 3; ++layers) {
+        breccia_model *model = model_of(MATERIAL SOLVE "peridynamics: {space: %s}\nbody: {b: {material: m, spacing: 1, "
+                                                       "lattice: %s, shape: {box: {particles: [8, 7, 6]}}}}\n"
+                                                       "loads: [{on: {face: %s, layers: %d}, body force: [1, 0, 0]}]\n",
+                                        cases[c].space, cases[c].lattice, faces[f], layers);
+        const Particles *p = model->domain.particles;
+        const Lattice *lattice = &model->domain.body.lattices[0];
+        const Selection *selection = &model->loading.loads[0].selection;
+        const int axis = f / 2, sign = f % 2 ? 1 : -1;
+        double low[3], high[3];
+        int64_t expected = 0;
+        particles_bounds(p, low, high);
+        const double outermost = f % 2 ? high[axis] : -low[axis], depth = lattice->unit.size[axis] * layers;
+        for (int64_t n = 0; n < p->count; ++n)
+          expected += outermost - sign * p->position[axis][p->place_of[n]] < depth - 1e-6;
+        assert_true(expected < p->count / 2 + 1);
+        assert_int_equal(selection->count, expected);
+        for (int64_t n = 0; n < selection->count; ++n)
+          assert_true(outermost - sign * p->position[axis][selection->places[n]] < depth - 1e-6);
+        breccia_model_destroy(&model);
+      }
+}
+
 static void particles_on_the_face_of_a_hole_stay(void **state)
 {
   (void)state;
@@ -409,6 +559,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shapes_have_the_volumes_of_geometry),
+      cmocka_unit_test(shapes_hold_points_up_to_their_faces),
+      cmocka_unit_test(layers_of_faces_are_counted_alike_on_all_sides),
       cmocka_unit_test(particles_on_the_face_of_a_hole_stay),
       cmocka_unit_test(numbers_run_along_x_then_y_then_z),
       cmocka_unit_test(families_on_lattices_have_the_counts_of_geometry),
