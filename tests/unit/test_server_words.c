@@ -156,6 +156,42 @@ static void what_iterates_wants_trials_that_can_be_taken_back(void **state)
   assert_string_equal(told, "");
 }
 
+/** Of a material in a server that is wrongly written one line is told, and nobody is asked for anything. */
+static void what_no_server_can_be_asked_for_is_said(void **state)
+{
+  (void)state;
+  static const char kinds[] =
+      "opensees: expected 'nDMaterial KIND $tag ...' or 'uniaxialMaterial KIND $tag ...', plain words",
+                    unit[] = "stress unit: '1 m' has the wrong dimension";
+  static const struct {
+    const char *keys, *words;
+  } cases[] = {
+      {"opensees: 'nDMaterial Any 1 2'", kinds},
+      {"opensees: 'nDMaterial Any $tags 2'", kinds},
+      {"opensees: 'nDMaterial $tag'", kinds},
+      {"opensees: 'section Any $tag 2'", kinds},
+      {"opensees: 'uniaxialMaterial Any $tag [exit]'", kinds},
+      {"opensees: 'uniaxialMaterial Any $tag; exit'", kinds},
+      {"opensees: 'nDMaterial Any $tag', server: ['unix:/no/such/socket'], stress unit: m", unit},
+      {"remote: elastic", "remote: give the addresses of its servers under 'server'"},
+      {"opensees: 'nDMaterial Any $tag', server: ['unix:/no/such/socket'], timeout: 1",
+       "material 'clay', server unix:/no/such/socket: it cannot be reached: No such file or directory"},
+      {"opensees: 'uniaxialMaterial Any $tag', server: ['file:/no/such/socket'], timeout: 1",
+       "it cannot be reached: an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *deck = text_format("materials: {clay: {%s, density: 2}}\n"
+                             "body: {b: {material: clay, spacing: 1, shape: {box: {particles: [4, 4, 4]}}}}\n"
+                             "solve: {explicit: {steps: 1}}\n",
+                             cases[k].keys),
+         *words = refusal_of(deck);
+    if (!strstr(words, cases[k].words) || strncmp(words, "deck:1:", 7) || strchr(words, '\n'))
+      fail_msg("%s: found '%s'", cases[k].keys, words);
+    free(words);
+    free(deck);
+  }
+}
+
 static int make_folder(void **state)
 {
   (void)state;
@@ -173,6 +209,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_server_is_taken_up_where_the_checkpoint_is),
       cmocka_unit_test(what_iterates_wants_trials_that_can_be_taken_back),
+      cmocka_unit_test(what_no_server_can_be_asked_for_is_said),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
