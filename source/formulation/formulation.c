@@ -142,6 +142,5 @@ double micromodulus(const Body *body, double young, double horizon)
 {
   const double pi = acos(-1);
   if (body->dimensions == 3) return 12 * young / (pi * pow(horizon, 4));
-  if (body->dimensions == 1) return 2 * young / (body->blocks[0]->area * horizon * horizon);
   return 9 * young / (pi * body->blocks[0]->thickness * pow(horizon, 3));
 }

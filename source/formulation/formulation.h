@@ -226,7 +226,7 @@ const FormulationType *formulation_at(int k);
 const FormulationType *formulation_find(const char *name);
 
 /** Micromodulus c of a bond-based solid with this Young's modulus and constant influence: 12E/(pi delta^4), in the plane
- *  9E/(pi t delta^3), of a bar 2E/(A delta^2) (docs/theory.md 2). It sets the scale of zero-energy control and of lone axial bonds. */
+ *  9E/(pi t delta^3) (docs/theory.md 2). It sets the scale of zero-energy control and of lone axial bonds. */
 double micromodulus(const Body *body, double young, double horizon);
 
 #endif

@@ -498,6 +498,36 @@ static void a_torn_bar_spends_its_fracture_energy(void **state)
   breccia_model_destroy(&m);
 }
 
+/** What `check` tells: as many points as bonds, and how many particles both ends of a bond see, themselves too, at least and at most. */
+static void points_and_their_particles_are_counted(void **state)
+{
+  (void)state;
+  for (int longer = 0; longer < 2; ++longer) {
+    breccia_model *m = plate("variational", "plane stress", longer ? 2.3 : 1.5,
+                             "cracks: [{cut: {line: [[0.75, -1], [0.75, 0.5]]}}]\n");
+    const Particles *p = m->domain.particles;
+    const Family *f = &m->domain.family;
+    int64_t points = 0, least = INT64_MAX, most = 0;
+    for (int64_t a = 0; a < p->count; ++a)
+      for (int64_t b = a + 1; b < p->count; ++b) {
+        if (!family_joins(f, p->place_of[a], p->place_of[b])) continue;
+        int64_t seen = 2;
+        for (int64_t c = 0; c < p->count; ++c)
+          seen += family_joins(f, p->place_of[a], p->place_of[c]) && family_joins(f, p->place_of[b], p->place_of[c]);
+        ++points;
+        if (seen < least) least = seen;
+        if (seen > most) most = seen;
+      }
+    char *wanted = text_format(
+        "hybrid bonds: %lld material points, each with the strain of %lld to %lld particles%s\n", (long long)points,
+        (long long)least, (long long)most,
+        longer ? "; a horizon of 1.5 or 2.015 spacings is stiffer against short waves, and costs less" : "");
+    if (!strstr(breccia_model_overview(m), wanted)) fail_msg("no '%s' in: %s", wanted, breccia_model_overview(m));
+    free(wanted);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -516,6 +546,7 @@ int main(void)
       cmocka_unit_test(stresses_are_foreseen_by_the_law),
       cmocka_unit_test(bonds_break_at_stresses_on_their_section),
       cmocka_unit_test(a_torn_bar_spends_its_fracture_energy),
+      cmocka_unit_test(points_and_their_particles_are_counted),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

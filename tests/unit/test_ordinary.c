@@ -336,6 +336,53 @@ static void the_critical_stretch_spends_the_fracture_energy(void **state)
   }
 }
 
+/** What `check` tells of a lattice: the shear moduli that patches show, over all directions, or the least and largest factor that makes them alike. */
+static void check_tells_the_shear_modulus_of_the_lattice(void **state)
+{
+  (void)state;
+  static const char *const bodies[] = {"spacing: 1, shape: {box: {particles: [9, 9, 9]}}",
+                                       "spacing: 1, lattice: square, thickness: 1, shape: {box: {particles: [9, 9]}}"};
+  const double shear = 1; /* of E = 2.5, nu = 0.25 */
+  for (int plane = 0; plane < 2; ++plane)
+    for (int plain = 0; plain < 2; ++plain) {
+      char keys[100];
+      snprintf(keys, sizeof keys, "space: %s, lattice weights: %s", plane ? "plane strain" : "3-D",
+               plain ? "plain" : "isotropic");
+      breccia_model *m = body_of("Young modulus: 2.5, Poisson ratio: 0.25", keys, bodies[plane]);
+      const Particles *p = m->domain.particles;
+      const double s = 1e-7;
+      const int32_t middle = particles_nearest(p, (double[]){4.5, 4.5, plane ? 0 : 4.5});
+      double strain[6], stress[6], least = INFINITY, largest = 0;
+      for (int way = 0; way < 2; ++way) { /* pure shear along the axes, and across their diagonals */
+        for (int k = 0; k < 3; ++k) memset(p->displacement[k], 0, sizeof(double) * (size_t)p->places);
+        deform_uniformly(m,
+                         way ? (double[]){1 + s, 0, 0, 0, 1 - s, 0, 0, 0, 1} : (double[]){1, s, 0, s, 1, 0, 0, 0, 1});
+        compute_forces(m);
+        domain_look(&m->domain, middle, strain, stress);
+        const double found = (way ? (stress[XX] - stress[YY]) / 4 : stress[XY] / 2) / s;
+        least = fmin(least, found / shear);
+        largest = fmax(largest, found / shear);
+      }
+      const Ordinary *o = ordinary_of(m);
+      double light = INFINITY, heavy = 0;
+      for (int k = 0; k < m->domain.family.pattern_count; ++k) {
+        light = fmin(light, o->factor[k]);
+        heavy = fmax(heavy, o->factor[k]);
+      }
+      char *wanted = plain
+                         ? text_format("b: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted "
+                                       "shear modulus\n",
+                                       least, largest)
+                         : text_format("b: the lattice shows the wanted moduli in all directions, for which its bonds "
+                                       "count by factors of %.2f to %.2f\n",
+                                       light, heavy);
+      assert_true(plain ? largest - least > 0.01 : largest - least < 1e-6 && heavy > 1.01 && light < 0.99);
+      if (!strstr(breccia_model_overview(m), wanted)) fail_msg("no '%s' in: %s", wanted, breccia_model_overview(m));
+      free(wanted);
+      breccia_model_destroy(&m);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -347,6 +394,7 @@ int main(void)
       cmocka_unit_test(rigid_rotation_makes_no_force_and_momenta_are_kept),
       cmocka_unit_test(the_critical_stretch_spends_the_fracture_energy),
       cmocka_unit_test(the_stable_step_does_not_fall_as_bonds_break),
+      cmocka_unit_test(check_tells_the_shear_modulus_of_the_lattice),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

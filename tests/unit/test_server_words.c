@@ -175,7 +175,7 @@ static void what_no_server_can_be_asked_for_is_said(void **state)
       {"opensees: 'nDMaterial Any $tag', server: ['unix:/no/such/socket'], stress unit: m", unit},
       {"remote: elastic", "remote: give the addresses of its servers under 'server'"},
       {"opensees: 'nDMaterial Any $tag', server: ['unix:/no/such/socket'], timeout: 1",
-       "material 'clay', server unix:/no/such/socket: it cannot be reached: No such file or directory"},
+       "material 'clay': server at unix:/no/such/socket: it cannot be reached: No such file or directory"},
       {"opensees: 'uniaxialMaterial Any $tag', server: ['file:/no/such/socket'], timeout: 1",
        "it cannot be reached: an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH"},
   };
