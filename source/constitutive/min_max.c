@@ -118,6 +118,6 @@ int material_limit(Material *material, double smallest, double largest, char *re
   c->largest = isnan(largest) ? INFINITY : largest;
   material->law = &law_min_max;
   material->constants = c;
-  material->history_values = history_values(c);
+  material->history_values = law_min_max.history_values(c);
   return BRECCIA_OK;
 }

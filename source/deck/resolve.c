@@ -113,11 +113,8 @@ static int resolve_scalar(Resolver *r, Node *node)
     if (!open) break;
     size_t at = 0;
     char *expression = close ? text_format("%.*s", (int)(close - open - 2), open + 2) : NULL;
-    if (!close) {
-      bad = 1;
-      text_add(&reason, "'%s' has no '}' on its line", open);
-    } else
-      bad = !expression || add_result(r, expression, &words, &at, &reason);
+    if (!close) text_add(&reason, "'%s' has no '}' on its line", open);
+    bad = !expression || add_result(r, expression, &words, &at, &reason);
     if (where.line && bad) /* as far as one line of text says where */
       where.column += (int)(open - node->text) + (close ? 2 : 0) + (int)at;
     if (!bad && words.length > LONGEST) {

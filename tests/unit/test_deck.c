@@ -457,6 +457,7 @@ static void what_a_deck_reuses_is_that_value(void **state)
        "solve:\n  - {explicit: {steps: 1}}\n  - {name: push, explicit: {steps: 2, safety: 0.5}}\n"},
       {"loads: [{on: a}, {name: push, on: b}]\n", "loads.1.on={face: x+}",
        "loads:\n  - {on: {face: x+}}\n  - {name: push, on: b}\n"},
+      {"loads: [{name: push}]\n", "loads.push.on.face=x+", "loads:\n  - {name: push, on: {face: x+}}\n"},
       {"materials: {M0.5: {density: 1}}\n", "materials.M0.5.density=2", "materials:\n  M0.5:\n    density: 2\n"},
       {"title: a\n", "titel=b", "--set titel=b: there is no 'titel'; did you mean 'title'?"},
       {"loads: [{on: a}]\n", "loads.2.on=c",

@@ -135,6 +135,32 @@ static void clay_that_was_loaded_elastically_starts_from_there(void **state)
   material_destroy(&m);
 }
 
+static void clay_that_stands_still_is_as_stiff_as_in_its_last_step(void **state)
+{
+  (void)state;
+  Material m = material_of("bounding-surface-clay", "shear modulus=60000", "bulk modulus=100000",
+                           "undrained strength=30", "hardening modulus=60000", NULL);
+  Point p = point_start(&m);
+  double strain[6] = {0}, stress[6], tangent[36], before = 0;
+  for (int k = 1; k <= 20; ++k) {
+    strain[3] = 5e-5 * k;
+    point_try(&p, strain, stress, NULL, 0);
+    point_commit(&p);
+    const double secant = (stress[3] - before) / 5e-5;
+    before = stress[3];
+    for (int again = 0; again < 2; ++again) { /* and goes on standing still */
+      point_try(&p, strain, stress, tangent, 0);
+      point_commit(&p);
+      assert_near(stress[3], before, 1e-12);
+      assert_near(tangent[21], secant, 1e-6 * m.shear);
+      assert_near(tangent[0], m.bulk + 4 * secant / 3, 1e-6 * m.shear);
+    }
+    assert_true(k < 10 || secant < 0.8 * m.shear);
+  }
+  point_stop(&p);
+  material_destroy(&m);
+}
+
 /* "chalk": elastic up to a strain xx of 1e-3, where it gives up; it remembers its last strain xx, and notes it before it gives up. */
 static int chalk_prepare(const double *values, void *constants, char *reason, size_t size)
 {
@@ -374,6 +400,7 @@ int main(void)
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
+      cmocka_unit_test(clay_that_stands_still_is_as_stiff_as_in_its_last_step),
       cmocka_unit_test(a_point_that_gives_up_carries_nothing_and_keeps_its_history),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

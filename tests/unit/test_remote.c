@@ -43,6 +43,8 @@ static void *serve(void *spec)
 static ServeSpec spec;
 static char wanted[160];
 
+static bool serving;
+
 static void begin_with(ServeSpec wishes)
 {
   snprintf(wanted, sizeof wanted, "%s", wishes.address);
@@ -53,6 +55,7 @@ static void begin_with(ServeSpec wishes)
   listening = false;
   __atomic_store_n(&interrupted, 0, __ATOMIC_RELAXED);
   assert_int_equal(pthread_create(&server, NULL, serve, &spec), 0);
+  serving = true;
   while (!listening) nanosleep(&(struct timespec){.tv_nsec = 1000000L}, NULL);
 }
 
@@ -74,7 +77,16 @@ static void end(void)
   void *status;
   __atomic_store_n(&interrupted, 1, __ATOMIC_RELAXED);
   pthread_join(server, &status);
+  serving = false;
   assert_int_equal(*(int *)status, BRECCIA_OK);
+}
+
+/** After a test that failed: those that follow begin a server of their own. */
+static int end_what_serves(void **state)
+{
+  (void)state;
+  if (serving) end();
+  return 0;
 }
 
 typedef struct Line {
@@ -688,21 +700,21 @@ static int remove_folder(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(partial_trials_keep_the_state_of_the_others),
-      cmocka_unit_test(a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind),
-      cmocka_unit_test(units_are_those_of_who_asks),
-      cmocka_unit_test(what_a_server_cannot_do_is_said_and_changes_nothing),
-      cmocka_unit_test(a_law_is_told_whole_and_saved_and_restored),
-      cmocka_unit_test(strangers_cannot_speak_for_a_client),
-      cmocka_unit_test(a_silent_client_of_datagrams_makes_room),
-      cmocka_unit_test(who_does_not_know_the_secret_holds_nothing),
-      cmocka_unit_test(silent_and_slow_clients_hold_nobody_up),
-      cmocka_unit_test(first_frames_are_bounded),
-      cmocka_unit_test(addresses_are_refused_in_words),
-      cmocka_unit_test(who_waits_for_a_server_sleeps_between_tries),
-      cmocka_unit_test(hosts_with_colons_stand_in_brackets),
-      cmocka_unit_test(only_sockets_of_their_own_are_removed),
-      cmocka_unit_test(a_server_ends_while_a_client_is_slow),
+      cmocka_unit_test_teardown(partial_trials_keep_the_state_of_the_others, end_what_serves),
+      cmocka_unit_test_teardown(a_checkpoint_may_be_one_commit_ahead_of_its_server_and_never_behind, end_what_serves),
+      cmocka_unit_test_teardown(units_are_those_of_who_asks, end_what_serves),
+      cmocka_unit_test_teardown(what_a_server_cannot_do_is_said_and_changes_nothing, end_what_serves),
+      cmocka_unit_test_teardown(a_law_is_told_whole_and_saved_and_restored, end_what_serves),
+      cmocka_unit_test_teardown(strangers_cannot_speak_for_a_client, end_what_serves),
+      cmocka_unit_test_teardown(a_silent_client_of_datagrams_makes_room, end_what_serves),
+      cmocka_unit_test_teardown(who_does_not_know_the_secret_holds_nothing, end_what_serves),
+      cmocka_unit_test_teardown(silent_and_slow_clients_hold_nobody_up, end_what_serves),
+      cmocka_unit_test_teardown(first_frames_are_bounded, end_what_serves),
+      cmocka_unit_test_teardown(addresses_are_refused_in_words, end_what_serves),
+      cmocka_unit_test_teardown(who_waits_for_a_server_sleeps_between_tries, end_what_serves),
+      cmocka_unit_test_teardown(hosts_with_colons_stand_in_brackets, end_what_serves),
+      cmocka_unit_test_teardown(only_sockets_of_their_own_are_removed, end_what_serves),
+      cmocka_unit_test_teardown(a_server_ends_while_a_client_is_slow, end_what_serves),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
