@@ -218,6 +218,13 @@ equal "profiles: lines" "$(grep '^plot' scripts | grep -o "rgb \"[^ ]* title '[^
 # numbers of a picture are those of the file: velocities of at most 1 m/s
 equal "profiles: numbers" "$(sed -n "/^set title/q; /^.data0/d; /^END/,\$d; p" script | awk '{print $2}' | tr '\n' ' ')" "0.05 0.15 0.25 0.35 0.45 "
 
+# where there is no folder for them this is said
+mkdir full
+touch full/profiles
+"$breccia" run block.yaml --output full > out 2> errors
+equal "no folder for profiles: status" $? 1
+equal "no folder for profiles" "$(grep -v ^warning errors)" "full/profiles/wall.csv: cannot be written: Not a directory"
+
 movie() { # movie OPTIONS: made of all states, its words in one line
   "$breccia" plot block --field velocity --size 60 --movie fade.mp4 "$@" > out 2> errors || fail "movie $*: $(cat errors)"
   tr '\n' ' ' < words

@@ -423,6 +423,20 @@ static void a_step_above_the_stable_one_is_refused(void **state)
                            "solve: {explicit: {time step: 0.01, steps: 10}}\n");
   assert_non_null(strstr(words, "times the stable step"));
   free(words);
+  /* and where no bond is left nobody knows a stable one */
+  static const char *const steps[] = {"steps: 10", "end time: 1", "time step: 0.01, steps: 10"};
+  for (int k = 0; k < 3; ++k) {
+    char deck[512];
+    snprintf(deck, sizeof deck,
+             "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+             "body: {b: {material: m, lattice: line, area: 1, spacing: 0.1, shape: {box: {particles: [4, 1]}}}}\n"
+             "cracks: [{remove: {box: {from: [0.1, -1], to: [0.3, 1]}}}]\n"
+             "peridynamics: {space: 1-D, formulation: bond-based, horizon: 1.5 spacings}\nsolve: {explicit: {%s}}\n",
+             steps[k]);
+    words = refusal_of(deck);
+    if (!strstr(words, "the stable time step could not be found: no bond joins any particles")) fail_msg("%s", words);
+    free(words);
+  }
 }
 
 /* ---- static check of the example against finite elements ---- */
