@@ -43,6 +43,21 @@ sed 's/^loads.*//' damped.yaml > free.yaml
 "$breccia" check free.yaml > out 2>&1; contains "check: free body" "$(cat out)" "as the body is held, apart from motion as a whole: 88.4 Hz"
 sed 's/particles: \[80, 1\]/particles: [4001, 1]/' damped.yaml > long.yaml
 "$breccia" check long.yaml > out 2>&1; contains "check: large body" "$(cat out)" "'breccia modes' finds it as the body is held"
+# of what steps of an implicit run should be, a twentieth of the period; and of bodies whose frequency takes no longer than a second to find
+sed 's/^solve.*/solve: {implicit: {end time: 1}}/' bar.yaml > slow.yaml
+"$breccia" check slow.yaml > out 2>&1; contains "check: long steps" "$(cat out)" "lowest frequency as the body is held: 45.4 Hz, a period of 22 ms; steps of 1.1 ms follow it"
+for horizon in 3.015 6.015; do
+  cat > held-plate.yaml <<END
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic-1d, Young modulus: 1e6, density: 2}}
+body: {plate: {material: m, lattice: square, spacing: 0.05, thickness: 0.1, shape: {box: {particles: [40, 20]}}}}
+peridynamics: {formulation: bond-based, space: plane stress, horizon: $horizon spacings}
+loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}]
+solve: {static: {increments: 1}}
+END
+  "$breccia" check held-plate.yaml > out 2>&1
+  equal "check: lowest frequency, horizon $horizon" "$(grep -c 'lowest frequency as the body is held' out)" "$(echo $horizon | grep -c '^3')"
+done
 "$breccia" modes bar.yaml --count 500 > out 2>&1; equal "modes: too many: status" $? 2
 contains "modes: too many" "$(cat out)" "500 modes are too many for a body with 77 unknowns"
 

@@ -37,6 +37,20 @@ done
 "$breccia" run bar.yaml --quiet --set 'variables.E=20 GPa' --set 'variables.speed=2 mm/s' --output alone
 cmp alone/jack.csv bar-study/E-20-GPa--speed-2-mm-s/jack.csv || fail "a case differs from the run with its settings"
 
+# What is taken of a history: farthest from zero with its sign, largest, smallest, at the end; and values around zero are told as zero.
+"$breccia" study bar.yaml --vary 'variables.speed=-0.1:0.2:4' --result 'peak jack.x' --result 'maximum jack.x' --result 'minimum jack.x' --result 'last jack.x' --output taken > out 2>&1 ||
+  fail "study of speeds: $(cat out)"
+equal "speeds" "$(cut -d, -f1,2 taken/table.csv | tr '\n' ' ')" "case,variables.speed speed--0.1,-0.1 speed-0,0 speed-0.1,0.1 speed-0.2,0.2 "
+for speed in -0.1 0.1; do
+  equal "taken at $speed" "$(awk -F, -v s=$speed '$2 == s {printf "%.6g %.6g %.6g %.6g", $4, $5, $6, $7}' taken/table.csv)" "$(awk -F, 'NR > 1 {
+    if (NR == 2) {high = low = far = $3} if ($3 > high) high = $3; if ($3 < low) low = $3; if ($3 ^ 2 > far ^ 2) far = $3; last = $3}
+    END {printf "%.6g %.6g %.6g %.6g", far, high, low, last}' "taken/speed-$speed/jack.csv")"
+done
+# Values that are spelt alike as files have folders of their own.
+equal "names alike" "$("$breccia" study bar.yaml --vary 'title=a b, a-b, a/b' --check --output alike)" "1 of 3: title-a-b: to be run
+2 of 3: title-a-b--2: to be run
+3 of 3: title-a-b--3: to be run"
+
 # What is done is not run again; what the deck has changed is; --again runs all.
 arguments=(--vary 'variables.E=10 GPa, 20 GPa' --output few)
 "$breccia" study bar.yaml "${arguments[@]}" > out || fail "second study: $(cat out)"

@@ -145,6 +145,26 @@ equal "stages: loads along z" "$z" 0
 near "stages: moment of loads" "$(figures $s 'moment of loads' | cut -d' ' -f3)" "$(awk 'BEGIN {print -0.16 * 0.4 - 0.024 * 0.6}')" 1e-3
 grep -q '"left"' $s && fail "what is in motion is told as if it were to balance: $(cat $s)"
 
+# ---- a stage that ends where the body is at rest, and one that does not ----
+cat > calm.yaml <<'Y'
+title: Calm
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}
+body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [9, 6]}}}}
+peridynamics: {space: plane strain}
+loads: [{on: {face: x-}, displacement: [0, 0]}, {on: {face: x+}, traction: [1, 0]}]
+solve:
+  - {name: settle, explicit: {end time: 5, local damping: 0.8, rest: 1e-3}}
+  - {name: go on, explicit: {steps: 5}}
+pictures: []
+Y
+"$breccia" run calm.yaml > out 2> errors || fail "calm: $(cat errors)"
+read -r first last <<< "$(sed -n "s/^stage 'settle': steps 0 to \([0-9]*\), time 0 to \([0-9.e-]*\) s, came to rest$/\1 \2/p" out)"
+[ "${first:-0}" -gt 99 ] || fail "calm: no stage that came to rest in: $(cat out)"
+grep -q "^stage 'go on': steps $first to $((first + 5)), time $last to [0-9.e-]* s$" out || fail "calm: the second stage in: $(cat out)"
+contains "calm: summary" "$(cat calm/summary.json)" '"at_rest": true}, {"name": "go on", '
+checks=$((checks + 2))
+
 # ---- at rest: loads and reactions balance each other ----
 sed '/name: fast/d' staged.yaml > rest.yaml
 "$breccia" run rest.yaml > out 2> errors || fail "run at rest: $(cat errors)"

@@ -2,6 +2,8 @@
 #include "sample_laws.h"
 #include "support.h"
 
+#include "base/random.h"
+
 static void bonds_near_grips_hold_where_the_deck_says_so(void **state)
 {
   (void)state;
@@ -269,6 +271,53 @@ static void bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time(void **stat
     }
 }
 
+/** In bodies of many rows, some of whose bonds are in lattice slots and some between blocks, whatever way their particles fly: no bond is left beyond its
+ *  limit after any step, and none has broken below it. */
+static void bonds_break_in_the_step_in_which_they_pass_their_limit(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *body, *space;
+    int axes;
+  } of[] = {
+      {"a: {material: m, lattice: square, thickness: 1, spacing: 1, shape: {box: {particles: [19, 7]}}}, b: "
+       "{material: n, lattice: square, thickness: 1, spacing: 1, shape: {box: {from: [19, 0], to: [24, 7]}}}",
+       "plane stress", 2},
+      {"a: {material: m, lattice: hexagonal, thickness: 1, spacing: 1, shape: {box: {from: [0, 0], to: [17, 9]}}}",
+       "plane stress", 2},
+      {"a: {material: n, spacing: 1, shape: {box: {particles: [17, 5, 4]}}}", "3-D", 3}};
+  for (int c = 0; c < (under_sanitizers() ? 1 : 3); ++c) {
+    breccia_model *m = model_of(
+        "materials: {m: {model: elastic-1d, density: 1, Young modulus: 1e-6}, n: {model: elastic-1d, density: 1, Young "
+        "modulus: 1e-6, largest strain: 0.02}}\nbody: {%s}\n"
+        "peridynamics: {formulation: bond-based, space: %s}\nfailure: {critical stretch: 0.03}\n"
+        "solve: {explicit: {time step: 0.1, steps: 3000}}\n",
+        of[c].body, of[c].space);
+    const Particles *p = m->domain.particles;
+    uint64_t seed = 5;
+    for (int64_t n = 0; n < p->count; ++n) /* some stand still, some fly: slices differ in what they have in reserve */
+      for (int k = 0; k < of[c].axes; ++k)
+        p->velocity[k][p->place_of[n]] = n % 3 ? 4e-3 * (random_uniform(&seed) - 0.5) : 0;
+    int64_t before = 0;
+    for (int step = 0; step < 500 && m->domain.broken_count < m->domain.family.bonds / 4; ++step) {
+      step_surely(m, 1);
+      assert_none_is_beyond(m, of[c].body);
+      for (; before < m->domain.broken_count; ++before) {
+        const int32_t a = p->place_of[m->domain.broken[before].a], b = p->place_of[m->domain.broken[before].b];
+        double square = 0;
+        for (int k = 0; k < 3; ++k) {
+          const double y = p->position[k][b] - p->position[k][a] + p->displacement[k][b] - p->displacement[k][a];
+          square += y * y;
+        }
+        const double stretch = sqrt(square) / particles_distance(p, a, b) - 1;
+        if (!(stretch > 0.02)) fail_msg("%s: a bond breaks at a stretch of %g", of[c].body, stretch);
+      }
+    }
+    assert_true(m->domain.broken_count > m->domain.family.bonds / 20);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -279,6 +328,7 @@ int main(void)
       cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
+      cmocka_unit_test(bonds_break_in_the_step_in_which_they_pass_their_limit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -429,6 +429,36 @@ static void bodies_in_space_stand_as_they_are_seen(void **state)
   result_view_close(&view);
 }
 
+/** Plates thinner than a fifth of their length are seen from the front, unless somebody wants another view. */
+static void thin_plates_are_seen_from_the_front(void **state)
+{
+  (void)state;
+  for (int layers = 2; layers <= 3; ++layers) {
+    char into[40], path[80];
+    snprintf(into, sizeof into, "%s/plate%d", folder, layers);
+    breccia_model *model = model_of(
+        "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+        "body: {b: {material: m, spacing: 1, shape: {box: {particles: [12, 10, %d]}}}}\n"
+        "solve: {explicit: {steps: 1, time step: 1e-3}}\nresults: {number: 1, fields: [damage]}\npictures: []\n",
+        layers);
+    const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+    assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+    breccia_model_destroy(&model);
+    ResultView view;
+    snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+    assert_int_equal(result_view_open(&view, path, NULL), 0);
+    for (int wish = 0; wish < 2; ++wish) {
+      const PictureOptions o = {
+          .field = "damage", .azimuth = wish ? -60 : NAN, .elevation = NAN, .low = NAN, .high = NAN};
+      PictureSurvey s;
+      assert_int_equal(picture_survey(&view, 0, 0, true, &o, &s, NULL), 0);
+      const bool front = fabs(s.x0) + fabs(s.x1 - 12) + fabs(s.y0) + fabs(s.y1 - 10) < 1e-6;
+      assert_true(front == (layers == 2 && !wish));
+    }
+    result_view_close(&view);
+  }
+}
+
 /** Every dataset that results.xdmf names is there and holds the step's numbers. */
 static void xdmf_names_a_whole_dataset_for_every_step(void **state)
 {
@@ -500,6 +530,7 @@ int main(void)
       cmocka_unit_test(layers_outside_the_body_are_not_shown),
       cmocka_unit_test(bodies_that_turn_and_grow_have_no_gaps),
       cmocka_unit_test(bodies_in_space_stand_as_they_are_seen),
+      cmocka_unit_test(thin_plates_are_seen_from_the_front),
       cmocka_unit_test(xdmf_names_a_whole_dataset_for_every_step),
       cmocka_unit_test(names_of_pictures_are_short),
   };
