@@ -56,6 +56,42 @@ static void a_factor_that_is_found_is_that_which_would_be_given(void **state)
   }
 }
 
+/** Where displacements count from the beginning of a stage, so does what control brings about. */
+static void what_is_controlled_counts_from_where_displacements_do(void **state)
+{
+  (void)state;
+  static const char *const controls[] = {"displacement of: {face: x+, layers: 1}, direction: [1, 0]",
+                                         "opening between: [[0.05, 0.25], [0.75, 0.25]]"};
+  for (int n = 0; n < 4; ++n) {
+    const bool zero = n / 2;
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {formulation: correspondence, space: plane stress, strain: small}\n"
+        "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, traction: [10, 0]}]\n"
+        "solve: [{static: {increments: 1}}, {displacements: %s, loads: [{on: {face: x+, layers: 1}, traction: [1, 0], "
+        "history: {controlled: yes}}], static: {increments: 2, control: {%s, to: 0.003}}}]\n",
+        zero ? "zero" : "keep", controls[n % 2]);
+    const Particles *p = m->domain.particles;
+    const int32_t end = body_nearest(&m->domain.body, (double[3]){0.75, 0.25, 0});
+    step(m, 1);
+    const double first = p->displacement[0][end];
+    assert_true(first > 1e-4 && first < 0.0025);
+    step(m, INT64_MAX);
+    double reached = 0;
+    int count = 0;
+    for (int64_t i = 0; i < p->count; ++i) { /* of the face, or of the end of the line */
+      const int32_t at = p->place_of[i];
+      if (n % 2 ? at != end : p->position[0][at] < 0.7) continue;
+      reached += p->displacement[0][at] - (zero ? p->zero[0][at] : 0);
+      ++count;
+    }
+    assert_true(fabs(reached / count - 0.003) < 1e-9);
+    breccia_model_destroy(&m);
+  }
+}
+
 /* Much longer than E G_F / f_t^2, with a weaker part in which all bonds reach their strength at once. */
 #define BAR                                                                                                            \
   "units: {length: m, force: kN, time: s}\n"                                                                           \
@@ -316,6 +352,7 @@ static void arc_length_goes_round_every_corner_of_a_flat_arch(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_is_controlled_counts_from_where_displacements_do),
       cmocka_unit_test(a_factor_that_is_found_is_that_which_would_be_given),
       cmocka_unit_test(what_controls_nothing_is_refused),
       cmocka_unit_test(a_torn_body_ends_the_stage),

@@ -266,6 +266,59 @@ static void laws_with_tangents_converge_quadratically(void **state)
   }
 }
 
+/** Equations of bodies whose answer is linear are solved as closely as equilibrium wants, and once. */
+static void elastic_bodies_take_one_iteration(void **state)
+{
+  (void)state;
+  static const char *const formulations[] = {"correspondence, strain: small", "bond-based"};
+  static const char *const ways[] = {"conjugate gradients", "minimal residuals", "direct"};
+  for (int n = 0; n < 6; ++n) {
+    breccia_model *model = model_of(
+        UNITS "%s" PLATE "peridynamics: {formulation: %s, space: plane stress}\n"
+              "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, traction: "
+              "[1e-6, 5e-7]}]\nsolve: {static: {increments: 2, equations: %s}}\n",
+        n % 2 ? SPRINGS : ELASTIC, formulations[n % 2], ways[n / 2]);
+    for (int k = 0; k < 2; ++k) {
+      step_surely(model, 1);
+      const char *log = text_words(&model->solver.log);
+      if (!k && (!strstr(log, "iteration 1: ") || strstr(log, "iteration 2: ")))
+        fail_msg("%s, %s: %s", formulations[n % 2], ways[n / 2], log);
+    }
+    breccia_model_destroy(&model);
+  }
+}
+
+/** An increment for which no equilibrium is found is halved until one is; from there on each is at most twice as long as the one before, up to the
+ *  whole. solution.txt tells of all that were tried. */
+static void increments_are_halved_and_grow_again(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, "
+            "hardening modulus: 100}}\n"
+            "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
+            "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
+            "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]},"
+            " {on: {face: x+, layers: 1}, traction: [40, 3, 0], history: {table: [[0, 0], [0.3, 1], [1, 1.02]]}}]\n"
+            "solve: {static: {increments: 4, iterations: 5}}\n");
+  double before = 0.25, shortest = 1;
+  int grown = 0, cuts = 0, tries = 0;
+  while (!model->solver.clock.ended) {
+    step_surely(model, 1);
+    const double length = model->solver.clock.time_step;
+    for (const char *at = text_words(&model->solver.log); (at = strstr(at, "no equilibrium: ")); ++at) ++cuts;
+    for (const char *at = text_words(&model->solver.log); (at = strstr(at, ", from time ")); ++at) ++tries;
+    assert_true(length <= 2 * before * (1 + 1e-9) && length <= 0.25 * (1 + 1e-9));
+    grown += length > 1.9 * before;
+    shortest = fmin(shortest, length);
+    before = length;
+  }
+  assert_int_equal(tries, cuts + model->solver.clock.step);
+  assert_true(cuts > 1 && shortest < 0.13 && grown > 0);
+  assert_near(model->solver.clock.time, 1, 1e-12);
+  breccia_model_destroy(&model);
+}
+
 static void a_bar_that_flows_carries_its_strength_and_no_more(void **state)
 {
   (void)state;
@@ -453,6 +506,8 @@ int main(void)
       cmocka_unit_test(the_matrix_does_what_a_linearised_step_does),
       cmocka_unit_test(both_ways_find_the_same_rest_and_reactions_are_the_loads),
       cmocka_unit_test(laws_with_tangents_converge_quadratically),
+      cmocka_unit_test(elastic_bodies_take_one_iteration),
+      cmocka_unit_test(increments_are_halved_and_grow_again),
       cmocka_unit_test(a_bar_that_flows_carries_its_strength_and_no_more),
       cmocka_unit_test(a_step_that_fails_before_anything_broke_does_not_count),
       cmocka_unit_test(a_step_in_which_bonds_broke_counts_though_it_fails),
