@@ -124,6 +124,8 @@ void contact_destroy(Contact *c)
   }
   free(c->rows);
   free(c->acts);
+  free(c->joints);
+  free(c->steps);
   free(c->row_of);
   free(c->touched);
   free(c->young);

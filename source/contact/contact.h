@@ -54,7 +54,18 @@ typedef struct Grip {
                                0 unless it touches */
   double pull[3];           /* force along the face, per volume squared */
   double way[3], normal[3]; /* to the higher end, and of the face */
+  double left;              /* share of the spring that sliding has left in the evaluation; 1: it sticks */
 } Grip;
+
+/** A pair that presses or touches where forces were linearised; direction as in ContactPair, per volume squared. */
+typedef struct ContactJoint {
+  int32_t low, pair;          /* place of the row, and which of its pairs */
+  double stiffness, along;    /* across the face, and of friction along it */
+  double coupling;            /* what the force along `slide` grows by with the gap; 0: it does not slide */
+  double normal[3], slide[3]; /* unit vectors */
+  double across, side[3];     /* way to the higher end along the normal, and along the face */
+  double size;                /* of the normal as the frames make it; 0: the way itself is the normal */
+} ContactJoint;
 
 enum { MOST_CUTS = 3, MOST_FACES = 4 + 6 }; /* cuts, that of lost bonds, six sides of a lattice cell */
 
@@ -73,8 +84,11 @@ typedef struct ContactRow {
   bool torn;                  /* the family has lost bonds in the step under way */
   bool near, framed;          /* a pair may press; one that needs frames */
   bool pulls;                 /* there is a pull */
+  bool joined;                /* a joint has an end here */
   double shape[9];            /* inverse of sum of V xi (x) xi over the family; 0: too few bonds */
   Frame frame, before;        /* now; before bonds broke in the step under way */
+  Frame linear;               /* where forces were linearised */
+  double cofactor_change[9];  /* of a linearised step */
   double pull[9];             /* derivative of contact's energy by the deformation gradient, times shape */
   int faces, cuts;            /* the first faces are those of cuts */
   double face[MOST_FACES][3]; /* their unit normals in the reference, outwards */
@@ -107,7 +121,11 @@ typedef struct Contact {
   bool remembered;                           /* frames before bonds broke in the step under way are known */
   bool torn;                                 /* rows are */
   double travelled_before;                   /* the step under way */
-  double *kept; /* the state before the step under way, as numbers, if it has changed since; or NULL */
+  ContactJoint *joints;
+  int64_t joint_count, joint_capacity;
+  PairAct *steps;  /* [act_capacity, when forces were linearised] what joints do in a linearised step */
+  int64_t pattern; /* grows whenever other pairs are joints */
+  double *kept;    /* the state before the step under way, as numbers, if it has changed since; or NULL */
   int64_t kept_count;
   bool failed; /* memory was out */
 } Contact;
@@ -135,6 +153,15 @@ void contact_follow(Contact *contact, double motion);
 
 /** Adds the forces per volume on the particles, by all threads; trial state only. */
 void contact_resist(Contact *contact);
+
+/** Chooses the faces that the next evaluation would, at the displacements held. By one thread. */
+void contact_choose_faces(Contact *contact);
+/** What ForcesType says of changes of forces (tangent.c). */
+double contact_room(const Contact *contact);
+void contact_linearise(Contact *contact);
+void contact_change(Contact *contact, double *const v[3], double *const change[3]);
+const char *contact_unassembled(const Contact *contact);
+int contact_point(const Contact *contact, int64_t number, Operator *point, Error *error);
 
 /** Makes what the last evaluation found the committed state, and adds the work of friction. Called by one thread. */
 void contact_commit(Contact *contact);

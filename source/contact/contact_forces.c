@@ -57,6 +57,46 @@ static void resist(void *forces)
   contact_resist(forces);
 }
 
+static void choose(void *forces)
+{
+  contact_choose_faces(forces);
+}
+
+static double room(const void *forces)
+{
+  return contact_room(forces);
+}
+
+static void linearise(void *forces)
+{
+  contact_linearise(forces);
+}
+
+static void change(void *forces, double *const v[3], double *const sum[3])
+{
+  contact_change(forces, v, sum);
+}
+
+static const char *unassembled(const void *forces)
+{
+  return contact_unassembled(forces);
+}
+
+static int64_t pattern(const void *forces)
+{
+  return ((const Contact *)forces)->pattern;
+}
+
+static int64_t point_count(const void *forces)
+{
+  return ((const Contact *)forces)->joint_count;
+}
+
+static int point(const void *forces, int64_t number, Operator *joint, Error *error)
+{
+  return contact_point(forces, number, joint, error);
+}
+
 static void commit(void *forces)
 {
   contact_commit(forces);
@@ -98,6 +138,14 @@ const ForcesType contact_forces = {.name = "contact",
                                    .undo = undo,
                                    .find_again = find_again,
                                    .resist = resist,
+                                   .choose = choose,
+                                   .room = room,
+                                   .linearise = linearise,
+                                   .change = change,
+                                   .unassembled = unassembled,
+                                   .pattern = pattern,
+                                   .point_count = point_count,
+                                   .point = point,
                                    .commit = commit,
                                    .energy = energy,
                                    .dissipated = dissipated,

@@ -1,5 +1,5 @@
 /* What the files of contact share: pairs and their search (contact.c), faces and frames (faces.c), energy and forces of pairs (press.c), friction
- * (friction.c), what a checkpoint holds (contact_state.c). */
+ * (friction.c), changes of forces (tangent.c), what a checkpoint holds (contact_state.c). */
 #ifndef BRECCIA_CONTACT_PARTS_H
 #define BRECCIA_CONTACT_PARTS_H
 
@@ -84,6 +84,13 @@ double contact_met_reach(double spacing);
 /** The pair as it stands, or with the frames before bonds broke. @return whether it presses */
 bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
                    bool before, Press *press);
+/** The same of a pair that presses or whose ends are no further apart than a share of their rest beyond it; without energy. */
+bool contact_touch(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
+                   double apart, Press *press);
+/** From the derivative a by cof(F) N that by F, times the shape of the family: what the family is pulled with. */
+void contact_find_pull(const double f[9], const double shape[9], const double a[9], double pull[9]);
+/** Adds what the steps of joints do to arrays of forces per volume, by all threads. */
+void contact_spread_change(Contact *c, double *const change[3]);
 /** Share of the constant of bonds that smoothed pairs across a cut have, so that together they are as stiff. */
 double contact_smoothed(const Contact *c, int block);
 

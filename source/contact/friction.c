@@ -33,7 +33,7 @@ double contact_grip(const Grip *before, Grip *after, const Press *press, double 
 {
   const bool presses = press->gap > 0 && press->stiffness > 0 && !press->central;
   const double root = presses ? sqrt(press->stiffness) : 0, limit = presses ? friction * root * press->gap : 0;
-  *after = (Grip){.known = true};
+  *after = (Grip){.known = true, .left = 1};
   memcpy(after->way, press->way, sizeof after->way);
   memcpy(after->normal, press->normal, sizeof after->normal);
   if (!before->known) return 0;
@@ -47,9 +47,10 @@ double contact_grip(const Grip *before, Grip *after, const Press *press, double 
     flatten(press->normal, after->spring);
   }
   const double size = sqrt(dot(after->spring, after->spring));
+  if (size > limit) after->left = limit / size;
   double moved[3], turned[3];
   for (int k = 0; k < 3; ++k) {
-    if (size > limit) after->spring[k] *= limit / size;
+    after->spring[k] *= after->left;
     after->pull[k] = root * after->spring[k];
     moved[k] = press->way[k] - before->way[k];
     turned[k] = press->normal[k] - before->normal[k];

@@ -122,8 +122,9 @@ static void find_stiffness(const Contact *c, const ContactRow *low, const Contac
   press->slope = k * (slope - 1.5 * faded / length);
 }
 
-bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
-                   bool before, Press *press)
+/** Distances and directions of a pair. @return false if nothing is known of it yet */
+static bool measure(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
+                    bool before, Press *press)
 {
   double *nu = press->long_normal;
   press->stiffness = press->slope = press->energy = press->gap = 0;
@@ -141,9 +142,23 @@ bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *hi
   if (!press->central) press->across = dot(press->way, press->normal);
   press->gap = pair->rest - press->across;
   press->square = fmax(0, length - press->across * press->across);
-  if (!(press->gap > 0)) return false;
+  return true;
+}
+
+bool contact_press(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
+                   bool before, Press *press)
+{
+  if (!measure(c, low, high, pair, before, press) || !(press->gap > 0)) return false;
   find_stiffness(c, low, high, pair, press);
   press->energy = press->stiffness * press->gap * press->gap / 2;
+  return press->stiffness > 0;
+}
+
+bool contact_touch(const Contact *c, const ContactRow *low, const ContactRow *high, const ContactPair *pair,
+                   double apart, Press *press)
+{
+  if (!measure(c, low, high, pair, false, press) || !(press->gap > -apart * pair->rest)) return false;
+  find_stiffness(c, low, high, pair, press);
   return press->stiffness > 0;
 }
 
@@ -229,10 +244,8 @@ static void find_act(const Press *m, const double pull[3], PairAct *act)
   for (int k = 0; k < 3; ++k) act->turning[k] /= size;
 }
 
-/** The derivative by F from that by cof(F) N, and what the family is pulled with. */
-static void find_pull(ContactRow *row, const double a[9])
+void contact_find_pull(const double f[9], const double shape[9], const double a[9], double pull[9])
 {
-  const double *f = row->frame.gradient;
   double stress[9];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
@@ -242,8 +255,8 @@ static void find_pull(ContactRow *row, const double a[9])
     }
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      row->pull[3 * i + j] = 0;
-      for (int k = 0; k < 3; ++k) row->pull[3 * i + j] += stress[3 * i + k] * row->shape[3 * k + j];
+      pull[3 * i + j] = 0;
+      for (int k = 0; k < 3; ++k) pull[3 * i + j] += stress[3 * i + k] * shape[3 * k + j];
     }
 }
 
@@ -289,29 +302,37 @@ static void press_row(Contact *c, ContactRow *row, bool only_energy)
   }
 }
 
+/** What pairs do, with the deformation of families that goes with it, and the arrays of forces per volume to which it is added. */
+typedef struct Doing {
+  const PairAct *acts;
+  bool linear; /* a change: of joints, with frames as they were linearised */
+  double *const *force;
+} Doing;
+
 /** Forces on the particle of a row by its pairs, and what its family is pulled with. */
-static void resist_row(Contact *c, ContactRow *row)
+static void resist_row(Contact *c, ContactRow *row, const Doing *doing)
 {
   const Particles *p = &c->body->particles;
+  const Frame *frame = doing->linear ? &row->linear : &row->frame;
   double force[3] = {0}, moment[9] = {0};
   row->pulls = false;
-  if (!row->near) return;
+  if (!(doing->linear ? row->joined : row->near)) return;
   for (int32_t n = 0; n < row->count; ++n) {
     const ContactPair *pair = &row->pairs[n];
-    const PairAct *act = &c->acts[pair->act];
+    const PairAct *act = &doing->acts[pair->act];
     if (!act->presses) continue;
     const double volume = p->volume[pair->neighbour], share = pair->low ? volume : -volume;
     for (int k = 0; k < 3; ++k) force[k] += share * act->force[k];
-    if (!act->turns || !row->frame.known) continue;
+    if (!act->turns || !frame->known) continue;
     row->pulls = true;
     const double *normal = pair->normal[!pair->low], volumes = volume * p->volume[row->place];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) moment[3 * i + j] += volumes * act->turning[i] * normal[j];
   }
-  for (int k = 0; k < 3; ++k) p->internal[k][row->place] += force[k];
+  for (int k = 0; k < 3; ++k) doing->force[k][row->place] += force[k];
   row->pulls = row->pulls && c->body->dimensions > 1;
   if (!row->pulls) return;
-  find_pull(row, moment);
+  contact_find_pull(frame->gradient, row->shape, moment, row->pull);
   mark_family(c, row);
 }
 
@@ -322,7 +343,7 @@ static const ContactRow *pulling_row(const Contact *c, int32_t place)
 }
 
 /** Forces on the particles of a slice from what acts on the deformation gradients of theirs and of their neighbours. */
-static void gather(const Contact *c, int64_t slice)
+static void gather(const Contact *c, int64_t slice, double *const sum[3])
 {
   const Family *f = c->family;
   const Particles *p = f->particles;
@@ -340,8 +361,36 @@ static void gather(const Contact *c, int64_t slice)
         for (int j = 0; j < 3; ++j)
           force[i] += ((row ? share * row->pull[3 * i + j] : 0) + (other ? other->pull[3 * i + j] : 0)) * bond.xi[j];
     }
-    for (int k = 0; k < 3; ++k) p->internal[k][place] += force[k];
+    for (int k = 0; k < 3; ++k) sum[k][place] += force[k];
   }
+}
+
+/** By all threads. */
+static void spread(Contact *c, const Doing *doing)
+{
+  TEAM_SINGLE memset(c->marked, 0, (size_t)c->body->particles.slices);
+  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r], doing);
+  TEAM_FOR (s, c->body->particles.slices)
+    if (c->marked[s]) gather(c, s, doing->force);
+}
+
+void contact_spread_change(Contact *c, double *const change[3])
+{
+  spread(c, &(Doing){c->steps, true, change});
+}
+
+static void look_and_choose(void *context)
+{
+  Contact *c = context;
+  TEAM_FOR (r, c->row_count) look_around(c, &c->rows[r]);
+  TEAM_FOR (r, c->row_count) choose_row(c, &c->rows[r]);
+}
+
+void contact_choose_faces(Contact *c)
+{
+  if (!c->choosing) return;
+  team_run(look_and_choose, c);
+  c->choosing = false;
 }
 
 void contact_resist(Contact *c)
@@ -359,12 +408,9 @@ void contact_resist(Contact *c)
   {
     for (int32_t r = 0; r < c->row_count && c->torn; ++r) c->rows[r].torn = false;
     c->choosing = c->torn = c->remembered = false;
-    memset(c->marked, 0, (size_t)c->body->particles.slices);
   }
   TEAM_FOR (r, c->row_count) press_row(c, &c->rows[r], false);
-  TEAM_FOR (r, c->row_count) resist_row(c, &c->rows[r]);
-  TEAM_FOR (s, c->body->particles.slices)
-    if (c->marked[s]) gather(c, s);
+  spread(c, &(Doing){c->acts, false, c->body->particles.internal});
 }
 
 static void find_stored(void *context)

@@ -139,11 +139,19 @@ bool domain_take_secants(Domain *domain, bool take);
 /** Evaluates forces at the displacements held and keeps what linearised steps need of that: tangents of laws among it. */
 int domain_linearise(Domain *domain, Error *error);
 /** K v: changes of internal forces per volume with changes v of the displacements, at those at which the domain was linearised, which are
- *  held still, at the price of one evaluation of forces. Contact is not in it. What particles show their neighbours is of the step afterwards
+ *  held still, at the price of one evaluation of forces. Forces beside those of bonds are not in it. What particles show their neighbours is of the step afterwards
  *  (domain_show_states).
  *  @param[in] v        arrays of places_array, 0 in unused places
  *  @param[out] change  arrays of places_array */
 void domain_linear_step(Domain *domain, double *const v[3], double *const change[3]);
+
+/** Adds changes of the forces beside those of bonds to those of a linearised step, at the state at which forces_linearise was called.
+ *  @param[in,out] change  arrays of places_array */
+void domain_change_forces(Domain *domain, double *const v[3], double *const change[3]);
+
+/** Forces per volume beside those of bonds at the displacements held; trial state only.
+ *  @param[out] forces  arrays of places_array */
+void domain_forces_beside(Domain *domain, double *const forces[3]);
 
 /** Rows of particles, points, bonds and forces. Of all rows but those of role STATE_FOLLOWS, taken up in their order, shapes,
  *  deformations and force states follow to the same bits. */

@@ -378,3 +378,32 @@ void domain_linear_step(Domain *d, double *const v[3], double *const change[3])
   team_run(take_step, &step);
   exchange(d->particles, step.displacement, step.internal);
 }
+
+static void change_forces(void *context)
+{
+  const Step *s = context;
+  forces_change(&s->domain->forces, s->displacement, s->internal);
+}
+
+void domain_change_forces(Domain *d, double *const v[3], double *const change[3])
+{
+  Step step = {d, {v[0], v[1], v[2]}, {change[0], change[1], change[2]}};
+  if (d->forces.count) team_run(change_forces, &step);
+}
+
+static void resist(void *context)
+{
+  const Step *s = context;
+  forces_resist(&s->domain->forces);
+}
+
+void domain_forces_beside(Domain *d, double *const forces[3])
+{
+  double *none[3] = {d->particles->displacement[0], d->particles->displacement[1], d->particles->displacement[2]};
+  double *internal[3] = {forces[0], forces[1], forces[2]};
+  Step step = {.domain = d};
+  for (int k = 0; k < 3; ++k) memset(forces[k], 0, sizeof(double) * (size_t)d->particles->places);
+  exchange(d->particles, none, internal);
+  team_run(resist, &step);
+  exchange(d->particles, none, internal);
+}

@@ -1,5 +1,6 @@
 #include "forces/forces.h"
 
+#include <math.h>
 #include <stddef.h>
 
 #define FORCES(name, about) extern const ForcesType name##_forces;
@@ -70,6 +71,55 @@ void forces_resist(Forces *f)
 {
   for (int k = 0; k < f->count; ++k)
     if (f->type[k]->resist) f->type[k]->resist(f->own[k]);
+}
+
+void forces_choose(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->choose) f->type[k]->choose(f->own[k]);
+}
+
+double forces_room(const Forces *f)
+{
+  double room = INFINITY;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->room) room = fmin(room, f->type[k]->room(f->own[k]));
+  return room;
+}
+
+void forces_linearise(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->linearise) f->type[k]->linearise(f->own[k]);
+}
+
+void forces_change(Forces *f, double *const v[3], double *const change[3])
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->change) f->type[k]->change(f->own[k], v, change);
+}
+
+const char *forces_unassembled(const Forces *f)
+{
+  const char *why = NULL;
+  for (int k = 0; k < f->count && !why; ++k)
+    if (f->type[k]->unassembled) why = f->type[k]->unassembled(f->own[k]);
+  return why;
+}
+
+const char *forces_unchanging(const Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (!f->type[k]->change) return f->type[k]->name;
+  return NULL;
+}
+
+int64_t forces_pattern(const Forces *f)
+{
+  int64_t sum = 0;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->pattern) sum += f->type[k]->pattern(f->own[k]);
+  return sum;
 }
 
 void forces_commit(Forces *f)

@@ -5,6 +5,7 @@
 
 #include "constitutive/material.h"
 #include "family/family.h"
+#include "formulation/operator.h"
 
 /** What they must know of a block of the body. */
 typedef struct ForcesBlock {
@@ -40,6 +41,21 @@ typedef struct ForcesType {
   void (*find_again)(void *forces);
   /** Adds the forces per volume on particles, by all threads; trial state only. */
   void (*resist)(void *forces);
+  /* For solvers that iterate, which have no place for kinds without `change`. */
+  /** Chooses at the displacements held what the next evaluation would, so that a state can be noted. By one thread. */
+  void (*choose)(void *forces);
+  /** How far parts of the body may move against each other from where the forces were last found again, until one might be missed. */
+  double (*room)(const void *forces);
+  /** After an evaluation: keeps what changes of forces need. By one thread. */
+  void (*linearise)(void *forces);
+  /** Adds changes of the forces per volume with changes v of displacements to arrays over places, by all threads. */
+  void (*change)(void *forces, double *const v[3], double *const change[3]);
+  /** Why these changes cannot be assembled from points; NULL: they can. */
+  const char *(*unassembled)(const void *forces);
+  /** A number that changes whenever others are joined by points than were. */
+  int64_t (*pattern)(const void *forces);
+  int64_t (*point_count)(const void *forces);
+  int (*point)(const void *forces, int64_t number, Operator *point, Error *error);
   /** Makes what the last evaluation found the committed state. By one thread. */
   void (*commit)(void *forces);
   /** Energy held at the displacements held, as committed; and what was dissipated up to the last commit. */
@@ -79,6 +95,15 @@ void forces_bond_mended(Forces *forces, int32_t a, int32_t b);
 void forces_undo(Forces *forces);
 void forces_find_again(Forces *forces);
 void forces_resist(Forces *forces);
+void forces_choose(Forces *forces);
+double forces_room(const Forces *forces);
+void forces_linearise(Forces *forces);
+void forces_change(Forces *forces, double *const v[3], double *const change[3]);
+/** Of all kinds; NULL: there is none. */
+const char *forces_unassembled(const Forces *forces);
+/** @return the name of a kind that knows no changes, or NULL */
+const char *forces_unchanging(const Forces *forces);
+int64_t forces_pattern(const Forces *forces);
 void forces_commit(Forces *forces);
 double forces_energy(const Forces *forces);
 double forces_dissipated(const Forces *forces);

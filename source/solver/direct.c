@@ -13,7 +13,7 @@
 
 typedef struct Direct {
   Matrix matrix;
-  int64_t broken; /* bonds, when the matrix was created */
+  int64_t broken, pattern; /* bonds, and what forces beside theirs join, when the matrix was created */
   cholmod_common common;
   cholmod_factor *factor;
   void *symbolic, *numeric; /* of UMFPACK; numeric: it is the one to solve with */
@@ -141,7 +141,8 @@ static int prepare(LinearSolver *s, Error *error)
 {
   Direct *d = s->own;
   int status = BRECCIA_OK;
-  if (d->broken != s->domain->broken_count) {
+  const int64_t pattern = forces_pattern(&s->domain->forces);
+  if (d->broken != s->domain->broken_count || d->pattern != pattern) {
     forget_factors(d);
     matrix_destroy(&d->matrix);
     status = matrix_create(&d->matrix, &s->unknowns, error);
@@ -152,6 +153,7 @@ static int prepare(LinearSolver *s, Error *error)
         status = BRECCIA_FAILURE;
     }
     d->broken = status ? -1 : s->domain->broken_count;
+    d->pattern = pattern;
   }
   if (!status) status = matrix_fill(&d->matrix, &s->unknowns, s->stiffness_share, s->mass_factor, error);
   if (status) return status;

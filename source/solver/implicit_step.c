@@ -206,6 +206,7 @@ int implicit_begin(Solver *run, Error *error)
   domain_tell_time(s->domain, run->clock.time, 0);
   if (find_drag(s, p->velocity, s->drag, error)) return BRECCIA_FAILURE;
   domain_evaluate(s->domain);
+  increment_start(&s->increment);
   loading_move(s->loading, &(LoadMotion){.velocity = p->velocity});
   newton_apply_loads(&s->newton, run->clock.time);
   loading_settle(s->loading, p, p->velocity, 0);

@@ -1,6 +1,7 @@
 #include "solver/increment.h"
 
 #include "base/team.h"
+#include "solver/vectors.h"
 #include <math.h>
 #include <string.h>
 
@@ -8,9 +9,12 @@ int increment_check(const Solver *run, const void *section, const char *instead,
 {
   const SectionHead *head = section;
   const Material *served = domain_without_trials(run->domain);
-  if (forces_strike(&run->domain->forces))
+  const char *unchanging = forces_unchanging(&run->domain->forces);
+  if (unchanging)
     return node_error(run->reader->document, head->node, error,
-                      "%s: contact has no place in it yet; leave 'contact' out, or %s", head->node->key, instead);
+                      "%s: it needs to know how forces change with displacements, which '%s' does not tell; leave it "
+                      "out, or %s",
+                      head->node->key, unchanging, instead);
   if (served)
     return node_error(run->reader->document, head->node, error,
                       "%s: it tries strains several times, and the server of material '%s' cannot take a trial back; "
@@ -22,12 +26,15 @@ int increment_check(const Solver *run, const void *section, const char *instead,
 int increment_create(Increment *i, Domain *domain, Error *error)
 {
   i->domain = domain;
+  i->apart = domain->forces.count > 0;
   for (int k = 0; k < 3; ++k) {
     i->internal[k] = places_array(domain->particles->places, "forces", error);
     i->external[k] = places_array(domain->particles->places, "forces", error);
     if (!i->internal[k] || !i->external[k]) return BRECCIA_FAILURE;
   }
-  return BRECCIA_OK;
+  const bool made = !i->apart || (vectors_make(i->beside, domain->particles->places, "forces", error) &&
+                                  vectors_make(i->beside_now, domain->particles->places, "forces", error));
+  return made ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 void increment_forget(Increment *i)
@@ -42,6 +49,8 @@ void increment_destroy(Increment *i)
     places_free(&i->internal[k]);
     places_free(&i->external[k]);
   }
+  vectors_free(i->beside);
+  vectors_free(i->beside_now);
   if (i->domain) increment_forget(i);
 }
 
@@ -93,6 +102,12 @@ static void note_forces(void *context)
   }
 }
 
+void increment_start(Increment *i)
+{
+  i->apart = i->domain->forces.count > 0;
+  forces_commit(&i->domain->forces);
+}
+
 void increment_begin_again(Increment *i)
 {
   state_note_others(&i->before);
@@ -102,6 +117,15 @@ void increment_begin_again(Increment *i)
 
 void increment_begin(Increment *i)
 {
+  if (i->apart) { /* what may come to touch is found before the state is noted, so that it comes back */
+    forces_find_again(&i->domain->forces);
+    forces_choose(&i->domain->forces);
+    i->apart = false;
+  }
+  if (i->beside[0]) {
+    domain_forces_beside(i->domain, i->beside);
+    i->held = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces);
+  }
   team_run(note_forces, i);
   increment_begin_again(i);
 }
@@ -127,9 +151,22 @@ void increment_accept(Increment *i, double *const moved[3])
   for (int k = 0; k < 3; ++k)
     for (int64_t place = 0; place < d->particles->places; ++place) most = fmax(most, fabs(moved[k][place]));
   i->moved += most;
+  i->apart = i->domain->forces.count && most > 0;
   team_run(accept, d);
   domain_commit_points(d);
   forces_commit(&d->forces);
+}
+
+double increment_sudden_work(Increment *i, double *const moved[3])
+{
+  const Particles *p = i->domain->particles;
+  if (!i->beside[0]) return 0;
+  domain_forces_beside(i->domain, i->beside_now);
+  double work = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) - i->held;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t place = 0; place < p->places; ++place)
+      work += 0.5 * p->volume[place] * (i->beside[k][place] + i->beside_now[k][place]) * moved[k][place];
+  return work;
 }
 
 static void break_bonds(void *context)

@@ -8,11 +8,14 @@ typedef struct Increment {
   Domain *domain;
   StateCopy before;
   double *internal[3], *external[3]; /* forces per volume of bonds and of loads at its beginning */
+  bool apart;                        /* parts have moved against each other since forces between them were looked for */
+  /* Of forces beside those of bonds, where there are any: at its beginning, with the energy that they held or had dissipated; and now. */
+  double *beside[3], *beside_now[3], held;
   double moved; /* sum over the increments since bonds were judged of the largest component of any motion in each */
 } Increment;
 
 /** Refuses what solvers that iterate have no place for.
- *  @param[in] section  of the solver's keys, to be named; @param[in] instead  what to do without contact */
+ *  @param[in] section  of the solver's keys, to be named; @param[in] instead  what to do without the solver */
 int increment_check(const Solver *solver, const void *section, const char *instead, Error *error);
 
 /** `increment` is zero; destroy it in any case. */
@@ -26,6 +29,9 @@ void increment_forget(Increment *increment);
 /** Where an increment of a length ends: at a time that is asked for, if it comes before its end or hardly behind it. */
 double increment_end(const Solver *solver, double length);
 
+/** At the begin of a stage, when forces have been evaluated: where faces stand to each other counts from there. */
+void increment_start(Increment *increment);
+
 /** Notes the state, so that it can be had back. */
 void increment_begin(Increment *increment);
 /** The same where an increment is solved again: forces stay noted as they were at its beginning. */
@@ -35,6 +41,10 @@ void increment_retreat(Increment *increment);
 /** What laws and forces remember of the increment is so from now on.
  *  @param[in] moved  changes of displacements in it */
 void increment_accept(Increment *increment, double *const moved[3]);
+
+/** What faces that meet within an increment have taken beyond the mean of their forces at both ends of it, when it has been accepted: they may have come
+ *  a long way before they met. @param[in] moved  changes of displacements since increment_begin */
+double increment_sudden_work(Increment *increment, double *const moved[3]);
 
 /** Breaks the most loaded bonds that are beyond their limit, at the displacements held, and commits what is left of the body, with its forces.
  *  @param[in] most  as in Moment

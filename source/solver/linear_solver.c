@@ -144,6 +144,7 @@ void linear_solver_apply(LinearSolver *s, double *const v[3], double *const kv[3
   else
     domain_linear_step(s->domain, v, kv);
   if (s->stiffness_share != 0) vectors_combine(s->domain, 1 + s->stiffness_share, kv, 0, kv);
+  if (!s->elastic) domain_change_forces(s->domain, v, kv);
   loading_change(s->loading, s->domain->particles, v, kv);
   team_each(s->domain->batch_count, weigh_batch, &(Weighing){s, v, kv});
   unknowns_gather(&s->unknowns, kv);

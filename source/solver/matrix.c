@@ -8,6 +8,8 @@
 const char *matrix_refusal(const Unknowns *u)
 {
   const int64_t most = 3000; /* rows and columns of one spring are all filled */
+  const char *forces = forces_unassembled(&u->domain->forces);
+  if (forces) return forces;
   for (int l = 0; l < u->loading->count; ++l) {
     const Load *load = &u->loading->loads[l];
     if (!load->type->change || !load_acts(u->loading, load)) continue;
@@ -20,10 +22,12 @@ const char *matrix_refusal(const Unknowns *u)
 
 /* ---- points ---- */
 
-/** What has points: a region or a load. */
+/** What has points: a region, a load or a kind of forces. */
 typedef struct Source {
   const Region *region;
   const Load *load;
+  const ForcesType *forces;
+  const void *own; /* of forces */
   int64_t count;
 } Source;
 
@@ -40,11 +44,17 @@ static int find_source(const Unknowns *u, int n, Source *source)
     if (load->type->point && load_acts(u->loading, load) && count++ == n)
       *source = (Source){.load = load, .count = load->type->point_count(load)};
   }
+  for (int k = 0; k < d->forces.count; ++k) {
+    const ForcesType *type = d->forces.type[k];
+    if (type->point && count++ == n)
+      *source = (Source){.forces = type, .own = d->forces.own[k], .count = type->point_count(d->forces.own[k])};
+  }
   return count;
 }
 
 static int find_point(const Source *source, const Unknowns *u, int64_t number, Operator *point, Error *error)
 {
+  if (source->forces) return source->forces->point(source->own, number, point, error);
   if (source->load) return source->load->type->point(source->load, u->domain->particles, number, point, error);
   return source->region->type->point(source->region->formulation, number, point, error);
 }
@@ -262,7 +272,7 @@ static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Err
   int room = 0, status = BRECCIA_OK;
   for (int s = 0; s < find_source(u, s, &source); ++s)
     for (int64_t n = 0; n < source.count && !status; ++n) {
-      const double factor = source.load ? 1 : 1 + stiffness_share;
+      const double factor = source.region ? 1 + stiffness_share : 1;
       status = find_point(&source, u, n, &point, error);
       const int count = point.count;
       if (!status && count > room) {

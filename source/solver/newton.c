@@ -2,6 +2,7 @@
 #include "solver/vectors.h"
 
 #include "base/team.h"
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +14,21 @@ static double forces_at_start(const Domain *d)
   double sum = 0;
   for (int k = 0; k < 3 && d->initial_strain[0]; ++k)
     for (int64_t i = 0; i < p->places; ++i) sum += p->volume[i] * p->internal[k][i] * p->volume[i] * p->internal[k][i];
+  return sqrt(sum);
+}
+
+/** The root of the sum over particles of the force by which a neighbour's displacement of 1 is answered, squared. */
+static double stiffness_of(const Domain *d)
+{
+  const Particles *p = d->particles;
+  double sum = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const Material *m = &d->materials[d->material[i / SLICE]];
+    const double spacing = d->body.lattices[p->block[i / SLICE]].spacing;
+    const double k = p->volume[i] * (m->bulk + 4 * m->shear / 3) / (spacing * spacing);
+    sum += k * k;
+  }
   return sqrt(sum);
 }
 
@@ -34,6 +50,7 @@ int newton_create(Newton *n, Error *error)
   }
   if (failed) return BRECCIA_FAILURE;
   n->reference = forces_at_start(n->domain);
+  n->stiffness = stiffness_of(n->domain);
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
 }
 
@@ -66,6 +83,32 @@ void newton_apply_loads(const Newton *n, double time)
   team_run(apply_loads, &(Loads){n->loading, n->domain->particles, time});
 }
 
+/** Forces come from differences of displacements, whose last digits are lost where these are large; those of inertia from the way since the step began. */
+static void find_roundings(Newton *n)
+{
+  const Particles *p = n->domain->particles;
+  const double digits = 16 * DBL_EPSILON;
+  double most = 0, displaced = 0, inertia = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      const double u = p->displacement[k][i], mass = p->density[i] * p->volume[i] * n->moved[k][i];
+      most = fmax(most, fabs(u));
+      displaced += u * u;
+      inertia += mass * mass;
+    }
+  inertia = n->linear.mass_factor > 0 ? n->linear.mass_factor * sqrt(inertia) : 0;
+  n->roundings = digits * (n->stiffness * most + inertia);
+  n->rounding_work = n->roundings * sqrt(displaced);
+}
+
+int newton_linearise(const Newton *n, Error *error)
+{
+  if (domain_linearise(n->domain, error)) return BRECCIA_FAILURE;
+  forces_linearise(&n->domain->forces);
+  const char *failed = forces_failed(&n->domain->forces);
+  return failed ? error_add(error, BRECCIA_FAILURE, "out of memory: %s", failed) : BRECCIA_OK;
+}
+
 NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
 {
   Domain *d = n->domain;
@@ -73,7 +116,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   if (n->beside && n->beside->prepare(n->beside->context, n->moved, time, error)) return NEWTON_FAILED;
   if (n->relaxes)
     domain_evaluate(d);
-  else if (domain_linearise(d, error))
+  else if (newton_linearise(n, error))
     return NEWTON_FAILED;
   if (*domain_server_problem(d)) {
     error_add(error, BRECCIA_FAILURE, "%s", domain_server_problem(d));
@@ -83,6 +126,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   if (!isfinite(d->force_sum)) return NEWTON_DIVERGED;
   newton_apply_loads(n, time);
   double exerted = 0;
+  find_roundings(n);
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       n->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
@@ -106,6 +150,7 @@ static bool add_motions(Newton *n, double time)
   if (unknowns_product(u, n->change, n->change) == 0) return false;
   /* Forces before they are gathered: those of the motions belong to the same sum. */
   domain_linear_step(n->domain, n->change, n->moved);
+  domain_change_forces(n->domain, n->change, n->moved);
   loading_change(n->loading, p, n->change, n->moved);
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) n->moved[k][i] *= p->volume[i];
@@ -128,7 +173,7 @@ void newton_state(Newton *n, StateList *list)
 
 static bool keeps_factors(const Newton *n)
 {
-  return n->beside && !n->follows && domain_is_elastic(n->domain);
+  return n->beside && !n->follows && domain_is_elastic(n->domain) && !n->domain->forces.count;
 }
 
 /** Exchanges the displacements held for others. */
@@ -236,9 +281,21 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
   return outcome;
 }
 
-static bool has_converged(const Newton *n, double correction, double work, double first_work)
+bool newton_has_gone_far(const Newton *n)
 {
-  if (!(n->unbalanced <= n->spec->residual)) return false;
+  const double room = forces_room(&n->domain->forces);
+  return isfinite(room) && vectors_apart(n->domain->particles, n->moved) > room;
+}
+
+/** Where a body only moves as a whole nothing is exerted but roundings. */
+static bool is_balanced(const Newton *n, double force)
+{
+  return force <= fmax(n->spec->residual * n->exerted, n->roundings);
+}
+
+static bool has_converged(const Newton *n, double force, double correction, double work, double first_work)
+{
+  if (!is_balanced(n, force)) return false;
   const double off = n->control ? fabs(n->target - control_shown(n->control)) : 0;
   if (n->control && !(off <= n->spec->residual * fmax(fabs(n->target), fabs(n->control->step))))
     return false; /* only a part of the last change was taken */
@@ -307,7 +364,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   vectors_clear(n->moved, p->places);
   double force = size_of(n, n->force);
   n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
-  if (!moves && (force == 0 || force <= n->spec->residual * n->exerted)) {
+  if (!moves && is_balanced(n, force)) {
     n->unbalanced = n->unbalanced_before;
     n->reference = n->exerted;
     return NEWTON_CONVERGED;
@@ -344,7 +401,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     const double all = size_of(n, n->moved), correction = all > 0 ? share * size_of(n, n->change) / all : 0;
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     tell(n, correction, energy, share, &linear);
-    if (has_converged(n, correction, work, first_work)) {
+    if (has_converged(n, force, correction, work, first_work)) {
       if (!n->beside && is_carried_away(p)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
       n->reference = n->exerted;
       return NEWTON_CONVERGED;
@@ -360,17 +417,20 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
 {
   const NewtonOutcome outcome = solve(n, time, error);
   domain_take_secants(n->domain, false);
-  return outcome;
+  return outcome == NEWTON_CONVERGED && newton_has_gone_far(n) ? NEWTON_FAR : outcome;
 }
 
 const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words, size_t size)
 {
   const Domain *d = n->domain;
   const Particles *p = d->particles;
+  const char *parts =
+      d->forces.count ? " (parts that only contact holds must touch at first, and not slide freely)" : "";
   switch (outcome) {
   case NEWTON_SLOW:
-    snprintf(words, size, "%lld iterations left %.2g of the forces out of balance%s", (long long)n->iterations - 1,
-             n->unbalanced, n->indefinite ? ", and the body does not resist some motion any more" : "");
+    snprintf(words, size, "%lld iterations left %.2g of the forces out of balance%s%s", (long long)n->iterations - 1,
+             n->unbalanced, n->indefinite ? ", and the body does not resist some motion any more" : "",
+             n->indefinite ? parts : "");
     break;
   case NEWTON_LAW: {
     const int64_t i = d->failed_place;
@@ -379,7 +439,11 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
              m->law_name, m->name, p->number[i], p->position[0][i], p->position[1][i], p->position[2][i]);
     break;
   }
-  case NEWTON_SINGULAR: snprintf(words, size, "the body does not resist some motion at all"); break;
+  case NEWTON_SINGULAR: snprintf(words, size, "the body does not resist some motion at all%s", parts); break;
+  case NEWTON_FAR:
+    snprintf(words, size, "particles have moved by more than %.3g against each other, farther than contact looks ahead",
+             forces_room(&d->forces));
+    break;
   default: snprintf(words, size, "the forces have grown beyond all bounds");
   }
   return words;

@@ -55,6 +55,7 @@ typedef enum NewtonOutcome {
   NEWTON_DIVERGED, /* forces that are no numbers, or grow beyond all bounds */
   NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
   NEWTON_SINGULAR, /* the linearised equations have no solution */
+  NEWTON_FAR,      /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
   NEWTON_FAILED,   /* the reason is in the error */
 } NewtonOutcome;
 
@@ -87,6 +88,9 @@ typedef struct Newton {
   double *unit_force[3], *unit_motion[3]; /* where that factor grows by 1: forces, and displacements from them */
   double reference; /* the most that loads and supports have exerted at any equilibrium of the stage so far */
   double exerted;   /* the same, or what they exert now if that is more */
+  double stiffness; /* of the body at first, by which displacements make roundings of forces */
+  double roundings,
+      rounding_work; /* no closer than this are forces in balance; and the work of so much along all displacements */
   /* In dynamics of elastic bodies factors and preconditioners of their stiffness at the start, without displacements, serve for all steps of one length,
    * until bonds break. Of which these are is state, so that a restart makes the same; whether they are there is not. */
   double factored_share, factored_mass; /* stiffness_share and mass_factor */
@@ -103,6 +107,12 @@ typedef struct Newton {
 /** `newton` has domain, loading, spec and `beside`, and is zero beyond; destroy it in any case. */
 int newton_create(Newton *newton, Error *error);
 void newton_destroy(Newton *newton);
+
+/** Forces at the displacements held, and what linearised steps need of them. */
+int newton_linearise(const Newton *newton, Error *error);
+
+/** Whether parts of the body have moved so far against each other in an increment that forces between them may have been missed. */
+bool newton_has_gone_far(const Newton *newton);
 
 /** Forces out of balance on the unknowns, with loads as they are at a time of the run, and the most that supports and loads exert.
  *  @return that the laws could be asked */

@@ -21,6 +21,7 @@ static void find_unit_force(Newton *n)
   vectors_clear(room, p->places);
   unknowns_spread_controlled(u, room);
   domain_linear_step(n->domain, room, n->unit_force);
+  domain_change_forces(n->domain, room, n->unit_force);
   loading_change(n->loading, p, room, n->unit_force);
   for (int k = 0; k < 3; ++k) memcpy(room[k], p->external[k], sizeof(double) * (size_t)p->places);
   team_run(apply_controlled, n);
@@ -96,7 +97,7 @@ int newton_check_control(Newton *n, Error *error)
 {
   const double accuracy = 1e-8;
   const int64_t given_up = n->linear.given_up; /* the run gives up its ways by itself */
-  if (domain_linearise(n->domain, error) || linear_solver_prepare(&n->linear, error) ||
+  if (newton_linearise(n, error) || linear_solver_prepare(&n->linear, error) ||
       find_unit_motion(n, accuracy, error) != NEWTON_CONVERGED)
     return BRECCIA_FAILURE;
   control_open(n->control);

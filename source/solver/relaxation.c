@@ -143,10 +143,11 @@ static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *da
   return NEWTON_CONVERGED;
 }
 
-/** Forces out of balance over those that are exerted. */
+/** Forces out of balance over those that are exerted; 0 of roundings. */
 static double find_unbalanced(const Newton *n)
 {
   const double force = sqrt(unknowns_product(&n->linear.unknowns, n->force, n->force));
+  if (force <= n->roundings) return 0;
   return n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
 }
 
@@ -179,5 +180,5 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
                damping);
   }
   n->reference = n->exerted;
-  return NEWTON_CONVERGED;
+  return newton_has_gone_far(n) ? NEWTON_FAR : NEWTON_CONVERGED;
 }

@@ -86,8 +86,8 @@ const Section static_section = {.name = "static",
 /** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these
  *  two, whatever was tried on the way. */
 typedef struct Way {
-  double *moved[3];        /* made where an increment is solved again; else what Newton's method has moved is all */
-  double bonds, given_off; /* works booked of it */
+  double *moved[3]; /* made where an increment is solved again; else what Newton's method has moved is all */
+  double bonds, given_off, sudden; /* works booked of it */
 } Way;
 
 typedef struct Static {
@@ -232,7 +232,8 @@ static void foresee(const void *section, const Clock *clock, double *steps, doub
 
 static double exerted(const Solver *run)
 {
-  return ((const Static *)run->own)->newton.reference;
+  const Newton *n = &((const Static *)run->own)->newton;
+  return fmax(n->reference, n->roundings / n->spec->residual);
 }
 
 static int measure(Solver *run, StepCost *cost, Error *error)
@@ -270,6 +271,7 @@ static int begin(Solver *run, Error *error)
   control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
+  increment_start(&s->increment);
   return BRECCIA_OK;
 }
 
@@ -297,8 +299,18 @@ static void book(Static *s, double *const moved[3])
   s->ledger->bond_work += bonds - s->way.bonds;
   s->ledger->damping_work += given_off - s->way.given_off;
   s->ledger->external_work += bonds + given_off - s->way.bonds - s->way.given_off;
+  s->ledger->paid =
+      fmax(s->ledger->paid, s->newton.rounding_work); /* less says nothing of a body that moves as a whole */
   s->way.bonds = bonds;
   s->way.given_off = given_off;
+}
+
+static void book_sudden(Static *s, double *const moved[3])
+{
+  const double sudden = increment_sudden_work(&s->increment, moved);
+  s->ledger->bond_work += sudden - s->way.sudden;
+  s->ledger->external_work += sudden - s->way.sudden;
+  s->way.sudden = sudden;
 }
 
 /** One try to come to equilibrium at a time of the run.
@@ -309,7 +321,7 @@ static NewtonOutcome try_increment(Static *s, double end, bool again, Error *err
     increment_begin_again(&s->increment);
   } else {
     increment_begin(&s->increment);
-    s->way.bonds = s->way.given_off = 0;
+    s->way.bonds = s->way.given_off = s->way.sudden = 0;
   }
   domain_tell_time(s->domain, end, end - s->clock->time);
   if (s->spec->control) {
@@ -328,6 +340,7 @@ static NewtonOutcome try_increment(Static *s, double end, bool again, Error *err
   book(s, again ? s->way.moved : s->newton.moved);
   if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
   increment_accept(&s->increment, s->newton.moved);
+  book_sudden(s, again ? s->way.moved : s->newton.moved);
   return outcome;
 }
 

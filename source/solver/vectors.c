@@ -1,6 +1,7 @@
 #include "solver/vectors.h"
 
 #include "base/team.h"
+#include <math.h>
 #include <string.h>
 
 bool vectors_make(double *vector[3], int64_t places, const char *label, Error *error)
@@ -48,4 +49,19 @@ static void combine_batch(void *context, int64_t b)
 void vectors_combine(const Domain *d, double own, double *const a[3], double factor, double *const b[3])
 {
   team_each(d->batch_count, combine_batch, &(Sum){d, a, b, own, factor});
+}
+
+double vectors_apart(const Particles *p, double *const vector[3])
+{
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    double least = INFINITY, most = -INFINITY;
+    for (int64_t i = 0; i < p->places; ++i) {
+      if (p->number[i] < 0) continue;
+      least = fmin(least, vector[k][i]);
+      most = fmax(most, vector[k][i]);
+    }
+    square += (most - least) * (most - least);
+  }
+  return sqrt(square);
 }

@@ -16,4 +16,7 @@ void vectors_clear(double *const vector[3], int64_t places);
 /** a = own a + factor b, by the team; where `own` is 0 nothing that stood in a is left. */
 void vectors_combine(const Domain *domain, double own, double *const a[3], double factor, double *const b[3]);
 
+/** The most by which components of a vector over particles differ, of all axes the root of the sum of squares. */
+double vectors_apart(const Particles *particles, double *const vector[3]);
+
 #endif

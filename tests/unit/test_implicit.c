@@ -468,6 +468,26 @@ static void bonds_break_and_a_restart_goes_on_to_the_same_bits(void **state)
   assert_same_bits_after_restart("elastic"); /* whose factors are kept */
 }
 
+static void a_body_that_flies_freely_takes_whole_steps(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(UNITS SOFT_SOLID
+               "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 1, shape: {box: {from: [0, 0], "
+               "to: [0.1, 0.1]}}}}\n"
+               "peridynamics: {space: plane strain}\n"
+               "loads: [{on: {block: b}, initial velocity: {translation: [3, -1]}}]\n"
+               "solve: {implicit: {end time: 0.1, time step: 1e-2, scheme: HHT}}\n");
+  step_surely(m, 10);
+  assert_true(solver_is_done(&m->solver));
+  const Particles *p = m->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n) {
+    assert_near(p->displacement[0][p->place_of[n]], 0.3, 1e-12);
+    assert_near(p->displacement[1][p->place_of[n]], -0.1, 1e-12);
+  }
+  breccia_model_destroy(&m);
+}
+
 static void keys_that_contradict_each_other_are_refused(void **state)
 {
   (void)state;
@@ -522,6 +542,7 @@ int main(void)
       cmocka_unit_test(accelerations_are_those_of_the_bonds_that_are_left),
       cmocka_unit_test(bonds_break_and_a_restart_goes_on_to_the_same_bits),
       cmocka_unit_test(no_step_is_shorter_than_the_smallest),
+      cmocka_unit_test(a_body_that_flies_freely_takes_whole_steps),
       cmocka_unit_test(keys_that_contradict_each_other_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -400,6 +400,34 @@ static void a_body_that_is_carried_away_finds_no_equilibrium(void **state)
 }
 
 /** A brittle strip that a growing force tears: the bonds that broke are gone, so the step counts, and what loads have paid in it too. */
+static void a_body_that_is_moved_as_a_whole_is_at_rest(void **state)
+{
+  (void)state;
+  const char *const ways[] = {"equations: direct", "equations: minimal residuals", "method: relaxation"};
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *m =
+        model_of(UNITS SOFT_SOLID
+                 "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 1, shape: {box: {from: [0, "
+                 "0], to: [0.1, 0.1]}}}}\n"
+                 "peridynamics: {space: plane strain}\n"
+                 "loads: [{on: {face: y+, layers: 3}, displacement: [0.03, -0.04], history: {ramp to: 1}}]\n"
+                 "solve: {static: {increments: 4, %s}}\n",
+                 ways[k]);
+    step_surely(m, 4); /* not one of them is cut, and roundings are not energy from nothing */
+    assert_true(solver_is_done(&m->solver));
+    const Particles *p = m->domain.particles;
+    for (int64_t n = 0; n < p->count; ++n) {
+      assert_near(p->displacement[0][p->place_of[n]], 0.03, 1e-12);
+      assert_near(p->displacement[1][p->place_of[n]], -0.04, 1e-12);
+    }
+    assert_true(solver_energy(&m->solver).imbalance < 0.1);
+    Rest rest;
+    assert_int_equal(rest_find(&m->solver, &rest, NULL), 0);
+    assert_true(rest.reached);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void a_step_in_which_bonds_broke_counts_though_it_fails(void **state)
 {
   (void)state;
@@ -512,6 +540,7 @@ int main(void)
       cmocka_unit_test(a_step_that_fails_before_anything_broke_does_not_count),
       cmocka_unit_test(a_step_in_which_bonds_broke_counts_though_it_fails),
       cmocka_unit_test(a_body_that_is_carried_away_finds_no_equilibrium),
+      cmocka_unit_test(a_body_that_is_moved_as_a_whole_is_at_rest),
       cmocka_unit_test(an_unloaded_body_is_at_rest),
       cmocka_unit_test(a_loose_body_is_refused),
   };
