@@ -498,6 +498,50 @@ static void a_torn_bar_spends_its_fracture_energy(void **state)
   breccia_model_destroy(&m);
 }
 
+/** E_zz = -nu / (1 - nu) (E_xx + E_yy) makes a plate thinner, of finite strain by the root of 1 + 2 E_zz. */
+static void plates_get_thinner_as_they_are_pulled(void **state)
+{
+  (void)state;
+  const double f[9] = {1.02, 0, 0, 0, 1.01, 0, 0, 0, 1};
+  for (int small = 0; small < 2; ++small) {
+    breccia_model *m = plate("variational", "plane stress", 1.5, "");
+    if (small) {
+      breccia_model_destroy(&m);
+      m = model_of(UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
+                         "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: "
+                         "{particles: [9, 9]}}}}\n"
+                         "peridynamics: {formulation: hybrid, space: plane stress, strain: small}\n" IMPLICIT);
+    }
+    deform_uniformly(m, f);
+    compute_forces(m);
+    const Region *region = &m->domain.regions[0];
+    const double sum = small ? 0.03 : (f[0] * f[0] + f[4] * f[4]) / 2 - 1, across = -0.3 / 0.7 * sum;
+    for (int64_t n = 0; n < m->domain.particles->count; ++n) {
+      double found[9];
+      region->type->gradient(region->formulation, m->domain.particles->place_of[n], found);
+      for (int k = 0; k < 8; ++k) assert_near(found[k], f[k], 1e-12);
+      assert_near(found[8], small ? 1 + across : sqrt(1 + 2 * across), 1e-9);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
+/** A row of particles has no strain across itself. */
+static void bodies_of_one_row_are_refused_with_their_particle(void **state)
+{
+  (void)state;
+  char *words = refusal_of(
+      "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.5, thickness: 1, shape: {box: {particles: [9, 1]}}}}\n"
+      "peridynamics: {formulation: hybrid, space: plane stress}\n"
+      "solve: {explicit: {steps: 1}}\n");
+  if (!strstr(words,
+              "particle 0 at [0.25, 0.25, 0] has bonds that span no plane, so that there is no strain; the horizon "
+              "is 1.0075: give a longer horizon, or the body at least two layers in every direction"))
+    fail_msg("%s", words);
+  free(words);
+}
+
 /** What `check` tells: as many points as bonds, and how many particles both ends of a bond see, themselves too, at least and at most. */
 static void points_and_their_particles_are_counted(void **state)
 {
@@ -547,6 +591,8 @@ int main(void)
       cmocka_unit_test(bonds_break_at_stresses_on_their_section),
       cmocka_unit_test(a_torn_bar_spends_its_fracture_energy),
       cmocka_unit_test(points_and_their_particles_are_counted),
+      cmocka_unit_test(plates_get_thinner_as_they_are_pulled),
+      cmocka_unit_test(bodies_of_one_row_are_refused_with_their_particle),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -377,6 +377,13 @@ static void what_a_server_cannot_do_is_said_and_changes_nothing(void **state)
   assert_near(pull(&line, 0, 2 * YIELD_STRAIN, 0), 0, 1e-6);
   assert_near(pull(&line, 1, 0.5 * YIELD_STRAIN, 0), 0.5 * YIELD_STRESS, 1e-6);
   say(&line, OPERATION_STATISTICS, 0, "", "evaluations: 3\ncommits: 1\n");
+  static const Operation nothing[] = {OPERATION_COMMIT, OPERATION_REVERT, OPERATION_BYE};
+  for (int k = 0; k < 3; ++k) { /* answered with nothing */
+    say(&line, nothing[k], 0, "", "");
+    assert_int_equal(line.operation, nothing[k] | OPERATION_ANSWER);
+    assert_int_equal(line.count, 0);
+    assert_string_equal(line.text, "");
+  }
   channel_close(&line.channel);
   end();
 }
