@@ -83,10 +83,8 @@ ShapeTensor shape_tensor(const Family *family, int32_t place, int dimensions, do
       shape.inverse[XY] = -k[XY] / determinant;
     } else
       tensor_inverse(k, shape.inverse);
-  } else {
+  } else
     pseudo_inverse(k, shape.inverse);
-    shape.mode = SHAPE_REDUCED;
-  }
   find_demand(family->particles, place, spread, &shape);
   return shape;
 }

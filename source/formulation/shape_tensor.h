@@ -5,8 +5,7 @@
 #include "family/family.h"
 
 typedef enum ShapeMode {
-  SHAPE_REGULAR, /* K was inverted */
-  SHAPE_REDUCED, /* directions in which the family is flat were dropped: no strain there */
+  SHAPE_REGULAR, /* K was inverted, but for directions in which the family is flat: no strain there */
   SHAPE_AXIAL,   /* too few bonds for a strain: they act as springs */
   SHAPE_FREE,    /* no bonds */
 } ShapeMode;

@@ -468,6 +468,32 @@ static void one_layer_in_space_is_refused_with_advice(void **state)
   free(words);
 }
 
+/** Particles from a file that nearly lie in a plane have no strain across it that could be told from noise. */
+static void flat_families_are_refused(void **state)
+{
+  (void)state;
+  static const double heights[] = {1e-4, 3e-3, 0.1}; /* by which they stand above and below the plane, in spacings */
+  for (int h = 0; h < 3; ++h) {
+    FILE *file = fopen("test_flat.csv", "w");
+    fprintf(file, "x,y,z,volume\n");
+    for (int n = 0; n < 49; ++n) fprintf(file, "%d,%d,%g,1\n", n % 7, n / 7, heights[h] * (n * n % 3 ? 1 : -1));
+    fclose(file);
+    const char *deck = "materials: {m: {model: elastic, density: 1, Young modulus: 1, Poisson ratio: 0}}\n"
+                       "body: {b: {material: m, spacing: 1, file: test_flat.csv}}\n"
+                       "solve: {explicit: {steps: 1, time step: 1e-9}}\n";
+    if (h > 0) {
+      breccia_model *model = model_of("%s", deck);
+      breccia_model_destroy(&model);
+    } else {
+      char *words = refusal_of(deck);
+      if (!strstr(words, "bonds that do not span space, so that it has no strain; the horizon is 3.015"))
+        fail_msg("%s", words);
+      free(words);
+    }
+    remove("test_flat.csv");
+  }
+}
+
 static void a_lone_bond_pulls_with_the_micromodulus(void **state)
 {
   (void)state;
@@ -515,6 +541,7 @@ int main(void)
       cmocka_unit_test(plane_stress_and_plane_strain_have_their_moduli),
       cmocka_unit_test(lone_particles_and_torn_families_give_finite_forces),
       cmocka_unit_test(one_layer_in_space_is_refused_with_advice),
+      cmocka_unit_test(flat_families_are_refused),
       cmocka_unit_test(a_lone_bond_pulls_with_the_micromodulus),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -343,6 +343,36 @@ static void calibration_makes_its_field_exact(void **state)
   }
 }
 
+/** What `check` tells of lattices whose axes are not alike: the modulus along each, between the least and largest of all directions, which a horizon of one
+ *  shell of neighbours tells apart in space and six neighbours in the plane do not. */
+static void check_tells_moduli_in_all_directions(void **state)
+{
+  (void)state;
+  for (int l = 0; l < 2; ++l) {
+    breccia_model *model = bonded(l ? FCC : HEXAGONAL, l ? "3-D" : "plane stress", "horizon: 1.1 spacings");
+    const char *line = strstr(breccia_model_overview(model), "a uniaxial patch shows ");
+    double along[3] = {0}, least = NAN, largest = NAN;
+    assert_non_null(line);
+    const int read =
+        l ? sscanf(line,
+                   "a uniaxial patch shows %lf of the wanted modulus along x, %lf along y, %lf along z; %lf to %lf in "
+                   "all directions",
+                   &along[0], &along[1], &along[2], &least, &largest)
+          : sscanf(
+                line,
+                "a uniaxial patch shows %lf of the wanted modulus along x, %lf along y; %lf to %lf in all directions",
+                &along[0], &along[1], &least, &largest);
+    assert_int_equal(read, 4 + l);
+    /* Twelve neighbours (1, 1, 0) in cubic symmetry: c11 = 2 c12 = 2 c44, so that E along an edge of the cube, a diagonal of a face (a row) and one of space
+     * are 4/3, 2 and 12/5 c44; with the wanted energy of expansion the second is E. */
+    for (int k = 0; k < 2 + l; ++k) assert_true(along[k] >= least - 1e-9 && along[k] <= largest + 1e-9);
+    assert_near(least, l ? 2. / 3 : along[1], 2e-3);
+    assert_near(largest, l ? 1.2 : along[0], 2e-3);
+    assert_near(along[0], l ? 1 : along[1], 2e-3);
+    breccia_model_destroy(&model);
+  }
+}
+
 static void waves_run_as_the_sum_over_the_lattice_says(void **state)
 {
   (void)state;
@@ -446,6 +476,7 @@ int main(void)
       cmocka_unit_test(hexagonal_bonds_are_isotropic_in_the_plane),
       cmocka_unit_test(face_centred_bonds_have_cubic_symmetry_and_differ_less_than_cubic_ones),
       cmocka_unit_test(calibration_makes_its_field_exact),
+      cmocka_unit_test(check_tells_moduli_in_all_directions),
       cmocka_unit_test(waves_run_as_the_sum_over_the_lattice_says),
       cmocka_unit_test(uniform_strain_leaves_the_inside_without_force_in_all_formulations),
   };
