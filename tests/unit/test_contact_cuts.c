@@ -39,6 +39,54 @@ static double mean_motion(const breccia_model *model, int axis, double height, i
   return sum / count;
 }
 
+/** Blocks of unlike stiffness and spacing press alike whichever of them the deck names first. */
+static void the_order_of_blocks_changes_nothing(void **state)
+{
+  (void)state;
+  static const char *const soft = "a: {material: m, lattice: square, thickness: 1, spacing: 0.01, shape: {box: {from: "
+                                  "[0, 0], to: [0.12, 0.08]}}}",
+                           *const stiff =
+                               "b: {material: n, lattice: square, thickness: 1, spacing: 0.015, shape: {box: "
+                               "{from: [0, 0.08], to: [0.12, 0.17]}}}";
+  static const char *const kinds[][2] = {{"bond-based", "elastic-1d"},
+                                         {"correspondence", "elastic, Poisson ratio: 0.25"}};
+  for (int k = 0; k < 2; ++k) {
+    double pressed[2][2], energy[2];
+    for (int turned = 0; turned < 2; ++turned) {
+      breccia_model *m =
+          model_of("units: {length: m, force: kN, time: s}\n"
+                   "materials: {m: {density: 2.4, model: %s, Young modulus: 3 GPa}, n: {density: 2.4, model: %s, Young "
+                   "modulus: 20 "
+                   "GPa}}\nbody: {%s, %s}\ncracks: [{cut: {line: [[-1, 0.08], [1, 0.08]]}}]\nperidynamics: "
+                   "{formulation: %s, space: plane stress, horizon: 0.04}\ncontact: {}\n"
+                   "solve: {explicit: {steps: 1}}\n",
+                   kinds[k][1], kinds[k][1], turned ? stiff : soft, turned ? soft : stiff, kinds[k][0]);
+      const Particles *p = m->domain.particles;
+      for (int64_t n = 0; n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        if (p->position[1][i] < 0.08) continue;
+        p->displacement[1][i] = -2e-5;
+        p->displacement[0][i] = 1e-5 + 1e-4 * p->position[0][i];
+      }
+      compute_forces(m);
+      double sum[2] = {0};
+      for (int64_t n = 0; n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        for (int c = 0; c < 2 && p->position[1][i] > 0.08; ++c) sum[c] += p->volume[i] * p->internal[c][i];
+      }
+      for (int c = 0; c < 2; ++c) pressed[turned][c] = sum[c];
+      Team *before = team_use(m->team);
+      energy[turned] = contact_energy(contact_of(&m->domain));
+      team_use(before);
+      breccia_model_destroy(&m);
+    }
+    assert_true(pressed[0][1] > 1 && energy[0] > 0);
+    assert_near(pressed[1][1], pressed[0][1], 1e-9 * pressed[0][1]);
+    assert_near(pressed[1][0], pressed[0][0], 1e-9 * pressed[0][1]);
+    assert_near(energy[1], energy[0], 1e-9 * energy[0]);
+  }
+}
+
 static void a_closed_cut_is_as_stiff_as_the_body_and_opens_freely(void **state)
 {
   (void)state;
@@ -211,6 +259,7 @@ static void a_block_slides_as_far_as_coulomb_says_and_sticks_below_his_angle(voi
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_order_of_blocks_changes_nothing),
       cmocka_unit_test(a_closed_cut_is_as_stiff_as_the_body_and_opens_freely),
       cmocka_unit_test(a_block_that_slides_on_a_cut_gains_nothing),
       cmocka_unit_test(faces_of_a_cut_slide_freely_or_with_coulombs_friction),

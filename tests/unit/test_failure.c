@@ -271,6 +271,81 @@ static void bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time(void **stat
     }
 }
 
+/** At rest, too: ends that increments move along no axis, by as much along each. */
+static void bonds_at_rest_break_in_the_increment_that_overloads_them(void **state)
+{
+  (void)state;
+  for (int plane = 0; plane < 2; ++plane) {
+    breccia_model *m = model_of(
+        "materials: {m: {model: elastic-1d, density: 1, Young modulus: 100}}\nbody: {b: {material: m, spacing: 1, "
+        "%s}}\n"
+        "peridynamics: {formulation: bond-based, space: %s, horizon: 1.8 spacings}\nfailure: {critical stretch: 0.05}\n"
+        "loads: [{on: {face: x-}, displacement: %s}, {on: {face: x+}, displacement: %s, history: {ramp to: 1}}]\n"
+        "solve: {static: {increments: 60}}\n",
+        plane ? "lattice: square, thickness: 1, shape: {box: {particles: [3, 2]}}"
+              : "shape: {box: {particles: [3, 2, 2]}}",
+        plane ? "plane stress" : "3-D", plane ? "[0, 0]" : "[0, 0, 0]", plane ? "[0.3, 0.3]" : "[0.3, 0.3, 0.3]");
+    while (!m->solver.clock.ended && !breccia_model_step(m, 1, NULL))
+      assert_none_is_beyond(m, plane ? "a plate" : "a block");
+    assert_true(m->domain.broken_count > 3 && m->solver.clock.step > 20);
+    breccia_model_destroy(&m);
+  }
+}
+
+static double stretch_of(const Particles *p, int32_t a, int32_t b)
+{
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double y = p->position[k][b] - p->position[k][a] + p->displacement[k][b] - p->displacement[k][a];
+    square += y * y;
+  }
+  return sqrt(square) / particles_distance(p, a, b) - 1;
+}
+
+/** Of bonds beyond their limit at rest so many as the deck says break before equilibrium is sought again, and those that are stretched the most. */
+static void the_most_loaded_bonds_break_at_once(void **state)
+{
+  (void)state;
+  static const char deck[] =
+      "materials: {m: {model: elastic-1d, density: 1, Young modulus: 100}}\n"
+      "body: {b: {material: m, lattice: square, thickness: 1, spacing: 1, shape: {box: {particles: [14, 8]}}}}\n"
+      "cracks: [{cut: {line: [[7, -1], [7, 2.2]]}}]\n%s"
+      "peridynamics: {formulation: bond-based, space: plane stress}\n"
+      "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 2}, displacement: [0.5, "
+      "0.08]}]\n"
+      "solve: {static: {increments: 1, bonds at once: %d}}\n";
+  enum { AT_ONCE = 6 };
+  breccia_model *whole = model_of(deck, "", 1);
+  step_surely(whole, 1);
+  breccia_model *m = model_of(deck, "failure: {critical stretch: 0.03, near grips: hold}\n", AT_ONCE);
+  breccia_model_step(m, 1, NULL); /* it may be torn in the end */
+  const Particles *p = whole->domain.particles;
+  const Family *f = &whole->domain.family;
+  double least = INFINITY;
+  int above = 0, most = 0;
+  assert_true(m->domain.broken_count > 2 * AT_ONCE);
+  for (int k = 0; k < AT_ONCE; ++k)
+    least = fmin(least, stretch_of(p, p->place_of[m->domain.broken[k].a], p->place_of[m->domain.broken[k].b]));
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    for (int64_t slot = f->first[i / SLICE]; slot < f->first[i / SLICE + 1]; ++slot) {
+      if (!(f->intact[slot] >> i % SLICE & 1)) continue;
+      const int32_t other = family_bond(f, i / SLICE, slot, i % SLICE).neighbour;
+      above += p->number[other] > n && stretch_of(p, i, other) > least * (1 + 1e-6) &&
+               !(m->domain.failure.kept[i] & m->domain.failure.kept[other]);
+    }
+  }
+  assert_int_equal(above, AT_ONCE - 1);
+  for (const char *at = text_words(&m->solver.log); (at = strstr(at, " bonds break")); ++at) {
+    const char *number = at;
+    while (number[-1] >= '0' && number[-1] <= '9') --number;
+    most = atoi(number) > most ? atoi(number) : most;
+  }
+  assert_int_equal(most, AT_ONCE);
+  breccia_model_destroy(&whole);
+  breccia_model_destroy(&m);
+}
+
 /** In bodies of many rows, some of whose bonds are in lattice slots and some between blocks, whatever way their particles fly: no bond is left beyond its
  *  limit after any step, and none has broken below it. */
 static void bonds_break_in_the_step_in_which_they_pass_their_limit(void **state)
@@ -304,12 +379,7 @@ static void bonds_break_in_the_step_in_which_they_pass_their_limit(void **state)
       assert_none_is_beyond(m, of[c].body);
       for (; before < m->domain.broken_count; ++before) {
         const int32_t a = p->place_of[m->domain.broken[before].a], b = p->place_of[m->domain.broken[before].b];
-        double square = 0;
-        for (int k = 0; k < 3; ++k) {
-          const double y = p->position[k][b] - p->position[k][a] + p->displacement[k][b] - p->displacement[k][a];
-          square += y * y;
-        }
-        const double stretch = sqrt(square) / particles_distance(p, a, b) - 1;
+        const double stretch = stretch_of(p, a, b);
         if (!(stretch > 0.02)) fail_msg("%s: a bond breaks at a stretch of %g", of[c].body, stretch);
       }
     }
@@ -328,6 +398,8 @@ int main(void)
       cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
+      cmocka_unit_test(bonds_at_rest_break_in_the_increment_that_overloads_them),
+      cmocka_unit_test(the_most_loaded_bonds_break_at_once),
       cmocka_unit_test(bonds_break_in_the_step_in_which_they_pass_their_limit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

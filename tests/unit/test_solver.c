@@ -423,6 +423,18 @@ static void a_step_above_the_stable_one_is_refused(void **state)
                            "solve: {explicit: {time step: 0.01, steps: 10}}\n");
   assert_non_null(strstr(words, "times the stable step"));
   free(words);
+  /* near to it a warning says so */
+  static const char body[] = "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                             "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 4, 4]}}}}\n"
+                             "solve: {explicit: {time step: %.17g, steps: 10}}\n";
+  breccia_model *m = model_of(body, 1e-6);
+  const double stable = m->solver.clock.stable;
+  breccia_model_destroy(&m);
+  for (int near = 0; near < 2; ++near) {
+    m = model_of(body, (near ? 0.91 : 0.89) * stable);
+    assert_true(near == (strstr(breccia_model_warnings(m), "is 0.91 times the stable step of ") != NULL));
+    breccia_model_destroy(&m);
+  }
   /* and where no bond is left nobody knows a stable one */
   static const char *const steps[] = {"steps: 10", "end time: 1", "time step: 0.01, steps: 10"};
   for (int k = 0; k < 3; ++k) {
