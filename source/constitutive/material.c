@@ -328,3 +328,25 @@ double material_young(const Material *material)
 {
   return 9 * material->bulk * material->shear / (3 * material->bulk + material->shear);
 }
+
+bool material_is_hookean(const Material *m)
+{
+  if (!m->law->linear || m->law->components != 6 || m->remote || m->history_values) return false;
+  const double lame = m->bulk - 2 * m->shear / 3, close = 1e-12 * (m->bulk + m->shear);
+  bool hookean = true;
+  for (int n = 0; n < 6; ++n) {
+    double strain[6] = {0}, stress[6] = {0};
+    breccia_batch one = {.size = sizeof one, .count = 1};
+    for (int k = 0; k < 6; ++k) {
+      one.strain[k] = &strain[k];
+      one.stress[k] = &stress[k];
+    }
+    strain[n] = 1;
+    hookean &= m->law->update(m->constants, &one) < 0;
+    for (int k = 0; k < 6; ++k) {
+      const double expected = (k < 3 && n < 3 ? lame : 0) + (k == n ? (k < 3 ? 2 : 1) * m->shear : 0);
+      hookean &= fabs(stress[k] - expected) <= close;
+    }
+  }
+  return hookean;
+}

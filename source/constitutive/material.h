@@ -53,4 +53,6 @@ void material_destroy(Material *material);
 
 /** Young's modulus of the undamaged material. */
 double material_young(const Material *material);
+/** Whether the law in space is Hooke's by the moduli that it tells: linear, isotropic, without history. */
+bool material_is_hookean(const Material *material);
 #endif

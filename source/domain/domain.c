@@ -200,7 +200,7 @@ size_t domain_particle_bytes(const Domain *d)
     history += d->regions[r].points.history_size;
     if (points_on_particles(&d->regions[r].points))
       tensors = d->initial_strain[0] ? 18 : 12;
-    else if (d->regions[r].points.components == 6)
+    else if (points_keep_tensors(&d->regions[r].points))
       bonds += 12 * (size_t)d->regions[r].points.count;
   }
   return places * sizeof(double) * (15 + 2 + 1 + tensors) + places * sizeof(int32_t) * 2 +

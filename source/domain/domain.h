@@ -26,6 +26,8 @@ typedef struct Region {
   uint8_t *foreign;                              /* [slices] 1: of other regions; NULL: there are none */
   int64_t *border;                               /* [border_count] slices of others that have bonds with it */
   int64_t border_count, first_batch, last_batch; /* its batches: the last is not one of them */
+  int64_t *stripe, *stripe_slice; /* [stripe_count + 1] batches and slices at which stripes begin (Phase, by_stripes) */
+  int64_t stripe_count;
 } Region;
 
 /** Bonds between regions, place by place (joint.c). */

@@ -107,6 +107,45 @@ static int find_lowest(Domain *d, Error *error)
   return BRECCIA_OK;
 }
 
+/** How many batches bonds along lattices lead back, at most. */
+static int64_t reach_of(const Domain *d, const Region *region)
+{
+  const Family *f = &d->family;
+  int64_t reach = 0;
+  for (int64_t b = region->first_batch, low = b; b < region->last_batch; ++b) {
+    int64_t first = d->batches[b].first;
+    for (int64_t s = first; s < d->batches[b].last; ++s)
+      for (int64_t slot = f->first[s]; slot < f->stored[s]; ++slot)
+        if (f->intact[slot] && f->base[slot] / SLICE < first) first = f->base[slot] / SLICE;
+    while (low > region->first_batch && d->batches[low].first > first) --low;
+    while (low < b && d->batches[low].last <= first) ++low;
+    if (b - low > reach) reach = b - low;
+  }
+  return reach;
+}
+
+/** Stripes are twice as long as bonds reach, so that what they have in common is little, but not so long that many threads find no work. */
+static int create_stripes(const Domain *d, Region *region, Error *error)
+{
+  enum { LEAST = 8, MANY = 16 };
+  const int64_t batches = region->last_batch - region->first_batch, wanted = 2 * reach_of(d, region),
+                most = batches / MANY;
+  int64_t size = wanted < most ? wanted : most;
+  if (size < LEAST) size = LEAST;
+  region->stripe_count = (batches + size - 1) / size;
+  region->stripe = memory_zeroed((size_t)region->stripe_count + 1, sizeof *region->stripe, "batches", error);
+  region->stripe_slice =
+      memory_zeroed((size_t)region->stripe_count + 1, sizeof *region->stripe_slice, "batches", error);
+  if (!region->stripe || !region->stripe_slice) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < region->stripe_count; ++n) {
+    region->stripe[n] = region->first_batch + n * size;
+    region->stripe_slice[n] = d->batches[region->stripe[n]].first;
+  }
+  region->stripe[region->stripe_count] = region->last_batch;
+  region->stripe_slice[region->stripe_count] = d->batches[region->last_batch - 1].last;
+  return BRECCIA_OK;
+}
+
 /* Batches end with a row, as far as rows are no longer than a batch: sums along rows can then be made while what is summed is still
  * in the cache. */
 static int share_out(Domain *d, Error *error)
@@ -131,6 +170,7 @@ static int share_out(Domain *d, Error *error)
       s = end;
     }
     d->regions[r].last_batch = d->batch_count;
+    if (create_stripes(d, &d->regions[r], error)) return BRECCIA_FAILURE;
   }
   d->batch_sum = memory_zeroed((size_t)d->batch_count, sizeof(double), "batch sums", error);
   d->batch_failed = memory_zeroed((size_t)d->batch_count, sizeof(int64_t), "batch sums", error);
@@ -273,7 +313,9 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                                     .materials = d->materials,
                                     .material_count = d->material_count,
                                     .material = d->material,
-                                    .foreign = region->foreign};
+                                    .foreign = region->foreign,
+                                    .stripe = region->stripe_slice,
+                                    .stripe_count = region->stripe_count};
     told = breccia_error_create();
     region->formulation = region->type->create(&parts, told);
     status = region->formulation ? BRECCIA_OK : BRECCIA_USER_ERROR;

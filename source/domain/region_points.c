@@ -52,6 +52,15 @@ static bool is_linear(const Domain *d, const Region *region)
   return linear;
 }
 
+/** Whether all laws of a region are Hooke's. */
+static bool is_hookean(const Domain *d, const Region *region)
+{
+  bool hookean = true;
+  for (int k = 0; k < d->material_count; ++k)
+    if (region_has_material(d, region, d->materials[k].name)) hookean &= material_is_hookean(&d->materials[k]);
+  return hookean;
+}
+
 /** Strains and stresses of all places, where several regions share them. */
 static int create_tensors(Domain *d, Error *error)
 {
@@ -76,6 +85,7 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   region->is_linear = is_linear(d, region);
   if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear)) spec.components = 0;
   if (!spec.components) spec.on_bonds = false;
+  spec.no_tensors = region->type->knows_hooke && spec.on_bonds && is_hookean(d, region);
   const bool on_particles = spec.components == 6 && !spec.on_bonds;
   if (spec.on_bonds && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
     return BRECCIA_FAILURE;

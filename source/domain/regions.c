@@ -139,6 +139,8 @@ void regions_destroy(Domain *d)
     bond_list_destroy(&region->bonds);
     free(region->foreign);
     free(region->border);
+    free(region->stripe);
+    free(region->stripe_slice);
   }
   free(d->regions);
   free(d->region);

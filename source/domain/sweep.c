@@ -29,6 +29,7 @@ static double force_magnitude(const Particles *p, const Batch *batch)
  *  `close` on they need that the batches with lower neighbours are done too. */
 typedef struct Group {
   int from, law, close, to;
+  bool by_stripes;
 } Group;
 
 /** The group that begins with a phase. */
@@ -36,13 +37,14 @@ static Group group_from(const Domain *d, const Region *region, int from)
 {
   const Phase *phases = region->type->phases;
   unsigned written = 0;
-  Group group = {from, -1, MOST_PHASES, from};
+  Group group = {from, -1, MOST_PHASES, from, false};
   for (int p = from; p < MOST_PHASES && phases[p].run; group.to = ++p) {
     const unsigned read = phases[p].of_neighbours | (d->rows_cut ? phases[p].along_rows : 0);
     if (p > from && (read & written || phases[p].by_one || phases[from].by_one)) break;
     if (phases[p].of_lower & written && group.close == MOST_PHASES) group.close = p;
     if (phases[p].reads & OF_STRESSES && group.law < 0) group.law = p;
     written |= phases[p].writes;
+    group.by_stripes |= phases[p].by_stripes;
   }
   return group;
 }
@@ -158,7 +160,8 @@ static void run_bonds(Domain *d, Region *region, const Group *group, int64_t bat
 
 static void run_group(Domain *d, Region *region, const Group *group, int64_t batch, const Purpose *purpose, bool send)
 {
-  if (group->law < 0 || !region->points.on_bonds)
+  const bool rows = region->points.on_bonds && (region->points.components == 1 || points_keep_tensors(&region->points));
+  if (group->law < 0 || !rows)
     run_places(d, region, group, batch, purpose, send);
   else if (region->points.components == 6 || (!purpose->at && !purpose->no_law)) /* fibres keep their pulls */
     run_bonds(d, region, group, batch, purpose, send);
@@ -242,7 +245,13 @@ static void run_region(Domain *d, Region *region, const Purpose *purpose)
       TEAM_SINGLE points_await(&region->points);
     }
     if (writes & OF_SHOWN && region->border_count) show_border(region, &group, purpose);
-    Group before = group, after = {group.close, -1, MOST_PHASES, group.to};
+    if (group.by_stripes) {
+      TEAM_FOR (n, region->stripe_count)
+        for (int64_t b = region->stripe[n]; b < region->stripe[n + 1]; ++b)
+          run_group(d, region, &group, b, purpose, false);
+      continue;
+    }
+    Group before = group, after = {group.close, -1, MOST_PHASES, group.to, false};
     const bool in_two = group.close < group.to;
     if (in_two) before.to = group.close;
     const bool torn = group.law >= 0 && d->torn_count && !purpose->at && !region->type->bond_energy;

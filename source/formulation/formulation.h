@@ -47,6 +47,8 @@ typedef struct FormulationParts {
   /** [slices] 1: of another formulation; NULL: none is. Only displacements are seen of such places, at most next to own ones: what a
    *  formulation gives own places is their own force state for all their bonds, less those of own neighbours. */
   const uint8_t *foreign;
+  const int64_t *stripe; /* [stripe_count + 1] slices at which stripes begin, as Phase says */
+  int64_t stripe_count;
 } FormulationParts;
 
 static inline bool is_foreign(const uint8_t *foreign, int64_t place)
@@ -124,7 +126,9 @@ typedef struct Phase {
   unsigned of_neighbours; /* and what it reads of neighbours: all batches have written that before */
   unsigned of_lower;      /* what it reads of neighbours with lower places only, so that it may follow close behind */
   unsigned along_rows;    /* what it reads along its lattice row; only rows longer than a batch wait for that */
-  bool by_one;            /* one thread calls it once, for few places anywhere */
+  bool
+      by_stripes; /* one thread calls it for all batches of a stripe, in their order, so that they may add up what they find in one place */
+  bool by_one;    /* one thread calls it once, for few places anywhere */
   /** @return -1, or a place whose law could not be integrated */
   int64_t (*run)(void *formulation, const Sweep *sweep);
 } Phase;
@@ -141,9 +145,10 @@ struct FormulationType {
   bool row_sums;                 /* neighbours read sums along lattice rows */
   bool bond_lengths;             /* lengths of stored bonds are read in sweeps */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
-  bool joins;                    /* it minds which places are foreign, so that a body may have others beside it */
-  bool may_stiffen;              /* the largest eigenvalue of stiffness over mass may grow as bonds break */
-  const Section *section;        /* its keys, which stand among those of peridynamics */
+  bool knows_hooke;       /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
+  bool joins;             /* it minds which places are foreign, so that a body may have others beside it */
+  bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
+  const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */
   bool (*takes)(const breccia_law *law);
   /** Refuses parameters of a law that it takes, with the reason. NULL: takes all. */

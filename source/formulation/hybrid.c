@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
+#include "base/wide.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,7 +79,22 @@ static void destroy(void *formulation)
   Hybrid *h = formulation;
   if (!h) return;
   hybrid_forget(h);
+  free(h->hooke);
   free(h);
+}
+
+static int create_hooke(Hybrid *h, int materials, Error *error)
+{
+  h->hooke = memory_zeroed((size_t)materials, sizeof *h->hooke, "hybrid", error);
+  for (int k = 0; k < materials && h->hooke; ++k) {
+    const Material *m = &h->materials[k];
+    const double lame = m->bulk - 2 * m->shear / 3;
+    h->hooke[k] = (HybridHooke){lame, m->shear, 0};
+    if (!h->points->plane_stress) continue;
+    h->hooke[k].lame = 2 * m->shear * lame / (lame + 2 * m->shear);
+    h->hooke[k].across = -lame / (lame + 2 * m->shear);
+  }
+  return h->hooke ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 static void *create(const FormulationParts *parts, Error *error)
@@ -92,6 +108,8 @@ static void *create(const FormulationParts *parts, Error *error)
                 .points = parts->points,
                 .bonds = parts->bonds,
                 .materials = parts->materials,
+                .material = parts->material,
+                .wide = wide_lanes_pay(),
                 .foreign = parts->foreign,
                 .space = parts->space,
                 .finite = !strcmp(spec->strain, "green-lagrange"),
@@ -99,7 +117,8 @@ static void *create(const FormulationParts *parts, Error *error)
                 .own = spec->own,
                 .dimensions = parts->body->dimensions,
                 .hidden = {-1, -1}};
-  if (!hybrid_measure(h, error) &&
+  const bool keeps = points_keep_tensors(parts->points);
+  if ((keeps || !create_hooke(h, parts->material_count, error)) && !hybrid_measure(h, parts, error) &&
       (!h->listed || ((h->force = places_array(HYBRID_FORCE * h->listed, "forces of bonds", error)) &&
                       (h->shown = places_array(LANES * h->particles->places, "displacements", error)))))
     return h;
@@ -137,6 +156,36 @@ void hybrid_strain_change(const Hybrid *h, const double at[9], const double g[9]
     for (int j = 0; j < 3 && h->finite; ++j) strain[k] += at[3 * j + r] * g[3 * j + s] + at[3 * j + s] * g[3 * j + r];
     if (k < 3) strain[k] /= 2;
   }
+}
+
+void hybrid_hooke_stress(const HybridHooke *hooke, double strain[6], double stress[6])
+{
+  if (hooke->across != 0) strain[ZZ] = 0;
+  const double trace = strain[XX] + strain[YY] + strain[ZZ];
+  for (int k = 0; k < 6; ++k)
+    stress[k] = k < 3 ? hooke->lame * trace + 2 * hooke->shear * strain[k] : hooke->shear * strain[k];
+  if (hooke->across == 0) return;
+  stress[ZZ] = 0;
+  strain[ZZ] = hooke->across * trace;
+}
+
+void hybrid_tensors(const Hybrid *h, int64_t row, const HybridView *view, double time, double strain[6],
+                    double stress[6])
+{
+  double g[9] = {0};
+  for (int k = 0; k < 6 && !h->hooke; ++k) {
+    strain[k] = h->points->strain[k][row];
+    stress[k] = h->points->stress[k][row];
+  }
+  if (!h->hooke) return;
+  for (int n = 0; n < view->count && !view->idle; ++n)
+    for (int k = 0; k < 9; ++k) {
+      const int32_t place = view->member[n];
+      const double moved = h->particles->displacement[k / 3][place] - time * h->particles->velocity[k / 3][place];
+      g[k] += moved * view->g[n][k % 3];
+    }
+  hybrid_strain(h, g, strain);
+  hybrid_hooke_stress(&h->hooke[points_material(h->points, row) - h->materials], strain, stress);
 }
 
 /** Adds G S. */
@@ -217,6 +266,7 @@ const FormulationType formulation_hybrid = {
     .joins = true,
     .fibres = &formulation_bond_based,
     .may_stiffen = true,
+    .knows_hooke = true,
     .section = &hybrid_section,
     .check = check,
     .create = create,
@@ -227,7 +277,7 @@ const FormulationType formulation_hybrid = {
                 .reads = OF_DISPLACEMENTS,
                 .writes = OF_STRAINS,
                 .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN},
-               {.run = hybrid_respond, .reads = OF_STRESSES, .writes = OF_STATES},
+               {.run = hybrid_respond, .reads = OF_STRESSES, .writes = OF_STATES, .by_stripes = true},
                {.run = hybrid_resist, .writes = OF_FORCES, .of_neighbours = OF_STATES}},
     .linearise = linearise,
     .half_state = hybrid_half_state,

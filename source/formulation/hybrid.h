@@ -1,5 +1,5 @@
 /* What the parts of hybrid peridynamics share: the table entry (hybrid.c), sweeps (hybrid_sweep.c), the geometry of bonds (hybrid_geometry.c, of those
- * along lattices hybrid_table.c, where these exert forces hybrid_windows.c), rows and their members one by one (hybrid_rows.c), single bonds and places
+ * along lattices hybrid_table.c, where these exert forces hybrid_stripes.c), rows and their members one by one (hybrid_rows.c), single bonds and places
  * (hybrid_bonds.c), and what breaking bonds take with them (hybrid_breaking.c).
  *
  * Every bond has a material point in space at its middle. Its strain follows from the particles that both of its ends see, S = (H_A + A) and (H_B + B):
@@ -9,7 +9,7 @@
  *
  * Bonds of a lattice slot whose members all stand in the same lattice have their geometry in a table of distinct ones: members are lattice vectors from the
  * owner A, and all of them but A are neighbours of A, so that the bases of A's slots lead to eight members at once. What a slice's points exert is
- * summed in the slice for each lattice vector, and from there by lattice rows into windows, from which places take it. All other rows are *listed*: they
+ * summed in the slice for each lattice vector, and from there by lattice rows into sums over a stripe of slices, from which places take it. All other rows are *listed*: they
  * have places and vectors of their own. */
 #ifndef BRECCIA_FORMULATION_HYBRID_H
 #define BRECCIA_FORMULATION_HYBRID_H
@@ -19,7 +19,8 @@
 enum {
   HYBRID_FORCE = 3 * LANES,
   HYBRID_NEAR = 256, /* lattice vectors from a place, itself among them; rows of lattices with more are listed */
-  HYBRID_WIDTH = 24  /* numbers of a component of a window, at most; rows of lattices that would need more are listed */
+  HYBRID_WIDTH =
+      24 /* places of a lattice row that a slice's bonds lead to, at most; bonds of lattices that would need more are listed */
 };
 
 /** Bonds of one block along one lattice vector, with the same members and the same section. */
@@ -50,15 +51,22 @@ typedef struct HybridLattice {
   int count;           /* 0: bonds of the block are listed */
   int16_t *difference; /* [count][count] (a, b): the vector b - a, or -1 */
   uint8_t *window;     /* [count] number of the lattice row to which it leads */
-  int windows, along;  /* rows; vector's reach along them, in places */
+  int windows;         /* rows */
 } HybridLattice;
 
-/** Numbers of a window that lanes of a slice take. */
-typedef struct HybridShare {
-  int32_t window;
-  int16_t from;  /* number of the window for lane 0 */
-  uint8_t lanes; /* that have one */
-} HybridShare;
+/** What the points of a stripe's slices exert on the places from `low` to `high`, that one excluded, both multiples of eight. */
+typedef struct HybridStripe {
+  int64_t first; /* slice */
+  int64_t row;   /* the first one */
+  int64_t low, high;
+  double *sums; /* [3][high - low] */
+} HybridStripe;
+
+/** Hooke's law of a material, in the body's space. */
+typedef struct HybridHooke {
+  double lame, shear;
+  double across; /* strain across the plane over the trace of that in it; 0 but in plane stress */
+} HybridHooke;
 
 typedef struct Hybrid {
   const Particles *particles;
@@ -67,6 +75,9 @@ typedef struct Hybrid {
   const Points *points;
   const BondList *bonds;
   const Material *materials;
+  const int32_t *material; /* [slices] which of the materials */
+  HybridHooke *hooke;      /* [materials]; NULL: points keep their strains and stresses */
+  bool wide;               /* sweeps take whole slots on long vectors (base/wide.h) */
   const uint8_t *
       foreign; /* as in FormulationParts; bonds to such places have half of their section here, and those between them never break */
   Space space;
@@ -82,10 +93,12 @@ typedef struct Hybrid {
   uint8_t *active;         /* [owned slots] bonds that carry something and are not listed */
   int32_t (*mixed)[SLICE]; /* geometries; -1: there was never a bond; -2 less the number of a listed row */
   int32_t mixed_count, mixed_room;
-  int windows, width;   /* of a slice; numbers of one component of a window */
-  double *window;       /* [slices][windows][3][width] force on the places of a lattice row, by the points of a slice */
-  int64_t *share_first; /* [slices + 1] */
-  HybridShare *share;
+  int width;            /* places of a lattice row that the bonds of a slice lead to, at most; a multiple of LANES */
+  HybridStripe *stripe; /* [stripes] */
+  int64_t stripes;
+  double *sums; /* of all stripes */
+  int32_t (
+      *reaching)[2]; /* [slices] the first stripe and the last that exert something on it; first > last: none does */
 
   int64_t listed;     /* rows, those of single bonds first */
   int64_t *row;       /* [listed] */
@@ -126,7 +139,7 @@ typedef struct HybridView {
 } HybridView;
 
 /** Members, vectors, areas and volumes of all bonds, as the body begins. Refuses bodies whose bonds see too few particles. */
-int hybrid_measure(Hybrid *hybrid, Error *error);
+int hybrid_measure(Hybrid *hybrid, const FormulationParts *parts, Error *error);
 /** Bonds of a slice have broken or were mended. */
 void hybrid_renew(void *formulation, int64_t slice);
 void hybrid_forget(Hybrid *hybrid);
@@ -183,14 +196,21 @@ int hybrid_lattices_create(Hybrid *h, Error *error);
 int hybrid_group_list(Hybrid *h, int64_t group, int lane, int64_t number);
 /** Geometries of an owned slot as the body begins. @return the lane whose members span no space, -1: all do, -2: there is no memory */
 int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int64_t group);
-/** Where places take what points of lattice slots exert (hybrid_windows.c). */
-int hybrid_windows_create(Hybrid *h, Error *error);
+/** Where what points of lattice slots exert is summed (hybrid_stripes.c). @param[in] begin  [h->stripes + 1] slices */
+int hybrid_stripes_create(Hybrid *h, const int64_t *begin, Error *error);
+size_t hybrid_stripes_bytes(const Hybrid *h);
 /** Bonds of lattice slots around a slice have broken or were mended. */
 void hybrid_groups_renew(Hybrid *h, int64_t slice);
 void hybrid_lattices_destroy(Hybrid *h);
 size_t hybrid_lattices_bytes(const Hybrid *h);
 /** Members of a lane of an owned slot by the bonds that are intact now, in the order of a geometry's. @return false: it carries nothing */
 bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view);
+
+/** Strain and stress of a row as they were found last; where points keep none, those of the displacements held less `time` times the velocities held. */
+void hybrid_tensors(const Hybrid *hybrid, int64_t row, const HybridView *view, double time, double strain[6],
+                    double stress[6]);
+/** Hooke's law of a material of the hybrid's. @param[in,out] strain  across the plane of plane stress it is found */
+void hybrid_hooke_stress(const HybridHooke *hooke, double strain[6], double stress[6]);
 
 /** G of a row at displacements u, row by row. */
 void hybrid_gradient(const HybridView *view, double *const u[3], double gradient[9]);
@@ -201,6 +221,10 @@ void hybrid_strain_change(const Hybrid *hybrid, const double at[9], const double
 /** F S of a gradient and a stress; or its change F dS + dG S. @param[in] at, held  gradient and stress that change, or NULL */
 void hybrid_first_stress(const Hybrid *hybrid, const double g[9], const double stress[6], const double *at,
                          const double *held, double p[9]);
+
+/** What bonds along lattices exert, of slices whose laws are all Hooke's: on short vectors and on long ones (hybrid_hooke_text.h). */
+void hybrid_hooke_narrow(const Hybrid *hybrid, const Sweep *sweep);
+void hybrid_hooke_wide(const Hybrid *hybrid, const Sweep *sweep);
 
 /** Phases, as FormulationType describes them (hybrid_sweep.c). */
 int64_t hybrid_show(void *formulation, const Sweep *sweep);

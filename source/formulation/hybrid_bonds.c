@@ -32,7 +32,8 @@ int hybrid_point(const void *formulation, int64_t row, Operator *point, Error *e
   point->finite = h->finite;
   point->acts_apart = h->pairwise;
   point->volume = view.volume;
-  for (int k = 0; k < 6; ++k) point->stress[k] = h->points->stress[k][row];
+  double strain[6];
+  hybrid_tensors(h, row, &view, 0, strain, point->stress);
   points_tangent(h->points, row, point->tangent);
   return BRECCIA_OK;
 }
@@ -44,9 +45,14 @@ static void find_stress(const Hybrid *h, int64_t row, const HybridView *view, do
 {
   double g[9], g0[9], strain[6], stress[6], held[6], tangent[36];
   hybrid_gradient(view, h->particles->displacement, g);
-  for (int k = 0; k < 6; ++k) held[k] = stress[k] = h->points->stress[k][row];
+  if (!at || !h->hooke) hybrid_tensors(h, row, view, 0, strain, stress);
+  memcpy(held, stress, sizeof held);
   if (at) {
     hybrid_gradient(view, at, g0);
+    if (h->hooke) {
+      hybrid_strain(h, g0, strain);
+      hybrid_hooke_stress(&h->hooke[points_material(h->points, row) - h->materials], strain, held);
+    }
     hybrid_strain_change(h, g0, g, strain);
     points_tangent(h->points, row, tangent);
     for (int k = 0; k < 6; ++k) {
@@ -165,10 +171,13 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
   const Hybrid *h = formulation;
   int64_t rows[2];
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
-  const HybridRow at = hybrid_row(h, rows[0]);
-  const double *area = at.listed >= 0 ? h->area[at.listed] : h->table.geometry[at.geometry].area;
-  double stress[6], normal[3], square = 0, traction = 0;
-  for (int k = 0; k < 6; ++k) stress[k] = (h->points->stress[k][rows[0]] + h->points->stress[k][rows[1]]) / 2;
+  double strain[6], stress[6], other[6], normal[3], square = 0, traction = 0;
+  HybridView view;
+  hybrid_view(h, rows[0], &view);
+  const double *area = view.area;
+  hybrid_tensors(h, rows[0], &view, 0, strain, stress);
+  hybrid_tensors(h, rows[1], &view, 0, strain, other); /* both rows have the same members */
+  for (int k = 0; k < 6; ++k) stress[k] = (stress[k] + other[k]) / 2;
   for (int k = 0; k < 3; ++k) square += area[k] * area[k];
   for (int k = 0; k < 3; ++k) normal[k] = area[k] / sqrt(square);
   *tension = 0;
@@ -183,36 +192,46 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
 
 /* ---- what people see of particles ---- */
 
-/** Means of numbers of the points on a place's bonds, by their volumes. */
-static void find_means(const Hybrid *h, int64_t place, double *const *numbers, int count, double *mean)
+/** Means of the strains and stresses of the points on a place's bonds, by their volumes. */
+static void find_means(const Hybrid *h, int64_t place, double strain[6], double stress[6])
 {
   double whole = 0;
   HybridRow at;
-  memset(mean, 0, sizeof *mean * (size_t)count);
+  for (int k = 0; k < 6; ++k) strain[k] = stress[k] = 0;
   for (HybridRows rows = hybrid_rows(h, place); hybrid_rows_next(h, &rows, &at);) {
     const double volume = hybrid_volume(h, &at);
+    double here[6], held[6];
+    HybridView view;
     if (!(volume > 0)) continue;
-    for (int k = 0; k < count; ++k) mean[k] += volume * numbers[k][rows.row];
+    if (h->hooke) hybrid_view_at(h, &at, &view);
+    hybrid_tensors(h, rows.row, &view, 0, here, held);
+    for (int k = 0; k < 6; ++k) {
+      strain[k] += volume * here[k];
+      stress[k] += volume * held[k];
+    }
     whole += volume;
   }
-  for (int k = 0; k < count && whole > 0; ++k) mean[k] /= whole;
+  for (int k = 0; k < 6 && whole > 0; ++k) {
+    strain[k] /= whole;
+    stress[k] /= whole;
+  }
 }
 
 void hybrid_place_gradient(const void *formulation, int64_t place, double f[9])
 {
   const Hybrid *h = formulation;
-  double across;
+  double strain[6], stress[6];
   const ShapeTensor shape = shape_tensor(h->family, (int32_t)place, h->dimensions, 0);
   shape_gradient(h->family, (int32_t)place, shape.inverse, f);
   if (!h->points->plane_stress) return;
-  find_means(h, place, &h->points->strain[ZZ], 1, &across);
-  f[8] = h->finite ? sqrt(fmax(0, 1 + 2 * across)) : 1 + across;
+  find_means(h, place, strain, stress);
+  f[8] = h->finite ? sqrt(fmax(0, 1 + 2 * strain[ZZ])) : 1 + strain[ZZ];
 }
 
 void hybrid_stress(const void *formulation, int64_t place, double stress[6])
 {
-  const Hybrid *h = formulation;
-  find_means(h, place, h->points->stress, 6, stress);
+  double strain[6];
+  find_means(formulation, place, strain, stress);
 }
 
 /** How far members of a bond's point stand apart along the first axis, over all bonds of a square or cubic lattice by their volumes: a crack across that axis

@@ -9,10 +9,12 @@ static bool counts(const Hybrid *h, int k)
   return k != ZZ || !h->points->plane_stress; /* across plane stress nothing does work */
 }
 
-/** Energy per volume of a point's stress, as it would give it back. */
-static double density(const Hybrid *h, int64_t row)
+/** Energy per volume of a point's stress, as it would give it back. @param[in] time, view  as in hybrid_tensors */
+static double density(const Hybrid *h, int64_t row, const HybridView *view, double time)
 {
-  return points_elastic_energy(h->points, row) * points_softness(h->points, row);
+  double strain[6], stress[6];
+  hybrid_tensors(h, row, view, time, strain, stress);
+  return points_energy_at(points_material(h->points, row), stress) * points_softness(h->points, row);
 }
 
 static double work(const Hybrid *h, const double stress[6], const double from[6], const double to[6])
@@ -48,14 +50,11 @@ typedef struct PointInStep {
   double now[6];            /* strain at its end, by the members that it began with */
 } PointInStep;
 
-static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view)
+static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view, double time)
 {
   PointInStep point;
   double g[9];
-  for (int k = 0; k < 6; ++k) {
-    point.stress[k] = h->points->stress[k][row];
-    point.was[k] = h->points->strain[k][row];
-  }
+  hybrid_tensors(h, row, view, time, point.was, point.stress);
   hybrid_gradient(view, h->particles->displacement, g);
   hybrid_strain(h, g, point.now);
   return point;
@@ -70,10 +69,10 @@ static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double tim
   HybridView view, left;
   hybrid_view_at(h, at, &view);
   if (view.idle) return 0;
-  const PointInStep point = look(h, row, &view);
+  const PointInStep point = look(h, row, &view, time);
   /* What it had received until the end of the step: works summed by the trapezium rule find it gone there. */
   if (!hybrid_view_anew(h, at, &left))
-    return view.volume * (density(h, row) + work(h, point.stress, point.was, point.now) / 2);
+    return view.volume * (density(h, row, &view, time) + work(h, point.stress, point.was, point.now) / 2);
   double after[9], before[9] = {0}, strain[6], first[6], stress[6];
   hybrid_gradient(&left, p->displacement, after);
   for (int n = 0; n < left.count; ++n)
@@ -120,9 +119,9 @@ void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   int64_t rows[2];
   *energy = (StoredEnergy){0};
   for (int n = 0; n < rows_of(h, slice, slot, lane, rows); ++n) {
-    const HybridRow at = hybrid_row(h, rows[n]);
-    const double volume = hybrid_volume(h, &at);
-    if (volume > 0) energy->stored += volume * density(h, rows[n]);
+    HybridView view;
+    hybrid_view(h, rows[n], &view);
+    if (!view.idle) energy->stored += view.volume * density(h, rows[n], &view, time);
   }
   const double before = lost_by_all(h, places, time);
   h->hidden[0] = places[0];
@@ -139,6 +138,9 @@ void hybrid_stored_energy(const void *formulation, int64_t place, double time, S
   HybridRow at;
   for (HybridRows rows = hybrid_rows(h, place); hybrid_rows_next(h, &rows, &at);) {
     const double volume = hybrid_volume(h, &at);
-    if (volume > 0) energy->stored += (rows.alone ? 1 : 0.5) * volume * density(h, rows.row);
+    HybridView view;
+    if (!(volume > 0)) continue;
+    if (h->hooke) hybrid_view_at(h, &at, &view);
+    energy->stored += (rows.alone ? 1 : 0.5) * volume * density(h, rows.row, &view, 0);
   }
 }

@@ -360,7 +360,7 @@ static int measure_lattices(Hybrid *h, const HybridShape *shape, Error *error)
   return BRECCIA_OK;
 }
 
-int hybrid_measure(Hybrid *h, Error *error)
+int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
 {
   const Particles *p = h->particles;
   HybridShape *shape = memory_zeroed((size_t)p->places, sizeof *shape, "areas of bonds", error);
@@ -374,7 +374,8 @@ int hybrid_measure(Hybrid *h, Error *error)
   if (!status) status = measure_listed(h, (const HybridShape *)shape, error);
   if (!status) status = measure_lattices(h, (const HybridShape *)shape, error);
   free(shape);
-  return status ? status : hybrid_windows_create(h, error);
+  h->stripes = parts->stripe_count;
+  return status ? status : hybrid_stripes_create(h, parts->stripe, error);
 }
 
 void hybrid_forget(Hybrid *h)

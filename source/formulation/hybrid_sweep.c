@@ -3,36 +3,19 @@
  * A slice's bonds along the lattice lead from places side by side to places side by side, so that a member of the eight bonds of a slot is the base of
  * another slot and a vector g that all eight share. Where their geometries differ, at the ends of rows and beside cracks, the slot is gone through once for each
  * of these, and lanes of others are left as they are. */
-#include "formulation/hybrid.h"
+#include "formulation/hybrid_slice.h"
 
 #include "base/tensor.h"
 #include <string.h>
 
-/** What the loops over a slice's slots need at hand. */
-typedef struct SliceOf {
-  const Hybrid *h;
-  const Sweep *sweep;
-  int64_t first;             /* group of the first row */
-  int groups;                /* whole slots among the rows; listed single bonds follow */
-  int32_t base[HYBRID_NEAR]; /* place of lane 0's member, by lattice vector */
-} SliceOf;
-
-/** Rows of a slice: those of lattice slots come first, and batches of rows divide none. */
-LANES_INLINE void find_slice(const Hybrid *h, const Sweep *sweep, SliceOf *s)
+/** The rows of a sweep: those of lattice slots come first, and batches of rows divide none. */
+LANES_INLINE void find_batch(const Hybrid *h, const Sweep *sweep, SliceOf *s)
 {
-  const Family *f = h->family;
-  const BondList *l = h->bonds;
-  const int64_t slice = sweep->first, owned = l->owned_first[slice + 1] - l->owned_first[slice],
-                from = sweep->row - l->first[slice], left = SLICE * owned - from;
-  s->h = h;
+  find_slice(h, sweep->first, s);
+  const int64_t from = sweep->row - h->bonds->first[sweep->first], left = SLICE * (int64_t)s->groups - from;
   s->sweep = sweep;
-  s->first = l->owned_first[slice] + from / SLICE;
+  s->first += from / SLICE;
   s->groups = left <= 0 ? 0 : (int)((left < sweep->rows ? left : sweep->rows) / SLICE);
-  if (!s->groups || !h->lattice[h->particles->block[slice]].count) return;
-  const int begin = f->pattern_begin[h->particles->block[slice]] - 1;
-  s->base[0] = (int32_t)(slice * SLICE);
-  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-    s->base[f->pattern[slot] - begin] = f->base[slot];
 }
 
 /** The next geometry of half a slot and the lanes that have it, of those that are left. */
@@ -165,7 +148,7 @@ static void deform_rows(const Hybrid *h, const Sweep *sweep)
 {
   const Sweep own = *sweep; /* so that stores are seen not to change it */
   SliceOf s;
-  find_slice(h, &own, &s);
+  find_batch(h, &own, &s);
   if (own.at)
     deform_groups(&s, true);
   else
@@ -186,14 +169,12 @@ int64_t hybrid_show(void *formulation, const Sweep *sweep)
 
 int64_t hybrid_deform(void *formulation, const Sweep *sweep)
 {
-  deform_rows(formulation, sweep);
+  const Hybrid *h = formulation;
+  if (!h->hooke) deform_rows(h, sweep);
   return -1;
 }
 
 /* ---- what bonds exert ---- */
-
-/** Numbers that are kept of a component of what a lattice vector's places receive: eight, between zeros as far as windows reach. */
-enum { MOST_ROOM = 2 * HYBRID_WIDTH - SLICE };
 
 /** F S, or its change, of half a slot. */
 LANES_INLINE void lane_stress(const SliceOf *s, const HybridGeometry *geometry, int at, int lane, bool linear,
@@ -269,67 +250,24 @@ LANES_INLINE void respond_groups(const SliceOf *s, double *sums, int room, bool 
     }
 }
 
-/** Fills one window from what the places of the vectors to its lattice row receive. */
-LANES_INLINE void fill_window(const SliceOf *s, const double *sums, int room, int width, const int32_t *vectors,
-                              int count, bool again, double *to)
-{
-  const int spare = width - SLICE;
-  int32_t first = INT32_MAX;
-  for (int m = 0; m < count; ++m)
-    if (s->base[vectors[m]] < first) first = s->base[vectors[m]];
-  Lanes sum[3][HYBRID_WIDTH / LANES];
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < width / LANES; ++i) sum[k][i] = again ? lanes_load(to + k * width + LANES * i) : lanes_set(0);
-  for (int m = 0; m < count; ++m) {
-    const double *from = sums + 3 * (int64_t)vectors[m] * room + spare - (s->base[vectors[m]] - first);
-    for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < width / LANES; ++i) sum[k][i] += lanes_load(from + k * room + LANES * i);
-  }
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < width / LANES; ++i) lanes_store(to + k * width + LANES * i, sum[k][i]);
-}
-
-/** Adds up by lattice rows what the places of all vectors receive. */
-LANES_INLINE void fill_windows(const SliceOf *s, const double *sums, int room)
-{
-  const Hybrid *h = s->h;
-  const Family *f = h->family;
-  const int64_t slice = s->sweep->first, last = f->stored[slice];
-  const int block = h->particles->block[slice], begin = f->pattern_begin[block] - 1, width = h->width;
-  const HybridLattice *lattice = &h->lattice[block];
-  const bool again = s->sweep->row > h->bonds->first[slice];
-  int64_t slot = f->first[slice];
-  for (int n = 0; n < lattice->windows; ++n) { /* vectors of one row follow each other, but for the place itself */
-    int32_t vectors[HYBRID_WIDTH];
-    int count = 0;
-    if (lattice->window[0] == n) vectors[count++] = 0;
-    for (; slot < last && lattice->window[f->pattern[slot] - begin] == n; ++slot)
-      vectors[count++] = f->pattern[slot] - begin;
-    double *to = h->window + (slice * h->windows + n) * 3 * width;
-    if (!count) continue;
-    if (width == 3 * LANES) /* reaches of two places at most; loops of known length keep their sums in registers */
-      fill_window(s, sums, room, 3 * LANES, vectors, count, again, to);
-    else
-      fill_window(s, sums, room, width, vectors, count, again, to);
-  }
-}
-
 BRECCIA_CLONES
 static void respond_lattice(const Hybrid *h, const Sweep *sweep)
 {
   const Sweep own = *sweep;
   const HybridLattice *lattice = &h->lattice[h->particles->block[own.first]];
+  const HybridStripe *stripe = stripe_of(h, own.first);
   SliceOf s;
-  find_slice(h, &own, &s);
+  find_batch(h, &own, &s);
+  if (own.row == stripe->row) clear_stripe(stripe);
   if (!s.groups || !lattice->count) return;
   _Alignas(64) double sums[3 * HYBRID_NEAR * MOST_ROOM];
-  const int room = 2 * h->width - SLICE;
+  const int margin = sums_margin(h), room = 2 * margin + SLICE;
   memset(sums, 0, sizeof *sums * (size_t)(3 * lattice->count * room));
   if (own.at)
-    respond_groups(&s, sums + h->width - SLICE, room, true);
+    respond_groups(&s, sums + margin, room, true);
   else
-    respond_groups(&s, sums + h->width - SLICE, room, false);
-  fill_windows(&s, sums, room);
+    respond_groups(&s, sums + margin, room, false);
+  add_to_stripe(&s, stripe, sums + margin, room);
 }
 
 static void full_tensor(double *const of[6], int64_t i, double to[6])
@@ -337,17 +275,17 @@ static void full_tensor(double *const of[6], int64_t i, double to[6])
   for (int k = 0; k < 6; ++k) to[k] = of[k][i];
 }
 
-static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t number)
+/** G of a listed row at other displacements than those shown. */
+static void listed_gradient(const Hybrid *h, double *const u[3], int64_t number, double g[9])
 {
-  double stress[6], held[6], p[9], g[9], at[9] = {0};
-  full_tensor(sweep->stress, i, stress);
-  for (int k = 0; k < 9; ++k) g[k] = sweep->carry[k * BATCH + i];
-  if (sweep->at) {
-    full_tensor(h->points->stress, sweep->row + i, held);
-    for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n)
-      for (int k = 0; k < 9; ++k) at[k] += sweep->at[k / 3][h->member[n]] * h->g[n][k % 3];
-  }
-  hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
+  memset(g, 0, 9 * sizeof *g);
+  for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n)
+    for (int k = 0; k < 9; ++k) g[k] += u[k / 3][h->member[n]] * h->g[n][k % 3];
+}
+
+/** Keeps what a listed row exerts, by F S. */
+static void keep_listed(const Hybrid *h, int64_t number, const double p[9])
+{
   const double *a = h->area[number], factor = h->idle[number] ? 0 : h->pairwise ? 1 : h->volume[number];
   double *to = h->force + HYBRID_FORCE * number;
   for (int k = 0; k < 3; ++k) {
@@ -356,13 +294,71 @@ static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t n
   }
 }
 
+static void respond_listed(const Hybrid *h, const Sweep *sweep, int i, int64_t number)
+{
+  double stress[6], held[6], p[9], g[9], at[9];
+  full_tensor(sweep->stress, i, stress);
+  for (int k = 0; k < 9; ++k) g[k] = sweep->carry[k * BATCH + i];
+  if (sweep->at) {
+    full_tensor(h->points->stress, sweep->row + i, held);
+    listed_gradient(h, sweep->at, number, at);
+  }
+  hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
+  keep_listed(h, number, p);
+}
+
+/** The same from displacements, where the law is Hooke's. @param[in] material  of the row */
+static void respond_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t number, int material)
+{
+  double g[9], at[9], strain[6], stress[6], held[6], p[9];
+  Lanes column[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int64_t n = h->first[number]; n < h->first[number + 1] && !h->idle[number]; ++n) {
+    const Lanes u = lanes_load(h->shown + LANES * (int64_t)h->member[n]);
+    for (int j = 0; j < 3; ++j) column[j] += u * lanes_set(h->g[n][j]);
+  }
+  for (int k = 0; k < 9; ++k) g[k] = column[k % 3][k / 3];
+  if (sweep->at) {
+    listed_gradient(h, sweep->at, number, at);
+    hybrid_strain(h, at, strain);
+    hybrid_hooke_stress(&h->hooke[material], strain, held);
+    hybrid_strain_change(h, at, g, strain);
+  } else {
+    hybrid_strain(h, g, strain);
+  }
+  hybrid_hooke_stress(&h->hooke[material], strain, stress);
+  hybrid_first_stress(h, g, stress, sweep->at ? at : NULL, held, p);
+  keep_listed(h, number, p);
+}
+
+/** All listed rows of a slice. */
+static void respond_slice_by_hooke(const Hybrid *h, const Sweep *sweep, int64_t slice)
+{
+  const BondList *l = h->bonds;
+  for (int64_t group = l->owned_first[slice]; group < l->owned_first[slice + 1] && h->mixed_count; ++group)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int64_t number = listed_at(h, group, lane);
+      if (number >= 0) respond_by_hooke(h, sweep, number, h->material[slice]);
+    }
+  for (int64_t number = l->single_first[slice]; number < l->single_first[slice + 1]; ++number) {
+    const bool second = l->single[number] < 0; /* of the material of the other end */
+    const int64_t end = h->idle[number] || !second ? slice : h->member[h->first[number] + 1] / SLICE;
+    respond_by_hooke(h, sweep, number, h->material[end]);
+  }
+}
+
 int64_t hybrid_respond(void *formulation, const Sweep *sweep)
 {
   const Hybrid *h = formulation;
+  if (h->hooke) {
+    (h->wide ? hybrid_hooke_wide : hybrid_hooke_narrow)(h, sweep);
+    for (int64_t slice = sweep->first; slice < sweep->last && h->listed; ++slice)
+      respond_slice_by_hooke(h, sweep, slice);
+    return -1;
+  }
   respond_lattice(h, sweep);
   if (!h->listed) return -1;
   SliceOf s;
-  find_slice(h, sweep, &s);
+  find_batch(h, sweep, &s);
   for (int i = h->mixed_count ? 0 : SLICE * s.groups; i < sweep->rows; ++i) {
     const int64_t number = listed_of(&s, i);
     if (number >= 0) respond_listed(h, sweep, i, number);
@@ -396,16 +392,12 @@ static void resist_slices(const Hybrid *h, const Sweep *sweep)
   const Particles *p = h->particles;
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     Lanes sum[2][3] = {{{0}}};
-    for (int64_t n = h->share_first[slice]; n < h->share_first[slice + 1]; ++n) {
-      const HybridShare *share = &h->share[n];
-      const double *from = h->window + (int64_t)share->window * (3 * h->width) + share->from;
-      for (int half = 0; half < 2; ++half) {
-        const unsigned bits = (unsigned)share->lanes >> (LANES * half) & 15u;
-        if (bits == 15)
-          for (int k = 0; k < 3; ++k) sum[half][k] += lanes_load(from + k * h->width + LANES * half);
-        else if (bits)
-          for (int k = 0; k < 3; ++k) sum[half][k] += lanes_load_some(from + k * h->width + LANES * half, bits);
-      }
+    for (int32_t n = h->reaching[slice][0]; n <= h->reaching[slice][1]; ++n) {
+      const HybridStripe *stripe = &h->stripe[n];
+      const int64_t at = slice * SLICE - stripe->low, size = stripe->high - stripe->low;
+      if (at < 0 || at >= size) continue;
+      for (int half = 0; half < 2; ++half)
+        for (int k = 0; k < 3; ++k) sum[half][k] += lanes_load(stripe->sums + k * size + at + LANES * half);
     }
     for (int lane = 0; lane < SLICE && h->listed; ++lane) {
       const Lanes more = listed_force(h, slice * SLICE + lane);

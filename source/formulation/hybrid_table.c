@@ -150,9 +150,9 @@ void hybrid_lattices_destroy(Hybrid *h)
   free(h->table.key);
   free(h->table.g);
   free(h->table.bucket);
-  free(h->share_first);
-  free(h->share);
-  places_free(&h->window);
+  free(h->stripe);
+  free(h->reaching);
+  places_free(&h->sums);
 }
 
 size_t hybrid_lattices_bytes(const Hybrid *h)
@@ -161,10 +161,7 @@ size_t hybrid_lattices_bytes(const Hybrid *h)
   const HybridTable *t = &h->table;
   return groups * (sizeof *h->group + 1) + (size_t)h->mixed_count * sizeof *h->mixed +
          (size_t)t->count * sizeof *t->geometry + (size_t)t->buckets * sizeof *t->bucket +
-         (size_t)t->members * (sizeof *t->near + sizeof *t->key + sizeof *t->g) +
-         (h->window ? slices * (size_t)(h->windows * 3 * h->width) * sizeof *h->window +
-                          (slices + 1) * sizeof *h->share_first + (size_t)h->share_first[slices] * sizeof *h->share
-                    : 0);
+         (size_t)t->members * (sizeof *t->near + sizeof *t->key + sizeof *t->g) + hybrid_stripes_bytes(h);
 }
 
 /* ---- the table ---- */
@@ -175,19 +172,18 @@ static uint64_t mixed_in(uint64_t hash, uint64_t value)
   return hash ^ hash >> 29;
 }
 
-static uint64_t hash_of(int block, int other, int count, const uint16_t *key, const double area[3])
+/** Of members alone: geometries with the same ones and other sections share these. */
+static uint64_t hash_of(int block, int other, int count, const uint16_t *key)
 {
-  uint64_t hash = mixed_in(mixed_in((uint64_t)block, (uint64_t)other), (uint64_t)count), bits[3];
-  memcpy(bits, area, sizeof bits);
+  uint64_t hash = mixed_in(mixed_in((uint64_t)block, (uint64_t)other), (uint64_t)count);
   for (int n = 0; n < count; ++n) hash = mixed_in(hash, key[n]);
-  for (int k = 0; k < 3; ++k) hash = mixed_in(hash, bits[k]);
   return hash;
 }
 
 static uint64_t hash_at(const HybridTable *t, int32_t n)
 {
   const HybridGeometry *geometry = &t->geometry[n];
-  return hash_of(geometry->block, geometry->other, geometry->count, t->key + geometry->first, geometry->area);
+  return hash_of(geometry->block, geometry->other, geometry->count, t->key + geometry->first);
 }
 
 static void put_in_bucket(HybridTable *t, int32_t n)
@@ -283,21 +279,30 @@ static bool weigh(const Hybrid *h, Members *m)
 static int32_t look_up(Hybrid *h, Members *m, const double area[3], double volume)
 {
   HybridTable *t = &h->table;
+  int32_t alike = -1;                    /* a geometry with the same members */
   for (int turn = 0; turn < 2; ++turn) { /* the second one for members that turn out to span no space */
-    uint64_t at = hash_of(m->block, m->other, m->count, m->key, area);
+    uint64_t at = hash_of(m->block, m->other, m->count, m->key);
     for (; t->buckets && t->bucket[at & (uint64_t)(t->buckets - 1)] >= 0; ++at) {
       const int32_t n = t->bucket[at & (uint64_t)(t->buckets - 1)];
       const HybridGeometry *found = &t->geometry[n];
-      if (found->block == m->block && found->other == m->other && found->count == m->count &&
-          !memcmp(found->area, area, sizeof found->area) &&
-          !memcmp(t->key + found->first, m->key, sizeof *m->key * (size_t)m->count))
-        return n;
+      if (found->block != m->block || found->other != m->other || found->count != m->count ||
+          memcmp(t->key + found->first, m->key, sizeof *m->key * (size_t)m->count) != 0)
+        continue;
+      if (!memcmp(found->area, area, sizeof found->area)) return n;
+      alike = n;
     }
-    if (!m->count || weigh(h, m)) break;
+    if (!m->count || alike >= 0 || weigh(h, m)) break;
     m->count = 0;
   }
   if (!make_room(t, m->count)) return -1;
   HybridGeometry *made = &t->geometry[t->count];
+  if (alike >= 0) {
+    *made = t->geometry[alike];
+    memcpy(made->area, area, sizeof made->area);
+    made->volume = volume;
+    put_in_bucket(t, t->count);
+    return t->count++;
+  }
   *made = (HybridGeometry){.area = {area[0], area[1], area[2]},
                            .volume = volume,
                            .first = t->members,
@@ -327,22 +332,34 @@ static void tidy(Hybrid *h)
   const int64_t groups = h->bonds->owned_first[h->particles->slices];
   if (t->count < 2 * t->kept + 16 * FIRST_ROOM) return;
   int32_t *now = memory_plain((size_t)t->count, sizeof *now), count = 0;
-  if (!now) return;
+  int64_t *begins = memory_plain((size_t)t->members, sizeof *begins),
+          members = 0; /* how many members begin there, then where they are now */
+  if (!now || !begins) {
+    free(now);
+    free(begins);
+    return;
+  }
   for (int64_t group = 0; group < groups; ++group)
     for (int lane = 0; lane < SLICE; ++lane) {
       const int32_t geometry = *lane_geometry(h, group, lane);
-      if (geometry >= 0) now[geometry] = 1;
+      if (geometry < 0) continue;
+      now[geometry] = 1;
+      if (t->geometry[geometry].count) begins[t->geometry[geometry].first] = t->geometry[geometry].count;
     }
-  t->members = 0;
+  for (int64_t from = 0, size = 1; from < t->members; from += size ? size : 1) {
+    size = begins[from];
+    if (!size) continue;
+    memmove(t->near + members, t->near + from, sizeof *t->near * (size_t)size);
+    memmove(t->key + members, t->key + from, sizeof *t->key * (size_t)size);
+    memmove(t->g + members, t->g + from, sizeof *t->g * (size_t)size);
+    begins[from] = members;
+    members += size;
+  }
+  t->members = members;
   for (int32_t n = 0; n < t->count; ++n) {
     if (!now[n]) continue;
-    HybridGeometry *to = &t->geometry[count];
-    *to = t->geometry[n];
-    memmove(t->near + t->members, t->near + to->first, sizeof *t->near * (size_t)to->count);
-    memmove(t->key + t->members, t->key + to->first, sizeof *t->key * (size_t)to->count);
-    memmove(t->g + t->members, t->g + to->first, sizeof *t->g * (size_t)to->count);
-    to->first = t->members;
-    t->members += to->count;
+    t->geometry[count] = t->geometry[n];
+    if (t->geometry[n].count) t->geometry[count].first = begins[t->geometry[n].first];
     now[n] = count++;
   }
   for (int64_t group = 0; group < groups; ++group)
@@ -351,6 +368,7 @@ static void tidy(Hybrid *h)
     for (int lane = 0; lane < SLICE; ++lane)
       if (h->mixed[n][lane] >= 0) h->mixed[n][lane] = now[h->mixed[n][lane]];
   free(now);
+  free(begins);
   t->count = t->kept = count;
   fill_buckets(t);
 }

@@ -57,7 +57,7 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
     points->strain[k] = spec->strain[k];
     points->stress[k] = spec->stress[k];
   }
-  for (int k = 0; k < 6 && points->components == 6 && !points->shares; ++k) {
+  for (int k = 0; k < 6 && points->components == 6 && !points->shares && !spec->no_tensors; ++k) {
     points->strain[k] = places_array(points->count, "strains", error);
     points->stress[k] = places_array(points->count, "stresses", error);
     if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
@@ -157,7 +157,7 @@ void points_state(Points *points, const char *of, StateList *list)
                                                                                               : "stress";
   StateRow row = {
       .kind = STATE_NUMBERS, .entity = points->on_bonds ? STATE_OF_POINT : STATE_OF_PLACE, .count = points->count};
-  for (int k = 0; k < 6 && points->strain[0] && !points->shares; ++k) {
+  for (int k = 0; k < 6 && points_keep_tensors(points) && !points->shares; ++k) {
     row.unit = "1";
     row.values = points->strain[k];
     /* Across the plane of plane stress the law finds it, from where it was. */
@@ -466,16 +466,22 @@ bool points_try_stress(const Points *points, int64_t row, const double strain[6]
   return update_batch(points, m, &batch, at) < 0;
 }
 
-double points_elastic_energy(const Points *points, int64_t row)
+double points_energy_at(const Material *m, const double stress[6])
 {
-  const Material *m = points_material(points, row);
-  const double mean = (points->stress[XX][row] + points->stress[YY][row] + points->stress[ZZ][row]) / 3;
+  const double mean = (stress[XX] + stress[YY] + stress[ZZ]) / 3;
   double density = mean * mean / (2 * m->bulk);
   for (int k = 0; k < 6; ++k) {
-    const double deviator = points->stress[k][row] - (k < 3 ? mean : 0);
+    const double deviator = stress[k] - (k < 3 ? mean : 0);
     density += deviator * deviator / (m->shear * (k < 3 ? 4 : 2));
   }
   return density;
+}
+
+double points_elastic_energy(const Points *points, int64_t row)
+{
+  double stress[6];
+  for (int k = 0; k < 6; ++k) stress[k] = points->stress[k][row];
+  return points_energy_at(points_material(points, row), stress);
 }
 
 double points_softness(const Points *points, int64_t row)

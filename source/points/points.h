@@ -28,7 +28,7 @@ typedef struct Points {
   bool plane_stress;
   bool on_bonds; /* rows are those of a bond list; otherwise those of six components are places */
   int64_t count;
-  double *strain[6], *stress[6]; /* [count] of points of six components */
+  double *strain[6], *stress[6]; /* [count] of points of six components; NULL: points_keep_tensors */
   bool shares;                   /* these arrays, with other points */
   double *stress_before[6];      /* [count] while points_put_by has room */
   /** [count] of points that begin under stress the strain at which their law has it, beside that of displacements; NULL: none does. Borrowed */
@@ -57,6 +57,12 @@ typedef struct Points {
   size_t identity_size;
 } Points;
 
+/** Whether strains and stresses of points of six components stand in rows. Otherwise laws are Hooke's, and the formulation finds both itself. */
+static inline bool points_keep_tensors(const Points *points)
+{
+  return points->strain[0] != NULL;
+}
+
 /** Whether rows are places, and strain and stress are those of particles. */
 static inline bool points_on_particles(const Points *points)
 {
@@ -66,6 +72,7 @@ static inline bool points_on_particles(const Points *points)
 typedef struct PointsSpec {
   int components;
   bool plane_stress, on_bonds;
+  bool no_tensors;       /* the formulation finds strains and stresses itself: laws are Hooke's */
   const PointsRun *runs; /* borrowed while points are made */
   int64_t run_count;
   const Material *materials; /* borrowed for good */
@@ -133,6 +140,8 @@ bool points_try_stress(const Points *points, int64_t row, const double strain[6]
 
 /** Energy per volume that a point in space would give back if it unloaded with its first moduli. */
 double points_elastic_energy(const Points *points, int64_t row);
+/** The same of a material at a stress. */
+double points_energy_at(const Material *material, const double stress[6]);
 
 /** Share of the elastic energy of its stress that a point in space would give back, over that of an undamaged one: 1 where it
  *  unloads with its first moduli, more where damage has made it softer. Laws in servers are taken to unload elastically. */

@@ -20,6 +20,6 @@ bool points_is_valid(const Points *points)
   if (row != points->count || number > (int64_t)points->history_size) return false;
   if (number && (!points->committed || !points->trial || points->committed == points->trial)) return false;
   for (int k = 0; k < 6 && points->components == 6; ++k)
-    if (!points->strain[k] || !points->stress[k]) return false;
+    if (!points->strain[k] != !points->stress[5] || (!points->strain[k] && !points_are_linear(points))) return false;
   return true;
 }

@@ -390,6 +390,101 @@ static void breaking_keeps_its_books(void **state)
   breccia_model_destroy(&m);
 }
 
+/** A notched body of two materials on two lattices, so that there are bonds of slots, single ones, and ones with two points. */
+static breccia_model *notched_pair(const char *law, const char *keys, bool plane)
+{
+  return model_of(
+      UNITS "materials: {m: {%s, density: 2.4, Young modulus: 30e6, Poisson ratio: 0.2}, n: {%s, density: 2, "
+            "Young modulus: 10e6, Poisson ratio: 0.3}}\n"
+            "body:\n"
+            "  a: {material: m, %s, shape: {box: {from: [0, 0%s], to: [0.13, 0.11%s]}}}\n"
+            "  b: {material: n, %s, shape: {box: {from: [0.005, 0.11%s], to: [0.095, 0.16%s]}}}\n"
+            "cracks: [{cut: {%s}}]\n"
+            "peridynamics: {formulation: hybrid, %s}\n"
+            "failure: {critical stretch: 2e-4, near grips: hold}\n"
+            "loads: [{on: {face: y+, layers: 2}, velocity: [free, 0.1], history: {ramp to: 20e-6}},\n"
+            "        {on: {face: y-, layers: 2}, velocity: [free, -0.1], history: {ramp to: 20e-6}}]\n"
+            "solve: {explicit: {end time: 4e-4%s}}\n",
+      law, law, plane ? "lattice: square, spacing: 0.01, thickness: 0.1" : "spacing: 0.01", plane ? "" : ", 0",
+      plane ? "" : ", 0.04", plane ? "lattice: square, spacing: 0.01, thickness: 0.1" : "spacing: 0.01",
+      plane ? "" : ", 0", plane ? "" : ", 0.04",
+      plane ? "line: [[0, 0.07], [0.06, 0.07]]"
+            : "polygon: [[-1, 0.07, -1], [0.06, 0.07, -1], [0.06, 0.07, 1], [-1, 0.07, 1]]",
+      keys, strstr(keys, "pairwise") ? ", stiffness damping: 1e-7" : "");
+}
+
+/** The same numbers, but for roundings of what was summed. */
+static void assert_alike(double *const a[3], double *const b[3], int64_t count)
+{
+  double largest = 0, apart = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t i = 0; i < count; ++i) {
+      largest = fmax(largest, fabs(a[k][i]));
+      apart = fmax(apart, fabs(a[k][i] - b[k][i]));
+    }
+  assert_true(largest > 0);
+  assert_near(apart / largest, 0, 1e-11);
+}
+
+/** Where all laws are Hooke's, strains and stresses are kept nowhere: forces, their changes, what is told of particles and what breaks take must be
+ *  those of a law that keeps them and never yields. */
+static void laws_of_hooke_need_no_rows(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *keys;
+    bool plane;
+  } cases[] = {{"space: 3-D, horizon: 1.5 spacings", false},
+               {"space: 3-D, horizon: 2.015 spacings, strain: small", false},
+               {"space: 3-D, horizon: 1.5 spacings, form: pairwise", false},
+               {"space: plane strain, horizon: 2.015 spacings", true},
+               {"space: plane stress, horizon: 1.5 spacings", true},
+               {"space: plane stress, horizon: 1.5 spacings, form: pairwise, strain: small", true},
+               {"space: plane stress, horizon: 3.015 spacings, strain: small", true}};
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    breccia_model *both[2];
+    for (int n = 0; n < 2; ++n) {
+      both[n] = notched_pair(n ? "model: j2, yield stress: 1e20" : "model: elastic", cases[c].keys, cases[c].plane);
+      Domain *d = &both[n]->domain;
+      assert_int_equal(points_keep_tensors(&d->regions[0].points), n);
+      assert_true(n || !d->regions[0].points.strain[0]);
+      step_surely(both[n], cases[c].plane ? 300 : 200);
+      assert_true(d->broken_count > 20);
+      assert_int_equal(domain_linearise(d, NULL), 0);
+    }
+    const Particles *p = both[0]->domain.particles, *q = both[1]->domain.particles;
+    const int64_t places = p->places;
+    assert_int_equal(both[0]->domain.broken_count, both[1]->domain.broken_count);
+    assert_alike(p->displacement, q->displacement, places);
+    assert_alike(p->internal, q->internal, places);
+    const Energy of = solver_energy(&both[0]->solver), other = solver_energy(&both[1]->solver);
+    assert_near(of.stored, other.stored, 1e-10 * other.stored);
+    assert_near(of.fracture, other.fracture, 1e-10 * other.fracture);
+    for (int32_t n = 0; n < p->count; n += 7) {
+      double strain[2][6], stress[2][6];
+      for (int k = 0; k < 2; ++k) domain_look(&both[k]->domain, p->place_of[n], strain[k], stress[k]);
+      for (int k = 0; k < 6; ++k) {
+        assert_near(strain[0][k], strain[1][k], 1e-14);
+        assert_near(stress[0][k], stress[1][k], 1e-7); /* of some 1e3 */
+      }
+    }
+    double *v[3], *change[2][3];
+    for (int k = 0; k < 3; ++k) {
+      v[k] = places_array(places, "v", NULL);
+      for (int64_t i = 0; i < places; ++i)
+        v[k][i] = sin(0.7 * (double)i + k) * (p->number[i] >= 0 && !(cases[c].plane && k == 2));
+      for (int n = 0; n < 2; ++n) change[n][k] = places_array(places, "K v", NULL);
+    }
+    for (int n = 0; n < 2; ++n) domain_linear_step(&both[n]->domain, v, change[n]);
+    assert_alike(change[0], change[1], places);
+    for (int k = 0; k < 3; ++k) {
+      places_free(&v[k]);
+      for (int n = 0; n < 2; ++n) places_free(&change[n][k]);
+    }
+    for (int n = 0; n < 2; ++n) breccia_model_destroy(&both[n]);
+  }
+}
+
 /** Books of breaking foresee stresses by the law itself: those of points that yield are those that the next evaluation gives. */
 static void stresses_are_foreseen_by_the_law(void **state)
 {
@@ -587,6 +682,7 @@ int main(void)
       cmocka_unit_test(free_bodies_keep_their_energy),
       cmocka_unit_test(fibres_are_bond_based),
       cmocka_unit_test(breaking_keeps_its_books),
+      cmocka_unit_test(laws_of_hooke_need_no_rows),
       cmocka_unit_test(stresses_are_foreseen_by_the_law),
       cmocka_unit_test(bonds_break_at_stresses_on_their_section),
       cmocka_unit_test(a_torn_bar_spends_its_fracture_energy),

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "base/wide.h"
 #include "formulation/bond_based.h"
+#include "formulation/hybrid.h"
 #include "formulation/ordinary.h"
 
 static breccia_model *body(const char *formulation, const char *law)
@@ -22,6 +23,8 @@ static void set_wide(Domain *d, bool wide)
   void *formulation = d->regions[0].formulation;
   if (!strcmp(d->regions[0].type->name, "ordinary"))
     ((Ordinary *)formulation)->wide = wide;
+  else if (!strcmp(d->regions[0].type->name, "hybrid"))
+    ((Hybrid *)formulation)->wide = wide;
   else
     ((BondBased *)formulation)->wide = wide;
 }
@@ -65,8 +68,11 @@ static void long_vectors_give_the_bits_of_short_ones(void **state)
 {
   (void)state;
   if (!wide_lanes_pay()) skip();
-  static const char *const of[2][2] = {{"bond-based", "elastic-1d"}, {"ordinary", "elastic, Poisson ratio: 0.3"}};
-  for (int k = 0; k < 2; ++k) {
+  static const char *const of[][2] = {{"bond-based", "elastic-1d"},
+                                      {"ordinary", "elastic, Poisson ratio: 0.3"},
+                                      {"hybrid", "elastic, Poisson ratio: 0.3"},
+                                      {"hybrid, strain: small", "elastic, Poisson ratio: 0.3"}};
+  for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
     breccia_model *model = body(of[k][0], of[k][1]);
     check(model, 0);
     check(model, 0.3);
