@@ -22,8 +22,6 @@ EARLY = hyperbola(CORNERS[0]) - CORNERS[0] / SHEAR_MODULUS
 POLYGON = [(0, 0)] + [(hyperbola(t) - EARLY, t) for t in CORNERS]
 STRAIN, STRESS = POLYGON[INCREMENTS]  # at 0.9 of the strength
 
-deck = open("column.yaml").read()
-LOADS = deck[deck.index("  # What bonds beyond"):deck.index("solve:")]
 HYBRID = "formulation: hybrid, form: variational"
 BASE, SIDES = "  - {on: {face: y-}, support: {held: all}}\n", "  - {on: {face: x-}, support: {held: periodic}}\n"
 HYBRIDS = {"hybrid, variational": [], "hybrid, pairwise": [("form: variational", "form: pairwise")]}
@@ -39,13 +37,7 @@ def told(share):
     return f"{share:+.0e}" if abs(share) < 1e-5 else f"{100 * share:+.3f} %" if abs(share) < 1e-3 else f"{100 * share:+.1f} %"
 
 
-def tractions(shares):
-    """Loads that give the outermost rows these shares of the traction, from the last row down. A traction is spread over its layers."""
-    text = ""
-    for n, share in enumerate(shares, 1):
-        factor = n * (share - (shares[n] if n < len(shares) else 0))
-        text += f'  - {{on: {{face: y+, layers: {n}}}, traction: ["${{{factor:.12g}*shear}}", 0], history: {{ramp to: 1}}}}\n'
-    return [(LOADS, text)]
+SPREADS = {"as by the bonds cut off": [], "on the last row": [("traction:", "spread: layers, traction:")]}
 
 
 class Column(Run):
@@ -64,21 +56,6 @@ class Column(Run):
         return [told(strain / STRAIN - 1), told(stress / STRESS - 1), told(self.moved), told(far[n]) + where]
 
 
-def cut_off(edits, horizon):
-    """The shares of an even stress that bonds beyond the top would bring to the rows: minus what bonds exert where all particles are led by an even strain."""
-    rows, dx = 12, 0.25
-    row = lambda n: f"{{inside: {{box: {{from: [0, {(n + 0.1) * dx}], to: [2 m, {(n + 0.9) * dx}]}}}}}}"
-    led = "".join(f"  - {{on: {row(n)}, displacement: [{1e-6 * (n + 0.5) * dx}, 0]}}\n" for n in range(rows))
-    watches = "".join(f"  r{n}: {{force on: {row(n)}}}\n" for n in range(rows))
-    run = Run("column.yaml", [f"variables.layers={horizon}", f"variables.height={rows * dx} m"],
-              edits=[*edits, (LOADS, led), (BASE, ""), ("increments: 18", "increments: 1"), ("watch:\n", "watch:\n" + watches)])
-    even = run.last("middle", "stress xy") * WIDTH
-    shares = [round(-run.last(f"r{rows - n}", "x") / even, 9) for n in range(1, rows // 2 + 1)]
-    while abs(shares[-1]) < 1e-6:
-        shares.pop()
-    return shares
-
-
 def elements(side):
     """Strain, stress and displacement by OpenSees after each increment; nothing where it is not set up."""
     python = "../../.venv/opensees/bin/python"
@@ -89,29 +66,27 @@ def elements(side):
 
 
 HEAD = ["strain in the middle", "stress there", "displacement of the last row", "strain, at the worst"]
-shown = lambda shares: ", ".join(f"{s:.2f}" for s in shares)
-columns, shares, rows = {}, {}, []
+BONDS, LAST = SPREADS
+columns, rows = {}, []
 for name, edits in HYBRIDS.items():
     for m in HORIZONS[:2]:
-        shares[name, m] = cut_off(edits, m)
-        for spacing, given in ((0.5, shares[name, m]), (0.25, shares[name, m]), (0.25, [1])):
-            column = columns[name, m, len(given), spacing] = Column(m, edits + tractions(given), spacing)
-            rows.append([name, f"{m:g}", f"{spacing:g} m", shown(given), *column.cells()])
+        for spacing, spread in ((0.5, BONDS), (0.25, BONDS), (0.25, LAST)):
+            column = columns[name, m, spread, spacing] = Column(m, edits + SPREADS[spread], spacing)
+            rows.append([name, f"{m:g}", f"{spacing:g} m", spread, *column.cells()])
 by_elements = elements(0.5)
 if by_elements:
     strain, stress, top = by_elements[-1]
     rows.append(["finite elements (quad of OpenSees)", "", "0.5 m", "even", told(strain / STRAIN - 1), told(stress / STRESS - 1),
                  told(top / STRAIN / HEIGHT - 1), ""])
-between("hybrid", table(["", "horizon, spacings", "spacing", "shares of the traction, from the last row down", *HEAD], rows))
+between("hybrid", table(["", "horizon, spacings", "spacing", "traction", *HEAD], rows))
 
 rows = []
 for name, edits in CORRESPONDENCE.items():
     for m in HORIZONS:
-        shares["correspondence", m] = shares.get(("correspondence", m)) or cut_off(edits, m)
-        for given in (shares["correspondence", m], [1]):
-            column = columns[name, m, len(given), 0.25] = Column(m, edits + tractions(given))
-            rows.append([name, f"{m:g}", shown(given), *column.cells()])
-between("correspondence", table(["control", "horizon, spacings", "shares of the traction, from the last row down", *HEAD], rows))
+        for spread, said in SPREADS.items():
+            column = columns[name, m, spread, 0.25] = Column(m, edits + said)
+            rows.append([name, f"{m:g}", spread, *column.cells()])
+between("correspondence", table(["control", "horizon, spacings", "traction", *HEAD], rows))
 
 WAYS = {
     "rows of particles tied": (0.25, [(SIDES, "  - {on: {except: {face: x-}}, tie: {to: {face: x-}}}\n")]),
@@ -122,12 +97,12 @@ WAYS = {
 rows = []
 for way, (spacing, changed) in WAYS.items():
     for name, edits in HYBRIDS.items():
-        column = Column(1.5, edits + tractions(shares[name, 1.5]) + changed, spacing)
+        column = Column(1.5, edits + changed, spacing)
         inside = column.moved * column.heights[-1] / spacing
         rows.append([way, name, *column.cells(), f"{inside:.2f}" if "clamped" in way else ""])
 between("ways", table(["sides and base, horizon 1.5 spacings", "", *HEAD, "spacings by which the column is longer"], rows))
 
-path = columns["hybrid, variational", 1.5, 2, 0.25]
+path = columns["hybrid, variational", 1.5, BONDS, 0.25]
 curve = [100 * g for g in path.column("middle", "strain xy")], path.column("middle", "stress xy")
 smooth = [n * STRESS / 200 for n in range(201)]
 chart("backbone", "Shear stress against shear strain in the middle of the column", "shear strain [%]", "shear stress [kPa]",
@@ -135,8 +110,8 @@ chart("backbone", "Shear stress against shear strain in the middle of the column
        ("polygon of its surfaces", LINE, [(100 * g, t) for g, t in POLYGON[:INCREMENTS + 1]]),
        ("hybrid", "with points pt 7 ps 1 lc rgb '#c8501e'", list(zip(*curve)))] +
       ([("finite elements", "with points pt 6 ps 2 lw 1.5 lc rgb '#21918c'", [(100 * g, t) for g, t, _ in by_elements])] if by_elements else []))
-profiles = [("hybrid, 1.5: shares 1.5, -0.5", ("hybrid, variational", 1.5, 2, 0.25)), ("hybrid, 1.5: last row", ("hybrid, variational", 1.5, 1, 0.25)),
-            ("hybrid, 2.015: last row", ("hybrid, variational", 2.015, 1, 0.25)), ("correspondence, 3.015: last row", ("kept", 3.015, 1, 0.25))]
+profiles = [("hybrid, 1.5: by the bonds cut off", ("hybrid, variational", 1.5, BONDS, 0.25)), ("hybrid, 1.5: last row", ("hybrid, variational", 1.5, LAST, 0.25)),
+            ("hybrid, 2.015: last row", ("hybrid, variational", 2.015, LAST, 0.25)), ("correspondence, 3.015: last row", ("kept", 3.015, LAST, 0.25))]
 chart("height", "Shear strain over the height, by the rows that take the traction", "shear strain [%]", "height [m]",
       [(label, style, [(100 * s, y) for s, y in zip(columns[key].strains, columns[key].heights)]) for (label, key), style in zip(profiles, STYLES)],
       "set yrange [0:10]\nset xrange [0:0.6]")

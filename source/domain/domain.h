@@ -191,6 +191,9 @@ int domain_keep_within(Domain *domain, const uint8_t *marked, double distance, E
 /** Adds a broken bond to the list. */
 int domain_record(Domain *domain, const BrokenBond *bond);
 
+/** How an even stress acts on marked places, as FormulationType.even_stress says it; NAN where that is not known. @param[out] area  [3][places] */
+void domain_even_stress(const Domain *domain, const uint8_t *marked, double *const area[3]);
+
 /** Force per volume squared that the neighbour exerts on the particle through one bond, t_ij - t_ji. */
 void domain_bond_force(const Domain *domain, int64_t slice, int64_t slot, int lane, double force[3]);
 

@@ -5,6 +5,7 @@
 #include "domain/regions.h"
 
 #include "base/team.h"
+#include <math.h>
 #include <stdlib.h>
 
 struct JointBond {
@@ -84,4 +85,15 @@ void domain_bond_force(const Domain *d, int64_t slice, int64_t slot, int lane, d
   their->type->half_state(their->formulation, NULL, other / SLICE, family_slot(&d->family, other, place), other % SLICE,
                           back);
   for (int k = 0; k < 3; ++k) force[k] -= back[k];
+}
+
+void domain_even_stress(const Domain *d, const uint8_t *marked, double *const area[3])
+{
+  for (int64_t i = 0; i < d->particles->places; ++i) {
+    const Region *region = marked[i] ? domain_region(d, i) : NULL;
+    for (int k = 0; k < 3; ++k) area[k][i] = region && !(region->formulation && region->type->even_stress) ? NAN : 0;
+  }
+  for (int r = 0; r < d->region_count; ++r)
+    if (d->regions[r].formulation && d->regions[r].type->even_stress)
+      d->regions[r].type->even_stress(d->regions[r].formulation, marked, area);
 }

@@ -415,6 +415,7 @@ const FormulationType formulation_correspondence = {
                 .by_one = true}},
     .linearise = correspondence_linearise,
     .half_state = correspondence_half_state,
+    .even_stress = correspondence_even_stress,
     .point_count = correspondence_point_count,
     .point = correspondence_point,
     .shares = correspondence_shares,

@@ -105,6 +105,7 @@ FormerBonds correspondence_former_bonds(const void *formulation);
 int64_t correspondence_finish(void *formulation, const Sweep *sweep);
 void correspondence_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                                double state[3]);
+void correspondence_even_stress(const void *formulation, const uint8_t *marked, double *const area[3]);
 int64_t correspondence_point_count(const void *formulation);
 int correspondence_point(const void *formulation, int64_t place, Operator *point, Error *error);
 int correspondence_linearise(void *formulation, Error *error);

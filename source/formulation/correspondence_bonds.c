@@ -83,6 +83,35 @@ void correspondence_half_state(const void *formulation, double *const *at, int64
   for (int k = 0; k < 3; ++k) state[k] += t[k];
 }
 
+/** Sum of V w (K^-1 + K^-1 of the neighbour) xi over the bonds of a place: control does nothing in even strain. */
+static void add_even_stress(const Correspondence *c, int64_t place, double *const area[3])
+{
+  const Family *f = c->family;
+  const int64_t slice = place / SLICE;
+  const double volume = c->particles->volume[place];
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+    const int64_t there = bond.neighbour;
+    const bool known = !is_foreign(c->foreign, there) && c->shapes.mode[place] == SHAPE_REGULAR &&
+                       c->shapes.mode[there] == SHAPE_REGULAR;
+    const SliceShape *own = shape_of_slice(&c->shapes, slice), *their = shape_of_slice(&c->shapes, there / SLICE);
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 3; ++j) {
+        const int kj = symmetric_place[3 * k + j];
+        const double both = own->inverse[kj][place % SLICE] + their->inverse[kj][there % SLICE];
+        area[k][place] += known ? volume * bond.weight * both * bond.xi[j] : NAN;
+      }
+  }
+}
+
+void correspondence_even_stress(const void *formulation, const uint8_t *marked, double *const area[3])
+{
+  const Correspondence *c = formulation;
+  for (int64_t place = 0; place < c->particles->places; ++place)
+    if (marked[place] && !is_foreign(c->foreign, place)) add_even_stress(c, place, area);
+}
+
 /* ---- energy ---- */
 
 /** Sums over the bonds of a place, of elongations eta and of those before the last step. */

@@ -216,6 +216,10 @@ struct FormulationType {
   /** Critical stretch of bonds with which a plane crack takes a fracture energy. NULL: none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
+  /** How an even stress acts on marked places of the body as it begins: adds the area vectors a with which the force on a place is stress . a, all 0
+   *  inside and minus a particle's share of the area along the normal of a free surface; NAN where that is not known. NULL: it is nowhere.
+   *  @param[in] marked  [places] @param[in,out] area  [3][places] */
+  void (*even_stress)(const void *formulation, const uint8_t *marked, double *const area[3]);
   /** Why a free body would gain energy as it moves unless its shortest waves are damped, or NULL where it would not. NULL: it never would. */
   const char *(*flutters)(const void *formulation);
   /** Whether an intact bond can carry anything by the bonds that are left around it; those that cannot break with the others. NULL: all can. */

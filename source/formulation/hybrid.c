@@ -291,6 +291,7 @@ const FormulationType formulation_hybrid = {
     .elongation = hybrid_elongation,
     .section_stress = hybrid_section_stress,
     .characteristic_length = hybrid_characteristic_length,
+    .even_stress = hybrid_even_stress,
     .former_bonds = former_bonds,
     .flutters = flutters,
     .can_carry = hybrid_can_carry,

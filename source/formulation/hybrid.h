@@ -243,6 +243,7 @@ int hybrid_point(const void *formulation, int64_t number, Operator *point, Error
 void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
 void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot, int lane, double *tension,
                            double *shear);
+void hybrid_even_stress(const void *formulation, const uint8_t *marked, double *const area[3]);
 void hybrid_place_gradient(const void *formulation, int64_t place, double f[9]);
 void hybrid_stress(const void *formulation, int64_t place, double stress[6]);
 double hybrid_characteristic_length(const BondLength *of);

@@ -190,6 +190,46 @@ void hybrid_section_stress(const void *formulation, int64_t slice, int64_t slot,
   *shear = sqrt(fmax(0, traction - *tension * *tension));
 }
 
+/* ---- an even stress ---- */
+
+/** Whether a slice or a neighbour of it is marked: points on its bonds have no other members. */
+static bool is_near(const Family *f, const uint8_t *marked, int64_t slice)
+{
+  for (int lane = 0; lane < SLICE; ++lane) {
+    if (marked[slice * SLICE + lane]) return true;
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      if (f->intact[slot] >> lane & 1 && marked[family_bond(f, slice, slot, lane).neighbour]) return true;
+  }
+  return false;
+}
+
+/** Adds what a point does to its marked members. Those of bonds to other formulations are not known, as these have their part in them. */
+static void add_even_stress(const Hybrid *h, const HybridView *view, const uint8_t *marked, double *const area[3])
+{
+  bool known = true;
+  for (int n = 0; n < view->count; ++n) known &= !is_foreign(h->foreign, view->member[n]);
+  for (int n = 0; n < view->count; ++n) {
+    const int32_t place = view->member[n];
+    for (int k = 0; k < 3 && marked[place]; ++k) {
+      const double pairwise = n == 0 ? view->area[k] : n == 1 ? -view->area[k] : 0;
+      area[k][place] += !known ? NAN : h->pairwise ? pairwise : -view->volume * view->g[n][k];
+    }
+  }
+}
+
+void hybrid_even_stress(const void *formulation, const uint8_t *marked, double *const area[3])
+{
+  const Hybrid *h = formulation;
+  HybridView view;
+  for (int64_t slice = 0; slice < h->particles->slices; ++slice) {
+    if (h->bonds->first[slice] == h->bonds->first[slice + 1] || !is_near(h->family, marked, slice)) continue;
+    for (int64_t row = h->bonds->first[slice]; row < h->bonds->first[slice + 1]; ++row) {
+      hybrid_view(h, row, &view);
+      if (!view.idle) add_even_stress(h, &view, marked, area);
+    }
+  }
+}
+
 /* ---- what people see of particles ---- */
 
 /** Means of the strains and stresses of the points on a place's bonds, by their volumes. */

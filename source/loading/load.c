@@ -14,7 +14,13 @@ static const LoadType *const types[] = {
 #include "loading/load/loads.h"
 };
 
-enum { OTHERS = 4 }; /* keys that all loads have */
+static const char *spread_word(int k)
+{
+  static const char *const words[] = {"bonds", "layers", NULL};
+  return words[k];
+}
+
+enum { OTHERS = 5 }; /* keys that all loads have */
 
 static const Field load_fields[] = {
     {.key = "name",
@@ -42,6 +48,15 @@ static const Field load_fields[] = {
      .standard = "",
      .range = "(0, inf)",
      .meaning = "of a traction: the area that all its particles have together, where they are no face of a lattice"},
+    {.key = "spread",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(LoadSpec, spread),
+     .standard = "",
+     .meaning =
+         "of what acts on a face. bonds: to the particles that the bonds cut off by the face would have pulled, "
+         "and as they would have, so that an even stress up to the face is exact: standard for one layer of square and "
+         "cubic lattices in formulations that can tell (hybrid). layers: evenly over the layers of the face",
+     .choice = spread_word},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \
    .kind = form,                                                                                                       \
@@ -80,6 +95,9 @@ static void check_load(const DeckReader *reader, void *section)
                "history: '%s' does not vary in time; leave it out", load_fields[OTHERS + k].key);
   if (!isnan(load->area) && k != LOAD_traction)
     node_error(reader->document, section_node(load, "area"), reader->error, "area: only a 'traction' has one");
+  if (load->spread && k != LOAD_traction && k != LOAD_pressure && k != LOAD_water_pressure)
+    node_error(reader->document, section_node(load, "spread"), reader->error,
+               "spread: only of a traction, a pressure or a water pressure");
 }
 
 const Section load_section = {

@@ -4,6 +4,7 @@
 
 #include "body/selection.h"
 #include "constitutive/material.h"
+#include "family/family.h"
 #include "formulation/operator.h"
 #include "loading/history.h"
 
@@ -27,6 +28,7 @@ typedef struct LoadSpec {
   LoadValue of[LOADS]; /* exactly one is given */
   HistorySpec *history;
   double area;
+  const char *spread;
 } LoadSpec;
 
 extern const Section load_section;
@@ -47,7 +49,7 @@ typedef struct Load {
   const LoadSpec *spec;
   const LoadValue *value;
   const Node *node;           /* of the value in the deck */
-  Selection selection, other; /* `other`: what it joins these to, if anything */
+  Selection selection, other; /* `other`: what it joins these to, or those behind them on which it acts too */
   double volume;              /* of the selected particles */
   int64_t first, behind;      /* acts in the stages first .. behind - 1 */
   double begin;               /* time of the run from which its history counts */
@@ -102,10 +104,18 @@ typedef struct LoadWords {
   const char *dimension, *unit; /* and that unit of the SI to show it in */
 } LoadWords;
 
+/** How an even stress acts on marked places, as FormulationType.even_stress says it; NAN where that is not known. */
+typedef struct EvenStress {
+  void (*find)(const void *domain, const uint8_t *marked, double *const area[3]);
+  const void *domain;
+} EvenStress;
+
 /** What the making of loads needs. */
 typedef struct LoadMaking {
   Loading *loading;
   const Body *body;
+  const Family *family;
+  EvenStress even_stress;
   const DeckReader *reader;
   const SectionList *selections;
   const Material *materials;

@@ -109,6 +109,11 @@ static int find_margins(const breccia_model *model, MarginList *margins)
   return status;
 }
 
+static void even_stress(const void *domain, const uint8_t *marked, double *const area[3])
+{
+  domain_even_stress(domain, marked, area);
+}
+
 static int create_loading(breccia_model *model, Error *error)
 {
   const DeckSpec *spec = model->spec;
@@ -120,6 +125,8 @@ static int create_loading(breccia_model *model, Error *error)
   }
   const LoadMaking making = {.loading = &model->loading,
                              .body = &model->domain.body,
+                             .family = &model->domain.family,
+                             .even_stress = {even_stress, &model->domain},
                              .reader = &model->reader,
                              .selections = &spec->selections,
                              .materials = model->domain.materials,

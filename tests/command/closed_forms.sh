@@ -36,7 +36,7 @@ for form in variational pairwise; do
   rm -r "$work/cantilever"
 done
 
-# Clay sheared to 0.9 of its strength: the corner of its backbone, in the middle by equilibrium and at the top as the traction stands for bonds cut off
+# Clay sheared to 0.9 of its strength: the corner of its backbone, and at the top, as the traction is spread as by the bonds cut off
 run soil-column-static/column --set "variables.dx=0.5 m"
 strain=$(exact "sqrt(1.5) * (3 / 5970 * 27 / (60e3 * 3 / 5970 - 27) - (3 / 5970 * 1.5 / (60e3 * 3 / 5970 - 1.5) - 1.5 / 60e3))")
 near "strain of the column of clay" "$(value column/middle 6)" "$strain" 1e-6

@@ -123,7 +123,8 @@ static void two_supports_share_the_load_of_a_beam(void **state)
 static void a_clamp_exerts_the_moment_of_the_load_about_its_face(void **state)
 {
   (void)state;
-  /* P L from the face, of a support that mirrors as it is; from the middle of layers that are held themselves by half of what they are deep more. */
+  /* P L from the face, of a support that mirrors as it is; from the middle of layers that are held themselves by half of what they are deep more. The
+     load stands at the end where bonds tell how it is spread (correspondence), otherwise in the last layer. */
   static const char *const clamps[] = {"support: {held: all}", "displacement: [0, 0]"};
   for (int k = 0; k < 4; ++k) {
     breccia_model *model = model_of(
@@ -134,7 +135,7 @@ static void a_clamp_exerts_the_moment_of_the_load_about_its_face(void **state)
         "solve: {static: {increments: 1, residual: 1e-10}}\n",
         k / 2 ? "ordinary" : "correspondence", k % 2 ? ", layers: 2" : "", clamps[k % 2]);
     step_surely(model, INT64_MAX);
-    const double load = 1e-4 * 0.6 * 0.2, middle = k % 2 ? 0.1 : 0, arm = 1.95 - middle;
+    const double load = 1e-4 * 0.6 * 0.2, middle = k % 2 ? 0.1 : 0, arm = (k / 2 ? 1.95 : 2) - middle;
     const Wrench clamp = sum_of(model, NULL, "clamp", NULL);
     assert_near(clamp.about[0], middle, 1e-5);
     assert_near(clamp.force[1], load, 1e-8 * load);

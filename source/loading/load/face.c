@@ -43,6 +43,9 @@ int face_create(Face *face, const Load *load, const LoadMaking *making)
 void face_destroy(Face *face)
 {
   free(face->per_depth);
+  free(face->place);
+  free(face->at);
+  free(face->per_volume);
   *face = (Face){0};
 }
 
@@ -56,10 +59,8 @@ double face_area(const Face *face, const Load *load, const Particles *p)
   return sum;
 }
 
-void face_push(const Face *face, const Load *load, Particles *p, const double traction[3])
+void face_push(const Face *face, Particles *p, const double traction[3])
 {
-  TEAM_FOR (n, load->selection.count) {
-    const int32_t place = load->selection.places[n];
-    for (int k = 0; k < 3; ++k) p->external[k][place] += traction[k] * face->per_depth[place / SLICE];
-  }
+  TEAM_FOR (n, face->count)
+    for (int k = 0; k < 3; ++k) p->external[k][face->place[n]] += traction[k] * face->per_volume[n];
 }

@@ -8,17 +8,24 @@ typedef struct Face {
   int axis;
   double outwards;   /* 1 or -1: the normal along the axis */
   double *per_depth; /* [slices] what turns a force per area into one per volume: 1 / depth of the layers */
+  /* On which particles forces of the face act, once they are spread. */
+  int64_t count;
+  int32_t *place, *at; /* [count] at: which of the load's particles stands over it at the face */
+  double *per_volume;  /* [count] force per volume by a force of 1 per area */
 } Face;
 
 /** Finds the face on which a load acts; with `area` of the deck that is shared among all its particles. @param[out] face  to be freed with
  *  face_destroy */
 int face_create(Face *face, const Load *load, const LoadMaking *making);
+/** Spreads it over the particles on which forces act: those of the load, or as the bonds would that the face has cut off (docs/theory.md 5.5), with
+ *  those behind them, which become the load's `other`. */
+int face_spread(Face *face, Load *load, const LoadMaking *making);
 void face_destroy(Face *face);
 
 /** Area of the face. */
 double face_area(const Face *face, const Load *load, const Particles *particles);
 
-/** Adds a force per area to the external forces of a load's particles, by all threads. */
-void face_push(const Face *face, const Load *load, Particles *particles, const double traction[3]);
+/** Adds a force per area to the external forces, by all threads. */
+void face_push(const Face *face, Particles *particles, const double traction[3]);
 
 #endif

@@ -6,7 +6,9 @@
 static int create(Load *load, const LoadMaking *making)
 {
   load->own = memory_zeroed(1, sizeof(Face), "face", making->reader->error);
-  return load->own ? face_create(load->own, load, making) : BRECCIA_FAILURE;
+  if (!load->own) return BRECCIA_FAILURE;
+  const int status = face_create(load->own, load, making);
+  return status ? status : face_spread(load->own, load, making);
 }
 
 static void destroy(Load *load)
@@ -20,7 +22,7 @@ static void force(const Load *load, Particles *p, double factor)
   const Face *face = load->own;
   double traction[3] = {0};
   traction[face->axis] = -face->outwards * factor * load->value->number;
-  face_push(face, load, p, traction);
+  face_push(face, p, traction);
 }
 
 static double magnitude(const LoadValue *value)

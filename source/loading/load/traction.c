@@ -6,7 +6,9 @@
 static int create(Load *load, const LoadMaking *making)
 {
   load->own = memory_zeroed(1, sizeof(Face), "face", making->reader->error);
-  return load->own ? face_create(load->own, load, making) : BRECCIA_FAILURE;
+  if (!load->own) return BRECCIA_FAILURE;
+  const int status = face_create(load->own, load, making);
+  return status ? status : face_spread(load->own, load, making);
 }
 
 static void destroy(Load *load)
@@ -19,7 +21,7 @@ static void force(const Load *load, Particles *p, double factor)
 {
   double traction[3];
   for (int k = 0; k < 3; ++k) traction[k] = factor * load->value->point[k];
-  face_push(load->own, load, p, traction);
+  face_push(load->own, p, traction);
 }
 
 static LoadWords tell(const Load *load, const Particles *p)

@@ -46,7 +46,8 @@ static int create(Load *load, const LoadMaking *making)
     return node_error(reader->document, load->node, reader->error, "water pressure: the body is a bar along x");
   WaterPressure *own = load->own = memory_zeroed(1, sizeof *own, "water pressure", reader->error);
   if (!own) return BRECCIA_FAILURE;
-  const int status = face_create(&own->face, load, making);
+  int status = face_create(&own->face, load, making);
+  if (!status) status = face_spread(&own->face, load, making);
   if (status) return status;
   own->pressure = memory_zeroed((size_t)load->selection.count, sizeof(double), "water pressure", reader->error);
   if (!own->pressure) return BRECCIA_FAILURE;
@@ -75,10 +76,8 @@ static void force(const Load *load, Particles *p, double factor)
   const WaterPressure *own = load->own;
   const Face *face = &own->face;
   double *external = p->external[face->axis];
-  TEAM_FOR (n, load->selection.count) {
-    const int32_t place = load->selection.places[n];
-    external[place] -= face->outwards * factor * own->pressure[n] * face->per_depth[place / SLICE];
-  }
+  TEAM_FOR (n, face->count)
+    external[face->place[n]] -= face->outwards * factor * own->pressure[face->at[n]] * face->per_volume[n];
 }
 
 static double magnitude(const LoadValue *value)
