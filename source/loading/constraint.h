@@ -7,6 +7,17 @@
 /** Two motions of one particle must be at right angles, or they contradict each other. */
 int constraints_check(const Loading *loading, const Particles *particles, const DeckReader *reader);
 
+/** What the n-th particle of a constraint does of what is told of all. */
+static inline double constraint_part(const Constraint *constraint, int64_t n)
+{
+  return constraint->part ? constraint->part[n] : 1;
+}
+/** The most that any particle does of it. */
+static inline double constraint_most(const Constraint *constraint)
+{
+  return constraint->part ? constraint->largest_part : 1;
+}
+
 /** Displacement along its direction that a constraint prescribes at a time of the run, from where its load began. By one thread. */
 double constraint_displacement(const Constraint *constraint, double time);
 

@@ -68,6 +68,8 @@ typedef struct Constraint {
   double value;
   int order;             /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */
   double *from;          /* [particles of the load] what stood there when the load began; NULL: 0 */
+  double *part;          /* [particles of the load] by which `value` is multiplied there; NULL: 1. Owned */
+  double largest_part;   /* of their sizes */
   const int32_t *images; /* [particles of the load] places of the others, which take no force from it; NULL: none */
   double share;          /* 1 or -1 */
   double *moved;         /* [particles of the load] in the step under way; with images only. Owned */

@@ -98,6 +98,7 @@ void loading_destroy(Loading *loading)
   for (int c = 0; c < loading->constraint_count; ++c) {
     free(loading->constraints[c].from);
     free(loading->constraints[c].moved);
+    free(loading->constraints[c].part);
   }
   free(loading->loads);
   free(loading->constraints);

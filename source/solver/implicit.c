@@ -276,7 +276,8 @@ static double inertia(const Solver *run, const Constraint *constraint, int64_t n
   double drag = 0;
   for (int k = 0; k < 3; ++k) drag += constraint->direction[k] * s->drag[k][i];
   return drag +
-         p->density[i] * p->volume[i] * constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
+         constraint_part(constraint, n) * p->density[i] * p->volume[i] *
+             constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
 }
 
 const SolverType implicit_solver = {.name = "implicit",

@@ -28,10 +28,10 @@ static void prescribe_rate(const Constraint *c, int64_t n, void *context)
   if (c != r->constraint) {
     r->constraint = c;
     r->rate = constraint_velocity(c, r->time, r->step);
-    r->most = fmax(r->most, fabs(r->rate));
+    r->most = fmax(r->most, fabs(r->rate) * constraint_most(c));
   }
   const int32_t i = c->load->selection.places[n];
-  double wanted = r->rate - vectors_along(r->velocity, c->direction, i);
+  double wanted = r->rate * constraint_part(c, n) - vectors_along(r->velocity, c->direction, i);
   if (c->images) wanted += c->share * vectors_along(r->velocity, c->direction, c->images[n]);
   for (int k = 0; k < 3; ++k) r->velocity[k][i] += wanted * c->direction[k];
 }

@@ -83,7 +83,8 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
     double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
     double fi = along(p->internal, d, i), fe = along(p->external, d, i);
     double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
-           off = (constraint->from ? constraint->from[k] + target : target) - along(p->displacement, d, i);
+           aim = target * constraint_part(constraint, k),
+           off = (constraint->from ? constraint->from[k] + aim : aim) - along(p->displacement, d, i);
     if (constraint->images) off += constraint->share * along(p->displacement, d, constraint->images[k]);
     largest = fmax(largest, fabs(drifted + off));
     if (constraint->images) constraint->moved[k] = drifted + off;
@@ -116,7 +117,8 @@ void explicit_foresee_motions(Explicit *s)
     s->motions[n] = (struct Motion){.target = constraint_displacement(constraint, s->clock->time + dt),
                                     .moved = constraint_displacement(constraint, end) - (first ? 0 : before),
                                     .rate = (constraint_displacement(constraint, end + dt) - before) / (2 * dt)};
-    s->ledger->given = fmax(s->ledger->given, fmax(fabs(s->motions[n].moved / dt), fabs(s->motions[n].rate)));
+    const double fastest = fmax(fabs(s->motions[n].moved / dt), fabs(s->motions[n].rate));
+    s->ledger->given = fmax(s->ledger->given, fastest * constraint_most(constraint));
   }
 }
 
@@ -150,7 +152,8 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
-    double moved = constraint->images ? constraint->moved[k] : motion->moved, rate = motion->rate;
+    const double part_of = constraint_part(constraint, k);
+    double moved = constraint->images ? constraint->moved[k] : motion->moved * part_of, rate = motion->rate * part_of;
     if (constraint->images) rate += constraint->share * along(p->velocity, d, constraint->images[k]);
     double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * moved * p->volume[i];
     kinetic += 0.5 * mass * (rate * rate - v * v);
@@ -189,7 +192,8 @@ double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t
   if (time <= constraint->load->begin) return 0;
   const double before = constraint_displacement(constraint, time - dt), now = constraint_displacement(constraint, time),
                after = constraint_displacement(constraint, time + dt);
-  const double acceleration = (after - 2 * now + before) / (dt * dt), rate = (after - before) / (2 * dt);
+  const double part = constraint_part(constraint, n);
+  const double acceleration = part * (after - 2 * now + before) / (dt * dt), rate = part * (after - before) / (2 * dt);
   double drag = 0; /* of stiffness */
   for (int k = 0; k < 3 && s->viscous.time > 0; ++k) drag += constraint->direction[k] * s->viscous.drag[k][i];
   return p->volume[i] * (drag + p->density[i] * (acceleration + s->spec->damping.mass * rate));

@@ -53,9 +53,10 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
   double *const *u = s->unknowns->domain->particles->displacement;
   double wanted = 0;
   if (c->images) wanted = c->share * vectors_along(s->v, c->direction, c->images[n]);
-  if (s->controlled && history_is_controlled(&c->load->history)) wanted += c->value;
+  if (s->controlled && history_is_controlled(&c->load->history)) wanted += c->value * constraint_part(c, n);
   if (!isnan(s->time)) {
-    wanted += constraint_displacement(c, s->time) + (c->from ? c->from[n] : 0) - vectors_along(u, c->direction, i);
+    wanted += constraint_displacement(c, s->time) * constraint_part(c, n) + (c->from ? c->from[n] : 0) -
+              vectors_along(u, c->direction, i);
     if (c->images) wanted += c->share * vectors_along(u, c->direction, c->images[n]);
   }
   add_along(s->v, c->direction, i, wanted - vectors_along(s->v, c->direction, i));

@@ -23,6 +23,7 @@ LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")
 LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",
      "prescribed acceleration, from rest; its history is integrated over time")
 LOAD_SECTION(along, "along", "motion prescribed in one direction only")
+LOAD_SECTION(motion_field, "field", "motion prescribed by formulas in the particles' places")
 LOAD(roller, "roller", FIELD_POINT, "1", "held in this direction, of any length; free across it, without friction")
 LOAD_SECTION(support, "support", "a face that is held exactly, by layers of particles outside it")
 LOAD_SECTION(tie, "tie", "particles that move together")
