@@ -275,9 +275,8 @@ static double inertia(const Solver *run, const Constraint *constraint, int64_t n
   const int32_t i = constraint->load->selection.places[n];
   double drag = 0;
   for (int k = 0; k < 3; ++k) drag += constraint->direction[k] * s->drag[k][i];
-  return drag +
-         constraint_part(constraint, n) * p->density[i] * p->volume[i] *
-             constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
+  return drag + constraint_part(constraint, n) * p->density[i] * p->volume[i] *
+                    constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
 }
 
 const SolverType implicit_solver = {.name = "implicit",

@@ -82,8 +82,7 @@ static void move_part(Explicit *s, const Constraint *constraint, double target, 
     int32_t i = constraint->load->selection.places[k];
     double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
     double fi = along(p->internal, d, i), fe = along(p->external, d, i);
-    double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
-           aim = target * constraint_part(constraint, k),
+    double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt), aim = target * constraint_part(constraint, k),
            off = (constraint->from ? constraint->from[k] + aim : aim) - along(p->displacement, d, i);
     if (constraint->images) off += constraint->share * along(p->displacement, d, constraint->images[k]);
     largest = fmax(largest, fabs(drifted + off));

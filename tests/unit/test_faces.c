@@ -17,10 +17,9 @@ static void add_tractions(char *text, size_t size, int dimensions, const char *m
   size_t length = (size_t)snprintf(text, size, "loads:\n");
   for (int axis = 0; axis < dimensions; ++axis)
     for (int sign = -1; sign <= 1; sign += 2)
-      length +=
-          (size_t)snprintf(text + length, size - length, "  - {on: {face: %c%c}, traction: [%g, %g, %g]%s}\n",
-                           "xyz"[axis], sign > 0 ? '+' : '-', sign * of(0, axis, dimensions),
-                           sign * of(1, axis, dimensions), sign * of(2, axis, dimensions), more);
+      length += (size_t)snprintf(text + length, size - length, "  - {on: {face: %c%c}, traction: [%g, %g, %g]%s}\n",
+                                 "xyz"[axis], sign > 0 ? '+' : '-', sign * of(0, axis, dimensions),
+                                 sign * of(1, axis, dimensions), sign * of(2, axis, dimensions), more);
 }
 
 /** Strain of the stress, with E = 1e4 and nu = 0.3, as a gradient. */
@@ -124,8 +123,7 @@ static void resultants_are_right_whatever_stands_behind_the_face(void **state)
         assert_near(at, 1.2, part ? 0.01 : 1e-12);
         breccia_model_destroy(&m);
       }
-      breccia_model *m =
-          brick(forms[f], "3-D", horizons[k], "[9, 9, 2]", "loads: [{on: {face: z+}, pressure: 4}]\n");
+      breccia_model *m = brick(forms[f], "3-D", horizons[k], "[9, 9, 2]", "loads: [{on: {face: z+}, pressure: 4}]\n");
       const Sums sums = forces_of(m, 2, &at);
       assert_near(sums.external[2], -4 * 0.81, 1e-12);
       assert_near(at, 0.15, 1e-12);

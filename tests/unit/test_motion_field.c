@@ -6,12 +6,13 @@
 
 static breccia_model *plate(const char *formulation, const char *field, const char *solve)
 {
-  return model_of(UNITS "materials: {m: {model: elastic, density: 2 t/m3, Young modulus: 1e7 kPa, Poisson ratio: 0.3}}\n"
-                        "body: {b: {material: m, lattice: square, spacing: 100, thickness: 300, shape: {box: {particles: "
-                        "[16, 12]}}}}\n"
-                        "peridynamics: {formulation: %s, space: plane strain, strain: small, horizon: 2.015 spacings}\n"
-                        "loads: [{on: " RIM ", field: {%s}, history: {ramp to: 1}}]\n"
-                        "solve: {%s}\n",
+  return model_of(UNITS
+                  "materials: {m: {model: elastic, density: 2 t/m3, Young modulus: 1e7 kPa, Poisson ratio: 0.3}}\n"
+                  "body: {b: {material: m, lattice: square, spacing: 100, thickness: 300, shape: {box: {particles: "
+                  "[16, 12]}}}}\n"
+                  "peridynamics: {formulation: %s, space: plane strain, strain: small, horizon: 2.015 spacings}\n"
+                  "loads: [{on: " RIM ", field: {%s}, history: {ramp to: 1}}]\n"
+                  "solve: {%s}\n",
                   formulation, field, solve);
 }
 
@@ -80,22 +81,22 @@ static void a_field_of_velocities_turns_a_body(void **state)
 {
   (void)state;
   breccia_model *m = model_of(
-      UNITS "materials: {m: {model: elastic, density: 2 t/m3, Young modulus: 1e4 kPa, Poisson ratio: 0.3}}\n"
-            "body: {b: {material: m, lattice: square, spacing: 100, thickness: 300, shape: {box: {particles: [8, 6]}}}}\n"
-            "peridynamics: {formulation: hybrid, space: plane strain, strain: small, horizon: 1.5 spacings}\n"
-            "loads: [{on: {all: yes}, field: {velocity: ['-0.002 * (y - 300 mm) / 1 s', '0.002 * (x - 400 mm) / 1 s', "
-            "free]}}]\n"
-            "solve: {explicit: {steps: 40}}\n");
+      UNITS
+      "materials: {m: {model: elastic, density: 2 t/m3, Young modulus: 1e4 kPa, Poisson ratio: 0.3}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 100, thickness: 300, shape: {box: {particles: [8, 6]}}}}\n"
+      "peridynamics: {formulation: hybrid, space: plane strain, strain: small, horizon: 1.5 spacings}\n"
+      "loads: [{on: {all: yes}, field: {velocity: ['-0.002 * (y - 300 mm) / 1 s', '0.002 * (x - 400 mm) / 1 s', "
+      "free]}}]\n"
+      "solve: {explicit: {steps: 40}}\n");
   const Particles *p = m->domain.particles;
   step_surely(m, INT64_MAX);
-  const double angle = 0.002 * m->solver.clock.time, g[4] = {0, -angle, angle, 0},
-               c[2] = {300 * angle, -400 * angle};
+  const double angle = 0.002 * m->solver.clock.time, g[4] = {0, -angle, angle, 0}, c[2] = {300 * angle, -400 * angle};
   assert_near(farthest(m, g, c), 0, 1e-9);
   double expected = 0;
   for (int32_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    expected += 0.5 * p->density[i] * p->volume[i] * 4e-6 *
-                (pow(p->position[0][i] - 400, 2) + pow(p->position[1][i] - 300, 2));
+    expected +=
+        0.5 * p->density[i] * p->volume[i] * 4e-6 * (pow(p->position[0][i] - 400, 2) + pow(p->position[1][i] - 300, 2));
   }
   assert_near(m->solver.ledger.kinetic, expected, 1e-9 * expected);
   assert_balanced(m, 1e-6);

@@ -27,8 +27,9 @@ static const Field motion_field_fields[] = {
 
 const Section motion_field_load_section = {
     .name = "field",
-    .about = "A motion that differs from place to place: even strain, turning, bending, prescribed to layers as deep as "
-             "the horizon.",
+    .about =
+        "A motion that differs from place to place: even strain, turning, bending, prescribed to layers as deep as "
+        "the horizon.",
     .size = sizeof(MotionFieldSpec),
     FIELDS(motion_field_fields)};
 
@@ -110,10 +111,11 @@ static int create(Load *load, const LoadMaking *making)
       constraint->largest_part = fmax(constraint->largest_part, fabs(constraint->part[n]));
       if (k < making->body->dimensions || constraint->part[n] == 0) continue;
       text_add(&reason, "has a part along %c, but the body is %s", "xyz"[k],
-               making->body->dimensions == 2 ? "plane" : "a bar along x");
+               making -> body -> dimensions == 2 ? "plane" : "a bar along x");
       bad = 1;
     }
-    if (bad) node_error(reader->document, node, reader->error, "%s: '%s': %s", key, words->items[k], text_words(&reason));
+    if (bad)
+      node_error(reader->document, node, reader->error, "%s: '%s': %s", key, words->items[k], text_words(&reason));
     text_free(&reason);
     if (bad) return BRECCIA_USER_ERROR;
   }
