@@ -99,7 +99,7 @@ static double force_seconds(Domain *d, int threads)
 /** Stresses of all points on particles once more; of points on bonds the law is part of the forces. */
 static double law_seconds(Domain *d)
 {
-  if (d->regions[0].points.components != 6) return 0;
+  if (!points_on_particles(&d->regions[0].points)) return 0;
   double start = clock_seconds();
   for (int64_t b = 0; b < d->batch_count; ++b) {
     const int64_t first = d->batches[b].first * SLICE;
@@ -211,7 +211,7 @@ int main(int count, char **words)
       if (!strstr(cases[c].formulation, only) && !strstr(cases[c].law, only) && !strstr(bodies[b].name, only)) continue;
       use_threads(all);
       breccia_model *model = load(folder, &bodies[b], &cases[c]);
-      if (!model) return 1;
+      if (!model) continue; /* refused, and said: bonds of 1.5 spacings span no space on every lattice */
       static Times t;
       measure(model, &cases[c], threads, threads_count, &t);
       Domain *d = &model->domain;
