@@ -1,6 +1,7 @@
 /* How long explicit steps are: a plan of steps of one length leads to the next time at which one has to end, and is made again when the stable
  * step has fallen. */
 #include "solver/explicit.h"
+#include "solver/flutter.h"
 #include "solver/stable_step.h"
 
 #include <math.h>
@@ -184,6 +185,7 @@ int explicit_plan(Solver *run, Text *warning, Error *error)
   if (!status) status = check_stiffness_damping(run, spec, error);
   if (!status) status = find_stable_step(s, error);
   if (status || (status = check_time_step(run, spec, s->clock->stable, warning, error))) return status;
+  if (!(spec->local_damping > 0)) flutter_warn_of_supports(run, s->clock->stable, spec->damping.stiffness, warning);
   s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
   const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
   const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-6);

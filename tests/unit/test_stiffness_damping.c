@@ -320,6 +320,59 @@ static void wrong_damping_is_refused(void **state)
   }
 }
 
+/** The toe of a dam on a base that is held in all directions. */
+static breccia_model *toe(const char *held, const char *stage)
+{
+  return model_of("units: {length: m, force: kN, time: s}\n"
+                  "materials: {m: {model: elastic, density: 2.4, Young modulus: 3e6, Poisson ratio: 0.25}}\n"
+                  "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {polygon: {corners: "
+                  "[[0, 0], [2, 0], "
+                  "[1, 1], [0, 1]]}}}}\n"
+                  "peridynamics: {formulation: correspondence, space: plane strain}\n"
+                  "loads: [{on: {face: y-}, support: {held: %s}}, {gravity: [0, -9.81]}]\n"
+                  "solve: {%s}\n",
+                  held, stage);
+}
+
+/** The stiffness beside such a base is not symmetric, and its shortest waves grow: the deck is told, with what holds them. */
+static void what_grows_beside_a_held_base_is_told_and_damped(void **state)
+{
+  (void)state;
+  const struct {
+    const char *held, *stage;
+    bool told;
+  } decks[] = {{"all", "explicit: {end time: 0.02}", true},
+               {"all", "implicit: {end time: 0.02, time step: 1e-3}", true},
+               {"all", "explicit: {end time: 0.02, damping: {ratio: 0.05, at: 287 Hz}}", true},
+               {"all", "explicit: {end time: 0.02, local damping: 0.8}", false},
+               {"all", "static: {increments: 1}", false},
+               {"across", "explicit: {end time: 0.02}", false}};
+  double advised = 0;
+  for (size_t k = 0; k < sizeof decks / sizeof *decks; ++k) {
+    breccia_model *m = toe(decks[k].held, decks[k].stage);
+    const char *words = strstr(breccia_model_warnings(m), "grow by themselves"),
+               *number = words ? strstr(words, "'stiffness damping: ") : NULL;
+    if ((words != NULL) != decks[k].told)
+      fail_msg("%s, %s: %s", decks[k].held, decks[k].stage, breccia_model_warnings(m));
+    if (k == 0) {
+      assert_non_null(number);
+      advised = strtod(number + strlen("'stiffness damping: "), NULL);
+    }
+    breccia_model_destroy(&m);
+  }
+  char stage[100];
+  snprintf(stage, sizeof stage, "explicit: {end time: 0.4, stiffness damping: %g}", advised);
+  breccia_model *m = toe("all", stage);
+  assert_null(strstr(breccia_model_warnings(m), "grow by themselves"));
+  double first = 0;
+  while (!solver_is_done(&m->solver)) {
+    step_surely(m, 20);
+    if (m->solver.clock.time < 0.02) first = fmax(first, solver_energy(&m->solver).kinetic);
+  }
+  assert_true(solver_energy(&m->solver).kinetic < 1e-3 * first);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -331,6 +384,7 @@ int main(void)
       cmocka_unit_test(the_stable_step_is_shorter),
       cmocka_unit_test(bonds_break_as_without),
       cmocka_unit_test(wrong_damping_is_refused),
+      cmocka_unit_test(what_grows_beside_a_held_base_is_told_and_damped),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
