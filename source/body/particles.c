@@ -51,11 +51,13 @@ int particles_create(Particles *particles, int64_t slices, int64_t count, Error 
     failed |= !(particles->internal[k] = places_array(particles->places, "internal forces", error));
     failed |= !(particles->external[k] = places_array(particles->places, "external forces", error));
   }
+  particles->motions = 3;
   failed |= !(particles->volume = places_array(particles->places, "volumes", error));
   failed |= !(particles->density = places_array(particles->places, "densities", error));
   failed |= !(particles->number = memory_zeroed((size_t)particles->places, sizeof(int32_t), "numbers", error));
   failed |= !(particles->place_of = memory_zeroed((size_t)count, sizeof(int32_t), "numbers", error));
   failed |= !(particles->block = memory_zeroed((size_t)slices, sizeof(int32_t), "block of each slice", error));
+  for (int k = 0; k < 3; ++k) particles->inertia[k] = particles->density;
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
@@ -63,18 +65,65 @@ void particles_destroy(Particles *particles)
 {
   for (int k = 0; k < 3; ++k) {
     places_free(&particles->position[k]);
+    places_free(&particles->zero[k]);
+  }
+  for (int k = 0; k < MOTIONS; ++k) {
     places_free(&particles->displacement[k]);
     places_free(&particles->velocity[k]);
     places_free(&particles->internal[k]);
     places_free(&particles->external[k]);
-    places_free(&particles->zero[k]);
   }
+  for (int k = 0; k < 4; ++k) places_free(&particles->orientation[k]);
+  places_free(&particles->rotary);
   places_free(&particles->volume);
   places_free(&particles->density);
   free(particles->number);
   free(particles->place_of);
   free(particles->block);
   *particles = (Particles){0};
+}
+
+int particles_make_rotations(Particles *p, int dimensions, Error *error)
+{
+  int failed = !(p->rotary = places_array(p->places, "rotational inertia", error));
+  p->motions = dimensions == 3 ? 6 : 4;
+  for (int k = ROTATION; k < p->motions; ++k) {
+    failed |= !(p->displacement[k] = places_array(p->places, "rotations", error));
+    failed |= !(p->velocity[k] = places_array(p->places, "angular velocities", error));
+    failed |= !(p->internal[k] = places_array(p->places, "internal moments", error));
+    failed |= !(p->external[k] = places_array(p->places, "external moments", error));
+    p->inertia[k] = p->rotary;
+  }
+  for (int k = 0; k < 4 && dimensions == 3; ++k)
+    failed |= !(p->orientation[k] = places_array(p->places, "orientations", error));
+  if (failed) return BRECCIA_FAILURE;
+  for (int64_t i = 0; i < p->places && dimensions == 3; ++i) p->orientation[0][i] = 1;
+  return BRECCIA_OK;
+}
+
+void particles_take_rotations(Particles *p, int64_t first, int64_t last)
+{
+  if (!p->orientation[0]) return;
+  for (int64_t i = first; i < last; ++i) {
+    double turn[3], q[4];
+    for (int k = 0; k < 3; ++k) turn[k] = p->displacement[ROTATION + k][i];
+    if (turn[0] == 0 && turn[1] == 0 && turn[2] == 0) continue;
+    particles_orientation(p, p->displacement, i, q);
+    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int k = 0; k < 4; ++k) p->orientation[k][i] = q[k] / length;
+    for (int k = 0; k < 3; ++k) p->displacement[ROTATION + k][i] = 0;
+  }
+}
+
+void particles_rotation(const Particles *p, int32_t place, double rotation[3])
+{
+  for (int k = 0; k < 3; ++k) rotation[k] = 0;
+  if (p->motions == 4) rotation[2] = p->displacement[ROTATION][place];
+  if (p->motions < 6) return;
+  double q[4];
+  particles_orientation(p, p->displacement, place, q);
+  const double size = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]), sign = q[0] < 0 ? -1 : 1;
+  for (int k = 0; k < 3 && size > 0; ++k) rotation[k] = 2 * atan2(size, fabs(q[0])) * sign * q[1 + k] / size;
 }
 
 int particles_make_zero(Particles *p, Error *error)
@@ -84,6 +133,39 @@ int particles_make_zero(Particles *p, Error *error)
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
+void particles_state_rotations(const Particles *p, const char *name, const char *unit, StateRole role,
+                               double *const values[MOTIONS], StateList *list)
+{
+  static const char *const parts[] = {"x", "y", "z"};
+  for (int k = ROTATION; k < p->motions; ++k)
+    state_add(list,
+              &(StateRow){.unit = unit,
+                          .kind = STATE_NUMBERS,
+                          .entity = STATE_OF_PLACE,
+                          .role = role,
+                          .count = p->places,
+                          .values = values[k]},
+              name, parts[p->motions == 4 ? 2 : k - ROTATION]);
+}
+
+static void state_rotations(Particles *p, StateList *list)
+{
+  static const char *const parts[] = {"1", "x", "y", "z"};
+  particles_state_rotations(p, p->motions == 4 ? "rotation" : "rotation of the step", "1", STATE_TRIED, p->displacement,
+                            list);
+  particles_state_rotations(p, "angular velocity", "angular velocity", STATE_TRIED, p->velocity, list);
+  particles_state_rotations(p, "external moment", "stress", STATE_COMMITTED, p->external, list);
+  for (int k = 0; k < 4 && p->orientation[0]; ++k)
+    state_add(list,
+              &(StateRow){.unit = "1",
+                          .kind = STATE_NUMBERS,
+                          .entity = STATE_OF_PLACE,
+                          .role = STATE_COMMITTED,
+                          .count = p->places,
+                          .values = p->orientation[k]},
+              "orientation", parts[k]);
+}
+
 void particles_state(Particles *p, StateList *list)
 {
   state_add_vector(list, "position", "length", STATE_SHOWN, p->position, p->places);
@@ -91,6 +173,7 @@ void particles_state(Particles *p, StateList *list)
   state_add_vector(list, "velocity", "velocity", STATE_TRIED, p->velocity, p->places);
   if (p->zero[0]) state_add_vector(list, "displacement at zero", "length", STATE_COMMITTED, p->zero, p->places);
   state_add_vector(list, "external force", "force per volume", STATE_COMMITTED, p->external, p->places);
+  state_rotations(p, list);
   const StateRow row = {.kind = STATE_NUMBERS, .entity = STATE_OF_PLACE, .role = STATE_SHOWN, .count = p->places};
   StateRow volume = row, density = row;
   volume.unit = "volume";

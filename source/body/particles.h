@@ -12,17 +12,27 @@
 #include "base/state.h"
 #include <stdint.h>
 
+/* Rows of motion that a place has at most: displacements along x, y, z; rotations about z in the plane, about x, y, z in space. */
+enum { MOTIONS = 6, ROTATION = 3 };
+
 typedef struct Particles {
   int64_t count, places, slices;
-  double *position[3], *displacement[3], *velocity[3];
-  double *internal[3]; /* force per volume from bonds */
-  double *external[3]; /* force per volume from loads */
-  double *zero[3];     /* displacements that are shown as none; NULL: 0 */
-  double *volume;      /* 0 in unused places */
+  int motions; /* of each place: 3, and with rotations 4 in the plane, 6 in space; rows beyond are NULL */
+  double *position[3];
+  /* Rotations are angles [rad] in the plane. In space they are rotation vectors from `orientation` on, which takes them in at the end of each
+   * step, and velocities are angular velocities about the axes of space. */
+  double *displacement[MOTIONS], *velocity[MOTIONS];
+  double *internal[MOTIONS]; /* force per volume from bonds, moment per volume */
+  double *external[MOTIONS]; /* force per volume from loads, moment per volume */
+  double *zero[3];           /* displacements that are shown as none; NULL: 0 */
+  double *volume;            /* 0 in unused places */
   double *density;
-  int32_t *number;   /* [places] global number or -1 */
-  int32_t *place_of; /* [count] place of a number */
-  int32_t *block;    /* [slices] which block of the deck */
+  double *rotary;           /* rotational inertia per volume; NULL without rotations */
+  double *inertia[MOTIONS]; /* per volume, of each row: density or rotary. Not owned */
+  double *orientation[4];   /* unit quaternions 1, x, y, z of places with rotations in space; else NULL */
+  int32_t *number;          /* [places] global number or -1 */
+  int32_t *place_of;        /* [count] place of a number */
+  int32_t *block;           /* [slices] which block of the deck */
 } Particles;
 
 /** Zeroed array over places with the spare entries that Particles promises. Freed with places_free. */
@@ -31,6 +41,35 @@ void places_free(double **array);
 
 int particles_create(Particles *particles, int64_t slices, int64_t count, Error *error);
 void particles_destroy(Particles *particles);
+
+/** Gives all places rotations. Their inertia is 0 yet. @param[in] dimensions  of the body */
+int particles_make_rotations(Particles *particles, int dimensions, Error *error);
+
+/** At the end of a step that came out well: rotations in space of places first .. last - 1 become part of their orientation. */
+void particles_take_rotations(Particles *particles, int64_t first, int64_t last);
+
+/** Unit quaternion of a place in space, with the rotation since `orientation` as it stands in some displacements. */
+static inline void particles_orientation(const Particles *p, double *const *displacement, int64_t place, double q[4])
+{
+  double turn[3], square = 0, o[4];
+  for (int k = 0; k < 4; ++k) o[k] = p->orientation[k][place];
+  for (int k = 0; k < 3; ++k) {
+    turn[k] = displacement[ROTATION + k][place];
+    square += turn[k] * turn[k];
+  }
+  /* (cosine, half of sine over the angle, times the vector) of half the angle */
+  const double half = 0.5 * __builtin_sqrt(square), c = __builtin_cos(half),
+               s = half > 1e-4 ? 0.5 * __builtin_sin(half) / half : 0.5 - half * half / 12;
+  for (int k = 0; k < 3; ++k) turn[k] *= s;
+  q[0] = c * o[0] - turn[0] * o[1] - turn[1] * o[2] - turn[2] * o[3];
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    q[1 + k] = c * o[1 + k] + turn[k] * o[0] + turn[l] * o[1 + m] - turn[m] * o[1 + l];
+  }
+}
+
+/** Rotation vector of a place since the beginning, in space of at most half a turn; 0 without rotations. */
+void particles_rotation(const Particles *particles, int32_t place, double rotation[3]);
 
 /** Room for `zero`. */
 int particles_make_zero(Particles *particles, Error *error);
@@ -44,6 +83,9 @@ static inline double particles_moved(const Particles *particles, int k, int32_t 
 
 /** Rows of positions, motion, forces of loads, volumes and densities. */
 void particles_state(Particles *particles, StateList *list);
+/** Adds the rows of a vector that belong to rotations; none without them. */
+void particles_state_rotations(const Particles *particles, const char *name, const char *unit, StateRole role,
+                               double *const values[MOTIONS], StateList *list);
 
 /** Largest extent of the present particles: low and high corner of their centres. */
 void particles_bounds(const Particles *particles, double low[3], double high[3]);

@@ -145,7 +145,7 @@ int domain_linearise(Domain *domain, Error *error);
  *  (domain_show_states).
  *  @param[in] v        arrays of places_array, 0 in unused places
  *  @param[out] change  arrays of places_array */
-void domain_linear_step(Domain *domain, double *const v[3], double *const change[3]);
+void domain_linear_step(Domain *domain, double *const *v, double *const *change);
 
 /** Adds changes of the forces beside those of bonds to those of a linearised step, at the state at which forces_linearise was called.
  *  @param[in,out] change  arrays of places_array */

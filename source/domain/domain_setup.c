@@ -241,6 +241,25 @@ static int tell_at(const DeckReader *reader, const Node *node, int status, Error
   return status;
 }
 
+/** Particles have rotations if a formulation of the body wants them. */
+static int make_rotations(Domain *d, Error *error)
+{
+  for (int r = 0; r < d->region_count; ++r)
+    if (d->regions[r].type->gyration) return particles_make_rotations(d->particles, d->body.dimensions, error);
+  return BRECCIA_OK;
+}
+
+/** Rotational inertia; of places of formulations without rotations, which nothing turns, that of cubes of a spacing. */
+static void fill_rotary(Domain *d)
+{
+  Particles *p = d->particles;
+  const double usual = d->body.largest_spacing * d->body.largest_spacing / 6;
+  for (int64_t i = 0; i < p->places && p->rotary; ++i) {
+    const Region *region = domain_region(d, i);
+    p->rotary[i] = p->density[i] * (region->type->gyration ? region->type->gyration(region->formulation, i) : usual);
+  }
+}
+
 int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 {
   Error *error = reader->error;
@@ -260,7 +279,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   if (bad) status = bad;
   if (status) return status;
   d->particles = &d->body.particles;
-  if ((status = fill_particles(d, spec, error))) return status;
+  if ((status = fill_particles(d, spec, error)) || (status = make_rotations(d, error))) return status;
 
   if (forgets_spacings(pd, &d->body))
     return node_error(reader->document, section_node(pd, "horizon"), error,
@@ -321,6 +340,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
     status = region->formulation ? BRECCIA_OK : BRECCIA_USER_ERROR;
     if (tell_at(reader, region->name ? region->node : section_node(pd, "formulation"), status, &told)) return status;
   }
+  fill_rotary(d);
   status = create_failure(d, reader, spec->failure, &of);
   return status ? status : create_forces(d, spec, space, error);
 }

@@ -19,7 +19,7 @@ BRECCIA_CLONES
 static double force_magnitude(const Particles *p, const Batch *batch)
 {
   Lanes sum = {0};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t place = batch->first * SLICE; place < batch->last * SLICE; place += LANES)
       sum += lanes_absolute(lanes_load(p->internal[k] + place));
   return lanes_total(sum);
@@ -358,9 +358,9 @@ int domain_linearise(Domain *d, Error *error)
 }
 
 /** Puts other arrays in the place of displacements and internal forces, or takes them away again. */
-static void exchange(Particles *p, double *displacement[3], double *internal[3])
+static void exchange(Particles *p, double *displacement[MOTIONS], double *internal[MOTIONS])
 {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < p->motions; ++k) {
     double *u = p->displacement[k], *f = p->internal[k];
     p->displacement[k] = displacement[k];
     p->internal[k] = internal[k];
@@ -371,7 +371,7 @@ static void exchange(Particles *p, double *displacement[3], double *internal[3])
 
 typedef struct Step {
   Domain *domain;
-  double *displacement[3], *internal[3];
+  double *displacement[MOTIONS], *internal[MOTIONS];
 } Step;
 
 static void take_step(void *context)
@@ -380,9 +380,13 @@ static void take_step(void *context)
   run_all(s->domain, &(Purpose){.at = s->displacement});
 }
 
-void domain_linear_step(Domain *d, double *const v[3], double *const change[3])
+void domain_linear_step(Domain *d, double *const *v, double *const *change)
 {
-  Step step = {d, {v[0], v[1], v[2]}, {change[0], change[1], change[2]}};
+  Step step = {.domain = d};
+  for (int k = 0; k < d->particles->motions; ++k) {
+    step.displacement[k] = v[k];
+    step.internal[k] = change[k];
+  }
   exchange(d->particles, step.displacement, step.internal);
   team_run(take_step, &step);
   exchange(d->particles, step.displacement, step.internal);
@@ -408,9 +412,12 @@ static void resist(void *context)
 
 void domain_forces_beside(Domain *d, double *const forces[3])
 {
-  double *none[3] = {d->particles->displacement[0], d->particles->displacement[1], d->particles->displacement[2]};
-  double *internal[3] = {forces[0], forces[1], forces[2]};
+  double *none[MOTIONS], *internal[MOTIONS];
   Step step = {.domain = d};
+  for (int k = 0; k < d->particles->motions; ++k) {
+    none[k] = d->particles->displacement[k];
+    internal[k] = k < ROTATION ? forces[k] : d->particles->internal[k]; /* nothing beside bonds turns */
+  }
   for (int k = 0; k < 3; ++k) memset(forces[k], 0, sizeof(double) * (size_t)d->particles->places);
   exchange(d->particles, none, internal);
   team_run(resist, &step);

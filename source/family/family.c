@@ -355,6 +355,19 @@ int64_t family_slot(const Family *family, int32_t a, int32_t b)
   return find_slot(family, a, b, 1);
 }
 
+int64_t family_slice(const Family *f, int64_t slot)
+{
+  int64_t low = 0, high = f->particles->slices;
+  while (high - low > 1) {
+    const int64_t middle = (low + high) / 2;
+    if (f->first[middle] <= slot)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 bool family_joins(const Family *family, int32_t a, int32_t b)
 {
   return find_slot(family, a, b, 1) >= 0;

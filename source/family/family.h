@@ -104,6 +104,9 @@ bool family_mend(Family *family, int32_t a, int32_t b);
 /** @return the slot in which place a has place b as its neighbour by an intact bond, or -1 */
 int64_t family_slot(const Family *family, int32_t a, int32_t b);
 
+/** @return the slice of a slot */
+int64_t family_slice(const Family *family, int64_t slot);
+
 /** @return whether an intact bond joins two places */
 bool family_joins(const Family *family, int32_t a, int32_t b);
 

@@ -182,25 +182,11 @@ int64_t bond_point_count(const void *formulation)
   return b->family->slots * SLICE;
 }
 
-/** Slice of a slot. */
-static int64_t slice_of(const Family *f, int64_t slot)
-{
-  int64_t low = 0, high = f->particles->slices;
-  while (high - low > 1) {
-    const int64_t middle = (low + high) / 2;
-    if (f->first[middle] <= slot)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 /** Points are numbered by slot and lane; a bond has one, of its end with the lower place. */
 int bond_point(const void *formulation, int64_t number, Operator *point, Error *error)
 {
   const BondBased *b = formulation;
-  const int64_t slot = number / SLICE, slice = slice_of(b->family, slot);
+  const int64_t slot = number / SLICE, slice = family_slice(b->family, slot);
   const int lane = (int)(number % SLICE);
   const int64_t place = slice * SLICE + lane;
   operator_clear(point);

@@ -84,8 +84,8 @@ static const Field peridynamics_fields[] = {
      .dimension = "length",
      .standard = "",
      .range = "(0, inf)",
-     .meaning = "radius of interaction; spacings are those of the coarsest block; when absent 2.015 spacings for "
-                "`hybrid`, 3.015 for all others, the longest of these where there are regions"},
+     .meaning = "radius of interaction; spacings are those of the coarsest block; when absent 1.5 spacings for "
+                "`micropolar`, 2.015 for `hybrid`, 3.015 for all others, the longest of these where there are regions"},
     {.key = "influence",
      .kind = FIELD_CHOICE,
      .offset = offsetof(PeridynamicsSpec, influence),

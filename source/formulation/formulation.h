@@ -31,7 +31,7 @@ Length peridynamics_horizon(const PeridynamicsSpec *spec);
 
 enum { CARRY = 9 };
 
-/** What a formulation works on; borrowed. */
+/** What a formulation works on; borrowed. Particles have rows of rotations if any formulation of the body wants them. */
 typedef struct FormulationParts {
   const void *keys; /* of its own section; NULL: those of another formulation stand in the deck, and defaults count */
   Space space;
@@ -158,6 +158,8 @@ struct FormulationType {
   /** Makes a formulation for a body. Says where families are too poor for it. */
   void *(*create)(const FormulationParts *parts, Error *error);
   void (*destroy)(void *formulation);
+  /** Square of the radius of gyration of a place: particles have rotations. NULL: they have none. */
+  double (*gyration)(const void *formulation, int64_t place);
   /** Bonds of this slice have broken. NULL: nothing to do. */
   void (*renew)(void *formulation, int64_t slice);
   /** From displacements to internal forces per volume, batch by batch, in this order; up to the first without `run`. */

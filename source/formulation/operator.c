@@ -2,12 +2,18 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 void operator_clear(Operator *point)
 {
-  *point = (Operator){.places = point->places, .capacity = point->capacity};
+  OperatorPlace *places = point->places;
+  const int capacity = point->capacity;
+  memset(point, 0, offsetof(Operator, force)); /* what is of links only is filled whole */
+  point->places = places;
+  point->capacity = capacity;
+  point->motions = ROTATION;
 }
 
 void operator_destroy(Operator *point)
@@ -103,8 +109,25 @@ static void shaped(const Operator *point, int l, double kg[3])
   }
 }
 
+static bool is_link(const Operator *point)
+{
+  return point->motions > ROTATION;
+}
+
+/** Change of the forces of one end of a link with motions of an end. */
+static void stiffness_of_link(const Operator *point, int a, int b, double *k)
+{
+  const int n = point->motions;
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column)
+      k[n * row + column] = point->stiffness[2 * n * (n * a + row) + n * b + column];
+}
+
 void operator_add_forces(const Operator *point, double *const u[3], double *const force[3])
 {
+  for (int row = 0; row < 2 * point->motions && is_link(point); ++row)
+    force[row % point->motions][point->places[row / point->motions].place] += point->force[row];
+  if (is_link(point)) return;
   double g[9], f[9], b[6][3], kg[3], held[9];
   operator_gradient(point, u, g);
   deformation(point, u, f);
@@ -181,8 +204,12 @@ static void add(double *to, const double *from, double factor)
   for (int c = 0; c < 9; ++c) to[c] += factor * from[c];
 }
 
-void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9])
+void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double *k)
 {
+  if (is_link(point)) {
+    stiffness_of_link(point, a, b, k);
+    return;
+  }
   Prepared pa, pb;
   double f[9], part[9];
   deformation(point, u, f);
@@ -201,6 +228,9 @@ int operator_matrix(const Operator *point, double *const u[3], double *k, Error 
 {
   const int count = point->count;
   double f[9], part[9];
+  for (int block = 0; block < count * count && is_link(point); ++block)
+    stiffness_of_link(point, block / count, block % count, k + point->motions * point->motions * block);
+  if (is_link(point)) return BRECCIA_OK;
   Prepared *all = memory_plain((size_t)(count + 1), sizeof *all);
   if (!all) return error_add(error, BRECCIA_FAILURE, "out of memory: operator of a point");
   deformation(point, u, f);

@@ -6,11 +6,12 @@
  * with the deformation: delta g_l = turn_l (I - n n)(delta u_l - delta u_0), n = g_l / |g_l|; the force is -V S g_l. With two components the second one has
  * vectors of its own and a stress of 0, but a part in the tangent (families that flow). The g_l add up to nothing. Where the stress acts by other vectors
  * than those of the strain (`acts_apart`), the force on place l is -V F S a_l, and the stiffness is not symmetric. Beside the point may stand springs between the first place and the others, and what they lack of a uniform
- * deformation: the control of zero-energy modes has the energy V/2 (sum w_l C : eta_l (x) eta_l - C : G K G^T). */
+ * deformation: the control of zero-energy modes has the energy V/2 (sum w_l C : eta_l (x) eta_l - C : G K G^T).
+ * A link between two places with rotations has no components: its forces and moments, and their derivatives, stand there as they are. */
 #ifndef BRECCIA_FORMULATION_OPERATOR_H
 #define BRECCIA_FORMULATION_OPERATOR_H
 
-#include "base/error.h"
+#include "body/particles.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -31,6 +32,9 @@ typedef struct Operator {
   double volume;                 /* for which the point stands */
   double stress[6], tangent[36]; /* tangent: [components][components] */
   double hold[6], shape[6];      /* C and K of the control; C = 0: none */
+  int motions;                   /* rows of motion of its places: 3, or all of a link with rotations */
+  /** Of a link, first of the one place, then of the other: forces and moments, and how they change with displacements and rotations. */
+  double force[2 * MOTIONS], stiffness[4 * MOTIONS * MOTIONS];
 } Operator;
 
 /** Empties an operator for another point; its memory is kept. */
@@ -47,11 +51,11 @@ void operator_gradient(const Operator *point, double *const u[3], double g[9]);
 void operator_strain(const Operator *point, double *const u[3], double *const v[3], double strain[6]);
 /** Adds the forces of the point and its springs on all its places to arrays over places. */
 void operator_add_forces(const Operator *point, double *const u[3], double *const force[3]);
-/** Change of the force on place a with the displacement of place b (both 0 .. count - 1), row by row: 3 x 3 numbers of minus the
+/** Change of the force on place a with the displacement of place b (both 0 .. count - 1), row by row: motions x motions numbers of minus the
  *  tangent stiffness, from the tangent of the law, its stress and the springs. */
-void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double k[9]);
+void operator_stiffness(const Operator *point, double *const u[3], int a, int b, double *k);
 
-/** The same of all its places at once, which is quicker. @param[out] k  [count][count][9] */
+/** The same of all its places at once, which is quicker. @param[out] k  [count][count][motions x motions] */
 int operator_matrix(const Operator *point, double *const u[3], double *k, Error *error);
 
 #endif

@@ -12,6 +12,7 @@ static int check_pair(const Constraint *first, const Constraint *second, const u
 {
   double cosine = 0;
   for (int k = 0; k < 3; ++k) cosine += first->direction[k] * second->direction[k];
+  if (first->row != second->row) return BRECCIA_OK;
   if (first->load->behind <= second->load->first || second->load->behind <= first->load->first || fabs(cosine) < 1e-9)
     return BRECCIA_OK;
   for (int64_t n = 0; n < second->load->selection.count; ++n) {

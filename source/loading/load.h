@@ -60,11 +60,12 @@ typedef struct Load {
   void *own; /* what the type keeps */
 } Load;
 
-/** Motions prescribed to the particles of a load: rows u . direction = from + value times the history, or its integral, + share of that of
+/** Motions prescribed to the particles of a load: u . direction = from + value times the history, or its integral, + share of that of
  *  another particle. */
 typedef struct Constraint {
   Load *load;
-  double direction[3]; /* unit vector */
+  int row;             /* of motion from which its direction counts: 0 of displacements, ROTATION of rotations */
+  double direction[3]; /* unit vector; of rotations in the plane the first is about z */
   double value;
   int order;             /* of its integral over time: 0 a displacement, 1 a velocity, 2 an acceleration */
   double *from;          /* [particles of the load] what stood there when the load began; NULL: 0 */

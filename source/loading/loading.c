@@ -115,6 +115,7 @@ static void find_held(const Loading *loading, const Load *load, const Particles 
     if (!load_acts(loading, constraint->load)) continue;
     int axes = 0;
     for (int k = 0; k < 3; ++k) axes |= (constraint->direction[k] != 0) << k;
+    if (constraint->row) continue;
     const Selection *a = &load->selection, *b = &constraint->load->selection;
     for (int64_t n = 0, m = 0; n < a->count && m < b->count;) { /* numbers ascend in both */
       if (a->places[n] == b->places[m]) load->held[n] |= (uint8_t)axes;
@@ -160,14 +161,16 @@ void loading_begin(Loading *loading, Particles *p, double time)
     if (constraint->load->first != loading->stage || !constraint->from) continue;
     for (int64_t n = 0; n < selection->count; ++n) {
       constraint->from[n] = 0;
-      for (int k = 0; k < 3; ++k)
+      for (int k = 0; k < 3; ++k) {
+        const double *u = p->displacement[constraint->row + k];
+        if (constraint->direction[k] == 0) continue;
         constraint->from[n] +=
-            (p->displacement[k][selection->places[n]] -
-             (constraint->images ? constraint->share * p->displacement[k][constraint->images[n]] : 0)) *
+            (u[selection->places[n]] - (constraint->images ? constraint->share * u[constraint->images[n]] : 0)) *
             constraint->direction[k];
+      }
     }
   }
-  for (int k = 0; k < 3; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
 }
 
 void loading_state(Loading *loading, StateList *list)
@@ -204,7 +207,7 @@ void loading_state(Loading *loading, StateList *list)
 static void clear(const Selection *selection, Particles *p)
 {
   TEAM_FOR (n, selection->count)
-    for (int k = 0; k < 3; ++k) p->external[k][selection->places[n]] = 0;
+    for (int k = 0; k < p->motions; ++k) p->external[k][selection->places[n]] = 0;
 }
 
 /** Loads may overlap: they are cleared first, then added. */

@@ -13,6 +13,12 @@ static const struct {
     {"position", "where particles are before anything moves", false},
     {"displacement", "from there", true},
     {"velocity", "of particles", true},
+    {"rotation", "of particles that have rotations, in the plane", true},
+    {"rotation of the step", "of particles that have rotations, in space: vector on top of the orientation", false},
+    {"orientation", "of particles that have rotations, in space: unit quaternion", false},
+    {"angular velocity", "of particles that have rotations", true},
+    {"moment", "of bonds, per volume, on particles that have rotations", false},
+    {"external moment", "of loads, per volume, on particles that have rotations", false},
     {"displacement at zero", "what results subtract from the displacement, after a stage with `displacements: zero`",
      false},
     {"acceleration", "at the end of the last step", false},
@@ -33,7 +39,7 @@ static bool is_array(const StateRow *row)
 /** The part of a row's name behind the array's: "xx" of "stress xx"; "" of "volume". NULL: the row is of another array. */
 static const char *part_of(const StateRow *row, const char *name)
 {
-  static const char *const parts[] = {"x", "y", "z", "xx", "yy", "zz", "xy", "yz", "zx"};
+  static const char *const parts[] = {"1", "x", "y", "z", "xx", "yy", "zz", "xy", "yz", "zx"};
   const size_t length = strlen(name);
   if (strncmp(row->name, name, length) != 0) return NULL;
   const char *rest = row->name + length;

@@ -23,6 +23,24 @@ static void internal_force(const Domain *d, int32_t place, double *value)
 {
   vector_at(d->particles->internal, place, value);
 }
+static void rotation(const Domain *d, int32_t place, double *value)
+{
+  particles_rotation(d->particles, place, value);
+}
+/** Rows of rotations of a vector, about x, y, z; 0 where there are none. */
+static void rotations_at(const Particles *p, double *const from[MOTIONS], int32_t place, double *value)
+{
+  for (int k = 0; k < 3; ++k) value[k] = p->motions == MOTIONS ? from[ROTATION + k][place] : 0;
+  if (p->motions == ROTATION + 1) value[2] = from[ROTATION][place];
+}
+static void angular_velocity(const Domain *d, int32_t place, double *value)
+{
+  rotations_at(d->particles, d->particles->velocity, place, value);
+}
+static void internal_moment(const Domain *d, int32_t place, double *value)
+{
+  rotations_at(d->particles, d->particles->internal, place, value);
+}
 static void stress(const Domain *d, int32_t place, double *value)
 {
   for (int k = 0; k < 6; ++k) value[k] = d->stress[k][place];
@@ -144,6 +162,25 @@ const OutputField field_internal_force = {.name = "internal force",
                                           .components = 3,
                                           .component_names = xyz,
                                           .value = internal_force};
+const OutputField field_rotation = {.name = "rotation",
+                                    .dimension = "angle",
+                                    .about = "rotation vector of particles that have rotations, in space of at most "
+                                             "half a turn; of others 0",
+                                    .components = 3,
+                                    .component_names = xyz,
+                                    .value = rotation};
+const OutputField field_angular_velocity = {.name = "angular velocity",
+                                            .dimension = "angular velocity",
+                                            .about = "of particles that have rotations",
+                                            .components = 3,
+                                            .component_names = xyz,
+                                            .value = angular_velocity};
+const OutputField field_internal_moment = {.name = "internal moment",
+                                           .dimension = "stress",
+                                           .about = "moment per volume from bonds, on particles that have rotations",
+                                           .components = 3,
+                                           .component_names = xyz,
+                                           .value = internal_moment};
 const OutputField field_block = {
     .name = "block", .dimension = "1", .about = "which block of the deck, from 0", .components = 1, .value = block};
 

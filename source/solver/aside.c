@@ -9,7 +9,7 @@ int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
   bool failed = false;
   *a = (Aside){.tensors = memory_zeroed((size_t)d->region_count, sizeof *a->tensors, label, error),
                .region_count = d->region_count};
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < d->particles->motions; ++k) {
     failed |= !(a->displacement[k] = places_array(places, label, error));
     failed |= !(a->internal[k] = places_array(places, label, error));
   }
@@ -30,7 +30,7 @@ int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
 
 void aside_destroy(Aside *a)
 {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < MOTIONS; ++k) {
     places_free(&a->displacement[k]);
     places_free(&a->internal[k]);
   }
@@ -52,7 +52,7 @@ static void swap(double **a, double **b)
 
 void aside_exchange(Aside *a, Domain *d)
 {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < d->particles->motions; ++k) {
     swap(&d->particles->displacement[k], &a->displacement[k]);
     swap(&d->particles->internal[k], &a->internal[k]);
   }

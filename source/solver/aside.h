@@ -12,9 +12,9 @@ typedef struct AsideTensors {
 } AsideTensors;
 
 typedef struct Aside {
-  double *displacement[3]; /* at which forces are found */
-  double *internal[3];     /* those */
-  AsideTensors *tensors;   /* [region_count] */
+  double *displacement[MOTIONS]; /* at which forces are found */
+  double *internal[MOTIONS];     /* those */
+  AsideTensors *tensors;         /* [region_count] */
   int region_count;
 } Aside;
 

@@ -83,6 +83,7 @@ static void list_state(Solver *run, StateList *list)
   Explicit *s = run->own;
   state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration,
                    s->domain->particles->places);
+  particles_state_rotations(s->domain->particles, "angular acceleration", "1", STATE_COMMITTED, s->acceleration, list);
   if (s->viscous.time > 0)
     state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag,
                      s->domain->particles->places);
@@ -108,7 +109,7 @@ static int create(Solver *run, Error *error)
                   .force = run->force};
   run->ledger.wave = ledger_wave_speed(d);
   int failed = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < d->particles->motions; ++k)
     failed |= !(s->acceleration[k] = places_array(d->particles->places, "accelerations", error));
   s->sums = memory_zeroed((size_t)d->batch_count, sizeof *s->sums, "energy sums", error);
   int64_t parts = 0;
@@ -145,7 +146,7 @@ static int keep_before(Solver *run, Error *error)
 static void destroy(Solver *run)
 {
   Explicit *s = run->own;
-  for (int k = 0; k < 3; ++k) places_free(&s->acceleration[k]);
+  for (int k = 0; k < MOTIONS; ++k) places_free(&s->acceleration[k]);
   free(s->sums);
   free(s->parts);
   free(s->motions);
@@ -224,17 +225,17 @@ static void kick_and_drift(Explicit *s, int64_t batch)
   const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(s->spec->damping.mass), one_half = lanes_set(0.5);
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = first; i < last; i += LANES) {
       Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
       Lanes fe = lanes_load(p->external[k] + i);
-      Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->density + i) * gain;
+      Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->inertia[k] + i) * gain;
       Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(p->volume + i);
       bond -= fi * work;
       external += fe * work;
       damping += drag * work;
-      between -= lanes_load(p->density + i) * lanes_load(p->volume + i) * gain * gain;
-      still = lanes_least(still, -lanes_absolute(du));
+      between -= lanes_load(p->inertia[k] + i) * lanes_load(p->volume + i) * gain * gain;
+      if (k < ROTATION) still = lanes_least(still, -lanes_absolute(du));
       lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
       lanes_store(p->velocity[k] + i, half);
     }
@@ -257,10 +258,10 @@ static void kick(Explicit *s, int64_t batch)
   const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->clock->time_step)), viscous = lanes_set(c);
   Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0}, between = {0};
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = first; i < last; i += LANES) {
       Lanes half = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
-      Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->density + i);
+      Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->inertia[k] + i);
       Lanes volume = lanes_load(p->volume + i), force = fi + fe, size = local * lanes_absolute(force);
       Lanes drag = lanes_where(half > lanes_set(0), size) - lanes_where(half < lanes_set(0), size);
       if (stiff) drag += lanes_load(s->viscous.drag[k] + i);
@@ -301,11 +302,11 @@ static int begin(Solver *run, Error *error)
   loading_settle(s->loading, d->particles, d->particles->velocity, 0);
   const Particles *p = d->particles;
   s->ledger->kinetic = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->density[i];
-      s->ledger->kinetic += 0.5 * p->density[i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
-      s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
+      s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->inertia[k][i];
+      s->ledger->kinetic += 0.5 * p->inertia[k][i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
+      if (k < ROTATION) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
     }
   return BRECCIA_OK;
 }
@@ -355,7 +356,10 @@ static void answer(void *context)
   if (!is_sound(s)) return;
   domain_accept(d);
   apply_loads(s, end);
-  TEAM_FOR (b, d->batch_count) kick(s, b);
+  TEAM_FOR (b, d->batch_count) {
+    kick(s, b);
+    particles_take_rotations(d->particles, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
+  }
   TEAM_SINGLE
   {
     add_sums(s);
@@ -400,6 +404,7 @@ static int advance(Solver *run, Text *warning, Error *error)
 }
 
 const SolverType explicit_solver = {.name = "explicit",
+                                    .turns = true,
                                     .create = create,
                                     .destroy = destroy,
                                     .plan = explicit_plan,

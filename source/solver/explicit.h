@@ -25,7 +25,7 @@ typedef struct Explicit {
   Clock *clock;
   Ledger *ledger;
   bool force; /* accept a chosen step above the stable one */
-  double *acceleration[3];
+  double *acceleration[MOTIONS];
   StiffnessDamping viscous; /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {

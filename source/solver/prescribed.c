@@ -48,6 +48,21 @@ static inline __attribute__((always_inline)) void add_along(double *const vector
   for (int k = 0; k < 3; ++k) vector[k][i] += amount * d.of[k];
 }
 
+/** The rows of motion of which a constraint speaks. */
+typedef struct Rows {
+  double *const *displacement, *const *velocity, *const *acceleration, *const *internal, *const *external;
+  const double *inertia;
+  bool from_step; /* displacements count from the beginning of the step: rotations in space */
+} Rows;
+
+static Rows rows_of(const Explicit *s, const Constraint *constraint)
+{
+  const Particles *p = s->domain->particles;
+  const int row = constraint->row;
+  return (Rows){p->displacement + row, p->velocity + row, s->acceleration + row,   p->internal + row,
+                p->external + row,     p->inertia[row],   row && p->orientation[0]};
+}
+
 static int64_t part_end(const Constraint *constraint, int64_t part)
 {
   int64_t end = (part + 1) * PART;
@@ -72,28 +87,31 @@ static void add_parts(Explicit *s, const Constraint *constraint)
   }
 }
 
-static void move_part(Explicit *s, const Constraint *constraint, double target, int64_t part)
+static void move_part(Explicit *s, const Constraint *constraint, const struct Motion *motion, int64_t part)
 {
   const Particles *p = s->domain->particles;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
+  const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = s->spec->damping.mass, bond = 0, external = 0, damping = 0, between = 0,
          largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
-    double half = along(p->velocity, d, i), a = along(s->acceleration, d, i), drifted = dt * half;
-    double fi = along(p->internal, d, i), fe = along(p->external, d, i);
-    double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt), aim = target * constraint_part(constraint, k),
-           off = (constraint->from ? constraint->from[k] + aim : aim) - along(p->displacement, d, i);
-    if (constraint->images) off += constraint->share * along(p->displacement, d, constraint->images[k]);
-    largest = fmax(largest, fabs(drifted + off));
+    double half = along(rows.velocity, d, i), a = along(rows.acceleration, d, i), drifted = dt * half;
+    double fi = along(rows.internal, d, i), fe = along(rows.external, d, i);
+    const double part_of = constraint_part(constraint, k), from = constraint->from ? constraint->from[k] : 0;
+    double v = (half - 0.5 * dt * a) / (1 - 0.5 * c * dt),
+           off = (rows.from_step ? motion->moved * part_of : from + motion->target * part_of) -
+                 along(rows.displacement, d, i);
+    if (constraint->images) off += constraint->share * along(rows.displacement, d, constraint->images[k]);
+    if (!constraint->row) largest = fmax(largest, fabs(drifted + off));
     if (constraint->images) constraint->moved[k] = drifted + off;
     double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
     bond -= fi * (work - free_work);
-    damping -= (fi + fe - p->density[i] * (a - c * v)) * free_work;
-    external += -fe * free_work - fi * work - 0.5 * p->density[i] * p->volume[i] * v * v;
-    between += dt * dt / 8 * p->density[i] * p->volume[i] * (a - c * v) * (a - c * v);
-    add_along(p->displacement, d, i, off);
-    add_along(p->velocity, d, i, off / dt);
+    damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * free_work;
+    external += -fe * free_work - fi * work - 0.5 * rows.inertia[i] * p->volume[i] * v * v;
+    between += dt * dt / 8 * rows.inertia[i] * p->volume[i] * (a - c * v) * (a - c * v);
+    add_along(rows.displacement, d, i, off);
+    add_along(rows.velocity, d, i, off / dt);
   }
   double *sums = s->parts[part];
   sums[BOND_WORK] = bond;
@@ -117,7 +135,7 @@ void explicit_foresee_motions(Explicit *s)
                                     .moved = constraint_displacement(constraint, end) - (first ? 0 : before),
                                     .rate = (constraint_displacement(constraint, end + dt) - before) / (2 * dt)};
     const double fastest = fmax(fabs(s->motions[n].moved / dt), fabs(s->motions[n].rate));
-    s->ledger->given = fmax(s->ledger->given, fastest * constraint_most(constraint));
+    if (!constraint->row) s->ledger->given = fmax(s->ledger->given, fastest * constraint_most(constraint));
   }
 }
 
@@ -138,7 +156,7 @@ void explicit_prescribe_displacements(Explicit *s)
   for (int n = 0; n < 2 * count; ++n) {
     const Constraint *constraint = &s->loading->constraints[n % count];
     if (!is_turn(s, constraint, n >= count)) continue;
-    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, s->motions[n % count].target, part);
+    TEAM_FOR (part, explicit_parts_of(constraint)) move_part(s, constraint, &s->motions[n % count], part);
     TEAM_SINGLE add_parts(s, constraint);
   }
 }
@@ -147,20 +165,21 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
 {
   const Particles *p = s->domain->particles;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
+  const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = s->spec->damping.mass, external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
-    double mass = p->density[i] * p->volume[i], v = along(p->velocity, d, i), a = along(s->acceleration, d, i);
+    double mass = rows.inertia[i] * p->volume[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
     const double part_of = constraint_part(constraint, k);
     double moved = constraint->images ? constraint->moved[k] : motion->moved * part_of, rate = motion->rate * part_of;
-    if (constraint->images) rate += constraint->share * along(p->velocity, d, constraint->images[k]);
-    double fi = along(p->internal, d, i), fe = along(p->external, d, i), work = 0.5 * moved * p->volume[i];
+    if (constraint->images) rate += constraint->share * along(rows.velocity, d, constraint->images[k]);
+    double fi = along(rows.internal, d, i), fe = along(rows.external, d, i), work = 0.5 * moved * p->volume[i];
     kinetic += 0.5 * mass * (rate * rate - v * v);
-    damping -= (fi + fe - p->density[i] * (a - c * v)) * work;
+    damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * work;
     external += 0.5 * mass * rate * rate - fe * work - fi * work;
     between -= dt * dt / 8 * mass * (a - c * v) * (a - c * v);
-    add_along(p->velocity, d, i, rate - v);
-    add_along(s->acceleration, d, i, -a);
+    add_along(rows.velocity, d, i, rate - v);
+    add_along(rows.acceleration, d, i, -a);
   }
   double *sums = s->parts[part];
   sums[BOND_WORK] = sums[MOTION] = 0;
@@ -194,6 +213,7 @@ double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t
   const double part = constraint_part(constraint, n);
   const double acceleration = part * (after - 2 * now + before) / (dt * dt), rate = part * (after - before) / (2 * dt);
   double drag = 0; /* of stiffness */
-  for (int k = 0; k < 3 && s->viscous.time > 0; ++k) drag += constraint->direction[k] * s->viscous.drag[k][i];
-  return p->volume[i] * (drag + p->density[i] * (acceleration + s->spec->damping.mass * rate));
+  for (int k = 0; k < 3 && s->viscous.time > 0; ++k)
+    if (constraint->direction[k] != 0) drag += constraint->direction[k] * s->viscous.drag[constraint->row + k][i];
+  return p->volume[i] * (drag + p->inertia[constraint->row][i] * (acceleration + s->spec->damping.mass * rate));
 }

@@ -109,6 +109,7 @@ static void note_row(const Constraint *c, int64_t n, void *context)
   Summing *s = context;
   const Particles *p = s->solver->domain->particles;
   const int32_t i = c->load->selection.places[n];
+  if (c->row) return;
   for (int k = 0; k < 3; ++k) s->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
   if (!counts(s, c, i)) return;
   const int32_t other = c->images ? c->images[n] : i; /* the face is half way to what is mirrored */
@@ -118,12 +119,29 @@ static void note_row(const Constraint *c, int64_t n, void *context)
     s->middle[k] += (p->position[k][i] + p->displacement[k][i] + p->position[k][other] + p->displacement[k][other]) / 2;
 }
 
+/** What holds a rotation adds to the moment only. */
+static void add_turning(Summing *s, const Constraint *c, int64_t n)
+{
+  const Particles *p = s->solver->domain->particles;
+  const int32_t i = c->load->selection.places[n];
+  for (int k = 0; k < 3 && counts(s, c, i); ++k) {
+    if (c->direction[k] == 0) continue;
+    double moment = -p->volume[i] * (p->internal[c->row + k][i] + p->external[c->row + k][i]);
+    if (s->solver->type->inertia) moment += s->solver->type->inertia(s->solver, c, n);
+    s->sum.moment[p->motions == 4 ? 2 : k] += moment;
+  }
+}
+
 /** What balances a particle in one direction is taken off there, so that another row of that direction finds nothing any more. */
 static void add_row(const Constraint *c, int64_t n, void *context)
 {
   Summing *s = context;
   const int32_t i = c->load->selection.places[n];
   double along = 0, force[3];
+  if (c->row) {
+    add_turning(s, c, n);
+    return;
+  }
   for (int k = 0; k < 3; ++k) along -= s->force[k][i] * c->direction[k];
   for (int k = 0; k < 3; ++k) s->force[k][i] += along * c->direction[k];
   if (!counts(s, c, i)) return;
@@ -154,6 +172,8 @@ Wrench reactions_of_loads(const Solver *solver, const double about[3])
     double force[3];
     for (int k = 0; k < 3; ++k) force[k] = p->volume[i] * p->external[k][i];
     add_force(&sum, p, i, force);
+    for (int k = ROTATION; k < p->motions; ++k)
+      sum.moment[p->motions == 4 ? 2 : k - ROTATION] += p->volume[i] * p->external[k][i];
   }
   return sum;
 }

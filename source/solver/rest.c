@@ -42,7 +42,7 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   }
   for (int n = 0; !failed && n < s->loading->constraint_count; ++n) { /* what a support carries is balanced */
     const Constraint *c = &s->loading->constraints[n];
-    for (int64_t at = 0; load_acts(s->loading, c->load) && at < c->load->selection.count; ++at) {
+    for (int64_t at = 0; load_acts(s->loading, c->load) && !c->row && at < c->load->selection.count; ++at) {
       const int32_t i = c->load->selection.places[at];
       double along = 0;
       for (int k = 0; k < 3; ++k) along += free_force[k][i] * c->direction[k];

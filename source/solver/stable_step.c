@@ -9,18 +9,25 @@
 
 enum { MOST_ITERATIONS = 40, VECTORS = 3 };
 
-static double mass_product(const Domain *d, double *const a[3], double *const b[3])
+static double mass_product(const Domain *d, double *const a[MOTIONS], double *const b[MOTIONS])
 {
   const Particles *p = d->particles;
   double sum = 0;
   for (int64_t batch = 0; batch < d->batch_count; ++batch) { /* the same bits for any number of threads */
     double part = 0;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < p->motions; ++k)
       for (int64_t i = d->batches[batch].first * SLICE; i < d->batches[batch].last * SLICE; ++i)
-        part += p->density[i] * p->volume[i] * a[k][i] * b[k][i];
+        part += p->inertia[k][i] * p->volume[i] * a[k][i] * b[k][i];
     sum += part;
   }
   return sum;
+}
+
+/** Radius of gyration of a particle in rows of rotations; 1 in others. */
+static double radius(const Domain *d, int k, int64_t number)
+{
+  const Particles *p = d->particles;
+  return k < ROTATION ? 1 : sqrt(p->rotary[p->place_of[number]] / p->density[p->place_of[number]]);
 }
 
 typedef struct Iteration { /* of Lanczos' method */
@@ -36,20 +43,20 @@ static void apply(void *context)
 {
   const Iteration *n = context;
   Domain *d = n->domain;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < d->particles->motions; ++k)
     TEAM_FOR (i, d->particles->places) n->aside->displacement[k][i] = n->base_u[k][i] + n->h * n->current[k][i];
   TEAM_SINGLE aside_exchange(n->aside, d);
   domain_forces(d);
   TEAM_SINGLE aside_exchange(n->aside, d);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < d->particles->motions; ++k)
     TEAM_FOR (i, d->particles->places)
-      n->next[k][i] = (n->base_f[k][i] - n->aside->internal[k][i]) / (n->h * d->particles->density[i]);
+      n->next[k][i] = (n->base_f[k][i] - n->aside->internal[k][i]) / (n->h * d->particles->inertia[k][i]);
 }
 
 static void orthogonalize(void *context)
 {
   const Iteration *n = context;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < n->domain->particles->motions; ++k)
     TEAM_FOR (i, n->domain->particles->places)
       n->next[k][i] -= n->alpha * n->current[k][i] + n->beta * n->previous[k][i];
 }
@@ -57,17 +64,18 @@ static void orthogonalize(void *context)
 static void normalize(void *context)
 {
   const Iteration *n = context;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < n->domain->particles->motions; ++k)
     TEAM_FOR (i, n->domain->particles->places) n->next[k][i] /= n->beta;
 }
 
 int stable_step(Domain *d, double *step, Error *error)
 {
-  int64_t places = d->particles->places;
+  const int64_t places = d->particles->places;
+  const int motions = d->particles->motions;
   Aside aside;
-  double *base_f[3] = {0}, *v[VECTORS][3] = {{0}};
+  double *base_f[MOTIONS] = {0}, *v[VECTORS][MOTIONS] = {{0}};
   int failed = aside_create(&aside, d, "stable step", error) != BRECCIA_OK;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < motions; ++k) {
     failed |= !(base_f[k] = places_array(places, "stable step", error));
     for (int n = 0; n < VECTORS; ++n) failed |= !(v[n][k] = places_array(places, "stable step", error));
   }
@@ -78,21 +86,21 @@ int stable_step(Domain *d, double *step, Error *error)
   domain_set_elastic_stage(d, true);
   Iteration it = {
       .domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1], .next = v[2]};
-  for (int k = 0; k < 3; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
+  for (int k = 0; k < motions; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
   aside_exchange(&aside, d);
   domain_evaluate(d);
   aside_exchange(&aside, d);
-  for (int k = 0; k < 3; ++k) memcpy(base_f[k], aside.internal[k], sizeof(double) * (size_t)places);
+  for (int k = 0; k < motions; ++k) memcpy(base_f[k], aside.internal[k], sizeof(double) * (size_t)places);
 
   uint64_t seed = 1;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < motions; ++k)
     for (int64_t n = 0; n < d->particles->count; ++n) {
       double r = random_uniform(&seed) - 0.5;
-      it.current[k][d->particles->place_of[n]] = k < d->body.dimensions ? r : 0;
+      it.current[k][d->particles->place_of[n]] = k < d->body.dimensions || k >= ROTATION ? r / radius(d, k, n) : 0;
     }
   double norm = sqrt(mass_product(d, it.current, it.current));
   double alpha[MOST_ITERATIONS], beta[MOST_ITERATIONS + 1] = {0}, largest = 0, before = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < motions; ++k)
     for (int64_t i = 0; i < places; ++i) it.current[k][i] /= norm;
   /* Displacements of 1e-7 spacings: far above roundings, far below where anything is non-linear. */
   it.h = 1e-7 * d->body.largest_spacing * norm;
@@ -122,7 +130,7 @@ int stable_step(Domain *d, double *step, Error *error)
     *step = 2 / sqrt(largest * 1.005 + forces_eigenvalue(&d->forces));
 done:
   aside_destroy(&aside);
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < MOTIONS; ++k) {
     places_free(&base_f[k]);
     for (int n = 0; n < VECTORS; ++n) places_free(&v[n][k]);
   }

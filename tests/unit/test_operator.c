@@ -78,6 +78,11 @@ static const struct Covered {
       {"plane strain", "form: pairwise, strain: small", BODIES},
       {"plane stress", "form: variational", BODIES},
       {"plane stress", "form: pairwise", BODIES}}},
+    {"micropolar",
+     {{"3-D", "torsion: 1", BODIES},
+      {"3-D", "torsion: 0, influence: conical, volume correction: partial", BODIES},
+      {"plane strain", "influence: inverse", BODIES},
+      {"plane stress", "kinematics: corotational", BODIES}}},
 };
 
 #define CUT "cracks: [{cut: {line: [[3.05, -9], [3.05, 2.1]]}}]\n"
@@ -133,8 +138,10 @@ static breccia_model *body(const char *formulation, const Law *law, const Settin
     snprintf(shapes, sizeof shapes, "a: {material: m, %s}", blocks[0]);
   breccia_model *model =
       model_of("materials: {m: {model: %s, density: 1, %s}}\nperidynamics: {formulation: %s, space: %s, horizon: 2.5, "
-               "%s}\nbody: {%s}\n%ssolve: {implicit: {end time: 1, stiffness damping: 1e-6}}\n",
-               law->name, law->words, formulation, setting->space, setting->words, shapes, line ? "" : CUT);
+               "%s}\nbody: {%s}\n%ssolve: {%s}\n",
+               law->name, law->words, formulation, setting->space, setting->words, shapes, line ? "" : CUT,
+               formulation_find(formulation)->gyration ? "explicit: {steps: 1}"
+                                                       : "implicit: {end time: 1, stiffness damping: 1e-6}");
   if (number == SCATTERED) remove(FILE_NAME);
   return model;
 }
@@ -214,26 +221,27 @@ static void sever_some(breccia_model *model, int32_t poor)
 
 /** Vectors over places. */
 typedef struct Vectors {
-  double *of[3];
+  double *of[MOTIONS];
 } Vectors;
 
 static Vectors vectors(const Particles *p)
 {
-  Vectors v;
-  for (int k = 0; k < 3; ++k) v.of[k] = places_array(p->places, "test", NULL);
+  Vectors v = {{0}};
+  for (int k = 0; k < p->motions; ++k) v.of[k] = places_array(p->places, "test", NULL);
   return v;
 }
 
 static void forget(Vectors *v)
 {
-  for (int k = 0; k < 3; ++k) places_free(&v->of[k]);
+  for (int k = 0; k < MOTIONS; ++k) places_free(&v->of[k]);
 }
 
-static void randomize(const Domain *d, double *const v[3], double size, uint64_t seed)
+static void randomize(const Domain *d, double *const *v, double size, uint64_t seed)
 {
   for (int32_t n = 0; n < d->particles->count; ++n)
-    for (int k = 0; k < d->body.dimensions; ++k)
-      v[k][d->particles->place_of[n]] = size * 2 * (random_uniform(&seed) - 0.5);
+    for (int k = 0; k < d->particles->motions; ++k)
+      if (k < d->body.dimensions || k >= ROTATION)
+        v[k][d->particles->place_of[n]] = size * 2 * (random_uniform(&seed) - 0.5);
 }
 
 /** A linear field and a random one. */
@@ -246,27 +254,28 @@ static void displace(const Domain *d, double strain, uint64_t seed)
     for (int k = 0; k < d->body.dimensions; ++k)
       for (int j = 0; j < d->body.dimensions; ++j)
         p->displacement[k][p->place_of[n]] += strain * g[3 * k + j] * p->position[j][p->place_of[n]];
+  particles_take_rotations(d->particles, 0, p->places);
 }
 
 static void move(const Domain *d, const Vectors *v, double factor)
 {
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < d->particles->motions; ++k)
     for (int64_t i = 0; i < d->particles->places; ++i) d->particles->displacement[k][i] += factor * v->of[k][i];
 }
 
-static double largest(const Particles *p, double *const v[3])
+static double largest(const Particles *p, double *const *v)
 {
   double most = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) most = fmax(most, fabs(v[k][i]));
   return most;
 }
 
-static void assert_alike(const Particles *p, double *const a[3], double *const b[3], double part, const char *what)
+static void assert_alike(const Particles *p, double *const *a, double *const *b, double part, const char *what)
 {
   const double most = largest(p, a);
   if (!(most > 0)) fail_msg("%s: nothing but 0", what);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       if (!(fabs(a[k][i] - b[k][i]) <= part * most))
         fail_msg("%s: %g and %g at place %lld of [%g, %g, %g], of %g at most", what, a[k][i], b[k][i], (long long)i,
@@ -290,7 +299,7 @@ static Vectors forces(const Domain *d)
 {
   const Particles *p = d->particles;
   Vectors f = vectors(p);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) f.of[k][i] = p->internal[k][i] * p->volume[i];
   return f;
 }
@@ -317,6 +326,8 @@ static void check_forces(Domain *d, const Vectors *f, const char *name)
         for (int k = 0; k < 3; ++k)
           halves.of[k][slice * SLICE + lane] += force[k] * volume * p->volume[slice * SLICE + lane];
       }
+  for (int k = ROTATION; k < p->motions; ++k) /* half states have no moments */
+    memcpy(halves.of[k], f->of[k], sizeof(double) * (size_t)p->places);
   assert_alike(p, f->of, halves.of, 1e-11, name);
   forget(&sum);
   forget(&halves);
@@ -328,15 +339,15 @@ static Vectors assembled(const Domain *d, const Vectors *v)
   const Particles *p = d->particles;
   Vectors sum = vectors(p);
   Operator point = {0};
-  double k[9];
+  double k[MOTIONS * MOTIONS];
   for (const Region *region = d->regions; region < d->regions + d->region_count; ++region)
     for (int64_t n = 0; n < region->type->point_count(region->formulation); ++n) {
       assert_int_equal(region->type->point(region->formulation, n, &point, NULL), 0);
       for (int a = 0; a < point.count; ++a)
         for (int b = 0; b < point.count; ++b) {
           operator_stiffness(&point, p->displacement, a, b, k);
-          for (int c = 0; c < 9; ++c)
-            sum.of[c / 3][point.places[a].place] += k[c] * v->of[c % 3][point.places[b].place];
+          for (int c = 0; c < point.motions * point.motions; ++c)
+            sum.of[c / point.motions][point.places[a].place] += k[c] * v->of[c % point.motions][point.places[b].place];
         }
     }
   operator_destroy(&point);
@@ -389,7 +400,7 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
   randomize(d, v.of, 1, 8);
   Vectors sum = assembled(d, &v);
   domain_linear_step(d, v.of, step.of);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) step.of[k][i] *= p->volume[i];
   assert_alike(p, sum.of, step.of, 1e-11, name);
 
@@ -399,12 +410,12 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
     move(d, &v, side ? 2 * h : -h);
     domain_evaluate(d);
     energies[side] = energy(d);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < p->motions; ++k)
       for (int64_t i = 0; i < p->places; ++i)
         found.of[k][i] += (side ? 1 : -1) * p->internal[k][i] * p->volume[i] / (2 * h);
   }
   assert_alike(p, step.of, found.of, law->slack, name);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       work += f.of[k][i] * v.of[k][i];
       size += fabs(f.of[k][i] * v.of[k][i]);

@@ -100,6 +100,7 @@ static bool begin(Load *load, Particles *p)
     double v[3];
     velocity_at(&m, p, i, v);
     for (int k = 0; k < 3; ++k) p->velocity[k][i] = v[k];
+    for (int k = ROTATION; k < p->motions; ++k) p->velocity[k][i] = m.rotation[p->motions == 4 ? 2 : k - ROTATION];
   }
   return true;
 }
@@ -113,6 +114,8 @@ static LoadWords tell(const Load *load, const Particles *p)
     double v[3];
     velocity_at(&m, p, i, v);
     kinetic += 0.5 * p->density[i] * p->volume[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int k = 0; k < 3 && p->rotary; ++k)
+      kinetic += 0.5 * p->rotary[i] * p->volume[i] * m.rotation[k] * m.rotation[k];
   }
   return (LoadWords){"its particles begin with a kinetic energy of", kinetic, "energy", "J"};
 }

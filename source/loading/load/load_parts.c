@@ -24,11 +24,53 @@ void load_push(const Load *load, Particles *p, const double uniform[3], const do
   }
 }
 
-void load_constrain(Load *load, const LoadMaking *making, const double d[3], double value, int order)
+/** Prescribes a motion by rows from `row` on. */
+static void constrain(Load *load, const LoadMaking *making, int row, const double d[3], double value, int order)
 {
   const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  making->loading->constraints[making->loading->constraint_count++] = (Constraint){
-      .load = load, .direction = {d[0] / length, d[1] / length, d[2] / length}, .value = value, .order = order};
+  making->loading->constraints[making->loading->constraint_count++] =
+      (Constraint){.load = load,
+                   .row = row,
+                   .direction = {d[0] / length, d[1] / length, d[2] / length},
+                   .value = value,
+                   .order = order};
+}
+
+void load_constrain(Load *load, const LoadMaking *making, const double d[3], double value, int order)
+{
+  constrain(load, making, 0, d, value, order);
+}
+
+int load_rotations(const Load *load, const LoadMaking *making, int axis[3])
+{
+  const Particles *p = &making->body->particles;
+  int count = 0;
+  if (p->motions == ROTATION)
+    return node_error(making->reader->document, load->node, making->reader->error,
+                      "%s: the particles of this body have no rotations; those of `formulation: micropolar` do",
+                      load->node->key),
+           -1;
+  for (int k = 0; k < 3; ++k) {
+    if (p->motions == 6 || k == 2)
+      axis[count++] = k;
+    else if (!isnan(load->value->point[k]) && load->value->point[k] != 0)
+      return node_error(making->reader->document, load->node, making->reader->error,
+                        "%s: the body is plane and turns about z only: [0, 0, value]", load->node->key),
+             -1;
+  }
+  return count;
+}
+
+int load_constrain_rotations(Load *load, const LoadMaking *making, int order)
+{
+  int of[3];
+  const int count = load_rotations(load, making, of);
+  for (int k = 0; k < count; ++k) {
+    double axis[3] = {0};
+    axis[k] = 1;
+    if (!isnan(load->value->point[of[k]])) constrain(load, making, ROTATION, axis, load->value->point[of[k]], order);
+  }
+  return count < 0 ? BRECCIA_USER_ERROR : BRECCIA_OK;
 }
 
 void load_constrain_axes(Load *load, const LoadMaking *making, int order)

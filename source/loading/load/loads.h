@@ -6,6 +6,9 @@
 #endif
 LOAD(body_force, "body force", FIELD_POINT, "force per volume", "force per volume")
 LOAD(force, "force", FIELD_POINT, "force", "total force, shared among the particles by volume")
+LOAD(moment, "moment", FIELD_POINT, "energy",
+     "total moment on particles that have rotations, shared among them by volume, anticlockwise about x, y, z; in the "
+     "plane [0, 0, moment]")
 LOAD(gravity, "gravity", FIELD_POINT, "acceleration", "acceleration, times the density")
 LOAD(base_acceleration, "base acceleration", FIELD_POINT, "acceleration",
      "of the ground under the body, which is seen from there: each particle feels the opposite acceleration, and all "
@@ -22,6 +25,9 @@ LOAD(displacement, "displacement", FIELD_FREE_POINT, "length", "prescribed displ
 LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")
 LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",
      "prescribed acceleration, from rest; its history is integrated over time")
+LOAD(rotation, "rotation", FIELD_FREE_POINT, "angle",
+     "prescribed rotation of particles that have rotations, about x, y, z, anticlockwise; in the plane [0, 0, angle]; "
+     "0 holds them, 'free' leaves one as it is")
 LOAD_SECTION(along, "along", "motion prescribed in one direction only")
 LOAD_SECTION(motion_field, "field", "motion prescribed by formulas in the particles' places")
 LOAD(roller, "roller", FIELD_POINT, "1", "held in this direction, of any length; free across it, without friction")

@@ -1,0 +1,296 @@
+/* Micropolar peridynamics (Gerstle, Sau and Silling 2007; Rahman 2012; Tuniki 2012; docs/theory.md 6): particles have rotations, and bonds are links
+ * that resist stretch, shear and bending like beams between them, so that Poisson's ratio is free up to a limit. */
+#include "formulation/micropolar.h"
+
+#include "base/memory.h"
+#include "base/tensor.h"
+#include "formulation/shape_tensor.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct MicropolarSpec {
+  SectionHead head;
+  const char *kinematics;
+  double torsion;
+} MicropolarSpec;
+
+static const char *kinematics_word(int k)
+{
+  static const char *const words[] = {"corotational", "thesis", NULL};
+  return words[k];
+}
+
+static const Field micropolar_fields[] = {
+    {.key = "kinematics",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(MicropolarSpec, kinematics),
+     .standard = "corotational",
+     .meaning = "corotational: links turn with their ends, at any rotation; thesis: the stiffness along the present "
+                "direction times all of the displacements and rotations, as in Tuniki 2012, in the plane only: it "
+                "resists rigid rotation and is there to compare with",
+     .choice = kinematics_word},
+    {.key = "torsion",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(MicropolarSpec, torsion),
+     .dimension = "1",
+     .standard = "1",
+     .range = "[0, 10]",
+     .meaning = "torsional stiffness of links in space, over that of round beams; elasticity does not say it"},
+};
+static const Section micropolar_section = {.name = "micropolar",
+                                           .about = "Keys of `peridynamics` with `formulation: micropolar`.",
+                                           .size = sizeof(MicropolarSpec),
+                                           FIELDS(micropolar_fields)};
+
+static bool takes(const breccia_law *law)
+{
+  return law->linear;
+}
+
+static int check(const void *keys, const Body *body, const DeckReader *reader)
+{
+  const MicropolarSpec *spec = keys;
+  if (body->dimensions == 1)
+    return node_error(reader->document, section_node(keys, "formulation"), reader->error,
+                      "formulation: micropolar has no shear along a line; bars take bond-based");
+  if (body->dimensions == 3 && !strcmp(spec->kinematics, "thesis"))
+    return node_error(reader->document, section_node(keys, "kinematics"), reader->error,
+                      "kinematics: thesis is of plane bodies; leave it out");
+  return BRECCIA_OK;
+}
+
+static void destroy(void *formulation)
+{
+  Micropolar *m = formulation;
+  if (!m) return;
+  for (int k = 0; k < 4; ++k) places_free(&m->shown[k]);
+  free(m->constants);
+  free(m->rows);
+  free(m);
+}
+
+/** Links of the lattice of a block. */
+static void fill_rows(Micropolar *m, int block)
+{
+  int64_t slice = 0;
+  while (m->particles->block[slice] != block) ++slice;
+  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
+    const Pattern *p = &m->family->patterns[k];
+    const Bond bond = {.neighbour = (int32_t)(slice * SLICE), .length = p->length};
+    const LinkStiffness stiffness = micropolar_stiffness(m, slice * SLICE, &bond);
+    LinkRow *row = &m->rows[k];
+    for (int c = 0; c < 3; ++c) {
+      row->xi[c] = p->xi[c];
+      row->n[c] = p->xi[c] / p->length;
+    }
+    row->by_length = 1 / p->length;
+    row->axial = stiffness.axial * p->weight;
+    row->bending = stiffness.bending * p->weight / p->length;
+    row->twist = stiffness.twist * p->weight / p->length;
+  }
+}
+
+static void *create(const FormulationParts *parts, Error *error)
+{
+  static const MicropolarSpec standard = {.kinematics = "corotational", .torsion = 1};
+  const MicropolarSpec *spec = parts->keys ? parts->keys : &standard;
+  Micropolar *m = memory_zeroed(1, sizeof *m, "micropolar", error);
+  if (!m) return NULL;
+  *m = (Micropolar){.particles = parts->particles,
+                    .family = parts->family,
+                    .body = parts->body,
+                    .materials = parts->materials,
+                    .material = parts->material,
+                    .space = parts->space,
+                    .influence = parts->influence,
+                    .secant = !strcmp(spec->kinematics, "thesis"),
+                    .torsion = spec->torsion};
+  const int blocks = m->body->block_count;
+  m->constants = memory_zeroed((size_t)blocks, sizeof *m->constants, "links", error);
+  m->rows = memory_zeroed((size_t)m->family->pattern_count, sizeof *m->rows, "links", error);
+  int failed = !m->constants || !m->rows;
+  for (int k = 0; k < (parts->space == SPACE_3D ? 4 : 2); ++k)
+    failed |= !(m->shown[k] = places_array(m->particles->places, "rotations", error));
+  for (int block = 0; block < blocks && !failed; ++block) failed = micropolar_find_constants(m, block, error);
+  for (int block = 0; block < blocks && !failed; ++block) fill_rows(m, block);
+  if (!failed) return m;
+  destroy(m);
+  return NULL;
+}
+
+static double gyration(const void *formulation, int64_t place)
+{
+  const Micropolar *m = formulation;
+  return m->constants[m->particles->block[place / SLICE]].gyration;
+}
+
+/* ---- sweeps ---- */
+
+static int64_t show_displacements(void *formulation, const Sweep *sweep)
+{
+  const Micropolar *m = formulation;
+  double *const *u = sweep->at ? sweep->at : m->particles->displacement;
+  if (m->particles->motions == 4) micropolar_show_plane(m, u[ROTATION], sweep->first, sweep->last);
+  return -1;
+}
+
+static int64_t resist(void *formulation, const Sweep *sweep)
+{
+  const Micropolar *m = formulation;
+  const Particles *p = m->particles;
+  for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
+    if (sweep->at) {
+      micropolar_resist_changes(m, sweep->at, slice);
+      continue;
+    }
+    const bool swept = p->motions == 4 && !m->secant && micropolar_resist_plane(m, slice);
+    if (!swept)
+      for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
+    micropolar_add_links(m, slice, swept);
+  }
+  return -1;
+}
+
+/** Links change by what is held and nothing else. */
+static int linearise(void *formulation, Error *error)
+{
+  (void)formulation, (void)error;
+  return BRECCIA_OK;
+}
+
+/* ---- single bonds and places ---- */
+
+/** Both ends give a bond half of its force. */
+static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
+                       double state[3])
+{
+  const Micropolar *m = formulation;
+  const Link l = micropolar_link(m, at, slice, slot, lane);
+  const double *force = l.force;
+  LinkChange change;
+  if (at) {
+    const LinkMotion motion = micropolar_motion(m, at, slice * SLICE + lane, l.bond.neighbour);
+    change = micropolar_change(m, at, slice * SLICE + lane, &l, &motion);
+    force = change.force;
+  }
+  for (int k = 0; k < 3; ++k) state[k] = force[k] * l.bond.weight / m->particles->volume[l.bond.neighbour] / 2;
+}
+
+static void bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
+                        StoredEnergy *energy)
+{
+  const Micropolar *m = formulation;
+  const Particles *p = m->particles;
+  const int64_t place = slice * SLICE + lane;
+  const Link l = micropolar_link(m, NULL, slice, slot, lane);
+  const double weight = l.bond.weight * p->volume[place];
+  double power = 0; /* that the link takes */
+  for (int k = 0; k < 3; ++k) power += l.force[k] * (p->velocity[k][l.bond.neighbour] - p->velocity[k][place]);
+  for (int k = ROTATION; k < p->motions; ++k) {
+    const int axis = p->motions == 4 ? 2 : k - ROTATION;
+    power -= l.moment[0][axis] * p->velocity[k][place] + l.moment[1][axis] * p->velocity[k][l.bond.neighbour];
+  }
+  *energy = (StoredEnergy){.stored = weight * l.energy, .received = weight * (l.energy - 0.5 * time * power)};
+}
+
+/** Half of what the links of a place store; the other half is that of their other ends. */
+static void stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
+{
+  const Micropolar *m = formulation;
+  const Family *f = m->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  *energy = (StoredEnergy){0};
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    StoredEnergy bond;
+    bond_energy(formulation, slice, slot, lane, time, &bond);
+    energy->stored += bond.stored / 2;
+    energy->received += bond.received / 2;
+  }
+}
+
+static double poisson_of(const Micropolar *m, int64_t place)
+{
+  const Material *material = &m->materials[m->material[place / SLICE]];
+  return (3 * material->bulk - 2 * material->shear) / (2 * (3 * material->bulk + material->shear));
+}
+
+static void gradient(const void *formulation, int64_t place, double f[9])
+{
+  const Micropolar *m = formulation;
+  const ShapeTensor shape = shape_tensor(m->family, (int32_t)place, m->body->dimensions, 0);
+  shape_gradient(m->family, (int32_t)place, shape.inverse, f);
+  if (m->space != SPACE_PLANE_STRESS) return;
+  const double nu = poisson_of(m, place),
+               sum = (f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4]) / 2 - 1; /* E_xx + E_yy */
+  f[8] = sqrt(fmax(0, 1 - 2 * nu / (1 - nu) * sum));
+}
+
+/** The symmetric part of half the sum of force (x) y over the links. */
+static void stress(const void *formulation, int64_t place, double s[6])
+{
+  const Micropolar *m = formulation;
+  const Family *f = m->family;
+  const int64_t slice = place / SLICE;
+  const int lane = (int)(place % SLICE);
+  for (int k = 0; k < 6; ++k) s[k] = 0;
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> lane & 1)) continue;
+    const Link l = micropolar_link(m, NULL, slice, slot, lane);
+    for (int k = 0; k < 6; ++k)
+      s[k] +=
+          l.bond.weight / 4 *
+          (l.force[symmetric_row[k]] * l.y[symmetric_column[k]] + l.force[symmetric_column[k]] * l.y[symmetric_row[k]]);
+  }
+  if (m->space == SPACE_PLANE_STRAIN) s[ZZ] = poisson_of(m, place) * (s[XX] + s[YY]);
+}
+
+static FormerBonds former_bonds(const void *formulation)
+{
+  (void)formulation;
+  return (FormerBonds){.share = 1, .alike = true};
+}
+
+static size_t bytes(const void *formulation)
+{
+  const Micropolar *m = formulation;
+  size_t arrays = 0;
+  for (int k = 0; k < 4; ++k) arrays += m->shown[k] != NULL;
+  return arrays * sizeof(double) * (size_t)m->particles->places + (size_t)m->family->pattern_count * sizeof *m->rows;
+}
+
+const FormulationType formulation_micropolar = {
+    .name = "micropolar",
+    .about =
+        "particles have rotations, and bonds are links that stretch, bend and twist like beams; Poisson's ratio up "
+        "to 1/4 (1/3 in plane stress)",
+    .source = "Gerstle, Sau and Silling 2007; Rahman 2012; Tuniki 2012",
+    .maturity = "verified against closed forms",
+    .components = 6,
+    .horizon = 1.5,
+    .keeps_no_points = true,
+    .takes = takes,
+    .section = &micropolar_section,
+    .check = check,
+    .create = create,
+    .destroy = destroy,
+    .gyration = gyration,
+    .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
+               {.run = resist,
+                .reads = OF_DISPLACEMENTS | OF_SHOWN,
+                .writes = OF_FORCES,
+                .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN}},
+    .linearise = linearise,
+    .half_state = half_state,
+    .point_count = micropolar_point_count,
+    .point = micropolar_point,
+    .stored_energy = stored_energy,
+    .bond_energy = bond_energy,
+    .gradient = gradient,
+    .stress = stress,
+    .describe = micropolar_describe,
+    .former_bonds = former_bonds,
+    .bytes = bytes,
+};

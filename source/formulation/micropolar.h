@@ -1,0 +1,128 @@
+/* What the parts of micropolar peridynamics share: the table entry (micropolar.c), constants of links (micropolar_constants.c), links one by one
+ * (micropolar_link.c), sweeps over links of lattices in the plane and in space (micropolar_plane.c, micropolar_space.c). */
+#ifndef BRECCIA_FORMULATION_MICROPOLAR_H
+#define BRECCIA_FORMULATION_MICROPOLAR_H
+
+#include "formulation/formulation.h"
+#include "formulation/stretch.h"
+
+/** Stiffness of links per volume squared and influence: axial force c s of a stretch s, end moments (d / L)(4 a + 2 b) of end rotations a, b from
+ *  the chord, and a torque (twist / L) psi. So EA = c V_i V_j, EI = d V_i V_j, GJ = twist V_i V_j. */
+typedef struct LinkStiffness {
+  double axial, bending, twist;
+} LinkStiffness;
+
+enum { MOST_LENGTHS = 2 };
+
+/** Links of one block. */
+typedef struct LinkConstants {
+  LinkStiffness any; /* of all lengths: right in uniform expansion, and in shear in the mean of all directions */
+  int lengths;       /* of links on its lattice where these can be right in every direction; 0: they have `any` */
+  double length[MOST_LENGTHS];
+  LinkStiffness of[MOST_LENGTHS];
+  double gyration; /* square of the radius of gyration of a particle */
+} LinkConstants;
+
+/** What sweeps read of links of a lattice pattern. */
+typedef struct LinkRow {
+  double xi[3], n[3]; /* reference vector, and over its length */
+  double by_length;   /* 1 / L */
+  double axial;       /* c w */
+  double bending;     /* d w / L */
+  double twist;       /* twist w / L */
+} LinkRow;
+
+typedef struct Micropolar {
+  const Particles *particles;
+  const Family *family;
+  const Body *body;
+  const Material *materials;
+  const int32_t *material; /* [slices] */
+  Space space;
+  const Influence *influence;
+  bool secant;              /* links of the thesis, which turn without a corotated frame */
+  double torsion;           /* share of the torsional stiffness of a round beam */
+  LinkConstants *constants; /* [blocks] */
+  LinkRow *rows;            /* [patterns] */
+  double *shown[4]; /* [places] cosine and sine of the rotation in the plane, or the quaternion of a place in space */
+} Micropolar;
+
+/** Material of a block. */
+const Material *micropolar_material(const Micropolar *m, int block);
+/** Finds the constants of a block. Says so where its material is none for links of beams. */
+int micropolar_find_constants(Micropolar *m, int block, Error *error);
+/** Stiffness of a link: the mean of what both ends' blocks say to its length. */
+LinkStiffness micropolar_stiffness(const Micropolar *m, int64_t place, const Bond *bond);
+/** Adds what a user should know before a run. */
+void micropolar_describe(const void *formulation, Text *text);
+
+/* ---- links one by one ---- */
+
+/** A link as one end sees it; forces, moments and energy per volume of this end and weight of the bond. */
+typedef struct Link {
+  Bond bond;
+  LinkStiffness stiffness;
+  double y[3], length; /* to the other end, as deformed */
+  double stretch;
+  double force[3];     /* on this end; on the other one minus this */
+  double moment[2][3]; /* on this end, on the other */
+  double energy;
+} Link;
+
+/** The same by the stiffness of the thesis, of a link whose y stands there, at the rotations of its ends. */
+void micropolar_resist_secant(const double angle[2], Link *link);
+
+/** An end: its quaternion, where its section points (a), m x a (b) and m . a, the rotation vector from the chord m to a, its angle t over sin t, and
+ *  (1 - t cot t) / sin^2 t. */
+typedef struct LinkEnd {
+  double q[4], a[3], b[3], cosine, rotation[3], factor, bend;
+} LinkEnd;
+
+LinkEnd micropolar_end(const Micropolar *m, double *const *u, int64_t place, const double n[3], const double chord[3]);
+/** Quaternion of the rotation from the first end to the other, by the shorter way. */
+void micropolar_twist(const LinkEnd ends[2], double r[4]);
+
+static inline double vector_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void vector_cross(const double a[3], const double b[3], double c[3])
+{
+  for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/** Motion of a link's ends: displacement of the other end less that of this one, and spins of both. */
+typedef struct LinkMotion {
+  double apart[3], spin[2][3];
+} LinkMotion;
+
+/** Of changes of displacements and rotations that stand in their places. */
+LinkMotion micropolar_motion(const Micropolar *m, double *const *at, int64_t place, int64_t other);
+
+/** What a link does with it to the force on this end and the moments on both, per volume of this end and weight of the bond (micropolar_linear.c). */
+typedef struct LinkChange {
+  double force[3], moment[2][3];
+} LinkChange;
+LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t place, const Link *link,
+                             const LinkMotion *motion);
+
+/** Changes of forces and moments of a slice with changes of displacements and rotations, which stand in their places. */
+void micropolar_resist_changes(const Micropolar *m, double *const *at, int64_t slice);
+/** As FormulationType describes them. */
+int64_t micropolar_point_count(const void *formulation);
+int micropolar_point(const void *formulation, int64_t number, Operator *point, Error *error);
+
+/** A link at displacements and rotations `at`; NULL: at those held. */
+Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane);
+
+/** Forces and moments of all links of a slice, or of its stored slots only, added to what stands there. */
+void micropolar_add_links(const Micropolar *m, int64_t slice, bool stored_only);
+
+/** Forces and moments on a slice of links of lattices, by series for small strains.
+ *  @return false if some link is beyond them: what was written is of no use then */
+bool micropolar_resist_plane(const Micropolar *m, int64_t slice);
+/** Cosines and sines of rotations of slices first .. last - 1. */
+void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last);
+
+#endif

@@ -1,0 +1,322 @@
+/* Stiffness of links (docs/theory.md 6). A link along n has per volume the energy w/2 (c L s^2 / 2 + 6 d g^2 / L) with its stretch s = n.e.n and the
+ * shear g^2 = |e n|^2 - s^2, the particles turning with the body. Sums of that over a family must be the energy of the continuum. */
+#include "base/tensor.h"
+#include "formulation/micropolar.h"
+
+#include <string.h>
+
+const Material *micropolar_material(const Micropolar *m, int block)
+{
+  int64_t slice = 0;
+  while (m->particles->block[slice] != block) ++slice;
+  return &m->materials[m->material[slice]];
+}
+
+/** Lame's constants as the space of the body has them. */
+static void find_lame(const Micropolar *m, const Material *material, double *lambda, double *mu)
+{
+  *mu = material->shear;
+  *lambda = material->bulk - 2 * *mu / 3;
+  if (m->space == SPACE_PLANE_STRESS) *lambda = 2 * *mu * *lambda / (*lambda + 2 * *mu);
+}
+
+/* Symmetric tensors of rank four as matrices in Mandel's components. */
+enum { MANDEL = 6 };
+typedef struct Stiffness {
+  double c[MANDEL][MANDEL];
+} Stiffness;
+
+static double mandel(int k)
+{
+  return k < 3 ? 1 : sqrt(2);
+}
+
+/** Adds w L n n n n / 2 of an axial stiffness of 1, and 6 w / L times what makes g^2 of a bending stiffness of 1. */
+static void add_link(const Pattern *p, int dimensions, Stiffness *axial, Stiffness *bending)
+{
+  double along[MANDEL] = {0}, across[3][MANDEL] = {{0}}, n[3];
+  for (int k = 0; k < 3; ++k) n[k] = p->xi[k] / p->length;
+  for (int k = 0; k < MANDEL; ++k) {
+    const int row = symmetric_row[k], column = symmetric_column[k];
+    if (row >= dimensions || column >= dimensions) continue;
+    along[k] = n[row] * n[column] * mandel(k);
+    across[row][k] += n[column] / mandel(k);
+    if (row != column) across[column][k] += n[row] / mandel(k);
+  }
+  for (int i = 0; i < MANDEL; ++i)
+    for (int j = 0; j < MANDEL; ++j) {
+      double shear = -along[i] * along[j];
+      for (int k = 0; k < 3; ++k) shear += across[k][i] * across[k][j];
+      axial->c[i][j] += p->weight * p->length / 2 * along[i] * along[j];
+      bending->c[i][j] += 6 * p->weight / p->length * shear;
+    }
+}
+
+/** The continuum's; 0 for components out of the space. */
+static Stiffness wanted(const Micropolar *m, double lambda, double mu)
+{
+  Stiffness s = {{{0}}};
+  const int dimensions = m->body->dimensions;
+  for (int k = 0; k < MANDEL; ++k)
+    if (symmetric_row[k] < dimensions && symmetric_column[k] < dimensions) s.c[k][k] = 2 * mu;
+  for (int i = 0; i < dimensions; ++i)
+    for (int j = 0; j < dimensions; ++j) s.c[i][j] += lambda;
+  return s;
+}
+
+/** Components of the space that the body has. */
+static double product(const Stiffness *a, const Stiffness *b)
+{
+  double sum = 0;
+  for (int i = 0; i < MANDEL; ++i)
+    for (int j = 0; j < MANDEL; ++j) sum += a->c[i][j] * b->c[i][j];
+  return sum;
+}
+
+/* ---- right in every direction ---- */
+
+enum { MOST_PARTS = MOST_LENGTHS + 1 };
+
+/** Least squares by their normal equations. @return whether there is one answer */
+static bool fit(const Stiffness *parts, int count, const Stiffness *target, double *factor)
+{
+  double a[MOST_PARTS][MOST_PARTS + 1];
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) a[i][j] = product(&parts[i], &parts[j]);
+    a[i][count] = product(&parts[i], target);
+  }
+  for (int k = 0; k < count; ++k) {
+    if (!(a[k][k] > 1e-12 * product(&parts[k], &parts[k]))) return false;
+    for (int i = k + 1; i < count; ++i)
+      for (int j = count; j >= k; --j) a[i][j] -= a[i][k] / a[k][k] * a[k][j];
+  }
+  for (int k = count - 1; k >= 0; --k) {
+    factor[k] = a[k][count];
+    for (int j = k + 1; j < count; ++j) factor[k] -= a[k][j] * factor[j];
+    factor[k] /= a[k][k];
+  }
+  return true;
+}
+
+/** Links of one or two lengths: an axial stiffness for each, and bending of the shorter ones. */
+static void fit_lengths(const Micropolar *m, int block, const Stiffness *target, LinkConstants *constants)
+{
+  Stiffness parts[MOST_PARTS] = {{{{0}}}}, unused[MOST_LENGTHS] = {{{{0}}}};
+  int count = 0;
+  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
+    const Pattern *p = &m->family->patterns[k];
+    int l = 0;
+    while (l < count && fabs(p->length - constants->length[l]) > 1e-6 * p->length) ++l;
+    if (l == MOST_LENGTHS) return;
+    constants->length[l] = p->length;
+    if (l == count) ++count;
+  }
+  if (!count) return;
+  const int shorter = count == 2 && constants->length[1] < constants->length[0];
+  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
+    const Pattern *p = &m->family->patterns[k];
+    const int l = fabs(p->length - constants->length[0]) > 1e-6 * p->length;
+    add_link(p, m->body->dimensions, &parts[l], l == shorter ? &parts[count] : &unused[l]);
+  }
+  double factor[MOST_PARTS];
+  if (!fit(parts, count + 1, target, factor)) return;
+  Stiffness left = *target;
+  for (int k = 0; k <= count; ++k)
+    for (int i = 0; i < MANDEL; ++i)
+      for (int j = 0; j < MANDEL; ++j) left.c[i][j] -= factor[k] * parts[k].c[i][j];
+  if (product(&left, &left) > 1e-18 * product(target, target)) return;
+  for (int l = 0; l < count; ++l) {
+    if (factor[l] < 0) return;
+    constants->of[l].axial = factor[l];
+  }
+  constants->of[shorter].bending = fmax(0, factor[count]);
+  constants->lengths = count;
+}
+
+/* ---- right in the mean ---- */
+
+/** Integral of omega(q) q^power over 0 <= q <= 1 by Simpson's rule. */
+static double influence_moment(const Micropolar *m, int power)
+{
+  enum { INTERVALS = 2000 };
+  double sum = 0;
+  for (int k = 0; k <= INTERVALS; ++k) {
+    const double q = fmax(1e-9, (double)k / INTERVALS),
+                 value = m->influence->value(q, q * m->family->horizon) * pow(q, power);
+    sum += value * (k == 0 || k == INTERVALS ? 1 : k % 2 ? 4 : 2);
+  }
+  return sum / (3.0 * INTERVALS);
+}
+
+/** Sums of w L and w / L over a whole family: on a lattice, or of scattered particles by integrals. */
+static void find_sums(const Micropolar *m, int block, double *lengths, double *inverse)
+{
+  const double pi = acos(-1), horizon = m->family->horizon;
+  const bool space = m->body->dimensions == 3;
+  *lengths = *inverse = 0;
+  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k) {
+    *lengths += m->family->patterns[k].weight * m->family->patterns[k].length;
+    *inverse += m->family->patterns[k].weight / m->family->patterns[k].length;
+  }
+  if (m->body->lattices[block].chunks) return;
+  const double around = space ? 4 * pi * pow(horizon, 4) : 2 * pi * body_section(m->body) * pow(horizon, 3);
+  *lengths = around * influence_moment(m, space ? 3 : 2);
+  *inverse = around / (horizon * horizon) * influence_moment(m, space ? 1 : 0);
+}
+
+/** Uniform expansion costs no bending: its energy gives c. The trace of the stiffness is what all directions have in the mean: it gives d. */
+static LinkStiffness fit_mean(const Micropolar *m, int block, double lambda, double mu)
+{
+  const bool space = m->body->dimensions == 3;
+  const double expansion = space ? 9 * lambda + 6 * mu : 4 * (lambda + mu);
+  const double trace = space ? 3 * lambda + 12 * mu : 2 * lambda + 6 * mu;
+  double lengths, inverse;
+  find_sums(m, block, &lengths, &inverse);
+  return (LinkStiffness){.axial = 2 * expansion / lengths,
+                         .bending = (trace - expansion) / (6 * (space ? 1 : 0.5) * inverse)};
+}
+
+/* ---- rotational inertia ---- */
+
+/** Mean square of the distance from a corner of a triangle at the origin, of two others. */
+static double triangle_moment(const double a[2], const double b[2])
+{
+  return (a[0] * a[0] + a[1] * a[1] + a[0] * b[0] + a[1] * b[1] + b[0] * b[0] + b[1] * b[1]) / 6;
+}
+
+/** Mean square of the distance of a cell's points from its particle, in spacings: of all that is nearer to it than to others, by sampling. */
+static double cell_moment(const LatticeType *type)
+{
+  enum { SAMPLES = 24, REACH = 2 };
+  double sum = 0;
+  for (int n = 0; n < SAMPLES * SAMPLES * SAMPLES; ++n) {
+    const double at[3] = {(n % SAMPLES + 0.5) / SAMPLES, (n / SAMPLES % SAMPLES + 0.5) / SAMPLES,
+                          (n / (SAMPLES * SAMPLES) + 0.5) / SAMPLES};
+    double least = INFINITY;
+    for (int other = 0; other < 5 * 5 * 5; ++other) {
+      const int off[3] = {other % 5 - REACH, other / 5 % 5 - REACH, other / 25 - REACH};
+      double square = 0;
+      for (int k = 0; k < 3; ++k) {
+        double x = 0;
+        for (int v = 0; v < 3; ++v) x += (at[v] - off[v]) * type->vector[v][k];
+        square += x * x;
+      }
+      least = fmin(least, square);
+    }
+    sum += least;
+  }
+  return sum / (SAMPLES * SAMPLES * SAMPLES);
+}
+
+/** Of the cell of a particle as a solid: about the axis across the plane, or about any in space. */
+static double find_gyration(const Micropolar *m, int block)
+{
+  const Lattice *lattice = &m->body->lattices[block];
+  const bool space = m->body->dimensions == 3;
+  if (!lattice->chunks) { /* a square or a cube of the same size */
+    double volume = 0, count = 0;
+    for (int64_t i = 0; i < m->particles->places; ++i) {
+      if (m->particles->number[i] < 0 || m->particles->block[i / SLICE] != block) continue;
+      volume += m->particles->volume[i];
+      ++count;
+    }
+    const double one = volume / count / body_section(m->body);
+    return (space ? pow(one, 2.0 / 3) : one) / 6;
+  }
+  const double square = lattice->spacing * lattice->spacing;
+  if (space) return 2.0 / 3 * square * cell_moment(lattice->type);
+  double corners[6][2], moment = 0, area = 0;
+  const int count = lattice_cell_corners(lattice->type, corners);
+  for (int k = 0; k < count; ++k) {
+    const double *a = corners[k], *b = corners[(k + 1) % count], part = (a[0] * b[1] - a[1] * b[0]) / 2;
+    moment += part * triangle_moment(a, b);
+    area += part;
+  }
+  return square * moment / area;
+}
+
+int micropolar_find_constants(Micropolar *m, int block, Error *error)
+{
+  const Material *material = micropolar_material(m, block);
+  LinkConstants *constants = &m->constants[block];
+  double lambda, mu;
+  find_lame(m, material, &lambda, &mu);
+  const double poisson = (3 * material->bulk - 2 * mu) / (2 * (3 * material->bulk + mu));
+  if (lambda > mu * (1 + 1e-12))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "block '%s': micropolar takes a Poisson ratio of at most %s, and that of material '%s' is %.4g: "
+                     "links would need a bending stiffness below zero; take 'ordinary' or 'correspondence'",
+                     m->body->blocks[block]->head.name, m->space == SPACE_PLANE_STRESS ? "1/3 in plane stress" : "1/4",
+                     material->name, poisson);
+  const Stiffness target = wanted(m, lambda, mu);
+  constants->any = fit_mean(m, block, lambda, mu);
+  if (m->body->lattices[block].chunks) fit_lengths(m, block, &target, constants);
+  if (!(constants->any.axial > 0) || !isfinite(constants->any.axial) || !isfinite(constants->any.bending))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "block '%s': its particles have no neighbours within the horizon of %g, so that there is no "
+                     "stiffness to give to links; give a longer horizon",
+                     m->body->blocks[block]->head.name, m->family->horizon);
+  constants->any.bending = fmax(0, constants->any.bending);
+  /* A round beam: J = 2 I. */
+  const double twist = 2 * m->torsion * mu / material_young(material);
+  constants->any.twist = twist * constants->any.bending;
+  for (int l = 0; l < constants->lengths; ++l) constants->of[l].twist = twist * constants->of[l].bending;
+  constants->gyration = find_gyration(m, block);
+  return BRECCIA_OK;
+}
+
+static const LinkStiffness *stiffness_of(const Micropolar *m, int block, double length)
+{
+  const LinkConstants *constants = &m->constants[block];
+  for (int l = 0; l < constants->lengths; ++l)
+    if (fabs(length - constants->length[l]) < 1e-3 * length) return &constants->of[l];
+  return &constants->any;
+}
+
+LinkStiffness micropolar_stiffness(const Micropolar *m, int64_t place, const Bond *bond)
+{
+  const LinkStiffness *a = stiffness_of(m, m->particles->block[place / SLICE], bond->length),
+                      *b = stiffness_of(m, m->particles->block[bond->neighbour / SLICE], bond->length);
+  return (LinkStiffness){(a->axial + b->axial) / 2, (a->bending + b->bending) / 2, (a->twist + b->twist) / 2};
+}
+
+/** Least and largest of what a uniform strain along a direction, held across, costs beside the continuum. */
+static void describe_mean(const Micropolar *m, int block, Text *text)
+{
+  enum { ANGLES = 45 };
+  Stiffness axial = {{{0}}}, bending = {{{0}}};
+  const LinkStiffness any = m->constants[block].any;
+  double lambda, mu, least = INFINITY, largest = 0;
+  const double step = acos(-1) / ANGLES;
+  find_lame(m, micropolar_material(m, block), &lambda, &mu);
+  for (int k = m->family->pattern_begin[block]; k < m->family->pattern_begin[block + 1]; ++k)
+    add_link(&m->family->patterns[k], m->body->dimensions, &axial, &bending);
+  for (int azimuth = 0; azimuth < ANGLES; ++azimuth)
+    for (int height = 0; height <= (m->body->dimensions == 3 ? ANGLES / 2 : 0); ++height) {
+      const double a = azimuth * step, h = height * step, n[3] = {cos(a) * cos(h), sin(a) * cos(h), sin(h)};
+      double e[MANDEL], sum = 0;
+      for (int k = 0; k < MANDEL; ++k) e[k] = n[symmetric_row[k]] * n[symmetric_column[k]] * mandel(k);
+      for (int i = 0; i < MANDEL; ++i)
+        for (int j = 0; j < MANDEL; ++j)
+          sum += e[i] * e[j] * (any.axial * axial.c[i][j] + any.bending * bending.c[i][j]);
+      least = fmin(least, sum / (lambda + 2 * mu));
+      largest = fmax(largest, sum / (lambda + 2 * mu));
+    }
+  text_add(text, "%s: stretched in one direction only its lattice shows %.3f to %.3f of the wanted stiffness\n",
+           m->body->blocks[block]->head.name, least, largest);
+}
+
+void micropolar_describe(const void *formulation, Text *text)
+{
+  const Micropolar *m = formulation;
+  for (int block = 0; block < m->body->block_count; ++block) {
+    const LinkConstants *constants = &m->constants[block];
+    const char *name = m->body->blocks[block]->head.name;
+    const double volume = m->body->lattices[block].volume;
+    if (constants->lengths) text_add(text, "%s: links are right in every direction;", name);
+    for (int l = 0; l < constants->lengths; ++l)
+      text_add(text, " %.4g long: EA %.4g, EI %.4g%s", constants->length[l], constants->of[l].axial * volume * volume,
+               constants->of[l].bending * volume * volume, l + 1 < constants->lengths ? ";" : "\n");
+    if (!constants->lengths && m->body->lattices[block].chunks) describe_mean(m, block, text);
+  }
+}

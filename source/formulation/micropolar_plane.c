@@ -1,0 +1,87 @@
+/* Links of lattices in the plane, four at a time. With the cosine and sine of each particle's rotation a link needs no trigonometry: the sine of
+ * an end rotation is the cross product of the chord with where the section points, and the angle a series of it. */
+#include "formulation/micropolar.h"
+
+/* Largest |sine| of an end rotation for which the series is good to double precision. */
+static const double largest_sine = 0x1p-5;
+
+/** Arc sine. */
+LANES_INLINE Lanes angle_of(Lanes sine)
+{
+  const Lanes x = sine * sine;
+  Lanes sum = lanes_set(63.0 / 2816) * x + lanes_set(35.0 / 1152);
+  sum = sum * x + lanes_set(5.0 / 112);
+  sum = sum * x + lanes_set(3.0 / 40);
+  sum = sum * x + lanes_set(1.0 / 6);
+  return sine + sine * x * sum;
+}
+
+/** Half a slice: what it has, and what acts on it. */
+typedef struct HalfSlice {
+  Lanes u[2], cosine, sine;
+  Lanes force[2], moment;
+  LaneMask beyond; /* the series */
+} HalfSlice;
+
+LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, HalfSlice *own)
+{
+  const Family *f = m->family;
+  double *const *u = m->particles->displacement;
+  const LinkRow *row = &m->rows[f->pattern[slot]];
+  const int64_t there = f->base[slot] + LANES * half;
+  const LaneMask intact = lanes_half(f->intact[slot], half);
+  const Lanes nx = lanes_set(row->n[0]), ny = lanes_set(row->n[1]), by_length = lanes_set(row->by_length);
+  /* all over the reference length */
+  const Lanes ex = (lanes_load(u[0] + there) - own->u[0]) * by_length,
+              ey = (lanes_load(u[1] + there) - own->u[1]) * by_length, yx = nx + ex, yy = ny + ey;
+  const Lanes d = ex * (nx + yx) + ey * (ny + yy), g = shortening_series(d), inverse = lanes_set(1) - g;
+  const Lanes stretch = d * inverse - g, mx = yx * inverse, my = yy * inverse;
+  const Lanes cosine = lanes_load(m->shown[0] + there), sine = lanes_load(m->shown[1] + there);
+  const Lanes ax = own->cosine * nx - own->sine * ny, ay = own->sine * nx + own->cosine * ny;
+  const Lanes bx = cosine * nx - sine * ny, by = sine * nx + cosine * ny;
+  const Lanes here = mx * ay - my * ax, other = mx * by - my * bx;
+  const LaneMask beyond = (LaneMask)(lanes_absolute(d) > lanes_set(range_limit[RANGE_SERIES])) |
+                          (LaneMask)(lanes_absolute(here) > lanes_set(largest_sine)) |
+                          (LaneMask)(lanes_absolute(other) > lanes_set(largest_sine)) |
+                          (LaneMask)(mx * ax + my * ay < lanes_set(0)) | (LaneMask)(mx * bx + my * by < lanes_set(0));
+  const Lanes a = angle_of(here), b = angle_of(other), sum = a + b, bending = lanes_set(row->bending);
+  const Lanes pull = lanes_set(row->axial) * stretch, shear = lanes_set(6) * bending * by_length * inverse * sum;
+  own->beyond |= beyond & intact;
+  own->force[0] += lanes_where(intact, pull * mx + shear * my);
+  own->force[1] += lanes_where(intact, pull * my - shear * mx);
+  own->moment -= lanes_where(intact, bending * (sum + sum + (a + a)));
+}
+
+BRECCIA_CLONES
+bool micropolar_resist_plane(const Micropolar *m, int64_t slice)
+{
+  const Family *f = m->family;
+  const Particles *p = m->particles;
+  for (int half = 0; half < SLICE / LANES; ++half) {
+    const int64_t place = slice * SLICE + LANES * half;
+    HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
+                     .cosine = lanes_load(m->shown[0] + place),
+                     .sine = lanes_load(m->shown[1] + place),
+                     .moment = {0},
+                     .beyond = {0}};
+    own.force[0] = own.force[1] = lanes_set(0);
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, &own);
+    if (own.beyond[0] | own.beyond[1] | own.beyond[2] | own.beyond[3]) return false;
+    lanes_store(p->internal[0] + place, own.force[0]);
+    lanes_store(p->internal[1] + place, own.force[1]);
+    lanes_store(p->internal[2] + place, lanes_set(0));
+    lanes_store(p->internal[ROTATION] + place, own.moment);
+  }
+  return true;
+}
+
+BRECCIA_CLONES
+void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last)
+{
+  for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
+    Lanes sine, cosine;
+    lanes_sine_cosine(lanes_load(angle + place), &sine, &cosine);
+    lanes_store(m->shown[0] + place, cosine);
+    lanes_store(m->shown[1] + place, sine);
+  }
+}
