@@ -23,8 +23,10 @@ void flutter_warn_of_supports(const Solver *run, double stable, double stiffness
     if (!holds_all(loading, &loading->loads[l])) continue;
     node_where(run->reader->document, loading->loads[l].node, where, sizeof where);
     text_add(warning,
-             "%s%s: warning: support: motions beside a face that is held in all directions grow by themselves, within some ten "
-             "travel times of a wave at corners where the body is wider at the face than beyond it; take 'stiffness damping: "
+             "%s%s: warning: support: motions beside a face that is held in all directions grow by themselves, within "
+             "some ten "
+             "travel times of a wave at corners where the body is wider at the face than beyond it; take 'stiffness "
+             "damping: "
              "%.2g' (a fifth of critical at the highest frequency) or 'local damping', or, for undamped "
              "motions, hold layers by 'displacement'",
              warning->length ? "\n" : "", where, surely * stable);
