@@ -228,6 +228,32 @@ static void what_bending_cannot_be_is_refused(void **state)
   }
 }
 
+/** Where rotations have no place yet decks are refused. */
+static void what_cannot_turn_yet_is_refused(void **state)
+{
+  (void)state;
+  const struct {
+    const char *rest, *words;
+  } cases[] = {
+      {"solve: {static: {}}", "static: particles of this body have rotations, which only 'explicit' moves"},
+      {"solve: {explicit: {steps: 1, stiffness damping: 1e-6}}",
+       "stiffness damping: rotations of particles have no place"},
+      {"loads: [{on: {face: x-}, support: {held: all}}]\nsolve: {explicit: {steps: 1}}",
+       "support: its images do not mirror"},
+      {"loads: [{on: {face: x-}, rotation: [1, 0, 0]}]\nsolve: {explicit: {steps: 1}}", "rotation: the body is plane"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *deck = text_format("materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
+                             "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: "
+                             "{particles: [5, 5]}}}}\n"
+                             "peridynamics: {formulation: micropolar, space: plane stress}\n%s\n",
+                             cases[k].rest),
+         *words = refusal_of(deck);
+    if (!strstr(words, cases[k].words)) fail_msg("%s", words);
+    free(deck);
+    free(words);
+  }
+}
+
 /* ---- links ---- */
 
 /** Two particles: their four ways to deform in the plane, and twist in space, have the stiffness of a beam. */
@@ -553,6 +579,7 @@ int main(void)
       cmocka_unit_test(links_have_the_stiffness_of_closed_forms),
       cmocka_unit_test(uniform_strain_has_the_energy_of_the_continuum),
       cmocka_unit_test(what_bending_cannot_be_is_refused),
+      cmocka_unit_test(what_cannot_turn_yet_is_refused),
       cmocka_unit_test(a_link_is_a_beam),
       cmocka_unit_test(forces_are_derivatives_of_the_energy),
       cmocka_unit_test(rotation_of_the_whole_changes_nothing),

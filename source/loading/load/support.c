@@ -183,6 +183,11 @@ static int create(Load *load, const LoadMaking *making)
   while (margin < body->margins.count && body->margins.items[margin].owner != load->spec) ++margin;
   if (margin == body->margins.count) return BRECCIA_USER_ERROR; /* said when the margins were found */
   const int axis = body->margins.items[margin].axis;
+  if (body->particles.motions > ROTATION)
+    return node_error(
+        making->reader->document, load->node, error,
+        "support: its images do not mirror rotations, which particles of this body have; hold the face by "
+        "'displacement' and 'rotation'");
   if (!(load->own = memory_zeroed(1, sizeof(Support), "supports", error))) return BRECCIA_FAILURE;
   const int status = list_images(load, making);
   if (status) return status;
