@@ -53,7 +53,7 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, HalfSlic
 }
 
 BRECCIA_CLONES
-bool micropolar_resist_plane(const Micropolar *m, int64_t slice)
+static bool resist_plane(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
@@ -76,7 +76,7 @@ bool micropolar_resist_plane(const Micropolar *m, int64_t slice)
 }
 
 BRECCIA_CLONES
-void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last)
+static void show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last)
 {
   for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
     Lanes sine, cosine;
@@ -84,4 +84,16 @@ void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t fir
     lanes_store(m->shown[0] + place, cosine);
     lanes_store(m->shown[1] + place, sine);
   }
+}
+
+/* Clones of functions that other files see would be among the names that the library exports. */
+
+bool micropolar_resist_plane(const Micropolar *m, int64_t slice)
+{
+  return resist_plane(m, slice);
+}
+
+void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last)
+{
+  show_plane(m, angle, first, last);
 }
