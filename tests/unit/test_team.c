@@ -158,10 +158,12 @@ static double cost_of_steps(breccia_model *model)
 }
 
 /** Two cores and eight threads; then two threads that were begun on two cores and must make do with one, as where somebody else has
- *  taken the other. Neighbours that use the machine make it dearer now and then: one good try of twelve is enough. */
+ *  taken the other. Neighbours that use the machine make it dearer now and then: one good try of twelve is enough. Sanitizers, whose
+ *  looks take many times as long and whose cost is nobody's, are not asked. */
 static void steps_cost_little_more_where_cores_are_too_few(void **state)
 {
   (void)state;
+  if (under_sanitizers()) skip();
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof allowed, &allowed)) skip();
   confine(&allowed, 2);
