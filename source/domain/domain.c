@@ -203,7 +203,9 @@ size_t domain_particle_bytes(const Domain *d)
     else if (points_keep_tensors(&d->regions[r].points))
       bonds += 12 * (size_t)d->regions[r].points.count;
   }
-  return places * sizeof(double) * (15 + 2 + 1 + tensors) + places * sizeof(int32_t) * 2 +
+  const Particles *p = d->particles;
+  const size_t own = 3 + 4 * (size_t)p->motions + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);
+  return places * sizeof(double) * (own + 1 + tensors) + places * sizeof(int32_t) * 2 +
          (2 * history + bonds) * sizeof(double);
 }
 

@@ -3,6 +3,12 @@
 #include "base/memory.h"
 #include <stdlib.h>
 
+/** Rows of the arrays of a region's points. */
+static int64_t rows_of(const Points *points, int64_t places)
+{
+  return points->on_bonds || points->count > places ? points->count : places;
+}
+
 int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
 {
   const int64_t places = d->particles->places;
@@ -18,7 +24,7 @@ int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
     AsideTensors *t = &a->tensors[r];
     const Points *points = &d->regions[r].points;
     if (!points_keep_tensors(points)) continue;
-    const int64_t rows = points->on_bonds || points->count > places ? points->count : places;
+    const int64_t rows = rows_of(points, places);
     while (d->regions[t->shares].points.strain[0] != points->strain[0]) ++t->shares;
     for (int k = 0; k < 6 && t->shares == r; ++k) {
       failed |= !(t->strain[k] = places_array(rows, label, error));
@@ -26,6 +32,15 @@ int aside_create(Aside *a, const Domain *d, const char *label, Error *error)
     }
   }
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+size_t aside_bytes(const Aside *a, const Domain *d)
+{
+  const int64_t places = d->particles->places;
+  int64_t rows = a->tensors ? 2 * d->particles->motions * places : 0;
+  for (int r = 0; r < a->region_count; ++r)
+    if (a->tensors[r].strain[0]) rows += 12 * rows_of(&d->regions[r].points, places);
+  return (size_t)rows * sizeof(double);
 }
 
 void aside_destroy(Aside *a)

@@ -21,6 +21,8 @@ typedef struct Aside {
 /** @param[in] label  what it is for, in words. @return BRECCIA_OK or BRECCIA_FAILURE; destroy it in any case */
 int aside_create(Aside *aside, const Domain *domain, const char *label, Error *error);
 void aside_destroy(Aside *aside);
+/** Memory of its arrays; 0 of one that was not made. */
+size_t aside_bytes(const Aside *aside, const Domain *domain);
 
 /** Puts these arrays in the place of the domain's, and back. By one thread. */
 void aside_exchange(Aside *aside, Domain *domain);

@@ -122,6 +122,14 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
+/** Accelerations, and what stiffness damping takes. */
+static size_t bytes(const Solver *run)
+{
+  const Explicit *s = run->own;
+  const Particles *p = s->domain->particles;
+  return sizeof(double) * (size_t)p->motions * (size_t)p->places + stiffness_damping_bytes(&s->viscous, s->domain);
+}
+
 static void forget_before(Explicit *s)
 {
   state_copy_destroy(&s->before);
@@ -416,5 +424,6 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .damps = damps,
                                     .inertia = explicit_inertia,
                                     .foresee = explicit_foresee,
+                                    .bytes = bytes,
                                     .describe = describe,
                                     .describe_stage = describe_stage};

@@ -294,6 +294,7 @@ int solver_measure(Solver *s, StepCost *cost, Error *error)
   const double most = 1.2; /* what a step does beside the forces takes 2 to 40 % of them (docs/performance.md) */
   *cost = (StepCost){.evaluations = most};
   const int status = s->type->measure ? s->type->measure(s, cost, error) : BRECCIA_OK;
+  if (s->type->bytes) cost->bytes = (double)s->type->bytes(s);
   double own = (double)(s->clock.stage_last - s->clock.step), all = own, others = 0;
   for (int64_t k = s->clock.stage + 1; k < s->clock.stages; ++k) {
     const SolverType *type = types[type_of(stage_of(s, k))];

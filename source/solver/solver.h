@@ -98,6 +98,8 @@ struct SolverType {
   void (*foresee)(const void *spec, const Clock *clock, double *steps, double *time);
   /** Tries what a step of the stage under way takes, at the displacements held. NULL: little beside an evaluation of the forces. */
   int (*measure)(Solver *solver, StepCost *cost, Error *error);
+  /** Memory beside the body and its formulations, of solvers without `measure`. NULL: next to none. */
+  size_t (*bytes)(const Solver *solver);
   /** The steps to come of the stage under way, in words. @param[in] time  unit of time */
   void (*describe)(const Solver *solver, const char *time, Text *text);
   /** How a stage with this section goes and ends, in words. */

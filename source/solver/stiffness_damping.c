@@ -24,6 +24,12 @@ void stiffness_damping_destroy(StiffnessDamping *s)
   vectors_free(s->left);
 }
 
+size_t stiffness_damping_bytes(const StiffnessDamping *s, const Domain *d)
+{
+  const size_t rows = s->drag[0] ? 9 : 0;
+  return rows * sizeof(double) * (size_t)d->particles->places + aside_bytes(&s->aside, d);
+}
+
 void stiffness_damping_note(StiffnessDamping *s, const Domain *d, int64_t first, int64_t last)
 {
   for (int k = 0; k < 3; ++k)

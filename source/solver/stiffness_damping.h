@@ -16,6 +16,8 @@ typedef struct StiffnessDamping {
 /** `damping` is zero; destroy it in any case. */
 int stiffness_damping_create(StiffnessDamping *damping, double time, const Domain *domain, Error *error);
 void stiffness_damping_destroy(StiffnessDamping *damping);
+/** Memory that it takes. */
+size_t stiffness_damping_bytes(const StiffnessDamping *damping, const Domain *domain);
 
 /** Before displacements change, of the places first .. last - 1; by any thread. */
 void stiffness_damping_note(StiffnessDamping *damping, const Domain *domain, int64_t first, int64_t last);
