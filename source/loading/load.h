@@ -12,6 +12,7 @@
 typedef union LoadValue {
   double number;
   double point[3];
+  const char *text;
   void *section;
 } LoadValue;
 
@@ -129,6 +130,7 @@ struct LoadType {
   bool everywhere; /* on the whole body where the deck does not say on what */
   bool timeless;   /* it has no history */
   bool lasting;    /* it acts from the first stage to the last */
+  bool goes_on;    /* its forces were there before it began */
   /** Adds its constraints, and what it needs besides; its particles are known. May be NULL. */
   int (*create)(Load *load, const LoadMaking *making);
   void (*destroy)(Load *load);
@@ -144,7 +146,7 @@ struct LoadType {
   void (*settle)(Load *load, const Particles *particles, double *const moved[3], double factor);
   /** Energy that it has taken by braking. With `brake`. */
   double (*dissipated)(const Load *load);
-  /** When it begins. @return whether it has changed velocities. May be NULL. */
+  /** When it begins; forces are still those of the stage before. @return whether it has changed velocities. May be NULL. */
   bool (*begin)(Load *load, Particles *particles);
   /** Adds to changes of external forces per volume what they change with changes v of displacements. NULL: nothing. */
   void (*change)(const Load *load, const Particles *particles, double *const v[3], double *const change[3]);

@@ -139,6 +139,17 @@ static bool tied(const Loading *loading)
   return loading->ties[0].count || loading->ties[1].count || loading->ties[2].count;
 }
 
+/** External forces as they stand when a stage begins: of loads that act already. Others come suddenly, or grow over the first increment. */
+static void take_up_forces(const Loading *loading, Particles *p, double time)
+{
+  for (int k = 0; k < p->motions; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    const bool stays = load->first < loading->stage || load->type->goes_on;
+    if (stays && load->type->force && load_acts(loading, load)) load->type->force(load, p, load_factor(load, time));
+  }
+}
+
 void loading_begin(Loading *loading, Particles *p, double time)
 {
   loading->speeds_set = false;
@@ -170,7 +181,7 @@ void loading_begin(Loading *loading, Particles *p, double time)
       }
     }
   }
-  for (int k = 0; k < p->motions; ++k) memset(p->external[k], 0, sizeof(double) * (size_t)p->places);
+  take_up_forces(loading, p, time);
 }
 
 void loading_state(Loading *loading, StateList *list)

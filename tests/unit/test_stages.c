@@ -70,6 +70,21 @@ static void gravity_then_a_load_give_what_each_gives_alone(void **state)
   breccia_model_destroy(&alone);
 }
 
+/** A load that stays on does its whole work in a later stage at rest, one that comes then half of it: together half of both on the whole way. */
+static void loads_that_stay_on_do_their_whole_work(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(BAR "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {gravity: [200, 0]}]\n"
+                                  "solve:\n"
+                                  "  - static: {increments: 1, residual: 1e-11}\n"
+                                  "  - {loads: [{gravity: [300, 0]}], static: {increments: 2, residual: 1e-11}}\n");
+  run_all(m);
+  const Energy e = solver_energy(&m->solver);
+  assert_near(e.damping, 0, 1e-9 * e.stored);
+  assert_near(e.external, e.stored + e.damping, 1e-9 * e.stored);
+  breccia_model_destroy(&m);
+}
+
 static void histories_and_motions_count_from_the_beginning_of_their_stage(void **state)
 {
   (void)state;
@@ -526,6 +541,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gravity_then_a_load_give_what_each_gives_alone),
+      cmocka_unit_test(loads_that_stay_on_do_their_whole_work),
       cmocka_unit_test(histories_and_motions_count_from_the_beginning_of_their_stage),
       cmocka_unit_test(springs_blows_and_ties_begin_with_their_stage),
       cmocka_unit_test(in_an_elastic_stage_laws_do_not_yield_and_bonds_do_not_break),

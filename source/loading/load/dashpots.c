@@ -67,7 +67,7 @@ const Section dashpots_load_section = {
     .about =
         "Dashpots of Lysmer and Kuhlemeyer, which let waves pass through a face into ground that goes on beyond it: "
         "all of a plane wave that meets the face squarely. One layer of particles serves best. They hold nothing at "
-        "rest: in 'static' stages they do nothing.",
+        "rest: in 'static' stages they do nothing; a load 'reaction of' goes on with what held the body then.",
     .size = sizeof(DashpotsSpec),
     FIELDS(dashpots_fields),
     .check = check_dashpots};

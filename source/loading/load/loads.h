@@ -29,6 +29,12 @@ LOAD(rotation, "rotation", FIELD_FREE_POINT, "angle",
      "prescribed rotation of particles that have rotations, about x, y, z, anticlockwise; in the plane [0, 0, angle]; "
      "0 holds them, 'free' leaves one as it is")
 LOAD_SECTION(along, "along", "motion prescribed in one direction only")
+LOAD(
+    reaction, "reaction of", FIELD_TEXT, NULL,
+    "forces that a named load, which prescribed a motion to the end of the stage before, exerted on its particles "
+    "then; "
+    "that load ends, and these take its place: under 'dashpots', which hold nothing at rest, or going back to 0 with a "
+    "history, as where ground is dug away")
 LOAD_SECTION(motion_field, "field", "motion prescribed by formulas in the particles' places")
 LOAD(roller, "roller", FIELD_POINT, "1", "held in this direction, of any length; free across it, without friction")
 LOAD_SECTION(support, "support", "a face that is held exactly, by layers of particles outside it")
