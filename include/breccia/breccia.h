@@ -78,6 +78,16 @@ typedef struct breccia_deviator {
   double relaxation_time; /* in which it falls to 1 / e */
 } breccia_deviator;
 
+/** How links of a material are damaged by their stretch, for formulations that have links in the place of points (micropolar peridynamics). All that a link
+ *  carries is multiplied by (1 - damage in tension) (1 - damage in compression). */
+typedef struct breccia_link {
+  double tension_begin, tension_end; /* stretches at which damage in tension begins, and is 1 */
+  int linear_force;                  /* 1: in between the force falls linearly; 0: damage grows linearly */
+  double fracture_energy; /* per area of crack, from which the formulation finds `tension_end`; NaN: it stands there */
+  double compression_begin, compression_end; /* shortening, as positive numbers; infinite: there is no such damage */
+  double recovery; /* share of what tension has damaged along a link that it carries again in compression */
+} breccia_link;
+
 /** A constitutive law: strain to stress for many points. */
 typedef struct breccia_law {
   size_t size;
@@ -112,6 +122,8 @@ typedef struct breccia_law {
   /** Of a law that softens until it has spent a fracture energy: elastic energy per volume of a point pulled in one direction as it begins to.
    *  Zero-energy control then fades with the stiffness that a point has left. NULL: it does not soften. */
   double (*softening_energy)(const void *constants);
+  /** How links of this material are damaged. NULL: they are not, by this law. @return 0, or 1 with the reason in words */
+  int (*link)(const void *constants, breccia_link *link, char *reason, size_t reason_size);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

@@ -45,7 +45,7 @@ static const Section micropolar_section = {.name = "micropolar",
 
 static bool takes(const breccia_law *law)
 {
-  return law->linear;
+  return law->linear || law->link;
 }
 
 static int check(const void *keys, const Body *body, const DeckReader *reader)
@@ -65,6 +65,7 @@ static void destroy(void *formulation)
   Micropolar *m = formulation;
   if (!m) return;
   for (int k = 0; k < 4; ++k) places_free(&m->shown[k]);
+  micropolar_damage_destroy(m);
   free(m->constants);
   free(m->rows);
   free(m);
@@ -102,6 +103,7 @@ static void *create(const FormulationParts *parts, Error *error)
                     .body = parts->body,
                     .materials = parts->materials,
                     .material = parts->material,
+                    .points = parts->points,
                     .space = parts->space,
                     .influence = parts->influence,
                     .secant = !strcmp(spec->kinematics, "thesis"),
@@ -114,6 +116,7 @@ static void *create(const FormulationParts *parts, Error *error)
     failed |= !(m->shown[k] = places_array(m->particles->places, "rotations", error));
   for (int block = 0; block < blocks && !failed; ++block) failed = micropolar_find_constants(m, block, error);
   for (int block = 0; block < blocks && !failed; ++block) fill_rows(m, block);
+  if (!failed) failed = micropolar_damage_create(m, error);
   if (!failed) return m;
   destroy(m);
   return NULL;
@@ -135,6 +138,13 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
   return -1;
 }
 
+static int64_t find_damage(void *formulation, const Sweep *sweep)
+{
+  const Micropolar *m = formulation;
+  if (m->damage && !sweep->at && !m->points->elastic_stage) micropolar_find_tension(m, sweep->first, sweep->last);
+  return -1;
+}
+
 static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
@@ -144,6 +154,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
       micropolar_resist_changes(m, sweep->at, slice);
       continue;
     }
+    if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
     const bool swept = p->motions == 4 && !m->secant && micropolar_resist_plane(m, slice);
     if (!swept)
       for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
@@ -152,7 +163,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   return -1;
 }
 
-/** Links change by what is held and nothing else. */
+/** Links change by what is held and nothing else; those that are damaged by what is left of them. */
 static int linearise(void *formulation, Error *error)
 {
   (void)formulation, (void)error;
@@ -247,6 +258,13 @@ static void stress(const void *formulation, int64_t place, double s[6])
   if (m->space == SPACE_PLANE_STRAIN) s[ZZ] = poisson_of(m, place) * (s[XX] + s[YY]);
 }
 
+/** Links find from a fracture energy themselves where they end. */
+static double characteristic_length(const BondLength *of)
+{
+  (void)of;
+  return INFINITY;
+}
+
 static FormerBonds former_bonds(const void *formulation)
 {
   (void)formulation;
@@ -258,7 +276,8 @@ static size_t bytes(const void *formulation)
   const Micropolar *m = formulation;
   size_t arrays = 0;
   for (int k = 0; k < 4; ++k) arrays += m->shown[k] != NULL;
-  return arrays * sizeof(double) * (size_t)m->particles->places + (size_t)m->family->pattern_count * sizeof *m->rows;
+  return arrays * sizeof(double) * (size_t)m->particles->places + (size_t)m->family->pattern_count * sizeof *m->rows +
+         micropolar_damage_bytes(m);
 }
 
 const FormulationType formulation_micropolar = {
@@ -278,11 +297,16 @@ const FormulationType formulation_micropolar = {
     .destroy = destroy,
     .gyration = gyration,
     .phases = {{.run = show_displacements, .reads = OF_DISPLACEMENTS, .writes = OF_SHOWN},
+               {.run = find_damage, .reads = OF_DISPLACEMENTS, .writes = OF_STATES, .of_neighbours = OF_DISPLACEMENTS},
                {.run = resist,
-                .reads = OF_DISPLACEMENTS | OF_SHOWN,
+                .reads = OF_DISPLACEMENTS | OF_SHOWN | OF_STATES,
                 .writes = OF_FORCES,
-                .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN}},
+                .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN | OF_STATES}},
     .linearise = linearise,
+    .state = micropolar_state,
+    .commit = micropolar_commit,
+    .history = micropolar_history,
+    .characteristic_length = characteristic_length,
     .half_state = half_state,
     .point_count = micropolar_point_count,
     .point = micropolar_point,

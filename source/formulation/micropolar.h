@@ -1,5 +1,6 @@
 /* What the parts of micropolar peridynamics share: the table entry (micropolar.c), constants of links (micropolar_constants.c), links one by one
- * (micropolar_link.c), sweeps over links of lattices in the plane and in space (micropolar_plane.c, micropolar_space.c). */
+ * (micropolar_link.c), their changes (micropolar_linear.c), sweeps over links of lattices in the plane (micropolar_plane.c), and damage of links
+ * (micropolar_damage.c, by what laws say micropolar_damage_laws.c). */
 #ifndef BRECCIA_FORMULATION_MICROPOLAR_H
 #define BRECCIA_FORMULATION_MICROPOLAR_H
 
@@ -32,18 +33,29 @@ typedef struct LinkRow {
   double twist;       /* twist w / L */
 } LinkRow;
 
+/** Damage of links, and by which laws. Both ends of a link keep its damage, found from the same numbers. */
+typedef struct LinkDamage {
+  breccia_link *laws;                  /* [blocks] whose tension_end is found */
+  double longer, shorter;              /* bounds of (|y|^2 - |xi|^2) / |xi|^2 within which no link is damaged */
+  double *tension[2], *compression[2]; /* [slots * SLICE] committed, and as tried */
+  double *damaged;                     /* [places] links with damage in tension, as tried */
+  uint8_t *touched;                    /* [slices] some link has been beyond its bounds */
+} LinkDamage;
+
 typedef struct Micropolar {
   const Particles *particles;
   const Family *family;
   const Body *body;
   const Material *materials;
   const int32_t *material; /* [slices] */
+  const Points *points;
   Space space;
   const Influence *influence;
   bool secant;              /* links of the thesis, which turn without a corotated frame */
   double torsion;           /* share of the torsional stiffness of a round beam */
   LinkConstants *constants; /* [blocks] */
   LinkRow *rows;            /* [patterns] */
+  LinkDamage *damage;       /* NULL: all links are elastic */
   double *shown[4]; /* [places] cosine and sine of the rotation in the plane, or the quaternion of a place in space */
 } Micropolar;
 
@@ -113,6 +125,9 @@ void micropolar_resist_changes(const Micropolar *m, double *const *at, int64_t s
 int64_t micropolar_point_count(const void *formulation);
 int micropolar_point(const void *formulation, int64_t number, Operator *point, Error *error);
 
+/** Stretch of a bond at displacements u. @param[out] y  to the other end, as deformed */
+double micropolar_stretch(double *const *u, int64_t place, const Bond *bond, double y[3]);
+
 /** A link at displacements and rotations `at`; NULL: at those held. */
 Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane);
 
@@ -122,6 +137,32 @@ void micropolar_add_links(const Micropolar *m, int64_t slice, bool stored_only);
 /** Forces and moments on a slice of links of lattices, by series for small strains.
  *  @return false if some link is beyond them: what was written is of no use then */
 bool micropolar_resist_plane(const Micropolar *m, int64_t slice);
+/* ---- damage ---- */
+
+/** Makes room for damage if some law says how links are damaged, and finds out how those of each block are. */
+int micropolar_damage_create(Micropolar *m, Error *error);
+void micropolar_damage_destroy(Micropolar *m);
+/** Finds how the links of a block are damaged; `link` is what its law says. Says so where a fracture energy is too small for its links. */
+int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *link, Error *error);
+
+/** Whether damage counts now, and some link of the slice may have any. */
+static inline bool micropolar_is_weak(const Micropolar *m, int64_t slice)
+{
+  return m->damage && m->damage->touched[slice] && !m->points->elastic_stage;
+}
+
+/** Damage in tension of the links of slices, as tried; then that in compression, which asks how many links of both ends have the former. */
+void micropolar_find_tension(const Micropolar *m, int64_t first, int64_t last);
+void micropolar_find_compression(const Micropolar *m, int64_t slice);
+/** Stiffness that is left at a stretch. */
+void micropolar_weaken(const Micropolar *m, int64_t place, int64_t other, int64_t at, double stretch,
+                       LinkStiffness *stiffness);
+/** As FormulationType describes them. */
+void micropolar_state(void *formulation, const char *part, StateList *list);
+void micropolar_commit(void *formulation, bool well);
+double micropolar_history(const void *formulation, int64_t place, int k);
+size_t micropolar_damage_bytes(const Micropolar *m);
+
 /** Cosines and sines of rotations of slices first .. last - 1. */
 void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last);
 

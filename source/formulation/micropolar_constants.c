@@ -306,6 +306,16 @@ static void describe_mean(const Micropolar *m, int block, Text *text)
            m->body->blocks[block]->head.name, least, largest);
 }
 
+static void describe_damage(const breccia_link *law, const char *name, Text *text)
+{
+  text_add(text, "%s: links are damaged from a stretch of %.3g and carry nothing in tension beyond %.3g", name,
+           law->tension_begin, law->tension_end);
+  if (isfinite(law->compression_begin))
+    text_add(text, "; beside damaged ones from %.3g to %.3g in compression", -law->compression_begin,
+             -law->compression_end);
+  text_add(text, "\n");
+}
+
 void micropolar_describe(const void *formulation, Text *text)
 {
   const Micropolar *m = formulation;
@@ -318,5 +328,7 @@ void micropolar_describe(const void *formulation, Text *text)
       text_add(text, " %.4g long: EA %.4g, EI %.4g%s", constants->length[l], constants->of[l].axial * volume * volume,
                constants->of[l].bending * volume * volume, l + 1 < constants->lengths ? ";" : "\n");
     if (!constants->lengths && m->body->lattices[block].chunks) describe_mean(m, block, text);
+    if (m->damage && isfinite(m->damage->laws[block].tension_begin))
+      describe_damage(&m->damage->laws[block], name, text);
   }
 }

@@ -135,22 +135,29 @@ void micropolar_resist_secant(const double angle[2], Link *l)
   l->energy = normal * along / 2 + shear * across / 2 - (l->moment[0][2] * angle[0] + l->moment[1][2] * angle[1]) / 2;
 }
 
+double micropolar_stretch(double *const *u, int64_t place, const Bond *bond, double y[3])
+{
+  double d = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double eta = u[k][bond->neighbour] - u[k][place];
+    y[k] = bond->xi[k] + eta;
+    d += eta * (bond->xi[k] + y[k]);
+  }
+  d /= bond->length * bond->length;
+  return d / (1 + sqrt(1 + d));
+}
+
 Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane)
 {
   double *const *u = at ? at : m->particles->displacement;
   const int64_t place = slice * SLICE + lane;
   Link l = {.bond = family_bond(m->family, slice, slot, lane)};
-  double d = 0, chord[3];
+  double chord[3];
   l.stiffness = micropolar_stiffness(m, place, &l.bond);
-  for (int k = 0; k < 3; ++k) {
-    const double eta = u[k][l.bond.neighbour] - u[k][place];
-    l.y[k] = l.bond.xi[k] + eta;
-    d += eta * (l.bond.xi[k] + l.y[k]);
-  }
-  d /= l.bond.length * l.bond.length;
-  const double ratio = sqrt(1 + d);
-  l.stretch = d / (1 + ratio);
-  l.length = l.bond.length * ratio;
+  l.stretch = micropolar_stretch(u, place, &l.bond, l.y);
+  l.length = l.bond.length * (1 + l.stretch);
+  if (micropolar_is_weak(m, slice))
+    micropolar_weaken(m, place, l.bond.neighbour, slot * SLICE + lane, l.stretch, &l.stiffness);
   for (int k = 0; k < 3; ++k) chord[k] = l.y[k] / l.length;
   if (m->secant)
     micropolar_resist_secant((const double[]){u[ROTATION][place], u[ROTATION][l.bond.neighbour]}, &l);

@@ -23,7 +23,19 @@ typedef struct HalfSlice {
   LaneMask beyond; /* the series */
 } HalfSlice;
 
-LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, HalfSlice *own)
+/** What is left of a link's axial stiffness, and of the others. */
+LANES_INLINE void find_left(const Micropolar *m, int64_t slot, int half, const breccia_link *law, Lanes stretch,
+                            Lanes *axial, Lanes *other)
+{
+  const int64_t at = slot * SLICE + LANES * half;
+  const Lanes tension = lanes_load(m->damage->tension[1] + at),
+              rest = lanes_set(1) - lanes_load(m->damage->compression[1] + at);
+  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), lanes_set(1 - law->recovery), lanes_set(1));
+  *axial = (lanes_set(1) - tension * closed) * rest;
+  *other = (lanes_set(1) - tension) * rest;
+}
+
+LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const breccia_link *weak, HalfSlice *own)
 {
   const Family *f = m->family;
   double *const *u = m->particles->displacement;
@@ -44,8 +56,15 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, HalfSlic
                           (LaneMask)(lanes_absolute(here) > lanes_set(largest_sine)) |
                           (LaneMask)(lanes_absolute(other) > lanes_set(largest_sine)) |
                           (LaneMask)(mx * ax + my * ay < lanes_set(0)) | (LaneMask)(mx * bx + my * by < lanes_set(0));
-  const Lanes a = angle_of(here), b = angle_of(other), sum = a + b, bending = lanes_set(row->bending);
-  const Lanes pull = lanes_set(row->axial) * stretch, shear = lanes_set(6) * bending * by_length * inverse * sum;
+  const Lanes a = angle_of(here), b = angle_of(other), sum = a + b;
+  Lanes axial = lanes_set(row->axial), bending = lanes_set(row->bending);
+  if (weak) {
+    Lanes left[2];
+    find_left(m, slot, half, weak, stretch, &left[0], &left[1]);
+    axial *= left[0];
+    bending *= left[1];
+  }
+  const Lanes pull = axial * stretch, shear = lanes_set(6) * bending * by_length * inverse * sum;
   own->beyond |= beyond & intact;
   own->force[0] += lanes_where(intact, pull * mx + shear * my);
   own->force[1] += lanes_where(intact, pull * my - shear * mx);
@@ -57,6 +76,7 @@ static bool resist_plane(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
+  const breccia_link *weak = micropolar_is_weak(m, slice) ? &m->damage->laws[p->block[slice]] : NULL;
   for (int half = 0; half < SLICE / LANES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
@@ -65,7 +85,7 @@ static bool resist_plane(const Micropolar *m, int64_t slice)
                      .moment = {0},
                      .beyond = {0}};
     own.force[0] = own.force[1] = lanes_set(0);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, &own);
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, weak, &own);
     if (own.beyond[0] | own.beyond[1] | own.beyond[2] | own.beyond[3]) return false;
     lanes_store(p->internal[0] + place, own.force[0]);
     lanes_store(p->internal[1] + place, own.force[1]);

@@ -163,6 +163,11 @@ static Material mazars(void)
 {
   return material_of("mazars", CONCRETE, NULL);
 }
+static Material link_damage(void)
+{
+  return material_of("link-damage", "Young modulus=30e6", "Poisson ratio=0.2", "tensile stretch=1e-4",
+                     "fracture energy=0.1", "length=0.03", "compressive stretch=4e-4", NULL);
+}
 static double over_tension(const Point *p, const double s[6])
 {
   double most, least;
@@ -194,6 +199,7 @@ const Sample samples[SAMPLES] = {
     {.name = "damage-plasticity", .make = damage_plasticity, .strain = 2e-3},
     {.name = "damage-plasticity with a tail", .make = damage_with_tail, .strain = 2e-3},
     {.name = "mazars", .make = mazars, .strain = 1e-3, .associated = true, .over = over_tension},
+    {.name = "link-damage", .make = link_damage, .strain = 1e-3},
 };
 
 static int glass_prepare(const double *values, void *constants, char *reason, size_t size)

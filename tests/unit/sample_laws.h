@@ -4,7 +4,7 @@
 
 #include "point.h"
 
-enum { SAMPLES = 16 };
+enum { SAMPLES = 17 };
 
 typedef struct Sample {
   const char *name;

@@ -483,6 +483,7 @@ static void laws_tell_what_they_remember(void **state)
       {"bounding-surface-clay", "18 distance to the bounding surface;"},
       {"damage-plasticity", "6 plastic strain in tension;7 plastic strain in compression;8 material damage;"},
       {"mazars", "0 equivalent strain;1 material damage;"},
+      {"link-damage", "0 tensile damage;1 compressive damage;"},
   };
   for (int n = 0; n < SAMPLES; ++n) {
     Material m = samples[n].make();

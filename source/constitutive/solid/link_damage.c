@@ -1,0 +1,194 @@
+/* Concrete as links that lose their stiffness by stretch (Tuniki 2012, 3.4; docs/theory.md 6.5). Links of micropolar bodies have their damage from the
+ * formulation, by `link`. At a point in space the largest principal strain stands for the stretch in tension, and the least one for that in compression:
+ *   stress = (1 - d) C strain, 1 - d = (1 - D_t (1 - s (1 - r))) (1 - D_c),
+ * r the share of tension among the principal stresses (Lee and Fenves 1998) and s the stiffness that closing cracks gain back. */
+#include "constitutive/link_damage.h"
+#include "constitutive/solid/dual.h"
+#include "constitutive/solid/elastic_first.h"
+#include "constitutive/solid/spectral.h"
+
+typedef struct LinkLaw {
+  Elasticity elastic;
+  breccia_link link;
+} LinkLaw;
+
+enum { TENSION = ELASTIC_PARAMETERS, TENSION_END, ENERGY, COMPRESSION, COMPRESSION_END, RECOVERY, LENGTH };
+enum { TENSILE = 0, COMPRESSIVE, HISTORY };
+
+static const double ductility = 2;
+
+static const breccia_parameter parameters[] = {
+    ELASTIC_PARAMETER_ROWS,
+    {"tensile stretch", "1", NULL, "(0, 1)", "S_t beyond which links are damaged in tension"},
+    {"tensile ductility", "1", "", "(1, inf)",
+     "alpha_t: beyond alpha_t S_t nothing is carried in tension; 2 when absent, and of no use beside a fracture "
+     "energy"},
+    {"fracture energy", "fracture energy", "", "(0, inf)",
+     "G_F per area of crack: the force then falls linearly beyond S_t, to where this is spent, whatever the spacing"},
+    {"compressive stretch", "1", "", "(0, 1)",
+     "S_c, as a positive number, beyond which links are damaged in compression where links beside them are damaged in "
+     "tension; never when absent"},
+    {"compressive ductility", "1", "2", "(1, inf)", "alpha_c: beyond alpha_c S_c nothing is carried"},
+    {"stiffness recovery", "1", "1", "[0, 1]",
+     "share of the stiffness lost in tension that comes back where cracks close; the thesis has 0"},
+    {"length", "length", "", "(0, inf)",
+     "over which the fracture energy is spread; that of the formulation or of the links when absent"},
+};
+
+static int prepare(const double *v, void *constants, char *reason, size_t size)
+{
+  LinkLaw *c = constants;
+  breccia_link *link = &c->link;
+  if (elasticity_prepare(&c->elastic, v, reason, size)) return 1;
+  const double begin = v[TENSION], young = elasticity_young(&c->elastic);
+  const bool energy = !isnan(v[ENERGY]);
+  *link = (breccia_link){.tension_begin = begin,
+                         .tension_end = begin * (isnan(v[TENSION_END]) ? ductility : v[TENSION_END]),
+                         .linear_force = energy,
+                         .fracture_energy = NAN,
+                         .compression_begin = isnan(v[COMPRESSION]) ? INFINITY : v[COMPRESSION],
+                         .compression_end = isnan(v[COMPRESSION]) ? INFINITY : v[COMPRESSION] * v[COMPRESSION_END],
+                         .recovery = v[RECOVERY]};
+  if (!energy) return 0;
+  if (!isnan(v[TENSION_END])) {
+    snprintf(reason, size, "give 'tensile ductility' or 'fracture energy', which says where the force ends");
+    return 1;
+  }
+  if (isnan(v[LENGTH])) {
+    snprintf(reason, size, "a fracture energy needs the 'length' over which it is spread");
+    return 1;
+  }
+  if (isinf(v[LENGTH])) { /* links find their own */
+    link->fracture_energy = v[ENERGY];
+    return 0;
+  }
+  link->tension_end = 2 * v[ENERGY] / (young * begin * v[LENGTH]);
+  if (link->tension_end > begin) return 0;
+  snprintf(
+      reason, size,
+      "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must "
+      "be less than 2 G_F / (E S_t^2) = %g: take a finer spacing",
+      v[LENGTH], 2 * v[ENERGY] / (young * begin * begin));
+  return 1;
+}
+
+static int find_link(const void *constants, breccia_link *out, char *reason, size_t size)
+{
+  (void)reason, (void)size;
+  *out = ((const LinkLaw *)constants)->link;
+  return 0;
+}
+
+static double softening_energy(const void *constants)
+{
+  const LinkLaw *c = constants;
+  return elasticity_young(&c->elastic) * c->link.tension_begin * c->link.tension_begin / 2;
+}
+
+static int history_values(const void *constants)
+{
+  (void)constants;
+  return HISTORY;
+}
+
+static void history_name(const void *constants, int k, char *name, size_t size)
+{
+  (void)constants;
+  snprintf(name, size, "%s", k == TENSILE ? "tensile damage" : "compressive damage");
+}
+
+static Dual damage_of(Dual stretch, double begin, double end, bool linear_force)
+{
+  return dual_chain(link_damage(stretch.value, begin, end, linear_force),
+                    link_damage_slope(stretch.value, begin, end, linear_force), stretch, 0, stretch);
+}
+
+/** 1 - d, of principal strains that are the variables 0, 1, 2 and of the effective stresses with them. */
+static Dual find_rest(const LinkLaw *c, const double *committed, const Dual strain[3], const Dual effective[3],
+                      double trial[HISTORY])
+{
+  const breccia_link *l = &c->link;
+  Dual most = dual_constant(0), least = dual_constant(0), tension = dual_constant(0), all = dual_constant(0);
+  for (int k = 0; k < 3; ++k) {
+    most = dual_larger(strain[k], most);
+    least = dual_larger(dual_scale(-1, strain[k]), least);
+    tension = dual_sum(1, tension, 1, dual_positive(effective[k]));
+    all = dual_sum(1, all, 1, dual_absolute(effective[k]));
+  }
+  Dual d[HISTORY] = {damage_of(most, l->tension_begin, l->tension_end, l->linear_force), dual_constant(0)};
+  if (d[TENSILE].value > 0 || committed[TENSILE] > 0)
+    d[COMPRESSIVE] = damage_of(least, l->compression_begin, l->compression_end, false);
+  for (int k = 0; k < HISTORY; ++k) {
+    if (!(d[k].value > committed[k])) d[k] = dual_constant(committed[k]);
+    trial[k] = d[k].value;
+  }
+  const Dual share = all.value > 0 ? dual_quotient(tension, all) : dual_constant(1);
+  const Dual counts = dual_shift(dual_scale(l->recovery, share), 1 - l->recovery); /* of the damage in tension */
+  const Dual open = dual_shift(dual_scale(-1, dual_product(d[TENSILE], counts)), 1);
+  return dual_product(open, dual_shift(dual_scale(-1, d[COMPRESSIVE]), 1));
+}
+
+static bool update_point(const void *constants, SolidPoint *p)
+{
+  const LinkLaw *c = constants;
+  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
+  const Spectrum spectrum = spectrum_of(p->strain);
+  Dual strain[3], effective[3];
+  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
+  const Dual volume = dual_sum(1, dual_sum(1, strain[0], 1, strain[1]), 1, strain[2]);
+  for (int k = 0; k < 3; ++k) effective[k] = dual_sum(lambda, volume, twice, strain[k]);
+  const Dual rest = find_rest(c, p->committed, strain, effective, p->trial);
+  elastic_stress(&c->elastic, p->strain, p->stress); /* of the strain itself: nothing is lost to the decomposition */
+  for (int k = 0; k < 6; ++k) p->stress[k] *= rest.value;
+  if (!p->tangent) return true;
+  double value[3], slopes[9];
+  for (int k = 0; k < 3; ++k) {
+    const Dual stress = dual_product(rest, effective[k]);
+    value[k] = stress.value;
+    for (int n = 0; n < 3; ++n) slopes[3 * k + n] = stress.slope[n];
+  }
+  spectral_tangent(&spectrum, value, slopes, p->tangent);
+  return true;
+}
+
+/** Points that were never damaged and whose strains, all together, are less than what damages. */
+LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+{
+  const LinkLaw *c = constants;
+  const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
+              mean = t->invariant * lanes_set(1 / (9 * c->elastic.bulk)),
+              square = deviator * deviator + lanes_set(3) * mean * mean;
+  return (trial_history(t, TENSILE) <= lanes_set(0)) & (trial_history(t, COMPRESSIVE) <= lanes_set(0)) &
+         (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
+}
+
+BRECCIA_CLONES
+static int update(const void *constants, const breccia_batch *batch)
+{
+  const LinkLaw *c = constants;
+  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, false, inside, update_point);
+}
+
+const breccia_law law_link_damage = {
+    .size = sizeof(breccia_law),
+    .name = "link-damage",
+    .about = "concrete of a lattice: links lose stiffness by stretch in tension, and in compression beside others that "
+             "are damaged",
+    .source = "Tuniki 2012, with a fracture energy for any spacing",
+    .maturity = "verified against its closed forms",
+    .equations =
+        "S the stretch of a link; of a point in space S the largest principal strain, or less the smallest one\n"
+        "D_t = (S − S_t)/((α_t − 1) S_t), with a fracture energy α (S − S_t)/((α − 1) S); D_c alike from S_c, "
+        "where D_t > 0 beside it; both stay\n"
+        "all that links carry, or σ, times (1 − D_t)(1 − D_c); where cracks close D_t counts by 1 − recovery",
+    LAW_PARAMETERS(parameters),
+    .constants_size = sizeof(LinkLaw),
+    .components = 6,
+    .prepare = prepare,
+    .moduli = elasticity_moduli,
+    .softening_energy = softening_energy,
+    .history_values = history_values,
+    .history_name = history_name,
+    .update = update,
+    .link = find_link,
+};

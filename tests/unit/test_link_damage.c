@@ -1,0 +1,357 @@
+/* Damage of links: what one link carries, which links beside it may crush, and what a crack takes. */
+#include "formulation/micropolar.h"
+
+#include "base/random.h"
+#include "support.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+
+static const Micropolar *formulation_of(const breccia_model *model)
+{
+  return model->domain.regions[0].formulation;
+}
+
+/** A block of links. @param[in] law  its keys */
+static breccia_model *block(const char *law, const char *lattice, const char *particles, const char *space)
+{
+  breccia_model *model =
+      model_of(UNITS "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, %s}}\n"
+                     "body: {b: {material: m, lattice: %s, spacing: 0.1, %s shape: {box: {particles: %s}}}}\n"
+                     "peridynamics: {formulation: micropolar, space: %s}\nsolve: {explicit: {steps: 1}}\n",
+               law, lattice, *space == 'p' ? "thickness: 0.3," : "", particles, space);
+  model->threads = 1; /* of bodies so small more only wait */
+  return model;
+}
+
+/** Displacements and rotations at random. */
+static void disturb(const breccia_model *model, double size, uint64_t seed)
+{
+  const Particles *p = model->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < p->motions; ++k)
+      if (k >= ROTATION || k < model->domain.body.dimensions)
+        p->displacement[k][p->place_of[n]] = 2 * (random_uniform(&seed) - 0.5) * size * (k < ROTATION ? 0.1 : 1);
+}
+
+/** Whatever is damaged, forces and moments are in balance: both ends of a link find the same damage. */
+static void damaged_bodies_keep_their_momenta(void **state)
+{
+  (void)state;
+  const struct {
+    const char *lattice, *particles, *space;
+  } cases[] = {{"hexagonal", "[19, 9]", "plane stress"},
+               {"square", "[19, 9]", "plane strain"},
+               {"face-centred cubic", "[9, 5, 5]", "3-D"}};
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, fracture energy: 0.05",
+                                 cases[c].lattice, cases[c].particles, cases[c].space);
+    const Particles *p = model->domain.particles;
+    const Micropolar *m = formulation_of(model);
+    for (uint64_t seed = 1; seed < 4; ++seed) {
+      double sum[6] = {0}, most = 0;
+      disturb(model, 1e-3, seed);
+      compute_forces(model);
+      domain_commit_points(&model->domain);
+      for (int64_t n = 0; n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        double y[3], f[3], moment[3] = {0}, arm[3];
+        for (int k = 0; k < 3; ++k) {
+          y[k] = p->position[k][i] + p->displacement[k][i];
+          f[k] = p->volume[i] * p->internal[k][i];
+          if (p->motions == 6) moment[k] = p->volume[i] * p->internal[ROTATION + k][i];
+        }
+        if (p->motions == 4) moment[2] = p->volume[i] * p->internal[ROTATION][i];
+        vector_cross(y, f, arm);
+        for (int k = 0; k < 3; ++k) {
+          sum[k] += f[k];
+          sum[3 + k] += arm[k] + moment[k];
+          most = fmax(most, fabs(f[k]));
+        }
+      }
+      double damaged = 0;
+      for (int64_t i = 0; i < p->places; ++i) damaged += m->damage->damaged[i];
+      assert_true(damaged > 20);
+      for (int k = 0; k < 6; ++k) assert_near(sum[k] / most, 0, 1e-11);
+    }
+    breccia_model_destroy(&model);
+  }
+}
+
+/* ---- one link ---- */
+
+/** Moves particle b of a row along it to a stretch of its link to the one before, which stays; what the link pulls with [force]. */
+static double pull(breccia_model *model, int b, double stretch)
+{
+  const Particles *p = model->domain.particles;
+  p->displacement[0][p->place_of[b]] = p->displacement[0][p->place_of[b - 1]] + 0.1 * stretch;
+  compute_forces(model);
+  domain_commit_points(&model->domain);
+  double sum = 0;
+  for (int64_t n = b; n < p->count; ++n) sum -= p->volume[p->place_of[n]] * p->internal[0][p->place_of[n]];
+  return sum;
+}
+
+/** EA of the links along a row. */
+static double stiffness_of(const breccia_model *model)
+{
+  const Particles *p = model->domain.particles;
+  const Micropolar *m = formulation_of(model);
+  const int64_t slice = p->place_of[1] / SLICE, slot = family_slot(m->family, p->place_of[1], p->place_of[0]);
+  const Bond bond = family_bond(m->family, slice, slot, p->place_of[1] % SLICE);
+  return micropolar_stiffness(m, p->place_of[1], &bond).axial * bond.weight * p->volume[p->place_of[1]];
+}
+
+/** Tuniki 2012, eq. 3.9: damage grows linearly from S_t to alpha S_t, so that the force is a parabola with its peak at alpha S_t / 2; a link
+ *  unloads to the origin, and where it closes it has its axial stiffness back by `stiffness recovery`. */
+static void a_link_follows_its_law(void **state)
+{
+  (void)state;
+  for (int recovers = 0; recovers < 2; ++recovers) {
+    breccia_model *model = block(recovers ? "tensile stretch: 1e-4, tensile ductility: 3, compressive stretch: 5e-4"
+                                          : "tensile stretch: 1e-4, tensile ductility: 3, stiffness recovery: 0",
+                                 "hexagonal", "[2, 1]", "plane stress");
+    const double ea = stiffness_of(model), begin = 1e-4, end = 3e-4;
+    double damage = 0;
+    for (int k = 1; k <= 40; ++k) {
+      const double s = 1e-5 * k;
+      damage = s <= begin ? 0 : fmin(1, (s - begin) / (end - begin));
+      assert_near(pull(model, 1, s) / (ea * begin), (1 - damage) * s / begin, 1e-9);
+      if (k != 20) continue;
+      assert_near(pull(model, 1, 5e-5) / (ea * begin), (1 - damage) * 0.5, 1e-9);
+      assert_near(pull(model, 1, -4e-4) / (ea * begin), recovers ? -4 : -4 * (1 - damage), 1e-9);
+      /* no other link is damaged in tension: this one is not in compression */
+      assert_near(pull(model, 1, -6e-4) / (ea * begin), recovers ? -6 : -6 * (1 - damage), 1e-9);
+    }
+    assert_near(damage, 1, 0);
+    assert_near(micropolar_history(formulation_of(model), model->domain.particles->place_of[0], 0), 1, 0);
+    breccia_model_destroy(&model);
+  }
+}
+
+/** With a fracture energy the force falls linearly, to where a crack has taken it. */
+static void a_fracture_energy_says_where_the_force_ends(void **state)
+{
+  (void)state;
+  breccia_model *model = block("tensile stretch: 1e-4, fracture energy: 0.2", "hexagonal", "[2, 1]", "plane stress");
+  const double ea = stiffness_of(model), begin = 1e-4, nu = 0.2,
+               end = 0.2 * 0.3 / (ea * begin * (1 + (1 - 3 * nu) / (3 * (1 + nu)))); /* theory.md 6.5 */
+  double work = 0, last = 0;
+  assert_true(end > 3 * begin);
+  for (int k = 1; k <= 400; ++k) {
+    const double s = 1.05 * end * k / 400, force = pull(model, 1, s);
+    assert_near(force / (ea * begin), s < begin ? s / begin : fmax(0, (end - s) / (end - begin)), 1e-9);
+    work += 0.1 * 1.05 * end / 400 * (force + last) / 2;
+    last = force;
+  }
+  assert_near(work / (0.1 * ea * begin * end / 2), 1, 1e-3);
+  breccia_model_destroy(&model);
+}
+
+/** Damage in compression wants another link beside that is damaged in tension, of either end, whichever comes first. */
+static void links_crush_beside_torn_ones(void **state)
+{
+  (void)state;
+  for (int mirrored = 0; mirrored < 2; ++mirrored)
+    for (int torn = 0; torn < 2; ++torn) {
+      breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, compressive ductility: 5",
+                                   "hexagonal", "[3, 1]", "plane stress");
+      const Particles *p = model->domain.particles;
+      const double ea = stiffness_of(model), s[2] = {torn ? 1.5e-4 : 0.5e-4, -6e-4};
+      p->displacement[0][p->place_of[1]] = 0.1 * s[mirrored];
+      p->displacement[0][p->place_of[2]] = 0.1 * (s[0] + s[1]);
+      compute_forces(model);
+      const double force = p->volume[p->place_of[mirrored ? 0 : 2]] * p->internal[0][p->place_of[mirrored ? 0 : 2]];
+      assert_near(force * (mirrored ? -1 : 1) / (ea * 6e-4), torn ? 0.5 : 1, 1e-9); /* (6 - 2) / (4 . 2) is lost */
+      breccia_model_destroy(&model);
+    }
+}
+
+/** A step that fails, and an elastic stage, leave no damage. */
+static void damage_stays_only_where_steps_come_out_well(void **state)
+{
+  (void)state;
+  breccia_model *model = block("tensile stretch: 1e-4", "hexagonal", "[2, 1]", "plane stress");
+  const Particles *p = model->domain.particles;
+  const Micropolar *m = formulation_of(model);
+  const double ea = stiffness_of(model);
+  p->displacement[0][p->place_of[1]] = 0.1 * 1.5e-4;
+  compute_forces(model);
+  assert_near(-p->volume[p->place_of[1]] * p->internal[0][p->place_of[1]] / (ea * 1e-4), 0.75, 1e-9);
+  micropolar_commit(model->domain.regions[0].formulation, false);
+  assert_near(pull(model, 1, 0.9e-4) / (ea * 1e-4), 0.9, 1e-9);
+  domain_set_elastic_stage(&model->domain, true);
+  assert_near(pull(model, 1, 1.5e-4) / (ea * 1e-4), 1.5, 1e-9);
+  domain_set_elastic_stage(&model->domain, false);
+  assert_near(pull(model, 1, 0.9e-4) / (ea * 1e-4), 0.9, 1e-9);
+  assert_near(micropolar_history(m, p->place_of[0], 0), 0, 0);
+  breccia_model_destroy(&model);
+}
+
+/* ---- cracks ---- */
+
+/** Work to part a body along the middle between two lattice rows: the upper part moves up as a whole. */
+static double work_to_part(const char *lattice, double size, int particles, int rows, double *width)
+{
+  breccia_model *model = model_of(
+      UNITS "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, tensile stretch: "
+            "1e-4, fracture energy: 0.2}}\nbody: {b: {material: m, lattice: %s, spacing: %g, thickness: 0.3, shape: "
+            "{box: {particles: [%d, %d]}}}}\nperidynamics: {formulation: micropolar, space: plane stress}\n"
+            "solve: {explicit: {steps: 1}}\n",
+      lattice, size, particles, rows);
+  const Particles *p = model->domain.particles;
+  const Micropolar *m = formulation_of(model);
+  const double end = m->damage->laws[0].tension_end;
+  double low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY, work = 0, last = 0;
+  model->threads = 1;
+  for (int64_t n = 0; n < p->count; ++n) {
+    low = fmin(low, p->position[1][p->place_of[n]]);
+    high = fmax(high, p->position[1][p->place_of[n]]);
+    left = fmin(left, p->position[0][p->place_of[n]]);
+    right = fmax(right, p->position[0][p->place_of[n]]);
+  }
+  *width = right - left;
+  enum { INCREMENTS = 600 };
+  const double opening = 2.2 * size * end / INCREMENTS; /* of inclined links in the end, too */
+  for (int k = 1; k <= INCREMENTS; ++k) {
+    double force = 0;
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      if (p->position[1][i] > (low + high) / 2) p->displacement[1][i] = k * opening;
+    }
+    compute_forces(model);
+    domain_commit_points(&model->domain);
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      if (p->position[1][i] > (low + high) / 2) force -= p->volume[i] * p->internal[1][i];
+    }
+    work += opening * (force + last) / 2;
+    last = force;
+  }
+  assert_near(last / (work / (INCREMENTS * opening)), 0, 1e-9); /* nothing holds any more */
+  breccia_model_destroy(&model);
+  return work;
+}
+
+/** A plane crack along the rows of a hexagonal lattice takes the fracture energy at any spacing; no plane of another lattice takes less. Two widths, so that
+ *  ends count for nothing. */
+static void cracks_take_the_fracture_energy_at_any_spacing(void **state)
+{
+  (void)state;
+  const double sizes[] = {0.1, 0.05, 0.02};
+  for (int k = 0; k < 3; ++k) {
+    double narrow, wide;
+    const double less = work_to_part("hexagonal", sizes[k], 10, 4, &narrow),
+                 more = work_to_part("hexagonal", sizes[k], 30, 4, &wide);
+    assert_near((more - less) / (wide - narrow) / (0.2 * 0.3), 1, 0.002);
+  }
+  double narrow, wide;
+  const double less = work_to_part("square", 0.05, 10, 4, &narrow), more = work_to_part("square", 0.05, 30, 4, &wide),
+               found = (more - less) / (wide - narrow) / (0.2 * 0.3);
+  if (found < 0.998 || found > 1.3) fail_msg("square: %g of the fracture energy", found);
+}
+
+static void spacings_that_snap_back_are_refused(void **state)
+{
+  (void)state;
+  const struct {
+    const char *law, *words;
+  } cases[] = {
+      {"tensile stretch: 1e-4, fracture energy: 1e-3",
+       "block 'b': its links store more up to the tensile stretch of 0.0001 than the fracture energy of material "
+       "'m' lets a crack take; take a spacing below 0.0"},
+      {"tensile stretch: 1e-4, fracture energy: 0.1, tensile ductility: 3",
+       "give 'tensile ductility' or 'fracture energy'"},
+      {"tensile stretch: 1e-4, fracture energy: 1e-6, length: 1", "the curve would snap back"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *deck = text_format(UNITS "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: "
+                                   "0.2, %s}}\nbody: {b: {material: m, lattice: hexagonal, spacing: 0.1, thickness: "
+                                   "0.3, shape: {box: {particles: [4, 4]}}}}\nperidynamics: {formulation: micropolar, "
+                                   "space: plane stress}\nsolve: {explicit: {steps: 1}}\n",
+                             cases[k].law),
+         *words = refusal_of(deck);
+    if (!strstr(words, cases[k].words)) fail_msg("%s", words);
+    free(deck);
+    free(words);
+  }
+}
+
+/* ---- motion ---- */
+
+/** A bar that is torn loses what its works have put in to damage, and comes back to the same bits from a copy of its state. */
+static void torn_bars_keep_their_books_and_bits(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS
+      "materials: {m: {model: link-damage, density: 2.4, Young modulus: 3e7, Poisson ratio: 0.2, tensile stretch: "
+      "1e-4, fracture energy: 0.1, compressive stretch: 1e-3}}\n"
+      "body: {b: {material: m, lattice: hexagonal, spacing: 0.02, thickness: 0.1, shape: {box: {particles: [8, "
+      "17]}}}}\nperidynamics: {formulation: micropolar, space: plane stress}\n"
+      "loads: [{on: {face: y-, layers: 2}, displacement: [free, 0]}, {on: {face: y+, layers: 2}, displacement: "
+      "[free, 3e-4], history: {ramp to: 4e-3}}]\nsolve: {explicit: {end time: 4e-3, local damping: 0.3}}\n");
+  model->threads = 1;
+  step_surely(model, 300);
+  StateCopy copy = state_of(model);
+  step_surely(model, 400);
+  StateCopy first = state_of(model);
+  StateList list = {0};
+  model_state(model, &list);
+  assert_non_null(state_find(&list, "damage of links in tension"));
+  assert_int_equal(state_return(&copy, &list, NULL), 0);
+  state_list_destroy(&list);
+  step_surely(model, 400);
+  StateCopy again = state_of(model);
+  assert_int_equal(first.count, again.count);
+  for (int k = 0; k < first.count; ++k)
+    assert_memory_equal(first.values[k], again.values[k], state_size(&first.rows[k]) * (size_t)first.rows[k].count);
+  state_copy_destroy(&copy);
+  state_copy_destroy(&first);
+  state_copy_destroy(&again);
+  step_surely(model, INT64_MAX);
+  const Energy e = solver_energy(&model->solver);
+  assert_true(e.imbalance < 1e-9);
+  assert_true(e.stored < 0.02 * e.dissipated);
+  breccia_model_destroy(&model);
+}
+
+/** Bars notched from both sides, so that one crack goes through 50 mm x 50 mm. */
+static void notched_bars_spend_the_fracture_energy_at_any_spacing(void **state)
+{
+  (void)state;
+  const double sizes[] = {10, 6.25, 5};
+  for (int k = 0; k < 3; ++k) {
+    breccia_model *model = model_of(
+        "units: {length: mm, force: N, time: s}\n"
+        "materials: {m: {model: link-damage, density: 2.4 t/m3, Young modulus: 24.86 GPa, Poisson ratio: 0.2, tensile "
+        "stretch: 7e-5, fracture energy: 80 N/m}}\n"
+        "body: {b: {material: m, lattice: hexagonal, spacing: %g, thickness: 50, shape: {box: {from: [0, 0], to: [100, "
+        "100]}}}}\n"
+        "cracks: [{cut: {line: [[-10, 50.6], [25, 50.6]]}}, {cut: {line: [[75, 50.6], [110, 50.6]]}}]\n"
+        "peridynamics: {formulation: micropolar, space: plane stress}\n"
+        "loads: [{on: {face: y-, layers: 2}, displacement: [free, 0]}, {on: {face: y+, layers: 2}, displacement: "
+        "[free, 0.15], history: {ramp to: 0.008}}]\nsolve: {explicit: {end time: 0.008, local damping: 0.3}}\n",
+        sizes[k]);
+    model->threads = 1;
+    step_surely(model, INT64_MAX);
+    const Energy e = solver_energy(&model->solver);
+    const double share = e.dissipated / (0.08 * 50 * 50);
+    if (fabs(share - 1) > 0.05) fail_msg("spacing %g: %.3f of the fracture energy", sizes[k], share);
+    breccia_model_destroy(&model);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(damaged_bodies_keep_their_momenta),
+      cmocka_unit_test(a_link_follows_its_law),
+      cmocka_unit_test(a_fracture_energy_says_where_the_force_ends),
+      cmocka_unit_test(links_crush_beside_torn_ones),
+      cmocka_unit_test(damage_stays_only_where_steps_come_out_well),
+      cmocka_unit_test(cracks_take_the_fracture_energy_at_any_spacing),
+      cmocka_unit_test(spacings_that_snap_back_are_refused),
+      cmocka_unit_test(torn_bars_keep_their_books_and_bits),
+      cmocka_unit_test(notched_bars_spend_the_fracture_energy_at_any_spacing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
