@@ -68,7 +68,7 @@ static breccia_model *load(const char *folder, const BenchBody *body, const Case
 }
 
 typedef struct Vectors {
-  double *force[3], *moved[3];
+  double *force[MOTIONS], *moved[MOTIONS];
 } Vectors;
 
 static void make(const breccia_model *model, Vectors *v)

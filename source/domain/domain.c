@@ -111,6 +111,11 @@ void domain_tell_time(Domain *d, double time, double time_step)
   }
 }
 
+double domain_step_begin(const Domain *d)
+{
+  return d->regions[0].points.time - d->regions[0].points.time_step;
+}
+
 void domain_commit_points(Domain *d)
 {
   for (int r = 0; r < d->region_count; ++r) {

@@ -167,6 +167,8 @@ void domain_follow(Domain *domain);
 
 /** Tells laws with rates the time at the end of a step under way, and its length; 0 between two steps. By one thread. */
 void domain_tell_time(Domain *domain, double time, double time_step);
+/** Time at which the step under way began, by what was told last. */
+double domain_step_begin(const Domain *domain);
 
 /** Breaks the bonds that the criterion says, by all threads, and renews the families concerned. Displacements are those at the end of
  *  the step under way, strains and stresses those at its beginning. */

@@ -51,6 +51,13 @@ double constraint_displacement(const Constraint *constraint, double run_time)
   return constraint->value * history_factor(&load->history, time);
 }
 
+double constraint_change(const Constraint *constraint, double from, double to)
+{
+  const double begin = constraint->load->begin, little = 1e-9 * (to - begin);
+  return constraint_displacement(constraint, to) -
+         (from <= begin + little ? 0 : constraint_displacement(constraint, from)); /* at first 0, whatever is told */
+}
+
 double constraint_velocity(const Constraint *constraint, double run_time, double step)
 {
   Load *load = constraint->load;

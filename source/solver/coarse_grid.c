@@ -29,10 +29,10 @@ struct CoarseGrid {
   int32_t *place;             /* [particles] element by element */
   int32_t *element;           /* of the box: number of an element, or -1 */
   int64_t corner_count;
-  int32_t (*touching)[CORNERS]; /* [corner_count] element times CORNERS + index of the corner in it, or -1 */
-  double *parts;                /* [element_count][CORNERS * 3] */
-  const double *diagonal;       /* as it was prepared */
-  double *stiffness;            /* [corner_count][NEIGHBOURS][9], only while equations are made */
+  int32_t (*touching)[CORNERS];     /* [corner_count] element times CORNERS + index of the corner in it, or -1 */
+  double *parts;                    /* [element_count][CORNERS * 3] */
+  const double *diagonal, *turning; /* as it was prepared */
+  double *stiffness;                /* [corner_count][NEIGHBOURS][9], only while equations are made */
   cholmod_common common;
   cholmod_factor *factor;
   cholmod_dense *right, *answer, *work[2];
@@ -267,6 +267,7 @@ static void add_support(const Constraint *c, int64_t n, void *context)
   const Particles *p = g->domain->particles;
   const int32_t i = c->load->selection.places[n], image = c->images ? c->images[n] : i;
   double position[3];
+  if (c->row) return; /* of a rotation */
   for (int k = 0; k < 3; ++k) position[k] = (p->position[k][i] + p->position[k][image]) / 2;
   if ((!c->images || c->share < 0) && isfinite(g->diagonal[image])) hold(g, position, c->direction, g->diagonal[image]);
 }
@@ -356,12 +357,13 @@ static int factor(CoarseGrid *g, Error *error)
   return BRECCIA_OK;
 }
 
-int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, double stiffness_share,
-                        double mass_factor, Error *error)
+int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal, const double *turning,
+                        double stiffness_share, double mass_factor, Error *error)
 {
   g->stiffness = memory_zeroed((size_t)g->corner_count * NEIGHBOURS * 9, sizeof(double), "coarse grid", error);
   if (!g->stiffness) return BRECCIA_FAILURE;
   g->diagonal = diagonal;
+  g->turning = turning;
   add_elements(g, 1 + stiffness_share);
   unknowns_each_row(u, add_support, g);
   int status = add_springs(g, u, mass_factor, error);
@@ -379,6 +381,55 @@ typedef struct Transfer {
   const double *answer;
 } Transfer;
 
+/** Rates of the shares of the corners along an axis, at a point of an element. */
+static void slope(const CoarseGrid *g, const double at[3], int axis, double rate[CORNERS])
+{
+  for (int c = 0; c < 1 << g->axes; ++c) {
+    rate[c] = (c >> axis & 1 ? 1 : -1) / g->size[axis];
+    for (int k = 0; k < g->axes; ++k)
+      if (k != axis) rate[c] *= c >> k & 1 ? at[k] : 1 - at[k];
+  }
+}
+
+/** Whether a particle turns with the grid. */
+static bool turns(const CoarseGrid *g, int32_t i)
+{
+  return g->turning && !isinf(g->turning[i]);
+}
+
+/** Shares of displacements of the corners in the k-th rotation: half of u_b,a - u_a,b. */
+static void turn_shares(const CoarseGrid *g, const double at[3], int k, double share[CORNERS * 3])
+{
+  const int a = g->axes == 2 ? 0 : (k + 1) % 3, b = g->axes == 2 ? 1 : (k + 2) % 3;
+  for (int c = 0; c < CORNERS * 3; ++c) share[c] = 0;
+  slope(g, at, a, share + CORNERS * b);
+  slope(g, at, b, share + CORNERS * a);
+  for (int c = 0; c < CORNERS; ++c) {
+    share[CORNERS * b + c] *= 0.5;
+    share[CORNERS * a + c] *= -0.5;
+  }
+}
+
+/** What moments on a particle give the corners of its element. */
+static void gather_moments(const Transfer *t, int32_t i, const double at[3], double sum[CORNERS * 3])
+{
+  double share[CORNERS * 3];
+  for (int k = 0; k < t->grid->domain->particles->motions - ROTATION; ++k) {
+    turn_shares(t->grid, at, k, share);
+    for (int c = 0; c < CORNERS * 3; ++c) sum[c] += share[c] * t->f[ROTATION + k][i];
+  }
+}
+
+/** Its rotations by displacements of the corners. */
+static void spread_turns(const Transfer *t, int32_t i, const double at[3], const double of[CORNERS * 3])
+{
+  double share[CORNERS * 3];
+  for (int k = 0; k < t->grid->domain->particles->motions - ROTATION; ++k) {
+    turn_shares(t->grid, at, k, share);
+    for (int c = 0; c < CORNERS * 3; ++c) t->v[ROTATION + k][i] += share[c] * of[c];
+  }
+}
+
 /** What the particles of an element give its corners. */
 static void gather_element(void *context, int64_t e)
 {
@@ -393,6 +444,7 @@ static void gather_element(void *context, int64_t e)
     interpolate(g->axes, at, share);
     for (int k = 0; k < g->axes; ++k)
       for (int c = 0; c < 1 << g->axes; ++c) sum[CORNERS * k + c] += share[c] * t->f[k][i];
+    if (turns(g, i)) gather_moments(t, i, at, sum);
   }
   memcpy(g->parts + e * CORNERS * 3, sum, sizeof sum);
 }
@@ -414,7 +466,7 @@ static void spread_element(void *context, int64_t e)
 {
   const Transfer *t = context;
   const CoarseGrid *g = t->grid;
-  double of[CORNERS * 3];
+  double of[CORNERS * 3] = {0};
   for (int k = 0; k < g->axes; ++k)
     for (int c = 0; c < 1 << g->axes; ++c) of[CORNERS * k + c] = t->answer[(int64_t)g->corner[e][c] * g->axes + k];
   for (int64_t n = g->first[e]; n < g->first[e + 1]; ++n) {
@@ -428,10 +480,11 @@ static void spread_element(void *context, int64_t e)
       for (int c = 0; c < 1 << g->axes; ++c) sum += share[c] * of[CORNERS * k + c];
       t->v[k][i] += sum;
     }
+    if (turns(g, i)) spread_turns(t, i, at, of);
   }
 }
 
-void coarse_grid_correct(CoarseGrid *g, double *const f[3], double *const v[3])
+void coarse_grid_correct(CoarseGrid *g, double *const f[MOTIONS], double *const v[MOTIONS])
 {
   Transfer t = {g, f, v, NULL};
   team_each(g->element_count, gather_element, &t);

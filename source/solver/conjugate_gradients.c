@@ -11,8 +11,8 @@ enum { MOST_ITERATIONS = 20000 };
 
 typedef struct Gradients {
   Preconditioner preconditioner;
-  double *rest[3], *direction[3];
-  double *product[3]; /* with K; then what the preconditioner makes of the rest */
+  double *rest[MOTIONS], *direction[MOTIONS];
+  double *product[MOTIONS]; /* with K; then what the preconditioner makes of the rest */
 } Gradients;
 
 static double suits(const LinearSolver *s)
@@ -34,12 +34,12 @@ static void destroy(LinearSolver *s)
 
 static int create(LinearSolver *s, Error *error)
 {
-  const int64_t places = s->domain->particles->places;
+  const Particles *p = s->domain->particles;
   Gradients *g = s->own = memory_zeroed(1, sizeof *g, "conjugate gradients", error);
   const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, error) ||
-                      !vectors_make(g->rest, places, "conjugate gradients", error) ||
-                      !vectors_make(g->direction, places, "conjugate gradients", error) ||
-                      !vectors_make(g->product, places, "conjugate gradients", error);
+                      !vectors_make(g->rest, p, "conjugate gradients", error) ||
+                      !vectors_make(g->direction, p, "conjugate gradients", error) ||
+                      !vectors_make(g->product, p, "conjugate gradients", error);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
@@ -49,25 +49,25 @@ static int prepare(LinearSolver *s, Error *error)
   return preconditioner_prepare(&g->preconditioner, s, g->direction, g->product, error);
 }
 
-static int solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
-                 Error *error)
+static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
+                 LinearRecord *record, Error *error)
 {
   (void)error;
   Gradients *g = s->own;
   const Unknowns *u = &s->unknowns;
   const Domain *d = s->domain;
-  const double first = unknowns_product(u, f, f);
+  const double first = unknowns_product_of_forces(u, f, f);
   double rest = first, slope = 0;
   vectors_combine(d, 0, g->rest, 1, f);
   record->unsuited = !g->preconditioner.is_symmetric;
   while (!record->unsuited && record->iterations < MOST_ITERATIONS && rest > tolerance * tolerance * first) {
     preconditioner_apply(&g->preconditioner, s, g->rest, g->product);
-    const double next = unknowns_product(u, g->rest, g->product);
+    const double next = unknowns_work(u, g->rest, g->product);
     vectors_combine(d, record->iterations ? next / slope : 0, g->direction, 1, g->product);
     slope = next;
     linear_solver_apply(s, g->direction, g->product);
     unknowns_clear_rest(u, g->direction);
-    const double curvature = unknowns_product(u, g->direction, g->product);
+    const double curvature = unknowns_work(u, g->product, g->direction);
     ++record->iterations;
     if (!(curvature > 0)) {
       record->indefinite = record->unsuited = true;
@@ -75,7 +75,7 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
     }
     vectors_combine(d, 1, v, slope / curvature, g->direction);
     vectors_combine(d, 1, g->rest, -slope / curvature, g->product);
-    rest = unknowns_product(u, g->rest, g->rest);
+    rest = unknowns_product_of_forces(u, g->rest, g->rest);
   }
   record->residual = first > 0 ? sqrt(rest / first) : 0;
   return BRECCIA_OK;
@@ -84,7 +84,8 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
 static size_t bytes(const LinearSolver *s)
 {
   const Gradients *g = s->own;
-  return 10 * sizeof(double) * (size_t)s->domain->particles->places + preconditioner_bytes(&g->preconditioner);
+  const Particles *p = s->domain->particles;
+  return (3 * (size_t)p->motions + 1) * sizeof(double) * (size_t)p->places + preconditioner_bytes(&g->preconditioner);
 }
 
 extern const LinearType residuals_linear;

@@ -202,8 +202,8 @@ static double find_residual(Direct *d, const double *f, const double *x)
   return sqrt(square);
 }
 
-static int solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
-                 Error *error)
+static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
+                 LinearRecord *record, Error *error)
 {
   enum { MOST = 3 }; /* corrections */
   Direct *d = s->own;
@@ -241,14 +241,16 @@ static LinearForesight foresee(const LinearSolver *s)
 {
   const Domain *d = s->domain;
   const int axes = d->body.dimensions;
-  const double count = (double)d->particles->count, small = 200, unknowns = axes * count;
+  const int motions = axes + d->particles->motions - ROTATION; /* of a particle */
+  const double count = (double)d->particles->count, small = 200, unknowns = motions * count;
   double row = 0;
   if (axes == 1 || count < small) return (LinearForesight){.bytes = (double)bytes(s)};
   for (int r = 0; r < d->region_count;
-       ++r) { /* points on bonds join two places, families all within two horizons of each other */
+       ++r) { /* points on bonds, and links, join two places; families all within two horizons of each other */
     const double family = (double)d->family.bonds / count;
-    const double joined = d->regions[r].type->components == 1 ? family : pow(2, axes) * family;
-    row += axes * (1 + joined) * (double)d->regions[r].particles / count;
+    const FormulationType *type = d->regions[r].type;
+    const double joined = type->components == 1 || type->gyration ? family : pow(2, axes) * family;
+    row += motions * (1 + joined) * (double)d->regions[r].particles / count;
   }
   row = fmin(row, unknowns);
   if (axes == 2)

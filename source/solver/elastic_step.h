@@ -6,8 +6,8 @@
 #include "domain/domain.h"
 
 typedef struct ElasticStep {
-  double *force[3]; /* internal forces per volume at the displacements held */
-  double *tried[3]; /* displacements beside those */
+  double *force[MOTIONS]; /* internal forces per volume at the displacements held */
+  double *tried[MOTIONS]; /* displacements beside those */
 } ElasticStep;
 
 /** `step` is zero; destroy it in any case. */
@@ -18,6 +18,7 @@ void elastic_step_destroy(ElasticStep *step);
 void elastic_step_prepare(ElasticStep *step, Domain *domain);
 
 /** Changes of internal forces per volume with changes v of displacements; touches trial states. */
-void elastic_step_apply(const ElasticStep *step, Domain *domain, double *const v[3], double *const change[3]);
+void elastic_step_apply(const ElasticStep *step, Domain *domain, double *const v[MOTIONS],
+                        double *const change[MOTIONS]);
 
 #endif

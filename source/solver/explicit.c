@@ -87,6 +87,8 @@ static void list_state(Solver *run, StateList *list)
   if (s->viscous.time > 0)
     state_add_vector(list, "drag of stiffness", "force per volume", STATE_TRIED, s->viscous.drag,
                      s->domain->particles->places);
+  if (s->viscous.time > 0)
+    particles_state_rotations(s->domain->particles, "drag of stiffness", "stress", STATE_TRIED, s->viscous.drag, list);
   state_add_number(list, "fixed step", "time", STATE_TRIED, &s->fixed);
   state_add_number(list, "plan from", "time", STATE_TRIED, &s->plan.from);
   state_add_number(list, "plan to", "time", STATE_TRIED, &s->plan.to);
@@ -412,7 +414,6 @@ static int advance(Solver *run, Text *warning, Error *error)
 }
 
 const SolverType explicit_solver = {.name = "explicit",
-                                    .turns = true,
                                     .create = create,
                                     .destroy = destroy,
                                     .plan = explicit_plan,

@@ -5,16 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Directions in which a particle is held, and, behind them, those in which it is free. */
+/** Directions in which a particle is held, and, behind them, those in which it is free, over its rows of motion. */
 typedef struct Held {
   int held, free;
-  double direction[3][3];
+  double direction[MOTIONS][MOTIONS];
 } Held;
 
 typedef struct Numbering {
   Follow *follow;
   int64_t count; /* unknowns */
   const Unknowns *unknowns;
+  int motions;
   int64_t *which; /* [places] index of a particle that is held anywhere, plus 1 */
   Held *held;
   int64_t held_count;
@@ -26,14 +27,23 @@ static void mark(Numbering *of, int32_t i)
   if (!of->which[i]) of->which[i] = ++of->held_count;
 }
 
-static void hold(Numbering *of, int32_t i, const double direction[3])
+static double product(const double a[MOTIONS], const double b[MOTIONS])
+{
+  double sum = 0;
+  for (int k = 0; k < MOTIONS; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/** @param[in] row  of motion from which the direction counts */
+static void hold(Numbering *of, int32_t i, int row, const double direction[3])
 {
   Held *h = &of->held[of->which[i] - 1];
-  for (int m = 0; m < h->held; ++m) {
-    const double *d = h->direction[m];
-    if (fabs(d[0] * direction[0] + d[1] * direction[1] + d[2] * direction[2]) > 0.5) return; /* twice the same way */
-  }
-  memcpy(h->direction[h->held++], direction, 3 * sizeof *direction);
+  double whole[MOTIONS] = {0};
+  for (int k = 0; k < 3; ++k)
+    if (direction[k] != 0) whole[row + k] = direction[k];
+  for (int m = 0; m < h->held; ++m)
+    if (fabs(product(h->direction[m], whole)) > 0.5) return; /* twice the same way */
+  memcpy(h->direction[h->held++], whole, sizeof whole);
 }
 
 static void mark_row(const Constraint *c, int64_t n, void *context)
@@ -43,7 +53,7 @@ static void mark_row(const Constraint *c, int64_t n, void *context)
 
 static void hold_row(const Constraint *c, int64_t n, void *context)
 {
-  hold(context, c->load->selection.places[n], c->direction);
+  hold(context, c->load->selection.places[n], c->row, c->direction);
 }
 
 /** Calls for each particle that follows another one along an axis. */
@@ -66,31 +76,38 @@ static void mark_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
 static void hold_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
 {
   (void)leader;
-  hold(of, follower, (const double[]){axis == 0, axis == 1, axis == 2});
+  hold(of, follower, 0, (const double[]){axis == 0, axis == 1, axis == 2});
 }
 
 static void follow_tie(Numbering *of, int32_t follower, int32_t leader, int axis)
 {
-  of->follow[3 * follower + axis] = of->follow[3 * leader + axis]; /* of its own: few terms */
+  of->follow[of->motions * (int64_t)follower + axis] =
+      of->follow[of->motions * (int64_t)leader + axis]; /* of its own: few terms */
+}
+
+static bool is_flat(const Numbering *of, int row)
+{
+  return row < ROTATION && of->unknowns->flat[row];
 }
 
 /** Directions across those that are held, of the axes along which the body extends: those that differ from them most come first. */
-static void find_free(const Unknowns *u, Held *h)
+static void find_free(const Numbering *of, Held *h)
 {
   int left = -h->held;
-  for (int k = 0; k < 3; ++k) left += !u->flat[k];
+  for (int k = 0; k < of->motions; ++k) left += !is_flat(of, k);
   for (; h->free < left; ++h->free) {
-    double best = 0, chosen[3] = {0};
-    for (int k = 0; k < 3; ++k) {
-      double v[3] = {k == 0, k == 1, k == 2}, square = 0;
+    double best = 0, chosen[MOTIONS] = {0};
+    for (int k = 0; k < of->motions; ++k) {
+      double v[MOTIONS] = {0};
+      v[k] = 1;
       for (int m = 0; m < h->held + h->free; ++m) {
-        const double *d = h->direction[m], along = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
-        for (int j = 0; j < 3; ++j) v[j] -= along * d[j];
+        const double *d = h->direction[m], along = product(v, d);
+        for (int j = 0; j < MOTIONS; ++j) v[j] -= along * d[j];
       }
-      for (int j = 0; j < 3; ++j) square += v[j] * v[j];
-      if (u->flat[k] || square < best + 1e-6) continue;
+      const double square = product(v, v);
+      if (is_flat(of, k) || square < best + 1e-6) continue;
       best = square;
-      for (int j = 0; j < 3; ++j) chosen[j] = v[j] / sqrt(square);
+      for (int j = 0; j < MOTIONS; ++j) chosen[j] = v[j] / sqrt(square);
     }
     memcpy(h->direction[h->held + h->free], chosen, sizeof chosen);
   }
@@ -121,22 +138,26 @@ static void add_term(Numbering *of, Follow *f, int64_t unknown, double factor)
 /** Unknowns of a particle of its own. */
 static void follow_own(Numbering *of, int32_t i)
 {
-  Follow *own = &of->follow[3 * (int64_t)i];
+  Follow *own = &of->follow[of->motions * (int64_t)i];
   const Held *h = of->which[i] ? &of->held[of->which[i] - 1] : NULL;
-  for (int k = 0; k < 3 && !h; ++k)
-    if (!of->unknowns->flat[k]) add_term(of, &own[k], of->count++, 1);
+  for (int k = 0; k < of->motions && !h; ++k)
+    if (!is_flat(of, k)) add_term(of, &own[k], of->count++, 1 / unknowns_length(of->unknowns, k));
   for (int f = 0; h && f < h->free; ++f, ++of->count)
-    for (int k = 0; k < 3; ++k) add_term(of, &own[k], of->count, h->direction[h->held + f][k]);
+    for (int k = 0; k < of->motions; ++k)
+      add_term(of, &own[k], of->count, h->direction[h->held + f][k] / unknowns_length(of->unknowns, k));
 }
 
 /** A displacement along a direction, term by term, before anything of it changes. */
 static Term *terms_along(Numbering *of, const Follow *from, const double direction[3], int *count)
 {
   *count = 0;
-  Term *terms = memory_plain((size_t)(from[0].count + from[1].count + from[2].count + 1), sizeof *terms);
+  int most = 1;
+  for (int k = 0; k < 3; ++k)
+    if (direction[k] != 0) most += from[k].count;
+  Term *terms = memory_plain((size_t)most, sizeof *terms);
   if (!terms) of->out_of_memory = true;
   for (int k = 0; k < 3 && terms; ++k)
-    for (int t = 0; t < from[k].count; ++t) {
+    for (int t = 0; direction[k] != 0 && t < from[k].count; ++t) {
       terms[*count] = follow_terms(&from[k])[t];
       terms[(*count)++].factor *= direction[k];
     }
@@ -149,23 +170,25 @@ static void add_along(Numbering *of, Follow *own, const Follow *from, const doub
   int count;
   Term *terms = terms_along(of, from, direction, &count);
   for (int k = 0; k < 3; ++k)
-    for (int t = 0; t < count; ++t) add_term(of, &own[k], terms[t].unknown, share * direction[k] * terms[t].factor);
+    for (int t = 0; direction[k] != 0 && t < count; ++t)
+      add_term(of, &own[k], terms[t].unknown, share * direction[k] * terms[t].factor);
   free(terms);
 }
 
 static void follow_row(const Constraint *c, int64_t n, void *context)
 {
   Numbering *of = context;
-  Follow *own = &of->follow[3 * (int64_t)c->load->selection.places[n]];
+  Follow *own = &of->follow[of->motions * (int64_t)c->load->selection.places[n] + c->row];
   add_along(of, own, own, c->direction, -1);
-  if (c->images) add_along(of, own, &of->follow[3 * (int64_t)c->images[n]], c->direction, c->share);
+  if (c->images) add_along(of, own, &of->follow[of->motions * (int64_t)c->images[n] + c->row], c->direction, c->share);
 }
 
 Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
 {
   const Particles *p = u->domain->particles;
-  Numbering of = {.unknowns = u};
-  of.follow = memory_zeroed(3 * (size_t)p->places, sizeof *of.follow, "unknowns", error);
+  Numbering of = {.unknowns = u, .motions = p->motions};
+  const int64_t all = p->motions * p->places;
+  of.follow = memory_zeroed((size_t)all, sizeof *of.follow, "unknowns", error);
   of.which = memory_zeroed((size_t)p->places, sizeof *of.which, "unknowns", error);
   bool failed = !of.follow || !of.which;
   if (!failed) {
@@ -177,10 +200,10 @@ Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
   if (!failed) {
     unknowns_each_row(u, hold_row, &of);
     each_tie(&of, hold_tie);
-    for (int64_t n = 0; n < of.held_count; ++n) find_free(u, &of.held[n]);
+    for (int64_t n = 0; n < of.held_count; ++n) find_free(&of, &of.held[n]);
     for (int64_t n = 0; n < p->count; ++n) follow_own(&of, p->place_of[n]);
     each_tie(&of, follow_tie);
-    for (int64_t i = 0; i < 3 * p->places; ++i) of.follow[i].own = of.follow[i].count;
+    for (int64_t i = 0; i < all; ++i) of.follow[i].own = of.follow[i].count;
     unknowns_each_row(u, follow_row, &of);
     if (of.out_of_memory) error_add(error, BRECCIA_FAILURE, "out of memory: unknowns");
     failed = of.out_of_memory;
@@ -188,13 +211,13 @@ Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
   free(of.which);
   free(of.held);
   *count = of.count;
-  if (failed && of.follow) follow_destroy(&of.follow, p->places);
+  if (failed && of.follow) follow_destroy(&of.follow, all);
   return of.follow;
 }
 
-void follow_destroy(Follow **follow, int64_t places)
+void follow_destroy(Follow **follow, int64_t count)
 {
-  for (int64_t i = 0; *follow && i < 3 * places; ++i) free((*follow)[i].many);
+  for (int64_t i = 0; *follow && i < count; ++i) free((*follow)[i].many);
   free(*follow);
   *follow = NULL;
 }

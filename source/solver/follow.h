@@ -11,7 +11,7 @@ typedef struct Term {
   double factor;
 } Term;
 
-/** A displacement as the sum of `count` terms of factor times unknown. The force on it belongs to the unknowns of the first `own` ones; those behind
+/** A displacement, or rotation, as the sum of `count` terms of factor times unknown. The force on it belongs to the unknowns of the first `own` ones; those behind
  *  are of the particle whose mirror image it is. */
 typedef struct Follow {
   int own, count;
@@ -24,10 +24,10 @@ static inline const Term *follow_terms(const Follow *follow)
   return follow->count > FEW_TERMS ? follow->many : follow->few;
 }
 
-/** Numbers the unknowns.
+/** Numbers the unknowns. Those of rotations are displacements at the length by which rotations count (unknowns.h), so that rows and columns are alike.
  *  @param[out] count  of unknowns
- *  @return [places][3], or NULL: no memory */
+ *  @return [places][motions], or NULL: no memory */
 Follow *follow_create(const Unknowns *unknowns, int64_t *count, Error *error);
-void follow_destroy(Follow **follow, int64_t places);
+void follow_destroy(Follow **follow, int64_t count);
 
 #endif

@@ -133,9 +133,11 @@ double implicit_longest(const ImplicitSpec *spec)
 static void list_state(Solver *run, StateList *list)
 {
   Implicit *s = run->own;
-  const int64_t places = s->domain->particles->places;
-  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration, places);
-  state_add_vector(list, "damping force", "force", STATE_COMMITTED, s->drag, places);
+  const Particles *p = s->domain->particles;
+  state_add_vector(list, "acceleration", "acceleration", STATE_COMMITTED, s->acceleration, p->places);
+  particles_state_rotations(p, "angular acceleration", "1", STATE_COMMITTED, s->acceleration, list);
+  state_add_vector(list, "damping force", "force", STATE_COMMITTED, s->drag, p->places);
+  particles_state_rotations(p, "damping moment", "energy", STATE_COMMITTED, s->drag, list);
   state_add_number(list, "next step", "time", STATE_LEARNED, &s->next);
   newton_state(&s->newton, list);
   state_add_number(list, "largest displacements", "length", STATE_COMMITTED, &s->shift);
@@ -171,11 +173,10 @@ static int create(Solver *run, Error *error)
   s->beside = implicit_forces(s);
   s->newton.beside = &s->beside;
   run->ledger.wave = ledger_wave_speed(run->domain);
-  const int64_t places = run->domain->particles->places;
-  const bool made =
-      vectors_make(s->acceleration, places, "accelerations", error) &&
-      vectors_make(s->drag, places, "damping", error) && vectors_make(s->velocity, places, "velocities", error) &&
-      vectors_make(s->drag_then, places, "damping", error) && vectors_make(s->result, places, "steps", error);
+  const Particles *p = run->domain->particles;
+  const bool made = vectors_make(s->acceleration, p, "accelerations", error) &&
+                    vectors_make(s->drag, p, "damping", error) && vectors_make(s->velocity, p, "velocities", error) &&
+                    vectors_make(s->drag_then, p, "damping", error) && vectors_make(s->result, p, "steps", error);
   if (!made || increment_create(&s->increment, run->domain, error)) return BRECCIA_FAILURE;
   return newton_create(&s->newton, error);
 }
@@ -275,10 +276,9 @@ static double inertia(const Solver *run, const Constraint *constraint, int64_t n
   const Implicit *s = run->own;
   const Particles *p = s->domain->particles;
   const int32_t i = constraint->load->selection.places[n];
-  double drag = 0;
-  for (int k = 0; k < 3; ++k) drag += constraint->direction[k] * s->drag[k][i];
-  return drag + constraint_part(constraint, n) * p->density[i] * p->volume[i] *
-                    constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
+  return constraint_along(constraint, s->drag, i) +
+         constraint_part(constraint, n) * p->inertia[constraint->row][i] * p->volume[i] *
+             constraint_acceleration(constraint, run->clock.time, run->clock.time_step);
 }
 
 const SolverType implicit_solver = {.name = "implicit",

@@ -24,10 +24,10 @@ typedef struct Implicit {
   Newton newton;
   NewtonForces beside;
   Increment increment;
-  double *acceleration[3];
-  double *drag[3]; /* forces of damping, against velocities */
+  double *acceleration[MOTIONS];
+  double *drag[MOTIONS]; /* forces of damping, against velocities */
   /* At the end of the step under way, as far as it has been iterated; `result` is whatever is worked out. */
-  double *velocity[3], *drag_then[3], *result[3];
+  double *velocity[MOTIONS], *drag_then[MOTIONS], *result[MOTIONS];
   double length; /* of the step under way */
   double next;   /* of the step to be tried next */
   double shift;  /* size of the largest displacements so far, by which errors are measured */

@@ -28,21 +28,21 @@ static void prescribe_rate(const Constraint *c, int64_t n, void *context)
   if (c != r->constraint) {
     r->constraint = c;
     r->rate = constraint_velocity(c, r->time, r->step);
-    r->most = fmax(r->most, fabs(r->rate) * constraint_most(c));
+    if (!c->row) r->most = fmax(r->most, fabs(r->rate) * constraint_most(c));
   }
   const int32_t i = c->load->selection.places[n];
-  double wanted = r->rate * constraint_part(c, n) - vectors_along(r->velocity, c->direction, i);
-  if (c->images) wanted += c->share * vectors_along(r->velocity, c->direction, c->images[n]);
-  for (int k = 0; k < 3; ++k) r->velocity[k][i] += wanted * c->direction[k];
+  double wanted = r->rate * constraint_part(c, n) - constraint_along(c, r->velocity, i);
+  if (c->images) wanted += c->share * constraint_along(c, r->velocity, c->images[n]);
+  constraint_add(c, r->velocity, i, wanted);
 }
 
 /** Velocities at the end of the step: those of prescribed motions as prescribed, because the scheme makes them ring. */
-static void find_velocities(Implicit *s, double *const moved[3], double time)
+static void find_velocities(Implicit *s, double *const moved[MOTIONS], double time)
 {
   const Particles *p = s->domain->particles;
   const double dt = s->length, beta = s->spec->beta, gamma = s->spec->gamma;
   Rates r = {.time = time, .step = dt, .velocity = s->velocity};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       s->velocity[k][i] = gamma / (beta * dt) * moved[k][i] + (1 - gamma / beta) * p->velocity[k][i] +
                           dt * (1 - gamma / (2 * beta)) * s->acceleration[k][i];
@@ -51,7 +51,7 @@ static void find_velocities(Implicit *s, double *const moved[3], double time)
 }
 
 /** Acceleration of a place at the end of the step, by the scheme. */
-static double acceleration_then(const Implicit *s, double *const moved[3], int k, int64_t i)
+static double acceleration_then(const Implicit *s, double *const moved[MOTIONS], int k, int64_t i)
 {
   const double dt = s->length, beta = s->spec->beta;
   return (moved[k][i] / dt - s->domain->particles->velocity[k][i]) / (beta * dt) -
@@ -59,7 +59,7 @@ static double acceleration_then(const Implicit *s, double *const moved[3], int k
 }
 
 /** Forces of damping at the displacements held, against these velocities. Trial states and forces of bonds are lost. */
-static int find_drag(Implicit *s, double *const velocity[3], double *const drag[3], Error *error)
+static int find_drag(Implicit *s, double *const velocity[MOTIONS], double *const drag[MOTIONS], Error *error)
 {
   Domain *d = s->domain;
   const Particles *p = d->particles;
@@ -72,10 +72,10 @@ static int find_drag(Implicit *s, double *const velocity[3], double *const drag[
     domain_set_elastic_stage(d, elastic);
     if (status) return status;
   }
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
-      drag[k][i] =
-          p->volume[i] * (c.mass * p->density[i] * velocity[k][i] - (c.stiffness > 0 ? c.stiffness * drag[k][i] : 0));
+      drag[k][i] = p->volume[i] *
+                   (c.mass * p->inertia[k][i] * velocity[k][i] - (c.stiffness > 0 ? c.stiffness * drag[k][i] : 0));
   return BRECCIA_OK;
 }
 
@@ -84,16 +84,17 @@ static void find_accelerations(Implicit *s)
 {
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       s->acceleration[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]) - s->drag[k][i];
   unknowns_gather(u, s->acceleration);
-  for (int k = 0; k < 3; ++k) {
-    const TieGroups *ties = &s->loading->ties[k];
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t n = 0; n < p->count; ++n) {
       const int32_t i = p->place_of[n];
-      s->acceleration[k][i] /= p->density[i] * p->volume[i];
+      s->acceleration[k][i] /= p->inertia[k][i] * p->volume[i];
     }
+  for (int k = 0; k < 3; ++k) {
+    const TieGroups *ties = &s->loading->ties[k];
     for (int64_t g = 0; g < ties->count; ++g) {
       const int32_t one = ties->places[ties->first[g]];
       double mass = 0;
@@ -107,7 +108,7 @@ static void find_accelerations(Implicit *s)
 
 /* ---- forces beside those of bonds and loads ---- */
 
-static int prepare_forces(void *context, double *const moved[3], double time, Error *error)
+static int prepare_forces(void *context, double *const moved[MOTIONS], double time, Error *error)
 {
   Implicit *s = context;
   find_velocities(s, moved, time);
@@ -115,20 +116,20 @@ static int prepare_forces(void *context, double *const moved[3], double time, Er
 }
 
 /** What is to vanish is g' - alpha / (1 + alpha) g - M a' / (1 + alpha), beside the inertia: nothing else acts on a body that flies. */
-static double add_forces(void *context, double *const moved[3], double *const force[3])
+static double add_forces(void *context, double *const moved[MOTIONS], double *const force[MOTIONS])
 {
   Implicit *s = context;
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
   const double alpha = s->spec->alpha, weight = 1 / (1 + alpha);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       const double before = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i]) - s->drag[k][i];
-      s->result[k][i] = p->density[i] * p->volume[i] * acceleration_then(s, moved, k, i);
+      s->result[k][i] = p->inertia[k][i] * p->volume[i] * acceleration_then(s, moved, k, i);
       force[k][i] -= s->drag_then[k][i] + weight * (alpha * before + s->result[k][i]);
     }
   unknowns_gather(u, s->result);
-  return unknowns_product(u, s->result, s->result);
+  return unknowns_product_of_forces(u, s->result, s->result);
 }
 
 NewtonForces implicit_forces(Implicit *s)
@@ -138,11 +139,12 @@ NewtonForces implicit_forces(Implicit *s)
 
 /* ---- books ---- */
 
-static double kinetic_energy(const Particles *p, double *const velocity[3])
+static double kinetic_energy(const Particles *p, double *const velocity[MOTIONS])
 {
   double sum = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) sum += 0.5 * p->density[i] * p->volume[i] * velocity[k][i] * velocity[k][i];
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      sum += 0.5 * p->inertia[k][i] * p->volume[i] * velocity[k][i] * velocity[k][i];
   return sum;
 }
 
@@ -156,12 +158,12 @@ static void add_held(const Constraint *c, int64_t n, void *context)
 {
   HeldEnergy *h = context;
   const int32_t i = c->load->selection.places[n];
-  const double rate = vectors_along(h->velocity, c->direction, i);
-  h->energy += 0.5 * h->particles->density[i] * h->particles->volume[i] * rate * rate;
+  const double rate = constraint_along(c, h->velocity, i);
+  h->energy += 0.5 * h->particles->inertia[c->row][i] * h->particles->volume[i] * rate * rate;
 }
 
 /** Kinetic energy of what moves as prescribed. */
-static double held_energy(const Implicit *s, double *const velocity[3])
+static double held_energy(const Implicit *s, double *const velocity[MOTIONS])
 {
   HeldEnergy h = {.particles = s->domain->particles, .velocity = velocity};
   unknowns_each_row(&s->newton.linear.unknowns, add_held, &h);
@@ -174,20 +176,20 @@ static void book(Implicit *s)
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
   double *const *moved = s->newton.moved, bonds = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       bonds -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * moved[k][i];
       s->result[k][i] = s->drag[k][i] + s->drag_then[k][i];
     }
   unknowns_gather(u, s->result);
-  const double damping = 0.5 * unknowns_product(u, s->result, moved);
-  for (int k = 0; k < 3; ++k)
+  const double damping = 0.5 * unknowns_work(u, s->result, moved);
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       s->result[k][i] = p->volume[i] * (s->increment.internal[k][i] + s->increment.external[k][i] + p->internal[k][i] +
                                         p->external[k][i]) -
                         s->drag[k][i] - s->drag_then[k][i];
   unknowns_gather(u, s->result);
-  const double freely = 0.5 * unknowns_product(u, s->result, moved);
+  const double freely = 0.5 * unknowns_work(u, s->result, moved);
   const double kinetic = kinetic_energy(p, s->velocity), held = held_energy(s, s->velocity);
   const double kinetic_before = kinetic_energy(p, p->velocity), held_before = held_energy(s, p->velocity);
   s->ledger->bond_work += bonds;
@@ -224,16 +226,16 @@ static double find_error(Implicit *s)
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
   double change = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = acceleration_then(s, s->newton.moved, k, i);
   unknowns_clear_rest(u, s->result);
   unknowns_spread(u, NAN, s->result);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      const double d = s->result[k][i] - s->acceleration[k][i];
+      const double d = unknowns_length(u, k) * (s->result[k][i] - s->acceleration[k][i]);
       change += d * d;
     }
-  const double shift = fmax(s->shift, sqrt(unknowns_product(u, p->displacement, p->displacement)));
+  const double shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, p->displacement, p->displacement)));
   const double error = fabs(s->spec->beta - 1.0 / 6) * s->length * s->length * sqrt(change);
   return shift > 0 ? error / shift : 0;
 }
@@ -253,15 +255,15 @@ static void finish_step(Implicit *s)
   loading_settle(s->loading, p, s->newton.moved, 1);
   find_error(s);
   increment_accept(&s->increment, s->newton.moved);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      fastest = fmax(fastest, fabs(s->newton.moved[k][i]) / s->length);
+      if (k < ROTATION) fastest = fmax(fastest, fabs(s->newton.moved[k][i]) / s->length);
       p->velocity[k][i] = s->velocity[k][i];
       s->acceleration[k][i] = s->result[k][i];
       s->drag[k][i] = s->drag_then[k][i];
     }
   s->ledger->fastest = fastest;
-  s->shift = fmax(s->shift, sqrt(unknowns_product(u, p->displacement, p->displacement)));
+  s->shift = fmax(s->shift, sqrt(unknowns_product_of_motions(u, p->displacement, p->displacement)));
 }
 
 /** One try to come to a time of the run; the state is that of before if it fails.

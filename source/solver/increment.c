@@ -27,13 +27,10 @@ int increment_create(Increment *i, Domain *domain, Error *error)
 {
   i->domain = domain;
   i->apart = domain->forces.count > 0;
-  for (int k = 0; k < 3; ++k) {
-    i->internal[k] = places_array(domain->particles->places, "forces", error);
-    i->external[k] = places_array(domain->particles->places, "forces", error);
-    if (!i->internal[k] || !i->external[k]) return BRECCIA_FAILURE;
-  }
-  const bool made = !i->apart || (vectors_make(i->beside, domain->particles->places, "forces", error) &&
-                                  vectors_make(i->beside_now, domain->particles->places, "forces", error));
+  const Particles *p = domain->particles;
+  bool made = vectors_make(i->internal, p, "forces", error) && vectors_make(i->external, p, "forces", error);
+  if (made && i->apart)
+    made = vectors_make(i->beside, p, "forces", error) && vectors_make(i->beside_now, p, "forces", error);
   return made ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
@@ -45,10 +42,8 @@ void increment_forget(Increment *i)
 
 void increment_destroy(Increment *i)
 {
-  for (int k = 0; k < 3; ++k) {
-    places_free(&i->internal[k]);
-    places_free(&i->external[k]);
-  }
+  vectors_free(i->internal);
+  vectors_free(i->external);
   vectors_free(i->beside);
   vectors_free(i->beside_now);
   if (i->domain) increment_forget(i);
@@ -95,7 +90,7 @@ static void note_forces(void *context)
   const Particles *p = d->particles;
   TEAM_FOR (b, d->batch_count) {
     const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < p->motions; ++k) {
       memcpy(i->internal[k] + first, p->internal[k] + first, sizeof(double) * (size_t)(last - first));
       memcpy(i->external[k] + first, p->external[k] + first, sizeof(double) * (size_t)(last - first));
     }
@@ -134,21 +129,24 @@ void increment_retreat(Increment *i)
 {
   const Particles *p = i->domain->particles;
   state_undo(&i->before);
-  for (int k = 0; k < 3; ++k) memcpy(p->external[k], i->external[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k) memcpy(p->external[k], i->external[k], sizeof(double) * (size_t)p->places);
   domain_put_stresses_by(i->domain);
   domain_follow(i->domain);
 }
 
 static void accept(void *context)
 {
-  domain_accept(context);
+  Domain *d = context;
+  domain_accept(d);
+  TEAM_FOR (b, d->batch_count)
+    particles_take_rotations(d->particles, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
 }
 
-void increment_accept(Increment *i, double *const moved[3])
+void increment_accept(Increment *i, double *const moved[MOTIONS])
 {
   Domain *d = i->domain;
   double most = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; ++k) /* bonds stretch by nothing else */
     for (int64_t place = 0; place < d->particles->places; ++place) most = fmax(most, fabs(moved[k][place]));
   i->moved += most;
   i->apart = i->domain->forces.count && most > 0;
@@ -157,7 +155,7 @@ void increment_accept(Increment *i, double *const moved[3])
   forces_commit(&d->forces);
 }
 
-double increment_sudden_work(Increment *i, double *const moved[3])
+double increment_sudden_work(Increment *i, double *const moved[MOTIONS])
 {
   const Particles *p = i->domain->particles;
   if (!i->beside[0]) return 0;

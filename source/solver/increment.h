@@ -7,11 +7,12 @@
 typedef struct Increment {
   Domain *domain;
   StateCopy before;
-  double *internal[3], *external[3]; /* forces per volume of bonds and of loads at its beginning */
-  bool apart;                        /* parts have moved against each other since forces between them were looked for */
+  double *internal[MOTIONS], *external[MOTIONS]; /* forces per volume of bonds and of loads at its beginning */
+  bool apart; /* parts have moved against each other since forces between them were looked for */
   /* Of forces beside those of bonds, where there are any: at its beginning, with the energy that they held or had dissipated; and now. */
-  double *beside[3], *beside_now[3], held;
-  double moved; /* sum over the increments since bonds were judged of the largest component of any motion in each */
+  double *beside[MOTIONS], *beside_now[MOTIONS], held;
+  double
+      moved; /* sum over the increments since bonds were judged of the largest component of any displacement in each */
 } Increment;
 
 /** Refuses what solvers that iterate have no place for.
@@ -38,13 +39,13 @@ void increment_begin(Increment *increment);
 void increment_begin_again(Increment *increment);
 /** The state as it was noted; of loads, what they exerted when forces were noted. */
 void increment_retreat(Increment *increment);
-/** What laws and forces remember of the increment is so from now on.
+/** What laws, forces and orientations remember of the increment is so from now on.
  *  @param[in] moved  changes of displacements in it */
-void increment_accept(Increment *increment, double *const moved[3]);
+void increment_accept(Increment *increment, double *const moved[MOTIONS]);
 
 /** What faces that meet within an increment have taken beyond the mean of their forces at both ends of it, when it has been accepted: they may have come
  *  a long way before they met. @param[in] moved  changes of displacements since increment_begin */
-double increment_sudden_work(Increment *increment, double *const moved[3]);
+double increment_sudden_work(Increment *increment, double *const moved[MOTIONS]);
 
 /** Breaks the most loaded bonds that are beyond their limit, at the displacements held, and commits what is left of the body, with its forces.
  *  @param[in] most  as in Moment

@@ -87,12 +87,12 @@ int linear_solver_prepare(LinearSolver *s, Error *error)
 }
 
 /** The other way from now on, beginning with these equations. */
-static int take_instead(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
-                        Error *error)
+static int take_instead(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
+                        LinearRecord *record, Error *error)
 {
   const LinearRecord before = *record;
   *record = (LinearRecord){0};
-  vectors_clear(v, s->domain->particles->places);
+  vectors_clear(v, s->domain->particles);
   ++s->given_up;
   if (linear_solver_prepare(s, error) || s->type->solve(s, f, v, tolerance, record, error)) return BRECCIA_FAILURE;
   record->iterations += before.iterations;
@@ -100,8 +100,8 @@ static int take_instead(LinearSolver *s, double *const f[3], double *const v[3],
   return BRECCIA_OK;
 }
 
-int linear_solver_solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
-                        Error *error)
+int linear_solver_solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
+                        LinearRecord *record, Error *error)
 {
   *record = (LinearRecord){0};
   int status = s->left != s->given_up ? linear_solver_prepare(s, error) : BRECCIA_OK;
@@ -118,13 +118,14 @@ typedef struct Weighing {
 
 /** Changes of forces per volume to forces against them. */
 BRECCIA_CLONES
-static void weigh(const LinearSolver *s, double *const v[3], double *const kv[3], int64_t first, int64_t last)
+static void weigh(const LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS], int64_t first,
+                  int64_t last)
 {
   const Particles *p = s->domain->particles;
   const Lanes factor = lanes_set(s->mass_factor);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = first; i < last; i += LANES) {
-      const Lanes mass = factor * lanes_load(p->density + i);
+      const Lanes mass = factor * lanes_load(p->inertia[k] + i);
       lanes_store(kv[k] + i, lanes_load(p->volume + i) * (mass * lanes_load(v[k] + i) - lanes_load(kv[k] + i)));
     }
 }
@@ -136,7 +137,7 @@ static void weigh_batch(void *context, int64_t b)
   weigh(w->solver, w->v, w->kv, batch->first * SLICE, batch->last * SLICE);
 }
 
-void linear_solver_apply(LinearSolver *s, double *const v[3], double *const kv[3])
+void linear_solver_apply(LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS])
 {
   unknowns_spread(&s->unknowns, NAN, v);
   if (s->elastic)

@@ -162,9 +162,10 @@ static int find_row(Rows *rows, int64_t row, Error *error)
         const int64_t other = rows->of_points.items[l];
         if (rows->seen_place[other] == row + 1) continue;
         rows->seen_place[other] = row + 1;
-        for (int k = 0; k < 3; ++k)
-          for (int c = 0; c < m->follow[3 * other + k].count && !status; ++c)
-            status = add_column(rows, row, follow_terms(&m->follow[3 * other + k])[c].unknown, error);
+        const Follow *follow = &m->follow[m->motions * other];
+        for (int k = 0; k < m->motions; ++k)
+          for (int c = 0; c < follow[k].count && !status; ++c)
+            status = add_column(rows, row, follow_terms(&follow[k])[c].unknown, error);
       }
     }
   }
@@ -177,15 +178,15 @@ static int list_owners(Rows *rows, int64_t places, Error *error)
   const Matrix *m = rows->matrix;
   Lists terms = {0};
   int64_t count = 0;
-  for (int64_t i = 0; i < 3 * places; ++i) count += m->follow[i].own;
+  for (int64_t i = 0; i < m->motions * places; ++i) count += m->follow[i].own;
   terms.first = memory_zeroed((size_t)places + 1, sizeof *terms.first, "matrix", error);
   terms.items = memory_zeroed((size_t)count + 1, sizeof *terms.items, "matrix", error);
   int status = terms.first && terms.items ? BRECCIA_OK : BRECCIA_FAILURE;
   count = 0;
   for (int64_t i = 0; i < places && !status; ++i) {
-    for (int k = 0; k < 3; ++k)
-      for (int t = 0; t < m->follow[3 * i + k].own; ++t)
-        terms.items[count++] = follow_terms(&m->follow[3 * i + k])[t].unknown;
+    const Follow *follow = &m->follow[m->motions * i];
+    for (int k = 0; k < m->motions; ++k)
+      for (int t = 0; t < follow[k].own; ++t) terms.items[count++] = follow_terms(&follow[k])[t].unknown;
     terms.first[i + 1] = count;
   }
   if (!status) status = turn_round(&terms, places, m->size, &rows->of_unknowns, error);
@@ -197,6 +198,7 @@ int matrix_create(Matrix *m, const Unknowns *u, Error *error)
 {
   const int64_t places = m->places = u->domain->particles->places, points = count_points(u);
   Rows rows = {.matrix = m};
+  m->motions = u->domain->particles->motions;
   m->follow = follow_create(u, &m->size, error);
   int status = m->follow ? BRECCIA_OK : BRECCIA_FAILURE;
   if (!status) status = list_places(&rows.of_points, u, error);
@@ -226,7 +228,7 @@ void matrix_destroy(Matrix *m)
   free(m->first);
   free(m->column);
   free(m->value);
-  follow_destroy(&m->follow, m->places);
+  follow_destroy(&m->follow, m->motions * m->places);
   *m = (Matrix){0};
 }
 
@@ -245,21 +247,21 @@ static int64_t find_entry(const Matrix *m, int64_t row, int64_t column)
   return low;
 }
 
-/** Adds a factor times what joins two displacements, 3 x 3 of them. */
-static void add_block(Matrix *m, int64_t row_place, int64_t column_place, const double *k, double factor)
+/** Adds a factor times what joins two motions, size x size of them. */
+static void add_block(Matrix *m, int64_t row_place, int64_t column_place, const double *k, int size, double factor)
 {
-  const Follow *rows = &m->follow[3 * row_place], *columns = &m->follow[3 * column_place];
-  for (int i = 0; i < 3; ++i)
+  const Follow *rows = &m->follow[m->motions * row_place], *columns = &m->follow[m->motions * column_place];
+  for (int i = 0; i < size; ++i)
     for (int t = 0; t < rows[i].own; ++t) {
       const Term row = follow_terms(&rows[i])[t];
       const int64_t end = m->first[row.unknown + 1];
       int64_t at = end - 1; /* the unknowns of a particle mostly stand side by side */
-      for (int j = 0; j < 3; ++j)
+      for (int j = 0; j < size; ++j)
         for (int s = 0; s < columns[j].count; ++s) {
           const Term column = follow_terms(&columns[j])[s];
           at =
               at + 1 < end && m->column[at + 1] == column.unknown ? at + 1 : find_entry(m, row.unknown, column.unknown);
-          m->value[at] += factor * row.factor * k[3 * i + j] * column.factor;
+          m->value[at] += factor * row.factor * k[size * i + j] * column.factor;
         }
     }
 }
@@ -274,16 +276,17 @@ static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Err
     for (int64_t n = 0; n < source.count && !status; ++n) {
       const double factor = source.region ? 1 + stiffness_share : 1;
       status = find_point(&source, u, n, &point, error);
-      const int count = point.count;
-      if (!status && count > room) {
-        room = 2 * count;
+      const int count = point.count, size = point.motions, wanted = count * size;
+      if (!status && wanted > room) {
+        room = 2 * wanted;
         free(k);
-        if (!(k = memory_zeroed(9 * (size_t)room * (size_t)room, sizeof *k, "matrix", error))) status = BRECCIA_FAILURE;
+        if (!(k = memory_zeroed((size_t)room * (size_t)room, sizeof *k, "matrix", error))) status = BRECCIA_FAILURE;
       }
       if (!status) status = operator_matrix(&point, u->domain->particles->displacement, k, error);
       for (int a = 0; a < count && !status; ++a)
         for (int b = 0; b < count; ++b)
-          add_block(m, point.places[a].place, point.places[b].place, k + 9 * ((int64_t)count * a + b), -factor);
+          add_block(m, point.places[a].place, point.places[b].place, k + (int64_t)size * size * (count * a + b), size,
+                    -factor);
     }
   operator_destroy(&point);
   free(k);
@@ -297,8 +300,9 @@ int matrix_fill(Matrix *m, const Unknowns *u, double stiffness_share, double mas
   const int status = fill_points(m, u, stiffness_share, error);
   for (int64_t n = 0; n < p->count && !status && mass_factor != 0; ++n) {
     const int32_t i = p->place_of[n];
-    const double mass = mass_factor * p->density[i] * p->volume[i];
-    add_block(m, i, i, (const double[9]){mass, 0, 0, 0, mass, 0, 0, 0, mass}, 1);
+    double mass[MOTIONS * MOTIONS] = {0};
+    for (int k = 0; k < p->motions; ++k) mass[(p->motions + 1) * k] = mass_factor * p->inertia[k][i] * p->volume[i];
+    add_block(m, i, i, mass, p->motions, 1);
   }
   return status;
 }
@@ -316,22 +320,22 @@ double matrix_asymmetry(const Matrix *m)
 
 /* ---- vectors ---- */
 
-void matrix_pack(const Matrix *m, const Unknowns *u, double *const v[3], double *x)
+void matrix_pack(const Matrix *m, const Unknowns *u, double *const v[MOTIONS], double *x)
 {
   memset(x, 0, sizeof *x * (size_t)m->size);
   for (int64_t i = 0; i < u->domain->particles->places; ++i)
-    for (int k = 0; k < 3; ++k) {
-      const Follow *follow = &m->follow[3 * i + k];
+    for (int k = 0; k < m->motions; ++k) {
+      const Follow *follow = &m->follow[m->motions * i + k];
       for (int t = 0; t < follow->own; ++t)
         x[follow_terms(follow)[t].unknown] += follow_terms(follow)[t].factor * v[k][i];
     }
 }
 
-void matrix_unpack(const Matrix *m, const Unknowns *u, const double *x, double *const v[3])
+void matrix_unpack(const Matrix *m, const Unknowns *u, const double *x, double *const v[MOTIONS])
 {
   for (int64_t i = 0; i < u->domain->particles->places; ++i)
-    for (int k = 0; k < 3; ++k) {
-      const Follow *follow = &m->follow[3 * i + k];
+    for (int k = 0; k < m->motions; ++k) {
+      const Follow *follow = &m->follow[m->motions * i + k];
       double sum = 0;
       for (int t = 0; t < follow->count; ++t)
         sum += follow_terms(follow)[t].factor * x[follow_terms(follow)[t].unknown];

@@ -12,7 +12,8 @@ typedef struct Matrix {
   int64_t *column;
   double *value;
   int64_t places;
-  Follow *follow; /* [places][3] */
+  int motions;
+  Follow *follow; /* [places][motions] */
 } Matrix;
 
 /** Why there is no matrix, or NULL. */
@@ -30,7 +31,7 @@ int matrix_fill(Matrix *matrix, const Unknowns *unknowns, double stiffness_share
 double matrix_asymmetry(const Matrix *matrix);
 
 /** Between vectors of unknowns and columns of numbers. */
-void matrix_pack(const Matrix *matrix, const Unknowns *unknowns, double *const v[3], double *x);
-void matrix_unpack(const Matrix *matrix, const Unknowns *unknowns, const double *x, double *const v[3]);
+void matrix_pack(const Matrix *matrix, const Unknowns *unknowns, double *const v[MOTIONS], double *x);
+void matrix_unpack(const Matrix *matrix, const Unknowns *unknowns, const double *x, double *const v[MOTIONS]);
 
 #endif

@@ -12,8 +12,8 @@ enum { BASIS = 40, MOST_PRODUCTS = 5000 };
 
 typedef struct Residuals {
   Preconditioner preconditioner;
-  double *basis[BASIS + 1][3]; /* as many as were needed so far */
-  double *scaled[3];
+  double *basis[BASIS + 1][MOTIONS]; /* as many as were needed so far */
+  double *scaled[MOTIONS];
 } Residuals;
 
 /** The least squares of the projected equations, kept triangular by rotations. */
@@ -40,10 +40,10 @@ static void destroy(LinearSolver *s)
 static int create(LinearSolver *s, Error *error)
 {
   Residuals *g = s->own = memory_zeroed(1, sizeof *g, "minimal residuals", error);
-  const int64_t places = s->domain->particles->places;
+  const Particles *p = s->domain->particles;
   const bool failed = !g || preconditioner_create(&g->preconditioner, s->domain, error) ||
-                      !vectors_make(g->scaled, places, "minimal residuals", error) ||
-                      !vectors_make(g->basis[0], places, "minimal residuals", error);
+                      !vectors_make(g->scaled, p, "minimal residuals", error) ||
+                      !vectors_make(g->basis[0], p, "minimal residuals", error);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
@@ -71,7 +71,7 @@ static double turn(Projected *p, int n)
 }
 
 /** Adds to v what the first `count` vectors of the basis answer best. The last vector of the basis is lost. */
-static void add_answer(const LinearSolver *s, const Projected *p, int count, double *const v[3])
+static void add_answer(const LinearSolver *s, const Projected *p, int count, double *const v[MOTIONS])
 {
   const Residuals *g = s->own;
   double y[BASIS] = {0};
@@ -87,7 +87,7 @@ static void add_answer(const LinearSolver *s, const Projected *p, int count, dou
 }
 
 /** One round, from the residual in the first vector of the basis. */
-static int go_round(LinearSolver *s, double length, double enough, double *const v[3], LinearRecord *record,
+static int go_round(LinearSolver *s, double length, double enough, double *const v[MOTIONS], LinearRecord *record,
                     Error *error)
 {
   Residuals *g = s->own;
@@ -98,16 +98,16 @@ static int go_round(LinearSolver *s, double length, double enough, double *const
   vectors_combine(s->domain, 1 / length, g->basis[0], 0, g->basis[0]);
   for (; n < BASIS && left > enough; ++n) {
     double *const *next = g->basis[n + 1];
-    if (!next[0] && !vectors_make(g->basis[n + 1], s->domain->particles->places, "minimal residuals", error))
+    if (!next[0] && !vectors_make(g->basis[n + 1], s->domain->particles, "minimal residuals", error))
       return BRECCIA_FAILURE;
     preconditioner_apply(&g->preconditioner, s, g->basis[n], g->scaled);
     linear_solver_apply(s, g->scaled, next);
     ++record->iterations;
     for (int i = 0; i <= n; ++i) {
-      p.h[i][n] = unknowns_product(u, next, g->basis[i]);
+      p.h[i][n] = unknowns_product_of_forces(u, next, g->basis[i]);
       vectors_combine(s->domain, 1, next, -p.h[i][n], g->basis[i]);
     }
-    p.h[n + 1][n] = sqrt(unknowns_product(u, next, next));
+    p.h[n + 1][n] = sqrt(unknowns_product_of_forces(u, next, next));
     if (p.h[n + 1][n] > 0) vectors_combine(s->domain, 1 / p.h[n + 1][n], next, 0, next);
     left = turn(&p, n);
   }
@@ -115,12 +115,12 @@ static int go_round(LinearSolver *s, double length, double enough, double *const
   return BRECCIA_OK;
 }
 
-static int solve(LinearSolver *s, double *const f[3], double *const v[3], double tolerance, LinearRecord *record,
-                 Error *error)
+static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTIONS], double tolerance,
+                 LinearRecord *record, Error *error)
 {
   Residuals *g = s->own;
   const Unknowns *u = &s->unknowns;
-  const double first = sqrt(unknowns_product(u, f, f));
+  const double first = sqrt(unknowns_product_of_forces(u, f, f));
   const double little = 0.95;  /* a round that leaves more than this of the residual leads nowhere */
   const double useless = 0.01; /* Newton's method comes on well with less */
   vectors_combine(s->domain, 0, g->basis[0], 1, f);
@@ -133,9 +133,9 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
     linear_solver_apply(s, g->scaled, g->basis[0]);
     ++record->iterations;
     vectors_combine(s->domain, -1, g->basis[0], 1, f);
-    length = sqrt(unknowns_product(u, g->basis[0], g->basis[0]));
+    length = sqrt(unknowns_product_of_forces(u, g->basis[0], g->basis[0]));
   }
-  record->indefinite = unknowns_product(u, f, v) < 0;
+  record->indefinite = unknowns_work(u, f, v) < 0;
   record->unsuited = !(record->residual <= fmax(tolerance, useless));
   return BRECCIA_OK;
 }
@@ -143,7 +143,8 @@ static int solve(LinearSolver *s, double *const f[3], double *const v[3], double
 static size_t bytes(const LinearSolver *s)
 {
   const Residuals *g = s->own;
-  return 3 * (BASIS + 2) * sizeof(double) * (size_t)s->domain->particles->places +
+  const Particles *p = s->domain->particles;
+  return (size_t)p->motions * (BASIS + 2) * sizeof(double) * (size_t)p->places +
          preconditioner_bytes(&g->preconditioner);
 }
 

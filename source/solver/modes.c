@@ -20,9 +20,10 @@ static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
 typedef struct Search {
   Domain *domain;
   LinearSolver linear;
-  int axes, wanted, basis;
-  a_int size; /* of a column of numbers: components of all particles */
-  double *from[3], *to[3];
+  int wanted, basis;
+  int row[MOTIONS], rows; /* of motion, that the body has */
+  a_int size;             /* of a column of numbers: those rows of all particles */
+  double *from[MOTIONS], *to[MOTIONS];
   double *start, *columns, *work, *projected;
   double *values, *imaginary; /* of omega squared; of two that are complex the columns are the vector's two parts */
   a_int *chosen;
@@ -31,19 +32,19 @@ typedef struct Search {
 
 /* ---- columns and vectors ---- */
 
-static void pack(const Search *s, double *const v[3], double *column)
+static void pack(const Search *s, double *const v[MOTIONS], double *column)
 {
   const Particles *p = s->domain->particles;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < s->axes; ++k) column[n * s->axes + k] = v[k][p->place_of[n]];
+    for (int k = 0; k < s->rows; ++k) column[n * s->rows + k] = v[s->row[k]][p->place_of[n]];
 }
 
-static void unpack(const Search *s, const double *column, double *const v[3])
+static void unpack(const Search *s, const double *column, double *const v[MOTIONS])
 {
   const Particles *p = s->domain->particles;
-  for (int k = s->axes; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < 3; ++k) memset(v[k], 0, sizeof(double) * (size_t)p->places);
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < s->axes; ++k) v[k][p->place_of[n]] = column[n * s->axes + k];
+    for (int k = 0; k < s->rows; ++k) v[s->row[k]][p->place_of[n]] = column[n * s->rows + k];
 }
 
 static void multiply_masses(const Search *s, const double *column, double *product)
@@ -51,8 +52,8 @@ static void multiply_masses(const Search *s, const double *column, double *produ
   const Particles *p = s->domain->particles;
   unpack(s, column, s->from);
   unknowns_spread(&s->linear.unknowns, NAN, s->from);
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->places; ++i) s->from[k][i] *= p->density[i] * p->volume[i];
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) s->from[k][i] *= p->inertia[k][i] * p->volume[i];
   unknowns_gather(&s->linear.unknowns, s->from);
   pack(s, s->from, product);
 }
@@ -72,7 +73,7 @@ static int solve(Search *s, const double *column, double *answer, Error *error)
   const double accuracy = 1e-11, enough = 1e-6;
   LinearRecord record;
   unpack(s, column, s->from);
-  vectors_clear(s->to, s->domain->particles->places);
+  vectors_clear(s->to, s->domain->particles);
   if (linear_solver_solve(&s->linear, s->from, s->to, accuracy, &record, error)) return BRECCIA_FAILURE;
   if (!(record.residual <= enough)) return say_inexact(record.residual, error);
   unknowns_clear_rest(&s->linear.unknowns, s->to);
@@ -82,11 +83,12 @@ static int solve(Search *s, const double *column, double *answer, Error *error)
 
 /* ---- iteration ---- */
 
-static void fill_at_random(const Search *s, uint64_t seed, double *const v[3])
+static void fill_at_random(const Search *s, uint64_t seed, double *const v[MOTIONS])
 {
   const Particles *p = s->domain->particles;
-  for (int k = 0; k < s->axes; ++k)
-    for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+  for (int k = 0; k < s->rows; ++k)
+    for (int64_t n = 0; n < p->count; ++n)
+      v[s->row[k]][p->place_of[n]] = (random_uniform(&seed) - 0.5) / unknowns_length(&s->linear.unknowns, s->row[k]);
   unknowns_clear_rest(&s->linear.unknowns, v);
 }
 
@@ -95,18 +97,18 @@ static int find_symmetry(Search *s, Error *error)
 {
   const double roundings = 1e-11; /* images at one face of a body of 1e8 particles make more */
   const Unknowns *u = &s->linear.unknowns;
-  const int64_t places = s->domain->particles->places;
-  double *a[3] = {0}, *b[3] = {0};
+  const Particles *p = s->domain->particles;
+  double *a[MOTIONS] = {0}, *b[MOTIONS] = {0};
   int status = BRECCIA_FAILURE;
-  if (vectors_make(a, places, "modes", error) && vectors_make(b, places, "modes", error)) {
+  if (vectors_make(a, p, "modes", error) && vectors_make(b, p, "modes", error)) {
     fill_at_random(s, 2, a);
     fill_at_random(s, 3, b);
     linear_solver_apply(&s->linear, a, s->to);
     unknowns_clear_rest(u, a); /* what follows the unknowns was set */
-    const double size = sqrt(unknowns_product(u, s->to, s->to) * unknowns_product(u, b, b)),
-                 one = unknowns_product(u, b, s->to);
+    const double size = sqrt(unknowns_product_of_forces(u, s->to, s->to) * unknowns_product_of_motions(u, b, b)),
+                 one = unknowns_work(u, s->to, b);
     linear_solver_apply(&s->linear, b, s->to);
-    s->symmetric = fabs(one - unknowns_product(u, a, s->to)) <= roundings * size;
+    s->symmetric = fabs(one - unknowns_work(u, s->to, a)) <= roundings * size;
     status = BRECCIA_OK;
   }
   vectors_free(a);
@@ -126,9 +128,9 @@ static int create(Search *s, int64_t unknowns, Error *error)
   s->values = memory_zeroed(basis, sizeof(double), "modes", error);
   s->imaginary = memory_zeroed(basis, sizeof(double), "modes", error);
   s->chosen = memory_zeroed(basis, sizeof(a_int), "modes", error);
-  const int64_t places = s->domain->particles->places;
+  const Particles *p = s->domain->particles;
   const bool made = s->start && s->columns && s->work && s->projected && s->values && s->imaginary && s->chosen &&
-                    vectors_make(s->from, places, "modes", error) && vectors_make(s->to, places, "modes", error);
+                    vectors_make(s->from, p, "modes", error) && vectors_make(s->to, p, "modes", error);
   if (!made) return BRECCIA_FAILURE;
   fill_at_random(s, 1, s->from);
   pack(s, s->from, s->start);
@@ -195,8 +197,9 @@ static double find_residual(Search *s, const double *column, double square)
   pack(s, s->to, forces);
   multiply_masses(s, column, masses);
   for (a_int k = 0; k < s->size; ++k) {
-    left += pow(forces[k] - shifted * masses[k], 2);
-    whole += pow(shifted * masses[k], 2);
+    const double length = unknowns_length(&s->linear.unknowns, s->row[k % s->rows]);
+    left += pow((forces[k] - shifted * masses[k]) / length, 2);
+    whole += pow(shifted * masses[k] / length, 2);
   }
   return sqrt(left / whole);
 }
@@ -209,7 +212,8 @@ static double mass_product(const Search *s, const Mode *a, const Mode *b)
   for (int64_t n = 0; n < p->count; ++n) {
     if (body_outside(&s->domain->body, n)) continue;
     const int32_t i = p->place_of[n];
-    for (int k = 0; k < 3; ++k) sum += p->density[i] * p->volume[i] * a->displacement[k][i] * b->displacement[k][i];
+    for (int k = 0; k < p->motions; ++k)
+      sum += p->inertia[k][i] * p->volume[i] * a->displacement[k][i] * b->displacement[k][i];
   }
   return sum;
 }
@@ -223,9 +227,7 @@ static void part_from_equals(const Search *s, double square, const double *squar
     if (fabs(square - squares[m]) > equal * (fabs(square) + s->linear.mass_factor)) continue;
     const double part =
         mass_product(s, &modes->modes[n], &modes->modes[m]) / mass_product(s, &modes->modes[m], &modes->modes[m]);
-    for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < s->domain->particles->places; ++i)
-        modes->modes[n].displacement[k][i] -= part * modes->modes[m].displacement[k][i];
+    vectors_combine(s->domain, 1, modes->modes[n].displacement, -part, modes->modes[m].displacement);
   }
 }
 
@@ -237,24 +239,22 @@ static void finish_mode(const Search *s, Mode *mode)
   for (int64_t n = 0; n < p->count; ++n) {
     if (body_outside(&s->domain->body, n)) continue;
     const int32_t i = p->place_of[n];
-    const double m = p->density[i] * p->volume[i];
-    mass += m;
-    for (int k = 0; k < 3; ++k) {
-      const double u = mode->displacement[k][i];
-      moved[k] += m * u;
-      squares += m * u * u;
+    mass += p->density[i] * p->volume[i];
+    for (int k = 0; k < p->motions; ++k) {
+      const double v = mode->displacement[k][i], u = unknowns_length(&s->linear.unknowns, k) * v;
+      if (k < ROTATION) moved[k] += p->density[i] * p->volume[i] * v;
+      squares += p->inertia[k][i] * p->volume[i] * v * v;
       if (fabs(u) > (1 + 1e-6) * fabs(largest)) largest = u; /* of equal ones the first, whatever their roundings */
     }
   }
-  for (int k = 0; k < 3; ++k) {
-    mode->share[k] = squares > 0 ? moved[k] * moved[k] / (mass * squares) : 0;
+  for (int k = 0; k < 3; ++k) mode->share[k] = squares > 0 ? moved[k] * moved[k] / (mass * squares) : 0;
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places && largest != 0; ++i) mode->displacement[k][i] /= largest;
-  }
 }
 
 static int take_mode(const Search *s, int from, Mode *mode, Error *error)
 {
-  if (!vectors_make(mode->displacement, s->domain->particles->places, "modes", error)) return BRECCIA_FAILURE;
+  if (!vectors_make(mode->displacement, s->domain->particles, "modes", error)) return BRECCIA_FAILURE;
   unpack(s, s->columns + (size_t)s->size * (size_t)from, mode->displacement);
   unknowns_spread(&s->linear.unknowns, NAN, mode->displacement);
   return BRECCIA_OK;
@@ -322,10 +322,11 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
 {
   const double shift = 1e-2 * wave_square(d);
   Search s = {.domain = d,
-              .axes = d->body.dimensions,
               .wanted = count,
               .linear = {.domain = d, .loading = loading, .unknowns = unknowns_of(d, loading), .mass_factor = shift}};
-  const double size = (double)s.axes * (double)d->particles->count;
+  for (int k = 0; k < d->particles->motions; ++k)
+    if (k >= ROTATION || k < d->body.dimensions) s.row[s.rows++] = k;
+  const double size = (double)s.rows * (double)d->particles->count;
   s.size = (a_int)size;
   const int64_t unknowns = unknowns_count(&s.linear.unknowns, error);
   if (unknowns < 0) return BRECCIA_FAILURE;

@@ -34,21 +34,16 @@ static double stiffness_of(const Domain *d)
 
 int newton_create(Newton *n, Error *error)
 {
-  const int64_t places = n->domain->particles->places;
+  const Particles *p = n->domain->particles;
   n->linear.domain = n->domain;
   n->linear.loading = n->loading;
   n->linear.unknowns = unknowns_of(n->domain, n->loading);
-  bool failed = false;
-  for (int k = 0; k < 3; ++k) {
-    failed |= !(n->force[k] = places_array(places, "forces out of balance", error));
-    failed |= !(n->change[k] = places_array(places, "corrections", error));
-    failed |= !(n->moved[k] = places_array(places, "increments", error));
-  }
-  for (int k = 0; k < 3 && n->control; ++k) {
-    failed |= !(n->unit_force[k] = places_array(places, "controlled loads", error));
-    failed |= !(n->unit_motion[k] = places_array(places, "controlled loads", error));
-  }
-  if (failed) return BRECCIA_FAILURE;
+  bool made = vectors_make(n->force, p, "forces out of balance", error) &&
+              vectors_make(n->change, p, "corrections", error) && vectors_make(n->moved, p, "increments", error);
+  if (made && n->control)
+    made = vectors_make(n->unit_force, p, "controlled loads", error) &&
+           vectors_make(n->unit_motion, p, "controlled loads", error);
+  if (!made) return BRECCIA_FAILURE;
   n->reference = forces_at_start(n->domain);
   n->stiffness = stiffness_of(n->domain);
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
@@ -56,13 +51,11 @@ int newton_create(Newton *n, Error *error)
 
 void newton_destroy(Newton *n)
 {
-  for (int k = 0; k < 3; ++k) {
-    places_free(&n->force[k]);
-    places_free(&n->change[k]);
-    places_free(&n->moved[k]);
-    places_free(&n->unit_force[k]);
-    places_free(&n->unit_motion[k]);
-  }
+  vectors_free(n->force);
+  vectors_free(n->change);
+  vectors_free(n->moved);
+  vectors_free(n->unit_force);
+  vectors_free(n->unit_motion);
   linear_solver_destroy(&n->linear);
 }
 
@@ -89,9 +82,10 @@ static void find_roundings(Newton *n)
   const Particles *p = n->domain->particles;
   const double digits = 16 * DBL_EPSILON;
   double most = 0, displaced = 0, inertia = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      const double u = p->displacement[k][i], mass = p->density[i] * p->volume[i] * n->moved[k][i];
+      const double length = unknowns_length(&n->linear.unknowns, k), u = length * p->displacement[k][i],
+                   mass = p->inertia[k][i] * p->volume[i] * n->moved[k][i] / length;
       most = fmax(most, fabs(u));
       displaced += u * u;
       inertia += mass * mass;
@@ -127,15 +121,16 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   newton_apply_loads(n, time);
   double exerted = 0;
   find_roundings(n);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
+      const double external = p->volume[i] * p->external[k][i] / unknowns_length(&n->linear.unknowns, k);
       n->force[k][i] = p->volume[i] * (p->internal[k][i] + p->external[k][i]);
-      exerted += p->volume[i] * p->external[k][i] * p->volume[i] * p->external[k][i];
+      exerted += external * external;
     }
   if (n->beside) exerted = fmax(exerted, n->beside->add(n->beside->context, n->moved, n->force));
-  const double all = unknowns_product(&n->linear.unknowns, n->force, n->force);
+  const double all = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
   unknowns_gather(&n->linear.unknowns, n->force);
-  const double free = unknowns_product(&n->linear.unknowns, n->force, n->force);
+  const double free = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
   n->exerted = fmax(n->reference, sqrt(fmax(exerted, all - free)));
   return NEWTON_CONVERGED;
 }
@@ -145,17 +140,17 @@ static bool add_motions(Newton *n, double time)
 {
   const Particles *p = n->domain->particles;
   const Unknowns *u = &n->linear.unknowns;
-  vectors_clear(n->change, p->places);
+  vectors_clear(n->change, p);
   unknowns_spread(u, time, n->change);
-  if (unknowns_product(u, n->change, n->change) == 0) return false;
+  if (unknowns_product_of_motions(u, n->change, n->change) == 0) return false;
   /* Forces before they are gathered: those of the motions belong to the same sum. */
   domain_linear_step(n->domain, n->change, n->moved);
   domain_change_forces(n->domain, n->change, n->moved);
   loading_change(n->loading, p, n->change, n->moved);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) n->moved[k][i] *= p->volume[i];
   unknowns_gather(u, n->moved);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) n->force[k][i] += n->moved[k][i];
   return true;
 }
@@ -173,15 +168,18 @@ void newton_state(Newton *n, StateList *list)
 
 static bool keeps_factors(const Newton *n)
 {
-  return n->beside && !n->follows && domain_is_elastic(n->domain) && !n->domain->forces.count;
+  const bool at_zero =
+      !n->domain->particles->orientation[0]; /* those count rotations from where particles have turned to */
+  return n->beside && !n->follows && at_zero && domain_is_elastic(n->domain) && !n->domain->forces.count;
 }
 
 /** Exchanges the displacements held for others. */
-static void exchange(const Newton *n, double *displacement[3])
+static void exchange(const Newton *n, double *displacement[MOTIONS])
 {
-  for (int k = 0; k < 3; ++k) {
-    double *held = n->domain->particles->displacement[k];
-    n->domain->particles->displacement[k] = displacement[k];
+  Particles *p = n->domain->particles;
+  for (int k = 0; k < p->motions; ++k) {
+    double *held = p->displacement[k];
+    p->displacement[k] = displacement[k];
     displacement[k] = held;
   }
 }
@@ -192,7 +190,7 @@ static int prepare(Newton *n, Error *error)
 {
   LinearSolver *l = &n->linear;
   const Domain *d = n->domain;
-  vectors_clear(n->change, d->particles->places);
+  vectors_clear(n->change, d->particles);
   if (!keeps_factors(n)) {
     n->factored = false;
     return linear_solver_prepare(l, error);
@@ -222,7 +220,7 @@ static int prepare(Newton *n, Error *error)
 static void move(Newton *n, double share)
 {
   const Particles *p = n->domain->particles;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       p->displacement[k][i] += share * n->change[k][i];
       n->moved[k][i] += share * n->change[k][i];
@@ -251,10 +249,15 @@ static void tell(const Newton *n, double correction, double work, double share, 
   text_add(n->log, "\n");
 }
 
-/** Size of a vector over places. */
-static double size_of(const Newton *n, double *const v[3])
+/** Sizes of vectors over places: of forces, and of motions. */
+static double size_of_forces(const Newton *n, double *const f[MOTIONS])
 {
-  return sqrt(unknowns_product(&n->linear.unknowns, v, v));
+  return sqrt(unknowns_product_of_forces(&n->linear.unknowns, f, f));
+}
+
+static double size_of_motions(const Newton *n, double *const v[MOTIONS])
+{
+  return sqrt(unknowns_product_of_motions(&n->linear.unknowns, v, v));
 }
 
 /** Goes on along the change, or back, to where the forces out of balance do no work along it any more, if they still do much.
@@ -266,7 +269,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
   enum { MOST = 6 };
   const double enough = 0.8;
   NewtonOutcome outcome = newton_find_forces(n, time, error);
-  *work = unknowns_product(&n->linear.unknowns, n->change, n->force);
+  *work = unknowns_work(&n->linear.unknowns, n->force, n->change);
   for (int k = 0; k < MOST && !whole; ++k) {
     const bool bad = outcome == NEWTON_LAW || outcome == NEWTON_DIVERGED;
     if (outcome == NEWTON_FAILED || (!bad && fabs(*work) <= enough * fabs(first_work))) break;
@@ -276,7 +279,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
     move(n, wanted - *share);
     *share = wanted;
     outcome = newton_find_forces(n, time, error);
-    *work = unknowns_product(&n->linear.unknowns, n->change, n->force);
+    *work = unknowns_work(&n->linear.unknowns, n->force, n->change);
   }
   return outcome;
 }
@@ -355,14 +358,14 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
   n->indefinite = false;
-  vectors_clear(n->moved, p->places);
+  vectors_clear(n->moved, p);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
   const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
   double before = 0, first_work = 0;
-  vectors_clear(n->moved, p->places);
-  double force = size_of(n, n->force);
+  vectors_clear(n->moved, p);
+  double force = size_of_forces(n, n->force);
   n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
   if (!moves && is_balanced(n, force)) {
     n->unbalanced = n->unbalanced_before;
@@ -380,13 +383,14 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     if (linear.unsuited && !linear.indefinite && !n->linear.is_free) {
       error_add(error, BRECCIA_FAILURE,
                 "equations: '%s' cannot solve these: the stiffness is not symmetric, as where a law flows in another "
-                "direction than its yield surface says; take 'minimal residuals' or 'direct', or leave 'equations' out",
+                "direction than its yield surface says, or particles turn in space; take 'minimal residuals' or "
+                "'direct', or leave 'equations' out",
                 linear_solver_name(&n->linear));
       return NEWTON_FAILED;
     }
     n->products += linear.iterations;
     n->indefinite |= linear.indefinite;
-    double start = unknowns_product(&n->linear.unknowns, n->change, n->force);
+    double start = unknowns_work(&n->linear.unknowns, n->force, n->change);
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
     if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
@@ -395,10 +399,11 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     before = force;
-    force = size_of(n, n->force);
+    force = size_of_forces(n, n->force);
     n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
     if (n->iterations == 1) first_work = start;
-    const double all = size_of(n, n->moved), correction = all > 0 ? share * size_of(n, n->change) / all : 0;
+    const double all = size_of_motions(n, n->moved),
+                 correction = all > 0 ? share * size_of_motions(n, n->change) / all : 0;
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     tell(n, correction, energy, share, &linear);
     if (has_converged(n, force, correction, work, first_work)) {

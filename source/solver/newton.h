@@ -65,10 +65,10 @@ typedef struct NewtonForces {
   void *context;
   /** Before forces of bonds are found at the displacements held, for what needs linearised steps of its own.
    *  @param[in] moved  changes of displacements since the increment began; @param[in] time  at its end */
-  int (*prepare)(void *context, double *const moved[3], double time, Error *error);
+  int (*prepare)(void *context, double *const moved[MOTIONS], double time, Error *error);
   /** Adds the forces on all places.
    *  @return the square of the size of forces beside which those out of balance are small, if these are more than loads and reactions */
-  double (*add)(void *context, double *const moved[3], double *const force[3]);
+  double (*add)(void *context, double *const moved[MOTIONS], double *const force[MOTIONS]);
 } NewtonForces;
 
 typedef struct Newton {
@@ -78,17 +78,18 @@ typedef struct Newton {
   const NewtonForces *beside; /* NULL: none, as at rest */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
-  Control *control;  /* NULL: all factors of loads are given */
-  double target;     /* what it is to be at the end of the increment */
-  double *force[3];  /* out of balance, on the unknowns */
-  double *change[3]; /* of displacements in an iteration */
-  double *moved[3];  /* in all iterations of an increment */
+  Control *control;        /* NULL: all factors of loads are given */
+  double target;           /* what it is to be at the end of the increment */
+  double *force[MOTIONS];  /* out of balance, on the unknowns */
+  double *change[MOTIONS]; /* of displacements in an iteration */
+  double *moved[MOTIONS];  /* in all iterations of an increment */
   /* With control only: */
-  double factor_change;                   /* of controlled loads, in an iteration */
-  double *unit_force[3], *unit_motion[3]; /* where that factor grows by 1: forces, and displacements from them */
-  double reference; /* the most that loads and supports have exerted at any equilibrium of the stage so far */
-  double exerted;   /* the same, or what they exert now if that is more */
-  double stiffness; /* of the body at first, by which displacements make roundings of forces */
+  double factor_change; /* of controlled loads, in an iteration */
+  double *unit_force[MOTIONS],
+      *unit_motion[MOTIONS]; /* where that factor grows by 1: forces, and displacements from them */
+  double reference;          /* the most that loads and supports have exerted at any equilibrium of the stage so far */
+  double exerted;            /* the same, or what they exert now if that is more */
+  double stiffness;          /* of the body at first, by which displacements make roundings of forces */
   double roundings,
       rounding_work; /* no closer than this are forces in balance; and the work of so much along all displacements */
   /* In dynamics of elastic bodies factors and preconditioners of their stiffness at the start, without displacements, serve for all steps of one length,

@@ -3,6 +3,7 @@
 #include "solver/vectors.h"
 
 #include "base/team.h"
+#include "loading/constraint.h"
 #include <math.h>
 #include <string.h>
 
@@ -18,14 +19,14 @@ static void find_unit_force(Newton *n)
   double *const *room = n->unit_motion;
   const Particles *p = n->domain->particles;
   const Unknowns *u = &n->linear.unknowns;
-  vectors_clear(room, p->places);
+  vectors_clear(room, p);
   unknowns_spread_controlled(u, room);
   domain_linear_step(n->domain, room, n->unit_force);
   domain_change_forces(n->domain, room, n->unit_force);
   loading_change(n->loading, p, room, n->unit_force);
-  for (int k = 0; k < 3; ++k) memcpy(room[k], p->external[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k) memcpy(room[k], p->external[k], sizeof(double) * (size_t)p->places);
   team_run(apply_controlled, n);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       n->unit_force[k][i] = p->volume[i] * (n->unit_force[k][i] + p->external[k][i]);
       p->external[k][i] = room[k][i];
@@ -55,11 +56,11 @@ NewtonOutcome newton_follow_control(Newton *n, double accuracy, double *work, Er
   const double grows = control_value(n->control, n->unit_motion);
   const double more = (n->target - control_shown(n->control) - control_value(n->control, n->change)) / grows;
   if (!isfinite(more)) return NEWTON_SINGULAR;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) n->change[k][i] += more * n->unit_motion[k][i];
   n->factor_change = more;
-  *work = unknowns_product(&n->linear.unknowns, n->change, n->force) +
-          more * unknowns_product(&n->linear.unknowns, n->change, n->unit_force);
+  *work = unknowns_work(&n->linear.unknowns, n->force, n->change) +
+          more * unknowns_work(&n->linear.unknowns, n->unit_force, n->change);
   return NEWTON_CONVERGED;
 }
 
@@ -67,7 +68,7 @@ double newton_controlled_force(Newton *n)
 {
   const Particles *p = n->domain->particles;
   double *const *kept = n->unit_force, sum = 0, factor = 0;
-  for (int k = 0; k < 3; ++k) memcpy(kept[k], p->external[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k) memcpy(kept[k], p->external[k], sizeof(double) * (size_t)p->places);
   for (int l = 0; l < n->loading->count; ++l) {
     const Load *load = &n->loading->loads[l];
     if (history_is_controlled(&load->history) && load_acts(n->loading, load))
@@ -78,16 +79,15 @@ double newton_controlled_force(Newton *n)
     sum += factor * p->volume[i] *
            sqrt(p->external[0][i] * p->external[0][i] + p->external[1][i] * p->external[1][i] +
                 p->external[2][i] * p->external[2][i]);
-  for (int k = 0; k < 3; ++k) memcpy(p->external[k], kept[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k) memcpy(p->external[k], kept[k], sizeof(double) * (size_t)p->places);
   for (int m = 0; m < n->loading->constraint_count; ++m) {
     const Constraint *c = &n->loading->constraints[m];
     const Selection *on = &c->load->selection;
     double along = 0;
     if (!history_is_controlled(&c->load->history) || !load_acts(n->loading, c->load)) continue;
     for (int64_t at = 0; at < on->count; ++at)
-      for (int k = 0; k < 3; ++k)
-        along += p->volume[on->places[at]] * c->direction[k] *
-                 (p->internal[k][on->places[at]] + p->external[k][on->places[at]]);
+      along += p->volume[on->places[at]] *
+               (constraint_along(c, p->internal, on->places[at]) + constraint_along(c, p->external, on->places[at]));
     sum += fabs(along);
   }
   return sum;

@@ -25,8 +25,8 @@ static int try_equations(Newton *n, Trial *least, Error *error)
   const double linearised = clock_seconds();
   if (linear_solver_prepare(&n->linear, error)) return BRECCIA_FAILURE;
   const double prepared = clock_seconds();
-  vectors_clear(n->change, p->places);
-  for (int k = 0; k < 3; ++k) memcpy(n->force[k], p->volume, sizeof(double) * (size_t)p->places);
+  vectors_clear(n->change, p);
+  for (int k = 0; k < p->motions; ++k) memcpy(n->force[k], p->volume, sizeof(double) * (size_t)p->places);
   unknowns_gather(&n->linear.unknowns, n->force);
   const double gathered = clock_seconds();
   if (linear_solver_solve(&n->linear, n->force, n->change, 0.1, &record, error)) return BRECCIA_FAILURE;
@@ -38,8 +38,9 @@ static int try_equations(Newton *n, Trial *least, Error *error)
 
 int newton_measure(Newton *n, StepCost *cost, Error *error)
 {
-  enum { VECTORS = 9 + 6 + 6 }; /* its own, the increment's, and what a failed one gives back */
-  const double vector = sizeof(double) * (double)n->domain->particles->places;
+  enum { VECTORS = 3 + 2 + 2 }; /* its own, the increment's, and what a failed one gives back */
+  const Particles *p = n->domain->particles;
+  const double vector = sizeof(double) * (double)p->motions * (double)p->places;
   const bool elastic = domain_is_elastic(n->domain) && !n->domain->failure.criterion;
   cost->bytes += VECTORS * vector;
   cost->least = !elastic || n->relaxes;

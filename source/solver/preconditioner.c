@@ -8,14 +8,17 @@ enum { PROBES = 3 };
 
 int preconditioner_create(Preconditioner *m, const Domain *d, Error *error)
 {
-  m->diagonal = places_array(d->particles->places, "preconditioner", error);
-  m->grid = m->diagonal ? coarse_grid_create(d, error) : NULL;
+  const Particles *p = d->particles;
+  m->diagonal = places_array(p->places, "preconditioner", error);
+  if (m->diagonal && p->rotary) m->turning = places_array(p->places, "preconditioner", error);
+  m->grid = m->diagonal && (m->turning || !p->rotary) ? coarse_grid_create(d, error) : NULL;
   return m->grid ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 void preconditioner_destroy(Preconditioner *m)
 {
   places_free(&m->diagonal);
+  places_free(&m->turning);
   coarse_grid_destroy(&m->grid);
 }
 
@@ -26,10 +29,11 @@ size_t preconditioner_bytes(const Preconditioner *m)
 
 /* ---- the diagonal ---- */
 
-/** 1 or -1, as if at random, of a component of a probe at a place (SplitMix64). */
-static double sign(int probe, int component, int64_t place)
+/** 1 or -1, as if at random, of a row of motion of a probe at a place (SplitMix64). */
+static double sign(int probe, int row, int64_t place)
 {
-  uint64_t x = ((uint64_t)place * 3 + (uint64_t)component) * PROBES + (uint64_t)probe + 1;
+  uint64_t x = ((uint64_t)place * 3 + (uint64_t)row % 3) * PROBES + (uint64_t)probe + 1;
+  if (row >= ROTATION) x += (uint64_t)1 << 62;
   x *= 0x9e3779b97f4a7c15u;
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
   x = (x ^ x >> 27) * 0x94d049bb133111ebu;
@@ -39,24 +43,33 @@ static double sign(int probe, int component, int64_t place)
 typedef struct Probing {
   const LinearSolver *solver;
   double *const *v, *const *kv;
-  double *diagonal;
+  double *diagonal, *turning;
   int probe;
 } Probing;
+
+/** A probe at a place: rotations as large as displacements. */
+static double probe_of(const LinearSolver *s, int probe, int row, int64_t place)
+{
+  return sign(probe, row, place) / unknowns_length(&s->unknowns, row);
+}
 
 static void fill_with_signs(void *context, int64_t b)
 {
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
+  const Particles *of = p->solver->domain->particles;
   for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
-    for (int k = 0; k < 3; ++k) p->v[k][i] = p->solver->domain->particles->number[i] < 0 ? 0 : sign(p->probe, k, i);
+    for (int k = 0; k < of->motions; ++k) p->v[k][i] = of->number[i] < 0 ? 0 : probe_of(p->solver, p->probe, k, i);
 }
 
 static void add_products(void *context, int64_t b)
 {
   const Probing *p = context;
   const Batch *batch = &p->solver->domain->batches[b];
-  for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i)
+  for (int64_t i = batch->first * SLICE; i < batch->last * SLICE; ++i) {
     for (int k = 0; k < 3; ++k) p->diagonal[i] += p->v[k][i] * p->kv[k][i];
+    for (int k = ROTATION; k < p->solver->domain->particles->motions; ++k) p->turning[i] += p->v[k][i] * p->kv[k][i];
+  }
 }
 
 /** What a particle of its volume, moduli and family would have on the diagonal, but for a factor that all have. */
@@ -66,24 +79,44 @@ static double guess(const Domain *d, int64_t i)
   return d->particles->volume[i] * (m->bulk + 4 * m->shear / 3) * fmax(1, family_count(&d->family, (int32_t)i));
 }
 
+/** Of rotations the least is a share of what the displacements have, at the radius of gyration: of links that do not bend it is nothing, and they stay. */
+static void finish_turning(Preconditioner *m, const LinearSolver *s)
+{
+  const Domain *d = s->domain;
+  const double length = s->unknowns.length, share = length * length / (PROBES * (d->particles->motions - ROTATION)),
+               least = 0.2, nothing = 1e-10;
+  double found = 0, expected = 0;
+  for (int64_t i = 0; i < d->particles->places; ++i) {
+    if (isinf(m->diagonal[i])) continue;
+    found += m->turning[i] * share;
+    expected += length * length * m->diagonal[i];
+  }
+  const double factor = found > nothing * expected ? found / expected : 0;
+  for (int64_t i = 0; i < d->particles->places; ++i)
+    m->turning[i] = factor == 0 || isinf(m->diagonal[i])
+                        ? INFINITY
+                        : fmax(m->turning[i] * share, least * factor * length * length * m->diagonal[i]);
+}
+
 /** The mean of v K v over random signs v is the diagonal (Bekas, Kokiopoulou and Saad 2007, Appl. Numer. Math. 57, 1214): what stands beside it averages
  *  out, and is small where families are large. Whatever the signs say, the diagonal is not less than a share of what its particle's family makes expected:
  *  in what softens K is not positive, but M must be. */
-static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3])
+static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS])
 {
   const Domain *d = s->domain;
   const int64_t places = d->particles->places;
   const double share = 1.0 / (PROBES * d->body.dimensions), least = 0.2;
   double cross[2] = {0}, found = 0, expected = 0;
   memset(m->diagonal, 0, sizeof(double) * (size_t)places);
+  if (m->turning) memset(m->turning, 0, sizeof(double) * (size_t)places);
   for (int probe = 0; probe < PROBES; ++probe) {
-    Probing p = {s, v, kv, m->diagonal, probe};
+    Probing p = {s, v, kv, m->diagonal, m->turning, probe};
     team_each(d->batch_count, fill_with_signs, &p);
     linear_solver_apply(s, v, kv);
     unknowns_clear_rest(&s->unknowns, v);
     team_each(d->batch_count, add_products, &p);
     for (int64_t i = 0; i < places && probe < 2; ++i)
-      for (int k = 0; k < 3; ++k) cross[probe] += kv[k][i] * sign(1 - probe, k, i);
+      for (int k = 0; k < d->particles->motions; ++k) cross[probe] += kv[k][i] * probe_of(s, 1 - probe, k, i);
   }
   double size = 0;
   for (int64_t i = 0; i < places; ++i) {
@@ -98,12 +131,14 @@ static void find_diagonal(Preconditioner *m, LinearSolver *s, double *const v[3]
     const bool lost = d->particles->number[i] < 0 || (m->diagonal[i] == 0 && !family_count(&d->family, (int32_t)i));
     m->diagonal[i] = lost ? INFINITY : fmax(m->diagonal[i] * share, least * factor * guess(d, i));
   }
+  if (m->turning) finish_turning(m, s);
 }
 
-int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[3], double *const kv[3], Error *error)
+int preconditioner_prepare(Preconditioner *m, LinearSolver *s, double *const v[MOTIONS], double *const kv[MOTIONS],
+                           Error *error)
 {
   find_diagonal(m, s, v, kv);
-  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, s->stiffness_share, s->mass_factor, error);
+  return coarse_grid_prepare(m->grid, &s->unknowns, m->diagonal, m->turning, s->stiffness_share, s->mass_factor, error);
 }
 
 /* ---- as it is used ---- */
@@ -115,11 +150,11 @@ typedef struct Scaling {
 } Scaling;
 
 BRECCIA_CLONES
-static void divide(const double *diagonal, double *const f[3], double *const v[3], int64_t first, int64_t last)
+static void divide(const double *diagonal, double *const *f, double *const *v, int rows, int64_t first, int64_t last)
 {
   for (int64_t i = first; i < last; i += LANES) {
     const Lanes inverse = lanes_set(1) / lanes_load(diagonal + i);
-    for (int k = 0; k < 3; ++k) lanes_store(v[k] + i, inverse * lanes_load(f[k] + i));
+    for (int k = 0; k < rows; ++k) lanes_store(v[k] + i, inverse * lanes_load(f[k] + i));
   }
 }
 
@@ -127,10 +162,14 @@ static void divide_batch(void *context, int64_t b)
 {
   const Scaling *s = context;
   const Batch *batch = &s->domain->batches[b];
-  divide(s->m->diagonal, s->f, s->v, batch->first * SLICE, batch->last * SLICE);
+  const int64_t first = batch->first * SLICE, last = batch->last * SLICE;
+  divide(s->m->diagonal, s->f, s->v, ROTATION, first, last);
+  if (s->m->turning)
+    divide(s->m->turning, s->f + ROTATION, s->v + ROTATION, s->domain->particles->motions - ROTATION, first, last);
 }
 
-void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, double *const f[3], double *const v[3])
+void preconditioner_apply(const Preconditioner *m, const LinearSolver *s, double *const f[MOTIONS],
+                          double *const v[MOTIONS])
 {
   team_each(s->domain->batch_count, divide_batch, &(Scaling){m, s->domain, f, v});
   coarse_grid_correct(m->grid, f, v);

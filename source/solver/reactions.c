@@ -7,7 +7,7 @@
 
 int reactions_create(Reactions *r, const Particles *p, Error *error)
 {
-  return vectors_make(r->force, p->places, "reactions", error) ? BRECCIA_OK : BRECCIA_FAILURE;
+  return vectors_make(r->force, p, "reactions", error) ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 void reactions_destroy(Reactions *r)

@@ -7,7 +7,7 @@
 #include "solver/solver.h"
 
 typedef struct Reactions {
-  double *force[3]; /* on held particles, what is left of it while they are gone through */
+  double *force[MOTIONS]; /* on held particles, what is left of it while they are gone through */
 } Reactions;
 
 /** A sum of forces, and its moment about a point. */

@@ -12,14 +12,14 @@ static const double highest = 4 / 1.1;
 
 int relaxation_create(Relaxation *r, Newton *n, Error *error)
 {
-  const int64_t places = n->domain->particles->places;
+  const Particles *p = n->domain->particles;
   r->prepared = NAN;
   n->linear.elastic = &r->elastic;
   const bool failed = elastic_step_create(&r->elastic, n->domain, error) ||
                       preconditioner_create(&r->mass, n->domain, error) ||
-                      !vectors_make(r->velocity, places, "dynamic relaxation", error) ||
-                      !vectors_make(r->momentum, places, "dynamic relaxation", error) ||
-                      !vectors_make(r->product, places, "dynamic relaxation", error);
+                      !vectors_make(r->velocity, p, "dynamic relaxation", error) ||
+                      !vectors_make(r->momentum, p, "dynamic relaxation", error) ||
+                      !vectors_make(r->product, p, "dynamic relaxation", error);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
@@ -36,23 +36,23 @@ void relaxation_destroy(Relaxation *r)
  *  @param[in,out] f  right-hand side; then what is left of it
  *  @param[in,out] v  the answer is added; a vector of unknowns
  *  @return the largest eigenvalue of K over M that shows in the steps taken */
-static double answer_elastically(Relaxation *r, Newton *n, double *const f[3], double *const v[3], int most,
+static double answer_elastically(Relaxation *r, Newton *n, double *const f[MOTIONS], double *const v[MOTIONS], int most,
                                  double tolerance)
 {
   const Unknowns *u = &n->linear.unknowns;
   const Domain *d = n->domain;
   double alpha[MOST_PREDICTING], beta[MOST_PREDICTING] = {0}, slope = 0, share = 1;
-  const double first = unknowns_product(u, f, f);
+  const double first = unknowns_product_of_forces(u, f, f);
   int k = 0;
-  for (; k < most && unknowns_product(u, f, f) > tolerance * tolerance * first; ++k) {
+  for (; k < most && unknowns_product_of_forces(u, f, f) > tolerance * tolerance * first; ++k) {
     preconditioner_apply(&r->mass, &n->linear, f, r->product);
-    const double next = unknowns_product(u, f, r->product), again = k ? next / slope : 0;
+    const double next = unknowns_work(u, f, r->product), again = k ? next / slope : 0;
     vectors_combine(d, again, r->velocity, 1, r->product);
     slope = next;
     linear_solver_apply(&n->linear, r->velocity, r->product);
     ++n->products;
     unknowns_clear_rest(u, r->velocity);
-    const double curvature = unknowns_product(u, r->velocity, r->product);
+    const double curvature = unknowns_work(u, r->product, r->velocity);
     if (!(curvature > 0)) break;
     /* The matrix of Lanczos' method (Golub and Van Loan, Matrix Computations, 10.2). */
     alpha[k] = curvature / slope + (k ? again / share : 0);
@@ -70,10 +70,11 @@ static int prepare(Relaxation *r, Newton *n, Error *error)
   const Particles *p = n->domain->particles;
   uint64_t seed = 1;
   if (preconditioner_prepare(&r->mass, &n->linear, r->velocity, r->product, error)) return BRECCIA_FAILURE;
-  vectors_clear(r->momentum, n->domain->particles->places);
-  vectors_clear(n->change, n->domain->particles->places);
-  for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < p->count; ++i) r->momentum[k][p->place_of[i]] = random_uniform(&seed) - 0.5;
+  vectors_clear(r->momentum, n->domain->particles);
+  vectors_clear(n->change, n->domain->particles);
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->count; ++i)
+      r->momentum[k][p->place_of[i]] = unknowns_length(&n->linear.unknowns, k) * (random_uniform(&seed) - 0.5);
   unknowns_gather(&n->linear.unknowns, r->momentum);
   r->scale = answer_elastically(r, n, r->momentum, n->change, PROBES, 0) / highest;
   return BRECCIA_OK;
@@ -85,14 +86,14 @@ static void add_motions(Relaxation *r, Newton *n)
   const Particles *p = n->domain->particles;
   elastic_step_apply(&r->elastic, n->domain, n->change, r->product);
   loading_change(n->loading, p, n->change, r->product);
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) r->product[k][i] *= p->volume[i];
   unknowns_gather(&n->linear.unknowns, r->product);
   vectors_combine(n->domain, 1, n->force, 1, r->product);
   ++n->products;
 }
 
-static void move(Newton *n, double *const v[3])
+static void move(Newton *n, double *const v[MOTIONS])
 {
   vectors_combine(n->domain, 1, n->domain->particles->displacement, 1, v);
   vectors_combine(n->domain, 1, n->moved, 1, v);
@@ -105,14 +106,14 @@ static int predict(Relaxation *r, Newton *n, double time, bool moves, Error *err
   elastic_step_prepare(&r->elastic, n->domain);
   if (r->prepared != time && prepare(r, n, error)) return BRECCIA_FAILURE;
   r->prepared = time;
-  vectors_clear(n->change, n->domain->particles->places);
+  vectors_clear(n->change, n->domain->particles);
   unknowns_spread(u, time, n->change);
   if (moves) add_motions(r, n);
-  vectors_clear(n->change, n->domain->particles->places);
-  const double before = unknowns_product(u, n->force, n->force);
+  vectors_clear(n->change, n->domain->particles);
+  const double before = unknowns_product_of_forces(u, n->force, n->force);
   answer_elastically(r, n, n->force, n->change, MOST_PREDICTING, 1e-2);
   /* Where elastic stiffness is not symmetric, gradients may raise what is left. */
-  if (!(unknowns_product(u, n->force, n->force) <= before)) vectors_clear(n->change, n->domain->particles->places);
+  if (!(unknowns_product_of_forces(u, n->force, n->force) <= before)) vectors_clear(n->change, n->domain->particles);
   unknowns_spread(u, time, n->change);
   move(n, n->change);
   if (n->log) text_add(n->log, "    elastic prediction: %lld evaluations\n", (long long)n->products);
@@ -127,17 +128,17 @@ static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *da
   vectors_combine(d, (2 - *damping) / (2 + *damping), r->momentum, 2 / (2 + *damping), n->force);
   preconditioner_apply(&r->mass, &n->linear, r->momentum, r->velocity);
   vectors_combine(d, 1 / r->scale, r->velocity, 0, r->velocity);
-  const double twice_kinetic = unknowns_product(u, r->velocity, r->momentum);
-  const double before = unknowns_product(u, r->velocity, n->force);
+  const double twice_kinetic = unknowns_work(u, r->momentum, r->velocity);
+  const double before = unknowns_work(u, n->force, r->velocity);
   unknowns_spread(u, NAN, r->velocity);
   move(n, r->velocity);
   const NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  const double fall = before - unknowns_product(u, r->velocity, n->force);
+  const double fall = before - unknowns_work(u, n->force, r->velocity);
   const double quotient = twice_kinetic > 0 ? fall / twice_kinetic : 0;
   if (quotient > highest) { /* stiffer than the elastic body: steps of 1 must not become unstable */
     r->scale *= 1.5 * quotient / highest;
-    vectors_clear(r->momentum, n->domain->particles->places);
+    vectors_clear(r->momentum, n->domain->particles);
   }
   *damping = 2 * sqrt(fmin(fmax(quotient, 0), 0.9));
   return NEWTON_CONVERGED;
@@ -146,7 +147,7 @@ static NewtonOutcome take_step(Relaxation *r, Newton *n, double time, double *da
 /** Forces out of balance over those that are exerted; 0 of roundings. */
 static double find_unbalanced(const Newton *n)
 {
-  const double force = sqrt(unknowns_product(&n->linear.unknowns, n->force, n->force));
+  const double force = sqrt(unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force));
   if (force <= n->roundings) return 0;
   return n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
 }
@@ -156,12 +157,12 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   const Unknowns *u = &n->linear.unknowns;
   n->iterations = n->products = 0;
   n->indefinite = false;
-  vectors_clear(n->moved, n->domain->particles->places);
+  vectors_clear(n->moved, n->domain->particles);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  vectors_clear(n->change, n->domain->particles->places);
+  vectors_clear(n->change, n->domain->particles);
   unknowns_spread(u, time, n->change);
-  const bool moves = unknowns_product(u, n->change, n->change) > 0;
+  const bool moves = unknowns_product_of_motions(u, n->change, n->change) > 0;
   n->unbalanced_before = n->unbalanced = find_unbalanced(n);
   if (moves || n->unbalanced > n->spec->residual) {
     if (predict(r, n, time, moves, error)) return NEWTON_FAILED;
@@ -169,7 +170,7 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
     n->unbalanced = find_unbalanced(n);
   }
   double damping = 0;
-  vectors_clear(r->momentum, n->domain->particles->places);
+  vectors_clear(r->momentum, n->domain->particles);
   while (n->unbalanced > n->spec->residual) {
     if (++n->iterations > most) return NEWTON_SLOW;
     if ((outcome = take_step(r, n, time, &damping, error)) != NEWTON_CONVERGED) return outcome;

@@ -1,7 +1,9 @@
 #include "solver/rest.h"
 
 #include "base/memory.h"
+#include "loading/constraint.h"
 #include "solver/unknowns.h"
+#include "solver/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -33,38 +35,36 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   *rest = (Rest){.meant = is_meant(s)};
   if (!rest->meant) return BRECCIA_OK;
   const Particles *p = s->domain->particles;
-  double *free_force[3] = {0}, unbalanced = 0, acting = 0;
-  int failed = 0;
-  for (int k = 0; k < 3; ++k) {
-    failed |= !(free_force[k] = places_array(p->places, "forces out of balance", error));
-    for (int64_t i = 0; !failed && i < p->places; ++i)
-      free_force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
+  const Unknowns unknowns = unknowns_of(s->domain, s->loading);
+  double *free_force[MOTIONS] = {0}, unbalanced = 0, acting = 0;
+  const bool failed = !vectors_make(free_force, p, "forces out of balance", error);
+  for (int k = 0; k < p->motions && !failed; ++k) {
+    for (int64_t i = 0; i < p->places; ++i) free_force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
   }
   for (int n = 0; !failed && n < s->loading->constraint_count; ++n) { /* what a support carries is balanced */
     const Constraint *c = &s->loading->constraints[n];
-    for (int64_t at = 0; load_acts(s->loading, c->load) && !c->row && at < c->load->selection.count; ++at) {
+    for (int64_t at = 0; load_acts(s->loading, c->load) && at < c->load->selection.count; ++at) {
       const int32_t i = c->load->selection.places[at];
-      double along = 0;
-      for (int k = 0; k < 3; ++k) along += free_force[k][i] * c->direction[k];
-      for (int k = 0; k < 3; ++k) free_force[k][i] -= along * c->direction[k];
-      acting += fabs(along);
+      const double along = constraint_along(c, free_force, i);
+      constraint_add(c, free_force, i, -along);
+      acting += fabs(along) / unknowns_length(&unknowns, c->row);
     }
   }
   if (!failed && s->type->rests) { /* what ties exert is not among the forces then */
-    const Unknowns unknowns = unknowns_of(s->domain, s->loading);
     unknowns_gather(&unknowns, free_force);
   }
   for (int64_t n = 0; !failed && n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     double square = 0, external = 0;
-    for (int k = 0; k < 3; ++k) {
-      square += free_force[k][i] * free_force[k][i];
-      external += p->external[k][i] * p->external[k][i];
+    for (int k = 0; k < p->motions; ++k) {
+      const double length = unknowns_length(&unknowns, k);
+      square += pow(free_force[k][i] / length, 2);
+      external += pow(p->external[k][i] / length, 2);
     }
     unbalanced += sqrt(square);
     acting += p->volume[i] * sqrt(external);
   }
-  for (int k = 0; k < 3; ++k) places_free(&free_force[k]);
+  vectors_free(free_force);
   if (failed) return BRECCIA_FAILURE;
   if (s->type->exerted) acting = fmax(acting, s->type->exerted(s)); /* nothing acts on what was unloaded, or is torn */
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;

@@ -179,20 +179,6 @@ static int check_controlled(const Solver *s, Error *error)
   return status;
 }
 
-/** Bodies with rotations take solvers that move them. */
-static int check_rotations(const Solver *s, Error *error)
-{
-  for (int64_t k = 0; k < s->clock.stages && s->domain->particles->motions > ROTATION; ++k) {
-    const SolverType *type = types[type_of(stage_of(s, k))];
-    if (!type->turns)
-      return node_error(s->reader->document, section_node(stage_of(s, k), type->name), error,
-                        "%s: particles of this body have rotations, which only 'explicit' moves so far; take that with "
-                        "'local damping' to find states of rest",
-                        type->name);
-  }
-  return BRECCIA_OK;
-}
-
 int solver_create(Solver *s, Text *warning, Error *error)
 {
   bool zeroes = false;
@@ -204,7 +190,6 @@ int solver_create(Solver *s, Text *warning, Error *error)
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
   int status = check_laws(s, error);
   if (!status) status = check_controlled(s, error);
-  if (!status) status = check_rotations(s, error);
   if (!status) status = solver_enter(s, 0, error);
   if (!status) status = s->type->plan(s, warning, error);
   for (int64_t k = 1; !status && k < s->clock.stages; ++k) {

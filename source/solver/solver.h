@@ -85,7 +85,6 @@ struct SolverType {
   void (*state)(Solver *solver, StateList *list);
   /** Whether something takes energy out of motions, so that a body may come to rest. */
   bool (*damps)(const Solver *solver);
-  bool turns; /* it moves rotations */
   /** Whether its steps are few and long, so that histories have a row for each. */
   bool few_steps;
   /** Whether every step ends in equilibrium at rest. */

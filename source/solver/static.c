@@ -86,7 +86,7 @@ const Section static_section = {.name = "static",
 /** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these
  *  two, whatever was tried on the way. */
 typedef struct Way {
-  double *moved[3]; /* made where an increment is solved again; else what Newton's method has moved is all */
+  double *moved[MOTIONS]; /* made where an increment is solved again; else what Newton's method has moved is all */
   double bonds, given_off, sudden; /* works booked of it */
 } Way;
 
@@ -267,7 +267,7 @@ static int begin(Solver *run, Error *error)
   if (run->loose && check_hold(run, s->spec, error)) return BRECCIA_USER_ERROR;
   run->ledger.damping_work += run->ledger.kinetic; /* of the stage before: it is at rest now */
   run->ledger.kinetic = 0;
-  vectors_clear(p->velocity, p->places);
+  vectors_clear(p->velocity, p);
   control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
@@ -278,7 +278,7 @@ static int begin(Solver *run, Error *error)
 /** Works by the trapezium rule. Forces out of balance at the beginning, of a load that was there already or of bonds that have broken, do work that the
  *  body gives off on its way to rest.
  *  @param[in] moved  on the whole way */
-static void book(Static *s, double *const moved[3])
+static void book(Static *s, double *const moved[MOTIONS])
 {
   const Particles *p = s->domain->particles;
   const Increment *begin = &s->increment;
@@ -286,7 +286,7 @@ static void book(Static *s, double *const moved[3])
   double bonds = 0;
   for (int64_t b = 0; b < s->domain->batch_count; ++b) {
     double part = 0;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < p->motions; ++k)
       for (int64_t i = s->domain->batches[b].first * SLICE; i < s->domain->batches[b].last * SLICE; ++i) {
         part -= 0.5 * p->volume[i] * (begin->internal[k][i] + p->internal[k][i]) * moved[k][i];
         before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
@@ -294,8 +294,8 @@ static void book(Static *s, double *const moved[3])
     bonds += part;
   }
   unknowns_gather(&s->newton.linear.unknowns, before);
-  const double given_off = 0.5 * (unknowns_product(&s->newton.linear.unknowns, before, moved) +
-                                  unknowns_product(&s->newton.linear.unknowns, s->newton.force, moved));
+  const double given_off = 0.5 * (unknowns_work(&s->newton.linear.unknowns, before, moved) +
+                                  unknowns_work(&s->newton.linear.unknowns, s->newton.force, moved));
   s->ledger->bond_work += bonds - s->way.bonds;
   s->ledger->damping_work += given_off - s->way.given_off;
   s->ledger->external_work += bonds + given_off - s->way.bonds - s->way.given_off;
@@ -305,7 +305,7 @@ static void book(Static *s, double *const moved[3])
   s->way.given_off = given_off;
 }
 
-static void book_sudden(Static *s, double *const moved[3])
+static void book_sudden(Static *s, double *const moved[MOTIONS])
 {
   const double sudden = increment_sudden_work(&s->increment, moved);
   s->ledger->bond_work += sudden - s->way.sudden;
@@ -348,8 +348,8 @@ static NewtonOutcome try_increment(Static *s, double end, bool again, Error *err
  *  @param[in] first  it was the first on this way */
 static int try_again(Static *s, bool first, NewtonOutcome *outcome, Error *error)
 {
-  const int64_t places = s->domain->particles->places;
-  if (!s->way.moved[0] && !vectors_make(s->way.moved, places, "static solver", error)) return BRECCIA_FAILURE;
+  if (!s->way.moved[0] && !vectors_make(s->way.moved, s->domain->particles, "static solver", error))
+    return BRECCIA_FAILURE;
   if (first) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
   *outcome = try_increment(s, s->clock->time, true, error);
   return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;

@@ -165,10 +165,6 @@ static int check_stiffness_damping(const Solver *run, const ExplicitSpec *spec, 
   if (!(spec->damping.stiffness > 0)) return BRECCIA_OK;
   const char *key = spec->damping_given.rayleigh ? "Rayleigh damping" : "stiffness damping";
   const Node *node = section_node(spec, key);
-  if (run->domain->particles->motions > ROTATION)
-    return node_error(run->reader->document, node, error,
-                      "%s: rotations of particles have no place in it yet; take 'damping' or 'local damping' alone",
-                      key);
   if (run->domain->forces.count)
     return node_error(run->reader->document, node, error,
                       "%s: contact has no place in it yet; leave 'contact' out, or take 'damping' alone", key);

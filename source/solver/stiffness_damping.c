@@ -8,11 +8,11 @@
 int stiffness_damping_create(StiffnessDamping *s, double time, const Domain *d, Error *error)
 {
   static const char label[] = "stiffness damping";
-  const int64_t places = d->particles->places;
+  const Particles *p = d->particles;
   s->time = time;
   if (!(time > 0)) return BRECCIA_OK;
-  const bool made = !aside_create(&s->aside, d, label, error) && vectors_make(s->was, places, label, error) &&
-                    vectors_make(s->drag, places, label, error) && vectors_make(s->left, places, label, error);
+  const bool made = !aside_create(&s->aside, d, label, error) && vectors_make(s->was, p, label, error) &&
+                    vectors_make(s->drag, p, label, error) && vectors_make(s->left, p, label, error);
   return made ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
@@ -32,14 +32,15 @@ size_t stiffness_damping_bytes(const StiffnessDamping *s, const Domain *d)
 
 void stiffness_damping_note(StiffnessDamping *s, const Domain *d, int64_t first, int64_t last)
 {
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < d->particles->motions; ++k)
     memcpy(s->was[k] + first, d->particles->displacement[k] + first, sizeof(double) * (size_t)(last - first));
 }
 
 /** Elastic forces at these displacements. */
-static void evaluate(StiffnessDamping *s, Domain *d, double *const at[3])
+static void evaluate(StiffnessDamping *s, Domain *d, double *const at[MOTIONS])
 {
-  for (int k = 0; k < 3; ++k) memcpy(s->aside.displacement[k], at[k], sizeof(double) * (size_t)d->particles->places);
+  for (int k = 0; k < d->particles->motions; ++k)
+    memcpy(s->aside.displacement[k], at[k], sizeof(double) * (size_t)d->particles->places);
   aside_exchange(&s->aside, d);
   domain_evaluate(d);
   aside_exchange(&s->aside, d);
@@ -47,7 +48,7 @@ static void evaluate(StiffnessDamping *s, Domain *d, double *const at[3])
 
 static void exchange_displacements(StiffnessDamping *s, Particles *p)
 {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < p->motions; ++k) {
     double *u = p->displacement[k];
     p->displacement[k] = s->was[k];
     s->was[k] = u;
@@ -60,7 +61,8 @@ void stiffness_damping_find(StiffnessDamping *s, Domain *d, double step)
   const bool elastic = domain_in_elastic_stage(d), linear = domain_is_elastic(d);
   domain_set_elastic_stage(d, true);
   if (!linear) evaluate(s, d, s->was); /* else they are those that the body has */
-  for (int k = 0; k < 3; ++k) memcpy(s->drag[k], linear ? d->particles->internal[k] : s->aside.internal[k], bytes);
+  for (int k = 0; k < d->particles->motions; ++k)
+    memcpy(s->drag[k], linear ? d->particles->internal[k] : s->aside.internal[k], bytes);
   evaluate(s, d, d->particles->displacement);
   domain_set_elastic_stage(d, elastic);
   vectors_combine(d, s->time / step, s->drag, -s->time / step, s->aside.internal);
@@ -73,7 +75,7 @@ void stiffness_damping_find(StiffnessDamping *s, Domain *d, double step)
 
 static void exchange_forces(StiffnessDamping *s, Domain *d)
 {
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < d->particles->motions; ++k) {
     double *f = d->particles->internal[k];
     d->particles->internal[k] = s->left[k];
     s->left[k] = f;
@@ -82,7 +84,7 @@ static void exchange_forces(StiffnessDamping *s, Domain *d)
 
 void stiffness_damping_take_off(StiffnessDamping *s, Domain *d)
 {
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < d->particles->motions; ++k)
     TEAM_FOR (i, d->particles->places) s->left[k][i] = d->particles->internal[k][i] - s->drag[k][i];
   TEAM_SINGLE exchange_forces(s, d);
 }

@@ -6,11 +6,11 @@
 #include "solver/aside.h"
 
 typedef struct StiffnessDamping {
-  double time;     /* b; 0: there is none, and no array */
-  Aside aside;     /* where elastic forces are found */
-  double *was[3];  /* displacements before the step */
-  double *drag[3]; /* [places] force per volume against the motion, as found last */
-  double *left[3]; /* internal forces less these, for loads that look at all forces */
+  double time;           /* b; 0: there is none, and no array */
+  Aside aside;           /* where elastic forces are found */
+  double *was[MOTIONS];  /* displacements before the step */
+  double *drag[MOTIONS]; /* [places] force per volume against the motion, as found last */
+  double *left[MOTIONS]; /* internal forces less these, for loads that look at all forces */
 } StiffnessDamping;
 
 /** `damping` is zero; destroy it in any case. */

@@ -9,18 +9,14 @@
 
 Unknowns unknowns_of(const Domain *domain, const Loading *loading)
 {
-  Unknowns u = {.domain = domain, .loading = loading};
+  Unknowns u = {.domain = domain, .loading = loading, .length = 1};
   for (int k = 0; k < 3; ++k) u.flat[k] = k >= domain->body.dimensions;
+  const Particles *p = domain->particles;
+  if (p->rotary) u.length = sqrt(p->rotary[p->place_of[0]] / p->density[p->place_of[0]]);
   return u;
 }
 
-static void add_along(double *const v[3], const double direction[3], int32_t i, double amount)
-{
-  for (int k = 0; k < 3; ++k)
-    if (direction[k] != 0) v[k][i] += amount * direction[k];
-}
-
-static void clear_flat(const Unknowns *u, double *const v[3])
+static void clear_flat(const Unknowns *u, double *const v[MOTIONS])
 {
   for (int k = 0; k < 3; ++k)
     if (u->flat[k]) memset(v[k], 0, sizeof(double) * (size_t)u->domain->particles->places);
@@ -50,16 +46,19 @@ static void spread_row(const Constraint *c, int64_t n, void *context)
 {
   const Spreading *s = context;
   const int32_t i = c->load->selection.places[n];
-  double *const *u = s->unknowns->domain->particles->displacement;
+  const Particles *p = s->unknowns->domain->particles;
+  double *const *u = p->displacement;
   double wanted = 0;
-  if (c->images) wanted = c->share * vectors_along(s->v, c->direction, c->images[n]);
+  if (c->images) wanted = c->share * constraint_along(c, s->v, c->images[n]);
   if (s->controlled && history_is_controlled(&c->load->history)) wanted += c->value * constraint_part(c, n);
-  if (!isnan(s->time)) {
-    wanted += constraint_displacement(c, s->time) * constraint_part(c, n) + (c->from ? c->from[n] : 0) -
-              vectors_along(u, c->direction, i);
-    if (c->images) wanted += c->share * vectors_along(u, c->direction, c->images[n]);
-  }
-  add_along(s->v, c->direction, i, wanted - vectors_along(s->v, c->direction, i));
+  const bool from_step = c->row && p->orientation[0]; /* rotations in space count from the beginning of the step */
+  if (!isnan(s->time) && from_step)
+    wanted += constraint_change(c, domain_step_begin(s->unknowns->domain), s->time) * constraint_part(c, n);
+  else if (!isnan(s->time))
+    wanted += constraint_displacement(c, s->time) * constraint_part(c, n) + (c->from ? c->from[n] : 0);
+  if (!isnan(s->time)) wanted -= constraint_along(c, u, i);
+  if (!isnan(s->time) && c->images) wanted += c->share * constraint_along(c, u, c->images[n]);
+  constraint_add(c, s->v, i, wanted - constraint_along(c, s->v, i));
 }
 
 static void spread(const Unknowns *u, Spreading *s)
@@ -75,12 +74,12 @@ static void spread(const Unknowns *u, Spreading *s)
   unknowns_each_row(u, spread_row, s);
 }
 
-void unknowns_spread(const Unknowns *u, double time, double *const v[3])
+void unknowns_spread(const Unknowns *u, double time, double *const v[MOTIONS])
 {
   spread(u, &(Spreading){u, time, false, v});
 }
 
-void unknowns_spread_controlled(const Unknowns *u, double *const v[3])
+void unknowns_spread_controlled(const Unknowns *u, double *const v[MOTIONS])
 {
   spread(u, &(Spreading){u, NAN, true, v});
 }
@@ -91,11 +90,11 @@ static void clear_row(const Constraint *c, int64_t n, void *context)
 {
   double *const *v = context;
   const int32_t i = c->load->selection.places[n];
-  add_along(v, c->direction, i, -vectors_along(v, c->direction, i));
+  constraint_add(c, v, i, -constraint_along(c, v, i));
 }
 
 /** Ties hand on what all particles of a group get, or nothing. */
-static void close_ties(const Unknowns *u, double *const f[3], bool hand_on)
+static void close_ties(const Unknowns *u, double *const f[MOTIONS], bool hand_on)
 {
   for (int k = 0; k < 3; ++k) {
     const TieGroups *ties = &u->loading->ties[k];
@@ -109,18 +108,16 @@ static void close_ties(const Unknowns *u, double *const f[3], bool hand_on)
   }
 }
 
-void unknowns_gather(const Unknowns *u, double *const f[3])
+void unknowns_gather(const Unknowns *u, double *const f[MOTIONS])
 {
-  double *vector[3] = {f[0], f[1], f[2]};
-  unknowns_each_row(u, clear_row, vector);
+  unknowns_each_row(u, clear_row, (void *)f);
   close_ties(u, f, true);
   clear_flat(u, f);
 }
 
-void unknowns_clear_rest(const Unknowns *u, double *const v[3])
+void unknowns_clear_rest(const Unknowns *u, double *const v[MOTIONS])
 {
-  double *vector[3] = {v[0], v[1], v[2]};
-  unknowns_each_row(u, clear_row, vector);
+  unknowns_each_row(u, clear_row, (void *)v);
   close_ties(u, v, false);
   clear_flat(u, v);
 }
@@ -128,18 +125,17 @@ void unknowns_clear_rest(const Unknowns *u, double *const v[3])
 int64_t unknowns_count(const Unknowns *u, Error *error)
 {
   const Particles *p = u->domain->particles;
-  double *ones[3] = {0}, sum = 0;
-  int failed = 0;
-  for (int k = 0; k < 3; ++k) failed |= !(ones[k] = places_array(p->places, "unknowns", error));
+  double *ones[MOTIONS] = {0}, sum = 0;
+  const bool made = vectors_make(ones, p, "unknowns", error);
   /* The trace of a projection is the number of directions that it leaves: axis by axis. */
-  for (int axis = 0; axis < 3 && !failed; ++axis) {
-    for (int k = 0; k < 3; ++k)
+  for (int axis = 0; axis < p->motions && made; ++axis) {
+    for (int k = 0; k < p->motions; ++k)
       for (int64_t i = 0; i < p->places; ++i) ones[k][i] = k == axis && p->number[i] >= 0;
     unknowns_clear_rest(u, ones);
     for (int64_t i = 0; i < p->places; ++i) sum += ones[axis][i];
   }
-  for (int k = 0; k < 3; ++k) places_free(&ones[k]);
-  return failed ? -1 : (int64_t)(sum + 0.5);
+  vectors_free(ones);
+  return made ? (int64_t)(sum + 0.5) : -1;
 }
 
 /* ---- products ---- */
@@ -147,14 +143,15 @@ int64_t unknowns_count(const Unknowns *u, Error *error)
 typedef struct Product {
   const Unknowns *unknowns;
   double *const *a, *const *b;
+  double weight; /* of rotations */
   double *parts; /* [batches] */
 } Product;
 
 BRECCIA_CLONES
-static double product_of(double *const a[3], double *const b[3], int64_t first, int64_t last)
+static double product_of(double *const *a, double *const *b, int rows, int64_t first, int64_t last)
 {
   Lanes sum = {0};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < rows; ++k)
     for (int64_t i = first; i < last; i += LANES) sum += lanes_load(a[k] + i) * lanes_load(b[k] + i);
   return lanes_total(sum);
 }
@@ -163,16 +160,34 @@ static void multiply(void *context, int64_t batch)
 {
   const Product *m = context;
   const Batch *slices = &m->unknowns->domain->batches[batch];
-  m->parts[batch] = product_of(m->a, m->b, slices->first * SLICE, slices->last * SLICE);
+  const int64_t first = slices->first * SLICE, last = slices->last * SLICE;
+  const int turning = m->unknowns->domain->particles->motions - ROTATION;
+  m->parts[batch] = product_of(m->a, m->b, ROTATION, first, last);
+  if (turning) m->parts[batch] += m->weight * product_of(m->a + ROTATION, m->b + ROTATION, turning, first, last);
 }
 
-double unknowns_product(const Unknowns *u, double *const a[3], double *const b[3])
+static double find_product(const Unknowns *u, double *const *a, double *const *b, double weight)
 {
-  Product m = {u, a, b, u->domain->batch_sum};
+  Product m = {u, a, b, weight, u->domain->batch_sum};
   double sum = 0;
   team_each(u->domain->batch_count, multiply, &m);
   for (int64_t n = 0; n < u->domain->batch_count; ++n) sum += m.parts[n];
   return sum;
+}
+
+double unknowns_work(const Unknowns *u, double *const force[MOTIONS], double *const motion[MOTIONS])
+{
+  return find_product(u, force, motion, 1);
+}
+
+double unknowns_product_of_forces(const Unknowns *u, double *const a[MOTIONS], double *const b[MOTIONS])
+{
+  return find_product(u, a, b, 1 / (u->length * u->length));
+}
+
+double unknowns_product_of_motions(const Unknowns *u, double *const a[MOTIONS], double *const b[MOTIONS])
+{
+  return find_product(u, a, b, u->length * u->length);
 }
 
 /* ---- the body as a whole ---- */
@@ -207,6 +222,13 @@ static void add_row(Hold *h, const double moved[RIGID])
 static void hold_row(const Constraint *c, int64_t n, void *context)
 {
   double moved[RIGID] = {0};
+  const Hold *h = context;
+  if (c->row) { /* a particle that cannot turn */
+    for (int k = 0; k < 3; ++k)
+      if (c->direction[k] != 0) moved[h->particles->motions == 4 ? RIGID - 1 : 3 + k] = c->direction[k];
+    add_row(context, moved);
+    return;
+  }
   rigid(context, c->direction, c->load->selection.places[n], 1, moved);
   if (c->images) rigid(context, c->direction, c->images[n], -c->share, moved);
   add_row(context, moved);

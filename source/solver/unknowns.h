@@ -1,9 +1,10 @@
 /* Which displacements are free in a stage, for solvers that solve for them.
  *
- * Vectors are arrays over places, x, y, z, as displacements are. Prescribed motions, ties and the space of the body make rows that say how some
+ * Vectors are arrays over places, a row of each motion, as displacements are. Prescribed motions, ties and the space of the body make rows that say how some
  * changes of displacements follow from others: v = T q + g. T is never made: `unknowns_spread` is T and `unknowns_gather` its transpose, both in
  * place. A vector of unknowns q is 0 wherever a displacement is not free. Of a particle that is held in a direction along no axis what is left of
- * the vector in the plane across it is free. Ties have their unknown at the first particle of each group. Mirror images outside a support move with
+ * the vector in the plane across it is free. Where forces are compared with forces or motions with motions, a rotation counts as the displacement that it
+ * makes at the particle's radius of gyration, so that nothing depends on the unit of length. Ties have their unknown at the first particle of each group. Mirror images outside a support move with
  * particles inside and take no part in their equilibrium: by symmetry it is that of one half, and their forces are dropped, not handed on. */
 #ifndef BRECCIA_SOLVER_UNKNOWNS_H
 #define BRECCIA_SOLVER_UNKNOWNS_H
@@ -15,6 +16,8 @@ typedef struct Unknowns {
   const Domain *domain;
   const Loading *loading;
   bool flat[3]; /* the body does not extend along this axis and nothing moves along it */
+  double
+      length; /* by which a rotation counts as a displacement: the radius of gyration of the first particle; 1 without rotations */
 } Unknowns;
 
 /** Those of the stage under way. Nothing is kept but what is pointed to. */
@@ -30,20 +33,28 @@ int64_t unknowns_count(const Unknowns *unknowns, Error *error);
 
 /** Gives a change of displacements its values where it is not free, by those that are: T. By one thread.
  *  @param[in] time  displacements held and change together are then as prescribed at this time of the run; NaN: nothing prescribed moves */
-void unknowns_spread(const Unknowns *unknowns, double time, double *const v[3]);
+void unknowns_spread(const Unknowns *unknowns, double time, double *const v[MOTIONS]);
 
 /** The same with what motions of controlled loads do where their factor grows by 1, and nothing else that is prescribed. By one thread. */
-void unknowns_spread_controlled(const Unknowns *unknowns, double *const v[3]);
+void unknowns_spread_controlled(const Unknowns *unknowns, double *const v[MOTIONS]);
 
 /** Forces on all displacements to forces on the free ones: those on tied ones are handed on, all others taken off.
  *  @param[in,out] f  forces, not forces per volume */
-void unknowns_gather(const Unknowns *unknowns, double *const f[3]);
+void unknowns_gather(const Unknowns *unknowns, double *const f[MOTIONS]);
 
 /** Sets what is not free to 0: the projection on vectors of unknowns. */
-void unknowns_clear_rest(const Unknowns *unknowns, double *const v[3]);
+void unknowns_clear_rest(const Unknowns *unknowns, double *const v[MOTIONS]);
 
-/** Sum of products, the same bits for any number of threads. */
-double unknowns_product(const Unknowns *unknowns, double *const a[3], double *const b[3]);
+/** Weight of a row of motions beside others, as a length: 1 of displacements. */
+static inline double unknowns_length(const Unknowns *unknowns, int row)
+{
+  return row < ROTATION ? 1 : unknowns->length;
+}
+
+/** Sums of products, the same bits for any number of threads: of forces with motions, which is work; of forces with forces; of motions with motions. */
+double unknowns_work(const Unknowns *unknowns, double *const force[MOTIONS], double *const motion[MOTIONS]);
+double unknowns_product_of_forces(const Unknowns *unknowns, double *const a[MOTIONS], double *const b[MOTIONS]);
+double unknowns_product_of_motions(const Unknowns *unknowns, double *const a[MOTIONS], double *const b[MOTIONS]);
 
 /** Says along which axis, or about which, the body can move as a whole because nothing holds it.
  *  @param[out] motion  words like "along y"; untouched when all six (in the plane three) are held */

@@ -187,6 +187,8 @@ Sums sums_of(const breccia_model *m)
       s.turn[k] += mass * ((p->position[a][i] + p->displacement[a][i]) * p->velocity[b][i] -
                            (p->position[b][i] + p->displacement[b][i]) * p->velocity[a][i]);
     }
+    for (int k = ROTATION; k < p->motions; ++k)
+      s.turn[p->motions == 4 ? 2 : k - ROTATION] += p->rotary[i] * p->volume[i] * p->velocity[k][i];
   }
   for (int k = 0; k < 3; ++k) s.moved[k] /= s.volume;
   return s;

@@ -38,7 +38,7 @@ void compute_forces(breccia_model *model);
 void step_surely(breccia_model *model, int64_t steps);
 /** Steps a model to its end; fails the test unless a step fails with these words. */
 void step_must_fail(breccia_model *model, const char *words);
-/** Masses, volumes, momentum and moment of momentum about the origin, external force, and the mean displacement, of all particles. */
+/** Masses, volumes, momentum and moment of momentum about the origin (with that of spins), external force, and the mean displacement, of all particles. */
 typedef struct Sums {
   double mass, volume, momentum[3], turn[3], external[3], moved[3];
 } Sums;

@@ -17,7 +17,7 @@
 /* ---- changes of forces ---- */
 
 /** A smooth motion that shears, turns and strains. */
-static void wave(const breccia_model *m, double amplitude, double *const v[3])
+static void wave(const breccia_model *m, double amplitude, double *const v[MOTIONS])
 {
   const Particles *p = m->domain.particles;
   for (int64_t n = 0; n < p->count; ++n) {
@@ -29,7 +29,7 @@ static void wave(const breccia_model *m, double amplitude, double *const v[3])
   }
 }
 
-static void add(const breccia_model *m, double factor, double *const v[3])
+static void add(const breccia_model *m, double factor, double *const v[MOTIONS])
 {
   const Particles *p = m->domain.particles;
   for (int k = 0; k < 3; ++k)
@@ -42,9 +42,9 @@ static void check_changes(breccia_model *m, const char *what)
   Domain *d = &m->domain;
   const Particles *p = d->particles;
   const double h = 1e-9;
-  double *v[3] = {0}, *change[3] = {0}, *forces[2][3] = {{0}};
-  assert_true(vectors_make(v, p->places, "test", NULL) && vectors_make(change, p->places, "test", NULL));
-  assert_true(vectors_make(forces[0], p->places, "test", NULL) && vectors_make(forces[1], p->places, "test", NULL));
+  double *v[MOTIONS] = {0}, *change[MOTIONS] = {0}, *forces[2][MOTIONS] = {{0}};
+  assert_true(vectors_make(v, p, "test", NULL) && vectors_make(change, p, "test", NULL));
+  assert_true(vectors_make(forces[0], p, "test", NULL) && vectors_make(forces[1], p, "test", NULL));
   wave(m, 1, v);
   for (int side = 0; side < 2; ++side) {
     add(m, side ? h : -h, v);
@@ -127,8 +127,8 @@ static void points_of_pairs_are_what_the_matrix_needs(void **state)
   LinearSolver solver = {
       .domain = d, .loading = &m->loading, .unknowns = unknowns_of(d, &m->loading), .stiffness_share = 0.3};
   Matrix matrix = {0};
-  double *v[3] = {0}, *kv[3] = {0};
-  assert_true(vectors_make(v, p->places, "test", NULL) && vectors_make(kv, p->places, "test", NULL));
+  double *v[MOTIONS] = {0}, *kv[MOTIONS] = {0};
+  assert_true(vectors_make(v, p, "test", NULL) && vectors_make(kv, p, "test", NULL));
   domain_evaluate(d);
   deform_uniformly(m, pressed);
   assert_int_equal(domain_linearise(d, NULL), 0);

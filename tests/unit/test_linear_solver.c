@@ -12,6 +12,7 @@
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 #define END "solve: {explicit: {steps: 1, time step: 1e-6}}\n"
 #define ELASTIC "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+#define LINKS "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}}\n"
 #define SPRINGS "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
 #define TWO                                                                                                            \
   "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}, n: {model: elastic, "         \
@@ -68,6 +69,16 @@ static const struct Case {
      "loads: [" HOLD ", {on: {face: x+, layers: 1}, spring: {stiffness: 2e3, direction: [0.6, 0.8]}},"
      " {on: {nearest: [0.45, 0.65]}, spring: {stiffness: 1e3, to: {nearest: [0.75, 0.05]}}},"
      " {on: {face: y+, layers: 1}, spring: {stiffness: 3e3, direction: [1, 2], to: {face: y-, layers: 1}}}]\n"},
+    {"links in the plane", LINKS
+     "body: {b: {material: m, lattice: hexagonal, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [9, 7]}}}}\n"
+     "peridynamics: {formulation: micropolar, space: plane stress}\n"
+     "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}, {on: {face: x-, layers: 1}, rotation: [0, 0, 0]},"
+     " {on: {nearest: [0.75, 0.05]}, roller: [0.6, 0.8]}, {on: {nearest: [0.45, 0.3]}, rotation: [0, 0, 0]},"
+     " {on: {face: x+, layers: 1}, tie: {directions: x}}, {on: {face: y+, layers: 1}, spring: {stiffness: 2e3}}]\n"},
+    {"links in space",
+     LINKS "body: {b: {material: m, lattice: face-centred cubic, spacing: 0.1, shape: {box: {particles: [4, 3, 3]}}}}\n"
+           "peridynamics: {formulation: micropolar, space: 3-D}\n"
+           "loads: [" HOLD ", {on: {nearest: [0.3, 0.1, 0.1]}, rotation: [0, free, 0]}]\n"},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -76,13 +87,13 @@ typedef struct Problem {
   breccia_model *model;
   Domain *domain;
   LinearSolver solver;
-  double *f[3], *v[3], *kv[3];
+  double *f[MOTIONS], *v[MOTIONS], *kv[MOTIONS];
   Team *before;
 } Problem;
 
-static void fill_randomly(const Particles *p, double *const v[3], double size, uint64_t seed)
+static void fill_randomly(const Particles *p, double *const v[MOTIONS], double size, uint64_t seed)
 {
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->motions; ++k)
     for (int64_t n = 0; n < p->count; ++n) v[k][p->place_of[n]] = size * (random_uniform(&seed) - 0.5);
 }
 
@@ -95,8 +106,8 @@ static Problem pose(breccia_model *model, double mass_factor)
                                   .loading = &model->loading,
                                   .unknowns = unknowns_of(problem.domain, &model->loading),
                                   .mass_factor = mass_factor};
-  assert_true(vectors_make(problem.f, p->places, "test", NULL) && vectors_make(problem.v, p->places, "test", NULL) &&
-              vectors_make(problem.kv, p->places, "test", NULL));
+  assert_true(vectors_make(problem.f, p, "test", NULL) && vectors_make(problem.v, p, "test", NULL) &&
+              vectors_make(problem.kv, p, "test", NULL));
   fill_randomly(p, problem.f, 1, 4);
   unknowns_clear_rest(&problem.solver.unknowns, problem.f);
   assert_int_equal(domain_linearise(problem.domain, NULL), 0);
@@ -112,7 +123,7 @@ static void begin(Problem *p, const char *word)
 static LinearRecord solve(Problem *p, double tolerance)
 {
   LinearRecord record;
-  for (int k = 0; k < 3; ++k) memset(p->v[k], 0, sizeof(double) * (size_t)p->domain->particles->places);
+  vectors_clear(p->v, p->domain->particles);
   assert_int_equal(linear_solver_solve(&p->solver, p->f, p->v, tolerance, &record, NULL), 0);
   return record;
 }
@@ -126,36 +137,37 @@ static void forget(Problem *p)
 }
 
 /** Solves by products with one displacement after another. What is not free has a stiffness of 1, alone. */
-static void solve_densely(Problem *p, double *const v[3])
+static void solve_densely(Problem *p, double *const v[MOTIONS])
 {
   const Particles *particles = p->domain->particles;
   const Unknowns *u = &p->solver.unknowns;
-  const int count = (int)particles->count, size = 3 * count;
+  const int rows = particles->motions, size = rows * (int)particles->count;
   double *matrix = calloc((size_t)size * (size_t)size, sizeof *matrix), *right = calloc((size_t)size, sizeof *right);
-  double *moved[3], scale = 0;
-  assert_true(vectors_make(moved, particles->places, "test", NULL));
+  double *moved[MOTIONS], scale = 0;
+  assert_true(vectors_make(moved, particles, "test", NULL));
   for (int column = 0; column < size; ++column) {
-    const int32_t place = particles->place_of[column / 3];
-    for (int k = 0; k < 3; ++k) memset(moved[k], 0, sizeof(double) * (size_t)particles->places);
-    moved[column % 3][place] = 1;
+    const int32_t place = particles->place_of[column / rows];
+    vectors_clear(moved, particles);
+    moved[column % rows][place] = 1;
     unknowns_clear_rest(u, moved);
     for (int row = 0; row < size; ++row)
-      matrix[row * size + column] = (row == column) - moved[row % 3][particles->place_of[row / 3]];
+      matrix[row * size + column] = (row == column) - moved[row % rows][particles->place_of[row / rows]];
     linear_solver_apply(&p->solver, moved, p->kv);
-    for (int row = 0; row < size; ++row) matrix[row * size + column] += p->kv[row % 3][particles->place_of[row / 3]];
-    right[column] = p->f[column % 3][place];
+    for (int row = 0; row < size; ++row)
+      matrix[row * size + column] += p->kv[row % rows][particles->place_of[row / rows]];
+    right[column] = p->f[column % rows][place];
     scale = fmax(scale, fabs(matrix[column * size + column]));
   }
   assert_true(linear_solve(size, matrix, 1, right));
-  for (int row = 0; row < size; ++row) v[row % 3][particles->place_of[row / 3]] = right[row];
+  for (int row = 0; row < size; ++row) v[row % rows][particles->place_of[row / rows]] = right[row];
   vectors_free(moved);
   free(matrix), free(right);
 }
 
-static void assert_same_answer(const Problem *p, double *const wanted[3], double tolerance, const char *name)
+static void assert_same_answer(const Problem *p, double *const wanted[MOTIONS], double tolerance, const char *name)
 {
   double most = 0, off = 0;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < p->domain->particles->motions; ++k)
     for (int64_t i = 0; i < p->domain->particles->places; ++i) {
       most = fmax(most, fabs(wanted[k][i]));
       off = fmax(off, fabs(wanted[k][i] - p->v[k][i]));
@@ -171,9 +183,9 @@ static void answers_are_those_of_a_dense_solution(void **state)
     for (int way = 0; way < 3; ++way) {
       Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way == 1 ? 3e3 : 0);
       char name[100];
-      double *wanted[3];
+      double *wanted[MOTIONS];
       snprintf(name, sizeof name, "%s by %s", cases[c].name, ways[way]);
-      assert_true(vectors_make(wanted, p.domain->particles->places, "test", NULL));
+      assert_true(vectors_make(wanted, p.domain->particles, "test", NULL));
       solve_densely(&p, wanted);
       begin(&p, ways[way]);
       const LinearRecord record = solve(&p, 1e-12);
@@ -186,9 +198,9 @@ static void answers_are_those_of_a_dense_solution(void **state)
     }
 }
 
-static double product(const Problem *p, double *const a[3], double *const b[3])
+static double product(const Problem *p, double *const a[MOTIONS], double *const b[MOTIONS])
 {
-  return unknowns_product(&p->solver.unknowns, a, b);
+  return unknowns_work(&p->solver.unknowns, a, b);
 }
 
 /** Else conjugate gradients do not come to the solution. */
@@ -198,10 +210,10 @@ static void the_preconditioner_is_symmetric_and_positive(void **state)
   for (int c = 0; c < CASES; ++c) {
     Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), 0);
     Preconditioner m = {0};
-    double *x[3], *y[3], *mx[3], *my[3];
-    const int64_t places = p.domain->particles->places;
-    assert_true(vectors_make(x, places, "test", NULL) && vectors_make(y, places, "test", NULL));
-    assert_true(vectors_make(mx, places, "test", NULL) && vectors_make(my, places, "test", NULL));
+    double *x[MOTIONS], *y[MOTIONS], *mx[MOTIONS], *my[MOTIONS];
+    const Particles *q = p.domain->particles;
+    assert_true(vectors_make(x, q, "test", NULL) && vectors_make(y, q, "test", NULL));
+    assert_true(vectors_make(mx, q, "test", NULL) && vectors_make(my, q, "test", NULL));
     assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
     assert_int_equal(preconditioner_prepare(&m, &p.solver, x, y, NULL), 0);
     assert_true(m.is_symmetric);
@@ -236,10 +248,11 @@ static void random_signs_tell_the_diagonal(void **state)
   (void)state;
   Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
   Preconditioner m = {0};
-  double *v[3], *kv[3], told[2] = {0}, found[2] = {0};
+  double *v[MOTIONS], *kv[MOTIONS], told[2] = {0}, found[2] = {0};
   const int64_t places = p.domain->particles->places;
   assert_true(p.domain->batch_count > 4);
-  assert_true(vectors_make(v, places, "test", NULL) && vectors_make(kv, places, "test", NULL));
+  assert_true(vectors_make(v, p.domain->particles, "test", NULL) &&
+              vectors_make(kv, p.domain->particles, "test", NULL));
   assert_int_equal(preconditioner_create(&m, p.domain, NULL), 0);
   assert_int_equal(preconditioner_prepare(&m, &p.solver, v, kv, NULL), 0);
   for (int64_t i = 0; i < places; i += 17) {
@@ -283,8 +296,11 @@ static void the_number_of_products_does_not_grow_with_the_body(void **state)
   static const struct {
     const char *formulation, *material;
     int n;
-  } of[] = {{"correspondence", ELASTIC, 12}, {"bond-based", SPRINGS, 12}, {"ordinary", ELASTIC, 9}};
-  for (int c = 0; c < 3; ++c) {
+  } of[] = {{"correspondence", ELASTIC, 12},
+            {"bond-based", SPRINGS, 12},
+            {"ordinary", ELASTIC, 9},
+            {"micropolar", LINKS, 10}};
+  for (int c = 0; c < 4; ++c) {
     int64_t products[2];
     for (int twice = 0; twice < 2; ++twice) {
       const int n = of[c].n << twice;
@@ -395,8 +411,8 @@ static void answers_have_the_same_bits_for_any_number_of_threads(void **state)
   for (int way = 0; way < 2; ++way) {
     Problem p = pose(cube("correspondence", ELASTIC, 12, ""), 0);
     const size_t bytes = sizeof(double) * (size_t)p.domain->particles->places;
-    double *first[3];
-    assert_true(vectors_make(first, p.domain->particles->places, "test", NULL));
+    double *first[MOTIONS];
+    assert_true(vectors_make(first, p.domain->particles, "test", NULL));
     for (int threads = 1; threads <= 3; ++threads) {
       Team *team = team_create(threads, NULL), *before = team_use(team);
       begin(&p, ways[way]);
@@ -493,8 +509,8 @@ static void the_way_follows_the_stiffness(void **state)
     assert_true(record.residual <= 1e-8);
     assert_int_equal(record.indefinite, of[c].indefinite);
     for (int k = 0; k < 3; ++k) memcpy(p.kv[k], p.v[k], sizeof(double) * (size_t)p.domain->particles->places);
-    double *check[3];
-    assert_true(vectors_make(check, p.domain->particles->places, "test", NULL));
+    double *check[MOTIONS];
+    assert_true(vectors_make(check, p.domain->particles, "test", NULL));
     linear_solver_apply(&p.solver, p.kv, check);
     vectors_combine(p.domain, 1, check, -1, p.f);
     assert_true(product(&p, check, check) <= 1.01e-16 * product(&p, p.f, p.f));

@@ -138,10 +138,8 @@ static breccia_model *body(const char *formulation, const Law *law, const Settin
     snprintf(shapes, sizeof shapes, "a: {material: m, %s}", blocks[0]);
   breccia_model *model =
       model_of("materials: {m: {model: %s, density: 1, %s}}\nperidynamics: {formulation: %s, space: %s, horizon: 2.5, "
-               "%s}\nbody: {%s}\n%ssolve: {%s}\n",
-               law->name, law->words, formulation, setting->space, setting->words, shapes, line ? "" : CUT,
-               formulation_find(formulation)->gyration ? "explicit: {steps: 1}"
-                                                       : "implicit: {end time: 1, stiffness damping: 1e-6}");
+               "%s}\nbody: {%s}\n%ssolve: {implicit: {end time: 1, stiffness damping: 1e-6}}\n",
+               law->name, law->words, formulation, setting->space, setting->words, shapes, line ? "" : CUT);
   if (number == SCATTERED) remove(FILE_NAME);
   return model;
 }
