@@ -406,6 +406,8 @@ BRECCIA_API int breccia_study_create(const breccia_study_plan *plan, breccia_stu
 BRECCIA_API void breccia_study_destroy(breccia_study **study);
 /** @return 1; 0 after the last */
 BRECCIA_API int breccia_study_case_at(const breccia_study *study, int k, breccia_case *one);
+/** A number of a case's summary.json, like "rest.unbalanced". @return 1, or 0 where there is none */
+BRECCIA_API int breccia_study_figure(const breccia_study *study, int k, const char *name, double *value);
 /** What the cases gave, from their folders: table.csv, table.txt and pictures in the study's folder. */
 BRECCIA_API int breccia_study_report(breccia_study *study, breccia_error *error);
 /** Of the last report: the readable table; names of the files written, a line each. */

@@ -142,6 +142,18 @@ static void add_balance(const Solver *s, Text *text)
   text_add(text, "},\n");
 }
 
+/** How far a body is from rest that was meant to come to it. */
+static void add_rest(const Solver *s, Text *text)
+{
+  Rest rest;
+  if (rest_find(s, &rest, NULL) || !rest.meant) return;
+  text_add(text, "  \"rest\": {");
+  add_number(text, "unbalanced", rest.unbalanced);
+  text_add(text, ", ");
+  add_number(text, "kinetic", rest.kinetic);
+  text_add(text, "},\n");
+}
+
 int run_write_summary(Run *run, int status, const char *problem, Error *error)
 {
   breccia_model *model = run->model;
@@ -190,6 +202,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   }
   text_add(&t, "},\n");
   add_balance(s, &t);
+  add_rest(s, &t);
   text_add(&t, "  \"peaks\": {");
   const Peaks *p = &model->peaks;
   const struct {

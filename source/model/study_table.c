@@ -350,3 +350,18 @@ int breccia_study_report(breccia_study *study, breccia_error *error)
   const int status = make_report(study, error);
   return host_leave(&host, status, error);
 }
+
+int breccia_study_figure(const breccia_study *study, int k, const char *name, double *value)
+{
+  *value = NAN;
+  if (k < 0 || k >= study->count) return 0;
+  const Host host = host_enter();
+  char *path = text_format("%s/summary.json", study->cases[k].folder), *text = path ? text_read_file(path, NULL) : NULL;
+  Document *document = text ? document_parse(text, strlen(text), path, NULL) : NULL;
+  if (document) *value = figure(document->root, name);
+  document_destroy(&document);
+  free(text);
+  free(path);
+  host_leave(&host, BRECCIA_OK, NULL);
+  return !isnan(*value);
+}

@@ -1,0 +1,30 @@
+/* What verbs share that run several cases of a deck. */
+#ifndef BRECCIA_CLI_CASES_H
+#define BRECCIA_CLI_CASES_H
+
+#include <breccia/breccia.h>
+#include <stdbool.h>
+
+typedef struct CaseJob CaseJob;
+
+typedef struct CaseWork {
+  breccia_study *study; /* whose cases are run; `deck` is its deck */
+  const char *deck;
+  bool again, quiet; /* run those again that are done; print nothing but errors */
+  bool may_fail;     /* runs that fail are what is looked for: why they did stands in their log only */
+  int failures;      /* cases that failed, out */
+  int count, job_count, threads;
+  CaseJob *jobs;
+} CaseWork;
+
+/** Ctrl-C and its like stop cases, which keep what they have done; a second one ends the program. */
+void cases_catch_signals(void);
+bool cases_interrupted(void);
+
+/** Makes the folder of the cases. @return status, after a message */
+int cases_make_folder(const char *folder);
+
+/** Runs all cases that are not done, some at a time. @param[in] threads  of each; 0: the cores, shared among the jobs */
+int cases_run(CaseWork *work, long long jobs, long long threads);
+
+#endif

@@ -1,0 +1,269 @@
+/* The load under which a body fails: cases of a deck with ever closer loads, of which the lower one comes to rest and the higher one does not. */
+#include "cases.h"
+#include "verbs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LOAD, WITHIN, REST, SET, OUTPUT, JOBS, THREADS, AGAIN, QUIET, COUNT };
+
+static const Option options[] = {
+    {"load", "KEY=FROM:TO",
+     "the key of the deck that is the load, or its factor: variables.load=300 N:400 N; the body must bear FROM and "
+     "fail under TO"},
+    {"within", "SHARE", "how close the two loads have to come: 0.01 of the higher one"},
+    {"rest", "SHARE",
+     "a body bears a load if forces out of balance are below this share of those that act in the end, and kinetic "
+     "energy of the work: 0.05"},
+    SET_OPTION,
+    {"output", "DIR", "folder of the cases and the table (beside the deck, DECK-failure)"},
+    {"jobs", "N", "cases at a time (2)"},
+    {"threads", "N", "threads of each case (all cores, shared among the jobs)"},
+    {"again", NULL, "run cases again that are done"},
+    {"quiet", NULL, "print the table and errors only"},
+    {0},
+};
+
+typedef enum Verdict { BEARS, FAILS, UNKNOWN } Verdict;
+
+typedef struct Trial {
+  double load, unbalanced, kinetic; /* NaN where the run stopped */
+  Verdict verdict;
+  bool done; /* it came to its end; otherwise why not has been said */
+  char name[96];
+} Trial;
+
+enum { MOST_TRIALS = 128 };
+
+typedef struct Search {
+  const char *deck, *folder;
+  char key[160], unit[64];
+  double within, rest;
+  long long jobs, threads;
+  bool again, quiet;
+  const DeckSettings *settings;
+  Trial trials[MOST_TRIALS];
+  int count;
+} Search;
+
+/** Reads a positive number. @return 0, or 1 after saying what is wrong */
+static int read_share(const char *words, const char *option, double standard, double *value)
+{
+  char *end;
+  *value = words ? strtod(words, &end) : standard;
+  if (!words || (end != words && !*end && *value > 0 && *value < 1)) return 0;
+  fprintf(stderr, "breccia failure: --%s takes a number between 0 and 1, and not '%s'\n", option, words);
+  return 1;
+}
+
+/** Takes KEY=FROM:TO apart; both loads have one unit. */
+static int read_load(Search *s, const char *words, double *from, double *to)
+{
+  const char *equals = strchr(words, '='), *colon = equals ? strchr(equals, ':') : NULL;
+  char *end = NULL, *last = NULL;
+  bool good = equals && colon && equals > words && equals - words < (ptrdiff_t)sizeof s->key;
+  if (good) {
+    snprintf(s->key, sizeof s->key, "%.*s", (int)(equals - words), words);
+    *from = strtod(equals + 1, &end);
+    *to = strtod(colon + 1, &last);
+    good = end > equals + 1 && end <= colon && last > colon + 1 && isfinite(*from) && isfinite(*to);
+  }
+  if (good) {
+    const size_t n = (size_t)(colon - end);
+    snprintf(s->unit, sizeof s->unit, "%s", last);
+    good = strlen(last) < sizeof s->unit && (!n || (strlen(last) == n && !strncmp(end, last, n)));
+  }
+  if (!good) {
+    fprintf(stderr,
+            "breccia failure: --load takes KEY=FROM:TO, two numbers of one unit, like variables.load=300 N:400 N, and "
+            "not '%s'\n",
+            words);
+    return BRECCIA_USER_ERROR;
+  }
+  if (*from * *to >= 0 && fabs(*from) < fabs(*to)) return BRECCIA_OK;
+  fprintf(
+      stderr,
+      "breccia failure: --load '%s': FROM must be the load that the body bears, and TO a larger one of the same sign\n",
+      words);
+  return BRECCIA_USER_ERROR;
+}
+
+/** What came of case k of a study. */
+static Trial judge(const Search *s, const breccia_study *study, int k, double load)
+{
+  breccia_case one = {.size = sizeof one};
+  Trial t = {.load = load, .verdict = UNKNOWN, .unbalanced = NAN, .kinetic = NAN};
+  breccia_study_case_at(study, k, &one);
+  snprintf(t.name, sizeof t.name, "%s", one.name);
+  if (one.state == BRECCIA_CASE_FAILED) t.verdict = FAILS;
+  t.done = one.state == BRECCIA_CASE_DONE;
+  if (!t.done) return t;
+  if (breccia_study_figure(study, k, "rest.unbalanced", &t.unbalanced) &
+      breccia_study_figure(study, k, "rest.kinetic", &t.kinetic))
+    t.verdict = t.unbalanced <= s->rest && t.kinetic <= s->rest ? BEARS : FAILS;
+  return t;
+}
+
+/** Runs one or two loads side by side and notes what came of them. @return status */
+static int try_loads(Search *s, const double *loads, int count, breccia_error *error)
+{
+  char *one = words_of("%.6g%s", loads[0], s->unit), *two = count > 1 ? words_of(", %.6g%s", loads[1], s->unit) : NULL,
+       *varied = one ? words_of("%s=%s%s", s->key, one, two ? two : "") : NULL;
+  const breccia_study_plan plan = {.size = sizeof plan,
+                                   .deck = s->deck,
+                                   .folder = s->folder,
+                                   .varied = (const char *const *)&varied,
+                                   .varied_count = 1,
+                                   .settings = s->settings->items,
+                                   .setting_count = s->settings->count};
+  CaseWork work = {.deck = s->deck, .may_fail = true, .again = s->again, .quiet = s->quiet};
+  int status = varied ? breccia_study_create(&plan, &work.study, error) : BRECCIA_FAILURE;
+  if (!status) status = cases_run(&work, s->jobs, s->threads);
+  for (int k = 0; k < count && !status; ++k) {
+    const Trial t = s->trials[s->count++] = judge(s, work.study, k, loads[k]);
+    if (t.verdict != UNKNOWN || cases_interrupted()) continue;
+    if (t.done)
+      fprintf(stderr,
+              "breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
+              "end, and explicit stages need damping\n",
+              t.name);
+    status = BRECCIA_USER_ERROR;
+  }
+  breccia_study_destroy(&work.study);
+  free(varied);
+  free(two);
+  free(one);
+  return cases_interrupted() ? 130 : status;
+}
+
+/** The largest load that the body bears below all under which it fails, and the least of these. */
+static void find_bracket(const Search *s, double *bears, double *fails)
+{
+  *bears = 0;
+  *fails = INFINITY;
+  for (int k = 0; k < s->count; ++k)
+    if (s->trials[k].verdict == FAILS) *fails = fmin(*fails, fabs(s->trials[k].load));
+  for (int k = 0; k < s->count; ++k)
+    if (s->trials[k].verdict == BEARS && fabs(s->trials[k].load) < *fails)
+      *bears = fmax(*bears, fabs(s->trials[k].load));
+}
+
+static int by_load(const void *a, const void *b)
+{
+  const double x = fabs(((const Trial *)a)->load), y = fabs(((const Trial *)b)->load);
+  return (x > y) - (x < y);
+}
+
+/** The table, as text or for a spreadsheet. */
+static void print_trials(const Search *s, FILE *out, bool commas)
+{
+  static const char *const words[] = {[BEARS] = "bears it", [FAILS] = "fails", [UNKNOWN] = "-"};
+  fprintf(out, commas ? "load,outcome,forces out of balance,kinetic energy,case\n" : "%16s  %-9s %22s %16s  %s\n",
+          "load", "outcome", "forces out of balance", "kinetic energy", "case");
+  for (int k = 0; k < s->count; ++k) {
+    const Trial *t = &s->trials[k];
+    const bool stopped = isnan(t->unbalanced);
+    char load[96], shares[2][32] = {"", ""};
+    snprintf(load, sizeof load, "%.6g%s", t->load, s->unit);
+    if (!stopped) snprintf(shares[0], sizeof shares[0], "%.3g", t->unbalanced);
+    if (!stopped) snprintf(shares[1], sizeof shares[1], "%.3g", t->kinetic);
+    const char *outcome = t->verdict == FAILS && stopped ? "stopped" : words[t->verdict];
+    fprintf(out, commas ? "%s,%s,%s,%s,%s\n" : "%16s  %-9s %22s %16s  %s\n", load, outcome, shares[0], shares[1],
+            t->name);
+  }
+}
+
+static int write_table(const Search *s)
+{
+  char *path = words_of("%s/failure.csv", s->folder);
+  FILE *file = path ? fopen(path, "w") : NULL;
+  if (file) print_trials(s, file, true);
+  const bool bad = !file || ferror(file);
+  const int closed = file ? fclose(file) : 0;
+  if (path && (bad || closed)) fprintf(stderr, "%s: cannot be written\n", path);
+  free(path);
+  return bad || closed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+static int search(Search *s, double from, double to, breccia_error *error)
+{
+  double bears = 0, fails = INFINITY;
+  const double sign = to < 0 ? -1 : 1;
+  int status = try_loads(s, (const double[]){from, to}, 2, error);
+  if (!status) find_bracket(s, &bears, &fails);
+  if (!status && (s->trials[0].verdict != BEARS || s->trials[1].verdict != FAILS)) {
+    const bool high = s->trials[0].verdict == BEARS;
+    fprintf(stderr, "breccia failure: the body %s already under %.6g%s; give a %s\n",
+            high ? "is at rest and does not fail" : "fails", high ? to : from, s->unit,
+            high ? "larger TO" : "smaller FROM");
+    status = BRECCIA_USER_ERROR;
+  }
+  while (!status && fails - bears > s->within * fails && s->count + 2 <= MOST_TRIALS) {
+    const double gap = sign * (fails - bears), low = sign * bears;
+    const double thirds[] = {low + gap / 3, low + 2 * gap / 3}, middle = low + gap / 2;
+    status = s->jobs > 1 ? try_loads(s, thirds, 2, error) : try_loads(s, &middle, 1, error);
+    find_bracket(s, &bears, &fails);
+  }
+  qsort(s->trials, (size_t)s->count, sizeof *s->trials, by_load);
+  if (s->count) {
+    printf("\n");
+    print_trials(s, stdout, false);
+  }
+  if (status == 130) printf("'breccia failure' with the same arguments goes on from here\n");
+  if (status) return status;
+  for (int k = 0; k < s->count; ++k)
+    if (s->trials[k].verdict == BEARS && fabs(s->trials[k].load) > fails)
+      printf("it also bears %.6g%s, above a load under which it fails\n", s->trials[k].load, s->unit);
+  printf("\nfails between %.6g%s and %.6g%s (%s): at rest are forces out of balance below %g of those that act in the "
+         "end, and kinetic "
+         "energy below %g of the work\n",
+         sign * bears, s->unit, sign * fails, s->unit, s->key, s->rest, s->rest);
+  if (!s->quiet) printf("\nwritten:\n  %s/failure.csv\n", s->folder);
+  return write_table(s);
+}
+
+static int find_failure(const char *deck, const char **values, const DeckSettings *settings)
+{
+  Search s = {
+      .deck = deck, .settings = settings, .jobs = 2, .again = values[AGAIN] != NULL, .quiet = values[QUIET] != NULL};
+  double from = 0, to = 0;
+  if (!values[LOAD]) {
+    fprintf(stderr, "breccia failure: give the load with --load KEY=FROM:TO; see 'breccia failure --help'\n");
+    return BRECCIA_USER_ERROR;
+  }
+  if (read_load(&s, values[LOAD], &from, &to) || read_share(values[WITHIN], "within", 0.01, &s.within) ||
+      read_share(values[REST], "rest", 0.05, &s.rest))
+    return BRECCIA_USER_ERROR;
+  if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &s.jobs)) return BRECCIA_USER_ERROR;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &s.threads)) return BRECCIA_USER_ERROR;
+  char *beside = values[OUTPUT] ? NULL : result_folder(deck), *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT])
+                                                                        : beside       ? words_of("%s-failure", beside)
+                                                                                       : NULL;
+  breccia_error *error = breccia_error_create();
+  s.folder = folder;
+  cases_catch_signals();
+  int status = folder ? cases_make_folder(folder) : BRECCIA_FAILURE;
+  if (!status) status = search(&s, from, to, error);
+  free(folder);
+  free(beside);
+  return fail(error, status);
+}
+
+static int run(int argc, char **argv, const Verb *verb)
+{
+  return act_on_deck(argc, argv, verb, SET, find_failure);
+}
+
+const Verb verb_failure = {
+    .name = "failure",
+    .arguments = "DECK --load KEY=FROM:TO [options]",
+    .about = "find the load under which a body fails, by runs with closer and closer loads",
+    .options = options,
+    .more = "Each run has a folder of its own, as in a study: those that are done are not run again. A body fails "
+            "under a load if its run\n"
+            "ends before its time (no equilibrium), or if at its end the body has not come to rest: loads must have "
+            "become steady\n"
+            "by then, and explicit stages need damping. The two runs of each round are a third of what is left apart.\n"
+            "Exit status: 0 found, 1 a run or the machine failed, 2 the deck or the arguments are wrong, 130 stopped.",
+    .run = run};

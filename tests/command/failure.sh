@@ -1,0 +1,58 @@
+# The load under which a body fails: found between two loads, in any way that a body can fail.
+. "$(dirname "$0")/common.sh"
+cd "$work" || exit 1
+# A bar that yields and does not harden bears its strength times its area, 250 MPa x 4 cm2 = 100 kN.
+cat > bar.yaml <<'Y'
+variables: {pull: 50 kN}
+units: {length: m, force: kN, time: s}
+materials: {steel: {model: elastic-perfectly-plastic, density: 7.85, Young modulus: 200 GPa, yield stress: 250 MPa}}
+body: {bar: {material: steel, lattice: line, spacing: 10 mm, area: 4 cm2, shape: {box: {particles: [30, 1]}}}}
+peridynamics: {formulation: bond-based, space: 1-D}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 3}, force: ["${pull}", 0]}
+solve: {static: {}}
+Y
+bracket() { sed -n 's/^fails between \([0-9.]*\)[^(]* and \([0-9.]*\).*/\1 \2/p' "$1"; }
+"$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.02 > out 2> errors
+equal "a bar that yields: status" $? 0
+bracket out | awk '{exit !($1 > 95 && $1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 0.98 + 1e-3)}' || fail "a bar that yields: $(cat out errors)"
+equal "heading of the table" "$(head -1 bar-failure/failure.csv)" 'load,outcome,forces out of balance,kinetic energy,case'
+equal "loads in their order" "$(tail -n +2 bar-failure/failure.csv | cut -d' ' -f1 | sort -n | cmp - <(tail -n +2 bar-failure/failure.csv | cut -d' ' -f1) && echo yes)" yes
+grep -q '^200 kN,stopped,,,' bar-failure/failure.csv || fail "the load beyond: $(cat bar-failure/failure.csv)"
+# One at a time the middle is tried; what is done is not run again.
+"$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 --jobs 1 > one 2> errors || fail "one at a time: $(cat one errors)"
+grep -q 'pull-50-kN: was done' one || fail "cases that were done: $(cat one)"
+bracket one | awk '{exit !($1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 0.9 + 1e-3)}' || fail "one at a time: $(cat one errors)"
+# Concrete as a lattice of beams, pulled by a ramp of two periods and held for one more: 360 N a particle (Tuniki 2012, Table 4.1).
+cat > plate.yaml <<'Y'
+variables: {load: 300 N, period: 0.66 ms}
+materials: {concrete: {model: link-damage, density: 2400 kg/m3, Young modulus: 3.605e6 psi, Poisson ratio: 0.2, tensile stretch: 6.034e-5, compressive stretch: 6.1875e-4, stiffness recovery: 0}}
+body: {plate: {material: concrete, lattice: hexagonal, spacing: 1 in, thickness: 1 in, shape: {box: {particles: [16, 53]}}}}
+peridynamics: {formulation: micropolar, space: plane stress}
+loads:
+  - {on: {face: y-, layers: 3}, force: [0, "${-48 * load}"], history: {ramp to: "${2 * period}"}}
+  - {on: {face: y+, layers: 3}, force: [0, "${48 * load}"], history: {ramp to: "${2 * period}"}}
+solve: {explicit: {end time: "${3 * period}", damping: {ratio: 1, at: "${1 / period}"}}}
+Y
+"$breccia" failure plate.yaml --load 'variables.load=300 N:440 N' --within 0.02 --quiet > out 2> errors || fail "plate: $(cat out errors)"
+bracket out | awk '{exit !($1 > 342 && $2 < 378)}' || fail "a plate of links: $(cat out errors)"
+# What is wrong is said, with status 2.
+refused() { # name, words, arguments
+  local name=$1 words=$2
+  shift 2
+  "$breccia" failure "$@" > out 2> errors
+  equal "$name: status" $? 2
+  grep -q -- "$words" errors || fail "$name: $(cat out errors)"
+}
+refused "no load" "give the load with --load" bar.yaml
+refused "no range" "two numbers of one unit" bar.yaml --load variables.pull=3
+refused "two units" "two numbers of one unit" bar.yaml --load 'variables.pull=3 N:4 kN'
+refused "the wrong way" "FROM must be the load that the body bears" bar.yaml --load 'variables.pull=4 kN:3 kN'
+refused "within nothing" "takes a number between 0 and 1" bar.yaml --load 'variables.pull=3 kN:4 kN' --within 0
+refused "an unknown key" "bul" bar.yaml --load 'variables.bull=3 kN:4 kN'
+refused "never fails" "give a larger TO" bar.yaml --load 'variables.pull=10 kN:20 kN'
+refused "fails at once" "give a smaller FROM" bar.yaml --load 'variables.pull=300 kN:400 kN'
+sed 's/, damping.*}}$/}}/' plate.yaml > free.yaml
+refused "undamped" "cannot be told: loads must have become steady" free.yaml --load 'variables.load=10 N:20 N'
+finish
