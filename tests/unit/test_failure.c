@@ -271,6 +271,32 @@ static void bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time(void **stat
     }
 }
 
+/** Where nothing moves but what is moved, too: bonds of its particles to those that stay behind, along any direction. */
+static void bonds_of_what_is_moved_break_in_time(void **state)
+{
+  (void)state;
+  const char *const motions[] = {"velocity: [-1e-3, 0, 0]", "velocity: [-1e-3, -1e-3, -1e-3]",
+                                 "along: {direction: [-1, 1, 0], velocity: 1e-3}",
+                                 "displacement: [-0.05, 0, 0], history: {table: [[0, 0], [5, 0], [5.05, 1], [6, 1]]}"};
+  const int most[] = {16, 15, 16, 16}; /* each of four to each of four; on one diagonal the second motion brings them nearer */
+  for (int k = 0; k < 4; ++k) {
+    breccia_model *m =
+        model_of("materials: {m: {model: elastic-1d, density: 1, Young modulus: 1e-6}}\n"
+                 "body: {b: {material: m, spacing: 1, shape: {box: {particles: [2, 2, 2]}}}}\n"
+                 "peridynamics: {formulation: bond-based, space: 3-D, horizon: 1.8 spacings}\nfailure: {critical "
+                 "stretch: 0.01}\n"
+                 "loads: [{on: {face: x-}, %s}]\nsolve: {explicit: {time step: 0.1, steps: 3000}}\n",
+                 motions[k]);
+    for (int step = 0; step < 2900 && m->domain.broken_count < most[k]; ++step) {
+      step_surely(m, 1);
+      assert_none_is_beyond(m, motions[k]);
+    }
+    assert_int_equal(m->domain.broken_count, most[k]);
+    assert_true(m->solver.clock.step > 20);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** At rest, too: ends that increments move along no axis, by as much along each. */
 static void bonds_at_rest_break_in_the_increment_that_overloads_them(void **state)
 {
@@ -398,6 +424,7 @@ int main(void)
       cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
+      cmocka_unit_test(bonds_of_what_is_moved_break_in_time),
       cmocka_unit_test(bonds_at_rest_break_in_the_increment_that_overloads_them),
       cmocka_unit_test(the_most_loaded_bonds_break_at_once),
       cmocka_unit_test(bonds_break_in_the_step_in_which_they_pass_their_limit),

@@ -135,6 +135,39 @@ static void halves_of_links_add_up_to_forces(void **state)
   }
 }
 
+/** And the changes of those halves, along a motion, to the change of the force. */
+static void halves_of_changes_add_up_to_the_change(void **state)
+{
+  (void)state;
+  for (int c = 0; c < CASES; c += 2) {
+    breccia_model *model = body(cases[c].where, cases[c].space, "");
+    const Particles *p = model->domain.particles;
+    const Family *f = &model->domain.family;
+    const Region *region = &model->domain.regions[0];
+    const int32_t place = inner_place(model);
+    uint64_t seed = 21;
+    double *at[MOTIONS] = {NULL}, sum[3] = {0}, half[3];
+    for (int k = 0; k < p->motions; ++k) {
+      at[k] = places_array(p->places, "test", NULL);
+      for (int64_t n = 0; n < p->count; ++n) {
+        if (k < ROTATION && k >= model->domain.body.dimensions) continue;
+        at[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * 1e-2 * random_uniform(&seed);
+        p->displacement[k][p->place_of[n]] = (k < ROTATION ? spacing : 1) * random_uniform(&seed);
+      }
+    }
+    micropolar_resist_changes(region->formulation, at, place / SLICE);
+    for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
+      if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+      const Bond bond = family_bond(f, place / SLICE, slot, place % SLICE);
+      region->type->half_state(region->formulation, at, place / SLICE, slot, place % SLICE, half);
+      for (int k = 0; k < 3; ++k) sum[k] += 2 * half[k] * p->volume[bond.neighbour];
+    }
+    for (int k = 0; k < model->domain.body.dimensions; ++k) assert_near(sum[k] / p->internal[k][place], 1, 1e-9);
+    for (int k = 0; k < p->motions; ++k) places_free(&at[k]);
+    breccia_model_destroy(&model);
+  }
+}
+
 static void check_tells_axial_and_bending_stiffness_of_links(void **state)
 {
   (void)state;
@@ -258,6 +291,7 @@ int main(void)
       cmocka_unit_test(uniform_strain_is_told_with_its_stress),
       cmocka_unit_test(what_links_receive_is_the_work_on_them),
       cmocka_unit_test(halves_of_links_add_up_to_forces),
+      cmocka_unit_test(halves_of_changes_add_up_to_the_change),
       cmocka_unit_test(check_tells_axial_and_bending_stiffness_of_links),
       cmocka_unit_test(check_tells_how_unlike_the_directions_are),
       cmocka_unit_test(particles_turn_like_their_cells),

@@ -1,0 +1,92 @@
+/* Tests of material points: what their curves show, and laws that give up before anything is strained. */
+#include "support.h"
+
+#include "constitutive/element_test.h"
+
+#include <unistd.h>
+
+#define FILE_NAME "test_material_tests.yaml"
+
+static void write_test(const char *stages)
+{
+  FILE *file = fopen(FILE_NAME, "w");
+  assert_non_null(file);
+  fprintf(file,
+          "units: {length: m, force: kN, time: s}\n"
+          "material: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}\nstages: %s\n"
+          "against: test_material_tests.csv\n",
+          stages);
+  fclose(file);
+  file = fopen("test_material_tests.csv", "w");
+  assert_non_null(file);
+  fprintf(file, "0,0\n1e-3,1\n2e-3,2\n");
+  fclose(file);
+}
+
+/** The curve of a path is of the component that is strained the farthest, whatever its sign, and the first one of equals; what consolidates does not
+ *  count. */
+static void a_path_is_drawn_along_its_widest_strain(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *stages, *component;
+  } cases[] = {{"[{strain xx: 1e-3}]", "xx"},
+               {"[{strain xx: 1e-3, strain xy: 2e-3}]", "xy"},
+               {"[{strain xx: 1e-3, strain zz: -2e-3}]", "zz"},
+               {"[{strain yy: 1e-3}, {strain zx: -3e-3}, {strain yy: 2e-3}]", "zx"},
+               {"[{strain yz: 1e-3, strain zx: 1e-3}]", "yz"},
+               {"[{strain yy: -5e-3, consolidation: yes}, {strain xy: 1e-3}]", "xy"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_error *error = breccia_error_create();
+    breccia_test *test = NULL;
+    breccia_comparison found = {.size = sizeof found};
+    char words[32];
+    write_test(cases[k].stages);
+    if (breccia_test_load(FILE_NAME, &test, error) || breccia_test_run(test, 0, error) ||
+        breccia_test_compare(test, NULL, &found, error))
+      fail_msg("%s: %s", cases[k].stages, breccia_error_text(error));
+    snprintf(words, sizeof words, "strain %s", cases[k].component);
+    assert_string_equal(found.x_label, words);
+    snprintf(words, sizeof words, "stress %s", cases[k].component);
+    assert_string_equal(found.y_label, words);
+    breccia_test_destroy(&test);
+    breccia_error_destroy(&error);
+  }
+  unlink(FILE_NAME);
+  unlink("test_material_tests.csv");
+}
+
+static int answer_nothing(const void *constants, const breccia_batch *batch)
+{
+  (void)constants, (void)batch;
+  return 0; /* the first point of the batch */
+}
+
+/** A law that gives up at no strain: said, and there is no curve. */
+static void a_law_that_knows_no_unstrained_state_is_said_to(void **state)
+{
+  (void)state;
+  Material material = material_of("elastic", "Young modulus=1e4", "Poisson ratio=0.25", NULL);
+  breccia_law law = *material.law;
+  law.update = answer_nothing;
+  material.law = &law;
+  Stage stage = {.by_strain = {true, true, true, true, true, true}, .target = {1e-3}, .steps = 4};
+  const ElementTest test = {.stages = &stage, .count = 1, .turns = -1, .x_weight = {1}, .y_weight = {1}};
+  ElementCurve curve;
+  Error *error = breccia_error_create();
+  assert_int_equal(element_test_run(&test, &material, &curve, error), BRECCIA_FAILURE);
+  assert_non_null(strstr(breccia_error_text(error), "the unstrained point could not be integrated"));
+  assert_int_equal(curve.count, 0);
+  element_curve_destroy(&curve);
+  breccia_error_destroy(&error);
+  material_destroy(&material);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_path_is_drawn_along_its_widest_strain),
+      cmocka_unit_test(a_law_that_knows_no_unstrained_state_is_said_to),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
