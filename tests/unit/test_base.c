@@ -134,6 +134,32 @@ static void files_are_read_whole_or_it_is_said_why_not(void **state)
   remove("test_base.txt");
 }
 
+/** The lowest number that a file would get now. */
+static int next_descriptor(void)
+{
+  const int number = dup(0);
+  assert_true(number >= 0);
+  close(number);
+  return number;
+}
+
+/** What cannot be read, or is refused, is closed again. */
+static void what_is_not_read_is_not_left_open(void **state)
+{
+  (void)state;
+  const int before = next_descriptor();
+  size_t length;
+  assert_int_equal(mkfifo("test_base.pipe", 0600), 0);
+  const char *const paths[] = {".", "test_base.pipe", "nowhere/at all"};
+  for (int k = 0; k < 3; ++k)
+    for (int n = 0; n < 3; ++n) {
+      assert_int_equal(text_open_file(paths[k]), -1);
+      assert_true(!text_read_file(paths[k], &length));
+      assert_int_equal(next_descriptor(), before);
+    }
+  unlink("test_base.pipe");
+}
+
 static void checksums_are_those_of_the_standard(void **state)
 {
   (void)state;
@@ -468,6 +494,7 @@ int main(void)
       cmocka_unit_test(distances_of_words_count_slips),
       cmocka_unit_test(names_and_places_of_files_are_made_of_words),
       cmocka_unit_test(files_are_read_whole_or_it_is_said_why_not),
+      cmocka_unit_test(what_is_not_read_is_not_left_open),
       cmocka_unit_test(checksums_are_those_of_the_standard),
       cmocka_unit_test(columns_of_tables_are_read_by_their_names),
       cmocka_unit_test(errors_say_each_line_once_and_not_too_many),

@@ -130,6 +130,36 @@ static void write_scattered(int n)
   fclose(file);
 }
 
+/** Inside a bar that is stretched evenly, bonds store what the bar does: ends, whose families are halves, do not
+ *  count, however long the horizon is; those that lack their last neighbour do. */
+static void a_bar_from_a_file_is_as_stiff_as_its_law_says(void **state)
+{
+  (void)state;
+  const double spacings[] = {0.1, 10};
+  for (int s = 0; s < 2; ++s) {
+    const double spacing = spacings[s], stretch = 1e-6;
+    FILE *file = fopen(FILE_NAME, "w");
+    assert_non_null(file);
+    fprintf(file, "x (m),volume (m3)\n");
+    for (int n = 0; n < 24; ++n) fprintf(file, "%.17g,%.17g\n", n * spacing, 0.5 * spacing);
+    fclose(file);
+    breccia_model *model = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 1.5, model: elastic-1d, Young modulus: "
+        "1e4}}\n"
+        "peridynamics: {formulation: bond-based, space: 1-D, horizon: 3.015 spacings}\nbody: {b: {material: m, "
+        "lattice: line, area: 0.5, spacing: %g, file: %s}}\nsolve: {explicit: {steps: 1}}\n",
+        spacing, FILE_NAME);
+    const Region *region = &model->domain.regions[0];
+    const Particles *p = model->domain.particles;
+    StoredEnergy energy;
+    deform_uniformly(model, (double[]){1 + stretch, 0, 0, 0, 1, 0, 0, 0, 1});
+    region->type->stored_energy(region->formulation, p->place_of[12], 0, &energy);
+    assert_near(energy.stored / (p->volume[p->place_of[12]] * 1e4 * stretch * stretch / 2), 1, 0.03);
+    breccia_model_destroy(&model);
+  }
+  remove(FILE_NAME);
+}
+
 static void numbers_follow_the_file_and_slices_hold_neighbours(void **state)
 {
   (void)state;
@@ -355,6 +385,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_lattice_read_from_a_file_has_the_forces_of_the_lattice),
+      cmocka_unit_test(a_bar_from_a_file_is_as_stiff_as_its_law_says),
       cmocka_unit_test(numbers_follow_the_file_and_slices_hold_neighbours),
       cmocka_unit_test(scattered_particles_have_exact_gradients_and_balance),
       cmocka_unit_test(scattered_bonds_are_calibrated_inside_the_body),

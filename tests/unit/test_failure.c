@@ -278,7 +278,8 @@ static void bonds_of_what_is_moved_break_in_time(void **state)
   const char *const motions[] = {"velocity: [-1e-3, 0, 0]", "velocity: [-1e-3, -1e-3, -1e-3]",
                                  "along: {direction: [-1, 1, 0], velocity: 1e-3}",
                                  "displacement: [-0.05, 0, 0], history: {table: [[0, 0], [5, 0], [5.05, 1], [6, 1]]}"};
-  const int most[] = {16, 15, 16, 16}; /* each of four to each of four; on one diagonal the second motion brings them nearer */
+  const int most[] = {16, 15, 16,
+                      16}; /* each of four to each of four; on one diagonal the second motion brings them nearer */
   for (int k = 0; k < 4; ++k) {
     breccia_model *m =
         model_of("materials: {m: {model: elastic-1d, density: 1, Young modulus: 1e-6}}\n"

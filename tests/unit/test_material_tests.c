@@ -56,6 +56,40 @@ static void a_path_is_drawn_along_its_widest_strain(void **state)
   unlink("test_material_tests.csv");
 }
 
+/** Fits that cannot be made are refused in their line. */
+static void what_cannot_be_fitted_is_said(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *fit, *words;
+  } cases[] = {
+      {"{cohesion: {from: 1, to: 2}}", ":5:7: fit: elastic has no parameter 'cohesion'; it has '"},
+      {"{Young modulus: {from: 2e4, to: 1e4}}", "fit: 'Young modulus' needs 'from' below 'to', and both "},
+      {"{Young modulus: {from: -1, to: 1e4}}", "fit: 'Young modulus' needs 'from' below 'to', and both greater than 0"},
+      {"{Poisson ratio: {from: 0.1, to: 0.6}}", "fit: 'Poisson ratio' needs 'from' below 'to', and both "},
+      {"{Poisson ratio: {from: 0.1 m, to: 0.3}}", "has the wrong dimension"},
+      {"{}", "nothing to calibrate"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_error *error = breccia_error_create();
+    breccia_test *test = NULL;
+    breccia_fit fit = {.size = sizeof fit};
+    write_test("[{strain xx: 1e-3}]");
+    FILE *file = fopen(FILE_NAME, "a");
+    assert_non_null(file);
+    fprintf(file, "fit: %s\n", cases[k].fit);
+    fclose(file);
+    int status = breccia_test_load(FILE_NAME, &test, error);
+    if (!status) status = breccia_test_fit(test, NULL, &fit, error);
+    if (status != BRECCIA_USER_ERROR || !strstr(breccia_error_text(error), cases[k].words))
+      fail_msg("%s: expected '%s', status %d: %s", cases[k].fit, cases[k].words, status, breccia_error_text(error));
+    breccia_test_destroy(&test);
+    breccia_error_destroy(&error);
+  }
+  unlink(FILE_NAME);
+  unlink("test_material_tests.csv");
+}
+
 static int answer_nothing(const void *constants, const breccia_batch *batch)
 {
   (void)constants, (void)batch;
@@ -86,6 +120,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_path_is_drawn_along_its_widest_strain),
+      cmocka_unit_test(what_cannot_be_fitted_is_said),
       cmocka_unit_test(a_law_that_knows_no_unstrained_state_is_said_to),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
