@@ -36,7 +36,9 @@ void deform_uniformly(breccia_model *model, const double f[9]);
 void compute_forces(breccia_model *model);
 /** Steps a model; fails the test with the error's words if a step fails. */
 void step_surely(breccia_model *model, int64_t steps);
-/** Steps a model to its end; fails the test unless a step fails with these words. */
+/** Fails unless a text holds all phrases between bars: "no equilibrium|take 'explicit'". */
+void holds_words(const char *text, const char *words);
+/** Steps a model to its end; fails the test unless a step fails with these words (holds_words). */
 void step_must_fail(breccia_model *model, const char *words);
 /** Masses, volumes, momentum and moment of momentum about the origin (with that of spins), external force, and the mean displacement, of all particles. */
 typedef struct Sums {

@@ -346,8 +346,11 @@ static void energy_from_nothing_stops_the_run(void **state)
   assert_int_equal(breccia_model_load_string(deck, "deck", &force, &m, error), 0);
   assert_int_equal(breccia_model_step(m, 100000, error), BRECCIA_FAILURE);
   const char *words = breccia_error_text(error);
-  assert_non_null(strstr(words, "energy from nothing"));
-  assert_non_null(strstr(words, "choose a smaller"));
+  holds_words(
+      words,
+      "energy from nothing: kinetic |, internal |, fracture |, while loads and motions have put in |; the time step "
+      "of 0.01 (stable step |) is too long for what happens, or bonds that break or close give more than they "
+      "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out");
   assert_true(m->solver.clock.step < 100);
   breccia_model_destroy(&m);
   breccia_error_destroy(&error);
@@ -373,7 +376,12 @@ static void a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed
     if (absurd < 0 && m->solver.ledger.fastest > 10 * wave) absurd = m->solver.clock.step;
   }
   assert_int_equal(status, BRECCIA_FAILURE);
-  assert_non_null(strstr(breccia_error_text(error), "has blown up: particle"));
+  holds_words(
+      breccia_error_text(error),
+      "has blown up: particle |] moves at |, more than |times the waves of the materials (77.46) and the speeds at the "
+      "start and prescribed (0) together; the time step of 0.0005 (stable step |) is too long for what happens, or "
+      "bonds that break or close give more than they got: choose a smaller 'safety' or 'time step', more zero-energy "
+      "control, or leave contact out");
   assert_true(absurd > 0 && m->solver.clock.step <= absurd + 10);
   assert_true(m->solver.ledger.unsound_steps > 0); /* so that the checkpoint before is kept */
   breccia_model_destroy(&m);
@@ -407,8 +415,8 @@ static void a_force_that_is_no_number_is_reported_with_place_step_and_cause(void
                               "solve: {explicit: {steps: 100}}\n");
   m->domain.particles->velocity[0][m->domain.particles->place_of[77]] = 1e200;
   assert_int_equal(breccia_model_step(m, 100, error), BRECCIA_FAILURE);
-  assert_non_null(strstr(breccia_error_text(error), "step 1 (time "));
-  assert_non_null(strstr(breccia_error_text(error), "is not a number"));
+  holds_words(breccia_error_text(error), "step 1 (time |: the force on particle |] is not a number; likely cause: | "
+                                         "(time step |, stable step |, kinetic energy ");
   for (int64_t i = 0; i < breccia_model_places(m); ++i)
     assert_true(isfinite(breccia_model_array(m, "displacement x")[i]));
   breccia_model_destroy(&m);
