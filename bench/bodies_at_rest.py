@@ -8,6 +8,8 @@ import subprocess
 import sys
 import tempfile
 
+from pages import machine, write
+
 ALONE = 25  # MB of libraries that every run has
 CUBE = """units: {length: m, force: kN, time: s}
 materials: {m: {model: elastic, density: 1.5, Young modulus: 150 MPa, Poisson ratio: 0.25}}
@@ -25,24 +27,9 @@ RUNS = [("plate-with-hole", "plate-with-hole/plate.yaml", []),
         ("notched-beam, measured-plastic-damage", "notched-beam/measured-plastic-damage.yaml", [])]
 
 
-def write(page, name, lines):
-    with open(page) as file:
-        before, rest = file.read().split(f"<!-- {name} -->\n")
-    after = rest.split(f"<!-- end of {name} -->")[1]
-    with open(page, "w") as file:
-        file.write(f"{before}<!-- {name} -->\n\n" + "\n".join(lines) + f"\n\n<!-- end of {name} -->{after}")
-
-
 def number(text):
     value = float(text)
     return f"{value:.0f}" if value >= 10 else f"{value:.1f}" if value >= 0.095 else f"{value:.2f}"
-
-
-def machine():
-    with open("/proc/cpuinfo") as file:
-        words = dict(line.split(":", 1) for line in file.read().split("\n\n")[0].splitlines() if ":" in line)
-    words = {key.strip(): value.strip() for key, value in words.items()}
-    return f"{words.get('model name', 'an unknown processor')} (family {words.get('cpu family', '?')}, model {words.get('model', '?')})"
 
 
 def equations(build):

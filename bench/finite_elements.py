@@ -5,7 +5,9 @@
   .venv/opensees/bin/python bench/finite_elements.py build/release/breccia [PAGE]
 
 writes a Markdown table, into PAGE between its marks where one is given. Each program has one thread and a process of its own."""
-import csv, os, re, resource, shutil, subprocess, sys, tempfile, time
+import csv, os, re, shutil, subprocess, sys, tempfile
+
+from pages import machine, write
 
 SPACING, YOUNG, POISSON, LAYERS, FORCE = 0.03, 150e3, 0.25, 3, (400.0, 100.0)
 BODIES = [(2, 40), (2, 80), (2, 160), (3, 8), (3, 12), (3, 16), (3, 24)]
@@ -112,10 +114,7 @@ def main(program, page=None):
                      f"{theirs[1]:.2f} | {theirs[2]:.0f} | {1e3 * theirs[0]:.5g} | {theirs[1] / ours[1]:.1f} |")
         print(lines[-1], flush=True)
     if page:
-        text = open(page).read()
-        marks = r"(<!-- elements -->\n).*?(\n<!-- end of elements -->)"
-        with open(page, "w") as f:
-            f.write(re.sub(marks, lambda m: m[1] + "\n" + "\n".join(lines) + "\n" + m[2], text, flags=re.S))
+        write(page, "elements", [f"On one core of {machine()}:", "", *lines])
 
 
 main(*sys.argv[1:])
