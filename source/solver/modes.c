@@ -17,6 +17,14 @@
 /** ARPACK remembers between two calls where it is, in one place for all: one body at a time. */
 static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
 
+enum { LOOK_BASIS = 12 };
+
+/** What an iteration works in. */
+typedef struct Look {
+  double *columns, *values, *imaginary;
+  int wanted, basis;
+} Look;
+
 typedef struct Search {
   Domain *domain;
   LinearSolver linear;
@@ -27,6 +35,10 @@ typedef struct Search {
   double *start, *columns, *work, *projected;
   double *values, *imaginary; /* of omega squared; of two that are complex the columns are the vector's two parts */
   a_int *chosen;
+  double *known,
+      *known_masses; /* [count of them] columns that are left out, of length 1 by mass and apart from each other, and M times them */
+  int known_count;
+  Look look;      /* for one mode beside them */
   bool symmetric; /* K is */
 } Search;
 
@@ -58,6 +70,23 @@ static void multiply_masses(const Search *s, const double *column, double *produ
   pack(s, s->from, product);
 }
 
+static double dot(const Search *s, const double *a, const double *b)
+{
+  double sum = 0;
+  for (a_int k = 0; k < s->size; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/** Takes what a column has of those known, by mass. */
+static void take_known_out(const Search *s, double *column)
+{
+  for (int n = 0; n < s->known_count; ++n) {
+    const size_t at = (size_t)s->size * (size_t)n;
+    const double part = dot(s, s->known_masses + at, column);
+    for (a_int k = 0; k < s->size; ++k) column[k] -= part * s->known[at + (size_t)k];
+  }
+}
+
 static int say_inexact(double residual, Error *error)
 {
   return error_add(error, BRECCIA_FAILURE,
@@ -78,6 +107,7 @@ static int solve(Search *s, const double *column, double *answer, Error *error)
   if (!(record.residual <= enough)) return say_inexact(record.residual, error);
   unknowns_clear_rest(&s->linear.unknowns, s->to);
   pack(s, s->to, answer);
+  take_known_out(s, answer);
   return BRECCIA_OK;
 }
 
@@ -128,12 +158,17 @@ static int create(Search *s, int64_t unknowns, Error *error)
   s->values = memory_zeroed(basis, sizeof(double), "modes", error);
   s->imaginary = memory_zeroed(basis, sizeof(double), "modes", error);
   s->chosen = memory_zeroed(basis, sizeof(a_int), "modes", error);
+  s->known = memory_zeroed(size * (size_t)s->wanted, sizeof(double), "modes", error);
+  s->known_masses = memory_zeroed(size * (size_t)s->wanted, sizeof(double), "modes", error);
+  s->look = (Look){.columns = memory_zeroed(size * LOOK_BASIS, sizeof(double), "modes", error),
+                   .values = memory_zeroed(LOOK_BASIS, sizeof(double), "modes", error),
+                   .imaginary = memory_zeroed(LOOK_BASIS, sizeof(double), "modes", error),
+                   .wanted = 1};
   const Particles *p = s->domain->particles;
   const bool made = s->start && s->columns && s->work && s->projected && s->values && s->imaginary && s->chosen &&
+                    s->known && s->known_masses && s->look.columns && s->look.values && s->look.imaginary &&
                     vectors_make(s->from, p, "modes", error) && vectors_make(s->to, p, "modes", error);
   if (!made) return BRECCIA_FAILURE;
-  fill_at_random(s, 1, s->from);
-  pack(s, s->from, s->start);
   return BRECCIA_OK;
 }
 
@@ -149,15 +184,23 @@ static void destroy(Search *s)
   free(s->values);
   free(s->imaginary);
   free(s->chosen);
+  free(s->known);
+  free(s->known_masses);
+  free(s->look.columns);
+  free(s->look.values);
+  free(s->look.imaginary);
 }
 
-/** The eigenvalues wanted, and their vectors in the first columns. */
-static int iterate(Search *s, double shift, Error *error)
+/** The eigenvalues wanted, and their vectors in the first columns. @param[in] seed  of the vector to start with */
+static int iterate(Search *s, double shift, uint64_t seed, Error *error)
 {
   enum { MOST_RESTARTS = 300, EXACT_SHIFTS = 1, SHIFT_INVERT = 3, FIRST = -1, NEXT = 1, MASSES = 2, DONE = 99 };
   const double accuracy = 1e-10;
   a_int what = 0, status = 1, parameters[11] = {EXACT_SHIFTS, 0, MOST_RESTARTS, 1, 0, 0, SHIFT_INVERT}, at[14] = {0};
   const a_int room = 3 * s->basis * (s->basis + 3);
+  fill_at_random(s, seed, s->from);
+  pack(s, s->from, s->start);
+  take_known_out(s, s->start);
   do {
     (s->symmetric ? dsaupd_c : dnaupd_c)(&what, "G", s->size, "LM", s->wanted, accuracy, s->start, s->basis, s->columns,
                                          s->size, parameters, at, s->work, s->projected, room, &status);
@@ -183,6 +226,103 @@ static int iterate(Search *s, double shift, Error *error)
                      "the modes could not be found: ARPACK's iteration ended with %d; ask for more or fewer of them",
                      (int)status);
   return BRECCIA_OK;
+}
+
+/** Adds a column to those known: what it has of them is taken out. */
+static void make_known(Search *s, const double *column)
+{
+  const size_t at = (size_t)s->size * (size_t)s->known_count;
+  double *known = s->known + at, *masses = s->known_masses + at;
+  memcpy(known, column, sizeof(double) * (size_t)s->size);
+  take_known_out(s, known);
+  take_known_out(s, known); /* what roundings have left */
+  multiply_masses(s, known, masses);
+  const double size = sqrt(dot(s, known, masses));
+  for (a_int k = 0; k < s->size; ++k) {
+    known[k] /= size;
+    masses[k] /= size;
+  }
+  ++s->known_count;
+}
+
+/** Of the values that are known. */
+static int find_highest(const double *values, int count)
+{
+  int highest = 0;
+  for (int n = 1; n < count; ++n)
+    if (values[n] > values[highest]) highest = n;
+  return highest;
+}
+
+/** Lanczos' iteration comes upon a second mode of one frequency only by roundings, which may be after it has ended: looks for the lowest mode beside
+ *  those found. One below the highest of them takes its place, until there is none. Vectors of Arnoldi's iteration are no modes then.
+ *  @param[in,out] values  [count] of the columns found
+ *  @param[out] missed  one was missing */
+static int look_for_missed(Search *s, double shift, int count, double *values, bool *missed, Error *error)
+{
+  const double equal = 1e-9;
+  *missed = false;
+  for (int looked = 0; looked < count; ++looked) {
+    const int highest = find_highest(values, count);
+    const int status = iterate(s, shift, 5, error);
+    if (status) return status;
+    if (!(s->values[0] < values[highest] - equal * (fabs(values[highest]) + shift))) return BRECCIA_OK;
+    *missed = true;
+    if (!s->symmetric) return BRECCIA_OK;
+    values[highest] = s->values[0];
+    /* The last one moves to where the highest was, so that the new one can come last. */
+    const size_t size = (size_t)s->size, last = size * (size_t)(count - 1), there = size * (size_t)highest;
+    const double value = values[highest];
+    memmove(s->known + there, s->known + last, sizeof(double) * size);
+    memmove(s->known_masses + there, s->known_masses + last, sizeof(double) * size);
+    values[highest] = values[count - 1];
+    values[count - 1] = value;
+    --s->known_count;
+    make_known(s, s->columns);
+  }
+  return BRECCIA_OK;
+}
+
+/** Exchanges what an iteration works in for what a look for one mode does. */
+static void exchange(Search *s, Look *look)
+{
+  const Look held = {s->columns, s->values, s->imaginary, s->wanted, s->basis};
+  s->columns = look->columns;
+  s->values = look->values;
+  s->imaginary = look->imaginary;
+  s->wanted = look->wanted;
+  s->basis = look->basis;
+  *look = held;
+}
+
+/** All the lowest modes, in the columns and values. @param[in] unknowns  of the body */
+static int iterate_surely(Search *s, double shift, int64_t unknowns, Error *error)
+{
+  enum { SEEDS = 4, LEAST = 4 };
+  const int count = s->wanted;
+  const bool looks = count > 1 && unknowns - count >= LEAST; /* a basis of nearly all unknowns finds all */
+  bool missed = true;
+  int status = BRECCIA_OK;
+  for (uint64_t seed = 1; seed <= SEEDS && missed && !status; ++seed) {
+    status = iterate(s, shift, seed, error);
+    missed = false;
+    if (status || !looks) continue;
+    s->look.basis = (int)fmin(LOOK_BASIS, (double)(unknowns - count));
+    s->known_count = 0;
+    for (int n = 0; n < count; ++n) make_known(s, s->columns + (size_t)s->size * (size_t)n);
+    double *values = s->values;
+    exchange(s, &s->look);
+    status = look_for_missed(s, shift, count, values, &missed, error);
+    exchange(s, &s->look);
+    s->known_count = 0;
+    if (!s->symmetric) continue;
+    memcpy(s->columns, s->known, sizeof(double) * (size_t)s->size * (size_t)count);
+    missed = false;
+  }
+  if (!missed || status) return status;
+  return error_add(error, BRECCIA_FAILURE,
+                   "the modes could not be found: of several with about one frequency one is missed; ask for more or "
+                   "fewer of them");
 }
 
 /* ---- what comes out ---- */
@@ -345,7 +485,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   if (!status) {
     pthread_mutex_lock(&arpack);
     const LibraryThreads before = library_threads_forbid();
-    status = iterate(&s, shift, error);
+    status = iterate_surely(&s, shift, unknowns, error);
     library_threads_allow(before);
     pthread_mutex_unlock(&arpack);
   }
