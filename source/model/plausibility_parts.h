@@ -1,5 +1,5 @@
 /* What the files of plausibility share: words and units (plausibility_words.c); blocks and contact
- * (plausibility_contact.c); the lowest frequency (plausibility_modes.c). */
+ * (plausibility_contact.c); supports (plausibility_supports.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 
@@ -17,6 +17,9 @@ void plausibility_warn_of_blocks(breccia_model *model);
 
 /** Warns of contact that is not what its words say. */
 void plausibility_warn_of_contact(breccia_model *model);
+
+/** Warns of faces held opposite each other with too few layers between them. */
+void plausibility_warn_of_supports(breccia_model *model);
 
 /** Adds a line on the lowest frequency of the body as it is held, with advice for loads, damping and steps, where the deck asks for it and the body is
  *  so small that it is soon found. @return whether there is one */

@@ -21,6 +21,8 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define BOUND(energy) "failure: {criterion: critical bond energy, fracture energy: " energy "}\n"
 #define USUAL ELASTIC("1 t/m3", "1 GPa")
 #define SHAKEN(key, value) "loads: [{on: {face: y-}, " key ": [" value ", 0], history: {sine: {frequency: 1 MHz}}}]\n"
+#define OPPOSITE(held)                                                                                                 \
+  "loads: [{on: {face: y-}, support: {held: across}}, {on: {face: y+}, support: {held: " held "}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
 #define MUCH "is much for concrete, which has 60 to 200 N/m"
 
@@ -97,6 +99,11 @@ static const struct {
     {"m", USUAL, "loads: [{base acceleration: [18, 24.1]}]\n", "base acceleration: its peak is 30.1 m/s2"},
     {"m", USUAL, "loads: [{on: {face: y-}, dashpots: {outcrop acceleration: [-31, 0]}}]\n", ": its peak is 31 m/s2"},
     {"m", USUAL, "loads: [{on: {face: y-}, velocity: [31, 0]}]\n", NULL},
+    /* faces held opposite each other: a mirror shows no image of the other one */
+    {"m", USUAL, OPPOSITE("across}"), NULL},
+    {"m", USUAL, OPPOSITE("across, layers: 7}"),
+     "support: 6 layers stand between the faces y- and y+, which are both held, and 7 outside each are wanted"},
+    {"m", USUAL, "loads: [{on: {face: y-}, support: {held: periodic, layers: 7}}]\n", NULL},
 };
 
 static void limits_are_where_they_say(void **state)
