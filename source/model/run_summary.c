@@ -265,9 +265,11 @@ static void tell_rest(const Solver *s, const Units *units, Text *t)
     text_add(
         t,
         "not at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (at rest both "
-        "are below %g): run longer, with local damping, or load more slowly; what slides or falls does not come to "
-        "rest\n",
-        rest.unbalanced, rest.kinetic, rest_limit);
+        "are below %g): %s\n",
+        rest.unbalanced, rest.kinetic, rest_limit,
+        s->type->rests ? "take a smaller 'residual' for its stages"
+                       : "run longer, with local damping, or load more slowly; what slides or falls does not come to "
+                         "rest");
   if (!s->loading->constraint_count || !find_balance(s, &balance)) return;
   const double *r = balance.reactions.force, *l = balance.loads.force;
   char force[64];
@@ -302,12 +304,12 @@ void run_tell_outcome(Run *run, int status)
   units_name(model->units, dimension_find("time"), time, sizeof time);
   units_name(model->units, dimension_find("length"), length, sizeof length);
   text_free(t);
-  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld steps, %.2f ns per directed bond and step\n",
+  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld step%s, %.2f ns per directed bond and step\n",
            status == BRECCIA_INTERRUPTED ? "stopped on request"
            : status                      ? "stopped by a failure"
                                          : "finished",
            (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
-           (long long)model->run_steps, nanoseconds_per_bond(model));
+           (long long)model->run_steps, model->run_steps == 1 ? "" : "s", nanoseconds_per_bond(model));
   if (status && run->unwritten)
     text_add(t, "once files can be written again, %s\n",
              checkpoint_exists(run->wish->folder) ? "--restart goes on from the last checkpoint"

@@ -358,6 +358,10 @@ int control_check_answer(const Control *c, double *const motion[3], Error *error
     return node_error(c->reader->document, c->spec->head.node, error,
                       "control: the controlled loads move nothing: all that they act on is held; let them act on "
                       "particles that can move");
+  if (c->spec->to == control_shown(c))
+    return node_error(c->reader->document, section_node(c->spec, "to"), error,
+                      "to: %g is its value at the beginning, so that the controlled loads have nothing to do",
+                      c->spec->to);
   if (!isfinite(most) || !(fabs(control_value(c, motion)) <= least * weights * most)) return BRECCIA_OK;
   return node_error(c->reader->document, section_node(c->spec, measure_key(c)), error,
                     "%s: it does not change with the controlled loads, so that no factor of theirs can bring it about; "

@@ -445,10 +445,12 @@ static int advance(Solver *run, Text *warning, Error *error)
     s->next = (end - clock->time) / 2;
     if (s->next < s->spec->smallest * whole_increment(s->spec)) {
       char words[320];
-      error_add(error, BRECCIA_FAILURE,
-                "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; the body may fail at this "
-                "load: go on with a stage of 'explicit', or look at the loads and at the last pictures",
-                clock->time, s->next, newton_describe(&s->newton, outcome, words, sizeof words));
+      error_add(error, BRECCIA_FAILURE, "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; %s",
+                clock->time, s->next, newton_describe(&s->newton, outcome, words, sizeof words),
+                outcome == NEWTON_SLOW && domain_is_elastic(s->domain)
+                    ? "allow more 'iterations', or take a larger 'residual'"
+                    : "the body may fail at this load: go on with a stage of 'explicit', or look at the loads and at "
+                      "the last pictures");
       return give_up(s, first, cuts);
     }
   }

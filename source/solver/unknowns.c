@@ -249,7 +249,8 @@ static void hold_ties(Hold *h, const Unknowns *u)
   }
 }
 
-/** Takes from the others what one motion shares with them, the most held first. @return the first that nothing holds, or -1 */
+/** Takes from the others what one motion shares with them, the most held first; shifts before turns, so that a body that is held at one point is told to
+ *  turn about it. @return the first that nothing holds, or -1 */
 static int find_loose(Hold *h, const bool wanted[RIGID])
 {
   bool done[RIGID];
@@ -260,7 +261,7 @@ static int find_loose(Hold *h, const bool wanted[RIGID])
   }
   for (;;) {
     int pivot = -1;
-    for (int a = 0; a < RIGID; ++a)
+    for (int a = 0; a < RIGID && !(a == 3 && pivot >= 0); ++a)
       if (!done[a] && (pivot < 0 || h->moment[a][a] > h->moment[pivot][pivot])) pivot = a;
     if (pivot < 0) return -1;
     if (!(h->moment[pivot][pivot] > 1e-10 * largest)) return pivot;

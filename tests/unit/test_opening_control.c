@@ -193,6 +193,8 @@ static void what_controls_nothing_is_refused(void **state)
       {pull, found, "stretch in: {all: yes}, to: -0.003", "deck:9:107: to: -0.003 is out of range"},
       {pull, found, "arc length of: {all: yes}, to: 0 m",
        "deck:9:110: to: 0 m is out of range; it must be greater than 0"},
+      {pull, found, "displacement of: {nearest: [0.55, 0.05]}, direction: [2, 1], to: 0",
+       "deck:9:144: to: 0 is its value at the beginning, so that the controlled loads have nothing to do"},
       /* of a side that is held */
       {pull, found, "displacement of: {nearest: [0.05, 0.05]}, direction: [1, 0], to: 0.003",
        "deck:9:79: displacement of: it does not change with the controlled loads"},

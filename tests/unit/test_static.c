@@ -483,6 +483,11 @@ static void a_loose_body_is_refused(void **state)
                                          "solve: {static: {increments: 1}}\n");
   assert_non_null(strstr(words, "about"));
   free(words);
+  words = refusal_of(UNITS ELASTIC PLATE "peridynamics: {formulation: correspondence, space: plane strain}\n"
+                                         "loads: [{on: {nearest: [0, 0]}, displacement: [0, 0]}]\n"
+                                         "solve: {static: {increments: 1}}\n");
+  assert_non_null(strstr(words, "moving about z")); /* not along y, as it would without its turning */
+  free(words);
 }
 
 /** Conjugate gradients that were asked for by name: nothing would come of them, increment after increment. */
