@@ -93,6 +93,13 @@ bool domain_in_elastic_stage(const Domain *d)
   return d->regions[0].points.elastic_stage;
 }
 
+bool domain_may_soften(const Domain *d)
+{
+  bool may = false;
+  for (int k = 0; k < d->material_count; ++k) may |= d->materials[k].softening_energy > 0;
+  return may && !domain_in_elastic_stage(d);
+}
+
 void domain_set_elastic_stage(Domain *d, bool elastic)
 {
   for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;

@@ -206,6 +206,8 @@ void domain_mix_tangents(Domain *domain, double elastic_weight);
 /** Whether laws respond elastically; and makes them do so. */
 bool domain_in_elastic_stage(const Domain *domain);
 void domain_set_elastic_stage(Domain *domain, bool elastic);
+/** Whether some law says that it may soften, and is not elastic in this stage. */
+bool domain_may_soften(const Domain *domain);
 /** Makes the trial state of all points the committed one. By one thread. */
 void domain_commit_points(Domain *domain);
 /** What went wrong in a material server, one line; "" if nothing did. */

@@ -56,6 +56,7 @@ void newton_destroy(Newton *n)
   vectors_free(n->moved);
   vectors_free(n->unit_force);
   vectors_free(n->unit_motion);
+  vectors_free(n->change_forces);
   linear_solver_destroy(&n->linear);
 }
 
@@ -319,6 +320,21 @@ static bool is_carried_away(const Particles *p)
   return farthest > most * size;
 }
 
+/** Work on bonds along the first change of an increment, by the forces at its beginning and tangents; 0 where the body already softens along it, or
+ *  does not resist some change. */
+static double foresee_work(const Newton *n)
+{
+  const Particles *p = n->domain->particles;
+  double now = 0, more = 0;
+  domain_linear_step(n->domain, n->change, n->change_forces);
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i) {
+      now -= p->volume[i] * p->internal[k][i] * n->change[k][i];
+      more -= p->volume[i] * n->change_forces[k][i] * n->change[k][i];
+    }
+  return more > 0 && !n->indefinite ? now + 0.5 * more : 0;
+}
+
 /** How an increment comes on. */
 typedef struct Pace {
   double least;    /* forces out of balance so far */
@@ -357,6 +373,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
 {
   const Particles *p = n->domain->particles;
   n->iterations = n->products = 0;
+  n->foreseen = 0;
   n->indefinite = false;
   vectors_clear(n->moved, p);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
@@ -394,6 +411,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
     if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
+    if (n->change_forces[0] && n->iterations == 1) n->foreseen = foresee_work(n);
     double share = 1, work;
     move(n, 1);
     outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);
@@ -445,6 +463,7 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
     break;
   }
   case NEWTON_SINGULAR: snprintf(words, size, "the body does not resist some motion at all%s", parts); break;
+  case NEWTON_COARSE: snprintf(words, size, "the body softens on the way, which is gone in smaller parts"); break;
   case NEWTON_FAR:
     snprintf(words, size, "particles have moved by more than %.3g against each other, farther than contact looks ahead",
              forces_room(&d->forces));

@@ -55,8 +55,9 @@ typedef enum NewtonOutcome {
   NEWTON_DIVERGED, /* forces that are no numbers, or grow beyond all bounds */
   NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
   NEWTON_SINGULAR, /* the linearised equations have no solution */
-  NEWTON_FAR,      /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
-  NEWTON_FAILED,   /* the reason is in the error */
+  NEWTON_COARSE, /* there is equilibrium, but the body softens on a way to it that the increment skips: said by who asks for it */
+  NEWTON_FAR,    /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
+  NEWTON_FAILED, /* the reason is in the error */
 } NewtonOutcome;
 
 /** Forces beside those of bonds and loads that are to be balanced too: of inertia and damping. The tangent has theirs by `mass_factor` and
@@ -98,7 +99,9 @@ typedef struct Newton {
   int64_t factored_broken;              /* bonds */
   bool factored;
   int64_t follows; /* 1: the body has turned or stretched too much for them, and every iteration makes its own */
+  double *change_forces[MOTIONS]; /* room to foresee works; NULL: nobody wants them */
   /* of the last increment */
+  double foreseen; /* work on bonds, had it gone on as it began, by tangents */
   int64_t iterations, products;
   double unbalanced_before, unbalanced; /* forces out of balance over the reference, at its begin and at its end */
   bool indefinite;                      /* the body did not resist some change of displacements */

@@ -142,6 +142,9 @@ static int create(Solver *run, Error *error)
   if (s->spec->control) s->newton.control = &s->control;
   s->newton.relaxes = !strcmp(s->spec->method, "relaxation");
   if (increment_create(&s->increment, run->domain, error) || newton_create(&s->newton, error)) return BRECCIA_FAILURE;
+  if (domain_may_soften(run->domain) && !run->domain->forces.count && !s->newton.relaxes && !s->spec->control &&
+      !vectors_make(s->newton.change_forces, run->domain->particles, "works", error))
+    return BRECCIA_FAILURE;
   return s->newton.relaxes ? relaxation_create(&s->relaxation, &s->newton, error) : BRECCIA_OK;
 }
 
@@ -313,6 +316,21 @@ static void book_sudden(Static *s, double *const moved[MOTIONS])
   s->way.sudden = sudden;
 }
 
+/** Whether the body softens on the way of an increment in which it has come to equilibrium, so that it may have passed a peak: what the work of an
+ *  increment that goes on as it began is more than that by the trapezium rule bounds twice what that misses.
+ *  @param[in] length  of the increment */
+static bool is_coarse(const Static *s, double length)
+{
+  const double most = 0.02, least = 1.0 / 16; /* of the work so far; of an increment as asked for */
+  const Particles *p = s->domain->particles;
+  double work = 0;
+  if (!s->newton.change_forces[0] || length / 2 < least * whole_increment(s->spec)) return false;
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      work -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
+  return 0.5 * (s->newton.foreseen - work) > most * fabs(s->ledger->bond_work + work);
+}
+
 /** One try to come to equilibrium at a time of the run.
  *  @param[in] again  it goes on with the way of the try before, which came to equilibrium at the same time */
 static NewtonOutcome try_increment(Static *s, double end, bool again, Error *error)
@@ -328,9 +346,10 @@ static NewtonOutcome try_increment(Static *s, double end, bool again, Error *err
     const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
     s->newton.target = control_target(&s->control, (s->clock->time - begin) / whole, (end - begin) / whole);
   }
-  const NewtonOutcome outcome =
-      s->newton.relaxes ? relaxation_solve(&s->relaxation, &s->newton, end, s->spec->relaxation_iterations, error)
-                        : newton_solve(&s->newton, end, error);
+  NewtonOutcome outcome = s->newton.relaxes
+                              ? relaxation_solve(&s->relaxation, &s->newton, end, s->spec->relaxation_iterations, error)
+                              : newton_solve(&s->newton, end, error);
+  if (outcome == NEWTON_CONVERGED && !again && is_coarse(s, end - s->clock->time)) outcome = NEWTON_COARSE;
   if (outcome != NEWTON_CONVERGED) {
     increment_retreat(&s->increment);
     if (again) newton_apply_loads(&s->newton, s->clock->time);
@@ -434,7 +453,8 @@ static int advance(Solver *run, Text *warning, Error *error)
     if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     if (outcome != NEWTON_CONVERGED) {
       char words[320];
-      text_add(&run->log, "    no equilibrium: %s\n", newton_describe(&s->newton, outcome, words, sizeof words));
+      text_add(&run->log, "    %s: %s\n", outcome == NEWTON_COARSE ? "cut" : "no equilibrium",
+               newton_describe(&s->newton, outcome, words, sizeof words));
     }
     if (outcome == NEWTON_CONVERGED) {
       clock->time_step = end - clock->time;

@@ -44,6 +44,7 @@ const breccia_law law_bilinear_softening = {
     .prepare = prepare,
     .moduli = moduli,
     .failure_strain = failure_strain,
+    .softening_energy = softening_start,
     .history_values = softening_history_values,
     .history_name = softening_history_name,
     .update = update,

@@ -50,6 +50,13 @@ static inline int softening_prepare(Softening *c, const double *values, double a
   return 1;
 }
 
+/** Elastic energy per volume at the peak. The curve is the first member of all constants. */
+static inline double softening_start(const void *constants)
+{
+  const Softening *c = constants;
+  return c->strength * c->peak / 2;
+}
+
 /** A point strained beyond the peak: damage, if it grows, and stress and tangent then. */
 __attribute__((always_inline)) static inline void softening_beyond(const void *constants, const Softening *c,
                                                                    SofteningEnvelope envelope,
