@@ -47,14 +47,30 @@ static NewtonOutcome find_unit_motion(Newton *n, double accuracy, Error *error)
   return NEWTON_CONVERGED;
 }
 
+/** The factor by which controlled loads grow, so that the measure comes to its target. */
+static double find_growth(const Newton *n)
+{
+  return (n->target - control_shown(n->control) - control_value(n->control, n->change)) /
+         control_value(n->control, n->unit_motion);
+}
+
 NewtonOutcome newton_follow_control(Newton *n, double accuracy, double *work, Error *error)
 {
   const Particles *p = n->domain->particles;
-  const NewtonOutcome outcome = find_unit_motion(n, accuracy, error);
+  const Unknowns *u = &n->linear.unknowns;
+  NewtonOutcome outcome = find_unit_motion(n, accuracy, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
   if (n->iterations == 1) n->target += control_aim(n->control, n->unit_motion);
-  const double grows = control_value(n->control, n->unit_motion);
-  const double more = (n->target - control_shown(n->control) - control_value(n->control, n->change)) / grows;
+  double more = find_growth(n);
+  /* Loads that grow by much leave more out of balance by what their motion errs than the forces that are there: it is to leave no more than these. */
+  const double left = accuracy * fabs(more) * sqrt(unknowns_product_of_forces(u, n->unit_force, n->unit_force)),
+               may = fmax(0.3 * n->spec->residual * n->exerted,
+                          accuracy * sqrt(unknowns_product_of_forces(u, n->force, n->force)));
+  if (left > 2 * may && may > 0) {
+    outcome = find_unit_motion(n, fmax(1e-12, accuracy * may / left), error);
+    if (outcome != NEWTON_CONVERGED) return outcome;
+    more = find_growth(n);
+  }
   if (!isfinite(more)) return NEWTON_SINGULAR;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) n->change[k][i] += more * n->unit_motion[k][i];
