@@ -225,7 +225,7 @@ static const struct {
      "correspondence", "[0, 0, 0.003]"},
     {"damage-plasticity, Young modulus: 30e6, Poisson ratio: 0.2, tensile strength: 3000, fracture energy: 0.1, "
      "compressive strength: 34000",
-     "correspondence", "[0, 0, 0.0004]"},
+     "correspondence", "[0, 0, 0.0003]"},
     {"mazars, Young modulus: 30e6, Poisson ratio: 0.2, tensile strength: 3000, fracture energy: 0.1", "correspondence",
      "[0, 0, 0.0004]"},
     {"j2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10", "ordinary", "[0, 0, 0.01]"},
