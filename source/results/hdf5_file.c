@@ -203,12 +203,19 @@ static const H5FD_class_t driver_class = {
     .fl_map = H5FD_FLMAP_DICHOTOMY,
 };
 
+static void forget_driver(Hdf5File *file)
+{
+  if (file->driver >= 0) H5FDunregister(file->driver);
+  file->driver = -1;
+}
+
 static int open_file(Hdf5File *file, const char *path, bool create, bool whole, hid_t creation)
 {
-  *file = (Hdf5File){.id = -1};
+  *file = (Hdf5File){.id = -1, .driver = -1};
   const Info info = {&file->error, whole};
-  /* Registered again for each file: H5close of a host forgets it. */
-  const hid_t driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
+  /* Registered again for each file: H5close of a host forgets it. HDF5 1.10 gives up what it holds of a driver before it asks that to close, so that the
+   * file's own share would not be enough: what it calls then would be gone. */
+  const hid_t driver = file->driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
   if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0 &&
       H5Pset_libver_bounds(properties, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
     file->id = create ? H5Fcreate(path, H5F_ACC_TRUNC, creation, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
@@ -216,7 +223,7 @@ static int open_file(Hdf5File *file, const char *path, bool create, bool whole, 
   if (whole && file->id >= 0 && H5Fget_vfd_handle(file->id, properties, (void **)&own) >= 0)
     journal_keep(own->journal, (int64_t)own->end); /* only now it is known where HDF5's own bytes end */
   if (properties >= 0) H5Pclose(properties);
-  if (driver >= 0) H5FDunregister(driver);
+  if (file->id < 0) forget_driver(file);
   return file->id < 0 || file->error;
 }
 
@@ -238,6 +245,7 @@ int hdf5_file_extend_in_place(Hdf5File *file, const char *path)
 int hdf5_file_close(Hdf5File *file)
 {
   const int bad = file->id >= 0 && H5Fclose(file->id) < 0;
+  if (file->id >= 0) forget_driver(file);
   file->id = -1;
   return bad || file->error;
 }

@@ -10,7 +10,8 @@
 #include <hdf5.h>
 
 typedef struct Hdf5File {
-  hid_t id; /* negative: not open */
+  hid_t id;     /* negative: not open */
+  hid_t driver; /* registered as long as the file is open */
   int error; /* errno of the first call that failed, or 0; `id` can be used all the same, but the file is worth nothing */
 } Hdf5File;
 
