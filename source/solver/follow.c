@@ -215,6 +215,50 @@ Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
   return of.follow;
 }
 
+/* ---- places that move alike ---- */
+
+bool follow_is_whole(const Follow *follow, int motions, int64_t place)
+{
+  bool whole = true;
+  for (int k = 0; k < motions; ++k) whole &= follow[motions * place + k].own == follow[motions * place + k].count;
+  return whole;
+}
+
+static bool move_alike(const Follow *a, const Follow *b, int motions)
+{
+  for (int k = 0; k < motions; ++k) {
+    if (a[k].count != b[k].count) return false;
+    for (int t = 0; t < a[k].count; ++t) {
+      const Term *of = &follow_terms(&a[k])[t], *other = &follow_terms(&b[k])[t];
+      if (of->unknown != other->unknown || of->factor != other->factor) return false;
+    }
+  }
+  return true;
+}
+
+int32_t *follow_leaders(const Follow *follow, int motions, int64_t places, int64_t count, Error *error)
+{
+  int32_t *leader = memory_zeroed((size_t)places, sizeof *leader, "unknowns", error);
+  int32_t *first = memory_zeroed((size_t)count + 1, sizeof *first, "unknowns", error); /* plus 1, that has an unknown */
+  for (int turn = 0; turn < 2 && leader && first; ++turn)
+    for (int64_t i = 0; i < places; ++i) {
+      const Follow *own = &follow[motions * i];
+      if (follow_is_whole(follow, motions, i) != !turn) continue;
+      leader[i] = (int32_t)i;
+      int k = 0;
+      while (k < motions && !own[k].count) ++k;
+      if (k == motions) {
+        leader[i] = -1;
+        continue;
+      }
+      int32_t *known = &first[follow_terms(&own[k])[0].unknown];
+      if (!turn && !*known) *known = (int32_t)i + 1;
+      if (*known && move_alike(own, &follow[motions * (int64_t)(*known - 1)], motions)) leader[i] = *known - 1;
+    }
+  free(first);
+  return leader;
+}
+
 void follow_destroy(Follow **follow, int64_t count)
 {
   for (int64_t i = 0; *follow && i < count; ++i) free((*follow)[i].many);

@@ -28,6 +28,11 @@ static inline const Term *follow_terms(const Follow *follow)
  *  @param[out] count  of unknowns
  *  @return [places][motions], or NULL: no memory */
 Follow *follow_create(const Unknowns *unknowns, int64_t *count, Error *error);
+/** Of each place one that moves as it does whatever the unknowns are, and whose forces belong to these: itself, or another one; -1 of those that do not
+ *  move. @return [places], or NULL: no memory */
+int32_t *follow_leaders(const Follow *follow, int motions, int64_t places, int64_t count, Error *error);
+/** Whether the force on a place belongs to all the unknowns that it moves with. */
+bool follow_is_whole(const Follow *follow, int motions, int64_t place);
 void follow_destroy(Follow **follow, int64_t count);
 
 #endif

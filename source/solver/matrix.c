@@ -200,7 +200,8 @@ int matrix_create(Matrix *m, const Unknowns *u, Error *error)
   Rows rows = {.matrix = m};
   m->motions = u->domain->particles->motions;
   m->follow = follow_create(u, &m->size, error);
-  int status = m->follow ? BRECCIA_OK : BRECCIA_FAILURE;
+  m->leader = m->follow ? follow_leaders(m->follow, m->motions, places, m->size, error) : NULL;
+  int status = m->leader ? BRECCIA_OK : BRECCIA_FAILURE;
   if (!status) status = list_places(&rows.of_points, u, error);
   if (!status) status = turn_round(&rows.of_points, points, places, &rows.of_places, error);
   if (!status) status = list_owners(&rows, places, error);
@@ -228,6 +229,7 @@ void matrix_destroy(Matrix *m)
   free(m->first);
   free(m->column);
   free(m->value);
+  free(m->leader);
   follow_destroy(&m->follow, m->motions * m->places);
   *m = (Matrix){0};
 }
@@ -266,6 +268,51 @@ static void add_block(Matrix *m, int64_t row_place, int64_t column_place, const 
     }
 }
 
+/** Whether blocks of a point are linear in the vectors of each of their two places, and nothing else. */
+static bool is_plain(const Operator *point)
+{
+  static const double none[6] = {0};
+  if (point->components < 6 || memcmp(point->hold, none, sizeof none)) return false;
+  for (int l = 0; l < point->count; ++l)
+    if (memcmp(point->places[l].spring, none, sizeof none)) return false;
+  return true;
+}
+
+/** Whether two places are where they were at first, or have gone the same way: the deformation of a point needs their displacements, too. */
+static bool went_alike(const Operator *point, double *const u[3], int32_t a, int32_t b)
+{
+  return !point->finite || (u[0][a] == u[0][b] && u[1][a] == u[1][b] && u[2][a] == u[2][b]);
+}
+
+/** Makes one place of those that move alike, like particles of a level that are tied or images beyond a periodic face: a point then has fewer blocks by
+ *  the square of that. Forces on images belong to nobody; what cannot move is left out where its displacement does not count. */
+static void join_places(const Matrix *m, Operator *point, double *const u[3])
+{
+  if (!is_plain(point)) return;
+  int count = 0;
+  for (int l = 0; l < point->count; ++l) {
+    OperatorPlace place = point->places[l];
+    const int32_t leader = m->leader[place.place];
+    if (leader < 0 && !point->finite) continue;
+    if (!point->acts_apart) memcpy(place.act, place.g, sizeof place.act);
+    if (leader >= 0 && leader != place.place && went_alike(point, u, leader, place.place)) {
+      if (!follow_is_whole(m->follow, m->motions, place.place)) memset(place.act, 0, sizeof place.act);
+      place.place = leader;
+    }
+    int n = 0;
+    while (n < count && point->places[n].place != place.place) ++n;
+    if (n == count)
+      point->places[count++] = place;
+    else
+      for (int k = 0; k < 3; ++k) {
+        point->places[n].g[k] += place.g[k];
+        point->places[n].act[k] += place.act[k];
+      }
+  }
+  point->acts_apart = true;
+  point->count = count;
+}
+
 static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Error *error)
 {
   Operator point = {0};
@@ -276,6 +323,7 @@ static int fill_points(Matrix *m, const Unknowns *u, double stiffness_share, Err
     for (int64_t n = 0; n < source.count && !status; ++n) {
       const double factor = source.region ? 1 + stiffness_share : 1;
       status = find_point(&source, u, n, &point, error);
+      if (!status) join_places(m, &point, u->domain->particles->displacement);
       const int count = point.count, size = point.motions, wanted = count * size;
       if (!status && wanted > room) {
         room = 2 * wanted;

@@ -13,7 +13,8 @@ typedef struct Matrix {
   double *value;
   int64_t places;
   int motions;
-  Follow *follow; /* [places][motions] */
+  Follow *follow;  /* [places][motions] */
+  int32_t *leader; /* [places] follow_leaders */
 } Matrix;
 
 /** Why there is no matrix, or NULL. */

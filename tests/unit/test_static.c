@@ -23,6 +23,11 @@ static void run_all(breccia_model *model)
 #define PLATE                                                                                                          \
   "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [8, 6]}}}}\n"
 
+#define TIED                                                                                                           \
+  "selections: {corner: {inside: {box: {from: [0, 0, -1], to: [0.1, 0.1, 1]}}}}\n"                                     \
+  "loads: [{on: {face: z-, layers: 1}, displacement: [0, 0, 0]}, {on: {except: corner}, tie: {to: corner}},"           \
+  " {on: {face: z+, layers: 1}, traction: [1, 2, -0.5]}]\n"
+
 /** Bodies of each formulation, held and loaded in different ways. */
 static const struct Case {
   const char *name, *deck;
@@ -54,6 +59,14 @@ static const struct Case {
      "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x-, layers: 1}, rotation: [0, free, "
      "0.001]}, {on: {face: x+, layers: 1}, tie: {directions: x}}, {on: {nearest: [0.3, 0.15, 0.1]}, roller: [0, 0.6, "
      "0.8]}]\n"},
+    {"hybrid, levels tied",
+     ELASTIC BLOCK "peridynamics: {formulation: hybrid, strain: small, horizon: 1.5 spacings}\n" TIED},
+    {"hybrid, levels tied, finite strain",
+     ELASTIC BLOCK "peridynamics: {formulation: hybrid, horizon: 1.5 spacings}\n" TIED},
+    {"hybrid, periodic", ELASTIC PLATE
+     "peridynamics: {formulation: hybrid, space: plane strain, strain: small}\n"
+     "loads: [{on: {face: x-}, support: {held: periodic}}, {on: {face: y-, layers: 2}, displacement: [0, 0]},"
+     " {on: {face: y+, layers: 1}, traction: [1, 0.5]}]\n"},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
