@@ -20,11 +20,12 @@ typedef struct Region {
   const void *keys;
   void *formulation;
   Points points;
-  BondList bonds;                                /* where points are on bonds; empty otherwise */
-  int64_t particles;                             /* of them */
-  bool is_linear;                                /* no law of it dissipates or remembers */
-  uint8_t *foreign;                              /* [slices] 1: of other regions; NULL: there are none */
-  int64_t *border;                               /* [border_count] slices of others that have bonds with it */
+  BondList bonds;    /* where points are on bonds; empty otherwise */
+  int64_t particles; /* of them */
+  bool takes_both;   /* its formulation in the deck takes laws of one strain, too, if all are */
+  bool is_linear;    /* no law of it dissipates or remembers */
+  uint8_t *foreign;  /* [slices] 1: of other regions; NULL: there are none */
+  int64_t *border;   /* [border_count] slices of others that have bonds with it */
   int64_t border_count, first_batch, last_batch; /* its batches: the last is not one of them */
   int64_t *stripe, *stripe_slice; /* [stripe_count + 1] batches and slices at which stripes begin (Phase, by_stripes) */
   int64_t stripe_count;
@@ -119,7 +120,9 @@ static inline Region *domain_region(const Domain *domain, int64_t place)
   return &domain->regions[domain->region[place / SLICE]];
 }
 
-/** Whether a block of the body is made of a material in a region. */
+/** Whether a block of a region is made of a material. */
+bool region_is_made_of(const Domain *domain, const Region *region, const char *material);
+/** The same; a body of one region also has materials that no block is made of, so that mistakes in them are told. */
 bool region_has_material(const Domain *domain, const Region *region, const char *material);
 
 /** Builds everything that a step needs. `domain` must be zero; destroy it in any case. */

@@ -61,7 +61,7 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
   for (int r = 0; r < d->region_count && !bad; ++r) {
     const Region *region = &d->regions[r];
     if (!region_has_material(d, region, spec->head.name)) continue;
-    if (spec->model)
+    if (spec->model && (!region->takes_both || region_is_made_of(d, region, spec->head.name)))
       bad = check_law(region->type, reader, spec, NULL); /* what its parameters lack may follow from that */
     const bool linear = spec->model && law_find(reader->context, spec->model)->linear;
     if (type && !bad && !linear && !same_length(length, region_length(region->type, of)))

@@ -270,12 +270,13 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
-  regions_take_fibres(d, reader, spec->materials);
-  status = check_space(d, reader, spec);
+  status = regions_take_fibres(d, reader, spec->materials);
+  int bad = check_space(d, reader, spec);
+  if (bad) status = bad;
   const Length wanted = peridynamics_horizon(pd);
   const double horizon = wanted.value * (wanted.in_spacings ? d->body.largest_spacing : 1);
   const BondLength of = {space, influence, horizon, d->body.largest_spacing};
-  int bad = domain_create_materials(d, reader, spec, &of);
+  bad = domain_create_materials(d, reader, spec, &of);
   if (bad) status = bad;
   if (status) return status;
   d->particles = &d->body.particles;

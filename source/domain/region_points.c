@@ -48,7 +48,7 @@ static bool is_linear(const Domain *d, const Region *region)
 {
   bool linear = true;
   for (int k = 0; k < d->material_count; ++k)
-    if (region_has_material(d, region, d->materials[k].name)) linear &= d->materials[k].law->linear != 0;
+    if (region_is_made_of(d, region, d->materials[k].name)) linear &= d->materials[k].law->linear != 0;
   return linear;
 }
 
@@ -57,7 +57,7 @@ static bool is_hookean(const Domain *d, const Region *region)
 {
   bool hookean = true;
   for (int k = 0; k < d->material_count; ++k)
-    if (region_has_material(d, region, d->materials[k].name)) hookean &= material_is_hookean(&d->materials[k]);
+    if (region_is_made_of(d, region, d->materials[k].name)) hookean &= material_is_hookean(&d->materials[k]);
   return hookean;
 }
 

@@ -77,13 +77,17 @@ int regions_create(Domain *d, const DeckReader *reader, const PeridynamicsSpec *
   return status;
 }
 
-bool region_has_material(const Domain *d, const Region *region, const char *material)
+bool region_is_made_of(const Domain *d, const Region *region, const char *material)
 {
-  if (d->region_count == 1) return true; /* also of materials that no block is made of */
   const Particles *p = &d->body.particles;
   for (int64_t s = 0; s < p->slices; ++s)
     if (&d->regions[d->region[s]] == region && !strcmp(d->body.blocks[p->block[s]]->material, material)) return true;
   return false;
+}
+
+bool region_has_material(const Domain *d, const Region *region, const char *material)
+{
+  return d->region_count == 1 || region_is_made_of(d, region, material);
 }
 
 /** Components of the law of a material that the deck names; commands of OpenSees say it by their first word. */
@@ -94,21 +98,42 @@ static int components_of(const DeckReader *reader, const MaterialSpec *spec)
   return spec->opensees && !strncmp(spec->opensees, "uniaxialMaterial", strlen("uniaxialMaterial")) ? 1 : 6;
 }
 
-void regions_take_fibres(Domain *d, const DeckReader *reader, const SectionList *materials)
+/** Bonds of laws of one strain have no use for the keys of others. */
+static int check_keys(const Region *region, const DeckReader *reader)
 {
+  const Section *section = region->type->section;
+  int status = BRECCIA_OK;
+  for (int k = 0; section && k < section->field_count; ++k) {
+    const char *key = section->fields[k].key;
+    if (node_get(region->node, key))
+      status =
+          node_error(reader->document, node_get(region->node, key), reader->error,
+                     "%s: belongs to %s bonds with laws of strain in space; those of laws of one strain are those of "
+                     "%s: leave it out",
+                     key, region->type->name, region->type->fibres->name);
+  }
+  return status;
+}
+
+int regions_take_fibres(Domain *d, const DeckReader *reader, const SectionList *materials)
+{
+  int status = BRECCIA_OK;
   for (int r = 0; r < d->region_count; ++r) {
     Region *region = &d->regions[r];
-    bool any = false, fibres = region->type->fibres != NULL;
+    bool any = false, fibres = region->takes_both = region->type->fibres != NULL;
     for (int k = 0; k < materials->count && fibres; ++k) {
       const MaterialSpec *spec = materials->items[k];
-      if (!region_has_material(d, region, spec->head.name)) continue;
+      if (!region_is_made_of(d, region, spec->head.name)) continue;
       any = true;
       fibres &= components_of(reader, spec) == 1;
     }
     if (!fibres || !any) continue;
+    const int bad = check_keys(region, reader);
+    if (bad) status = bad;
     region->type = region->type->fibres;
     region->keys = NULL;
   }
+  return status;
 }
 
 int regions_find_borders(Domain *d, Error *error)

@@ -6,8 +6,8 @@
 
 /** Which formulation has which slices, from the deck; the formulations themselves are not made yet. The body stands. */
 int regions_create(Domain *domain, const DeckReader *reader, const PeridynamicsSpec *spec);
-/** Regions all of whose materials take one strain become what their formulation is with such laws. */
-void regions_take_fibres(Domain *domain, const DeckReader *reader, const SectionList *materials);
+/** Regions all of whose materials take one strain become what their formulation is with such laws; refuses keys that say nothing then. */
+int regions_take_fibres(Domain *domain, const DeckReader *reader, const SectionList *materials);
 void regions_destroy(Domain *domain);
 
 /** Slices of other regions whose particles have bonds with those of each region. Families stand. */
