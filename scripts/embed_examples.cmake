@@ -1,4 +1,4 @@
-# Writes the decks of examples/*/*.yaml, each with the CSV files and records (.AT2) that it names, into a C file for `breccia new --example`.
+# Writes the decks of examples/*/*.yaml, each with the deck that it includes and the CSV files and records (.AT2) that these name, into a C file for `breccia new --example`.
 # cmake -DSOURCE=<folder of the sources> -DDECKS=<decks, relative, between semicolons> -DOUTPUT=<file> -P embed_examples.cmake
 set(arrays "")
 set(rows "")
@@ -7,10 +7,16 @@ foreach(deck IN LISTS DECKS)
   get_filename_component(folder ${deck} DIRECTORY)
   get_filename_component(name ${deck} NAME)
   file(READ ${SOURCE}/${deck} words)
+  set(included "")
+  if(words MATCHES "(^|\n)include: ([A-Za-z0-9_.-]+\\.yaml)")
+    set(included ${CMAKE_MATCH_2})
+    file(READ ${SOURCE}/${folder}/${included} more)
+    string(APPEND words "${more}")
+  endif()
   string(REGEX MATCHALL "[A-Za-z0-9_.-]+\\.(csv|AT2)" companions "${words}")
   list(REMOVE_DUPLICATES companions)
   set(files "")
-  foreach(file IN ITEMS ${name} LISTS companions)
+  foreach(file IN ITEMS ${name} LISTS included companions)
     if(EXISTS ${SOURCE}/${folder}/${file})
       file(READ ${SOURCE}/${folder}/${file} bytes HEX)
       string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")

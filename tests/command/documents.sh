@@ -74,11 +74,12 @@ for deck in "$source"/examples/*/*.yaml; do
   checks=$((checks + 1))
 done
 
-# CSV files and records that a deck names go into the command with it, to the last byte.
+# The deck that a deck includes, and CSV files and records that both name, go into the command with it, to the last byte.
 mkdir -p "$work/tree/examples/dam"
 printf 'x,y,z,volume\n0,0,0,"1"\n\\' > "$work/tree/examples/dam/points.csv"
 printf 'NPTS= 1, DT= .01 SEC\n0' > "$work/tree/examples/dam/shake.AT2"
-printf 'body: {dam: {file: points.csv}} # other.csv is not there, shake.AT2 is\n' > "$work/tree/examples/dam/dam.yaml"
+printf 'body: {dam: {file: points.csv}} # other.csv is not there\n' > "$work/tree/examples/dam/dam.yaml"
+printf 'include: dam.yaml # and shake.AT2, not other.yaml\n' > "$work/tree/examples/dam/rock.yaml"
 cat > "$work/print.c" << 'END'
 #include "examples.h"
 #include <stdio.h>
@@ -91,10 +92,11 @@ int main(void)
   return examples[1].name != NULL;
 }
 END
-cmake "-DSOURCE=$work/tree" -DDECKS=examples/dam/dam.yaml "-DOUTPUT=$work/embedded.c" -P "$source/scripts/embed_examples.cmake" &&
+cmake "-DSOURCE=$work/tree" -DDECKS=examples/dam/rock.yaml "-DOUTPUT=$work/embedded.c" -P "$source/scripts/embed_examples.cmake" &&
   cc "-I$source/source/cli" -o "$work/print" "$work/print.c" "$work/embedded.c" || fail "an example with a CSV file cannot be embedded"
-equal "embedded example" "$("$work/print")" "dam/dam/dam.yaml:$(cat "$work/tree/examples/dam/dam.yaml")
-dam/dam/points.csv:$(cat "$work/tree/examples/dam/points.csv")dam/dam/shake.AT2:$(cat "$work/tree/examples/dam/shake.AT2")"
+equal "embedded example" "$("$work/print")" "dam/rock/rock.yaml:$(cat "$work/tree/examples/dam/rock.yaml")
+dam/rock/dam.yaml:$(cat "$work/tree/examples/dam/dam.yaml")
+dam/rock/points.csv:$(cat "$work/tree/examples/dam/points.csv")dam/rock/shake.AT2:$(cat "$work/tree/examples/dam/shake.AT2")"
 
 # The decks that pages show whole are decks.
 awk '/^```yaml$/{on = 1; text = ""; next} /^```$/{if (on && text ~ /(^|\n)body:/) print text > sprintf("%s-%d.yaml", out, ++n); on = 0} on{text = text $0 "\n"}' \
