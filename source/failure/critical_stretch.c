@@ -38,9 +38,11 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
     return node_error(reader->document, section_node(spec, "fracture energy"), reader->error,
                       "failure: give 'critical stretch' or 'fracture energy', not both");
   if (spec && !isnan(spec->fracture_energy) && !of->type->critical_stretch)
-    return node_error(reader->document, section_node(spec, "fracture energy"), reader->error,
-                      "fracture energy: no critical stretch follows from it in %s; give 'critical stretch'",
-                      of->type->name);
+    return node_error(
+        reader->document, section_node(spec, "fracture energy"), reader->error,
+        "fracture energy: no critical stretch follows from it in %s; give 'critical stretch', or a law that "
+        "softens and spends it",
+        of->type->name);
   for (int k = 0; k < of->material_count; ++k) {
     const Material *m = &of->materials[k];
     double stretch = spec ? spec->stretch : NAN;
