@@ -103,6 +103,7 @@ typedef struct Static {
   Way way;
   double next;  /* length of the increment to be tried next */
   int64_t cuts; /* in the stage */
+  bool lagged;  /* an increment kept a control that should have faded, and this was told */
 } Static;
 
 static void list_state(Solver *run, StateList *list)
@@ -391,10 +392,22 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
   return BRECCIA_OK;
 }
 
+/** Says once in a stage that forces are found with a control of zero-energy modes that should have faded. */
+static void tell_lag(Static *s, Text *warning)
+{
+  if (!s->lagged)
+    text_add(warning,
+             "%swarning: static: at time %.6g no equilibrium is found with the control of zero-energy modes as far as "
+             "it has faded; this increment keeps that of the one before, which leaves %.2g of the forces out of "
+             "balance, and forces from here on may be too large: take more increments, or 'method: relaxation'",
+             warning->length ? "\n" : "", s->clock->time, s->newton.unbalanced_before);
+  s->lagged = true;
+}
+
 /** Equilibrium with what has come of the increment: bonds that it has overloaded, and what forces are found with as the step before left it, like
  *  the control of zero-energy modes that fades in correspondence. Where increments are few, what that holds besides would be spent as fracture energy.
  *  @param[out] outcome  why there is no equilibrium */
-static int settle(Solver *run, NewtonOutcome *outcome, Error *error)
+static int settle(Solver *run, NewtonOutcome *outcome, Text *warning, Error *error)
 {
   enum { MOST = 20 };
   const double enough = 1e-2; /* of forces out of balance: what comes of so few is left to the next increment */
@@ -405,8 +418,12 @@ static int settle(Solver *run, NewtonOutcome *outcome, Error *error)
     text_add(&run->log, "  again, with the control of zero-energy modes as it is now\n");
     NewtonOutcome again;
     if (try_again(s, first, &again, error)) return BRECCIA_FAILURE;
-    if (again != NEWTON_CONVERGED) break; /* the next increment will see to it, or fail and say so */
     const bool few = s->newton.unbalanced_before < enough;
+    if (again != NEWTON_CONVERGED) { /* the next increment will see to it, or fail and say so */
+      text_add(&run->log, "    no equilibrium: control as it was is kept in this increment\n");
+      if (!few) tell_lag(s, warning);
+      break;
+    }
     const int64_t broken = s->domain->broken_count;
     status =
         break_bonds(run, outcome, error); /* what the stage leaves overloaded would stay whole if it was the last */
@@ -475,7 +492,7 @@ static int advance(Solver *run, Text *warning, Error *error)
     }
   }
   const int64_t iterations = s->newton.iterations;
-  const int status = settle(run, &outcome, error);
+  const int status = settle(run, &outcome, warning, error);
   ++clock->step; /* what was found in it is committed, whatever has become of the rest */
   if (status) return BRECCIA_FAILURE;
   if (outcome != NEWTON_CONVERGED) {

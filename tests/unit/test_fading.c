@@ -102,6 +102,26 @@ static void few_increments_at_rest_spend_no_more(void **state)
   }
 }
 
+/** A cantilever that cracks in few increments. In one of them no equilibrium is found with the control as far as it has faded: what is kept then is
+ *  out of balance with it, which must be told, once. */
+static void control_that_could_not_fade_in_time_is_told(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      "materials: {m: {density: 2400 kg/m3, model: mazars, Young modulus: 30 GPa, Poisson ratio: 0.2, tensile "
+      "strength: 3 MPa, fracture energy: 100 N/m}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: {particles: [12, 6]}}}}\n"
+      "peridynamics: {space: plane stress}\n"
+      "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]},\n"
+      "        {on: {face: x+, layers: 2}, displacement: [free, -0.4 mm], history: {ramp to: 1}}]\n"
+      "solve: {static: {end time: 1.5, increments: 15}}\n");
+  while (m->solver.clock.time < 0.75) step_surely(m, 1);
+  const char *words = "warning: static: at time 0.6 no equilibrium is found with the control of zero-energy modes",
+             *told = strstr(breccia_model_warnings(m), words);
+  if (!told || strstr(told + strlen(words), "no equilibrium is found")) fail_msg("%s", breccia_model_warnings(m));
+  breccia_model_destroy(&m);
+}
+
 /** Bonds that are beyond their limit, counted from both ends. */
 static int64_t overloaded_bonds(const breccia_model *m)
 {
@@ -331,6 +351,7 @@ int main(void)
       cmocka_unit_test(at_rest_no_bond_is_left_beyond_its_limit),
       cmocka_unit_test(bars_pulled_apart_spend_their_fracture_energy),
       cmocka_unit_test(few_increments_at_rest_spend_no_more),
+      cmocka_unit_test(control_that_could_not_fade_in_time_is_told),
       cmocka_unit_test(control_that_fades_with_yielding_leaves_a_limit_load),
       cmocka_unit_test(nothing_fades_before_the_law_softens),
       cmocka_unit_test(forces_of_a_half_torn_bar_are_those_of_its_operator),
