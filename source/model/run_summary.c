@@ -293,6 +293,31 @@ static void tell_load(const breccia_model *model, const Load *load, Text *t)
   text_add(t, "\n");
 }
 
+/** Particles of whole families that are turned inside out, as a motion in the wrong unit brings about: laws and formulations know nothing against it. */
+static void tell_inverted(const Domain *d, const char *length, Text *t)
+{
+  const Particles *p = d->particles;
+  int64_t count = 0;
+  int32_t first = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double f[9];
+    const Region *region = domain_region(d, i);
+    if (body_outside(&d->body, n) || domain_damage(d, i) > 0) continue;
+    region->type->gradient(region->formulation, i, f);
+    const double determinant =
+        f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
+    if (determinant > 0) continue;
+    if (!count++) first = i;
+  }
+  if (count)
+    text_add(t,
+             "warning: %lld particle%s turned inside out, the first at [%.4g, %.4g, %.4g] %s: no body can be moved so; "
+             "look at motions, loads and their units\n",
+             (long long)count, count == 1 ? " is" : "s are", p->position[0][first], p->position[1][first],
+             p->position[2][first], length);
+}
+
 void run_tell_outcome(Run *run, int status)
 {
   breccia_model *model = run->model;
@@ -348,6 +373,7 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
   }
   text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
+  tell_inverted(d, length, t);
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);
   if (peaks->mean_low <= peaks->mean_high) { /* a state was written */

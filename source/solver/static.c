@@ -484,7 +484,7 @@ static int advance(Solver *run, Text *warning, Error *error)
       char words[320];
       error_add(error, BRECCIA_FAILURE, "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; %s",
                 clock->time, s->next, newton_describe(&s->newton, outcome, words, sizeof words),
-                outcome == NEWTON_SLOW && domain_is_elastic(s->domain)
+                outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite
                     ? "allow more 'iterations', or take a larger 'residual'"
                     : "the body may fail at this load: go on with a stage of 'explicit', or look at the loads and at "
                       "the last pictures");

@@ -323,9 +323,37 @@ static void a_run_that_is_stopped_says_how_far_it_has_come(void **state)
     assert_int_equal(breccia_model_run(model, &run, error), run.restart ? BRECCIA_INTERRUPTED : BRECCIA_OK);
     const char *words = breccia_model_outcome(model);
     assert_true(summary_has(folder, "\"left\": "));
-    if (!strstr(words, "at the end: displacement 1 mm") || !strstr(words, "peak -0.001 m")) fail_msg("%s", words);
+    if (!strstr(words, "at the end: displacement 1 mm") || !strstr(words, "peak -0.001 m") ||
+        strstr(words, "inside out"))
+      fail_msg("%s", words);
     breccia_model_destroy(&model);
   }
+  breccia_error_destroy(&error);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
+/** Metres for millimetres: a block that is pushed through itself comes to rest behind its face, in balance. */
+static void a_body_that_is_turned_inside_out_is_told(void **state)
+{
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", command[64];
+  assert_non_null(mkdtemp(folder));
+  breccia_error *error = breccia_error_create();
+  breccia_run run = {.size = sizeof run, .folder = folder};
+  breccia_model *m = model_of(
+      "materials: {m: {model: elastic, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.1 m, thickness: 1 m, shape: {box: {from: [0, 0], to: [1, "
+      "1]}}}}\n"
+      "peridynamics: {space: plane strain}\n"
+      "loads: [{on: {face: y-}, support: {held: across}}, {on: {face: x-}, support: {held: across}},\n"
+      "        {on: {face: y+}, displacement: [free, -3], history: {ramp to: 1}}]\n"
+      "solve: {static: {increments: 2}}\n");
+  if (breccia_model_run(m, &run, error)) fail_msg("%s", breccia_error_text(error));
+  const char *words = breccia_model_outcome(m);
+  if (!strstr(words, "warning: 100 particles are turned inside out, the first at [0.05, 0.05, 0] m"))
+    fail_msg("%s", words);
+  breccia_model_destroy(&m);
   breccia_error_destroy(&error);
   snprintf(command, sizeof command, "rm -r %s", folder);
   assert_int_equal(system(command), 0);
@@ -548,6 +576,7 @@ int main(void)
       cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
       cmocka_unit_test(loads_of_later_stages_are_watched_from_the_beginning),
       cmocka_unit_test(a_run_that_is_stopped_says_how_far_it_has_come),
+      cmocka_unit_test(a_body_that_is_turned_inside_out_is_told),
       cmocka_unit_test(histories_have_a_row_for_each_long_step),
       cmocka_unit_test(explicit_steps_behind_long_ones_are_done),
       cmocka_unit_test(one_stage_in_a_list_is_the_same_as_no_list),
