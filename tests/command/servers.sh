@@ -174,6 +174,9 @@ refuse "opensees: nDMaterial ElasticIsotropic3D 1 1e5 0.3" "opensees: expected '
 refuse "opensees: 'nDMaterial X \$tag [exec rm]'" "opensees: expected 'nDMaterial KIND \$tag ...'"
 refuse "$served, model: elastic, Young modulus: 1, Poisson ratio: 0, server: ['unix:$PWD/one']" "more than one of 'model', 'opensees', 'remote' is given; give exactly one"
 refuse "$served, jelly: 3, server: ['unix:$PWD/one']" "unknown key 'jelly'"
+# Folders for sockets of servers of the program's own go with them, however these end.
+mkdir sockets
+export TMPDIR=$PWD/sockets
 BRECCIA_OPENSEES=$PWD/nowhere refuse "opensees: nDMaterial ElasticIsotropic3D \$tag 1e5 0.3, processes: 2" "OpenSees server 1 of 2: '$PWD/nowhere' cannot be started: No such file or directory; \`make demo-opensees\` sets one up"
 printf '#!/bin/sh\necho out of cheese >&2\nexit 3\n' > ends; chmod +x ends
 BRECCIA_OPENSEES=$PWD/ends refuse "opensees: nDMaterial ElasticIsotropic3D \$tag 1e5 0.3, processes: 1" "its process has ended with status 3; its last words: out of cheese"
@@ -183,6 +186,8 @@ printf '#!/bin/sh\nexec "%s" serve "$@"\n' "$breccia" > lists; chmod +x lists
 contains "offers" "$(BRECCIA_OPENSEES=$PWD/lists "$breccia" models --opensees 2>&1)" " drucker-prager "
 BRECCIA_OPENSEES=$PWD/nowhere "$breccia" models --opensees > out 2> err; equal "no offers: status" $? 2
 contains "no offers" "$(cat err)" "OpenSees server: '$PWD/nowhere' cannot be started"
+equal "folders of sockets that stay behind" "$(ls sockets)" ""
+unset TMPDIR
 
 # Two clients at once: the second is turned away, and the first goes on.
 relay hang
