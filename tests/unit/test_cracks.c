@@ -184,9 +184,41 @@ static void a_notch_whose_end_is_a_row_of_taken_particles_cuts_the_bonds_across_
   breccia_model_destroy(&model);
 }
 
+/** A cut that goes on from a notch is closed beyond it; across the notch its faces are apart. */
+static void a_cut_is_closed_but_where_a_notch_is(void **state)
+{
+  (void)state;
+  breccia_model *m =
+      model_of(SOFT_SOLID "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: "
+                          "{from: [0, 0], to: [1, 1]}}}}\n"
+                          "cracks: [{remove: {box: {from: [0, 0.4], to: [0.5, 0.6]}}}, {cut: {line: [[0, "
+                          "0.5], [1, 0.5]]}}]\n"
+                          "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n");
+  const struct {
+    double a[3], b[3];
+    bool closed;
+  } cases[] = {{{0.25, 0.35, 0}, {0.25, 0.65, 0}, false},
+               {{0.45, 0.35, 0}, {0.35, 0.65, 0}, false},
+               {{0.75, 0.45, 0}, {0.75, 0.55, 0}, true},
+               {{0.75, 0.55, 0}, {0.65, 0.45, 0}, true},
+               {{0.75, 0.65, 0}, {0.65, 0.55, 0}, false}}; /* beside it */
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    double normal[3], level = 0;
+    const bool closed = body_closed_cut(&m->domain.body, cases[k].a, cases[k].b, normal, &level);
+    if (closed != cases[k].closed) fail_msg("%zu: closed %d", k, closed);
+    if (!closed) continue;
+    const double up = cases[k].b[1] > cases[k].a[1] ? 1 : -1; /* from a to b */
+    assert_near(normal[0], 0, 1e-14);
+    assert_near(normal[1], up, 1e-14);
+    assert_near(level, 0.5 * up, 1e-14);
+  }
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_cut_is_closed_but_where_a_notch_is),
       cmocka_unit_test(a_cut_through_a_row_of_particles_parts_the_body_beside_it),
       cmocka_unit_test(a_bond_that_only_touches_the_end_of_a_cut_is_whole),
       cmocka_unit_test(ends_edges_corners_and_bonds_in_the_plane_of_a_cut_are_decided_alike_from_both_sides),
