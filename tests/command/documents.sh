@@ -96,7 +96,7 @@ cmake "-DSOURCE=$work/tree" -DDECKS=examples/dam/rock.yaml "-DOUTPUT=$work/embed
   cc "-I$source/source/cli" -o "$work/print" "$work/print.c" "$work/embedded.c" || fail "an example with a CSV file cannot be embedded"
 equal "embedded example" "$("$work/print")" "dam/rock/rock.yaml:$(cat "$work/tree/examples/dam/rock.yaml")
 dam/rock/dam.yaml:$(cat "$work/tree/examples/dam/dam.yaml")
-dam/rock/points.csv:$(cat "$work/tree/examples/dam/points.csv")dam/rock/shake.AT2:$(cat "$work/tree/examples/dam/shake.AT2")"
+dam/rock/shake.AT2:$(cat "$work/tree/examples/dam/shake.AT2")dam/rock/points.csv:$(cat "$work/tree/examples/dam/points.csv")"
 
 # The decks that pages show whole are decks.
 awk '/^```yaml$/{on = 1; text = ""; next} /^```$/{if (on && text ~ /(^|\n)body:/) print text > sprintf("%s-%d.yaml", out, ++n); on = 0} on{text = text $0 "\n"}' \
