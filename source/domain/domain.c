@@ -162,6 +162,14 @@ bool domain_lags(const Domain *d)
   return lags;
 }
 
+bool domain_has_secants(const Domain *d)
+{
+  bool has = false;
+  for (int r = 0; r < d->region_count; ++r)
+    has |= d->regions[r].type->takes_secants && d->regions[r].type->takes_secants(d->regions[r].formulation);
+  return has;
+}
+
 bool domain_has_servers(const Domain *d)
 {
   bool servers = false;

@@ -140,6 +140,8 @@ void domain_show_states(Domain *domain);
 /** Lets linearised steps take the secant of bonds whose slope is below zero, or no longer: those who iterate come on by it where bonds soften and
  *  unload in turn, if slowly. @return whether the body has bonds of such laws */
 bool domain_take_secants(Domain *domain, bool take);
+/** Whether linearised steps are secants anyway, of what is damaged. */
+bool domain_has_secants(const Domain *domain);
 
 /** Evaluates forces at the displacements held and keeps what linearised steps need of that: tangents of laws among it. */
 int domain_linearise(Domain *domain, Error *error);

@@ -190,6 +190,9 @@ struct FormulationType {
   /** Whether forces are found with something as the step before left it, so that a step that is tried again from where it ended comes to other
    *  ones; NULL: never. */
   bool (*lags)(const void *formulation);
+  /** Whether linearised steps take what is damaged by the stiffness that it has left, without what its damage changes: such corrections always come
+   *  on, but slowly. NULL: never. */
+  bool (*takes_secants)(const void *formulation);
   /** History number k of the law at a place, as committed, where there are no points; NULL: 0. */
   double (*history)(const void *formulation, int64_t place, int k);
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.

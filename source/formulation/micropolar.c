@@ -205,6 +205,12 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   *energy = (StoredEnergy){.stored = weight * l.energy, .received = weight * (l.energy - 0.5 * time * power)};
 }
 
+static bool takes_secants(const void *formulation)
+{
+  const Micropolar *m = formulation;
+  return m->damage != NULL;
+}
+
 /** Half of what the links of a place store; the other half is that of their other ends. */
 static void stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
 {
@@ -303,6 +309,7 @@ const FormulationType formulation_micropolar = {
                 .writes = OF_FORCES,
                 .of_neighbours = OF_DISPLACEMENTS | OF_SHOWN | OF_STATES}},
     .linearise = linearise,
+    .takes_secants = takes_secants,
     .state = micropolar_state,
     .commit = micropolar_commit,
     .history = micropolar_history,

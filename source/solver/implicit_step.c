@@ -340,7 +340,7 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
     if (outcome == NEWTON_CONVERGED && (change >= 0.9 || s->length <= shortest || (isfinite(erred) && !helps))) {
       if (change < 0.9) text_add(&run->log, "    kept: it errs by %.2g of the largest displacements\n", found);
       finish_step(s);
-      const bool easy = s->newton.iterations <= (s->spec->newton.iterations + 1) / 2;
+      const bool easy = s->newton.iterations <= (newton_most_iterations(&s->newton) + 1) / 2;
       if (easy && s->length >= 0.999 * s->next)
         s->next = fmin(longest, fmax(shortest, fmin(2, fmax(change, 0.5)) * s->next));
       break;

@@ -369,6 +369,13 @@ static bool choose_slopes(Newton *n, Pace *pace, double force)
   return were != pace->by_secants;
 }
 
+enum { LONGER = 10 }; /* secants come on by a fifth of what is left in an iteration */
+
+int64_t newton_most_iterations(const Newton *n)
+{
+  return n->spec->iterations * (domain_has_secants(n->domain) ? LONGER : 1);
+}
+
 static NewtonOutcome solve(Newton *n, double time, Error *error)
 {
   const Particles *p = n->domain->particles;
@@ -389,9 +396,9 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     n->reference = n->exerted;
     return NEWTON_CONVERGED;
   }
-  enum { LONGER = 10 }; /* secants come on by a fifth of what is left in an iteration */
   Pace pace = {.least = INFINITY};
-  for (n->iterations = 1; n->iterations <= n->spec->iterations * (pace.enough > 0 ? LONGER : 1); ++n->iterations) {
+  const int64_t most = newton_most_iterations(n);
+  for (n->iterations = 1; n->iterations <= (pace.enough > 0 ? LONGER * n->spec->iterations : most); ++n->iterations) {
     LinearRecord linear = {0};
     if (prepare(n, error)) return NEWTON_FAILED;
     const double accuracy = n->exerted > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;

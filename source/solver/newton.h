@@ -125,6 +125,9 @@ NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */
 NewtonOutcome newton_solve(Newton *newton, double time, Error *error);
 
+/** Iterations after which an increment is given up: those of the deck, and more where linearised steps are secants from the first on. */
+int64_t newton_most_iterations(const Newton *newton);
+
 /** Adds to the change that brings forces into balance what takes the measure of the control to its target, and finds the factor of the loads for it
  *  (newton_control.c). @param[out] work  of the forces out of balance along the change */
 NewtonOutcome newton_follow_control(Newton *newton, double accuracy, double *work, Error *error);

@@ -504,7 +504,7 @@ static int advance(Solver *run, Text *warning, Error *error)
                      (long long)s->domain->broken_count, clock->time,
                      newton_describe(&s->newton, outcome, words, sizeof words));
   }
-  const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : s->spec->newton.iterations;
+  const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : newton_most_iterations(&s->newton);
   if (iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, whole_increment(s->spec));
   clock->ended = clock->time >= clock->stage_end - 1e-9 * whole_increment(s->spec);
   count_steps(run);
