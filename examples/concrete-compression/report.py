@@ -1,0 +1,20 @@
+"""Plates of concrete in compression: table 4.2 of Tuniki 2012 with two ductilities, and where links are damaged."""
+from plates import Plate, by_code, loaded
+from reporting import between, table
+
+STRENGTH = 2510  # psi, ten times the tensile strength, as the thesis takes it
+PUBLISHED = {15: 3600, 30: 3583, 40: 3738}  # N on a particle; README.md on exchanged columns
+DUCTILITIES = (2, 5)
+
+plates = {(w, d): Plate(w, 2500, 7000, ductility=d) for w in PUBLISHED for d in DUCTILITIES}
+rows = []
+for w, published in PUBLISHED.items():
+    two, five = (plates[w, d] for d in DUCTILITIES)
+    rows.append([f"{w} × {3 * w}", f"{loaded(w)}", f"{two.rows}", f"{two.bears:.0f} to {two.fails:.0f}", f"{published}", f"{100 * (two.load() / published - 1):+.1f} %",
+                 f"{by_code(STRENGTH, w):.0f}", f"{100 * (two.load() / by_code(STRENGTH, w) - 1):+.1f} %", f"{five.bears:.0f} to {five.fails:.0f}",
+                 f"{five.load() / published:.2f}"])
+between("loads", table(["plate, in", "loaded particles at an end", "rows", "α_c = 2 fails between, N a particle", "thesis, N", "beside the thesis", "ten f_t, N", "beside ten f_t",
+                        "α_c = 5 fails between, N", "over the thesis"], rows))
+plate = plates[15, 2]
+plate.draw(plate.bears, [("tensile-damage", "split")])
+plate.draw(plate.fails, [("compressive-damage", "crushed")])

@@ -1,0 +1,52 @@
+"""What the two examples with plates of concrete share (Tuniki 2012, chapter 4): failure loads found by the program, beside those of the thesis and of ACI 318."""
+import csv
+import os
+import shutil
+from math import floor, sqrt
+
+from reporting import breccia, work
+
+POUND = 4.448222  # N
+
+
+def rows_of(height):
+    """Rows of a hexagonal lattice of 1 in that a height (in) holds, an odd number, so that both ends are alike."""
+    count = floor(height / (sqrt(3) / 2))
+    return count if count % 2 else count + 1
+
+
+def loaded(width):
+    """Particles of the three rows at an end."""
+    return 3 * width + 2
+
+
+def by_code(strength, width):
+    """Load on each of these that a strength (psi) gives, over the whole width and 1 in of thickness [N]."""
+    return strength * width * POUND / loaded(width)
+
+
+class Plate:
+    def __init__(self, width, low, high, **more):
+        """Searches between two loads (N on a particle). more: further variables of the deck."""
+        self.width, self.rows = width, rows_of(3 * width)
+        self.variables = {"width": f"{width} in", "rows": self.rows, **more}
+        self.folder = os.path.join(work.name, "-".join(f"{value}" for value in self.variables.values()).replace(" ", ""))
+        breccia("failure", "plate.yaml", *self.settings(), "--load", f"variables.load={low} N:{high} N", "--within", "0.01", "--output", self.folder)
+        with open(os.path.join(self.folder, "failure.csv")) as file:
+            trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
+        self.fails = min(load for load, outcome in trials if outcome != "bears it")
+        self.bears = max(load for load, outcome in trials if outcome == "bears it" and load < self.fails)
+
+    def settings(self):
+        return [word for key, value in self.variables.items() for word in ("--set", f"variables.{key}={value}")]
+
+    def load(self):
+        return (self.bears + self.fails) / 2
+
+    def draw(self, load, pictures):
+        """Runs the plate under a load and keeps pictures: (what the program calls one, its name here)."""
+        folder = os.path.join(self.folder, "drawn")
+        breccia("run", "plate.yaml", *self.settings(), "--set", f"variables.load={load} N", "--quiet", "--output", folder)
+        os.makedirs("pictures", exist_ok=True)
+        for name, here in pictures:
+            shutil.copy(os.path.join(folder, "pictures", name + ".png"), f"pictures/{here}.png")
