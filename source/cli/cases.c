@@ -34,8 +34,14 @@ struct CaseJob {
   time_t begun;
 };
 
+bool cases_body_failed(const breccia_study *study, int k)
+{
+  double step;
+  return breccia_study_figure(study, k, "failed_step", &step) != 0;
+}
+
 /** Runs a case to its end. What `breccia run` would print goes into a file beside its results. @return exit status */
-static int run_case(const CaseWork *work, const breccia_case *one, bool restart)
+static int run_case(const CaseWork *work, int k, const breccia_case *one, bool restart)
 {
   char path[PATH_MAX];
   const bool fits = snprintf(path, sizeof path, "%s/log.txt", one->folder) < (int)sizeof path;
@@ -60,7 +66,7 @@ static int run_case(const CaseWork *work, const breccia_case *one, bool restart)
   }
   const char *words = status && !error ? "out of memory: messages" : breccia_error_text(error);
   fprintf(log, "%s\n", words);
-  const bool said = status && status != BRECCIA_INTERRUPTED && !(work->may_fail && status == BRECCIA_FAILURE);
+  const bool said = status && status != BRECCIA_INTERRUPTED && !(work->may_fail && cases_body_failed(work->study, k));
   if (said) fprintf(stderr, "%s: %s\n", one->name, words);
   breccia_error_destroy(&error);
   fclose(log);
@@ -85,7 +91,7 @@ static int begin_case(CaseWork *work, CaseJob *job, int k, bool restart)
   }
   if (!process) {
     sigaction(SIGTERM, &(struct sigaction){.sa_handler = on_word_of_study}, NULL);
-    _exit(run_case(work, &one, restart));
+    _exit(run_case(work, k, &one, restart));
   }
   *job = (CaseJob){process, k, time(NULL)};
   if (!work->quiet) printf("%d of %d: %s%s\n", k + 1, work->count, one.name, restart ? ", from its checkpoint" : "");
@@ -110,6 +116,7 @@ static void end_case(CaseWork *work)
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
     if (WIFSIGNALED(status)) fprintf(stderr, "%s: ended by signal %d\n", one.name, WTERMSIG(status));
     work->failures += code && code != 130;
+    work->refused += code == BRECCIA_USER_ERROR;
     if (!work->quiet)
       printf("%d of %d: %s: %s, %ld s\n", job->which + 1, work->count, one.name,
              code == 130 ? "stopped"
@@ -133,7 +140,8 @@ static void run_all(CaseWork *work)
   for (int k = 0; k < work->count && !interrupted; ++k) {
     const breccia_case one = case_of(work, k);
     const int state = work->again ? BRECCIA_CASE_NEW : one.state;
-    if (state == BRECCIA_CASE_DONE || (state == BRECCIA_CASE_FAILED && work->may_fail)) {
+    if (state == BRECCIA_CASE_DONE ||
+        (work->may_fail && state == BRECCIA_CASE_FAILED && cases_body_failed(work->study, k))) {
       if (!work->quiet) printf("%d of %d: %s: was done\n", k + 1, work->count, one.name);
       continue;
     }

@@ -11,14 +11,14 @@ enum { LOAD, WITHIN, REST, SET, OUTPUT, JOBS, THREADS, AGAIN, QUIET, COUNT };
 static const Option options[] = {
     {"load", "KEY=FROM:TO",
      "the key of the deck that is the load, or its factor: variables.load=300 N:400 N; the body must bear FROM and "
-     "fail under TO"},
+     "fail under TO. It is a force: a prescribed motion is at rest when the body is in two, too"},
     {"within", "SHARE", "how close the two loads have to come: 0.01 of the higher one"},
     {"rest", "SHARE",
      "a body bears a load if forces out of balance are below this share of those that act in the end, and kinetic "
      "energy of the work: 0.05"},
     SET_OPTION,
     {"output", "DIR", "folder of the cases and the table (beside the deck, DECK-failure)"},
-    {"jobs", "N", "cases at a time (2)"},
+    {"jobs", "N", "cases at a time, 1 or 2 (2)"},
     {"threads", "N", "threads of each case (all cores, shared among the jobs)"},
     {"again", NULL, "run cases again that are done"},
     {"quiet", NULL, "print the table and errors only"},
@@ -71,8 +71,10 @@ static int read_load(Search *s, const char *words, double *from, double *to)
   }
   if (good) {
     const size_t n = (size_t)(colon - end);
-    snprintf(s->unit, sizeof s->unit, "%s", last);
-    good = strlen(last) < sizeof s->unit && (!n || (strlen(last) == n && !strncmp(end, last, n)));
+    const char *unit = *last ? last : end; /* one side may do without */
+    snprintf(s->unit, sizeof s->unit, "%.*s", *last ? (int)strlen(last) : (int)n, unit);
+    good = strlen(last) < sizeof s->unit && n < sizeof s->unit && !strpbrk(s->unit, ",[]{}\"#") &&
+           (!n || !*last || (strlen(last) == n && !strncmp(end, last, n)));
   }
   if (!good) {
     fprintf(stderr,
@@ -96,7 +98,7 @@ static Trial judge(const Search *s, const breccia_study *study, int k, double lo
   Trial t = {.load = load, .verdict = UNKNOWN, .unbalanced = NAN, .kinetic = NAN};
   breccia_study_case_at(study, k, &one);
   snprintf(t.name, sizeof t.name, "%s", one.name);
-  if (one.state == BRECCIA_CASE_FAILED) t.verdict = FAILS;
+  if (one.state == BRECCIA_CASE_FAILED && cases_body_failed(study, k)) t.verdict = FAILS;
   t.done = one.state == BRECCIA_CASE_DONE;
   if (!t.done) return t;
   if (breccia_study_figure(study, k, "rest.unbalanced", &t.unbalanced) &
@@ -108,7 +110,8 @@ static Trial judge(const Search *s, const breccia_study *study, int k, double lo
 /** Runs one or two loads side by side and notes what came of them. @return status */
 static int try_loads(Search *s, const double *loads, int count, breccia_error *error)
 {
-  char *one = words_of("%.6g%s", loads[0], s->unit), *two = count > 1 ? words_of(", %.6g%s", loads[1], s->unit) : NULL,
+  char *one = words_of("%.12g%s", loads[0], s->unit),
+       *two = count > 1 ? words_of(", %.12g%s", loads[1], s->unit) : NULL,
        *varied = one ? words_of("%s=%s%s", s->key, one, two ? two : "") : NULL;
   const breccia_study_plan plan = {.size = sizeof plan,
                                    .deck = s->deck,
@@ -128,7 +131,9 @@ static int try_loads(Search *s, const double *loads, int count, breccia_error *e
               "breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
               "end, and explicit stages need damping\n",
               t.name);
-    status = BRECCIA_USER_ERROR;
+    else
+      fprintf(stderr, "breccia failure: %s/%s/log.txt tells more\n", s->folder, t.name);
+    status = t.done || work.refused ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
   }
   breccia_study_destroy(&work.study);
   free(varied);
@@ -165,7 +170,7 @@ static void print_trials(const Search *s, FILE *out, bool commas)
     const Trial *t = &s->trials[k];
     const bool stopped = isnan(t->unbalanced);
     char load[96], shares[2][32] = {"", ""};
-    snprintf(load, sizeof load, "%.6g%s", t->load, s->unit);
+    snprintf(load, sizeof load, "%.9g%s", t->load, s->unit);
     if (!stopped) snprintf(shares[0], sizeof shares[0], "%.3g", t->unbalanced);
     if (!stopped) snprintf(shares[1], sizeof shares[1], "%.3g", t->kinetic);
     const char *outcome = t->verdict == FAILS && stopped ? "stopped" : words[t->verdict];
@@ -194,9 +199,8 @@ static int search(Search *s, double from, double to, breccia_error *error)
   if (!status) find_bracket(s, &bears, &fails);
   if (!status && (s->trials[0].verdict != BEARS || s->trials[1].verdict != FAILS)) {
     const bool high = s->trials[0].verdict == BEARS;
-    fprintf(stderr, "breccia failure: the body %s already under %.6g%s; give a %s\n",
-            high ? "is at rest and does not fail" : "fails", high ? to : from, s->unit,
-            high ? "larger TO" : "smaller FROM");
+    fprintf(stderr, "breccia failure: the body %s under %.9g%s; give a %s\n", high ? "does not fail" : "fails already",
+            high ? to : from, s->unit, high ? "larger TO" : "smaller FROM");
     status = BRECCIA_USER_ERROR;
   }
   while (!status && fails - bears > s->within * fails && s->count + 2 <= MOST_TRIALS) {
@@ -210,17 +214,18 @@ static int search(Search *s, double from, double to, breccia_error *error)
     printf("\n");
     print_trials(s, stdout, false);
   }
+  if (s->count && write_table(s) && !status) status = BRECCIA_FAILURE;
   if (status == 130) printf("'breccia failure' with the same arguments goes on from here\n");
   if (status) return status;
   for (int k = 0; k < s->count; ++k)
     if (s->trials[k].verdict == BEARS && fabs(s->trials[k].load) > fails)
-      printf("it also bears %.6g%s, above a load under which it fails\n", s->trials[k].load, s->unit);
-  printf("\nfails between %.6g%s and %.6g%s (%s): at rest are forces out of balance below %g of those that act in the "
-         "end, and kinetic "
-         "energy below %g of the work\n",
-         sign * bears, s->unit, sign * fails, s->unit, s->key, s->rest, s->rest);
+      printf("it also bears %.9g%s, above a load under which it fails\n", s->trials[k].load, s->unit);
+  printf(
+      "\nfails between %.9g%s and %.9g%s (%s): a body bears a load if forces out of balance are below %g of those that "
+      "act in the end, and kinetic energy below %g of the work\n",
+      sign * bears, s->unit, sign * fails, s->unit, s->key, s->rest, s->rest);
   if (!s->quiet) printf("\nwritten:\n  %s/failure.csv\n", s->folder);
-  return write_table(s);
+  return status;
 }
 
 static int find_failure(const char *deck, const char **values, const DeckSettings *settings)
@@ -236,6 +241,7 @@ static int find_failure(const char *deck, const char **values, const DeckSetting
       read_share(values[REST], "rest", 0.05, &s.rest))
     return BRECCIA_USER_ERROR;
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &s.jobs)) return BRECCIA_USER_ERROR;
+  if (s.jobs > 2) s.jobs = 2; /* a round has two loads */
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &s.threads)) return BRECCIA_USER_ERROR;
   char *beside = values[OUTPUT] ? NULL : result_folder(deck), *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT])
                                                                         : beside       ? words_of("%s-failure", beside)

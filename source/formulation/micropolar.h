@@ -65,6 +65,8 @@ const Material *micropolar_material(const Micropolar *m, int block);
 int micropolar_find_constants(Micropolar *m, int block, Error *error);
 /** Stiffness of a link: the mean of what both ends' blocks say to its length. */
 LinkStiffness micropolar_stiffness(const Micropolar *m, int64_t place, const Bond *bond);
+/** Integral of w L^2 over a whole family of scattered particles. */
+double micropolar_square_sum(const Micropolar *m);
 /** Adds what a user should know before a run. */
 void micropolar_describe(const void *formulation, Text *text);
 

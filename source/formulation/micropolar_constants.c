@@ -164,6 +164,13 @@ static void find_sums(const Micropolar *m, int block, double *lengths, double *i
   *inverse = around / (horizon * horizon) * influence_moment(m, space ? 1 : 0);
 }
 
+double micropolar_square_sum(const Micropolar *m)
+{
+  const double pi = acos(-1), horizon = m->family->horizon;
+  if (m->body->dimensions == 3) return 4 * pi * pow(horizon, 5) * influence_moment(m, 4);
+  return 2 * pi * body_section(m->body) * pow(horizon, 4) * influence_moment(m, 3);
+}
+
 /** Uniform expansion costs no bending: its energy gives c. The trace of the stiffness is what all directions have in the mean: it gives d. */
 static LinkStiffness fit_mean(const Micropolar *m, int block, double lambda, double mu)
 {

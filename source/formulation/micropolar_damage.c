@@ -100,18 +100,20 @@ LANES_INLINE void find_tension(const Micropolar *m, int64_t slice)
                   now = damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force);
       const Lanes most = lanes_choose(intact, lanes_greatest(before, now), before);
       lanes_store(damage->tension[1] + at, most);
-      count += lanes_where(intact & (LaneMask)(most > lanes_set(0)), lanes_set(1));
+      count += lanes_where((LaneMask)(most > lanes_set(0)), lanes_set(1)); /* also of links that broke with it */
     }
     lanes_store(damage->damaged + first + LANES * half, count);
   }
   for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
-      if (!(f->intact[slot] >> lane & 1)) continue;
       const int64_t at = slot * SLICE + lane, place = first + lane;
-      const Bond bond = family_bond(f, slice, slot, lane);
-      double y[3];
-      const double stretch = micropolar_stretch(m->particles->displacement, place, &bond, y);
-      damage->tension[1][at] = fmax(damage->tension[0][at], tension_at(m, place, bond.neighbour, stretch));
+      damage->tension[1][at] = damage->tension[0][at];
+      if (f->intact[slot] >> lane & 1) {
+        const Bond bond = family_bond(f, slice, slot, lane);
+        double y[3];
+        const double stretch = micropolar_stretch(m->particles->displacement, place, &bond, y);
+        damage->tension[1][at] = fmax(damage->tension[0][at], tension_at(m, place, bond.neighbour, stretch));
+      }
       damage->damaged[place] += damage->tension[1][at] > 0;
     }
 }
@@ -246,7 +248,7 @@ void micropolar_state(void *formulation, const char *part, StateList *list)
   }
 }
 
-/** Mean over the links of a place, as they count in its family. */
+/** Mean over the links of a place, as they count in its family, with those that broke when they were damaged. */
 double micropolar_history(const void *formulation, int64_t place, int k)
 {
   const Micropolar *m = formulation;
@@ -256,9 +258,11 @@ double micropolar_history(const void *formulation, int64_t place, int k)
   double sum = 0, weights = 0;
   if (!m->damage || !m->damage->touched[slice] || k > 1) return 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-    if (!(f->intact[slot] >> lane & 1)) continue;
+    const int64_t at = slot * SLICE + lane;
+    const bool broke = !(f->intact[slot] >> lane & 1); /* as it was when it broke, if it was damaged then */
+    if (broke && !(m->damage->tension[0][at] > 0)) continue;
     const double weight = family_bond(f, slice, slot, lane).weight;
-    sum += weight * (k ? m->damage->compression : m->damage->tension)[0][slot * SLICE + lane];
+    sum += weight * (k ? m->damage->compression : m->damage->tension)[0][at];
     weights += weight;
   }
   return weights > 0 ? sum / weights : 0;

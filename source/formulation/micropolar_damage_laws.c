@@ -43,26 +43,10 @@ static double least_crossing(const Micropolar *m, int block)
   return least;
 }
 
-/** The mean over all planes of scattered particles, by their own families; what links spend across themselves is left out. */
+/** The mean over all planes of scattered particles, of which families are taken to be whole; what links spend across themselves is left out. */
 static double mean_crossing(const Micropolar *m, int block)
 {
-  const Family *f = m->family;
-  double sum = 0, count = 0;
-  for (int64_t slice = 0; slice < m->particles->slices; ++slice) {
-    if (m->particles->block[slice] != block) continue;
-    for (int lane = 0; lane < SLICE; ++lane) {
-      if (m->particles->number[slice * SLICE + lane] < 0) continue;
-      double own = 0;
-      for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-        if (!(f->intact[slot] >> lane & 1)) continue;
-        const Bond bond = family_bond(f, slice, slot, lane);
-        own += micropolar_stiffness(m, slice * SLICE + lane, &bond).axial * bond.weight * bond.length * bond.length;
-      }
-      sum += own;
-      ++count;
-    }
-  }
-  return sum / count * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));
+  return m->constants[block].any.axial * micropolar_square_sum(m) * (m->body->dimensions == 3 ? 0.5 : 2 / acos(-1));
 }
 
 int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *link, Error *error)

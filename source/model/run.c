@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/folder_lock.h"
+#include "base/memory.h"
 #include "base/tensor.h"
 #include "base/whole_file.h"
 #include "model/sized.h"
@@ -379,6 +380,8 @@ static int loop(Run *run, Error *error)
     if (s->clock.stage != stage) begin_stage(model);
     model->run_steps += s->clock.step - step;
     if (status) {
+      run->step_failed = status == BRECCIA_FAILURE && !*domain_server_problem(&model->domain) &&
+                         memory_refusals() == run->host->refusals;
       run_log_write(run, false, NULL); /* how it failed */
       break;
     }

@@ -14,9 +14,10 @@ typedef struct Run {
   int64_t steps;           /* where to stop */
   int64_t checkpoint_step; /* of the last one in the folder; -1: none, or not of this run */
   double started, last_checkpoint, last_progress;
-  double paused;   /* seconds since the last progress that went into writing */
-  int64_t told_at; /* step of the last progress */
-  bool unwritten;  /* a file lacks what was due: said, and no checkpoint may stand behind the gap */
+  double paused;    /* seconds since the last progress that went into writing */
+  int64_t told_at;  /* step of the last progress */
+  bool unwritten;   /* a file lacks what was due: said, and no checkpoint may stand behind the gap */
+  bool step_failed; /* the body could not be brought any further: no equilibrium, energy from nothing ... */
   TextList names;
   Text files;
   FILE *log; /* solution.txt; NULL: there was nothing to tell yet */

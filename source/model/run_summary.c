@@ -166,6 +166,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   text_add(&t, ",\n  \"version\": \"%s\",\n  \"completed\": %s,\n", BRECCIA_VERSION,
            !status && solver_is_done(s) ? "true" : "false");
   add_origin(model, &t);
+  if (run->step_failed) text_add(&t, "  \"failed_step\": %.0f,\n", (double)(s->clock.step + 1));
   if (problem && *problem) {
     text_add(&t, "  \"problem\": ");
     text_add_json(&t, problem);

@@ -37,6 +37,25 @@ solve: {explicit: {end time: "${3 * period}", damping: {ratio: 1, at: "${1 / per
 Y
 "$breccia" failure plate.yaml --load 'variables.load=300 N:440 N' --within 0.02 --quiet > out 2> errors || fail "plate: $(cat out errors)"
 bracket out | awk '{exit !($1 > 342 && $2 < 378)}' || fail "a plate of links: $(cat out errors)"
+# A disk that is full is no load that is too large: it is said, with status 1, and tried again the next time.
+cat > elastic.yaml <<'Y'
+variables: {pull: 50 kN}
+units: {length: m, force: kN, time: s}
+materials: {steel: {model: elastic-1d, density: 7.85, Young modulus: 200 GPa}}
+body: {bar: {material: steel, lattice: line, spacing: 1 mm, area: 4 cm2, shape: {box: {particles: [3000, 1]}}}}
+peridynamics: {formulation: bond-based, space: 1-D}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, 0]}
+  - {on: {face: x+, layers: 3}, force: ["${pull}", 0]}
+solve: {static: {}}
+Y
+(ulimit -f 40; "$breccia" failure elastic.yaml --load 'variables.pull=50 kN:200 kN' > out 2> errors)
+equal "a full disk: status" $? 1
+grep -q 'cannot be written' errors || fail "a full disk: $(cat out errors)"
+"$breccia" failure elastic.yaml --load 'variables.pull=50 kN:200 kN' > out 2> errors
+equal "a bar that does not fail: status" $? 2
+grep -q 'the body does not fail under 200 kN; give a larger TO' errors || fail "a bar that does not fail: $(cat out errors)"
+grep -q 'was done' out && fail "cases without space for their files count as done: $(cat out)"
 # What is wrong is said, with status 2.
 refused() { # name, words, arguments
   local name=$1 words=$2
@@ -47,6 +66,7 @@ refused() { # name, words, arguments
 }
 refused "no load" "give the load with --load" bar.yaml
 refused "no range" "two numbers of one unit" bar.yaml --load variables.pull=3
+refused "a list" "two numbers of one unit" bar.yaml --load 'variables.pull=3 kN, 4 kN:5 kN, 6 kN'
 refused "two units" "two numbers of one unit" bar.yaml --load 'variables.pull=3 N:4 kN'
 refused "the wrong way" "FROM must be the load that the body bears" bar.yaml --load 'variables.pull=4 kN:3 kN'
 refused "within nothing" "takes a number between 0 and 1" bar.yaml --load 'variables.pull=3 kN:4 kN' --within 0

@@ -166,6 +166,31 @@ static void links_crush_beside_torn_ones(void **state)
     }
 }
 
+/** A link that is broken by a criterion still stands for the damage it had. */
+static void links_crush_beside_broken_ones(void **state)
+{
+  (void)state;
+  breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, compressive ductility: 5",
+                               "hexagonal", "[3, 1]", "plane stress");
+  Particles *p = model->domain.particles;
+  Family *f = &model->domain.family;
+  const double ea = stiffness_of(model);
+  p->displacement[0][p->place_of[1]] = p->displacement[0][p->place_of[2]] = 0.1 * 1.5e-4;
+  compute_forces(model);
+  domain_commit_points(&model->domain);
+  const double damage = micropolar_history(formulation_of(model), p->place_of[0], 0);
+  assert_near(damage, 0.5, 1e-9);
+  for (int end = 0; end < 2; ++end) {
+    const int32_t a = p->place_of[end], b = p->place_of[1 - end];
+    f->intact[family_slot(f, a, b)] &= (uint8_t) ~(1u << a % SLICE);
+  }
+  p->displacement[0][p->place_of[2]] -= 0.1 * 6e-4;
+  compute_forces(model);
+  assert_near(p->volume[p->place_of[2]] * p->internal[0][p->place_of[2]] / (ea * 6e-4), 0.5, 1e-9);
+  assert_near(micropolar_history(formulation_of(model), p->place_of[0], 0), damage, 1e-12);
+  breccia_model_destroy(&model);
+}
+
 /** A step that fails, and an elastic stage, leave no damage. */
 static void damage_stays_only_where_steps_come_out_well(void **state)
 {
@@ -248,6 +273,29 @@ static void cracks_take_the_fracture_energy_at_any_spacing(void **state)
   const double less = work_to_part("square", 0.05, 10, 4, &narrow), more = work_to_part("square", 0.05, 30, 4, &wide),
                found = (more - less) / (wide - narrow) / (0.2 * 0.3);
   if (found < 0.998 || found > 1.3) fail_msg("square: %g of the fracture energy", found);
+}
+
+/** What stands for the families of scattered particles is what large ones of lattices come to. */
+static void families_of_scattered_particles_are_taken_as_whole(void **state)
+{
+  (void)state;
+  const struct {
+    const char *lattice, *particles, *space;
+  } cases[] = {{"square", "[17, 17]", "plane strain"}, {"cubic", "[9, 9, 9]", "3-D"}};
+  for (int c = 0; c < 2; ++c) {
+    const char *size = *cases[c].space == 'p' ? "thickness: 0.3," : "";
+    breccia_model *model =
+        model_of(UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e7, Poisson ratio: 0.2}}\n"
+                       "body: {b: {material: m, lattice: %s, spacing: 0.1, %s shape: {box: {particles: %s}}}}\n"
+                       "peridynamics: {formulation: micropolar, space: %s, horizon: %s spacings}\n"
+                       "solve: {explicit: {steps: 1}}\n",
+                 cases[c].lattice, size, cases[c].particles, cases[c].space, c ? "4.3" : "8.3");
+    const Family *f = &model->domain.family;
+    double sum = 0;
+    for (int k = 0; k < f->pattern_count; ++k) sum += f->patterns[k].weight * pow(f->patterns[k].length, 2);
+    assert_near(micropolar_square_sum(formulation_of(model)) / sum, 1, 0.05);
+    breccia_model_destroy(&model);
+  }
 }
 
 static void spacings_that_snap_back_are_refused(void **state)
@@ -347,8 +395,10 @@ int main(void)
       cmocka_unit_test(a_link_follows_its_law),
       cmocka_unit_test(a_fracture_energy_says_where_the_force_ends),
       cmocka_unit_test(links_crush_beside_torn_ones),
+      cmocka_unit_test(links_crush_beside_broken_ones),
       cmocka_unit_test(damage_stays_only_where_steps_come_out_well),
       cmocka_unit_test(cracks_take_the_fracture_energy_at_any_spacing),
+      cmocka_unit_test(families_of_scattered_particles_are_taken_as_whole),
       cmocka_unit_test(spacings_that_snap_back_are_refused),
       cmocka_unit_test(torn_bars_keep_their_books_and_bits),
       cmocka_unit_test(notched_bars_spend_the_fracture_energy_at_any_spacing),

@@ -30,7 +30,7 @@ static const breccia_parameter parameters[] = {
      "tension; never when absent"},
     {"compressive ductility", "1", "2", "(1, inf)", "alpha_c: beyond alpha_c S_c nothing is carried"},
     {"stiffness recovery", "1", "1", "[0, 1]",
-     "share of the stiffness lost in tension that comes back where cracks close; the thesis has 0"},
+     "share of the axial stiffness lost in tension that comes back where cracks close; the thesis has 0"},
     {"length", "length", "", "(0, inf)",
      "over which the fracture energy is spread; that of the formulation or of the links when absent"},
 };
@@ -180,7 +180,9 @@ const breccia_law law_link_damage = {
         "S the stretch of a link; of a point in space S the largest principal strain, or less the smallest one\n"
         "D_t = (S − S_t)/((α_t − 1) S_t), with a fracture energy α (S − S_t)/((α − 1) S); D_c alike from S_c, "
         "where D_t > 0 beside it; both stay\n"
-        "all that links carry, or σ, times (1 − D_t)(1 − D_c); where cracks close D_t counts by 1 − recovery",
+        "all that links carry, or σ, times (1 − D_t)(1 − D_c); of what is along a link, and of σ, D_t counts by 1 − "
+        "recovery "
+        "where cracks close",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(LinkLaw),
     .components = 6,
