@@ -77,6 +77,41 @@ static void damaged_bodies_keep_their_momenta(void **state)
   }
 }
 
+/** Sweeps over lattice slots find what the links do one by one, whatever share of its stiffness a closed one has back. */
+static void sweeps_are_sums_of_damaged_links(void **state)
+{
+  (void)state;
+  breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, stiffness recovery: 0.4", "hexagonal",
+                               "[19, 9]", "plane stress");
+  const Particles *p = model->domain.particles;
+  const Micropolar *m = formulation_of(model);
+  disturb(model, 1e-3, 5);
+  compute_forces(model);
+  domain_commit_points(&model->domain);
+  disturb(model, 5e-4, 6); /* some that were torn have closed */
+  compute_forces(model);
+  double most[2] = {0}, *swept = calloc((size_t)(4 * p->places), sizeof(double));
+  int closed = 0;
+  for (int k = 0; k < 4; ++k) {
+    memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+    for (int64_t i = 0; i < p->places; ++i) most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
+    memset(p->internal[k], 0, sizeof(double) * (size_t)p->places);
+  }
+  for (int64_t slice = 0; slice < p->slices; ++slice) {
+    micropolar_add_links(m, slice, false);
+    for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane)
+        if (m->family->intact[slot] >> lane & 1 && m->damage->tension[1][slot * SLICE + lane] > 0)
+          closed += micropolar_link(m, NULL, slice, slot, lane).stretch < 0;
+  }
+  assert_true(closed > 10);
+  for (int k = 0; k < 4; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-10);
+  free(swept);
+  breccia_model_destroy(&model);
+}
+
 /* ---- one link ---- */
 
 /** Moves particle b of a row along it to a stretch of its link to the one before, which stays; what the link pulls with [force]. */
@@ -392,6 +427,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(damaged_bodies_keep_their_momenta),
+      cmocka_unit_test(sweeps_are_sums_of_damaged_links),
       cmocka_unit_test(a_link_follows_its_law),
       cmocka_unit_test(a_fracture_energy_says_where_the_force_ends),
       cmocka_unit_test(links_crush_beside_torn_ones),
