@@ -23,6 +23,8 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define SHAKEN(key, value) "loads: [{on: {face: y-}, " key ": [" value ", 0], history: {sine: {frequency: 1 MHz}}}]\n"
 #define OPPOSITE(held)                                                                                                 \
   "loads: [{on: {face: y-}, support: {held: across}}, {on: {face: y+}, support: {held: " held "}]\n"
+#define CRACK_FROM(x)                                                                                                  \
+  "cracks: [{cut: {line: [[" x ", 0.03], [0.04, 0.03]]}}]\nloads: [{on: {face: x-}, support: {held: across}}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
 #define MUCH "is much for concrete, which has 60 to 200 N/m"
 
@@ -104,6 +106,10 @@ static const struct {
     {"m", USUAL, OPPOSITE("across, layers: 7}"),
      "support: 6 layers stand between the faces y- and y+, which are both held, and 7 outside each are wanted"},
     {"m", USUAL, "loads: [{on: {face: y-}, support: {held: periodic, layers: 7}}]\n", NULL},
+    /* cracks that end at a plane of symmetry: the images outside would hold them together */
+    {"m", USUAL, CRACK_FROM("0"), "support: a crack of the body is none in the layers outside the face x-"},
+    {"m", USUAL, CRACK_FROM("-0.02"), "support: a crack of the body is none in the layers outside the face x-"},
+    {"m", USUAL, CRACK_FROM("-0.04"), NULL},
 };
 
 static void limits_are_where_they_say(void **state)
