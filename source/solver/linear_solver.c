@@ -23,6 +23,10 @@ static const char *const words[] = {"automatic",
 
 enum { TYPES = sizeof types / sizeof *types };
 
+enum {
+  TEDIOUS = 500
+}; /* products for one solution: from here on a way that suits the body better is taken where there is one */
+
 const char *linear_word(int k)
 {
   return words[k];
@@ -108,6 +112,9 @@ int linear_solver_solve(LinearSolver *s, double *const f[MOTIONS], double *const
   if (!status) status = s->type->solve(s, f, v, tolerance, record, error);
   while (!status && record->unsuited && s->is_free && s->type->instead && s->type->instead->suits(s) > 0)
     status = take_instead(s, f, v, tolerance, record, error);
+  const LinearType *next = s->type->instead;
+  if (!status && s->is_free && record->iterations > TEDIOUS && next && next->suits(s) > s->type->suits(s))
+    ++s->given_up; /* followed when the next equations are prepared */
   return status;
 }
 

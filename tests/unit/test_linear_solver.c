@@ -556,6 +556,24 @@ static void factors_are_the_last_resort(void **state)
   forget(&p);
 }
 
+/** Where one solution took hundreds of products, factors of a body that is still small take over with the equations to come. */
+static void tedious_equations_go_to_factors(void **state)
+{
+  (void)state;
+  Problem p = pose(plate(24), 0);
+  p.solver.mass_factor = -7e4;
+  begin(&p, "automatic");
+  LinearRecord record = solve(&p, 1e-8);
+  print_message("minimal residuals: %lld products leave %g\n", (long long)record.iterations, record.residual);
+  assert_string_equal(linear_solver_name(&p.solver), "minimal residuals");
+  assert_true(record.iterations > 500);
+  assert_true(record.residual <= 1e-8);
+  record = solve(&p, 1e-8);
+  assert_string_equal(linear_solver_name(&p.solver), "direct");
+  assert_true(record.residual <= 1e-8);
+  forget(&p);
+}
+
 /** Threads of libraries stand in the way of ours. */
 static void factors_start_no_threads(void **state)
 {
@@ -640,6 +658,7 @@ int main(void)
       cmocka_unit_test(the_way_follows_the_stiffness),
       cmocka_unit_test(the_matrix_is_the_stiffness),
       cmocka_unit_test(factors_are_the_last_resort),
+      cmocka_unit_test(tedious_equations_go_to_factors),
       cmocka_unit_test(memory_of_factors_is_foreseen),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
