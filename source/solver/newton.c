@@ -7,14 +7,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/** Where a body springs from stresses at which it began, they are what equilibrium is measured by: in the end nothing need act on it. */
-static double forces_at_start(const Domain *d)
+void newton_note_forces_held(Newton *n)
 {
-  const Particles *p = d->particles;
+  const Particles *p = n->domain->particles;
   double sum = 0;
-  for (int k = 0; k < 3 && d->initial_strain[0]; ++k)
+  for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) sum += p->volume[i] * p->internal[k][i] * p->volume[i] * p->internal[k][i];
-  return sqrt(sum);
+  if (isfinite(sum)) n->reference = fmax(n->reference, sqrt(sum));
 }
 
 /** The root of the sum over particles of the force by which a neighbour's displacement of 1 is answered, squared. */
@@ -44,7 +43,7 @@ int newton_create(Newton *n, Error *error)
     made = vectors_make(n->unit_force, p, "controlled loads", error) &&
            vectors_make(n->unit_motion, p, "controlled loads", error);
   if (!made) return BRECCIA_FAILURE;
-  n->reference = forces_at_start(n->domain);
+  if (n->domain->initial_strain[0]) newton_note_forces_held(n);
   n->stiffness = stiffness_of(n->domain);
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
 }

@@ -112,6 +112,10 @@ typedef struct Newton {
 int newton_create(Newton *newton, Error *error);
 void newton_destroy(Newton *newton);
 
+/** Measures equilibrium by no less than the forces of bonds on all places as they are: where the last load is taken away, or a body springs from stresses
+ *  at which it began, nothing need act on it in the end. */
+void newton_note_forces_held(Newton *newton);
+
 /** Forces at the displacements held, and what linearised steps need of them. */
 int newton_linearise(const Newton *newton, Error *error);
 

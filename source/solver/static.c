@@ -275,6 +275,7 @@ static int begin(Solver *run, Error *error)
   control_begin(&s->control);
   domain_tell_time(s->domain, run->clock.time, 0);
   domain_evaluate(s->domain);
+  newton_note_forces_held(&s->newton);
   increment_start(&s->increment);
   return BRECCIA_OK;
 }
@@ -322,14 +323,15 @@ static void book_sudden(Static *s, double *const moved[MOTIONS])
  *  @param[in] length  of the increment */
 static bool is_coarse(const Static *s, double length)
 {
-  const double most = 0.02, least = 1.0 / 16; /* of the work so far; of an increment as asked for */
+  const double most = 0.02, least = 1.0 / 16; /* of the largest work so far; of an increment as asked for */
   const Particles *p = s->domain->particles;
   double work = 0;
   if (!s->newton.change_forces[0] || length / 2 < least * whole_increment(s->spec)) return false;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
       work -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
-  return 0.5 * (s->newton.foreseen - work) > most * fabs(s->ledger->bond_work + work);
+  const double held = s->ledger->bond_work; /* an unloaded body gives it all back */
+  return 0.5 * (s->newton.foreseen - work) > most * fmax(fabs(held), fabs(held + work));
 }
 
 /** One try to come to equilibrium at a time of the run.

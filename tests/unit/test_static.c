@@ -482,6 +482,29 @@ static void an_unloaded_body_is_at_rest(void **state)
   breccia_model_destroy(&model);
 }
 
+/** What is left when the last load is taken away is measured by what the body held before: measured by itself, which goes to zero too, it was never small
+ *  enough, and increments were cut until the run failed. */
+static void the_last_load_is_taken_away_in_few_iterations(void **state)
+{
+  (void)state;
+  const char *laws[] = {"elastic-1d", "bilinear-softening, tensile strength: 3 MPa, fracture energy: 100 N/m"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        "materials: {m: {density: 2400 kg/m3, model: %s, Young modulus: 30 GPa}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [10, 5]}}}}\n"
+        "peridynamics: {formulation: bond-based, space: plane stress}\n"
+        "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]},\n"
+        "        {name: pull, on: {face: x+, layers: 2}, force: [0.3 MN, 0]}]\n"
+        "solve:\n  - {name: up, static: {increments: 1}}\n"
+        "  - {name: gone, without: [pull], static: {increments: 1, iterations: 4, smallest increment: 1}}\n",
+        laws[k]);
+    step_surely(m, INT64_MAX);
+    const Particles *p = m->domain.particles;
+    for (int64_t n = 0; n < p->count; ++n) assert_near(p->displacement[0][p->place_of[n]], 0, 1e-11);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void a_loose_body_is_refused(void **state)
 {
   (void)state;
@@ -565,6 +588,7 @@ int main(void)
       cmocka_unit_test(a_body_that_is_carried_away_finds_no_equilibrium),
       cmocka_unit_test(a_body_that_is_moved_as_a_whole_is_at_rest),
       cmocka_unit_test(an_unloaded_body_is_at_rest),
+      cmocka_unit_test(the_last_load_is_taken_away_in_few_iterations),
       cmocka_unit_test(a_loose_body_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
