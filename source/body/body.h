@@ -64,9 +64,13 @@ void body_destroy(Body *body);
 
 /** True if the segment between two points crosses one of the body's cuts; alike from both ends. Notes which are crossed in `crack_met`. */
 bool body_cuts(const Body *body, const double a[3], const double b[3]);
+/** The same of the bond of two places. Images of the body outside it have its cuts, too, as far as these lie inside, and only those. */
+bool body_cuts_bond(const Body *body, int32_t a, int32_t b);
 /** True if a cut without thickness parts the two points, and no notch, whose faces stand apart.
  *  @param[out] normal  unit normal of the cut, towards b
  *  @param[out] level   of the plane of the cut along it: normal . x of its points */
 bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3], double *level);
+/** The same of two places, images among them. */
+bool body_closed_bond(const Body *body, int32_t a, int32_t b, double normal[3], double *level);
 
 #endif

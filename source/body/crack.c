@@ -1,99 +1,8 @@
-/* Pre-existing cracks: particles taken out, and surfaces that cut bonds. */
+/* Pre-existing cracks: particles taken out, and surfaces that cut bonds. Layers outside the body, which stand for what it is the image of, are cut as
+ * the body is: bonds with an end there are carried back into it, and what they cross outside it does not count. */
 #include "body/body.h"
 
 #include <math.h>
-
-static void check_cut(const DeckReader *reader, void *section)
-{
-  const CutSpec *cut = section;
-  if (cut->line.count == 1)
-    node_error(reader->document, section_node(section, "line"), reader->error, "line: needs at least two points");
-  if (cut->polygon.count == 1 || cut->polygon.count == 2)
-    node_error(reader->document, section_node(section, "polygon"), reader->error,
-               "polygon: needs at least three corners");
-  for (int n = 3; n < cut->polygon.count; ++n) {
-    const double *p = cut->polygon.values;
-    double a[3], b[3], c[3], size = 0;
-    for (int k = 0; k < 3; ++k) {
-      a[k] = p[3 + k] - p[k];
-      b[k] = p[6 + k] - p[k];
-      c[k] = p[3 * n + k] - p[k];
-      size += a[k] * a[k] + b[k] * b[k] + c[k] * c[k];
-    }
-    double volume =
-        c[0] * (a[1] * b[2] - a[2] * b[1]) + c[1] * (a[2] * b[0] - a[0] * b[2]) + c[2] * (a[0] * b[1] - a[1] * b[0]);
-    if (fabs(volume) > 1e-9 * pow(size, 1.5)) {
-      node_error(reader->document, section_node(section, "polygon"), reader->error,
-                 "polygon: corner %d does not lie in the plane of the first three", n + 1);
-      break;
-    }
-  }
-}
-
-static const Field cut_fields[] = {
-    {.key = "line",
-     .kind = FIELD_POINTS,
-     .offset = offsetof(CutSpec, line),
-     .dimension = "length",
-     .standard = "",
-     .meaning = "points [x, y] of a line; in space the cut runs through the whole height along z",
-     .group = 'A'},
-    {.key = "polygon",
-     .kind = FIELD_POINTS,
-     .offset = offsetof(CutSpec, polygon),
-     .dimension = "length",
-     .standard = "",
-     .meaning = "corners [x, y, z] of a flat polygon",
-     .group = 'A'},
-};
-static const Section cut_section = {
-    .name = "cut",
-    .about =
-        "A surface without thickness that no bond crosses. A bond that only touches its end or edge is left whole, "
-        "unless the cut leaves the body there (at or beyond the outermost particles) or another begins. A particle on "
-        "it belongs to the side at the left of a line, or where a polygon's corners run anticlockwise.",
-    .size = sizeof(CutSpec),
-    FIELDS(cut_fields),
-    .check = check_cut};
-
-static void check_crack(const DeckReader *reader, void *section)
-{
-  const CrackSpec *crack = section;
-  if (crack->remove && crack->cut_faces && !crack->remove->box)
-    node_error(reader->document, section_node(section, "cut faces"), reader->error,
-               "cut faces: works for a box only; give the cut as a line or polygon of its own");
-  else if (!crack->remove && crack->cut_faces)
-    node_error(reader->document, section_node(section, "cut faces"), reader->error, "cut faces: goes with 'remove'");
-}
-
-static const Field crack_fields[] = {
-    {.key = "remove",
-     .kind = FIELD_SECTION,
-     .offset = offsetof(CrackSpec, remove),
-     .standard = "",
-     .meaning = "particles inside this shape are taken out",
-     .section = &shape_section,
-     .group = 'A'},
-    {.key = "cut",
-     .kind = FIELD_SECTION,
-     .offset = offsetof(CrackSpec, cut),
-     .standard = "",
-     .meaning = "bonds across this surface are cut",
-     .section = &cut_section,
-     .group = 'A'},
-    {.key = "cut faces",
-     .kind = FIELD_FLAG,
-     .offset = offsetof(CrackSpec, cut_faces),
-     .standard = "no",
-     .meaning = "with 'remove' of a box: bonds across the middle plane of the box (across its thinnest direction) are "
-                "cut too, so that its faces do not hold together; bonds that only touch the end of the plane are not, "
-                "unless particles were taken out there"},
-};
-const Section crack_section = {.name = "crack",
-                               .about = "A notch or crack that is there from the beginning.",
-                               .size = sizeof(CrackSpec),
-                               FIELDS(crack_fields),
-                               .check = check_crack};
 
 /* A particle that lies on a cut belongs to its positive side, so that a cut through a row of particles parts the body beside
  * the row instead of cutting the row off from both sides. A bond that only touches the end of a cut does not cross it: ends that
@@ -119,9 +28,34 @@ static double distance(const double a[3], const double b[3], int dimensions)
   return sqrt(square);
 }
 
-/** True if both points lie at or beyond the outermost particles of one side of the body. */
-static bool outermost(const Body *body, const double a[3], const double b[3], int dimensions, double tolerance)
+/** Where crossings count: inside the faces beyond which a bond has an end, in a margin; beyond them only its images do. */
+typedef struct Window {
+  const Body *body;
+  double face[3][2]; /* along each axis: low, high */
+  bool closed[3][2]; /* the bond has an end beyond it */
+  bool repeats[3];   /* images are moved along, by the distance of the two faces, and not mirrored */
+} Window;
+
+/** Whether a place is inside. */
+static bool within(const Window *w, const double x[3], double tolerance)
 {
+  for (int k = 0; k < 3; ++k)
+    if ((w->closed[k][0] && x[k] < w->face[k][0] - tolerance) || (w->closed[k][1] && x[k] > w->face[k][1] + tolerance))
+      return false;
+  return true;
+}
+
+/** Whether both points lie at a face, or beyond. */
+static bool at_face(const Window *w, int k, int side, const double a[3], const double b[3], double tolerance)
+{
+  if (!w->closed[k][side]) return false;
+  return side ? fmin(a[k], b[k]) >= w->face[k][1] - tolerance : fmax(a[k], b[k]) <= w->face[k][0] + tolerance;
+}
+
+/** True if both points lie at or beyond the outermost particles of one side of the body. */
+static bool outermost(const Window *w, const double a[3], const double b[3], int dimensions, double tolerance)
+{
+  const Body *body = w->body;
   for (int k = 0; k < dimensions; ++k)
     if (fmax(a[k], b[k]) <= body->low[k] + tolerance || fmin(a[k], b[k]) >= body->high[k] - tolerance) return true;
   return false;
@@ -143,9 +77,10 @@ static bool left_of_bend(const double c[3], const double d[3], const double e[3]
 }
 
 /** True if a segment that meets corner `at` of a line crosses the line there. */
-static bool corner_crossed(const Body *body, const NumberList *line, int at, const double a[3], const double b[3],
+static bool corner_crossed(const Window *w, const NumberList *line, int at, const double a[3], const double b[3],
                            double tolerance)
 {
+  const Body *body = w->body;
   const double *p = line->values, *here = p + 3 * at;
   const int last = line->count - 1;
   const bool ring = last > 2 && distance(p, p + 3 * last, 2) <= tolerance;
@@ -153,7 +88,7 @@ static bool corner_crossed(const Body *body, const NumberList *line, int at, con
     const double *before = p + 3 * (at > 0 ? at - 1 : last - 1), *after = p + 3 * (at < last ? at + 1 : 1);
     return left_of_bend(before, here, after, a, tolerance) != left_of_bend(before, here, after, b, tolerance);
   }
-  if (outermost(body, here, here, 2, tolerance)) return true;
+  if (outermost(w, here, here, 2, tolerance)) return true;
   for (int c = 0; c < body->crack_count; ++c) {
     const NumberList *other = body->cracks[c]->cut ? &body->cracks[c]->cut->line : NULL;
     for (int end = 0; other && other != line && other->count && end < 2; ++end)
@@ -162,18 +97,43 @@ static bool corner_crossed(const Body *body, const NumberList *line, int at, con
   return false;
 }
 
+/** Where a piece of a line comes to a face with images beyond, it goes on there as its own image.
+ *  @param[in] here  where the segment meets the piece
+ *  @return 1: the segment crosses them there, 0: it does not, -1: they do not meet there */
+static int face_crossed(const Window *w, const double c[3], const double d[3], const double here[3], const double a[3],
+                        const double b[3], double tolerance)
+{
+  for (int k = 0; k < 2; ++k)
+    for (int side = 0; side < 2; ++side) {
+      const double face = w->face[k][side], inwards = side ? -1 : 1;
+      if (!at_face(w, k, side, here, here, tolerance) || fabs(c[k] - d[k]) <= tolerance) continue;
+      const bool begins = inwards * (c[k] - d[k]) > 0; /* inside */
+      const double *inside = begins ? c : d;
+      if (inwards * (inside[k] - face) <= tolerance) return 0;
+      if (w->repeats[k]) return 1;
+      double image[3] = {inside[0], inside[1], inside[2]};
+      image[k] = 2 * face - inside[k];
+      const double *before = begins ? inside : image, *after = begins ? image : inside;
+      return left_of_bend(before, here, after, a, tolerance) != left_of_bend(before, here, after, b, tolerance);
+    }
+  return -1;
+}
+
 /** True if segment ab crosses piece n of a line, seen along z. */
-static bool line_crossed(const Body *body, const NumberList *line, int n, const double a[3], const double b[3])
+static bool line_crossed(const Window *w, const NumberList *line, int n, const double a[3], const double b[3])
 {
   const double *c = line->values + 3 * n, *d = c + 3, length = distance(a, b, 3), end = at_end * length;
-  double sx = d[0] - c[0], sy = d[1] - c[1], size = sqrt(sx * sx + sy * sy);
+  double sx = d[0] - c[0], sy = d[1] - c[1], size = sqrt(sx * sx + sy * sy), meeting[3];
   if (size == 0) return false;
   double t = crossing(leftward(c, d, a), leftward(c, d, b), length);
   if (t < 0) return false;
-  double x = a[0] + t * (b[0] - a[0]) - c[0], y = a[1] + t * (b[1] - a[1]) - c[1], along = (x * sx + y * sy) / size;
-  if (along < -end || along > size + end) return false;
-  if (along <= end) return corner_crossed(body, line, n, a, b, end);
-  if (along >= size - end) return corner_crossed(body, line, n + 1, a, b, end);
+  for (int k = 0; k < 3; ++k) meeting[k] = a[k] + t * (b[k] - a[k]);
+  const double along = ((meeting[0] - c[0]) * sx + (meeting[1] - c[1]) * sy) / size;
+  if (along < -end || along > size + end || !within(w, meeting, end)) return false;
+  const int at = face_crossed(w, c, d, meeting, a, b, end);
+  if (at >= 0) return at > 0;
+  if (along <= end) return corner_crossed(w, line, n, a, b, end);
+  if (along >= size - end) return corner_crossed(w, line, n + 1, a, b, end);
   return true;
 }
 
@@ -205,7 +165,19 @@ static bool edge_is_joined(const Body *body, const NumberList *own, const double
   return false;
 }
 
-static bool polygon_crossed(const Body *body, const NumberList *polygon, const double a[3], const double b[3])
+/** Whether an edge of a polygon lies in a face with images beyond, or outside it, where the polygon goes on as its own image. */
+static bool ends_at_face(const Window *w, const double c[3], const double d[3], const double normal[3],
+                         double tolerance)
+{
+  const double size = fabs(normal[0]) + fabs(normal[1]) + fabs(normal[2]);
+  for (int k = 0; k < 3; ++k) {
+    const bool lies_in_it = fabs(normal[k]) >= size * (1 - nearly);
+    if (!lies_in_it && (at_face(w, k, 0, c, d, tolerance) || at_face(w, k, 1, c, d, tolerance))) return true;
+  }
+  return false;
+}
+
+static bool polygon_crossed(const Window *w, const NumberList *polygon, const double a[3], const double b[3])
 {
   const double *corners = polygon->values, length = distance(a, b, 3), end = at_end * length;
   const int count = polygon->count;
@@ -224,11 +196,14 @@ static bool polygon_crossed(const Body *body, const NumberList *polygon, const d
   double t = crossing(from / sqrt(size), to / sqrt(size), length);
   if (t < 0) return false;
   for (int k = 0; k < 3; ++k) meeting[k] = a[k] + t * (b[k] - a[k]);
+  if (!within(w, meeting, end)) return false;
   bool on_edge = false;
   for (int m = 0; m < count; ++m) {
     const double *c = corners + 3 * m, *d = corners + 3 * ((m + 1) % count);
     if (distance_to_edge(c, d, meeting) > end) continue;
-    if (!outermost(body, c, d, 3, end) && !edge_is_joined(body, polygon, c, d, end)) return false;
+    if (!outermost(w, c, d, 3, end) && !ends_at_face(w, c, d, normal, end) &&
+        !edge_is_joined(w->body, polygon, c, d, end))
+      return false;
     on_edge = true;
   }
   if (on_edge) return true;
@@ -259,9 +234,10 @@ static bool row_at(const Body *body, int axis, double x, double tolerance)
 
 /** True if a segment crosses the middle plane of a box inside the box. Whole boxes would cut more: slanting bonds that pass the
  *  end of a notch through its corner, which lengthens the crack by half a spacing. */
-static bool crosses_middle(const Box *box, const Body *body, const double a[3], const double b[3])
+static bool crosses_middle(const Box *box, const Window *w, const double a[3], const double b[3])
 {
-  double low[3], high[3], length = distance(a, b, 3), end = at_end * length;
+  const Body *body = w->body;
+  double low[3], high[3], meeting[3], length = distance(a, b, 3), end = at_end * length;
   box_corners(box, &body->coarsest->unit, low, high);
   const int dimensions = body->dimensions;
   int thin = 0;
@@ -269,34 +245,29 @@ static bool crosses_middle(const Box *box, const Body *body, const double a[3], 
     if (high[k] - low[k] < high[thin] - low[thin]) thin = k;
   double middle = (low[thin] + high[thin]) / 2, t = crossing(a[thin] - middle, b[thin] - middle, length);
   if (t < 0) return false;
+  for (int k = 0; k < 3; ++k) meeting[k] = a[k] + t * (b[k] - a[k]);
+  if (!within(w, meeting, end)) return false;
   for (int k = 0; k < dimensions; ++k) {
-    double x = a[k] + t * (b[k] - a[k]);
+    const double x = meeting[k];
     if (k == thin || (x > low[k] + end && x < high[k] - end)) continue;
     if (x < low[k] - end || x > high[k] + end) return false;
-    const double side = x < (low[k] + high[k]) / 2 ? low[k] : high[k];
-    const bool leaves = side == low[k] ? side <= body->low[k] + end : side >= body->high[k] - end;
-    if (!leaves && !row_at(body, k, side, end)) return false;
+    const bool upper = x >= (low[k] + high[k]) / 2;
+    const double *corner = upper ? high : low, side = corner[k];
+    const bool leaves = upper ? side >= body->high[k] - end : side <= body->low[k] + end;
+    if (!leaves && !at_face(w, k, upper, corner, corner, end) && !row_at(body, k, side, end)) return false;
   }
-  return true;
-}
-
-/** Which of two points comes first: a bond is judged alike from both ends, to the last rounding. */
-static bool comes_first(const double a[3], const double b[3])
-{
-  for (int k = 0; k < 3; ++k)
-    if (a[k] != b[k]) return a[k] < b[k];
   return true;
 }
 
 /** The line piece or polygon of a crack that a segment crosses.
  *  @param[out] normal  of any length and side; may be NULL
  *  @return a corner of it, or NULL if none is crossed */
-static const double *cut_crossed(const Body *body, const CutSpec *cut, const double a[3], const double b[3],
+static const double *cut_crossed(const Window *w, const CutSpec *cut, const double a[3], const double b[3],
                                  double normal[3])
 {
   const NumberList *line = &cut->line, *polygon = &cut->polygon;
   const double *p = polygon->values;
-  if (polygon->count && polygon_crossed(body, polygon, a, b)) {
+  if (polygon->count && polygon_crossed(w, polygon, a, b)) {
     for (int k = 0; k < 3 && normal; ++k) {
       const int i = (k + 1) % 3, j = (k + 2) % 3;
       normal[k] = (p[3 + i] - p[i]) * (p[6 + j] - p[j]) - (p[3 + j] - p[j]) * (p[6 + i] - p[i]);
@@ -304,7 +275,7 @@ static const double *cut_crossed(const Body *body, const CutSpec *cut, const dou
     return p;
   }
   for (int n = 0; n + 1 < line->count; ++n) {
-    if (!line_crossed(body, line, n, a, b)) continue;
+    if (!line_crossed(w, line, n, a, b)) continue;
     const double *c = line->values + 3 * n;
     if (normal) {
       normal[0] = c[1] - c[4];
@@ -316,59 +287,203 @@ static const double *cut_crossed(const Body *body, const CutSpec *cut, const dou
   return NULL;
 }
 
-bool body_cuts(const Body *body, const double a[3], const double b[3])
+/** One way to carry a bond into the body: along each axis left as it is, or through the low or the high face. */
+typedef struct Passage {
+  bool through[3][2];
+  double a[3], b[3]; /* the bond there */
+} Passage;
+
+enum { PASSAGES = 27 };
+
+/** Closes the faces beyond which an end of a bond stands in a margin. */
+static void close_faces(Window *w, int32_t place)
 {
-  if (!comes_first(a, b)) return body_cuts(body, b, a);
+  const Particles *p = &w->body->particles;
+  const int block = p->block[place / SLICE];
+  const Lattice *lattice = &w->body->lattices[block];
+  for (int m = 0; m < w->body->margins.count; ++m) {
+    const Margin *margin = &w->body->margins.items[m];
+    const int k = margin->axis;
+    if (margin->block != block) continue;
+    const double inside = (double)(lattice->margin[k][0]) - 0.5, low = lattice->origin[k] + inside * lattice->plane[k],
+                 behind = (double)(lattice->cells[k] - lattice->margin[k][1]) - 0.5,
+                 high = lattice->origin[k] + behind * lattice->plane[k], x = p->position[k][place];
+    if (margin->high ? x <= high : x >= low) continue;
+    w->closed[k][margin->high] = true;
+    w->face[k][0] = low;
+    w->face[k][1] = high;
+    w->repeats[k] = margin->repeats;
+  }
+}
+
+/** Where a coordinate is carried through a face. */
+static double carried(const Window *w, int k, int side, double x)
+{
+  const double *face = w->face[k];
+  if (w->repeats[k]) return x + (side ? face[0] - face[1] : face[1] - face[0]);
+  return 2 * face[side] - x;
+}
+
+/** All ways to carry a bond into the body by which some of it comes to lie there. @return how many */
+static int find_passages(Window *w, int32_t one, int32_t other, Passage passages[PASSAGES])
+{
+  const Particles *p = &w->body->particles;
+  int count = 1;
+  passages[0] = (Passage){.a = {0}};
+  for (int k = 0; k < 3; ++k) {
+    passages[0].a[k] = p->position[k][one];
+    passages[0].b[k] = p->position[k][other];
+  }
+  if (!w->body->margin_of) return count;
+  if (body_outside(w->body, p->number[one])) close_faces(w, one);
+  if (body_outside(w->body, p->number[other])) close_faces(w, other);
+  for (int k = 0; k < 3; ++k) {
+    const int before = count;
+    for (int side = 0; side < 2; ++side)
+      for (int n = 0; n < before && w->closed[k][side]; ++n) {
+        Passage *way = &passages[count++];
+        *way = passages[n];
+        way->through[k][side] = true;
+        way->a[k] = carried(w, k, side, way->a[k]);
+        way->b[k] = carried(w, k, side, way->b[k]);
+      }
+  }
+  return count;
+}
+
+/** Which of two points comes first: a bond is judged alike from both ends, to the last rounding. */
+static bool comes_first(const double a[3], const double b[3])
+{
+  for (int k = 0; k < 3; ++k)
+    if (a[k] != b[k]) return a[k] < b[k];
+  return true;
+}
+
+static void swap_ends(Passage *way)
+{
+  for (int k = 0; k < 3; ++k) {
+    const double kept = way->a[k];
+    way->a[k] = way->b[k];
+    way->b[k] = kept;
+  }
+}
+
+/** The ways of a bond between two places, from the end that comes first. @param[out] swapped  that is the other one */
+static int bond_passages(Window *w, int32_t one, int32_t other, Passage passages[PASSAGES], bool *swapped)
+{
+  const int count = find_passages(w, one, other, passages);
+  *swapped = !comes_first(passages[0].a, passages[0].b);
+  for (int n = 0; n < count && *swapped; ++n) swap_ends(&passages[n]);
+  return count;
+}
+
+/** The way of a segment where no image is. */
+static Passage straight(const double a[3], const double b[3])
+{
+  Passage way = {.a = {a[0], a[1], a[2]}, .b = {b[0], b[1], b[2]}};
+  if (!comes_first(a, b)) swap_ends(&way);
+  return way;
+}
+
+static bool cut_on(const Window *w, const Passage *passages, int count)
+{
+  const Body *body = w->body;
   bool cuts = false;
   for (int c = 0; c < body->crack_count; ++c) {
     const CrackSpec *crack = body->cracks[c];
-    if (!(crack->cut_faces && crack->remove && crosses_middle(crack->remove->box, body, a, b)) &&
-        !(crack->cut && cut_crossed(body, crack->cut, a, b, NULL)))
-      continue;
+    bool met = false;
+    for (int n = 0; n < count && !met; ++n) {
+      const double *a = passages[n].a, *b = passages[n].b;
+      met = (crack->cut_faces && crack->remove && crosses_middle(crack->remove->box, w, a, b)) ||
+            (crack->cut && cut_crossed(w, crack->cut, a, b, NULL));
+    }
+    if (!met) continue;
     __atomic_store_n(&body->crack_met[c], 1, __ATOMIC_RELAXED);
     cuts = true;
   }
   return cuts;
 }
 
-static bool runs_through_notch(const Body *body, const double a[3], const double b[3])
+bool body_cuts(const Body *body, const double a[3], const double b[3])
+{
+  const Window w = {.body = body};
+  const Passage way = straight(a, b);
+  return cut_on(&w, &way, 1);
+}
+
+bool body_cuts_bond(const Body *body, int32_t one, int32_t other)
+{
+  Window w = {.body = body};
+  Passage passages[PASSAGES];
+  bool swapped;
+  const int count = bond_passages(&w, one, other, passages, &swapped);
+  return cut_on(&w, passages, count);
+}
+
+static bool runs_through_notch(const Window *w, const double a[3], const double b[3])
 {
   enum { PARTS = 8 };
+  const Body *body = w->body;
   for (int c = 0; c < body->crack_count; ++c) {
     const CrackSpec *crack = body->cracks[c];
     if (!crack->remove) continue;
-    if (crack->cut_faces && crosses_middle(crack->remove->box, body, a, b)) return true;
+    if (crack->cut_faces && crosses_middle(crack->remove->box, w, a, b)) return true;
     for (int n = 1; n < PARTS; ++n) {
       double point[3];
       for (int k = 0; k < 3; ++k) point[k] = a[k] + (b[k] - a[k]) * n / PARTS;
-      if (shape_contains(crack->remove, &body->coarsest->unit, body->dimensions, point, 0)) return true;
+      if (within(w, point, 0) && shape_contains(crack->remove, &body->coarsest->unit, body->dimensions, point, 0))
+        return true;
     }
   }
   return false;
 }
 
-bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3], double *level)
+/** @param[in] swapped  the normal is to point to the first end */
+static bool closed_on(const Window *w, const Passage *passages, int count, bool swapped, double normal[3],
+                      double *level)
 {
-  if (!comes_first(a, b)) {
-    bool closed = body_closed_cut(body, b, a, normal, level);
-    for (int k = 0; k < 3 && closed; ++k) normal[k] = -normal[k];
-    if (closed) *level = -*level;
-    return closed;
-  }
+  const Body *body = w->body;
   const double *corner = NULL;
+  const Passage *way = passages;
   for (int c = 0; c < body->crack_count && !corner; ++c)
-    if (body->cracks[c]->cut) corner = cut_crossed(body, body->cracks[c]->cut, a, b, normal);
-  if (!corner || runs_through_notch(body, a, b)) return false;
-  double size = 0, along = 0;
+    for (int n = 0; n < count && !corner && body->cracks[c]->cut; ++n) {
+      way = &passages[n];
+      corner = cut_crossed(w, body->cracks[c]->cut, way->a, way->b, normal);
+    }
+  if (!corner) return false;
+  for (int n = 0; n < count; ++n)
+    if (runs_through_notch(w, passages[n].a, passages[n].b)) return false;
+  double size = 0, along = 0, at[3] = {corner[0], corner[1], corner[2]};
   for (int k = 0; k < 3; ++k) {
     size += normal[k] * normal[k];
-    along += normal[k] * (b[k] - a[k]);
+    along += normal[k] * (way->b[k] - way->a[k]);
   }
-  size = along < 0 ? -sqrt(size) : sqrt(size);
+  size = (along < 0) != swapped ? -sqrt(size) : sqrt(size);
   *level = 0;
   for (int k = 0; k < 3; ++k) {
     normal[k] /= size;
-    *level += normal[k] * corner[k];
+    for (int side = 0; side < 2; ++side) {
+      if (!way->through[k][side]) continue; /* back to where the bond is */
+      at[k] = carried(w, k, w->repeats[k] ? !side : side, at[k]);
+      if (!w->repeats[k]) normal[k] = -normal[k];
+    }
+    *level += normal[k] * at[k];
   }
   return true;
+}
+
+bool body_closed_cut(const Body *body, const double a[3], const double b[3], double normal[3], double *level)
+{
+  const Window w = {.body = body};
+  const Passage way = straight(a, b);
+  return closed_on(&w, &way, 1, !comes_first(a, b), normal, level);
+}
+
+bool body_closed_bond(const Body *body, int32_t one, int32_t other, double normal[3], double *level)
+{
+  Window w = {.body = body};
+  Passage passages[PASSAGES];
+  bool swapped;
+  const int count = bond_passages(&w, one, other, passages, &swapped);
+  return closed_on(&w, passages, count, swapped, normal, level);
 }

@@ -324,13 +324,8 @@ static bool bonded(const Contact *c, int32_t a, int32_t b)
 static void visit_cut(Contact *c, int32_t place, int32_t other)
 {
   const Particles *p = &c->body->particles;
-  double a[3], b[3], normal[3], level;
-  if (bonded(c, place, other)) return;
-  for (int k = 0; k < 3; ++k) {
-    a[k] = p->position[k][place];
-    b[k] = p->position[k][other];
-  }
-  if (!body_closed_cut(c->body, a, b, normal, &level)) return;
+  double normal[3], level;
+  if (bonded(c, place, other) || !body_closed_bond(c->body, place, other, normal, &level)) return;
   ContactPair *pair = contact_pair_for(c, place, other);
   if (!pair) return;
   const double way = p->number[place] < p->number[other] ? 1 : -1;

@@ -137,16 +137,9 @@ static uint8_t lattice_slot(const Particles *p, const Lattice *lattice, int64_t 
 
 static uint8_t cut_slot(const Body *body, int64_t slice, int32_t base, uint8_t mask)
 {
-  const Particles *p = &body->particles;
-  for (int lane = 0; lane < SLICE; ++lane) {
-    if (!(mask >> lane & 1)) continue;
-    double a[3], b[3];
-    for (int k = 0; k < 3; ++k) {
-      a[k] = p->position[k][slice * SLICE + lane];
-      b[k] = p->position[k][base + lane];
-    }
-    if (body_cuts(body, a, b)) mask = (uint8_t)(mask & ~(1u << lane));
-  }
+  for (int lane = 0; lane < SLICE; ++lane)
+    if (mask >> lane & 1 && body_cuts_bond(body, (int32_t)(slice * SLICE + lane), base + lane))
+      mask = (uint8_t)(mask & ~(1u << lane));
   return mask;
 }
 

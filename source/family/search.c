@@ -50,7 +50,7 @@ static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, 
         length = sqrt(square);
         share = length > reach * (1 + 1e-9) ? 0 : rule->share(rule->correction, length, rule->horizon, half);
       }
-      if (share == 0 || (body->crack_count && body_cuts(body, here, there))) continue;
+      if (share == 0 || (body->crack_count && body_cuts_bond(body, place, other))) continue;
       if (neighbour) neighbour[count] = other;
       if (scale) scale[count] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
       ++count;

@@ -150,7 +150,7 @@ static double gap_of_cut(const Domain *d, const Cells *cells, int crack, double 
   for (int64_t n = 0; n < p->count && least > gap_share; ++n) {
     const int32_t place = p->place_of[n];
     const int block = p->block[place / SLICE];
-    double a[3], b[3], normal[3], level;
+    double a[3], normal[3], level;
     place_point(p, place, a);
     if (!fills_lattice(&d->body, block) || !near_cut(alone.cracks[0]->cut, a, horizon)) continue;
     int64_t rows[9][2];
@@ -163,8 +163,8 @@ static double gap_of_cut(const Domain *d, const Cells *cells, int crack, double 
         if (other == place || !fills_lattice(&d->body, theirs) || distance > horizon ||
             (distance - mean) / mean >= least || family_joins(&d->family, place, other))
           continue;
-        place_point(p, other, b);
-        if (!body_cuts(&alone, a, b) || !body_closed_cut(&d->body, a, b, normal, &level)) continue;
+        if (!body_cuts_bond(&alone, place, other) || !body_closed_bond(&d->body, place, other, normal, &level))
+          continue;
         least = (distance - mean) / mean;
         *gap = distance - mean;
       }

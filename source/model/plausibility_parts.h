@@ -18,7 +18,7 @@ void plausibility_warn_of_blocks(breccia_model *model);
 /** Warns of contact that is not what its words say. */
 void plausibility_warn_of_contact(breccia_model *model);
 
-/** Warns of faces held opposite each other with too few layers between them, and of cracks that the layers outside a face have not. */
+/** Warns of faces held opposite each other with too few layers between them. */
 void plausibility_warn_of_supports(breccia_model *model);
 
 /** Adds a line on the lowest frequency of the body as it is held, with advice for loads, damping and steps, where the deck asks for it and the body is

@@ -268,6 +268,92 @@ static void half_a_body_on_a_support_across_is_half_a_whole(void **state)
   breccia_model_destroy(&half);
 }
 
+/** Every particle of a half (or quarter) body moves as the one at its place in the whole body. */
+static void assert_part_moves_as_whole(const breccia_model *part, const breccia_model *whole, const char *what)
+{
+  const Particles *p = whole->domain.particles, *q = part->domain.particles;
+  double largest = 0;
+  for (int k = 0; k < 3; ++k)
+    for (int64_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->displacement[k][p->place_of[n]]));
+  assert_true(largest > 0);
+  for (int64_t n = 0; n < q->count; ++n) {
+    const int32_t i = q->place_of[n];
+    if (body_outside(&part->domain.body, n)) continue;
+    const int32_t j = particles_nearest(p, (double[]){q->position[0][i], q->position[1][i], q->position[2][i]});
+    for (int k = 0; k < 3; ++k)
+      if (!(fabs(q->displacement[k][i] - p->displacement[k][j]) <= 1e-9 * largest))
+        fail_msg("%s: at [%g, %g, %g] along %c: %.12g, in the whole body %.12g", what, q->position[0][i],
+                 q->position[1][i], q->position[2][i], "xyz"[k], q -> displacement[k][i], p -> displacement[k][j]);
+  }
+}
+
+#define CRACKED(lattice, from, to, space)                                                                              \
+  UNITS                                                                                                                \
+  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"                            \
+  "body: {b: {material: m, lattice: " lattice ", spacing: 0.1, shape: {box: {from: " from ", to: " to "}}}}\n"         \
+  "peridynamics: {" space "}\n"
+
+/* Half a cracked plate, wherever its crack begins at the plane of symmetry or beyond, is the half of a whole one: the images have its crack. */
+static void cracks_go_on_in_images(void **state)
+{
+  (void)state;
+#define PULL                                                                                                           \
+  "{on: {face: x+}, traction: [3, 0]}, {on: {face: y+}, traction: [0, 5]}, {on: {face: y-}, traction: [0, -5]}"
+#define SOLVE "solve: {explicit: {steps: 150, time step: 2e-4}}\n"
+  static const struct {
+    const char *half, *whole;
+  } cracks[] = {
+      {"cut: {line: [[0, 1], [0.5, 1]]}", "cut: {line: [[-0.5, 1], [0.5, 1]]}"},
+      {"cut: {line: [[0.5, 1], [-0.2, 1]]}", "cut: {line: [[0.5, 1], [-0.5, 1]]}"},
+      {"cut: {line: [[0, 1.05], [0.5, 1.05]]}", "cut: {line: [[-0.5, 1.05], [0.5, 1.05]]}"}, /* in a row */
+      {"cut: {line: [[0, 0.95], [0.5, 1.45]]}", "cut: {line: [[-0.5, 1.45], [0, 0.95], [0.5, 1.45]]}"},
+      {"cut: {line: [[0.5, 1.5], [-0.3, 0.7]]}", "cut: {line: [[0.5, 1.5], [0, 1], [-0.5, 1.5]]}"},
+      {"cut: {line: [[0, 0.6], [0, 1.4]]}", "cut: {line: [[0, 0.6], [0, 1.4]]}"}, /* in the plane of symmetry */
+      {"remove: {box: {from: [0, 0.9], to: [0.5, 1.1]}}, cut faces: yes",
+       "remove: {box: {from: [-0.5, 0.9], to: [0.5, 1.1]}}, cut faces: yes"},
+      {"remove: {box: {from: [0, 1], to: [0.5, 1.1]}}, cut faces: yes",
+       "remove: {box: {from: [-0.5, 1], to: [0.5, 1.1]}}, cut faces: yes"},
+  };
+  for (size_t k = 0; k < sizeof cracks / sizeof *cracks; ++k) {
+    breccia_model *half =
+                      model_of(CRACKED("square, thickness: 1", "[0, 0]", "[1, 2]",
+                                       "space: plane strain") "cracks: [{%s}]\n"
+                                                              "loads: [{on: {face: x-}, support: {held: across}}, " PULL
+                                                              "]\n" SOLVE,
+                               cracks[k].half),
+                  *whole = model_of(CRACKED("square, thickness: 1", "[-1, 0]", "[1, 2]",
+                                            "space: plane strain") "cracks: [{%s}]\n"
+                                                                   "loads: [{on: {face: x-}, traction: [-3, 0]}, " PULL
+                                                                   "]\n" SOLVE,
+                                    cracks[k].whole);
+    run_all(half);
+    run_all(whole);
+    assert_part_moves_as_whole(half, whole, cracks[k].half);
+    breccia_model_destroy(&half);
+    breccia_model_destroy(&whole);
+  }
+  /* a quarter in space, with a polygon that reaches both planes */
+  breccia_model *part = model_of(
+                    CRACKED("cubic", "[0, 0, 0]", "[0.7, 0.7, 0.6]",
+                            "formulation: ordinary") "cracks: [{cut: {polygon: [[0, 0, 0.3], [0.4, 0, 0.3], [0.4, "
+                                                     "0.4, 0.3], [0, 0.4, 0.3]]}}]\n"
+                                                     "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: "
+                                                     "y-}, support: {held: "
+                                                     "across}}, {on: {face: z+}, traction: [0, 0, 5]}]\n" SOLVE),
+                *whole = model_of(
+                    CRACKED("cubic", "[-0.7, -0.7, 0]", "[0.7, 0.7, 0.6]",
+                            "formulation: ordinary") "cracks: [{cut: {polygon: [[-0.4, -0.4, 0.3], [0.4, -0.4, 0.3], "
+                                                     "[0.4, 0.4, 0.3], [-0.4, 0.4, 0.3]]}}]\n"
+                                                     "loads: [{on: {face: z+}, traction: [0, 0, 5]}]\n" SOLVE);
+  run_all(part);
+  run_all(whole);
+  assert_part_moves_as_whole(part, whole, "in space");
+  breccia_model_destroy(&part);
+  breccia_model_destroy(&whole);
+#undef PULL
+#undef SOLVE
+}
+
 /* A quarter of a plate, with a corner where two supports meet, pulled to rest: stress and strain are alike in all of it up to the faces. */
 static void stresses_are_right_up_to_a_support(void **state)
 {
@@ -473,6 +559,7 @@ int main(void)
       cmocka_unit_test(on_inclined_rollers_a_body_slides_without_friction),
       cmocka_unit_test(a_body_is_thrown_and_spins_as_said),
       cmocka_unit_test(half_a_body_on_a_support_across_is_half_a_whole),
+      cmocka_unit_test(cracks_go_on_in_images),
       cmocka_unit_test(stresses_are_right_up_to_a_support),
       cmocka_unit_test(a_face_goes_where_its_support_goes),
       cmocka_unit_test(a_face_that_jumps_pays_for_it),
