@@ -52,8 +52,7 @@ static const Section cut_section = {
         "A surface without thickness that no bond crosses. A bond that only touches its end or edge is left whole, "
         "unless the cut leaves the body there (at or beyond the outermost particles) or another begins. A particle on "
         "it belongs to the side at the left of a line, or where a polygon's corners run anticlockwise. Layers outside "
-        "a "
-        "face with 'support' have the cuts of the body inside, mirrored; what is drawn outside the face does not "
+        "a face with 'support' have the cuts of the body inside, mirrored; what is drawn outside the face does not "
         "count.",
     .size = sizeof(CutSpec),
     FIELDS(cut_fields),
