@@ -49,6 +49,7 @@ static void update_peaks(breccia_model *model)
   const Domain *d = &model->domain;
   Peaks *peaks = &model->peaks;
   for (int64_t n = 0; n < d->particles->count; ++n) {
+    if (body_outside(&d->body, n)) continue; /* those at the edge of the layers outside a support have poor families */
     int32_t place = d->particles->place_of[n];
     double u = 0, v = 0, s[6];
     for (int k = 0; k < 3; ++k) {

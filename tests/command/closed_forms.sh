@@ -79,4 +79,26 @@ equal "the slope stands at 1.3" "$(json slope/summary.json completed)" true
 "$breccia" run "$source/examples/slope/slope.yaml" --quiet --output fallen --set "variables.dx=2 m" --set "variables.factor=1.6" > out 2>&1
 equal "the slope falls at 1.6: status" $? 1
 contains "the slope falls at 1.6" "$(cat out)" "static: no equilibrium"
+
+# A crack in a plate that repeats for ever may be drawn in the middle of a period or across its ends; the layers outside do not count in what was largest
+cat > middle.yaml <<'DECK'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic, density: 2, Young modulus: 1e6, Poisson ratio: 0.2}}
+peridynamics: {formulation: correspondence, space: plane strain}
+body: {b: {material: m, lattice: square, spacing: 0.05, thickness: 1, shape: {box: {from: [0, 0], to: [1, 1]}}}}
+variables: {x: 0.525}
+cracks: [{cut: {line: [[0.3, 0.5], [0.7, 0.5]]}}]
+loads:
+  - {on: {face: x-}, support: {held: periodic}}
+  - {on: {face: y-, layers: 3}, displacement: [0, 0]}
+  - {on: {face: y+}, traction: [0, 1 kPa]}
+solve: {static: {increments: 1}}
+watch: {mouth: {opening between: [["${x}", 0.475], ["${x}", 0.525]], every: 1}}
+pictures: []
+DECK
+sed 's/x: 0.525/x: 0.025/; s/^cracks:.*/cracks: [{cut: {line: [[0, 0.5], [0.2, 0.5]]}}, {cut: {line: [[0.8, 0.5], [1, 0.5]]}}]/' middle.yaml > ends.yaml
+for deck in middle ends; do "$breccia" run $deck.yaml --quiet > out 2>&1 || fail "crack in the $deck: $(cat out)"; done
+near "opening across the ends of a period" "$(value ends/mouth 4)" "$(value middle/mouth 4)" 1e-7
+largest() { sed -n 's/.*"octahedral_shear_stress": \([^,]*\),.*/\1/p' "$1/summary.json"; }
+near "largest stress across the ends of a period" "$(largest ends)" "$(largest middle)" 1e-7
 finish
