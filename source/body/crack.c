@@ -53,9 +53,8 @@ static bool at_face(const Window *w, int k, int side, const double a[3], const d
 }
 
 /** True if both points lie at or beyond the outermost particles of one side of the body. */
-static bool outermost(const Window *w, const double a[3], const double b[3], int dimensions, double tolerance)
+static bool outermost(const Body *body, const double a[3], const double b[3], int dimensions, double tolerance)
 {
-  const Body *body = w->body;
   for (int k = 0; k < dimensions; ++k)
     if (fmax(a[k], b[k]) <= body->low[k] + tolerance || fmin(a[k], b[k]) >= body->high[k] - tolerance) return true;
   return false;
@@ -88,7 +87,7 @@ static bool corner_crossed(const Window *w, const NumberList *line, int at, cons
     const double *before = p + 3 * (at > 0 ? at - 1 : last - 1), *after = p + 3 * (at < last ? at + 1 : 1);
     return left_of_bend(before, here, after, a, tolerance) != left_of_bend(before, here, after, b, tolerance);
   }
-  if (outermost(w, here, here, 2, tolerance)) return true;
+  if (outermost(body, here, here, 2, tolerance)) return true;
   for (int c = 0; c < body->crack_count; ++c) {
     const NumberList *other = body->cracks[c]->cut ? &body->cracks[c]->cut->line : NULL;
     for (int end = 0; other && other != line && other->count && end < 2; ++end)
@@ -201,7 +200,7 @@ static bool polygon_crossed(const Window *w, const NumberList *polygon, const do
   for (int m = 0; m < count; ++m) {
     const double *c = corners + 3 * m, *d = corners + 3 * ((m + 1) % count);
     if (distance_to_edge(c, d, meeting) > end) continue;
-    if (!outermost(w, c, d, 3, end) && !ends_at_face(w, c, d, normal, end) &&
+    if (!outermost(w->body, c, d, 3, end) && !ends_at_face(w, c, d, normal, end) &&
         !edge_is_joined(w->body, polygon, c, d, end))
       return false;
     on_edge = true;

@@ -23,9 +23,8 @@ static const char *const words[] = {"automatic",
 
 enum { TYPES = sizeof types / sizeof *types };
 
-enum {
-  TEDIOUS = 500
-}; /* products for one solution: from here on a way that suits the body better is taken where there is one */
+/* More products than this for one solution: a way that suits the body better is taken from then on, where there is one. */
+enum { TEDIOUS = 500 };
 
 const char *linear_word(int k)
 {

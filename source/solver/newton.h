@@ -88,7 +88,7 @@ typedef struct Newton {
   double factor_change; /* of controlled loads, in an iteration */
   double *unit_force[MOTIONS],
       *unit_motion[MOTIONS]; /* where that factor grows by 1: forces, and displacements from them */
-  double reference;          /* the most that loads and supports have exerted at any equilibrium of the stage so far */
+  double reference;          /* the most that has acted in the stage so far, bonds at its begin among it */
   double exerted;            /* the same, or what they exert now if that is more */
   double stiffness;          /* of the body at first, by which displacements make roundings of forces */
   double roundings,
