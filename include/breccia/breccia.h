@@ -124,6 +124,8 @@ typedef struct breccia_law {
   double (*softening_energy)(const void *constants);
   /** How links of this material are damaged. NULL: they are not, by this law. @return 0, or 1 with the reason in words */
   int (*link)(const void *constants, breccia_link *link, char *reason, size_t reason_size);
+  /** Dimension of history number k that has a name, like "stress"; "": a plain number. NULL: all are plain numbers. */
+  const char *(*history_dimension)(const void *constants, int k);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

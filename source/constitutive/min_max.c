@@ -47,6 +47,13 @@ static void history_name(const void *constants, int k, char *name, size_t size)
     *name = 0;
 }
 
+static const char *history_dimension(const void *constants, int k)
+{
+  const MinMax *c = constants;
+  const bool own = k == c->base.history_values;
+  return own || !c->base.law->history_dimension ? "" : c->base.law->history_dimension(c->base.constants, k);
+}
+
 static void begin(const void *constants, double *history)
 {
   const MinMax *c = constants;
@@ -98,6 +105,7 @@ const breccia_law law_min_max = {
     .failure_strain = failure_strain,
     .history_values = history_values,
     .history_name = history_name,
+    .history_dimension = history_dimension,
     .begin = begin,
     .update = update,
 };

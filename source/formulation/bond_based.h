@@ -117,6 +117,6 @@ double bond_calibration(const BondBased *b, int block, Calibration calibration);
 double bond_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 double bond_characteristic_length(const BondLength *of);
 double bond_critical_stretch(const BondLength *of, const Material *material, double energy);
-void bond_describe(const void *formulation, Text *text);
+void bond_describe(const void *formulation, const Units *units, Text *text);
 
 #endif

@@ -174,8 +174,9 @@ static void describe_directions(const BondBased *b, int block, double unit, Text
   text_add(text, "; %.3f to %.3f in all directions\n", unit * least, unit * largest);
 }
 
-void bond_describe(const void *formulation, Text *text)
+void bond_describe(const void *formulation, const Units *units, Text *text)
 {
+  (void)units;
   const BondBased *b = formulation;
   const double axis[3] = {1, 0, 0}, plane[3] = {sqrt(0.5), sqrt(0.5), 0},
                space[3] = {sqrt(1. / 3), sqrt(1. / 3), sqrt(1. / 3)};

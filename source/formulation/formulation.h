@@ -3,6 +3,7 @@
 #ifndef BRECCIA_FORMULATION_FORMULATION_H
 #define BRECCIA_FORMULATION_FORMULATION_H
 
+#include "deck/quantity.h"
 #include "family/bond_list.h"
 #include "formulation/operator.h"
 #include "points/points.h"
@@ -229,8 +230,8 @@ struct FormulationType {
   const char *(*flutters)(const void *formulation);
   /** Whether an intact bond can carry anything by the bonds that are left around it; those that cannot break with the others. NULL: all can. */
   bool (*can_carry)(const void *formulation, int64_t slice, int64_t slot, int lane);
-  /** Adds what a user should know before a run, as one line; NULL: nothing. */
-  void (*describe)(const void *formulation, Text *text);
+  /** Adds what a user should know before a run, as one line, in `units`; NULL: nothing. */
+  void (*describe)(const void *formulation, const Units *units, Text *text);
   /** Bytes beyond particles, families and points. */
   size_t (*bytes)(const void *formulation);
 };

@@ -230,8 +230,9 @@ static FormerBonds former_bonds(const void *formulation)
   return (FormerBonds){.share = 1, .alike = true};
 }
 
-static void describe(const void *formulation, Text *text)
+static void describe(const void *formulation, const Units *units, Text *text)
 {
+  (void)units;
   const Hybrid *h = formulation;
   const double advised = 2.1; /* spacings */
   int64_t points = 0, least = 0, most = 0;

@@ -68,7 +68,7 @@ LinkStiffness micropolar_stiffness(const Micropolar *m, int64_t place, const Bon
 /** Integral of w L^2 over a whole family of scattered particles. */
 double micropolar_square_sum(const Micropolar *m);
 /** Adds what a user should know before a run. */
-void micropolar_describe(const void *formulation, Text *text);
+void micropolar_describe(const void *formulation, const Units *units, Text *text);
 
 /* ---- links one by one ---- */
 

@@ -323,17 +323,23 @@ static void describe_damage(const breccia_link *law, const char *name, Text *tex
   text_add(text, "\n");
 }
 
-void micropolar_describe(const void *formulation, Text *text)
+void micropolar_describe(const void *formulation, const Units *units, Text *text)
 {
   const Micropolar *m = formulation;
+  static const Dimension stiffness_in_bending = {.name = "stiffness in bending", .length = 2, .force = 1};
+  char length[64], force[64], bending[64];
+  units_name(units, dimension_find("length"), length, sizeof length);
+  units_name(units, dimension_find("force"), force, sizeof force);
+  units_name(units, &stiffness_in_bending, bending, sizeof bending);
   for (int block = 0; block < m->body->block_count; ++block) {
     const LinkConstants *constants = &m->constants[block];
     const char *name = m->body->blocks[block]->head.name;
     const double volume = m->body->lattices[block].volume;
     if (constants->lengths) text_add(text, "%s: links are right in every direction;", name);
     for (int l = 0; l < constants->lengths; ++l)
-      text_add(text, " %.4g long: EA %.4g, EI %.4g%s", constants->length[l], constants->of[l].axial * volume * volume,
-               constants->of[l].bending * volume * volume, l + 1 < constants->lengths ? ";" : "\n");
+      text_add(text, " %.4g %s long: EA %.4g %s, EI %.4g %s%s", constants->length[l], length,
+               constants->of[l].axial * volume * volume, force, constants->of[l].bending * volume * volume, bending,
+               l + 1 < constants->lengths ? ";" : "\n");
     if (!constants->lengths && m->body->lattices[block].chunks) describe_mean(m, block, text);
     if (m->damage && isfinite(m->damage->laws[block].tension_begin))
       describe_damage(&m->damage->laws[block], name, text);

@@ -141,7 +141,7 @@ int ordinary_check_material(const Material *material, char *reason, size_t size)
 void *ordinary_create(const FormulationParts *parts, Error *error);
 void ordinary_destroy(void *formulation);
 void ordinary_renew(void *formulation, int64_t slice);
-void ordinary_describe(const void *formulation, Text *text);
+void ordinary_describe(const void *formulation, const Units *units, Text *text);
 double ordinary_critical_stretch(const BondLength *of, const Material *material, double energy);
 size_t ordinary_bytes(const void *formulation);
 FormerBonds ordinary_former_bonds(const void *formulation);

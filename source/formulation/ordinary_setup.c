@@ -215,8 +215,9 @@ FormerBonds ordinary_former_bonds(const void *formulation)
   return (FormerBonds){.share = 1, .alike = false};
 }
 
-void ordinary_describe(const void *formulation, Text *text)
+void ordinary_describe(const void *formulation, const Units *units, Text *text)
 {
+  (void)units;
   const Ordinary *o = formulation;
   static const double strains[6][6] = {{1, -1, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {0, 1, -1, 0, 0, 0},
                                        {1, 0, -1, 0, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}};

@@ -204,7 +204,7 @@ const char *breccia_model_overview(breccia_model *model)
   for (int k = 0; d->failure.criterion && k < d->material_count; ++k) describe_limit(model, k, text);
   text_add(text, "\n");
   for (int r = 0; r < d->region_count; ++r)
-    if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, text);
+    if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, model->units, text);
   describe_initial_stress(model, text);
   plausibility_describe_contact(model, text);
   plausibility_in_short(model, text);

@@ -1,6 +1,7 @@
 #include "results/fields.h"
 
 #include "base/tensor.h"
+#include "deck/quantity.h"
 #include <string.h>
 
 #define OUTPUT_FIELD(name) extern const OutputField field_##name;
@@ -201,6 +202,12 @@ const OutputField *output_field_find(const char *name)
   for (int k = 0; k < COUNT; ++k)
     if (!strcmp(fields[k]->name, name)) return fields[k];
   return NULL;
+}
+
+const char *history_field_dimension(const Material *m, int k)
+{
+  const char *dimension = m->law->history_dimension ? m->law->history_dimension(m->constants, k) : "";
+  return *dimension && dimension_find(dimension) ? dimension : "1";
 }
 
 int history_field_index(const Material *m, const char *name)

@@ -20,5 +20,7 @@ const OutputField *output_field_find(const char *name);
 
 /** Place of a named number in a material's history rows, or -1. Such numbers are fields too, of one component. */
 int history_field_index(const Material *material, const char *name);
+/** Dimension of history number k of a material, "1" of a plain number. */
+const char *history_field_dimension(const Material *material, int k);
 
 #endif

@@ -196,6 +196,17 @@ static int put_in_place(ResultFile *file, Error *error)
   return BRECCIA_OK;
 }
 
+/** Of a named history that of the first material that has it: one name means one thing. */
+static const char *dimension_of(const Domain *d, const Column *column)
+{
+  if (column->field) return column->field->dimension;
+  for (int m = 0; m < d->material_count; ++m) {
+    const int k = history_field_index(&d->materials[m], column->name);
+    if (k >= 0) return history_field_dimension(&d->materials[m], k);
+  }
+  return "1";
+}
+
 static ResultFile *prepare(const char *folder, const Domain *d, const Units *units, const char *title,
                            const ResultNames *names, Error *error)
 {
@@ -218,7 +229,7 @@ static ResultFile *prepare(const char *folder, const Domain *d, const Units *uni
     snprintf(column->name, sizeof column->name, "%s", names->fields[k]);
     column->field = output_field_find(names->fields[k]);
     column->components = column->field ? column->field->components : 1;
-    if (column->field) units_name(units, dimension_find(column->field->dimension), column->unit, sizeof column->unit);
+    units_name(units, dimension_find(dimension_of(d, column)), column->unit, sizeof column->unit);
   }
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   return file;

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
+#include "results/fields.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -283,7 +284,8 @@ static int name_histories(Watch *w, const Domain *domain, const DeckReader *read
     m->law->history_name(m->constants, k, name, sizeof name);
     if (!*name) continue;
     const size_t used = strlen(w->columns);
-    snprintf(w->columns + used, sizeof w->columns - used, "%s%s:1", used ? "," : "", name);
+    snprintf(w->columns + used, sizeof w->columns - used, "%s%s:%s", used ? "," : "", name,
+             history_field_dimension(m, k));
     w->history[count++] = k;
   }
   w->history[count] = -1;

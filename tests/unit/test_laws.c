@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "base/tensor.h"
+#include "results/fields.h"
 
 #ifdef __SANITIZE_ADDRESS__
 enum { WALK = 100000 };
@@ -274,6 +275,16 @@ static void laws_know_no_unit_of_stress(void **state)
           if (b.tangent[36 * i + k] != scale * a.tangent[36 * i + k])
             fail_msg("%s: tangent %g, and %g of %g times as large stresses in step %d", sample->name,
                      a.tangent[36 * i + k], b.tangent[36 * i + k], scale, step);
+      }
+    }
+    for (int k = 0; k < a.m.history_values && a.m.law->history_name; ++k) { /* what people read goes with its unit */
+      const double factor = strcmp(history_field_dimension(&a.m, k), "stress") ? 1 : scale;
+      char name[64] = "";
+      a.m.law->history_name(a.m.constants, k, name, sizeof name);
+      for (int i = 0; *name && i < CROWD; ++i) {
+        const double value = a.committed[a.m.history_values * i + k], other = b.committed[b.m.history_values * i + k];
+        if (other != factor * value)
+          fail_msg("%s: %s %g, and %g of %g times as large stresses", sample->name, name, value, other, scale);
       }
     }
     crowd_leave(&a);

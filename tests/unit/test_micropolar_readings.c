@@ -174,7 +174,7 @@ static void check_tells_axial_and_bending_stiffness_of_links(void **state)
   const double nu = poisson, s = spacing, thick = 0.3;
   breccia_model *model = body(PLANE("hexagonal"), "plane stress", "");
   char words[128];
-  snprintf(words, sizeof words, "b: links are right in every direction; 0.1 long: EA %.4g, EI %.4g\n",
+  snprintf(words, sizeof words, "b: links are right in every direction; 0.1 m long: EA %.4g kN, EI %.4g kN*m2\n",
            young * s * thick / (sqrt(3) * (1 - nu)),
            young * s * s * s * thick * (1 - 3 * nu) / (12 * sqrt(3) * (1 - nu * nu)));
   if (!strstr(breccia_model_overview(model), words)) fail_msg("no '%s' in %s", words, breccia_model_overview(model));
@@ -184,8 +184,8 @@ static void check_tells_axial_and_bending_stiffness_of_links(void **state)
   double length[2], axial[2], bending[2];
   assert_non_null(told);
   assert_int_equal(sscanf(told + strlen("links are right in every direction; "),
-                          "%lf long: EA %lf, EI %lf; %lf long: EA %lf, EI %lf", &length[0], &axial[0], &bending[0],
-                          &length[1], &axial[1], &bending[1]),
+                          "%lf m long: EA %lf kN, EI %lf kN*m2; %lf m long: EA %lf kN, EI %lf", &length[0], &axial[0],
+                          &bending[0], &length[1], &axial[1], &bending[1]),
                    6);
   for (int k = 0; k < 2; ++k) {
     const bool second = length[k] > 1.2 * s;

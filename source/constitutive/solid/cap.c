@@ -99,6 +99,12 @@ static void history_name(const void *constants, int k, char *name, size_t size)
   snprintf(name, size, "%s", k == CAP_PARAMETER ? "cap parameter" : "");
 }
 
+static const char *history_dimension(const void *constants, int k)
+{
+  (void)constants;
+  return k == CAP_PARAMETER ? "stress" : "";
+}
+
 static void begin(const void *constants, double *history)
 {
   memset(history, 0, sizeof(double) * CAP_HISTORY);
@@ -286,6 +292,7 @@ const breccia_law law_cap = {
     .moduli = elasticity_moduli,
     .history_values = history_values,
     .history_name = history_name,
+    .history_dimension = history_dimension,
     .begin = begin,
     .update = update,
 };
