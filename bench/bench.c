@@ -33,6 +33,11 @@ static const Case cases[] = {
      "3.015"},
     {"hybrid", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", NULL, true, "1.5"},
     {"hybrid", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", NULL, true, "2.015"},
+    {"micropolar", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.2", plain_links, true, "1.5"},
+    {"micropolar", "link-damage",
+     "model: link-damage, Young modulus: 150 MPa, Poisson ratio: 0.2, tensile stretch: 1e-9, compressive stretch: "
+     "1e-9, fracture energy: 1 kN/m",
+     plain_links, false, "1.5"}, /* all links damaged a little */
 };
 
 typedef struct BenchBody {

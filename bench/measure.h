@@ -31,5 +31,7 @@ void plain_correspondence(Plain *plain);
 void plain_ordinary(Plain *plain);
 /** Bond-based: prototype microelastic, reference vectors from positions. */
 void plain_bonds(Plain *plain);
+/** Micropolar links as corotational beams, of small end rotations. */
+void plain_links(Plain *plain);
 
 #endif

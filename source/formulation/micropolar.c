@@ -134,7 +134,10 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
   double *const *u = sweep->at ? sweep->at : m->particles->displacement;
-  if (m->particles->motions == 4) micropolar_show_plane(m, u[ROTATION], sweep->first, sweep->last);
+  if (m->particles->motions == 4)
+    micropolar_show_plane(m, u[ROTATION], sweep->first, sweep->last);
+  else if (!sweep->at)
+    micropolar_show_space(m, sweep->first, sweep->last);
   return -1;
 }
 
@@ -155,7 +158,8 @@ static int64_t resist(void *formulation, const Sweep *sweep)
       continue;
     }
     if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
-    const bool swept = p->motions == 4 && !m->secant && micropolar_resist_plane(m, slice);
+    const bool swept =
+        !m->secant && (p->motions == 4 ? micropolar_resist_plane(m, slice) : micropolar_resist_space(m, slice));
     if (!swept)
       for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
     micropolar_add_links(m, slice, swept);

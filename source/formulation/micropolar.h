@@ -1,6 +1,6 @@
 /* What the parts of micropolar peridynamics share: the table entry (micropolar.c), constants of links (micropolar_constants.c), links one by one
- * (micropolar_link.c), their changes (micropolar_linear.c), sweeps over links of lattices in the plane (micropolar_plane.c), and damage of links
- * (micropolar_damage.c, by what laws say micropolar_damage_laws.c). */
+ * (micropolar_link.c), their changes (micropolar_linear.c), sweeps over links of lattices in the plane (micropolar_plane.c) and in space
+ * (micropolar_space.c), and damage of links (micropolar_damage.c, by what laws say micropolar_damage_laws.c). */
 #ifndef BRECCIA_FORMULATION_MICROPOLAR_H
 #define BRECCIA_FORMULATION_MICROPOLAR_H
 
@@ -139,6 +139,11 @@ void micropolar_add_links(const Micropolar *m, int64_t slice, bool stored_only);
 /** Forces and moments on a slice of links of lattices, by series for small strains.
  *  @return false if some link is beyond them: what was written is of no use then */
 bool micropolar_resist_plane(const Micropolar *m, int64_t slice);
+bool micropolar_resist_space(const Micropolar *m, int64_t slice);
+/** Cosines and sines of rotations of slices first .. last - 1, or quaternions of places in space. */
+void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last);
+void micropolar_show_space(const Micropolar *m, int64_t first, int64_t last);
+
 /* ---- damage ---- */
 
 /** Makes room for damage if some law says how links are damaged, and finds out how those of each block are. */
@@ -164,8 +169,5 @@ void micropolar_state(void *formulation, const char *part, StateList *list);
 void micropolar_commit(void *formulation, bool well);
 double micropolar_history(const void *formulation, int64_t place, int k);
 size_t micropolar_damage_bytes(const Micropolar *m);
-
-/** Cosines and sines of rotations of slices first .. last - 1. */
-void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last);
 
 #endif

@@ -1,19 +1,11 @@
 /* Links of lattices in the plane, four at a time. With the cosine and sine of each particle's rotation a link needs no trigonometry: the sine of
  * an end rotation is the cross product of the chord with where the section points, and the angle a series of it. */
-#include "formulation/micropolar.h"
-
-/* Largest |sine| of an end rotation for which the series is good to double precision. */
-static const double largest_sine = 0x1p-5;
+#include "formulation/micropolar_lanes.h"
 
 /** Arc sine. */
 LANES_INLINE Lanes angle_of(Lanes sine)
 {
-  const Lanes x = sine * sine;
-  Lanes sum = lanes_set(63.0 / 2816) * x + lanes_set(35.0 / 1152);
-  sum = sum * x + lanes_set(5.0 / 112);
-  sum = sum * x + lanes_set(3.0 / 40);
-  sum = sum * x + lanes_set(1.0 / 6);
-  return sine + sine * x * sum;
+  return sine + sine * angle_excess(sine * sine);
 }
 
 /** Half a slice: what it has, and what acts on it. */
@@ -22,18 +14,6 @@ typedef struct HalfSlice {
   Lanes force[2], moment;
   LaneMask beyond; /* the series */
 } HalfSlice;
-
-/** What is left of a link's axial stiffness, and of the others. */
-LANES_INLINE void find_left(const Micropolar *m, int64_t slot, int half, const breccia_link *law, Lanes stretch,
-                            Lanes *axial, Lanes *other)
-{
-  const int64_t at = slot * SLICE + LANES * half;
-  const Lanes tension = lanes_load(m->damage->tension[1] + at),
-              rest = lanes_set(1) - lanes_load(m->damage->compression[1] + at);
-  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), lanes_set(1 - law->recovery), lanes_set(1));
-  *axial = (lanes_set(1) - tension * closed) * rest;
-  *other = (lanes_set(1) - tension) * rest;
-}
 
 LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const breccia_link *weak, HalfSlice *own)
 {
@@ -76,7 +56,7 @@ static bool resist_plane(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
-  const breccia_link *weak = micropolar_is_weak(m, slice) ? &m->damage->laws[p->block[slice]] : NULL;
+  const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < SLICE / LANES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
@@ -86,7 +66,7 @@ static bool resist_plane(const Micropolar *m, int64_t slice)
                      .beyond = {0}};
     own.force[0] = own.force[1] = lanes_set(0);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, weak, &own);
-    if (own.beyond[0] | own.beyond[1] | own.beyond[2] | own.beyond[3]) return false;
+    if (in_any_lane(own.beyond)) return false;
     lanes_store(p->internal[0] + place, own.force[0]);
     lanes_store(p->internal[1] + place, own.force[1]);
     lanes_store(p->internal[2] + place, lanes_set(0));

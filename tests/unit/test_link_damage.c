@@ -77,39 +77,59 @@ static void damaged_bodies_keep_their_momenta(void **state)
   }
 }
 
-/** Sweeps over lattice slots find what the links do one by one, whatever share of its stiffness a closed one has back. */
+/** Sweeps over lattice slots find what the links do one by one, whatever share of its stiffness a closed one has back; also where end rotations are as large as
+ *  their series allow. */
 static void sweeps_are_sums_of_damaged_links(void **state)
 {
   (void)state;
-  breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, stiffness recovery: 0.4", "hexagonal",
-                               "[19, 9]", "plane stress");
-  const Particles *p = model->domain.particles;
-  const Micropolar *m = formulation_of(model);
-  disturb(model, 1e-3, 5);
-  compute_forces(model);
-  domain_commit_points(&model->domain);
-  disturb(model, 5e-4, 6); /* some that were torn have closed */
-  compute_forces(model);
-  double most[2] = {0}, *swept = calloc((size_t)(4 * p->places), sizeof(double));
-  int closed = 0;
-  for (int k = 0; k < 4; ++k) {
-    memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
-    for (int64_t i = 0; i < p->places; ++i) most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
-    memset(p->internal[k], 0, sizeof(double) * (size_t)p->places);
-  }
-  for (int64_t slice = 0; slice < p->slices; ++slice) {
-    micropolar_add_links(m, slice, false);
-    for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
-      for (int lane = 0; lane < SLICE; ++lane)
-        if (m->family->intact[slot] >> lane & 1 && m->damage->tension[1][slot * SLICE + lane] > 0)
-          closed += micropolar_link(m, NULL, slice, slot, lane).stretch < 0;
-  }
-  assert_true(closed > 10);
-  for (int k = 0; k < 4; ++k)
+  const struct {
+    const char *lattice, *particles, *space;
+    double turn;
+  } cases[] = {{"hexagonal", "[19, 9]", "plane stress", 5e-4},
+               {"square", "[19, 9]", "plane strain", 0.02},
+               {"face-centred cubic", "[11, 6, 5]", "3-D", 5e-4},
+               {"face-centred cubic", "[11, 6, 5]", "3-D", 0.016},
+               {"cubic", "[11, 6, 5]", "3-D", 0.016},
+               {"face-centred cubic", "[11, 6, 5]", "3-D", 0.15}}; /* beyond the series */
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, stiffness recovery: 0.4",
+                                 cases[c].lattice, cases[c].particles, cases[c].space);
+    const Particles *p = model->domain.particles;
+    const Micropolar *m = formulation_of(model);
+    const bool space = p->motions == 6;
+    disturb(model, 1e-3, 5);
+    compute_forces(model);
+    domain_commit_points(&model->domain);
+    disturb(model, 5e-4, 6); /* some that were torn have closed */
     for (int64_t i = 0; i < p->places; ++i)
-      assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-10);
-  free(swept);
-  breccia_model_destroy(&model);
+      for (int k = ROTATION; k < p->motions; ++k) p->displacement[k][i] *= cases[c].turn / 5e-4;
+    for (int64_t n = 0; n < p->count && space; n += 3) /* the same rotation, told otherwise */
+      for (int k = 0; k < 4; ++k) p->orientation[k][p->place_of[n]] *= -1;
+    compute_forces(model);
+    double most[2] = {0}, *swept = calloc((size_t)(p->motions * p->places), sizeof(double));
+    int closed = 0, whole = 0;
+    for (int k = 0; k < p->motions; ++k) {
+      memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+      for (int64_t i = 0; i < p->places; ++i) most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
+    }
+    for (int64_t slice = 0; slice < p->slices; ++slice)
+      whole += space ? micropolar_resist_space(m, slice) : micropolar_resist_plane(m, slice);
+    assert_true(cases[c].turn > 0.1 ? whole < p->slices / 10 : whole == p->slices); /* the others go link by link */
+    for (int k = 0; k < p->motions; ++k) memset(p->internal[k], 0, sizeof(double) * (size_t)p->places);
+    for (int64_t slice = 0; slice < p->slices; ++slice) {
+      micropolar_add_links(m, slice, false);
+      for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
+        for (int lane = 0; lane < SLICE; ++lane)
+          if (m->family->intact[slot] >> lane & 1 && m->damage->tension[1][slot * SLICE + lane] > 0)
+            closed += micropolar_link(m, NULL, slice, slot, lane).stretch < 0;
+    }
+    assert_true(closed > 10);
+    for (int k = 0; k < p->motions; ++k)
+      for (int64_t i = 0; i < p->places; ++i)
+        assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-11);
+    free(swept);
+    breccia_model_destroy(&model);
+  }
 }
 
 /* ---- one link ---- */

@@ -1,0 +1,43 @@
+/* What sweeps over links of lattices in the plane and in space share, four links at a time. */
+#ifndef BRECCIA_FORMULATION_MICROPOLAR_LANES_H
+#define BRECCIA_FORMULATION_MICROPOLAR_LANES_H
+
+#include "formulation/micropolar.h"
+
+/* Largest |sine| of an end rotation for which the series are good to double precision. */
+static const double largest_sine = 0x1p-5;
+
+/** Angle over sine, less 1, of the square of the sine: of the series of the arc sine. */
+LANES_INLINE Lanes angle_excess(Lanes square)
+{
+  Lanes sum = lanes_set(63.0 / 2816) * square + lanes_set(35.0 / 1152);
+  sum = sum * square + lanes_set(5.0 / 112);
+  sum = sum * square + lanes_set(3.0 / 40);
+  sum = sum * square + lanes_set(1.0 / 6);
+  return square * sum;
+}
+
+/** What is left of a link's axial stiffness, and of the others. */
+LANES_INLINE void find_left(const Micropolar *m, int64_t slot, int half, const breccia_link *law, Lanes stretch,
+                            Lanes *axial, Lanes *other)
+{
+  const int64_t at = slot * SLICE + LANES * half;
+  const Lanes tension = lanes_load(m->damage->tension[1] + at),
+              rest = lanes_set(1) - lanes_load(m->damage->compression[1] + at);
+  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), lanes_set(1 - law->recovery), lanes_set(1));
+  *axial = (lanes_set(1) - tension * closed) * rest;
+  *other = (lanes_set(1) - tension) * rest;
+}
+
+/** The law by which links of a slice are weakened now; NULL: none is. */
+LANES_INLINE const breccia_link *weakened_by(const Micropolar *m, int64_t slice)
+{
+  return micropolar_is_weak(m, slice) ? &m->damage->laws[m->particles->block[slice]] : NULL;
+}
+
+LANES_INLINE bool in_any_lane(LaneMask mask)
+{
+  return mask[0] | mask[1] | mask[2] | mask[3];
+}
+
+#endif
