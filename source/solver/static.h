@@ -1,0 +1,75 @@
+/* Statics, inside of this room: one file for the keys and words (static.c), one for increments and the tries that make them (static_step.c), one for what an
+ * increment leads to besides and must be in balance with (static_settle.c). */
+#ifndef BRECCIA_SOLVER_STATIC_H
+#define BRECCIA_SOLVER_STATIC_H
+
+#include "solver/increment.h"
+#include "solver/relaxation.h"
+
+typedef struct StaticSpec {
+  SectionHead head;
+  double end_time, smallest;
+  int64_t increments, bonds_at_once, relaxation_iterations;
+  const char *method;
+  const ControlSpec *control;
+  NewtonSpec newton;
+} StaticSpec;
+
+/** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these
+ *  two, whatever was tried on the way. */
+typedef struct Way {
+  double *moved[MOTIONS]; /* made where an increment is solved again; else what Newton's method has moved is all */
+  double bonds, given_off, sudden; /* works booked of it */
+} Way;
+
+typedef struct Static {
+  Domain *domain;
+  const Loading *loading;
+  const StaticSpec *spec;
+  Clock *clock;
+  Ledger *ledger;
+  Newton newton;
+  Relaxation relaxation; /* made when the first try asks for it */
+  Control control;
+  Increment increment;
+  StateCopy
+      whole; /* the state at the begin of the increment, where what follows from it may leave no equilibrium near; else empty */
+  Way way;
+  double next;  /* length of the increment to be tried next */
+  int64_t cuts; /* in the stage */
+  double
+      lag; /* forces out of balance over the reference, with what the last increment that was given back had led to */
+} Static;
+
+/** Length of an increment as asked for. */
+double static_whole_increment(const StaticSpec *spec);
+/** Foresees how many increments there will be. */
+void static_count_steps(const Solver *solver);
+
+int static_advance(Solver *solver, Text *warning, Error *error);
+
+/** How a try to come to equilibrium goes. */
+typedef struct Try {
+  bool again;   /* on with the way of the try before, which came to equilibrium at the same time */
+  bool relaxes; /* by dynamic relaxation, whatever the method of the stage is */
+} Try;
+
+/** One try to come to equilibrium at a time of the run; if there is none the state is that before the try. */
+NewtonOutcome static_try(Static *s, double end, Try how, Error *error);
+
+/** Whether dynamic relaxation may be tried where Newton's method finds no equilibrium. */
+bool static_may_relax(const Static *s);
+
+/** Notes the whole state, if it may be wanted back when an increment has been accepted. */
+int static_keep(Solver *solver, Error *error);
+/** The state as it was noted. */
+int static_give_back(Solver *solver, Error *error);
+
+/** Equilibrium with what has come of the increment: bonds that it has overloaded, and what forces are found with as the step before left it, like
+ *  the control of zero-energy modes that fades in correspondence. Where increments are few, what that holds besides would be spent as fracture energy.
+ *  @param[out] outcome  why there is no equilibrium with the bonds that are left
+ *  @param[out] settled  false: there is none with the control as far as it has faded, and the increment is to be given back
+ *  @param[in,out] relaxed  true if dynamic relaxation was asked */
+int static_settle(Solver *solver, NewtonOutcome *outcome, bool *settled, bool *relaxed, Error *error);
+
+#endif

@@ -1,0 +1,107 @@
+/* What an increment of statics leads to besides: bonds that break, and control of zero-energy modes that fades. */
+#include "solver/static.h"
+#include "solver/vectors.h"
+
+#include <math.h>
+#include <string.h>
+
+/** Whether the state holds something that a step leaves to the next one to find forces with. */
+static bool may_lag(const StateList *list)
+{
+  const char *const name = "zero-energy control";
+  for (int k = 0; k < list->count; ++k)
+    if (!strncmp(list->rows[k].name, name, strlen(name))) return true;
+  return false;
+}
+
+int static_keep(Solver *run, Error *error)
+{
+  Static *s = run->own;
+  StateList list = {0};
+  int status = BRECCIA_OK;
+  state_copy_destroy(&s->whole);
+  domain_state(s->domain, &list);
+  solver_state(run, &list);
+  if (may_lag(&list) && !domain_is_elastic(s->domain)) status = state_copy(&s->whole, &list, error);
+  state_list_destroy(&list);
+  return status;
+}
+
+int static_give_back(Solver *run, Error *error)
+{
+  Static *s = run->own;
+  StateList list = {0};
+  domain_state(s->domain, &list);
+  solver_state(run, &list);
+  const int status = state_return(&s->whole, &list, error);
+  state_list_destroy(&list);
+  if (status) return status;
+  newton_apply_loads(&s->newton, s->clock->time);
+  increment_start(&s->increment);
+  s->relaxation.prepared = NAN; /* else a restart would go on with other roundings */
+  return BRECCIA_OK;
+}
+
+/** Lets bonds break and the body find equilibrium again, in turn, until no bond is beyond its limit.
+ *  @param[out] outcome  why there is no equilibrium */
+static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
+{
+  Static *s = run->own;
+  int64_t broken;
+  *outcome = NEWTON_CONVERGED;
+  while (*outcome == NEWTON_CONVERGED &&
+         (broken = increment_break(&s->increment, s->clock, s->spec->bonds_at_once)) > 0) {
+    if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
+    text_add(&run->log, "  %lld bonds break\n", (long long)broken);
+    *outcome = static_try(s, s->clock->time, (Try){0}, error);
+    if (*outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
+/** Once more at the same time, on the way of the last try, which came to equilibrium.
+ *  @param[in] first  it was the first on this way */
+static int try_again(Static *s, bool first, bool relaxes, NewtonOutcome *outcome, Error *error)
+{
+  if (!s->way.moved[0] && !vectors_make(s->way.moved, s->domain->particles, "static solver", error))
+    return BRECCIA_FAILURE;
+  if (first) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
+  *outcome = static_try(s, s->clock->time, (Try){.again = true, .relaxes = relaxes}, error);
+  return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, bool *relaxed, Error *error)
+{
+  enum { MOST = 20 };
+  const double enough = 1e-2; /* of forces out of balance: what comes of so few is left to the next increment */
+  Static *s = run->own;
+  int status = break_bonds(run, outcome, error);
+  bool first = true; /* the last try began a way */
+  *settled = true;
+  for (int k = 0; !status && *outcome == NEWTON_CONVERGED && domain_lags(s->domain); ++k) {
+    text_add(&run->log, "  again, with the control of zero-energy modes as it is now\n");
+    NewtonOutcome again;
+    if (try_again(s, first, false, &again, error)) return BRECCIA_FAILURE;
+    const bool few = s->newton.unbalanced_before < enough;
+    if (again != NEWTON_CONVERGED && few) {
+      text_add(&run->log, "    no equilibrium: control as it was is kept in this increment\n");
+      break;
+    }
+    if (again != NEWTON_CONVERGED && static_may_relax(s)) { /* the body jumps: there is none near */
+      text_add(&run->log, "    no equilibrium: by dynamic relaxation\n");
+      if (try_again(s, false, true, &again, error)) return BRECCIA_FAILURE;
+      *relaxed = true;
+    }
+    if (again != NEWTON_CONVERGED || (k == MOST && !few)) {
+      s->lag = s->newton.unbalanced_before;
+      *settled = false;
+      break;
+    }
+    const int64_t broken = s->domain->broken_count;
+    status =
+        break_bonds(run, outcome, error); /* what the stage leaves overloaded would stay whole if it was the last */
+    first = s->domain->broken_count != broken;
+    if (few && !first) break;
+  }
+  return status;
+}

@@ -1,0 +1,252 @@
+/* Increments of statics, and the tries that make them. */
+#include "solver/static.h"
+#include "solver/vectors.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/** Works by the trapezium rule. Forces out of balance at the beginning, of a load that was there already or of bonds that have broken, do work that the
+ *  body gives off on its way to rest.
+ *  @param[in] moved  on the whole way */
+static void book(Static *s, double *const moved[MOTIONS])
+{
+  const Particles *p = s->domain->particles;
+  const Increment *begin = &s->increment;
+  double *const *before = s->newton.change; /* forces out of balance: of corrections nothing is wanted any more */
+  double bonds = 0;
+  for (int64_t b = 0; b < s->domain->batch_count; ++b) {
+    double part = 0;
+    for (int k = 0; k < p->motions; ++k)
+      for (int64_t i = s->domain->batches[b].first * SLICE; i < s->domain->batches[b].last * SLICE; ++i) {
+        part -= 0.5 * p->volume[i] * (begin->internal[k][i] + p->internal[k][i]) * moved[k][i];
+        before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
+      }
+    bonds += part;
+  }
+  unknowns_gather(&s->newton.linear.unknowns, before);
+  const double given_off = 0.5 * (unknowns_work(&s->newton.linear.unknowns, before, moved) +
+                                  unknowns_work(&s->newton.linear.unknowns, s->newton.force, moved));
+  s->ledger->bond_work += bonds - s->way.bonds;
+  s->ledger->damping_work += given_off - s->way.given_off;
+  s->ledger->external_work += bonds + given_off - s->way.bonds - s->way.given_off;
+  s->ledger->paid =
+      fmax(s->ledger->paid, s->newton.rounding_work); /* less says nothing of a body that moves as a whole */
+  s->way.bonds = bonds;
+  s->way.given_off = given_off;
+}
+
+static void book_sudden(Static *s, double *const moved[MOTIONS])
+{
+  const double sudden = increment_sudden_work(&s->increment, moved);
+  s->ledger->bond_work += sudden - s->way.sudden;
+  s->ledger->external_work += sudden - s->way.sudden;
+  s->way.sudden = sudden;
+}
+
+/** Whether the body softens on the way of an increment in which it has come to equilibrium, so that it may have passed a peak: what the work of an
+ *  increment that goes on as it began is more than that by the trapezium rule bounds twice what that misses.
+ *  @param[in] length  of the increment */
+static bool is_coarse(const Static *s, double length)
+{
+  const double most = 0.02, least = 1.0 / 16; /* of the largest work so far; of an increment as asked for */
+  const Particles *p = s->domain->particles;
+  double work = 0;
+  if (!s->newton.change_forces[0] || length / 2 < least * static_whole_increment(s->spec)) return false;
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      work -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
+  const double held = s->ledger->bond_work; /* an unloaded body gives it all back */
+  return 0.5 * (s->newton.foreseen - work) > most * fmax(fabs(held), fabs(held + work));
+}
+
+bool static_may_relax(const Static *s)
+{
+  return !s->spec->control && !s->newton.relaxes;
+}
+
+static NewtonOutcome relax(Static *s, double end, Error *error)
+{
+  Newton *n = &s->newton;
+  const bool always = n->relaxes;
+  n->relaxes = true;
+  if (!s->relaxation.velocity[0] && relaxation_create(&s->relaxation, n, error)) return NEWTON_FAILED;
+  n->linear.elastic = &s->relaxation.elastic;
+  const NewtonOutcome outcome = relaxation_solve(&s->relaxation, n, end, s->spec->relaxation_iterations, error);
+  n->relaxes = always;
+  if (!always) n->linear.elastic = NULL;
+  return outcome;
+}
+
+NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
+{
+  if (how.again) {
+    increment_begin_again(&s->increment);
+  } else {
+    increment_begin(&s->increment);
+    s->way.bonds = s->way.given_off = s->way.sudden = 0;
+  }
+  domain_tell_time(s->domain, end, end - s->clock->time);
+  if (s->spec->control) {
+    const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
+    s->newton.target = control_target(&s->control, (s->clock->time - begin) / whole, (end - begin) / whole);
+  }
+  const bool relaxes = how.relaxes || s->newton.relaxes;
+  NewtonOutcome outcome = relaxes ? relax(s, end, error) : newton_solve(&s->newton, end, error);
+  if (outcome == NEWTON_CONVERGED && !relaxes && !how.again && is_coarse(s, end - s->clock->time))
+    outcome = NEWTON_COARSE;
+  if (outcome != NEWTON_CONVERGED) {
+    increment_retreat(&s->increment);
+    if (how.again) newton_apply_loads(&s->newton, s->clock->time);
+    return outcome;
+  }
+  if (how.again) vectors_combine(s->domain, 1, s->way.moved, 1, s->newton.moved);
+  book(s, how.again ? s->way.moved : s->newton.moved);
+  if (s->spec->control) control_accept(&s->control, s->loading, s->newton.moved);
+  increment_accept(&s->increment, s->newton.moved);
+  book_sudden(s, how.again ? s->way.moved : s->newton.moved);
+  return outcome;
+}
+
+/** The stage ends now: the body is torn. */
+static void end_torn(Solver *run, Text *warning)
+{
+  const Static *s = run->own;
+  Clock *clock = &run->clock;
+  control_tell_torn(&s->control, clock->time, warning);
+  clock->ended = 1;
+  clock->stage_last = clock->step;
+  clock->stage_end = clock->time;
+}
+
+/** Says why an increment is not taken as it is. */
+static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled)
+{
+  char words[320];
+  if (!settled)
+    text_add(s->newton.log,
+             "    given back: the control of zero-energy modes as it is leaves %.2g of the forces out of balance\n",
+             s->lag);
+  else
+    text_add(s->newton.log, "    %s: %s\n", outcome == NEWTON_COARSE ? "cut" : "no equilibrium",
+             newton_describe(&s->newton, outcome, words, sizeof words));
+}
+
+/** No increment leads on from here, however short. */
+static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *error)
+{
+  char words[320];
+  const char *advice = "the body may fail at this load: go on with a stage of 'explicit', or look at the loads and at "
+                       "the last pictures";
+  if (!settled) {
+    snprintf(words, sizeof words,
+             "the control of zero-energy modes as far as it fades leaves %.2g of the forces out of balance", s->lag);
+    advice = s->spec->control ? "prescribe displacements with 'method: relaxation' instead of 'control'"
+             : s->newton.relaxes
+                 ? "allow more 'relaxation iterations', or go on with a stage of 'explicit'"
+                 : "take 'method: relaxation' with more 'relaxation iterations', or go on with a stage of 'explicit'";
+  } else {
+    newton_describe(&s->newton, outcome, words, sizeof words);
+    if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
+      advice = "allow more 'iterations', or take a larger 'residual'";
+    else if (domain_may_soften(s->domain) && static_may_relax(s))
+      advice =
+          "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', go on with "
+          "a stage of 'explicit', or look at the loads and at the last pictures";
+  }
+  return error_add(error, BRECCIA_FAILURE, "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; %s",
+                   s->clock->time, s->next, words, advice);
+}
+
+static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error)
+{
+  char words[320];
+  return error_add(error, BRECCIA_FAILURE,
+                   "static: with %lld broken bonds the body finds no equilibrium any more at time %g: %s; it has "
+                   "failed at this load: go on with "
+                   "a stage of 'explicit', or prescribe displacements instead of forces",
+                   (long long)s->domain->broken_count, s->clock->time,
+                   newton_describe(&s->newton, outcome, words, sizeof words));
+}
+
+/** Lengths of an increment below which Newton's method is not asked alone any more: there is no equilibrium near. */
+static bool is_short(const Static *s, double length)
+{
+  const double least = 1.0 / 16; /* of an increment as asked for */
+  return length / 2 < fmax(least, s->spec->smallest) * static_whole_increment(s->spec);
+}
+
+/** First try of an increment, and by dynamic relaxation where short ones find no equilibrium either: the body jumps to another.
+ *  @param[in] once_more  that may be tried; @param[out] relaxed  it was */
+static NewtonOutcome try_first(Static *s, double end, bool once_more, bool *relaxed, Error *error)
+{
+  NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
+  if (outcome == NEWTON_FAILED || outcome == NEWTON_CONVERGED || outcome == NEWTON_COARSE || !once_more ||
+      !is_short(s, end - s->clock->time) || !domain_may_soften(s->domain) || !static_may_relax(s))
+    return outcome;
+  tell_refused(s, outcome, true);
+  text_add(s->newton.log, "  again, by dynamic relaxation\n");
+  *relaxed = true;
+  return static_try(s, end, (Try){.relaxes = true}, error);
+}
+
+/** A step that has failed for good before anything came of it. */
+static int give_up(Static *s, double next, int64_t cuts)
+{
+  s->next = next;
+  s->cuts = cuts;
+  return BRECCIA_FAILURE;
+}
+
+int static_advance(Solver *run, Text *warning, Error *error)
+{
+  (void)warning;
+  Static *s = run->own;
+  Clock *clock = &run->clock;
+  const double first = s->next;
+  const bool was_spent = control_is_spent(&s->control);
+  const int64_t broken = s->domain->broken_count, cuts = s->cuts;
+  int64_t iterations = 0;
+  bool relaxed = false, once_more = true; /* dynamic relaxation has not failed yet */
+  if (increment_keep(&s->increment, run, error) || static_keep(run, error)) return BRECCIA_FAILURE;
+  s->newton.log = &run->log;
+  for (int64_t cut = 0;; s->cuts = cuts + ++cut) {
+    const double begin = clock->time, end = increment_end(run, s->next);
+    text_add(&run->log, "increment %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, begin, end);
+    bool settled = true;
+    relaxed = false;
+    NewtonOutcome outcome = try_first(s, end, once_more, &relaxed, error);
+    if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
+    if (outcome == NEWTON_CONVERGED) {
+      clock->time_step = end - begin;
+      clock->time = end;
+      iterations = s->newton.iterations;
+      const int status = static_settle(run, &outcome, &settled, &relaxed, error);
+      if (settled) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
+      if (status) return BRECCIA_FAILURE;
+      if (settled && outcome == NEWTON_CONVERGED) break;
+      if (settled) return fail_with_broken(s, outcome, error);
+      if (static_give_back(run, error)) return BRECCIA_FAILURE;
+    }
+    once_more &= !relaxed;
+    tell_refused(s, outcome, settled);
+    s->next = (end - begin) / 2;
+    if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
+      fail(s, outcome, settled, error);
+      return give_up(s, first, cuts);
+    }
+  }
+  const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : newton_most_iterations(&s->newton);
+  if (relaxed || iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, static_whole_increment(s->spec));
+  clock->ended = clock->time >= clock->stage_end - 1e-9 * static_whole_increment(s->spec);
+  static_count_steps(run);
+  if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
+  /* Once without broken bonds it may be a load that changes its sign. */
+  const bool again = was_spent || s->domain->broken_count > broken;
+  if (!clock->ended && again && control_is_spent(&s->control)) end_torn(run, warning);
+  if (clock->ended) {
+    increment_forget(&s->increment);
+    state_copy_destroy(&s->whole);
+  }
+  return BRECCIA_OK;
+}
