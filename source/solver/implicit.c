@@ -256,7 +256,7 @@ static void describe_stage(const void *section, const char *time, Text *text)
     text_add(text, "implicit, HHT with alpha %.3g", spec->alpha);
   else
     text_add(text, "implicit, Newmark with beta %.4g and gamma %.3g", spec->beta, spec->gamma);
-  text_add(text, ", %g %s by steps of at most %.4g", spec->end_time, time, implicit_longest(spec));
+  text_add(text, ", %g %s by steps of at most %.4g %s", spec->end_time, time, implicit_longest(spec), time);
   damping_describe(&spec->damping, time, text);
 }
 

@@ -216,9 +216,8 @@ static int measure(Solver *run, StepCost *cost, Error *error)
 static void describe_stage(const void *section, const char *time, Text *text)
 {
   const StaticSpec *spec = section;
-  (void)time; /* it runs in one of its own */
-  text_add(text, "static, %lld increment%s up to time %.4g", (long long)spec->increments,
-           spec->increments == 1 ? "" : "s", spec->end_time);
+  text_add(text, "static, %lld increment%s up to time %.4g %s", (long long)spec->increments,
+           spec->increments == 1 ? "" : "s", spec->end_time, time);
 }
 
 static void describe(const Solver *run, const char *time, Text *text)

@@ -108,7 +108,7 @@ Y
 lines "stages" out <<'Y'
 correspondence; m (elastic); bonds do not break
 body: 1.2 m x 800 mm, 384 kg; a wave travels through in 15.5 ms
-stage 'slow': static, 4 increments up to time 1
+stage 'slow': static, 4 increments up to time 1 s
 stage 'fast': explicit, 40 steps, elastic, displacements from zero, 1 new load
   m: 2000 kg/m3, E 10 MPa, waves 77.5 m/s
   load 'pull': a force in all of 160 N; grows over 500 ms of its stage, at rest

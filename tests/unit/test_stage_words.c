@@ -20,21 +20,22 @@ static void solvers_say_what_they_will_do(void **state)
   (void)state;
   static const struct {
     const char *solve, *words[3];
-  } cases[] = {{"{static: {increments: 4}}", {"static, 4 increments up to time 1, for 176 unknowns, by ", NULL}},
-               {"{static: {increments: 1, equations: direct}}",
-                {"static, 1 increment up to time 1, for 176 unknowns, by ", NULL}},
-               {"{static: {increments: 4, end time: 2.5, method: relaxation}}",
-                {"static, 4 increments up to time 2.5, for 176 unknowns, by dynamic relaxation", NULL}},
-               {"{implicit: {end time: 2, time step: 0.02}}",
-                {"implicit, Newmark with beta 0.25 and gamma 0.5, 2 s by steps of at most 0.02",
-                 ", for 176 unknowns, by ", NULL}},
-               {"{implicit: {end time: 2, beta: 0.4, gamma: 0.6, damping: 3}}",
-                {"implicit, Newmark with beta 0.4 and gamma 0.6, 2 s by steps of at most 0.02, damping 3 1/s (", NULL}},
-               {"{implicit: {end time: 2, scheme: HHT, alpha: -0.1, stiffness damping: 0.004}}",
-                {"implicit, HHT with alpha -0.1, 2 s by steps of at most 0.02, stiffness damping 0.004 s (", NULL}},
-               {"[{explicit: {steps: 7, local damping: 0.3}}, {explicit: {end time: 1, rest: 1e-4, damping: 5}}]",
-                {"stage '1': explicit, 7 steps, local damping 0.3\n",
-                 "stage '2': explicit, until rest (0.0001), at most 1 s, damping 5 1/s\n", NULL}}};
+  } cases[] = {
+      {"{static: {increments: 4}}", {"static, 4 increments up to time 1 s, for 176 unknowns, by ", NULL}},
+      {"{static: {increments: 1, equations: direct}}",
+       {"static, 1 increment up to time 1 s, for 176 unknowns, by ", NULL}},
+      {"{static: {increments: 4, end time: 2.5, method: relaxation}}",
+       {"static, 4 increments up to time 2.5 s, for 176 unknowns, by dynamic relaxation", NULL}},
+      {"{implicit: {end time: 2, time step: 0.02}}",
+       {"implicit, Newmark with beta 0.25 and gamma 0.5, 2 s by steps of at most 0.02 s", ", for 176 unknowns, by ",
+        NULL}},
+      {"{implicit: {end time: 2, beta: 0.4, gamma: 0.6, damping: 3}}",
+       {"implicit, Newmark with beta 0.4 and gamma 0.6, 2 s by steps of at most 0.02 s, damping 3 1/s (", NULL}},
+      {"{implicit: {end time: 2, scheme: HHT, alpha: -0.1, stiffness damping: 0.004}}",
+       {"implicit, HHT with alpha -0.1, 2 s by steps of at most 0.02 s, stiffness damping 0.004 s (", NULL}},
+      {"[{explicit: {steps: 7, local damping: 0.3}}, {explicit: {end time: 1, rest: 1e-4, damping: 5}}]",
+       {"stage '1': explicit, 7 steps, local damping 0.3\n",
+        "stage '2': explicit, until rest (0.0001), at most 1 s, damping 5 1/s\n", NULL}}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
     breccia_model *m = model_of(BODY LOADS "solve: %s\n", cases[c].solve);
     for (int k = 0; cases[c].words[k]; ++k) has(breccia_model_overview(m), cases[c].words[k]);
