@@ -92,6 +92,46 @@ static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
   }
 }
 
+/** Bonds are looked at when particles may have moved far enough. What a load moves has moved, too: a body whose end is torn off in one step, after a
+ *  long rest, breaks in that step, and the speed of the end is the largest in it. */
+static void what_a_load_tears_off_breaks_in_the_same_step(void **state)
+{
+  (void)state;
+  static const char *const motions[] = {"displacement: [0.02, free], history: {table: [[0.0998, 0], [0.1, 1]]}",
+                                        "along: {direction: [3, 4], displacement: 0.02}, history: {table: [[0.0998, "
+                                        "0], [0.1, 1]]}"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        SOFT_SOLID
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [60, 4]}}}}\n"
+        "peridynamics: {formulation: ordinary, space: plane strain, horizon: 2.015 spacings}\n"
+        "failure: {critical stretch: 0.02}\nloads: [{on: {face: x+}, %s}]\n"
+        "solve: {explicit: {end time: 0.2, time step: 2e-4}}\n",
+        motions[k]);
+    step_surely(m, 499);
+    assert_int_equal(m->domain.broken_count, 0);
+    step_surely(m, 1);
+    const Domain *d = &m->domain;
+    const Particles *p = d->particles;
+    assert_near(m->solver.ledger.fastest, 0.02 / 2e-4, 1e-9 * 0.02 / 2e-4);
+    int64_t expected = 0; /* that the end alone, moved from rest, stretches too far */
+    for (int32_t a = 0; a < p->count; ++a)
+      for (int32_t b = a + 1; b < p->count; ++b) {
+        const int32_t i = p->place_of[a], j = p->place_of[b];
+        double before = 0, after = 0;
+        for (int c = 0; c < 3; ++c) {
+          const double xi = p->position[c][j] - p->position[c][i];
+          before += xi * xi;
+          after += pow(xi + p->displacement[c][j] - p->displacement[c][i], 2);
+        }
+        expected += sqrt(before) < 0.2016 && sqrt(after / before) > 1.02;
+      }
+    assert_true(expected > 4);
+    assert_int_equal(d->broken_count, expected);
+    breccia_model_destroy(&m);
+  }
+}
+
 static void fragments_fly_on_when_no_bond_is_left(void **state)
 {
   (void)state;
@@ -279,6 +319,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_stable_step_hardly_falls_whatever_bonds_break),
       cmocka_unit_test(a_struck_plate_breaks_soundly_at_the_default_step),
+      cmocka_unit_test(what_a_load_tears_off_breaks_in_the_same_step),
       cmocka_unit_test(fragments_fly_on_when_no_bond_is_left),
       cmocka_unit_test(a_bond_that_breaks_as_it_swings_never_gives_energy),
       cmocka_unit_test(the_step_follows_when_many_bonds_break_at_once),

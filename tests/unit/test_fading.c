@@ -102,6 +102,40 @@ static void few_increments_at_rest_spend_no_more(void **state)
   }
 }
 
+/** Works of bodies at rest are those of their ends: half of what each end exerts before and after an increment, times its way, however often the
+ *  increment is solved again on the way. */
+static void increments_that_are_solved_again_do_their_work_once(void **state)
+{
+  (void)state;
+  breccia_model *m = bar_of(mazars, "plane stress", "",
+                            "loads: [{on: {face: x-, layers: 3}, displacement: [-0.15e-3, 0], history: {ramp to: 1}},\n"
+                            "        {on: {face: x+, layers: 3}, displacement: [0.15e-3, 0], history: {ramp to: 1}}]\n"
+                            "solve: {static: {increments: 12}}\n");
+  const Particles *p = m->domain.particles;
+  double exerted[2] = {0}, moved[2] = {0}, work = 0, largest = 0;
+  int twice = 0; /* solved again more than once */
+  while (!solver_is_done(&m->solver)) {
+    step_surely(m, 1);
+    int again = 0;
+    for (const char *at = text_words(&m->solver.log); (at = strstr(at, "  again, ")); ++at) ++again;
+    twice += again > 1;
+    for (int end = 0; end < 2; ++end) {
+      const Selection *held = &m->loading.loads[end].selection;
+      double now = 0;
+      for (int64_t n = 0; n < held->count; ++n) now -= p->volume[held->places[n]] * p->internal[0][held->places[n]];
+      const double where = p->displacement[0][held->places[0]];
+      work += (exerted[end] + now) / 2 * (where - moved[end]);
+      largest = fmax(largest, fabs(work));
+      exerted[end] = now;
+      moved[end] = where;
+    }
+    assert_near(solver_energy(&m->solver).external, work, 1e-6 * largest);
+  }
+  print_message("%d increments were solved again more than once\n", twice);
+  assert_true(twice > 1);
+  breccia_model_destroy(&m);
+}
+
 /** A cantilever that cracks in few increments. In one of them the control as far as it has faded leaves no equilibrium near. */
 static breccia_model *cantilever(const char *keys)
 {
@@ -418,6 +452,7 @@ int main(void)
       cmocka_unit_test(at_rest_no_bond_is_left_beyond_its_limit),
       cmocka_unit_test(bars_pulled_apart_spend_their_fracture_energy),
       cmocka_unit_test(few_increments_at_rest_spend_no_more),
+      cmocka_unit_test(increments_that_are_solved_again_do_their_work_once),
       cmocka_unit_test(control_that_cannot_fade_near_by_fades_to_the_next_state_of_rest),
       cmocka_unit_test(increments_out_of_balance_are_given_back),
       cmocka_unit_test(control_that_fades_with_yielding_leaves_a_limit_load),

@@ -389,6 +389,46 @@ static void laws_are_told_the_time_of_the_end_of_their_step(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Roundings of a strain that is held are no reversal, however often they come; a small reversal that is none of them is one: the clay is then as stiff
+ *  as at first, 2 G but for its hardening from far away. */
+static void clay_that_is_held_goes_on_as_if_it_had_not_been(void **state)
+{
+  (void)state;
+  Material m = material_of("bounding-surface-clay", "shear modulus=60000", "bulk modulus=100000",
+                           "undrained strength=30", "hardening modulus=60000", NULL);
+  double shear[3][2];
+  for (int way = 0; way < 3; ++way) { /* straight on; held between; turned back a little between */
+    Point point = point_start(&m);
+    double strain[6] = {1e-4, -5e-5, -5e-5, 0, 0, 0}, stress[6];
+    for (int step = 1; step <= 40; ++step) {
+      strain[XY] = 1e-5 * step;
+      point_try(&point, strain, stress, NULL, 0);
+      point_commit(&point);
+    }
+    const double held = strain[XY];
+    for (int turn = 0; turn < 6 && way == 1; ++turn) {
+      strain[XY] = held * (1 + (turn % 2 ? 1 : -1) * 2e-16);
+      point_try(&point, strain, stress, NULL, 0);
+      point_commit(&point);
+    }
+    if (way == 2) {
+      strain[XY] = held * (1 - 1e-9);
+      point_try(&point, strain, stress, NULL, 0);
+      point_commit(&point);
+    }
+    shear[way][0] = stress[XY];
+    strain[XY] = held + (way == 2 ? -1e-7 : 1e-7);
+    point_try(&point, strain, stress, NULL, 0);
+    shear[way][1] = stress[XY];
+    point_stop(&point);
+  }
+  const double slope = (shear[0][1] - shear[0][0]) / 1e-7, back = (shear[2][0] - shear[2][1]) / 1e-7;
+  assert_near(shear[1][0], shear[0][0], 1e-9 * shear[0][0]);
+  assert_near(shear[1][1] - shear[1][0], shear[0][1] - shear[0][0], 1e-6 * (shear[0][1] - shear[0][0]));
+  assert_true(slope < 0.7 * back && back > 0.98 * 60000 && back < 1.001 * 60000);
+  material_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -400,6 +440,7 @@ int main(void)
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
+      cmocka_unit_test(clay_that_is_held_goes_on_as_if_it_had_not_been),
       cmocka_unit_test(clay_that_stands_still_is_as_stiff_as_in_its_last_step),
       cmocka_unit_test(a_point_that_gives_up_carries_nothing_and_keeps_its_history),
   };

@@ -233,6 +233,61 @@ static void pictures_say_which_mode_they_show(void **state)
   assert_int_equal(system(command), 0);
 }
 
+/** What results hold of a mode is its shape, in every direction, its largest component a tenth of the body's largest length. */
+static void pictures_show_modes_as_they_are(void **state)
+{
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", path[64], command[64];
+  assert_non_null(mkdtemp(folder));
+  breccia_model *m = model_of(UNITS SOFT_SOLID
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 5, 3]}}}}\n"
+                              "peridynamics: {horizon: 2.015 spacings}\nloads: [{on: {face: x-}, displacement: [0, 0, "
+                              "0]}]\nsolve: {static: {increments: 1}}\nresults: {precision: double}\n");
+  Modes modes = modes_of(m, 4); /* two that bend, one that twists, one that bends again */
+  const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = 4};
+  Error *error = breccia_error_create();
+  if (breccia_model_modes(m, &wish, error)) fail_msg("%s", breccia_error_text(error));
+  const Particles *p = m->domain.particles;
+  for (int64_t i = 0; i < p->places; ++i)
+    for (int k = 0; k < 3; ++k) assert_true(p->displacement[k][i] == 0); /* the body itself is where it was */
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", folder);
+  assert_int_equal(result_view_open(&view, path, error), 0);
+  assert_int_equal(view.steps, 4);
+  for (int n = 0; n < 4; ++n) {
+    int components;
+    double *shown = result_view_read(&view, "displacement", n, &components, NULL, error), most = 0, length = 0,
+           largest = 0, sign = 0;
+    assert_non_null(shown);
+    assert_int_equal(components, 3);
+    assert_near(view.times[n], n + 1, 0);
+    for (int64_t a = 0; a < p->count; ++a) {
+      double squares[2] = {0};
+      for (int k = 0; k < 3; ++k) {
+        const double shape = modes.modes[n].displacement[k][p->place_of[a]];
+        squares[0] += shape * shape;
+        squares[1] += shown[3 * a + k] * shown[3 * a + k];
+        sign += shape * shown[3 * a + k];
+        largest = fmax(largest, fabs(shown[3 * a + k]));
+      }
+      most = fmax(most, sqrt(squares[0]));
+      length = fmax(length, sqrt(squares[1]));
+    }
+    assert_near(largest, 0.1 * 0.8, 1e-9); /* from the first centre to the last */
+    for (int64_t a = 0; a < p->count; ++a)
+      for (int k = 0; k < 3; ++k)
+        assert_near(shown[3 * a + k] / length * (sign < 0 ? -1 : 1),
+                    modes.modes[n].displacement[k][p->place_of[a]] / most, 1e-4);
+    free(shown);
+  }
+  result_view_close(&view);
+  modes_destroy(&modes);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 static void expect_refusal(breccia_model *model, const breccia_modes *wish, const char *words)
 {
   Error *error = breccia_error_create();
@@ -428,6 +483,7 @@ int main(void)
       cmocka_unit_test(modes_between_mirrored_layers_are_nearly_orthogonal),
       cmocka_unit_test(a_free_body_moves_as_a_whole_in_so_many_ways),
       cmocka_unit_test(modes_are_those_of_elastic_laws),
+      cmocka_unit_test(pictures_show_modes_as_they_are),
       cmocka_unit_test(pictures_say_which_mode_they_show),
       cmocka_unit_test(results_of_runs_are_not_written_over),
       cmocka_unit_test(springs_ties_and_supports_are_felt),

@@ -459,6 +459,34 @@ static void thin_plates_are_seen_from_the_front(void **state)
   }
 }
 
+/** Bodies in the plane have no other side: whatever view is asked for they are seen from the front. */
+static void bodies_in_the_plane_are_seen_from_the_front(void **state)
+{
+  (void)state;
+  char into[40], path[80];
+  snprintf(into, sizeof into, "%s/flat", folder);
+  breccia_model *model = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [12, 10]}}}}\n"
+      "peridynamics: {space: plane stress}\nsolve: {explicit: {steps: 1, time step: 1e-3}}\n"
+      "results: {number: 1, fields: [damage]}\npictures: []\n");
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+  breccia_model_destroy(&model);
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  assert_true(view.plane);
+  for (int wish = 0; wish < 2; ++wish) {
+    const PictureOptions o = {
+        .field = "damage", .azimuth = wish ? -60 : NAN, .elevation = wish ? 30 : NAN, .low = NAN, .high = NAN};
+    PictureSurvey s;
+    assert_int_equal(picture_survey(&view, 0, 0, true, &o, &s, NULL), 0);
+    assert_near(fabs(s.x0) + fabs(s.x1 - 12) + fabs(s.y0) + fabs(s.y1 - 10), 0, 1e-6);
+  }
+  result_view_close(&view);
+}
+
 /** Every dataset that results.xdmf names is there and holds the step's numbers. */
 static void xdmf_names_a_whole_dataset_for_every_step(void **state)
 {
@@ -531,6 +559,7 @@ int main(void)
       cmocka_unit_test(bodies_that_turn_and_grow_have_no_gaps),
       cmocka_unit_test(bodies_in_space_stand_as_they_are_seen),
       cmocka_unit_test(thin_plates_are_seen_from_the_front),
+      cmocka_unit_test(bodies_in_the_plane_are_seen_from_the_front),
       cmocka_unit_test(xdmf_names_a_whole_dataset_for_every_step),
       cmocka_unit_test(names_of_pictures_are_short),
   };

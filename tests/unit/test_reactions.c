@@ -96,6 +96,41 @@ static void each_of_several_walls_carries_its_own(void **state)
   }
 }
 
+/** What holds rotations exerts moments alone, in directions that move freely, too, where particles are not in balance. */
+static void what_holds_a_rotation_exerts_a_moment_and_no_force(void **state)
+{
+  (void)state;
+  breccia_model *model =
+      model_of(UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.1}}\n"
+                     "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 3, 3]}}}}\n"
+                     "peridynamics: {formulation: micropolar}\n"
+                     "loads: [{name: wall, on: {face: x-}, displacement: [0, free, free]}, {name: turns, on: {face: "
+                     "x-}, rotation: [0, "
+                     "0, 0]}, {on: {face: x+}, traction: [1, 2, 3]}, {on: {inside: {box: {from: [0.1, 0, 0], to: [0.2, "
+                     "1, 0.1]}}}, moment: [0.03, 0.02, 0.01]}]\n"
+                     "solve: {explicit: {steps: 60}}\n");
+  step_surely(model, 60);
+  const Particles *p = model->domain.particles;
+  const Selection *held = &model->loading.loads[1].selection;
+  double moment[3] = {0}, pushed = 0;
+  for (int64_t n = 0; n < held->count; ++n) {
+    const int32_t i = held->places[n];
+    pushed = fmax(pushed, fabs(p->volume[i] * p->internal[1][i]));
+    for (int k = 0; k < 3; ++k) moment[k] -= p->volume[i] * p->internal[ROTATION + k][i];
+  }
+  const Wrench turns = sum_of(model, NULL, "turns", NULL), wall = sum_of(model, NULL, "wall", NULL),
+               both = sum_of(model, NULL, NULL, turns.about);
+  const double size = fabs(moment[0]) + fabs(moment[1]) + fabs(moment[2]);
+  assert_true(pushed > 1e-3 && size > 1e-4);
+  for (int k = 0; k < 3; ++k) {
+    assert_near(turns.force[k], 0, 0);
+    assert_near(turns.moment[k], moment[k], 1e-12 * size);
+    assert_near(both.force[k], wall.force[k], 0);
+    assert_near(wall.force[k], k ? 0 : wall.force[0], 0);
+  }
+  breccia_model_destroy(&model);
+}
+
 static void two_supports_share_the_load_of_a_beam(void **state)
 {
   (void)state;
@@ -242,6 +277,7 @@ int main(void)
       cmocka_unit_test(a_base_carries_the_weight_of_a_block),
       cmocka_unit_test(supports_outside_the_body_carry_it_too),
       cmocka_unit_test(each_of_several_walls_carries_its_own),
+      cmocka_unit_test(what_holds_a_rotation_exerts_a_moment_and_no_force),
       cmocka_unit_test(two_supports_share_the_load_of_a_beam),
       cmocka_unit_test(a_clamp_exerts_the_moment_of_the_load_about_its_face),
       cmocka_unit_test(a_shaken_body_is_pushed_by_its_change_of_momentum),
