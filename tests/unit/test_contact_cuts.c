@@ -1,7 +1,7 @@
 /* Faces of a cut, and a block on a base: they carry pressure as the body did, slide, and stick by friction. */
 #include "support.h"
 
-#include "contact/contact.h"
+#include "contact/contact_parts.h"
 
 static Contact *contact_of(const Domain *d)
 {
@@ -84,6 +84,60 @@ static void the_order_of_blocks_changes_nothing(void **state)
     assert_near(pressed[1][1], pressed[0][1], 1e-9 * pressed[0][1]);
     assert_near(pressed[1][0], pressed[0][0], 1e-9 * pressed[0][1]);
     assert_near(energy[1], energy[0], 1e-9 * energy[0]);
+  }
+}
+
+/** A particle that has lost bonds has a face where these went: from the mean of the volume that is left to the mean of that which is gone. Where as much
+ *  is gone on one side as on the other it has none. */
+static void particles_look_to_where_they_have_lost_bonds(void **state)
+{
+  (void)state;
+  for (int turn = 0; turn < 6; ++turn) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials: {m: {density: 2.4, " SOLID "}}\n"
+        "peridynamics: {space: plane strain, horizon: 2.015 spacings}\nbody: {b: {material: m, lattice: hexagonal, "
+        "spacing: 0.01, thickness: 0.1, shape: {box: {particles: [13, 13]}}}}\ncontact: {}\n"
+        "solve: {explicit: {steps: 1}}\n");
+    Domain *d = &m->domain;
+    Particles *p = d->particles;
+    Contact *c = contact_of(d);
+    const int32_t i = body_nearest(&d->body, (double[3]){0.065, 0.055, 0});
+    const double angle = 1.1 * turn + 0.2, towards[2] = {cos(angle), sin(angle)};
+    const bool even = turn == 5; /* on both sides */
+    double lost[2] = {0}, left[2] = {0}, gone = 0, whole = 0;
+    int32_t others[64];
+    int count = 0;
+    for (int64_t n = 0; n < p->count; ++n) /* unlike volumes, so that it shows whether they count */
+      if (!even) p->volume[p->place_of[n]] *= 1 + 0.5 * (double)(n % 3);
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t j = p->place_of[n];
+      if (j == i || !family_joins(&d->family, i, j)) continue;
+      double xi[2], along = 0;
+      for (int k = 0; k < 2; ++k) {
+        xi[k] = p->position[k][j] - p->position[k][i];
+        along += xi[k] * towards[k];
+      }
+      const bool goes = (even ? fabs(along) : along) > 0.004;
+      for (int k = 0; k < 2; ++k) (goes ? lost : left)[k] += p->volume[j] * xi[k];
+      *(goes ? &gone : &whole) += p->volume[j];
+      if (goes) others[count++] = j;
+    }
+    for (int k = 0; k < count; ++k) {
+      family_break(&d->family, i, others[k]);
+      forces_bond_broke(&d->forces, i, others[k]);
+    }
+    assert_true(count > 4 && c->row_of[i] >= 0);
+    ContactRow *row = &c->rows[c->row_of[i]];
+    contact_find_faces(c, row);
+    assert_int_equal(row->faces, !even);
+    assert_near(row->depth, 0.005, 1e-12);
+    if (!even) {
+      const double way[2] = {lost[0] / gone - left[0] / whole, lost[1] / gone - left[1] / whole},
+                   size = hypot(way[0], way[1]);
+      for (int k = 0; k < 2; ++k) assert_near(row->face[0][k], way[k] / size, 1e-9);
+      assert_near(row->face[0][2], 0, 1e-9);
+    }
+    breccia_model_destroy(&m);
   }
 }
 
@@ -260,6 +314,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_order_of_blocks_changes_nothing),
+      cmocka_unit_test(particles_look_to_where_they_have_lost_bonds),
       cmocka_unit_test(a_closed_cut_is_as_stiff_as_the_body_and_opens_freely),
       cmocka_unit_test(a_block_that_slides_on_a_cut_gains_nothing),
       cmocka_unit_test(faces_of_a_cut_slide_freely_or_with_coulombs_friction),
