@@ -50,6 +50,8 @@ static void a_body_takes_what_is_foreseen(void **state)
       {"elastic", ELASTIC, LATTICES, "correspondence", "explicit: {steps: 9}"},
       {"elastic", ELASTIC, LATTICES, "ordinary", "explicit: {steps: 9}"},
       {"elastic-1d", "Young modulus: 1e4", LATTICES, "bond-based", "explicit: {steps: 9}"},
+      {"elastic-1d", "Young modulus: 1e4", LATTICE, "bond-based, surface correction: energy", "explicit: {steps: 9}"},
+      {"elastic-1d", "Young modulus: 1e4", LATTICES, "bond-based, surface correction: energy", "explicit: {steps: 9}"},
       {"elastic", SOFT, LATTICE, "micropolar", "explicit: {steps: 9}"},
       {"elastic", ELASTIC, LATTICE, "hybrid, form: variational", "explicit: {steps: 9}"},
       {"j2", ELASTIC ", yield stress: 1", LATTICE, "hybrid, form: variational", "explicit: {steps: 9}"},
