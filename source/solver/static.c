@@ -80,6 +80,7 @@ static void list_state(Solver *run, StateList *list)
   newton_state(&s->newton, list);
   control_state(&s->control, list);
   state_add_count(list, "cuts of increments", STATE_LEARNED, &s->cuts);
+  state_add_count(list, "increments by relaxation", STATE_COMMITTED, &s->relaxed);
 }
 
 static void destroy(Solver *run)

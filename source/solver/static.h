@@ -35,8 +35,9 @@ typedef struct Static {
   StateCopy
       whole; /* the state at the begin of the increment, where what follows from it may leave no equilibrium near; else empty */
   Way way;
-  double next;  /* length of the increment to be tried next */
-  int64_t cuts; /* in the stage */
+  double next;     /* length of the increment to be tried next */
+  int64_t cuts;    /* in the stage */
+  int64_t relaxed; /* increments in which dynamic relaxation found what Newton's method did not */
   double
       lag; /* forces out of balance over the reference, with what the last increment that was given back had led to */
 } Static;

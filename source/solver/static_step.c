@@ -93,7 +93,7 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
   }
   const bool relaxes = how.relaxes || s->newton.relaxes;
   NewtonOutcome outcome = relaxes ? relax(s, end, error) : newton_solve(&s->newton, end, error);
-  if (outcome == NEWTON_CONVERGED && !relaxes && !how.again && is_coarse(s, end - s->clock->time))
+  if (outcome == NEWTON_CONVERGED && !s->newton.relaxes && !how.again && is_coarse(s, end - s->clock->time))
     outcome = NEWTON_COARSE;
   if (outcome != NEWTON_CONVERGED) {
     increment_retreat(&s->increment);
@@ -169,25 +169,39 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
                    newton_describe(&s->newton, outcome, words, sizeof words));
 }
 
-/** Lengths of an increment below which Newton's method is not asked alone any more: there is no equilibrium near. */
-static bool is_short(const Static *s, double length)
+/** At the end of the stage: what is said to be followed was jumped over. */
+static void tell_relaxed(const Static *s, Text *warning)
 {
-  const double least = 1.0 / 16; /* of an increment as asked for */
-  return length / 2 < fmax(least, s->spec->smallest) * static_whole_increment(s->spec);
+  text_add(
+      warning,
+      "%swarning: static: in %lld of %lld increments the body gave way: Newton's method found no equilibrium near, "
+      "and dynamic relaxation the state of rest at their ends; what is between is not followed",
+      warning->length ? "\n" : "", (long long)s->relaxed, (long long)(s->clock->step - s->clock->stage_step));
 }
 
-/** First try of an increment, and by dynamic relaxation where short ones find no equilibrium either: the body jumps to another.
- *  @param[in] once_more  that may be tried; @param[out] relaxed  it was */
-static NewtonOutcome try_first(Static *s, double end, bool once_more, bool *relaxed, Error *error)
+/** Whether Newton's method is not asked alone any more, after it has failed: there is no equilibrium near, or only by secants that hardly come on.
+ *  @param[in] length  of the increment */
+static bool is_stuck(const Static *s, double length)
+{
+  const double least = 1.0 / 16; /* of an increment as asked for */
+  return s->newton.iterations > s->spec->newton.iterations + 1 ||
+         length / 2 < fmax(least, s->spec->smallest) * static_whole_increment(s->spec);
+}
+
+/** First try of an increment, and by dynamic relaxation where Newton's method is stuck: the body jumps to another equilibrium.
+ *  @param[in,out] may_relax  until that was tried in vain; @param[out] relaxed  it was */
+static NewtonOutcome try_first(Static *s, double end, bool *may_relax, bool *relaxed, Error *error)
 {
   NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
-  if (outcome == NEWTON_FAILED || outcome == NEWTON_CONVERGED || outcome == NEWTON_COARSE || !once_more ||
-      !is_short(s, end - s->clock->time) || !domain_may_soften(s->domain) || !static_may_relax(s))
+  if (outcome == NEWTON_FAILED || outcome == NEWTON_CONVERGED || outcome == NEWTON_COARSE || !*may_relax ||
+      !is_stuck(s, end - s->clock->time) || !domain_may_soften(s->domain) || !static_may_relax(s))
     return outcome;
   tell_refused(s, outcome, true);
   text_add(s->newton.log, "  again, by dynamic relaxation\n");
-  *relaxed = true;
-  return static_try(s, end, (Try){.relaxes = true}, error);
+  outcome = static_try(s, end, (Try){.relaxes = true}, error);
+  *relaxed = outcome == NEWTON_CONVERGED;
+  *may_relax = *relaxed || outcome == NEWTON_COARSE;
+  return outcome;
 }
 
 /** A step that has failed for good before anything came of it. */
@@ -200,14 +214,13 @@ static int give_up(Static *s, double next, int64_t cuts)
 
 int static_advance(Solver *run, Text *warning, Error *error)
 {
-  (void)warning;
   Static *s = run->own;
   Clock *clock = &run->clock;
   const double first = s->next;
   const bool was_spent = control_is_spent(&s->control);
   const int64_t broken = s->domain->broken_count, cuts = s->cuts;
   int64_t iterations = 0;
-  bool relaxed = false, once_more = true; /* dynamic relaxation has not failed yet */
+  bool relaxed = false, may_relax = true;
   if (increment_keep(&s->increment, run, error) || static_keep(run, error)) return BRECCIA_FAILURE;
   s->newton.log = &run->log;
   for (int64_t cut = 0;; s->cuts = cuts + ++cut) {
@@ -215,7 +228,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
     text_add(&run->log, "increment %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, begin, end);
     bool settled = true;
     relaxed = false;
-    NewtonOutcome outcome = try_first(s, end, once_more, &relaxed, error);
+    NewtonOutcome outcome = try_first(s, end, &may_relax, &relaxed, error);
     if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     if (outcome == NEWTON_CONVERGED) {
       clock->time_step = end - begin;
@@ -228,7 +241,6 @@ int static_advance(Solver *run, Text *warning, Error *error)
       if (settled) return fail_with_broken(s, outcome, error);
       if (static_give_back(run, error)) return BRECCIA_FAILURE;
     }
-    once_more &= !relaxed;
     tell_refused(s, outcome, settled);
     s->next = (end - begin) / 2;
     if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
@@ -238,6 +250,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
   }
   const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : newton_most_iterations(&s->newton);
   if (relaxed || iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, static_whole_increment(s->spec));
+  if (relaxed) ++s->relaxed;
   clock->ended = clock->time >= clock->stage_end - 1e-9 * static_whole_increment(s->spec);
   static_count_steps(run);
   if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
@@ -245,6 +258,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
   const bool again = was_spent || s->domain->broken_count > broken;
   if (!clock->ended && again && control_is_spent(&s->control)) end_torn(run, warning);
   if (clock->ended) {
+    if (s->relaxed) tell_relaxed(s, warning);
     increment_forget(&s->increment);
     state_copy_destroy(&s->whole);
   }

@@ -249,6 +249,32 @@ static const struct {
     {"mander, compressive strength: 34000, Young modulus: 30e6", "bond-based", "[-0.001, 0, 0.0004]"},
 };
 
+/** The others: linear ones, whose equations are solved once; those of straight pieces, where the last step is exact; that of bonds with a kink at
+ *  their strength, behind which they soften at once; and one by secants. */
+static void every_law_with_a_smooth_tangent_is_among_them(void **state)
+{
+  (void)state;
+  static const char *const others[] = {"elastic",
+                                       "elastic-1d",
+                                       "viscoelastic",
+                                       "elastic-brittle",
+                                       "bilinear-softening",
+                                       "trilinear-softening",
+                                       "steel-bilinear",
+                                       "elastic-perfectly-plastic",
+                                       "exponential-softening",
+                                       "link-damage"};
+  for (int k = 0; law_at(NULL, k); ++k) {
+    const char *name = law_at(NULL, k)->name;
+    bool found = false;
+    for (size_t l = 0; l < sizeof others / sizeof *others; ++l) found |= !strcmp(name, others[l]);
+    for (size_t l = 0; l < sizeof laws_with_tangents / sizeof *laws_with_tangents; ++l)
+      found |= strcspn(laws_with_tangents[l].law, ",") == strlen(name) &&
+               !strncmp(laws_with_tangents[l].law, name, strlen(name));
+    if (!found) fail_msg("'%s' is not among them", name);
+  }
+}
+
 static void laws_with_tangents_converge_quadratically(void **state)
 {
   (void)state;
@@ -579,6 +605,7 @@ int main(void)
       cmocka_unit_test(gathering_is_spreading_transposed),
       cmocka_unit_test(the_matrix_does_what_a_linearised_step_does),
       cmocka_unit_test(both_ways_find_the_same_rest_and_reactions_are_the_loads),
+      cmocka_unit_test(every_law_with_a_smooth_tangent_is_among_them),
       cmocka_unit_test(laws_with_tangents_converge_quadratically),
       cmocka_unit_test(elastic_bodies_take_one_iteration),
       cmocka_unit_test(increments_are_halved_and_grow_again),
