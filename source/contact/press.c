@@ -283,7 +283,10 @@ static void press_row(Contact *c, ContactRow *row, bool only_energy)
     const Grip *before = row->grips ? &row->grips[2 * n + c->committed] : NULL;
     Grip *after = row->grips && !only_energy ? &row->grips[2 * n + !c->committed] : NULL;
     PairAct none, *act = only_energy ? &none : &c->acts[pair->act];
-    const double volumes = p->volume[row->place] * p->volume[other->place];
+    const double own =
+        (!body_outside(c->body, p->number[row->place]) + !body_outside(c->body, p->number[other->place])) /
+        2.0; /* each end has half; outside its supports the body has nothing */
+    const double volumes = own * p->volume[row->place] * p->volume[other->place];
     double pull[3] = {0};
     Press m;
     act->presses = false;

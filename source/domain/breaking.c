@@ -52,14 +52,15 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
   const int32_t a = number[place], b = number[neighbour];
   const Region *own = domain_region(d, place), *their = domain_region(d, neighbour);
   StoredEnergy energy;
+  const double inside = d->counted[place] > 0, beyond = d->counted[neighbour] > 0; /* each end holds half */
   if (own->type->bond_energy) {
     own->type->bond_energy(own->formulation, slice, slot, lane, moment->time_step, &energy);
-    d->fracture_energy += energy.received;
+    d->fracture_energy += (their == own ? (inside + beyond) / 2 : inside) * energy.received;
   }
   if (their != own && their->type->bond_energy) {
     their->type->bond_energy(their->formulation, neighbour / SLICE, family_slot(&d->family, neighbour, place),
                              neighbour % SLICE, moment->time_step, &energy);
-    d->fracture_energy += energy.received;
+    d->fracture_energy += beyond * energy.received;
   }
   if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
     d->out_of_memory = true;
@@ -253,7 +254,8 @@ void domain_settle(Domain *d, const Region *region)
   for (int64_t n = 0; n < d->torn_count; ++n) {
     if (domain_region(d, d->torn[n].place) != region) continue;
     carry_less(d, &d->torn[n]);
-    d->fracture_energy += d->torn[n].received - d->torn[n].carried - d->torn[n].control;
+    if (d->counted[d->torn[n].place] > 0)
+      d->fracture_energy += d->torn[n].received - d->torn[n].carried - d->torn[n].control;
   }
 }
 

@@ -190,7 +190,7 @@ static void store_batch(void *context, int64_t b)
   d->batch_sum[b] = 0;
   for (int64_t place = d->batches[b].first * SLICE; place < d->batches[b].last * SLICE; ++place) {
     StoredEnergy energy;
-    if (d->particles->number[place] < 0) continue;
+    if (!(d->counted[place] > 0)) continue;
     const Region *region = domain_region(d, place);
     region->type->stored_energy(region->formulation, place, 0, &energy);
     d->batch_sum[b] += energy.stored;

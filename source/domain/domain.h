@@ -86,8 +86,11 @@ typedef struct Domain {
   Forces forces;
   Batch *batches;
   int64_t batch_count;
-  int64_t *lowest;       /* [batches] first batch that holds a neighbour of a particle of the batch */
-  bool rows_cut;         /* a row is longer than a batch */
+  int64_t *lowest; /* [batches] first batch that holds a neighbour of a particle of the batch */
+  bool rows_cut;   /* a row is longer than a batch */
+  double *
+      counted; /* [places] volumes in sums of energies: 0 outside the body's supports, else the particles', which are not copied where
+                            none is outside */
   double *family_volume; /* [places] of the neighbours of each place, before anything broke */
   uint8_t *suspects;     /* [slices] */
   double *look_again;    /* [slices] sum of largest motions at which the criterion looks at the slice again */
@@ -227,7 +230,7 @@ const char *domain_flutters(const Domain *domain);
 /** Whether the stable step may fall as bonds break. */
 bool domain_may_stiffen(const Domain *domain);
 
-/** Energy that unloading would give back, of all particles [energy]. */
+/** Energy that unloading would give back, of all particles of the body itself [energy]. */
 double domain_stored_energy(Domain *domain);
 
 /** True if forces show what laws on bonds remember, so that they are state. */

@@ -3,6 +3,7 @@
 
 #include "base/check.h"
 #include "base/team.h"
+#include "loading/support.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,6 +180,29 @@ static int share_out(Domain *d, Error *error)
   return find_lowest(d, error);
 }
 
+/** Whether points between images exert forces on particles inside that no symmetry takes back: what these do is none of the body's bonds, and the
+ *  ledger can only be kept of all together. */
+static bool hands_on_at_faces(const Domain *d)
+{
+  bool wide = false;
+  for (int r = 0; r < d->region_count; ++r) wide |= d->regions[r].type->on_bonds && d->regions[r].type->components == 6;
+  for (int m = 0; wide && m < d->body.margins.count; ++m)
+    if (!d->body.margins.items[m].repeats && !support_slides(&d->body.margins.items[m])) return true;
+  return false;
+}
+
+/** Layers outside supports stand for what the body is half of, and have no energy of its own. */
+static int count_volumes(Domain *d, Error *error)
+{
+  const Particles *p = d->particles;
+  const bool apart = d->body.margin_of && !hands_on_at_faces(d);
+  d->counted = apart ? places_array(p->places, "volumes", error) : p->volume;
+  if (!d->counted) return BRECCIA_FAILURE;
+  for (int64_t n = 0; apart && n < p->count; ++n)
+    d->counted[p->place_of[n]] = body_outside(&d->body, n) ? 0 : p->volume[p->place_of[n]];
+  return BRECCIA_OK;
+}
+
 static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
 {
   Particles *p = d->particles;
@@ -194,7 +218,7 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
     while (strcmp(d->materials[d->material[s]].name, named->name)) ++d->material[s];
     for (int lane = 0; lane < SLICE; ++lane) p->density[s * SLICE + lane] = d->materials[d->material[s]].density;
   }
-  return BRECCIA_OK;
+  return count_volumes(d, error);
 }
 
 static int create_forces(Domain *d, const DomainSpec *spec, Space space, Error *error)
@@ -360,6 +384,7 @@ void domain_destroy(Domain *d)
   joint_destroy(&d->joint);
   regions_destroy(d);
   family_destroy(&d->family);
+  if (d->particles && d->counted != d->particles->volume) places_free(&d->counted);
   body_destroy(&d->body);
   for (int k = 0; k < d->material_count; ++k) material_destroy(&d->materials[k]);
   free(d->materials);

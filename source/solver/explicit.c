@@ -121,6 +121,7 @@ static int create(Solver *run, Error *error)
   s->parts = memory_zeroed((size_t)parts, sizeof *s->parts, "energy sums", error);
   s->motions = memory_zeroed((size_t)run->loading->constraint_count, sizeof *s->motions, "motions", error);
   if (failed || !s->sums || !s->parts || !s->motions) return BRECCIA_FAILURE;
+  if (face_work_create(&s->face_work, d, run->loading, error)) return BRECCIA_FAILURE;
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
@@ -161,6 +162,7 @@ static void destroy(Solver *run)
   free(s->parts);
   free(s->motions);
   stiffness_damping_destroy(&s->viscous);
+  face_work_destroy(&s->face_work);
   forget_before(s);
   free(s);
   run->own = NULL;
@@ -234,17 +236,18 @@ static void kick_and_drift(Explicit *s, int64_t batch)
   const Particles *p = s->domain->particles;
   const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(s->spec->damping.mass), one_half = lanes_set(0.5);
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
+  const double *counted = s->domain->counted;
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = first; i < last; i += LANES) {
       Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
       Lanes fe = lanes_load(p->external[k] + i);
       Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->inertia[k] + i) * gain;
-      Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(p->volume + i);
+      Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(counted + i);
       bond -= fi * work;
       external += fe * work;
       damping += drag * work;
-      between -= lanes_load(p->inertia[k] + i) * lanes_load(p->volume + i) * gain * gain;
+      between -= lanes_load(p->inertia[k] + i) * lanes_load(counted + i) * gain * gain;
       if (k < ROTATION) still = lanes_least(still, -lanes_absolute(du));
       lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
       lanes_store(p->velocity[k] + i, half);
@@ -267,12 +270,13 @@ static void kick(Explicit *s, int64_t batch)
   const Lanes dt = lanes_set(s->clock->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
   const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->clock->time_step)), viscous = lanes_set(c);
   Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0}, between = {0};
+  const double *counted = s->domain->counted;
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = first; i < last; i += LANES) {
       Lanes half = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
       Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->inertia[k] + i);
-      Lanes volume = lanes_load(p->volume + i), force = fi + fe, size = local * lanes_absolute(force);
+      Lanes volume = lanes_load(counted + i), force = fi + fe, size = local * lanes_absolute(force);
       Lanes drag = lanes_where(half > lanes_set(0), size) - lanes_where(half < lanes_set(0), size);
       if (stiff) drag += lanes_load(s->viscous.drag[k] + i);
       Lanes acceleration = (force - drag) / density, end = (half + one_half * dt * acceleration) * slow;
@@ -307,6 +311,7 @@ static int begin(Solver *run, Error *error)
   Domain *d = s->domain;
   domain_tell_time(d, s->clock->time, 0); /* laws with rates answered to the last step of the stage before already */
   domain_evaluate(d);
+  s->face_work.fresh = false;
   loading_move(s->loading, &(LoadMotion){.velocity = d->particles->velocity});
   loading_apply(s->loading, d->particles, s->clock->time);
   loading_settle(s->loading, d->particles, d->particles->velocity, 0);
@@ -315,7 +320,7 @@ static int begin(Solver *run, Error *error)
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       s->acceleration[k][i] = (p->internal[k][i] + p->external[k][i]) / p->inertia[k][i];
-      s->ledger->kinetic += 0.5 * p->inertia[k][i] * p->volume[i] * p->velocity[k][i] * p->velocity[k][i];
+      s->ledger->kinetic += 0.5 * p->inertia[k][i] * d->counted[i] * p->velocity[k][i] * p->velocity[k][i];
       if (k < ROTATION) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
     }
   return BRECCIA_OK;
@@ -365,6 +370,13 @@ static void answer(void *context)
   domain_forces(d);
   if (!is_sound(s)) return;
   domain_accept(d);
+  face_work_find(&s->face_work, d);
+  TEAM_SINGLE
+  {
+    const double work = face_work_done(&s->face_work, s->clock->time_step, d->particles->velocity);
+    s->ledger->bond_work += work;
+    s->ledger->external_work += work;
+  }
   apply_loads(s, end);
   TEAM_FOR (b, d->batch_count) {
     kick(s, b);
@@ -394,6 +406,8 @@ static int advance(Solver *run, Text *warning, Error *error)
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
   const double start = s->clock->time;
+  if (!s->face_work.fresh) face_work_renew(&s->face_work, s->domain);
+  face_work_note(&s->face_work);
   explicit_foresee_motions(s);
   loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
                                          .lag = s->clock->time_step / 2,

@@ -4,6 +4,7 @@
 #define BRECCIA_SOLVER_EXPLICIT_H
 
 #include "solver/damping.h"
+#include "solver/face_work.h"
 #include "solver/solver.h"
 #include "solver/stiffness_damping.h"
 
@@ -40,6 +41,7 @@ typedef struct Explicit {
     double moved;                               /* in the step */
     double rate;                                /* velocity at its end */
   } * motions;
+  FaceWork face_work;
   double motion;         /* largest component of any displacement increment in the step under way */
   double (*sums)[SUMS];  /* [batches] */
   double (*parts)[SUMS]; /* the same for parts of prescribed selections */

@@ -177,7 +177,7 @@ static int create(Solver *run, Error *error)
   const bool made = vectors_make(s->acceleration, p, "accelerations", error) &&
                     vectors_make(s->drag, p, "damping", error) && vectors_make(s->velocity, p, "velocities", error) &&
                     vectors_make(s->drag_then, p, "damping", error) && vectors_make(s->result, p, "steps", error);
-  if (!made || increment_create(&s->increment, run->domain, error)) return BRECCIA_FAILURE;
+  if (!made || increment_create(&s->increment, run->domain, run->loading, error)) return BRECCIA_FAILURE;
   return newton_create(&s->newton, error);
 }
 

@@ -139,17 +139,18 @@ NewtonForces implicit_forces(Implicit *s)
 
 /* ---- books ---- */
 
-static double kinetic_energy(const Particles *p, double *const velocity[MOTIONS])
+static double kinetic_energy(const Domain *d, double *const velocity[MOTIONS])
 {
+  const Particles *p = d->particles;
   double sum = 0;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
-      sum += 0.5 * p->inertia[k][i] * p->volume[i] * velocity[k][i] * velocity[k][i];
+      sum += 0.5 * p->inertia[k][i] * d->counted[i] * velocity[k][i] * velocity[k][i];
   return sum;
 }
 
 typedef struct HeldEnergy {
-  const Particles *particles;
+  const Domain *domain;
   double *const *velocity;
   double energy;
 } HeldEnergy;
@@ -159,13 +160,13 @@ static void add_held(const Constraint *c, int64_t n, void *context)
   HeldEnergy *h = context;
   const int32_t i = c->load->selection.places[n];
   const double rate = constraint_along(c, h->velocity, i);
-  h->energy += 0.5 * h->particles->inertia[c->row][i] * h->particles->volume[i] * rate * rate;
+  h->energy += 0.5 * h->domain->particles->inertia[c->row][i] * h->domain->counted[i] * rate * rate;
 }
 
 /** Kinetic energy of what moves as prescribed. */
 static double held_energy(const Implicit *s, double *const velocity[MOTIONS])
 {
-  HeldEnergy h = {.particles = s->domain->particles, .velocity = velocity};
+  HeldEnergy h = {.domain = s->domain, .velocity = velocity};
   unknowns_each_row(&s->newton.linear.unknowns, add_held, &h);
   return h.energy;
 }
@@ -175,12 +176,9 @@ static void book(Implicit *s)
 {
   const Particles *p = s->domain->particles;
   const Unknowns *u = &s->newton.linear.unknowns;
-  double *const *moved = s->newton.moved, bonds = 0;
+  double *const *moved = s->newton.moved, bonds = increment_bond_work(&s->increment, moved);
   for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) {
-      bonds -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * moved[k][i];
-      s->result[k][i] = s->drag[k][i] + s->drag_then[k][i];
-    }
+    for (int64_t i = 0; i < p->places; ++i) s->result[k][i] = s->drag[k][i] + s->drag_then[k][i];
   unknowns_gather(u, s->result);
   const double damping = 0.5 * unknowns_work(u, s->result, moved);
   for (int k = 0; k < p->motions; ++k)
@@ -190,8 +188,8 @@ static void book(Implicit *s)
                         s->drag[k][i] - s->drag_then[k][i];
   unknowns_gather(u, s->result);
   const double freely = 0.5 * unknowns_work(u, s->result, moved);
-  const double kinetic = kinetic_energy(p, s->velocity), held = held_energy(s, s->velocity);
-  const double kinetic_before = kinetic_energy(p, p->velocity), held_before = held_energy(s, p->velocity);
+  const double kinetic = kinetic_energy(s->domain, s->velocity), held = held_energy(s, s->velocity);
+  const double kinetic_before = kinetic_energy(s->domain, p->velocity), held_before = held_energy(s, p->velocity);
   s->ledger->bond_work += bonds;
   s->ledger->damping_work += damping;
   s->ledger->external_work += bonds + damping + freely + held - held_before;
@@ -213,7 +211,7 @@ int implicit_begin(Solver *run, Error *error)
   newton_apply_loads(&s->newton, run->clock.time);
   loading_settle(s->loading, p, p->velocity, 0);
   find_accelerations(s);
-  s->ledger->kinetic = kinetic_energy(p, p->velocity);
+  s->ledger->kinetic = kinetic_energy(s->domain, p->velocity);
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) s->ledger->given = fmax(s->ledger->given, fabs(p->velocity[k][i]));
   return BRECCIA_OK;

@@ -23,7 +23,7 @@ int increment_check(const Solver *run, const void *section, const char *instead,
   return BRECCIA_OK;
 }
 
-int increment_create(Increment *i, Domain *domain, Error *error)
+int increment_create(Increment *i, Domain *domain, const Loading *loading, Error *error)
 {
   i->domain = domain;
   i->apart = domain->forces.count > 0;
@@ -31,7 +31,7 @@ int increment_create(Increment *i, Domain *domain, Error *error)
   bool made = vectors_make(i->internal, p, "forces", error) && vectors_make(i->external, p, "forces", error);
   if (made && i->apart)
     made = vectors_make(i->beside, p, "forces", error) && vectors_make(i->beside_now, p, "forces", error);
-  return made ? BRECCIA_OK : BRECCIA_FAILURE;
+  return made ? face_work_create(&i->face_work, domain, loading, error) : BRECCIA_FAILURE;
 }
 
 void increment_forget(Increment *i)
@@ -46,6 +46,7 @@ void increment_destroy(Increment *i)
   vectors_free(i->external);
   vectors_free(i->beside);
   vectors_free(i->beside_now);
+  face_work_destroy(&i->face_work);
   if (i->domain) increment_forget(i);
 }
 
@@ -121,6 +122,8 @@ void increment_begin(Increment *i)
     domain_forces_beside(i->domain, i->beside);
     i->held = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces);
   }
+  face_work_renew(&i->face_work, i->domain);
+  face_work_note(&i->face_work);
   team_run(note_forces, i);
   increment_begin_again(i);
 }
@@ -163,8 +166,24 @@ double increment_sudden_work(Increment *i, double *const moved[MOTIONS])
   double work = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) - i->held;
   for (int k = 0; k < 3; ++k)
     for (int64_t place = 0; place < p->places; ++place)
-      work += 0.5 * p->volume[place] * (i->beside[k][place] + i->beside_now[k][place]) * moved[k][place];
+      work += 0.5 * i->domain->counted[place] * (i->beside[k][place] + i->beside_now[k][place]) * moved[k][place];
   return work;
+}
+
+double increment_bond_work(Increment *i, double *const moved[MOTIONS])
+{
+  const Domain *d = i->domain;
+  const Particles *p = d->particles;
+  double work = 0;
+  for (int64_t b = 0; b < d->batch_count; ++b) {
+    double part = 0;
+    for (int k = 0; k < p->motions; ++k)
+      for (int64_t place = d->batches[b].first * SLICE; place < d->batches[b].last * SLICE; ++place)
+        part -= 0.5 * d->counted[place] * (i->internal[k][place] + p->internal[k][place]) * moved[k][place];
+    work += part;
+  }
+  face_work_renew(&i->face_work, d);
+  return work + face_work_done(&i->face_work, 1, moved);
 }
 
 static void break_bonds(void *context)

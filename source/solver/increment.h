@@ -2,11 +2,13 @@
 #ifndef BRECCIA_SOLVER_INCREMENT_H
 #define BRECCIA_SOLVER_INCREMENT_H
 
+#include "solver/face_work.h"
 #include "solver/solver.h"
 
 typedef struct Increment {
   Domain *domain;
   StateCopy before;
+  FaceWork face_work;
   double *internal[MOTIONS], *external[MOTIONS]; /* forces per volume of bonds and of loads at its beginning */
   bool apart; /* parts have moved against each other since forces between them were looked for */
   /* Of forces beside those of bonds, where there are any: at its beginning, with the energy that they held or had dissipated; and now. */
@@ -20,7 +22,7 @@ typedef struct Increment {
 int increment_check(const Solver *solver, const void *section, const char *instead, Error *error);
 
 /** `increment` is zero; destroy it in any case. */
-int increment_create(Increment *increment, Domain *domain, Error *error);
+int increment_create(Increment *increment, Domain *domain, const Loading *loading, Error *error);
 void increment_destroy(Increment *increment);
 
 /** Room for what an increment tries; only while steps are taken, as pictures and the like need room afterwards. */
@@ -46,6 +48,9 @@ void increment_accept(Increment *increment, double *const moved[MOTIONS]);
 /** What faces that meet within an increment have taken beyond the mean of their forces at both ends of it, when it has been accepted: they may have come
  *  a long way before they met. @param[in] moved  changes of displacements since increment_begin */
 double increment_sudden_work(Increment *increment, double *const moved[MOTIONS]);
+
+/** Work on the bonds of the body along a way, by the trapezium rule of the forces at its beginning and now. */
+double increment_bond_work(Increment *increment, double *const moved[MOTIONS]);
 
 /** Breaks the most loaded bonds that are beyond their limit, at the displacements held, and commits what is left of the body, with its forces.
  *  @param[in] most  as in Moment

@@ -324,12 +324,13 @@ static bool is_carried_away(const Particles *p)
 static double foresee_work(const Newton *n)
 {
   const Particles *p = n->domain->particles;
+  const double *counted = n->domain->counted;
   double now = 0, more = 0;
   domain_linear_step(n->domain, n->change, n->change_forces);
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
-      now -= p->volume[i] * p->internal[k][i] * n->change[k][i];
-      more -= p->volume[i] * n->change_forces[k][i] * n->change[k][i];
+      now -= counted[i] * p->internal[k][i] * n->change[k][i];
+      more -= counted[i] * n->change_forces[k][i] * n->change[k][i];
     }
   return more > 0 && !n->indefinite ? now + 0.5 * more : 0;
 }

@@ -89,7 +89,7 @@ static void add_parts(Explicit *s, const Constraint *constraint)
 
 static void move_part(Explicit *s, const Constraint *constraint, const struct Motion *motion, int64_t part)
 {
-  const Particles *p = s->domain->particles;
+  const double *counted = s->domain->counted;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = s->spec->damping.mass, bond = 0, external = 0, damping = 0, between = 0,
@@ -105,11 +105,11 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
     if (constraint->images) off += constraint->share * along(rows.displacement, d, constraint->images[k]);
     if (!constraint->row) largest = fmax(largest, fabs(drifted + off));
     if (constraint->images) constraint->moved[k] = drifted + off;
-    double moved = drifted + off, free_work = 0.5 * drifted * p->volume[i], work = 0.5 * moved * p->volume[i];
+    double moved = drifted + off, free_work = 0.5 * drifted * counted[i], work = 0.5 * moved * counted[i];
     bond -= fi * (work - free_work);
     damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * free_work;
-    external += -fe * free_work - fi * work - 0.5 * rows.inertia[i] * p->volume[i] * v * v;
-    between += dt * dt / 8 * rows.inertia[i] * p->volume[i] * (a - c * v) * (a - c * v);
+    external += -fe * free_work - fi * work - 0.5 * rows.inertia[i] * counted[i] * v * v;
+    between += dt * dt / 8 * rows.inertia[i] * counted[i] * (a - c * v) * (a - c * v);
     add_along(rows.displacement, d, i, off);
     add_along(rows.velocity, d, i, off / dt);
   }
@@ -163,17 +163,17 @@ void explicit_prescribe_displacements(Explicit *s)
 
 static void speed_part(Explicit *s, const Constraint *constraint, const struct Motion *motion, int64_t part)
 {
-  const Particles *p = s->domain->particles;
+  const double *counted = s->domain->counted;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
   double dt = s->clock->time_step, c = s->spec->damping.mass, external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
-    double mass = rows.inertia[i] * p->volume[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
+    double mass = rows.inertia[i] * counted[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
     const double part_of = constraint_part(constraint, k);
     double moved = constraint->images ? constraint->moved[k] : motion->moved * part_of, rate = motion->rate * part_of;
     if (constraint->images) rate += constraint->share * along(rows.velocity, d, constraint->images[k]);
-    double fi = along(rows.internal, d, i), fe = along(rows.external, d, i), work = 0.5 * moved * p->volume[i];
+    double fi = along(rows.internal, d, i), fe = along(rows.external, d, i), work = 0.5 * moved * counted[i];
     kinetic += 0.5 * mass * (rate * rate - v * v);
     damping -= (fi + fe - rows.inertia[i] * (a - c * v)) * work;
     external += 0.5 * mass * rate * rate - fe * work - fi * work;

@@ -111,7 +111,8 @@ static int create(Solver *run, Error *error)
   if (status) return status;
   if (s->spec->control) s->newton.control = &s->control;
   s->newton.relaxes = !strcmp(s->spec->method, "relaxation");
-  if (increment_create(&s->increment, run->domain, error) || newton_create(&s->newton, error)) return BRECCIA_FAILURE;
+  if (increment_create(&s->increment, run->domain, run->loading, error) || newton_create(&s->newton, error))
+    return BRECCIA_FAILURE;
   if (domain_may_soften(run->domain) && !run->domain->forces.count && !s->newton.relaxes && !s->spec->control &&
       !vectors_make(s->newton.change_forces, run->domain->particles, "works", error))
     return BRECCIA_FAILURE;

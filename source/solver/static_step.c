@@ -14,16 +14,10 @@ static void book(Static *s, double *const moved[MOTIONS])
   const Particles *p = s->domain->particles;
   const Increment *begin = &s->increment;
   double *const *before = s->newton.change; /* forces out of balance: of corrections nothing is wanted any more */
-  double bonds = 0;
-  for (int64_t b = 0; b < s->domain->batch_count; ++b) {
-    double part = 0;
-    for (int k = 0; k < p->motions; ++k)
-      for (int64_t i = s->domain->batches[b].first * SLICE; i < s->domain->batches[b].last * SLICE; ++i) {
-        part -= 0.5 * p->volume[i] * (begin->internal[k][i] + p->internal[k][i]) * moved[k][i];
-        before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
-      }
-    bonds += part;
-  }
+  const double bonds = increment_bond_work(&s->increment, moved);
+  for (int k = 0; k < p->motions; ++k)
+    for (int64_t i = 0; i < p->places; ++i)
+      before[k][i] = p->volume[i] * (begin->internal[k][i] + begin->external[k][i]);
   unknowns_gather(&s->newton.linear.unknowns, before);
   const double given_off = 0.5 * (unknowns_work(&s->newton.linear.unknowns, before, moved) +
                                   unknowns_work(&s->newton.linear.unknowns, s->newton.force, moved));
@@ -55,7 +49,7 @@ static bool is_coarse(const Static *s, double length)
   if (!s->newton.change_forces[0] || length / 2 < least * static_whole_increment(s->spec)) return false;
   for (int k = 0; k < p->motions; ++k)
     for (int64_t i = 0; i < p->places; ++i)
-      work -= 0.5 * p->volume[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
+      work -= 0.5 * s->domain->counted[i] * (s->increment.internal[k][i] + p->internal[k][i]) * s->newton.moved[k][i];
   const double held = s->ledger->bond_work; /* an unloaded body gives it all back */
   return 0.5 * (s->newton.foreseen - work) > most * fmax(fabs(held), fabs(held + work));
 }

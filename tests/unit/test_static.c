@@ -584,7 +584,7 @@ static void motions_add_up_until_bonds_are_judged(void **state)
   Increment increment = {0};
   double *moved[MOTIONS];
   assert_true(vectors_make(moved, p, "test", NULL));
-  assert_int_equal(increment_create(&increment, d, NULL), 0);
+  assert_int_equal(increment_create(&increment, d, &model->loading, NULL), 0);
   moved[0][pulled] = tenth;
   for (int k = 0; k < 12; ++k) {
     if (k == 4) assert_int_equal(increment_break(&increment, &model->solver.clock, 0), 0);
