@@ -33,6 +33,7 @@ typedef struct Implicit {
   double shift;  /* size of the largest displacements so far, by which errors are measured */
   double stable; /* longest step of explicit dynamics at the begin of the stage */
   int64_t cuts;  /* in the stage */
+  bool coarse;   /* a smallest step erred by more than asked for, and this was told */
 } Implicit;
 
 /** The longest step that the stage may take. */

@@ -314,9 +314,20 @@ static int give_up(Implicit *s, double next, int64_t cuts)
   return BRECCIA_FAILURE;
 }
 
+/** Says once in a stage that steps are no longer cut though they err by more than was asked for. */
+static void tell_coarse(Implicit *s, double found, Text *warning)
+{
+  if (!s->coarse)
+    text_add(warning,
+             "%swarning: implicit: from time %.6g on steps cut to the 'smallest time step' (%.3g) err by %.2g of the "
+             "largest displacements, more than the 'local error' of %g; make it smaller, or go on with a stage of "
+             "'explicit'",
+             warning->length ? "\n" : "", s->clock->time, s->length, found, s->spec->local_error);
+  s->coarse = true;
+}
+
 int implicit_advance(Solver *run, Text *warning, Error *error)
 {
-  (void)warning;
   Implicit *s = run->own;
   const double first = s->next;
   const int64_t cuts = s->cuts;
@@ -336,7 +347,10 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
      * lessen: third order, and even the second of loads that jump, would be far below the root. */
     const bool helps = s->length < tried && found <= erred * sqrt(s->length / tried);
     if (outcome == NEWTON_CONVERGED && (change >= 0.9 || s->length <= shortest || (isfinite(erred) && !helps))) {
-      if (change < 0.9) text_add(&run->log, "    kept: it errs by %.2g of the largest displacements\n", found);
+      if (change < 0.9) {
+        text_add(&run->log, "    kept: it errs by %.2g of the largest displacements\n", found);
+        if (s->length <= shortest) tell_coarse(s, found, warning);
+      }
       finish_step(s);
       const bool easy = s->newton.iterations <= (newton_most_iterations(&s->newton) + 1) / 2;
       if (easy && s->length >= 0.999 * s->next)

@@ -526,6 +526,27 @@ static void no_step_is_shorter_than_the_smallest(void **state)
   }
 }
 
+/** Steps that are kept though they err by more than asked for are told of, once. */
+static void steps_that_err_at_the_smallest_are_told(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(
+        FLOWING "solve: {implicit: {end time: 0.06, time step: 4e-3, local error: %s, smallest time step: 0.5}}\n",
+        k ? "1" : "1e-6");
+    Text warning = {0};
+    int told = 0;
+    while (!m->solver.clock.ended) {
+      Error *error = NULL;
+      assert_int_equal(solver_advance(&m->solver, &warning, error), 0);
+    }
+    for (const char *at = text_words(&warning); (at = strstr(at, "cut to the 'smallest time step'")); ++at) ++told;
+    assert_int_equal(told, k ? 0 : 1);
+    text_free(&warning);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -542,6 +563,7 @@ int main(void)
       cmocka_unit_test(accelerations_are_those_of_the_bonds_that_are_left),
       cmocka_unit_test(bonds_break_and_a_restart_goes_on_to_the_same_bits),
       cmocka_unit_test(no_step_is_shorter_than_the_smallest),
+      cmocka_unit_test(steps_that_err_at_the_smallest_are_told),
       cmocka_unit_test(a_body_that_flies_freely_takes_whole_steps),
       cmocka_unit_test(keys_that_contradict_each_other_are_refused),
   };
