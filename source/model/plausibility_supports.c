@@ -1,5 +1,8 @@
-/* Supports whose images outside the body are too few. */
+/* Supports whose images outside the body are too few, or not what their material takes. */
 #include "model/plausibility_parts.h"
+
+#include "loading/support.h"
+#include <string.h>
 
 /** Two faces of a block that are held one opposite the other: beyond as many layers as stand between them a mirror would show its own image in the
  *  other one, which is not there. */
@@ -19,9 +22,33 @@ static void check_pair(breccia_model *model, const Margin *low, const Margin *hi
       (long long)between, between == 1 ? " stands" : "s stand", "xyz"[k], "xyz"[k], (long long)wanted);
 }
 
+/** Images turned back in all directions have the strain across the face of those inside and not that along it: in nearly incompressible materials they
+ *  would change their volume, against a bulk modulus that is large beyond all else. */
+static void check_held(breccia_model *model, const Margin *margin)
+{
+  const double most = 0.499;
+  const Domain *d = &model->domain;
+  const char *name = d->body.blocks[margin->block]->material;
+  const LoadSpec *of = margin->owner;
+  const bool plane_stress = peridynamics_space(model->spec->peridynamics) == SPACE_PLANE_STRESS;
+  if (margin->repeats || support_slides(margin) || plane_stress || d->body.dimensions < 2) return;
+  for (int k = 0; k < d->material_count; ++k) {
+    const Material *m = &d->materials[k];
+    const double ratio = (3 * m->bulk - 2 * m->shear) / (2 * (3 * m->bulk + m->shear));
+    if (strcmp(m->name, name) || !m->law || m->law->components != 6 || !(ratio > most)) continue;
+    plausibility_say(
+        model, of->head.node,
+        "support: held in all directions beside material '%s' of Poisson ratio %.6g: images outside would "
+        "have to change their volume, and the body moves wrongly (by 1.3 times the right way at 0.4999, 30 "
+        "times at 0.49999); hold layers by 'displacement' here, or stay below %g",
+        name, ratio, most);
+  }
+}
+
 void plausibility_warn_of_supports(breccia_model *model)
 {
   const MarginList *list = &model->domain.body.margins;
+  for (int a = 0; a < list->count; ++a) check_held(model, &list->items[a]);
   for (int a = 0; a < list->count; ++a)
     for (int b = 0; b < list->count; ++b) {
       const Margin *low = &list->items[a], *high = &list->items[b];

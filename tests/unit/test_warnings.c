@@ -23,6 +23,8 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define SHAKEN(key, value) "loads: [{on: {face: y-}, " key ": [" value ", 0], history: {sine: {frequency: 1 MHz}}}]\n"
 #define OPPOSITE(held)                                                                                                 \
   "loads: [{on: {face: y-}, support: {held: across}}, {on: {face: y+}, support: {held: " held "}]\n"
+#define NEARLY(ratio) "model: elastic, density: 1 t/m3, Young modulus: 1 GPa, Poisson ratio: " ratio
+#define ON_ALL(held) "loads: [{on: {face: y-}, support: {held: " held "}}]\n"
 #define CRACK_FROM(x)                                                                                                  \
   "cracks: [{cut: {line: [[" x ", 0.03], [0.04, 0.03]]}}]\nloads: [{on: {face: x-}, support: {held: across}}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
@@ -126,8 +128,29 @@ static void limits_are_where_they_say(void **state)
   }
 }
 
+/** Images turned back in all directions would change the volume of what hardly can. */
+static void held_faces_of_what_keeps_its_volume_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *keys, *more;
+    bool told;
+  } faces[] = {{NEARLY("0.4991"), ON_ALL("all"), true},
+               {NEARLY("0.4989"), ON_ALL("all"), false},
+               {NEARLY("0.4991"), ON_ALL("across"), false},
+               {NEARLY("0.4991"), ON_ALL("periodic"), false}};
+  for (size_t k = 0; k < sizeof faces / sizeof *faces; ++k) {
+    breccia_model *m = body_of("m", faces[k].keys, faces[k].more);
+    const char *words = breccia_model_warnings(m);
+    if (!strstr(words, "support: held in all directions beside material 'm' of Poisson ratio 0.4991") == faces[k].told)
+      fail_msg("%s %s: %s", faces[k].keys, faces[k].more, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say),
+                                     cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
