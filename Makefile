@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-elements bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-bars bench-elements bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -54,6 +54,10 @@ bench-peers: all
 # What equations of bodies at rest cost, and what check tells of runs; two tables of docs/performance.md.
 bench-rest: all
 	@python3 -B bench/bodies_at_rest.py build/release docs/performance.md
+
+# Bars pulled apart by every formulation and softening law, beside their fracture energy; a quarter of an hour.
+bench-bars: all
+	@build/release/breccia_bench_bars
 
 # Elastic bodies at rest beside finite elements of OpenSees; a table of docs/performance.md.
 bench-elements: all

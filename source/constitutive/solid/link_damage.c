@@ -1,7 +1,9 @@
 /* Concrete as links that lose their stiffness by stretch (Tuniki 2012, 3.4; docs/theory.md 6.5). Links of micropolar bodies have their damage from the
  * formulation, by `link`. At a point in space the largest principal strain stands for the stretch in tension, and the least one for that in compression:
- *   stress = (1 - d) C strain, 1 - d = (1 - D_t (1 - s (1 - r))) (1 - D_c),
- * r the share of tension among the principal stresses (Lee and Fenves 1998) and s the stiffness that closing cracks gain back. */
+ *   stress = (1 - D_c) ((1 - D_t) tension + (1 - D_t (1 - s q)) pressure), tension and pressure those of the principal stresses of C strain,
+ * s the stiffness that closing cracks gain back and q = <pressure - tension> / (pressure + tension) of their sums. A factor common to both parts, by their
+ * share in the stress (Lee and Fenves 1998), would let a crack that is open and sheared carry tension without end: C strain grows with the opening, nothing
+ * flows. So would pressure that is given back beside a tension that outweighs it. */
 #include "constitutive/link_damage.h"
 #include "constitutive/solid/dual.h"
 #include "constitutive/solid/elastic_first.h"
@@ -103,16 +105,16 @@ static Dual damage_of(Dual stretch, double begin, double end, bool linear_force)
                     link_damage_slope(stretch.value, begin, end, linear_force), stretch, 0, stretch);
 }
 
-/** 1 - d, of principal strains that are the variables 0, 1, 2 and of the effective stresses with them. */
-static Dual find_rest(const LinkLaw *c, const double *committed, const Dual strain[3], const Dual effective[3],
-                      double trial[HISTORY])
+/** What is left of the stiffness, in tension and in pressure, of principal strains that are the variables 0, 1, 2. */
+static void find_rest(const LinkLaw *c, const double *committed, const Dual strain[3], const Dual effective[3],
+                      double trial[HISTORY], Dual rest[2])
 {
   const breccia_link *l = &c->link;
-  Dual most = dual_constant(0), least = dual_constant(0), tension = dual_constant(0), all = dual_constant(0);
+  Dual most = dual_constant(0), least = dual_constant(0), pressure = dual_constant(0), all = dual_constant(0);
   for (int k = 0; k < 3; ++k) {
     most = dual_larger(strain[k], most);
     least = dual_larger(dual_scale(-1, strain[k]), least);
-    tension = dual_sum(1, tension, 1, dual_positive(effective[k]));
+    pressure = dual_sum(1, pressure, -1, effective[k]);
     all = dual_sum(1, all, 1, dual_absolute(effective[k]));
   }
   Dual d[HISTORY] = {damage_of(most, l->tension_begin, l->tension_end, l->linear_force), dual_constant(0)};
@@ -122,10 +124,10 @@ static Dual find_rest(const LinkLaw *c, const double *committed, const Dual stra
     if (!(d[k].value > committed[k])) d[k] = dual_constant(committed[k]);
     trial[k] = d[k].value;
   }
-  const Dual share = all.value > 0 ? dual_quotient(tension, all) : dual_constant(1);
-  const Dual counts = dual_shift(dual_scale(l->recovery, share), 1 - l->recovery); /* of the damage in tension */
-  const Dual open = dual_shift(dual_scale(-1, dual_product(d[TENSILE], counts)), 1);
-  return dual_product(open, dual_shift(dual_scale(-1, d[COMPRESSIVE]), 1));
+  const Dual closed = pressure.value > 0 ? dual_scale(l->recovery, dual_quotient(pressure, all)) : dual_constant(0);
+  const Dual uncrushed = dual_shift(dual_scale(-1, d[COMPRESSIVE]), 1);
+  rest[0] = dual_product(dual_shift(dual_scale(-1, d[TENSILE]), 1), uncrushed);
+  rest[1] = dual_product(dual_shift(dual_product(d[TENSILE], dual_shift(closed, -1)), 1), uncrushed);
 }
 
 static bool update_point(const void *constants, SolidPoint *p)
@@ -133,18 +135,22 @@ static bool update_point(const void *constants, SolidPoint *p)
   const LinkLaw *c = constants;
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const Spectrum spectrum = spectrum_of(p->strain);
-  Dual strain[3], effective[3];
+  Dual strain[3], effective[3], rest[2];
+  double value[3], slopes[9];
   for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
   const Dual volume = dual_sum(1, dual_sum(1, strain[0], 1, strain[1]), 1, strain[2]);
   for (int k = 0; k < 3; ++k) effective[k] = dual_sum(lambda, volume, twice, strain[k]);
-  const Dual rest = find_rest(c, p->committed, strain, effective, p->trial);
-  elastic_stress(&c->elastic, p->strain, p->stress); /* of the strain itself: nothing is lost to the decomposition */
-  for (int k = 0; k < 6; ++k) p->stress[k] *= rest.value;
+  find_rest(c, p->committed, strain, effective, p->trial, rest);
+  for (int k = 0; k < 3; ++k) value[k] = (effective[k].value < 0 ? rest[1] : rest[0]).value * effective[k].value;
+  if (rest[0].value == rest[1].value) {
+    elastic_stress(&c->elastic, p->strain, p->stress); /* of the strain itself: nothing is lost to the decomposition */
+    for (int k = 0; k < 6; ++k) p->stress[k] *= rest[0].value;
+  } else {
+    spectral_tensor(&spectrum, value, p->stress);
+  }
   if (!p->tangent) return true;
-  double value[3], slopes[9];
   for (int k = 0; k < 3; ++k) {
-    const Dual stress = dual_product(rest, effective[k]);
-    value[k] = stress.value;
+    const Dual stress = dual_product(effective[k].value < 0 ? rest[1] : rest[0], effective[k]);
     for (int n = 0; n < 3; ++n) slopes[3 * k + n] = stress.slope[n];
   }
   spectral_tangent(&spectrum, value, slopes, p->tangent);
@@ -180,9 +186,9 @@ const breccia_law law_link_damage = {
         "S the stretch of a link; of a point in space S the largest principal strain, or less the smallest one\n"
         "D_t = (S − S_t)/((α_t − 1) S_t), with a fracture energy α (S − S_t)/((α − 1) S); D_c alike from S_c, "
         "where D_t > 0 beside it; both stay\n"
-        "all that links carry, or σ, times (1 − D_t)(1 − D_c); of what is along a link, and of σ, D_t counts by 1 − "
-        "recovery "
-        "where cracks close",
+        "all that links carry, or σ, times (1 − D_t)(1 − D_c); of what is along a link, and of principal stresses, D_t "
+        "counts by 1 − q recovery where it is pressure\n"
+        "q = 1 of a link, ⟨pressure − tension⟩/(pressure + tension) of the sums of principal stresses",
     LAW_PARAMETERS(parameters),
     .constants_size = sizeof(LinkLaw),
     .components = 6,

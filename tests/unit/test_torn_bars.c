@@ -1,0 +1,81 @@
+/* Bars that are pulled apart at rest spend their fracture energy, by the formulations and laws of the table of breccia_bench_bars. */
+#include "base/tensor.h"
+#include "point.h"
+#include "torn_bar.h"
+
+static void bars_spend_their_fracture_energy(void **state)
+{
+  (void)state;
+  static const char hybrid[] = "formulation: hybrid", mazars[] = "model: mazars", links[] = "model: link-damage";
+  static const TornBar bars[] = {
+      {hybrid, mazars, "plane stress", WEAK_LEANING, 6, 10, 0.3e-3},
+      {hybrid, links, "plane stress", WEAK_LEANING, 6, 10, 0.3e-3},
+      {"formulation: correspondence", links, "plane stress", WEAK_LEANING, 6, 10, 0.3e-3},
+      {"formulation: micropolar", links, "plane strain", WEAK_LEANING, 6, 10, 0.3e-3},
+      {"formulation: bond-based", "model: bilinear-softening", "plane stress", WEAK_LEANING, 6, 10, 0.3e-3},
+  };
+  const int count = under_sanitizers() ? 2 : sizeof bars / sizeof *bars;
+  for (int k = 0; k < count; ++k) {
+    TornBarEnd end;
+    breccia_error *error = breccia_error_create();
+    const int status = torn_bar_pull(&bars[k], &end, NULL, error);
+    print_message("%s, %s, %s: %.3f G_F, %.3f of the load left\n", bars[k].peridynamics, bars[k].law, bars[k].space,
+                  end.spent, end.left);
+    assert_string_equal(breccia_error_text(error), "");
+    assert_int_equal(status, 0);
+    assert_near(end.spent, 1, 0.1);
+    assert_true(end.left < 0.025);
+    breccia_error_destroy(&error);
+  }
+}
+
+/** One weak column has two gaps that are alike: at rest both open, it floats between them, and nothing but a gap that is weaker parts them. */
+static void a_column_between_two_gaps_floats(void **state)
+{
+  (void)state;
+  TornBar bar = {"formulation: hybrid", "model: mazars", "plane stress", WEAK_LEANING, 6, 10, 0.3e-3};
+  TornBarEnd end;
+  double opening[TORN_COLUMNS - 1];
+  breccia_error *error = breccia_error_create();
+  const int gap = TORN_COLUMNS / 2;
+  assert_int_equal(torn_bar_pull(&bar, &end, opening, error), 0);
+  assert_near(opening[gap], bar.pull, 0.02 * bar.pull);
+  bar.weak = WEAK_COLUMN;
+  assert_int_equal(torn_bar_pull(&bar, &end, opening, error), 0);
+  assert_near(opening[gap - 1], opening[gap], 0.02 * bar.pull);
+  assert_near(opening[gap], bar.pull / 2, 0.02 * bar.pull);
+  breccia_error_destroy(&error);
+}
+
+/** C strain grows with the opening of a crack: what is left of it must be nothing while the crack is open, however it is sheared, and all where it closes. */
+static void links_of_a_point_carry_nothing_while_open_and_all_when_closed(void **state)
+{
+  (void)state;
+  Material m = material_of("link-damage", "Young modulus=30e6", "Poisson ratio=0.2", "tensile stretch=1e-4", NULL);
+  Point p = point_start(&m);
+  const double open[][6] = {{1e-2, 0, 0, 0, 0, 0}, {1e-2, -6e-3, 0, 0, 0, 0}, {1e-2, 0, 0, 1.4e-2, 0, 0}},
+               closed[] = {0.2e-3, -1e-3, 0.2e-3, 0, 0, 0}, split[] = {0.5e-3, -1e-3, 0, 0, 0, 0};
+  double stress[6];
+  for (size_t n = 0; n < sizeof open / sizeof *open; ++n) {
+    point_try(&p, open[n], stress, NULL, 0);
+    for (int k = 0; k < 6; ++k) assert_near(stress[k], 0, 1e-6);
+    point_commit(&p);
+  }
+  point_try(&p, closed, stress, NULL, 0);
+  assert_near(stress[YY], -30e3, 1e-6 * 30e3);
+  point_try(&p, split, stress, NULL, 0); /* pressure beside a crack that stays open: a part of it, and no tension */
+  assert_near(stress[XX], 0, 1e-6);
+  assert_true(stress[YY] < -1e3 && stress[YY] > -30e3);
+  point_stop(&p);
+  material_destroy(&m);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bars_spend_their_fracture_energy),
+      cmocka_unit_test(a_column_between_two_gaps_floats),
+      cmocka_unit_test(links_of_a_point_carry_nothing_while_open_and_all_when_closed),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
