@@ -15,7 +15,7 @@ static const Option options[] = {
     {"within", "SHARE", "how close the two loads have to come: 0.01 of the higher one"},
     {"rest", "SHARE",
      "a body bears a load if forces out of balance are below this share of those that act in the end, and kinetic "
-     "energy of the work: 0.05"},
+     "energy of the work: 0.05, or what the deck says under 'quasi-static'"},
     SET_OPTION,
     {"output", "DIR", "folder of the cases and the table (beside the deck, DECK-failure)"},
     {"jobs", "N", "cases at a time, 1 or 2 (2)"},
@@ -41,7 +41,7 @@ typedef struct Search {
   char key[160], unit[64];
   double within, rest;
   long long jobs, threads;
-  bool again, quiet;
+  bool again, quiet, rest_given;
   const DeckSettings *settings;
   Trial trials[MOST_TRIALS];
   int count;
@@ -92,7 +92,7 @@ static int read_load(Search *s, const char *words, double *from, double *to)
 }
 
 /** What came of case k of a study. */
-static Trial judge(const Search *s, const breccia_study *study, int k, double load)
+static Trial judge(Search *s, const breccia_study *study, int k, double load)
 {
   breccia_case one = {.size = sizeof one};
   Trial t = {.load = load, .verdict = UNKNOWN, .unbalanced = NAN, .kinetic = NAN};
@@ -101,6 +101,8 @@ static Trial judge(const Search *s, const breccia_study *study, int k, double lo
   if (one.state == BRECCIA_CASE_FAILED && cases_body_failed(study, k)) t.verdict = FAILS;
   t.done = one.state == BRECCIA_CASE_DONE;
   if (!t.done) return t;
+  double limit;
+  if (!s->rest_given && breccia_study_figure(study, k, "rest.limit", &limit)) s->rest = limit;
   if (breccia_study_figure(study, k, "rest.unbalanced", &t.unbalanced) &
       breccia_study_figure(study, k, "rest.kinetic", &t.kinetic))
     t.verdict = t.unbalanced <= s->rest && t.kinetic <= s->rest ? BEARS : FAILS;
@@ -240,6 +242,7 @@ static int find_failure(const char *deck, const char **values, const DeckSetting
   if (read_load(&s, values[LOAD], &from, &to) || read_share(values[WITHIN], "within", 0.01, &s.within) ||
       read_share(values[REST], "rest", 0.05, &s.rest))
     return BRECCIA_USER_ERROR;
+  s.rest_given = values[REST] != NULL;
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &s.jobs)) return BRECCIA_USER_ERROR;
   if (s.jobs > 2) s.jobs = 2; /* a round has two loads */
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &s.threads)) return BRECCIA_USER_ERROR;

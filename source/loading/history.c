@@ -71,9 +71,16 @@ void history_destroy(History *history)
   *history = (History){0};
 }
 
+/** NULL: constant 1. */
+static const HistoryType *type_of(const History *history)
+{
+  return history->type ? history->type : history->grown > 0 ? &ramp_history : NULL;
+}
+
 double history_factor(const History *history, double time)
 {
-  return history->type ? history->type->factor(history, time) : 1;
+  const HistoryType *type = type_of(history);
+  return type ? type->factor(history, time) : 1;
 }
 
 bool history_is_controlled(const History *history)
@@ -89,18 +96,19 @@ static double farther(double peak, double factor)
 double history_peak(const History *h, double time)
 {
   enum { SAMPLES = 1000, MOST_CORNERS = 1000000 };
-  if (!h->type) return 1;
+  if (!type_of(h)) return 1;
   if (history_is_controlled(h)) return h->most;
   double peak = 0, corner = 0;
   for (int k = 0; k <= SAMPLES; ++k) peak = farther(peak, history_factor(h, time * k / SAMPLES));
-  for (int k = 0; k < MOST_CORNERS && (corner = h->type->corner(h, corner)) < time; ++k)
+  for (int k = 0; k < MOST_CORNERS && (corner = type_of(h)->corner(h, corner)) < time; ++k)
     peak = farther(peak, history_factor(h, corner));
   return peak;
 }
 
 double history_rise(const History *history)
 {
-  return history->type ? history->type->rise(history) : 0;
+  const HistoryType *type = type_of(history);
+  return type ? type->rise(history) : 0;
 }
 
 /* ---- integrals by Gauss' quadrature, five points between two corners: exact for polynomials of degree nine ---- */
@@ -146,7 +154,7 @@ static Panel panel_at(History *h, double time)
       high = middle;
   }
   Panel panel = low ? h->panels[low - 1] : (Panel){0};
-  for (double corner; (corner = h->type->corner(h, panel.time)) < time; ++low) {
+  for (double corner; (corner = type_of(h)->corner(h, panel.time)) < time; ++low) {
     panel = next_panel(h, &panel, corner);
     if (low == h->panel_count) keep(h, &panel);
   }
@@ -155,8 +163,9 @@ static Panel panel_at(History *h, double time)
 
 double history_integral(History *h, int order, double scale, double time)
 {
-  if (!h->type) return order == 1 ? scale * time : scale * time * time / 2;
-  const double known = order == 1 && h->type->integral ? h->type->integral(h, scale, time) : NAN;
+  const HistoryType *type = type_of(h);
+  if (!type) return order == 1 ? scale * time : scale * time * time / 2;
+  const double known = order == 1 && type->integral ? type->integral(h, scale, time) : NAN;
   if (!isnan(known)) return known;
   const Panel panel = panel_at(h, time);
   return scale * (order == 1 ? panel.once : panel.twice);

@@ -42,13 +42,14 @@ typedef struct Panel { /* integrals up to a time, kept so that they need not be 
 } Panel;
 
 typedef struct History {
-  const HistoryType *type; /* NULL: constant 1 */
+  const HistoryType *type; /* NULL: 1, from `grown` on */
   const HistoryValue *value;
   const Node *value_node; /* where it stands */
   Polyline line;          /* of tables and files */
   double *rows;           /* of files; owned */
   struct History *parts;  /* [part_count] of products and sums */
   int part_count;
+  double grown;       /* without a type: when a straight line from 0 has come to 1; 0: from the beginning */
   double found, most; /* factor of what is controlled, and the farthest from zero that it has been at rest */
   Panel *panels;
   int64_t panel_count, panel_capacity;

@@ -193,6 +193,9 @@ static inline bool load_acts(const Loading *loading, const Load *load)
 /** Factor of a load at a time of the run. */
 double load_factor(const Load *load, double time);
 
+/** Lets loads that begin with the stage under way, and have no history of their own, grow along a straight line from 0 over this time. */
+void loading_grow(Loading *loading, double time);
+
 /** Sets the external force per volume of all particles to what the loads say at a time, by all threads; with ties, at the internal forces held. */
 void loading_apply(const Loading *loading, Particles *particles, double time);
 

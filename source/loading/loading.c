@@ -134,6 +134,18 @@ int loading_enter(Loading *loading, const Particles *p, int64_t stage, Error *er
   return tie_groups_make(loading, p, error);
 }
 
+static bool may_grow(const Load *load)
+{
+  return !load->spec->history && !load->type->timeless && !load->type->goes_on;
+}
+
+void loading_grow(Loading *loading, double time)
+{
+  for (int l = 0; l < loading->count; ++l)
+    if (loading->loads[l].first == loading->stage && may_grow(&loading->loads[l]))
+      loading->loads[l].history.grown = time;
+}
+
 static bool tied(const Loading *loading)
 {
   return loading->ties[0].count || loading->ties[1].count || loading->ties[2].count;
@@ -196,6 +208,10 @@ void loading_state(Loading *loading, StateList *list)
       state_add_number(list, name, "1", STATE_TRIED, &load->history.found);
       snprintf(name, sizeof name, "load %d most", k);
       state_add_number(list, name, "1", STATE_TRIED, &load->history.most);
+    }
+    if (may_grow(load)) {
+      snprintf(name, sizeof name, "load %d grows over", k);
+      state_add_number(list, name, "time", STATE_COMMITTED, &load->history.grown);
     }
     if (!loading->loads[k].first) continue;
     snprintf(name, sizeof name, "load %d begins", k);

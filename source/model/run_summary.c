@@ -142,6 +142,11 @@ static void add_balance(const Solver *s, Text *text)
   text_add(text, "},\n");
 }
 
+static const char *verdict_of(const StageRecord *record)
+{
+  return record->steady == 1 ? "steady" : record->steady == -1 ? "failed" : "not told";
+}
+
 /** How far a body is from rest that was meant to come to it. */
 static void add_rest(const Solver *s, Text *text)
 {
@@ -151,6 +156,10 @@ static void add_rest(const Solver *s, Text *text)
   add_number(text, "unbalanced", rest.unbalanced);
   text_add(text, ", ");
   add_number(text, "kinetic", rest.kinetic);
+  const double limit = solver_stage_steady(s, s->clock.stage);
+  if (!isnan(limit)) text_add(text, ", \"limit\": %g", limit);
+  if (s->records[s->clock.stage].steady != 0)
+    text_add(text, ", \"quasi-static\": \"%s\"", verdict_of(&s->records[s->clock.stage]));
   text_add(text, "},\n");
 }
 
@@ -253,13 +262,35 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   return status_written;
 }
 
+/** Says whether the body has borne the loads of stages that ask for it. */
+static void tell_verdicts(const Solver *s, Text *t)
+{
+  for (int64_t k = 0; k <= s->clock.stage; ++k) {
+    const StageRecord *r = &s->records[k];
+    const double limit = solver_stage_steady(s, k);
+    char name[64];
+    if (r->steady == 0) continue;
+    text_add(t, "quasi-static");
+    if (s->clock.stages > 1) text_add(t, ", stage '%s'", solver_stage_name(s, k, name, sizeof name));
+    if (r->steady == 2)
+      text_add(t, ": whether the body is steady cannot be told, as a load or motion still changes at the end\n");
+    else
+      text_add(t,
+               ": %s: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (steady: "
+               "both at most %g)\n",
+               verdict_of(r), r->unbalanced, r->kinetic, limit);
+  }
+}
+
 /** Says whether a body that was meant to come to rest has done so. */
 static void tell_rest(const Solver *s, const Units *units, Text *t)
 {
   Balance balance;
   Rest rest;
   if (rest_find(s, &rest, NULL) || !rest.meant) return;
-  if (rest.reached)
+  if (s->records[s->clock.stage].steady != 0)
+    ; /* it is told by what it was judged */
+  else if (rest.reached)
     text_add(t, "at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",
              rest.unbalanced, rest.kinetic);
   else
@@ -388,6 +419,7 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(stress * peaks->mean_high, "Pa", t);
     text_add(t, ", damage %.3g\n", peaks->damage);
   }
+  tell_verdicts(s, t);
   tell_rest(s, model->units, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));

@@ -12,17 +12,63 @@
 
 static bool is_damped(const ExplicitSpec *spec)
 {
-  return spec->damping.mass > 0 || spec->damping.stiffness > 0 || spec->local_damping > 0;
+  return spec->quasi_static || spec->damping.mass > 0 || spec->damping.stiffness > 0 || spec->local_damping > 0;
 }
 
 static void check_explicit(const DeckReader *reader, void *section)
 {
   ExplicitSpec *spec = section;
+  static const char *const others[] = {"damping", "Rayleigh damping"};
   spec->damping = damping_of(&spec->damping_given, reader, section);
+  for (int k = 0; spec->quasi_static && k < 2; ++k)
+    if (section_node(section, others[k]) != spec->head.node)
+      node_error(reader->document, section_node(section, others[k]), reader->error,
+                 "%s: 'quasi-static' damps the slowest vibration critically by itself; leave one of them out",
+                 others[k]);
   if (!isnan(spec->rest) && !is_damped(spec))
     node_error(reader->document, section_node(section, "rest"), reader->error,
                "rest: without 'damping' or 'local damping' a body does not come to rest");
 }
+
+static const Field quasi_static_fields[] = {
+    {.key = "ramp",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(QuasiStaticSpec, ramp),
+     .dimension = "1",
+     .standard = "2",
+     .range = "(0, 1e6]",
+     .meaning = "periods over which loads grow from 0, along a straight line, that begin with the stage and have no "
+                "'history' of their own; prescribed displacements too"},
+    {.key = "hold",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(QuasiStaticSpec, hold),
+     .dimension = "1",
+     .standard = "1",
+     .range = "[0.1, 1e6]",
+     .meaning = "further periods, in which they stay as they are"},
+    {.key = "period",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(QuasiStaticSpec, period),
+     .dimension = "time",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "when absent: that of the slowest vibration that these loads set off, of the body as the stage holds "
+                "it, elastic and with the bonds that are left, which is found by the program"},
+    {.key = "steady",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(QuasiStaticSpec, steady),
+     .dimension = "1",
+     .standard = "0.05",
+     .range = "(0, 1)",
+     .meaning = "the body counts as steady in the end where forces out of balance are at most this share of those that "
+                "act, and kinetic energy of the work; else it has failed"},
+};
+static const Section quasi_static_section = {
+    .name = "quasi-static",
+    .about = "Loads grow slowly beside the body's slowest vibration, which is damped critically, and are held until "
+             "the body is steady or has failed (Tuniki 2012). quasi-static: {} takes all defaults.",
+    .size = sizeof(QuasiStaticSpec),
+    FIELDS(quasi_static_fields)};
 
 static const Field explicit_fields[] = {
     {.key = "time step",
@@ -53,6 +99,15 @@ static const Field explicit_fields[] = {
      .standard = "",
      .range = "(0, inf)",
      .meaning = "the run, or this stage of it, ends at this time, if need be with a shorter last step",
+     .group = 'A'},
+    {.key = "quasi-static",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(ExplicitSpec, quasi_static),
+     .standard = "",
+     .meaning =
+         "loads grow over two periods of the slowest vibration that they set off, and are held for a third, with "
+         "critical damping; the run says whether the body is steady then or has failed",
+     .section = &quasi_static_section,
      .group = 'A'},
     DAMPING_FIELDS(ExplicitSpec, damping_given),
     {.key = "local damping",
@@ -89,6 +144,7 @@ static void list_state(Solver *run, StateList *list)
                      s->domain->particles->places);
   if (s->viscous.time > 0)
     particles_state_rotations(s->domain->particles, "drag of stiffness", "stress", STATE_TRIED, s->viscous.drag, list);
+  state_add_number(list, "period", "time", STATE_COMMITTED, &s->period);
   state_add_number(list, "fixed step", "time", STATE_TRIED, &s->fixed);
   state_add_number(list, "plan from", "time", STATE_TRIED, &s->plan.from);
   state_add_number(list, "plan to", "time", STATE_TRIED, &s->plan.to);
@@ -168,6 +224,11 @@ static void destroy(Solver *run)
   run->own = NULL;
 }
 
+double explicit_mass_damping(const Explicit *s)
+{
+  return s->period > 0 ? 4 * acos(-1) / s->period : s->spec->damping.mass;
+}
+
 static bool damps(const Solver *run)
 {
   return is_damped(run->spec);
@@ -176,9 +237,17 @@ static bool damps(const Solver *run)
 static void describe(const Solver *run, const char *time, Text *text)
 {
   const Clock *clock = &run->clock;
+  const Explicit *s = run->own;
+  if (s->period > 0)
+    text_add(
+        text,
+        "quasi-static: a period of %.4g %s; loads without a history grow over %.4g and stay so up to %.4g, damping "
+        "%.4g 1/%s\n",
+        s->period, time, s->spec->quasi_static->ramp * s->period, clock->stage_end - clock->stage_time,
+        explicit_mass_damping(s), time);
   text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g)", (long long)(clock->stage_last - clock->stage_step),
            clock->time_step, time, clock->time_step / clock->stable, clock->stable);
-  const double last = explicit_last_step(run->own);
+  const double last = explicit_last_step(s);
   if (isfinite(last)) text_add(text, ", the last one %.4g so as to end at %g", last, clock->stage_end);
 }
 
@@ -189,10 +258,28 @@ static void describe_stage(const void *section, const char *time, Text *text)
   if (!isnan(spec->rest)) text_add(text, "until rest (%g), at most ", spec->rest);
   if (spec->steps >= 0)
     text_add(text, "%lld steps", (long long)spec->steps);
+  else if (spec->quasi_static)
+    text_add(text, "quasi-static, %g periods", spec->quasi_static->ramp + spec->quasi_static->hold);
   else
     text_add(text, "%g %s", spec->end_time, time);
   damping_describe(&spec->damping, time, text);
   if (spec->local_damping > 0) text_add(text, ", local damping %g", spec->local_damping);
+}
+
+/** Whether the body bears the loads of a stage that ends with this question. */
+static void judge(Solver *run, const Rest *rest)
+{
+  const double limit = ((const ExplicitSpec *)run->spec)->quasi_static->steady;
+  StageRecord *record = &run->records[run->clock.stage];
+  record->unbalanced = rest->unbalanced;
+  record->kinetic = rest->kinetic;
+  record->steady = !rest->meant ? 2 : rest->unbalanced <= limit && rest->kinetic <= limit ? 1 : -1;
+}
+
+static double steady(const void *section)
+{
+  const ExplicitSpec *spec = section;
+  return spec->quasi_static ? spec->quasi_static->steady : NAN;
 }
 
 /** Whether a stage that may end at rest has come to rest; looked at only now and then, at steps that a restart finds again. */
@@ -204,9 +291,13 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
   const bool last = clock->step >= clock->stage_last;
   Rest rest;
   clock->ended = last;
-  if (isnan(s->spec->rest) || (!last && (clock->step - clock->stage_step) % EVERY)) return BRECCIA_OK;
+  const bool asked = !isnan(s->spec->rest) && (last || (clock->step - clock->stage_step) % EVERY == 0),
+             judged = s->spec->quasi_static && last;
+  if (!asked && !judged) return BRECCIA_OK;
   const int status = rest_find(run, &rest, error);
   if (status) return status;
+  if (s->spec->quasi_static) judge(run, &rest);
+  if (!asked) return BRECCIA_OK;
   if (rest.meant && fmax(rest.unbalanced, rest.kinetic) < s->spec->rest) {
     clock->ended = 1;
     clock->stage_last = clock->step;
@@ -234,7 +325,7 @@ BRECCIA_CLONES
 static void kick_and_drift(Explicit *s, int64_t batch)
 {
   const Particles *p = s->domain->particles;
-  const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(s->spec->damping.mass), one_half = lanes_set(0.5);
+  const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(explicit_mass_damping(s)), one_half = lanes_set(0.5);
   Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
   const double *counted = s->domain->counted;
   int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
@@ -265,7 +356,7 @@ BRECCIA_CLONES
 static void kick(Explicit *s, int64_t batch)
 {
   const Particles *p = s->domain->particles;
-  const double c = s->spec->damping.mass;
+  const double c = explicit_mass_damping(s);
   const bool stiff = s->viscous.time > 0;
   const Lanes dt = lanes_set(s->clock->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
   const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->clock->time_step)), viscous = lanes_set(c);
@@ -411,7 +502,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   explicit_foresee_motions(s);
   loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
                                          .lag = s->clock->time_step / 2,
-                                         .damping = s->spec->damping.mass});
+                                         .damping = explicit_mass_damping(s)});
   if (s->viscous.time > 0) {
     team_run(move, s);
     stiffness_damping_find(&s->viscous, s->domain, s->clock->time_step);
@@ -437,6 +528,7 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .advance = advance,
                                     .state = list_state,
                                     .damps = damps,
+                                    .steady = steady,
                                     .inertia = explicit_inertia,
                                     .foresee = explicit_foresee,
                                     .bytes = bytes,

@@ -8,9 +8,18 @@
 #include "solver/solver.h"
 #include "solver/stiffness_damping.h"
 
+/** Loads that grow slowly beside the body's slowest vibration, which is damped critically. */
+typedef struct QuasiStaticSpec {
+  SectionHead head;
+  double ramp, hold; /* in periods */
+  double period;     /* NaN: found */
+  double steady;
+} QuasiStaticSpec;
+
 typedef struct ExplicitSpec {
   SectionHead head;
   double time_step, safety, end_time, local_damping, rest;
+  QuasiStaticSpec *quasi_static; /* NULL: not this way */
   DampingKeys damping_given;
   Rayleigh damping; /* from these */
   int64_t steps;
@@ -25,7 +34,8 @@ typedef struct Explicit {
   const ExplicitSpec *spec;
   Clock *clock;
   Ledger *ledger;
-  bool force; /* accept a chosen step above the stable one */
+  bool force;    /* accept a chosen step above the stable one */
+  double period; /* of `quasi_static`: of the slowest vibration that loads set off; else 0 */
   double *acceleration[MOTIONS];
   StiffnessDamping viscous; /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
@@ -46,6 +56,9 @@ typedef struct Explicit {
   double (*sums)[SUMS];  /* [batches] */
   double (*parts)[SUMS]; /* the same for parts of prescribed selections */
 } Explicit;
+
+/** Rate of damping in proportion to mass: of the deck, or critical for the period. */
+double explicit_mass_damping(const Explicit *solver);
 
 /** Length, number and end of the steps to come, for the body as it is. */
 int explicit_plan(Solver *solver, Text *warning, Error *error);

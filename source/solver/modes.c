@@ -458,9 +458,14 @@ static double wave_square(const Domain *d)
   return pow(ledger_wave_speed(d), 2) / square;
 }
 
+double modes_shift(const Domain *d)
+{
+  return 1e-2 * wave_square(d);
+}
+
 int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error *error)
 {
-  const double shift = 1e-2 * wave_square(d);
+  const double shift = modes_shift(d);
   Search s = {.domain = d,
               .wanted = count,
               .linear = {.domain = d, .loading = loading, .unknowns = unknowns_of(d, loading), .mass_factor = shift}};

@@ -22,4 +22,7 @@ typedef struct Modes {
 int modes_find(Domain *domain, const Loading *loading, int count, Modes *modes, Error *error);
 void modes_destroy(Modes *modes);
 
+/** A small omega squared, by which K + s M can be solved where K alone leaves motions as a whole free. */
+double modes_shift(const Domain *domain);
+
 #endif

@@ -92,7 +92,7 @@ static void move_part(Explicit *s, const Constraint *constraint, const struct Mo
   const double *counted = s->domain->counted;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
-  double dt = s->clock->time_step, c = s->spec->damping.mass, bond = 0, external = 0, damping = 0, between = 0,
+  double dt = s->clock->time_step, c = explicit_mass_damping(s), bond = 0, external = 0, damping = 0, between = 0,
          largest = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
@@ -166,7 +166,7 @@ static void speed_part(Explicit *s, const Constraint *constraint, const struct M
   const double *counted = s->domain->counted;
   const Direction d = {constraint->direction, axis_of(constraint->direction)};
   const Rows rows = rows_of(s, constraint);
-  double dt = s->clock->time_step, c = s->spec->damping.mass, external = 0, damping = 0, kinetic = 0, between = 0;
+  double dt = s->clock->time_step, c = explicit_mass_damping(s), external = 0, damping = 0, kinetic = 0, between = 0;
   for (int64_t k = part * PART; k < part_end(constraint, part); ++k) {
     int32_t i = constraint->load->selection.places[k];
     double mass = rows.inertia[i] * counted[i], v = along(rows.velocity, d, i), a = along(rows.acceleration, d, i);
@@ -215,5 +215,5 @@ double explicit_inertia(const Solver *run, const Constraint *constraint, int64_t
   double drag = 0; /* of stiffness */
   for (int k = 0; k < 3 && s->viscous.time > 0; ++k)
     if (constraint->direction[k] != 0) drag += constraint->direction[k] * s->viscous.drag[constraint->row + k][i];
-  return p->volume[i] * (drag + p->inertia[constraint->row][i] * (acceleration + s->spec->damping.mass * rate));
+  return p->volume[i] * (drag + p->inertia[constraint->row][i] * (acceleration + explicit_mass_damping(s) * rate));
 }

@@ -312,6 +312,12 @@ bool solver_stage_rests(const Solver *s, int64_t stage)
   return types[type_of(stage_of(s, stage))]->rests;
 }
 
+double solver_stage_steady(const Solver *s, int64_t stage)
+{
+  const int type = type_of(stage_of(s, stage));
+  return types[type]->steady ? types[type]->steady(stage_of(s, stage)->of[type]) : NAN;
+}
+
 double solver_time_in_motion(const Solver *s)
 {
   double whole = solver_stage_rests(s, s->clock.stage) ? 0 : s->clock.stage_end - s->clock.stage_time;

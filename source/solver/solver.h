@@ -37,6 +37,9 @@ typedef struct StepCost {
 typedef struct StageRecord {
   double first_step, last_step, begin, end; /* steps done and times at its begin and end */
   double came_to_rest;                      /* 1: it ended because the body was at rest */
+  double
+      steady; /* of stages that judge: 1 the body bears its loads, -1 it does not, 2 a load or motion still changes; else 0 */
+  double unbalanced, kinetic; /* by which it was judged (solver/rest.h) */
 } StageRecord;
 enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 
@@ -87,6 +90,9 @@ struct SolverType {
   bool (*damps)(const Solver *solver);
   /** Whether its steps are few and long, so that histories have a row for each. */
   bool few_steps;
+  /** Below which forces out of balance and kinetic energy count as none where a stage with this section judges, when it ends, whether the body bears its
+   *  loads; NaN: it does not judge. May be NULL. */
+  double (*steady)(const void *spec);
   /** Whether every step ends in equilibrium at rest. */
   bool rests;
   /** The most that loads and supports have exerted at rest in the stage: forces out of balance are small beside it. NULL: what they exert now counts. */
@@ -124,6 +130,9 @@ bool solver_stage_rests(const Solver *solver, int64_t stage);
 
 /** Time of the stage under way and of later ones in which the body may move, as far as it can be foreseen. */
 double solver_time_in_motion(const Solver *solver);
+
+/** SolverType.steady of a stage. */
+double solver_stage_steady(const Solver *solver, int64_t stage);
 
 /** How a stage goes and ends, in words. @param[in] time  unit of time */
 void solver_describe_stage(const Solver *solver, int64_t stage, const char *time, Text *text);

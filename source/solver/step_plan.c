@@ -2,6 +2,7 @@
  * step has fallen. */
 #include "solver/explicit.h"
 #include "solver/flutter.h"
+#include "solver/period.h"
 #include "solver/stable_step.h"
 
 #include <math.h>
@@ -14,8 +15,10 @@ static double longest_step(const Explicit *s)
 
 /** Damping shortens the stable step: local damping by 1 / sqrt(1 + its share), as its force changes sign with the velocity;
  *  mass-proportional damping leaves it, but is followed only by steps of up to its own time; stiffness-proportional damping works with
- *  velocities that lag behind (docs/theory.md 7). */
-static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpec *spec, double *stable, Error *error)
+ *  velocities that lag behind (docs/theory.md 7).
+ *  @param[in] mass  rate of mass-proportional damping */
+static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpec *spec, double mass, double *stable,
+                       Error *error)
 {
   const int status = stable_step(domain, stable, error);
   if (status) return status;
@@ -24,7 +27,7 @@ static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpe
   if (!isfinite(*stable)) return BRECCIA_OK;
   *stable /= sqrt(1 + spec->local_damping);
   if (spec->damping.stiffness > 0) *stable = stiffness_damping_step(spec->damping.stiffness, *stable);
-  if (spec->damping.mass > 0) *stable = fmin(*stable, 1 / spec->damping.mass);
+  if (mass > 0) *stable = fmin(*stable, 1 / mass);
   return BRECCIA_OK;
 }
 
@@ -32,7 +35,7 @@ static int find_damped(Domain *domain, const Loading *loading, const ExplicitSpe
 static int find_stable_step(Explicit *s, Error *error)
 {
   double stable;
-  int status = find_damped(s->domain, s->loading, s->spec, &stable, error);
+  int status = find_damped(s->domain, s->loading, s->spec, explicit_mass_damping(s), &stable, error);
   if (!status && isfinite(stable)) s->clock->stable = stable;
   if (!status && !isfinite(s->clock->stable))
     status = error_add(error, BRECCIA_FAILURE,
@@ -177,21 +180,54 @@ static int check_stiffness_damping(const Solver *run, const ExplicitSpec *spec, 
   return BRECCIA_OK;
 }
 
+/** The period of `quasi-static`, by which loads grow from here on. */
+static int find_period(Solver *run, Error *error)
+{
+  Explicit *s = run->own;
+  const QuasiStaticSpec *spec = s->spec->quasi_static;
+  int status = BRECCIA_OK;
+  if (!spec) return BRECCIA_OK;
+  s->period = spec->period;
+  if (isnan(spec->period)) {
+    s->period = 0;
+    if (domain_has_servers(run->domain))
+      return node_error(run->reader->document, spec->head.node, error,
+                        "quasi-static: the period cannot be found where a law runs in a server; give a 'period'");
+    Error *reason = breccia_error_create();
+    status = period_find(run->domain, run->loading, &s->period, reason);
+    if (status == BRECCIA_USER_ERROR)
+      node_error(run->reader->document, spec->head.node, error, "%s", breccia_error_text(reason));
+    else if (status)
+      error_add(error, status, "%s", breccia_error_text(reason));
+    breccia_error_destroy(&reason);
+  }
+  if (!status) loading_grow(run->loading, spec->ramp * s->period);
+  return status;
+}
+
+/** How long the stage lasts that does not count steps. */
+static double duration(const Explicit *s)
+{
+  const QuasiStaticSpec *spec = s->spec->quasi_static;
+  return spec ? (spec->ramp + spec->hold) * s->period : s->spec->end_time;
+}
+
 int explicit_plan(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
   const ExplicitSpec *spec = s->spec;
   int status = check_formulations(run, spec, 0.5, error);
   if (!status) status = check_stiffness_damping(run, spec, error);
+  if (!status) status = find_period(run, error);
   if (!status) status = find_stable_step(s, error);
   if (status || (status = check_time_step(run, spec, s->clock->stable, warning, error))) return status;
   if (!(spec->local_damping > 0)) flutter_warn_of_supports(run, s->clock->stable, spec->damping.stiffness, warning);
   s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
   const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
-  const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-6);
+  const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(duration(s) / step - 1e-6);
   if (steps > 1e15)
     return node_error(run->reader->document, spec->head.node, error, "explicit: %.3g steps are too many", steps);
-  s->clock->stage_end = s->clock->stage_time + (spec->steps >= 0 ? steps * s->fixed : spec->end_time);
+  s->clock->stage_end = s->clock->stage_time + (spec->steps >= 0 ? steps * s->fixed : duration(s));
   const int64_t whole = whole_steps(s);
   if (!whole && spec->steps != 0) {
     plan_steps(s, run);
@@ -220,7 +256,7 @@ int explicit_check(Solver *run, const void *spec, Error *error)
   int status = check_formulations(run, spec, 0.99, error); /* told with three digits */
   if (!status) status = check_stiffness_damping(run, spec, error);
   if (status || isnan(((const ExplicitSpec *)spec)->time_step)) return status;
-  status = find_damped(run->domain, run->loading, spec, &stable, error);
+  status = find_damped(run->domain, run->loading, spec, ((const ExplicitSpec *)spec)->damping.mass, &stable, error);
   return status ? status : check_time_step(run, spec, stable, NULL, error);
 }
 
@@ -233,8 +269,11 @@ void explicit_plan_again(Solver *run)
 void explicit_foresee(const void *section, const Clock *clock, double *steps, double *time)
 {
   const ExplicitSpec *spec = section;
+  const QuasiStaticSpec *slow = spec->quasi_static;
+  if (slow && isnan(slow->period)) return; /* found when the stage begins */
+  const double end = slow ? (slow->ramp + slow->hold) * slow->period : spec->end_time;
   const double step = isnan(spec->time_step) ? spec->safety * clock->stable : spec->time_step;
-  const double count = spec->steps >= 0 ? (double)spec->steps : ceil(spec->end_time / step - 1e-9);
+  const double count = spec->steps >= 0 ? (double)spec->steps : ceil(end / step - 1e-9);
   *steps += count;
-  *time += spec->steps >= 0 ? count * step : spec->end_time;
+  *time += spec->steps >= 0 ? count * step : end;
 }

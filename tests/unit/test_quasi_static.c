@@ -1,0 +1,272 @@
+/* Loads that grow slowly beside the slowest vibration that they set off, which is damped critically (Tuniki 2012). */
+#include "support.h"
+
+#include "solver/explicit.h"
+#include "solver/modes.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define ROD                                                                                                            \
+  UNITS "materials: {m: {model: elastic-1d, Young modulus: 1e6, density: 2}}\n"                                        \
+        "body: {bar: {material: m, lattice: line, spacing: 0.05, area: 0.01, shape: {box: {particles: [80, 1]}}}}\n"   \
+        "peridynamics: {formulation: bond-based, space: 1-D, horizon: 3.015 spacings, surface correction: energy}\n"
+
+static double period_of(const breccia_model *model)
+{
+  return ((const Explicit *)model->solver.own)->period;
+}
+
+/** The mean displacement of a load's particles along an axis. */
+static double mean_motion(const breccia_model *model, int load, int axis)
+{
+  const Selection *s = &model->loading.loads[load].selection;
+  double sum = 0;
+  for (int64_t n = 0; n < s->count; ++n) sum += model->domain.particles->displacement[axis][s->places[n]];
+  return sum / (double)s->count;
+}
+
+/** Runs to the end, or to a step that fails. @return whether it came to its end */
+static bool run(breccia_model *model)
+{
+  Error *error = breccia_error_create();
+  int status = 0;
+  while (!status && !solver_is_done(&model->solver)) status = breccia_model_step(model, 1, error);
+  breccia_error_destroy(&error);
+  return !status;
+}
+
+static void a_bar_has_the_period_of_its_wave(void **state)
+{
+  (void)state;
+  /* Held at one end 4 L / c; pulled at both ends 2 L / c, as from its middle; drawn by a motion of its end 2 L / c, as between two walls. */
+  static const struct {
+    const char *loads;
+    double lengths, held; /* wave lengths over c, and columns that are held */
+  } bars[] = {
+      {"{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, force: [1, 0]}", 4, 2.5},
+      {"{on: {face: x-, layers: 1}, force: [-1, 0]}, {on: {face: x+, layers: 1}, force: [1, 0]}", 2, 0},
+      {"{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 3}, displacement: [1 mm, 0]}", 2, 5},
+      {"{on: {face: x-, layers: 3}, displacement: [0, 0]}, {body force: [3, 0], on: {face: x-, layers: 80}}", 4, 2.5},
+  };
+  const double speed = sqrt(1e6 / 2);
+  for (size_t k = 0; k < sizeof bars / sizeof *bars; ++k) {
+    breccia_model *m = model_of(ROD "loads: [%s]\nsolve: {explicit: {quasi-static: {}}}\n", bars[k].loads);
+    const double wanted = bars[k].lengths * (80 - bars[k].held) * 0.05 / speed, found = period_of(m);
+    if (fabs(found - wanted) > 0.01 * wanted) fail_msg("%s: %g instead of %g", bars[k].loads, found, wanted);
+    assert_near(m->solver.clock.stage_end, 3 * found, 1e-12 * found);
+    assert_near(explicit_mass_damping(m->solver.own), 4 * acos(-1) / found, 1e-9 / found);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Of a plate three times as long as high, and of one 12 times, the axial vibration counts where it is pulled, though it bends more slowly; where its loads
+ *  bend it, as slow as its mode is. */
+static void what_loads_do_not_set_off_does_not_count(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    const int columns = k ? 96 : 24;
+    breccia_model *m = model_of(
+        UNITS SOFT_SOLID
+        "body: {b: {material: m, lattice: square, spacing: 0.05, thickness: 0.2, shape: {box: {particles: [%d, 8]}}}}\n"
+        "peridynamics: {formulation: correspondence, space: plane stress}\n"
+        "loads: [{on: {face: x-, layers: 1}, force: [-1, 0]}, {on: {face: x+, layers: 1}, force: [1, 0]}]\n"
+        "solve: {explicit: {quasi-static: {}}}\n",
+        columns);
+    Modes modes = {0};
+    Error *error = breccia_error_create();
+    const double wanted = 2 * columns * 0.05 / sqrt(1e4 / 2);
+    assert_near(period_of(m), wanted, 0.02 * wanted);
+    assert_int_equal(modes_find(&m->domain, &m->loading, 4, &modes, error), 0);
+    assert_int_equal(modes.rigid, 3);
+    assert_true(1 / modes.modes[3].frequency > 1.2 * wanted); /* it bends */
+    modes_destroy(&modes);
+    breccia_error_destroy(&error);
+    breccia_model_destroy(&m);
+  }
+  breccia_model *m = model_of(
+      UNITS SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.05, thickness: 0.2, shape: {box: {particles: [64, 8]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: plane stress}\n"
+      "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, force: [0, 1]}]\n"
+      "solve: {explicit: {quasi-static: {}}}\n");
+  Modes modes = {0};
+  Error *error = breccia_error_create();
+  assert_int_equal(modes_find(&m->domain, &m->loading, 1, &modes, error), 0);
+  assert_near(period_of(m) * modes.modes[0].frequency, 1, 1e-4);
+  modes_destroy(&modes);
+  breccia_error_destroy(&error);
+  breccia_model_destroy(&m);
+}
+
+static void a_steady_body_is_where_statics_find_it(void **state)
+{
+  (void)state;
+  static const char *const loads[] = {
+      "{name: pull, on: {face: x+, layers: 1}, force: [2, 0.1]}",
+      "{name: draw, on: {face: x+, layers: 1}, displacement: [1 mm, free]}, {gravity: [0, -9.81]}",
+  };
+  for (int k = 0; k < 2; ++k) {
+    double moved[2][2];
+    for (int way = 0; way < 2; ++way) {
+      breccia_model *m =
+          model_of(UNITS SOFT_SOLID "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: "
+                                    "{box: {particles: [16, 8]}}}}\n"
+                                    "peridynamics: {formulation: correspondence, space: plane stress}\n"
+                                    "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0]}, %s]\nsolve: {%s}\n",
+                   loads[k], way ? "explicit: {quasi-static: {}}" : "static: {increments: 1}");
+      assert_true(run(m));
+      for (int a = 0; a < 2; ++a) moved[way][a] = mean_motion(m, 1, a);
+      if (way) {
+        const StageRecord *r = &m->solver.records[0];
+        assert_true(r->steady == 1);
+        assert_true(r->unbalanced < 0.01 && r->kinetic < 1e-4);
+      }
+      breccia_model_destroy(&m);
+    }
+    for (int a = 0; a < 2; ++a) assert_near(moved[1][a], moved[0][a], 0.01 * fabs(moved[0][a]));
+  }
+}
+
+/** Loads without a history grow over two periods; others go by theirs. */
+static void loads_grow_along_a_straight_line(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      ROD "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, force: [1, 0]},"
+          " {on: {face: x+, layers: 2}, force: [0.5, 0], history: {constant: yes}}]\n"
+          "solve: {explicit: {quasi-static: {ramp: 4, hold: 2, period: 0.02}}}\n");
+  assert_near(m->solver.clock.stage_end, 0.12, 1e-15);
+  for (int k = 0; k < 4; ++k) {
+    const double time = 0.03 * k;
+    assert_near(load_factor(&m->loading.loads[1], time), fmin(1, time / 0.08), 1e-12);
+    assert_near(load_factor(&m->loading.loads[2], time), 1, 0);
+  }
+  assert_near(history_rise(&m->loading.loads[1].history), 0.08, 1e-15);
+  breccia_model_destroy(&m);
+}
+
+/** A stage that begins with a deformed body: only its own loads grow. */
+static void a_later_stage_lets_its_own_loads_grow(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      ROD "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, force: [1, 0]}]\n"
+          "solve: [{static: {increments: 1}}, {name: more, loads: [{on: {face: x+, layers: 1}, force: [1, 0]}],"
+          " explicit: {quasi-static: {}}}]\n");
+  step_surely(m, 1);
+  const double first = mean_motion(m, 1, 0);
+  assert_true(run(m));
+  const double length = 77.5 * 0.05, period = 4 * length / sqrt(1e6 / 2);
+  assert_near(period_of(m), period, 0.01 * period);
+  assert_near(mean_motion(m, 1, 0) / first, 2, 0.01);
+  assert_true(m->solver.records[1].steady == 1 && m->solver.records[0].steady == 0);
+  breccia_model_destroy(&m);
+}
+
+static breccia_model *plate(double load, const char *solver)
+{
+  breccia_model *m = model_of(
+      "materials: {concrete: {model: link-damage, density: 2400 kg/m3, Young modulus: 3.605e6 psi, Poisson ratio: 0.2, "
+      "tensile stretch: 6.034e-5, compressive stretch: 6.1875e-4, stiffness recovery: 0}}\n"
+      "body: {plate: {material: concrete, lattice: hexagonal, spacing: 1 in, thickness: 1 in, shape: {box: {particles: "
+      "[8, 25]}}}}\n"
+      "peridynamics: {formulation: micropolar, space: plane stress}\n"
+      "loads: [{on: {face: y-, layers: 3}, displacement: [0, 0]}, {on: {face: y+, layers: 3}, force: [0, %.17g N]}]\n"
+      "solve: {%s}\n",
+      24 * load, solver);
+  m->threads = 1; /* of bodies so small more only wait */
+  return m;
+}
+
+/** Statics fail where no equilibrium is found, dynamics where the body is not steady in the end. The strength is found between two loads 2 % apart. */
+static void all_ways_find_one_failure_load(void **state)
+{
+  (void)state;
+  static const char *const ways[] = {"explicit: {quasi-static: {}}", "static: {increments: 10}",
+                                     "static: {increments: 10, method: relaxation}"};
+  const double strength = 364;
+  for (int k = 0; k < 3; ++k)
+    for (int above = 0; above < 2; ++above) {
+      breccia_model *m = plate((above ? 1.01 : 0.99) * strength, ways[k]);
+      bool bears = run(m);
+      if (k == 0) {
+        const StageRecord *r = &m->solver.records[0];
+        assert_true(bears && (r->steady == 1 || r->steady == -1));
+        bears = r->steady == 1;
+        assert_true(bears ? r->unbalanced < 1e-3 : r->unbalanced > 0.5);
+      }
+      if (bears == above) fail_msg("%s %s", ways[k], above ? "bears too much" : "fails too early");
+      breccia_model_destroy(&m);
+    }
+}
+
+static void what_makes_no_sense_is_refused(void **state)
+{
+  (void)state;
+  static const char *const cases[][3] = {
+      {"{on: {face: x+, layers: 1}, force: [1, 0]}", "quasi-static: {}", "nothing holds it|displacement: [0, 0, 0]"},
+      {"{on: {face: x-, layers: 1}, displacement: [0, 0]}", "quasi-static: {}", "sets the body off|give a 'period'"},
+      {"{on: {face: x-, layers: 1}, displacement: [0, 0]}", "quasi-static: {}, damping: 3",
+       "damping: 'quasi-static' damps the slowest vibration"},
+      {"{on: {face: x-, layers: 1}, displacement: [0, 0]}",
+       "quasi-static: {}, Rayleigh damping: {ratio: 1, from: 2, to: 3}", "Rayleigh damping: 'quasi-static' damps"},
+      {"{on: {face: x-, layers: 1}, displacement: [0, 0]}", "quasi-static: {}, steps: 3", "steps|quasi-static"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char deck[2000];
+    snprintf(deck, sizeof deck, ROD "loads: [%s]\nsolve: {explicit: {%s}}\n", cases[k][0], cases[k][1]);
+    char *words = refusal_of(deck);
+    holds_words(words, cases[k][2]);
+    free(words);
+  }
+  /* A load that has not become steady is no verdict. */
+  breccia_model *m = model_of(
+      ROD "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 1}, force: [1, 0],"
+          " history: {ramp to: 1}}]\nsolve: {explicit: {quasi-static: {period: 0.02}}}\n");
+  assert_true(run(m));
+  assert_true(m->solver.records[0].steady == 2);
+  breccia_model_destroy(&m);
+}
+
+/** What a checkpoint holds is all that the run goes on from. */
+static void a_state_taken_up_goes_on_to_the_same_bits(void **state)
+{
+  (void)state;
+  breccia_model *m[2];
+  for (int k = 0; k < 2; ++k) m[k] = plate(300, "explicit: {quasi-static: {}}");
+  step_surely(m[0], 60);
+  m[1]->loading.loads[1].history.grown = ((Explicit *)m[1]->solver.own)->period = 0; /* not from its own plan */
+  StateList from = {0}, to = {0};
+  StateCopy copy = {0};
+  Error *error = breccia_error_create();
+  model_state(m[0], &from);
+  model_state(m[1], &to);
+  assert_int_equal(state_copy(&copy, &from, error), 0);
+  assert_int_equal(state_return(&copy, &to, error), 0);
+  m[1]->begun = true;
+  assert_near(period_of(m[1]), period_of(m[0]), 0);
+  for (int k = 0; k < 2; ++k) assert_true(run(m[k]));
+  const Particles *p = m[0]->domain.particles, *q = m[1]->domain.particles;
+  for (int k = 0; k < 3; ++k)
+    assert_memory_equal(p->displacement[k], q->displacement[k], sizeof(double) * (size_t)p->places);
+  breccia_error_destroy(&error);
+  state_list_destroy(&from);
+  state_list_destroy(&to);
+  state_copy_destroy(&copy);
+  for (int k = 0; k < 2; ++k) breccia_model_destroy(&m[k]);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_bar_has_the_period_of_its_wave),
+      cmocka_unit_test(what_loads_do_not_set_off_does_not_count),
+      cmocka_unit_test(a_steady_body_is_where_statics_find_it),
+      cmocka_unit_test(loads_grow_along_a_straight_line),
+      cmocka_unit_test(a_later_stage_lets_its_own_loads_grow),
+      cmocka_unit_test(all_ways_find_one_failure_load),
+      cmocka_unit_test(what_makes_no_sense_is_refused),
+      cmocka_unit_test(a_state_taken_up_goes_on_to_the_same_bits),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
