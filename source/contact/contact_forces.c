@@ -128,6 +128,7 @@ static void state(void *forces, StateList *list)
 }
 
 const ForcesType contact_forces = {.name = "contact",
+                                   .rubs = true,
                                    .strike = true,
                                    .create = create,
                                    .destroy = destroy,

@@ -103,11 +103,15 @@ bool domain_may_soften(const Domain *d)
 void domain_set_elastic_stage(Domain *d, bool elastic)
 {
   for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;
+  for (int k = 0; k < d->forces.count; ++k)
+    if (forces_points(&d->forces, k)) forces_points(&d->forces, k)->elastic_stage = elastic;
 }
 
 void domain_mix_tangents(Domain *d, double elastic_weight)
 {
   for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_weight = elastic_weight;
+  for (int k = 0; k < d->forces.count; ++k)
+    if (forces_points(&d->forces, k)) forces_points(&d->forces, k)->elastic_weight = elastic_weight;
 }
 
 void domain_tell_time(Domain *d, double time, double time_step)
@@ -115,6 +119,12 @@ void domain_tell_time(Domain *d, double time, double time_step)
   for (int r = 0; r < d->region_count; ++r) {
     d->regions[r].points.time = time;
     d->regions[r].points.time_step = time_step;
+  }
+  for (int k = 0; k < d->forces.count; ++k) {
+    Points *points = forces_points(&d->forces, k);
+    if (!points) continue;
+    points->time = time;
+    points->time_step = time_step;
   }
 }
 
@@ -130,6 +140,7 @@ void domain_commit_points(Domain *d)
     points_commit(&d->regions[r].points);
     if (region->type->commit) region->type->commit(region->formulation, true);
   }
+  forces_accept(&d->forces);
 }
 
 const char *domain_server_problem(const Domain *d)

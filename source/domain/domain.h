@@ -84,6 +84,7 @@ typedef struct Domain {
   Joint joint;
   Failure failure;
   Forces forces;
+  void *const *forces_spec; /* [FORCES_KINDS] of the deck, borrowed; NULL: none */
   Batch *batches;
   int64_t batch_count;
   int64_t *lowest; /* [batches] first batch that holds a neighbour of a particle of the batch */

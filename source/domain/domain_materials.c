@@ -58,6 +58,7 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
   const FormulationType *type = NULL;
   double length = NAN;
   int bad = BRECCIA_OK;
+  bool in_bonds = false;
   for (int r = 0; r < d->region_count && !bad; ++r) {
     const Region *region = &d->regions[r];
     if (!region_has_material(d, region, spec->head.name)) continue;
@@ -69,6 +70,7 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
                         "material '%s' is in regions of %s and %s, which spread a fracture energy over different "
                         "lengths; give each a material of its own",
                         spec->head.name, type->name, region->type->name);
+    in_bonds = true;
     type = region->type;
     length = region_length(type, of);
   }
@@ -79,7 +81,7 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
     ++d->material_count;
     bad = check_parameters(d, reader, spec, new);
   }
-  if (!bad && new->remote) {
+  if (!bad && new->remote && in_bonds) {
     bad = check_law(type, reader, spec, new->law);
     if (!bad && d->region_count > 1)
       bad = node_error(reader->document, spec->head.node, reader->error,

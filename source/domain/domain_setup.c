@@ -221,9 +221,9 @@ static int fill_particles(Domain *d, const DomainSpec *spec, Error *error)
   return count_volumes(d, error);
 }
 
-static int create_forces(Domain *d, const DomainSpec *spec, Space space, Error *error)
+static int create_forces(Domain *d, const DeckReader *reader, const DomainSpec *spec, Space space)
 {
-  ForcesBlock *blocks = memory_zeroed((size_t)d->body.block_count, sizeof *blocks, "forces", error);
+  ForcesBlock *blocks = memory_zeroed((size_t)d->body.block_count, sizeof *blocks, "forces", reader->error);
   if (!blocks) return BRECCIA_FAILURE;
   for (int64_t s = 0; s < d->particles->slices; ++s) {
     const Region *region = domain_region(d, s * SLICE);
@@ -231,8 +231,14 @@ static int create_forces(Domain *d, const DomainSpec *spec, Space space, Error *
     blocks[d->particles->block[s]] =
         (ForcesBlock){material_young(&d->materials[d->material[s]]), bonds.share, bonds.alike};
   }
-  const ForcesParts parts = {&d->body, &d->family, space, blocks};
-  const int status = forces_create(&d->forces, spec->forces, &parts, error);
+  const ForcesParts parts = {.body = &d->body,
+                             .family = &d->family,
+                             .space = space,
+                             .blocks = blocks,
+                             .reader = reader,
+                             .materials = d->materials,
+                             .material_count = d->material_count};
+  const int status = forces_create(&d->forces, spec->forces, &parts, reader->error);
   free(blocks);
   return status;
 }
@@ -291,6 +297,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   const Influence *influence = influence_find(pd->influence);
   const Space space = peridynamics_space(pd);
   d->failed_place = -1;
+  d->forces_spec = spec->forces;
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
@@ -367,7 +374,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   }
   fill_rotary(d);
   status = create_failure(d, reader, spec->failure, &of);
-  return status ? status : create_forces(d, spec, space, error);
+  return status ? status : create_forces(d, reader, spec, space);
 }
 
 void domain_destroy(Domain *d)

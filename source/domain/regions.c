@@ -87,7 +87,8 @@ bool region_is_made_of(const Domain *d, const Region *region, const char *materi
 
 bool region_has_material(const Domain *d, const Region *region, const char *material)
 {
-  return d->region_count == 1 || region_is_made_of(d, region, material);
+  const bool spare = d->region_count == 1 && !forces_use(d->forces_spec, material);
+  return spare || region_is_made_of(d, region, material);
 }
 
 /** Components of the law of a material that the deck names; commands of OpenSees say it by their first word. */

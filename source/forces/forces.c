@@ -13,11 +13,20 @@ static const ForcesType *const kinds[FORCES_KINDS] = {
 #undef FORCES
 };
 
+bool forces_use(void *const *specs, const char *material)
+{
+  for (int k = 0; specs && k < FORCES_KINDS; ++k)
+    if (specs[k] && kinds[k]->uses && kinds[k]->uses(specs[k], material)) return true;
+  return false;
+}
+
 int forces_create(Forces *f, void *const *specs, const ForcesParts *parts, Error *error)
 {
   *f = (Forces){.count = 0};
   for (int k = 0; k < FORCES_KINDS; ++k) {
     if (!specs[k]) continue;
+    const int status = kinds[k]->check ? kinds[k]->check(specs[k], parts) : BRECCIA_OK;
+    if (status) return status;
     f->type[f->count] = kinds[k];
     if (!(f->own[f->count] = kinds[k]->create(specs[k], parts, error))) return BRECCIA_FAILURE;
     ++f->count;
@@ -29,6 +38,23 @@ void forces_destroy(Forces *f)
 {
   for (int k = 0; k < f->count; ++k) f->type[k]->destroy(f->own[k]);
   *f = (Forces){.count = 0};
+}
+
+Points *forces_points(const Forces *f, int n)
+{
+  return f->type[n]->points ? f->type[n]->points(f->own[n]) : NULL;
+}
+
+void forces_accept(Forces *f)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->accept) f->type[k]->accept(f->own[k]);
+}
+
+void forces_describe(const Forces *f, const Units *units, Text *text)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->describe) f->type[k]->describe(f->own[k], units, text);
 }
 
 void forces_follow(Forces *f, double motion)
@@ -141,6 +167,14 @@ double forces_dissipated(const Forces *f)
   double sum = 0;
   for (int k = 0; k < f->count; ++k)
     if (f->type[k]->dissipated) sum += f->type[k]->dissipated(f->own[k]);
+  return sum;
+}
+
+double forces_friction(const Forces *f)
+{
+  double sum = 0;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->rubs && f->type[k]->dissipated) sum += f->type[k]->dissipated(f->own[k]);
   return sum;
 }
 

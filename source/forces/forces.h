@@ -3,9 +3,9 @@
 #ifndef BRECCIA_FORCES_FORCES_H
 #define BRECCIA_FORCES_FORCES_H
 
-#include "constitutive/material.h"
 #include "family/family.h"
 #include "formulation/operator.h"
+#include "points/points.h"
 
 /** What they must know of a block of the body. */
 typedef struct ForcesBlock {
@@ -20,14 +20,26 @@ typedef struct ForcesParts {
   const Family *family;
   Space space;
   const ForcesBlock *blocks; /* [blocks of the body], only while they are made */
+  const DeckReader *reader;  /* the same */
+  const Material *materials; /* those of the deck */
+  int material_count;
 } ForcesParts;
 
 /** Each function may be NULL where there is nothing to do. */
 typedef struct ForcesType {
   const char *name;
+  bool rubs;   /* what they dissipate is friction; of others it is that of laws */
   bool strike; /* they may set in and end within a step or two, and works summed over such steps err by some per cent */
+  /** Whether they need a material of the deck by its name. */
+  bool (*uses)(const void *spec, const char *material);
+  /** Whether the body takes what the deck says. @return status, after messages */
+  int (*check)(const void *spec, const ForcesParts *parts);
   void *(*create)(const void *spec, const ForcesParts *parts, Error *error);
   void (*destroy)(void *forces);
+  /** Their own points, which are told the time and the stage like those of regions; NULL: there are none. */
+  Points *(*points)(void *forces);
+  /** When a step has come out well: makes what laws have answered the committed state. By one thread. */
+  void (*accept)(void *forces);
   /** Before the forces of a step: no particle has moved by more than `motion`. By one thread. */
   void (*follow)(void *forces, double motion);
   /** Before bonds break at the displacements held, by all threads. */
@@ -67,6 +79,8 @@ typedef struct ForcesType {
   bool (*failed)(const void *forces);
   /** Rows of what they remember; bonds and displacements stand before them. */
   void (*state)(void *forces, StateList *list);
+  /** Adds a line that ends: what they are, for people. */
+  void (*describe)(const void *forces, const Units *units, Text *text);
 } ForcesType;
 
 enum {
@@ -87,8 +101,15 @@ typedef struct Forces {
 int forces_create(Forces *forces, void *const *specs, const ForcesParts *parts, Error *error);
 void forces_destroy(Forces *forces);
 
+/** Whether a kind uses a material. @param[in] specs  as for forces_create */
+bool forces_use(void *const *specs, const char *material);
+
 /* Each calls what ForcesType describes, of all kinds. */
 void forces_follow(Forces *forces, double motion);
+/** Points of the n-th kind of this body, or NULL. */
+Points *forces_points(const Forces *forces, int n);
+void forces_accept(Forces *forces);
+void forces_describe(const Forces *forces, const Units *units, Text *text);
 void forces_remember(Forces *forces);
 void forces_bond_broke(Forces *forces, int32_t a, int32_t b);
 void forces_bond_mended(Forces *forces, int32_t a, int32_t b);
@@ -107,6 +128,8 @@ int64_t forces_pattern(const Forces *forces);
 void forces_commit(Forces *forces);
 double forces_energy(const Forces *forces);
 double forces_dissipated(const Forces *forces);
+/** The part of it that is friction. */
+double forces_friction(const Forces *forces);
 double forces_eigenvalue(const Forces *forces);
 bool forces_strike(const Forces *forces);
 /** @return the name of a kind for which memory was out, or NULL */

@@ -92,6 +92,13 @@ static const Field deck_fields[] = {
    .standard = "",                                                                                                     \
    .meaning = about,                                                                                                   \
    .section = &name##_section},
+#define FORCES_NAMED(name, about)                                                                                      \
+  {.key = #name,                                                                                                       \
+   .kind = FIELD_NAMED,                                                                                                \
+   .offset = offsetof(DeckSpec, named_forces[FORCES_##name]),                                                          \
+   .standard = "",                                                                                                     \
+   .meaning = about,                                                                                                   \
+   .section = &name##_section},
 #include "forces/kinds.h"
 #undef FORCES
     {.key = "initial stress",
@@ -144,11 +151,13 @@ bool deck_usual_pictures(const DeckSpec *spec)
 
 static void check_deck(const DeckReader *reader, void *section)
 {
-  const DeckSpec *deck = section;
+  DeckSpec *deck = section;
   if (!deck->materials.count)
     node_error(reader->document, section_node(section, "materials"), reader->error, "materials: none is given");
   if (!deck->body.count)
     node_error(reader->document, section_node(section, "body"), reader->error, "body: no block is given");
+  for (int k = 0; k < FORCES_KINDS; ++k)
+    if (deck->named_forces[k].count) deck->forces[k] = &deck->named_forces[k];
 }
 
 const Section deck_section = {.name = "deck",

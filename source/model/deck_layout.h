@@ -24,7 +24,8 @@ typedef struct DeckSpec {
       pictures; /* solve: stages of SolveSpec */
   PeridynamicsSpec *peridynamics;
   FailureSpec *failure;
-  void *forces[FORCES_KINDS];
+  void *forces[FORCES_KINDS];             /* of those by name their SectionList */
+  SectionList named_forces[FORCES_KINDS]; /* as read */
   ResultsSpec *results;
 } DeckSpec;
 

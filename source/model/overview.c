@@ -207,6 +207,7 @@ const char *breccia_model_overview(breccia_model *model)
     if (d->regions[r].type->describe) d->regions[r].type->describe(d->regions[r].formulation, model->units, text);
   describe_initial_stress(model, text);
   plausibility_describe_contact(model, text);
+  forces_describe(&d->forces, model->units, text);
   plausibility_in_short(model, text);
   text_add(text, "\n");
   model_expect(model, NULL); /* the equations of the first step say how they are best solved */

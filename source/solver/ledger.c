@@ -100,12 +100,13 @@ Energy ledger_energy(const Ledger *l, Domain *d)
               .external = l->external_work,
               .damping = l->damped ? l->damping_work : 0, /* else roundings */
               .fracture = d->fracture_energy,
-              .friction = forces_dissipated(&d->forces),
+              .friction = forces_friction(&d->forces),
               .numerical = l->numerical,
               .between = l->between};
   const bool elastic = domain_is_elastic(d);
   e.stored = domain_stored_energy(d) + forces_energy(&d->forces);
   if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
+  e.dissipated += forces_dissipated(&d->forces) - e.friction;
   const double error = l->external_work + l->kinetic_at_start + l->stored_at_start + l->between - l->kinetic -
                        l->damping_work - l->numerical - e.stored - e.dissipated - e.fracture - e.friction;
   const double largest = l->paid > 0 ? l->paid : fmax(fmax(l->kinetic, fabs(l->bond_work)), fabs(e.fracture));

@@ -1,0 +1,166 @@
+/* What bars exert, and how that changes with displacements. Each element is found from its places, and each place sums what elements pull with in
+ * their order, so that bits do not depend on the number of threads. */
+#include "bars/bars.h"
+
+#include "base/team.h"
+#include "base/tensor.h"
+#include <math.h>
+#include <string.h>
+
+/** The vector by which an element's own one changes with displacements. */
+static void gather(const Bars *b, int64_t e, double *const u[3], double d[3])
+{
+  for (int k = 0; k < 3; ++k) d[k] = 0;
+  for (int64_t n = b->begin[e]; n < b->begin[e + 1]; ++n)
+    for (int k = 0; k < 3; ++k) d[k] += b->joined.weight[n] * u[k][b->joined.place[n]];
+}
+
+/** Adds what elements pull with, on their first end along the vector and back on the other, to forces per volume. By all threads. */
+static void spread(const Bars *b, double (*const pull)[3], double *const force[3])
+{
+  const double *volume = b->body->particles.volume;
+  TEAM_FOR (t, b->touched_count) {
+    const int32_t place = b->touched[t];
+    double sum[3] = {0};
+    for (int64_t n = b->touching_begin[t]; n < b->touching_begin[t + 1]; ++n)
+      for (int k = 0; k < 3; ++k) sum[k] -= b->touching_weight[n] * pull[b->touching[n]][k];
+    for (int k = 0; k < 3; ++k) force[k][place] += sum[k] / volume[place];
+  }
+}
+
+/** Strains and directions of elements, strains without the difference of two lengths that are nearly the same. */
+static void find_strains(Bars *b, int64_t from, int64_t to)
+{
+  double *const *u = b->body->particles.displacement;
+  for (int64_t e = from; e < to; ++e) {
+    const double *rest = b->rest[e], length = b->length[e];
+    double d[3], more = 0, square = 0, now[3];
+    gather(b, e, u, d);
+    for (int k = 0; k < 3; ++k) {
+      now[k] = rest[k] + d[k];
+      more += (2 * rest[k] + d[k]) * d[k];
+      square += now[k] * now[k];
+    }
+    const double long_now = sqrt(square);
+    b->strain[e] = more / (long_now + length) / length;
+    for (int k = 0; k < 3; ++k) b->along[e][k] = long_now > 0 ? now[k] / long_now : rest[k] / length;
+  }
+}
+
+void bars_resist(void *forces)
+{
+  Bars *b = forces;
+  TEAM_FOR (c, b->chunk_count) {
+    const int64_t from = b->chunk[c], to = b->chunk[c + 1];
+    find_strains(b, from, to);
+    if (b->young[from] > 0) {
+      for (int64_t e = from; e < to; ++e) b->stress[e] = b->young[e] * b->strain[e];
+    } else {
+      double *const strain[6] = {b->strain + from}, *const stress[6] = {b->stress + from};
+      points_update(&b->points, from, (int)(to - from), strain, stress);
+    }
+    for (int64_t e = from; e < to; ++e)
+      for (int k = 0; k < 3; ++k) b->pull[e][k] = b->area[e] * b->stress[e] * b->along[e][k];
+  }
+  spread(b, b->pull, b->body->particles.internal);
+}
+
+/* ---- changes ---- */
+
+static double slope(const Bars *b, int64_t e)
+{
+  double tangent = b->young[e];
+  if (!(tangent > 0)) points_try(&b->points, e, b->strain[e], &tangent);
+  return tangent;
+}
+
+void bars_linearise(void *forces)
+{
+  Bars *b = forces;
+  for (int64_t e = 0; e < b->count; ++e) {
+    b->tangent[e] = b->area[e] * slope(b, e) / b->length[e];
+    b->across[e] = b->area[e] * b->stress[e] / (b->length[e] * (1 + b->strain[e]));
+  }
+}
+
+void bars_change(void *forces, double *const v[3], double *const change[3])
+{
+  Bars *b = forces;
+  TEAM_FOR (e, b->count) {
+    double d[3], longer = 0;
+    gather(b, e, v, d);
+    for (int k = 0; k < 3; ++k) longer += b->along[e][k] * d[k];
+    for (int k = 0; k < 3; ++k)
+      b->pull[e][k] = b->tangent[e] * longer * b->along[e][k] + b->across[e] * (d[k] - longer * b->along[e][k]);
+  }
+  spread(b, b->pull, change);
+}
+
+int64_t bars_point_count(const void *forces)
+{
+  return ((const Bars *)forces)->count;
+}
+
+/** A point of finite strain that answers along the element only. With the stretch s of an element Green's strain is (s^2 - 1) / 2, so that the
+ *  stress is sigma / s and its slope (slope of sigma - sigma / s) / s^2. */
+int bars_point(const void *forces, int64_t e, Operator *point, Error *error)
+{
+  const Bars *b = forces;
+  const double stretch = 1 + b->strain[e], stress = b->stress[e] / stretch,
+               tangent = (slope(b, e) - stress) / (stretch * stretch);
+  double t[3], m[6];
+  for (int k = 0; k < 3; ++k) t[k] = b->rest[e][k] / b->length[e];
+  for (int k = 0; k < 6; ++k) m[k] = t[symmetric_row[k]] * t[symmetric_column[k]];
+  operator_clear(point);
+  point->components = 6;
+  point->finite = true;
+  point->volume = b->area[e] * b->length[e];
+  for (int r = 0; r < 6; ++r) {
+    point->stress[r] = stress * m[r];
+    for (int k = 0; k < 6; ++k) point->tangent[6 * r + k] = tangent * m[r] * m[k];
+  }
+  for (int64_t n = b->begin[e]; n < b->begin[e + 1]; ++n) {
+    OperatorPlace *place = operator_add(point, b->joined.place[n], error);
+    if (!place) return BRECCIA_FAILURE;
+    for (int k = 0; k < 3; ++k) place->g[k] = b->joined.weight[n] * t[k] / b->length[e];
+  }
+  return BRECCIA_OK;
+}
+
+/* ---- what was done ---- */
+
+void bars_accept(void *forces)
+{
+  Bars *b = forces;
+  for (int64_t e = 0; e < b->count; ++e) {
+    if (!(b->young[e] > 0))
+      b->work +=
+          b->area[e] * b->length[e] * (b->stress[e] + b->stress_held[e]) / 2 * (b->strain[e] - b->strain_held[e]);
+    b->strain_held[e] = b->strain[e];
+    b->stress_held[e] = b->stress[e];
+  }
+  if (b->has_points) points_commit(&b->points);
+}
+
+/** Energy that elements would give back: of Hooke's law, or of those that have points. */
+static double stored(const Bars *b, bool hookean)
+{
+  double sum = 0;
+  for (int64_t e = 0; e < b->count; ++e) {
+    if ((b->young[e] > 0) != hookean) continue;
+    const double share = hookean ? 1 : points_elastic_share(&b->points, e, b->strain_held[e]);
+    sum += b->area[e] * b->length[e] * b->stress_held[e] * b->strain_held[e] * share / 2;
+  }
+  return sum;
+}
+
+double bars_energy(void *forces)
+{
+  return stored(forces, true) + stored(forces, false);
+}
+
+double bars_dissipated(const void *forces)
+{
+  const Bars *b = forces;
+  return b->has_points ? b->work - stored(b, false) : 0;
+}

@@ -1,0 +1,405 @@
+/* Reinforcing bars against closed forms and difference quotients, in every formulation. */
+#include "support.h"
+
+#include "bars/bars.h"
+#include "base/random.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+#define MATERIALS                                                                                                      \
+  UNITS "materials:\n  soft: {model: %s, density: 2, Young modulus: 1e4}\n"                                            \
+        "  %s\n"
+#define ROD_OF "rod: {model: elastic, density: 7, Young modulus: 2e8, Poisson ratio: 0.3}"
+#define STEEL_OF                                                                                                       \
+  "steel: {model: steel-bilinear, density: 7, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01}"
+#define REST "solve: {explicit: {end time: 1}}\npictures: []\n"
+
+static Bars *bars_of(breccia_model *m)
+{
+  for (int k = 0; k < m->domain.forces.count; ++k)
+    if (!strcmp(m->domain.forces.type[k]->name, "bars")) return m->domain.forces.own[k];
+  fail_msg("no bars");
+  return NULL;
+}
+
+static const char *const lattices[] = {"square", "hexagonal", "cubic", "face-centred cubic"};
+
+/** A body of a lattice with a bent bar through it that stands nowhere on particles and ends at a face. */
+static breccia_model *bent_bar(const char *lattice, const char *keys)
+{
+  const bool plane = lattice[0] == 's' || lattice[0] == 'h';
+  return model_of(
+      MATERIALS
+      "body: {b: {material: soft, spacing: 0.1, lattice: %s%s, shape: {box: {from: [0, 0%s], to: [1, 0.6%s]}}}}\n"
+      "peridynamics: {formulation: bond-based%s}\n"
+      "bars: {bent: {points: [[0, 0.13%s], [0.52, 0.31%s], [1, 0.55%s]], diameter: 16 mm, number: 2, %s}}\n" REST,
+      "elastic-1d", strstr(keys, "rod") ? ROD_OF : STEEL_OF, lattice, plane ? ", thickness: 0.3" : "",
+      plane ? "" : ", 0", plane ? "" : ", 0.5", plane ? ", space: plane stress" : "", plane ? "" : ", 0.21",
+      plane ? "" : ", 0.29", plane ? "" : ", 0.17", keys);
+}
+
+static void an_element_feels_uniform_deformation_exactly(void **state)
+{
+  (void)state;
+  for (size_t l = 0; l < sizeof lattices / sizeof *lattices; ++l) {
+    breccia_model *m = bent_bar(lattices[l], "material: rod");
+    const Bars *b = bars_of(m);
+    const bool plane = m->domain.body.dimensions == 2;
+    const double f[9] = {1.02,
+                         0.3,
+                         plane ? 0 : 0.1,
+                         -0.2,
+                         0.97,
+                         plane ? 0 : 0.05,
+                         plane ? 0 : -0.1,
+                         plane ? 0 : 0.2,
+                         1.01 - 0.01 * plane};
+    deform_uniformly(m, f);
+    compute_forces(m);
+    double length = 0;
+    for (int64_t e = 0; e < b->count; ++e) {
+      double square = 0;
+      for (int k = 0; k < 3; ++k) {
+        double sum = 0;
+        for (int j = 0; j < 3; ++j) sum += f[3 * k + j] * b->rest[e][j];
+        square += sum * sum;
+      }
+      assert_near(b->strain[e], sqrt(square) / b->length[e] - 1, 1e-13);
+      assert_near(b->area[e], 2 * acos(-1) / 4 * 0.016 * 0.016, 1e-15);
+      length += b->length[e];
+    }
+    const double d[2] = {plane ? 0 : 0.08, plane ? 0 : -0.12};
+    assert_near(length, sqrt(0.52 * 0.52 + 0.18 * 0.18 + d[0] * d[0]) + sqrt(0.48 * 0.48 + 0.24 * 0.24 + d[1] * d[1]),
+                1e-12);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void shake(breccia_model *m, double by)
+{
+  Particles *p = m->domain.particles;
+  uint64_t seed = 7;
+  for (int k = 0; k < m->domain.body.dimensions; ++k)
+    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
+}
+
+/** Forces of bars alone. */
+static void find_beside(breccia_model *m, double *force[3])
+{
+  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
+  domain_forces_beside(&m->domain, force);
+}
+
+static void drop(double *force[3])
+{
+  for (int k = 0; k < 3; ++k) places_free(&force[k]);
+}
+
+static void bars_neither_push_nor_turn_the_whole(void **state)
+{
+  (void)state;
+  for (size_t l = 0; l < sizeof lattices / sizeof *lattices; ++l) {
+    breccia_model *m = bent_bar(lattices[l], "material: rod");
+    const Particles *p = m->domain.particles;
+    shake(m, 0.01);
+    double *f[3], sum[3] = {0}, turn[3] = {0}, size = 0;
+    find_beside(m, f);
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, c = (k + 2) % 3;
+        sum[k] += p->volume[i] * f[k][i];
+        size += fabs(p->volume[i] * f[k][i]);
+        turn[k] += p->volume[i] * ((p->position[a][i] + p->displacement[a][i]) * f[c][i] -
+                                   (p->position[c][i] + p->displacement[c][i]) * f[a][i]);
+      }
+    }
+    assert_true(size > 1);
+    for (int k = 0; k < 3; ++k) {
+      assert_near(sum[k], 0, 1e-13 * size);
+      assert_near(turn[k], 0, 1e-13 * size);
+    }
+    drop(f);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void bars_carry_nothing_where_the_body_only_turns(void **state)
+{
+  (void)state;
+  for (int quarters = 1; quarters <= 4; ++quarters) {
+    breccia_model *m = bent_bar("cubic", "material: steel");
+    const double angle = quarters * acos(-1) / 2, c = cos(angle), s = sin(angle);
+    deform_uniformly(m, (const double[]){c, -s, 0, s, c, 0, 0, 0, 1});
+    double *f[3];
+    find_beside(m, f);
+    const Bars *b = bars_of(m);
+    for (int64_t e = 0; e < b->count; ++e) assert_near(b->strain[e], 0, 1e-13);
+    drop(f);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** The forces of bars against the slope of their energy, and changes and assembled points against difference quotients of forces, where elements
+ *  are strained, turned, and yield. */
+static void changes_are_those_of_forces_and_of_energy(void **state)
+{
+  (void)state;
+  static const char *const laws[] = {"material: rod", "material: steel", "material: steel, snap: yes"};
+  for (size_t l = 0; l < 3 * sizeof lattices / sizeof *lattices; ++l) {
+    breccia_model *m = bent_bar(lattices[l % 4], laws[l / 4]);
+    const Particles *p = m->domain.particles;
+    Bars *b = bars_of(m);
+    const bool plane = m->domain.body.dimensions == 2;
+    deform_uniformly(m, (const double[]){0.8, -0.6, 0, 0.6, 0.81, 0, 0, 0, 1});
+    shake(m, 2e-3);
+    double *v[3], *changed[3], *up[3], *down[3], *assembled[3];
+    find_beside(m, up);
+    bars_linearise(b);
+    drop(up);
+    uint64_t seed = 3;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = places_array(p->places, "test", NULL);
+      changed[k] = places_array(p->places, "test", NULL);
+      assembled[k] = places_array(p->places, "test", NULL);
+      for (int64_t n = 0; n < p->count && (k < 2 || !plane); ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+    }
+    domain_change_forces(&m->domain, v, changed);
+    Operator point = {0};
+    double k9[9];
+    for (int64_t e = 0; e < bars_point_count(b); ++e) {
+      assert_int_equal(bars_point(b, e, &point, NULL), 0);
+      for (int i = 0; i < point.count; ++i)
+        for (int j = 0; j < point.count; ++j) {
+          operator_stiffness(&point, p->displacement, i, j, k9);
+          for (int k = 0; k < 9; ++k)
+            assembled[k / 3][point.places[i].place] +=
+                k9[k] * v[k % 3][point.places[j].place] / p->volume[point.places[i].place];
+        }
+    }
+    operator_destroy(&point);
+    const double h = 1e-8;
+    double energy[2] = {0}, work = 0;
+    for (int side = 0; side < 2; ++side) {
+      for (int k = 0; k < 3; ++k)
+        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+      find_beside(m, side ? down : up);
+      for (int64_t e = 0; e < b->count; ++e)
+        energy[side] += b->area[e] * b->length[e] * 2e8 * b->strain[e] * b->strain[e] / 2;
+    }
+    double size = 0;
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) size = fmax(size, fabs(changed[k][i]));
+    assert_true(size > 0);
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) {
+        assert_near((up[k][i] - down[k][i]) / (2 * h), changed[k][i], 1e-6 * size);
+        assert_near(assembled[k][i], changed[k][i], 1e-11 * size);
+        work -= p->volume[i] * (up[k][i] + down[k][i]) / 2 * v[k][i];
+      }
+    if (l < 4) assert_near((energy[0] - energy[1]) / (2 * h), work, 1e-6 * fabs(work));
+    drop(v);
+    drop(changed);
+    drop(up);
+    drop(down);
+    drop(assembled);
+    breccia_model_destroy(&m);
+  }
+}
+
+/* ---- in a block that is pulled ---- */
+
+static const char *const formulations[] = {"formulation: bond-based", "formulation: ordinary",
+                                           "formulation: correspondence", "formulation: hybrid",
+                                           "formulation: micropolar"};
+
+/** Pulls a prism of 1 x 0.3 x 0.3 with prescribed layers at its ends; with `bars` or without. @return force in the middle: what the right half is held by */
+static double pulled(const char *formulation, const char *bars, const char *solver, double strain)
+{
+  breccia_model *m = model_of(
+      MATERIALS "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}\n"
+                "peridynamics: {%s, horizon: 2.015 spacings}\n%s"
+                "loads:\n  - {on: {all: yes}, along: {direction: [0, 1, 0], displacement: 0}}\n"
+                "  - {on: {all: yes}, along: {direction: [0, 0, 1], displacement: 0}}\n"
+                "  - {on: {face: x-, layers: 4}, field: {displacement: ['%.17g*x', free, free]}}\n"
+                "  - {on: {face: x+, layers: 4}, field: {displacement: ['%.17g*x', free, free]}}\n"
+                "solve: {%s}\npictures: []\nresults: {}\n",
+      strstr(formulation, "bond-based") ? "elastic-1d" : "elastic, Poisson ratio: 0.2",
+      strstr(bars, "steel") ? STEEL_OF
+      : *bars               ? ROD_OF
+                            : "",
+      formulation, bars, strain, strain, solver);
+  step_surely(m, INT64_MAX);
+  const Particles *p = m->domain.particles;
+  double force = 0;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    if (p->position[0][i] > 0.6) force -= p->volume[i] * p->internal[0][i];
+  }
+  breccia_model_destroy(&m);
+  return force;
+}
+
+#define ROD "bars: {rod: {points: [[0.02, 0.14, 0.11], [1.18, 0.14, 0.11]], area: 1e-4, material: rod}}\n"
+
+static void a_bar_adds_its_stiffness_times_the_strain(void **state)
+{
+  (void)state;
+  const double strain = 1e-5;
+  for (size_t f = 0; f < sizeof formulations / sizeof *formulations; ++f) {
+    const char *solver = "static: {increments: 1}";
+    const double with = pulled(formulations[f], ROD, solver, strain),
+                 without = pulled(formulations[f], "", solver, strain);
+    print_message("%s: %.8g of %.8g\n", formulations[f], with - without, 2e8 * 1e-4 * strain);
+    assert_near(with - without, 2e8 * 1e-4 * strain, 1e-6 * 2e8 * 1e-4 * strain);
+  }
+}
+
+static void every_way_to_solve_finds_the_same(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"static: {increments: 2, equations: direct}",
+                                        "static: {increments: 1, equations: conjugate gradients}",
+                                        "static: {increments: 1, method: relaxation, residual: 1e-9}"};
+  for (size_t s = 0; s < sizeof solvers / sizeof *solvers; ++s) {
+    const double strain = 1e-5, with = pulled(formulations[2], ROD, solvers[s], strain),
+                 without = pulled(formulations[2], "", solvers[s], strain);
+    assert_near(with - without, 2e8 * 1e-4 * strain, 1e-6 * 2e8 * 1e-4 * strain);
+  }
+}
+
+#define TIE "bars: {tie: {points: [[0.02, 0.14, 0.11], [1.18, 0.14, 0.11]], area: 1e-4, material: steel}}\n"
+
+static void steel_carries_what_its_law_says(void **state)
+{
+  (void)state;
+  const double strain = 0.01;
+  for (size_t f = 0; f < sizeof formulations / sizeof *formulations; ++f) {
+    const char *solver = "static: {increments: 4}";
+    const double with = pulled(formulations[f], TIE, solver, strain),
+                 without = pulled(formulations[f], "", solver, strain);
+    assert_near(with - without, 1e-4 * (5e5 + 0.01 * 2e8 * (strain - 2.5e-3)), 1e-6 * 70);
+  }
+}
+
+/** A block with a bar along it and one across, whose ends fly apart: the steel yields, and the block swings on. */
+static breccia_model *struck(const char *solver, int threads)
+{
+  char *deck = text_format(
+      MATERIALS "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1, 0.4, 0.4]}}}}\n"
+                "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+                "bars: {long: {points: [[0.02, 0.14, 0.11], [0.98, 0.23, 0.17]], area: 4e-6, material: steel},\n"
+                "       stirrup: {points: [[0.5, 0.1, 0.1], [0.5, 0.3, 0.1], [0.5, 0.3, 0.3], [0.5, 0.1, 0.3], "
+                "[0.5, 0.1, 0.1]], diameter: 2 mm, material: steel}}\n"
+                "loads: [{on: {inside: {box: {from: [0, 0, 0], to: [0.5, 1, 1]}}}, initial velocity: {translation: "
+                "[-0.4, 0, 0.1]}},\n"
+                "        {on: {inside: {box: {from: [0.5, 0, 0], to: [1, 1, 1]}}}, initial velocity: {translation: "
+                "[0.4, 0.1, 0]}}]\n"
+                "solve: {%s}\npictures: []\n",
+      "elastic-1d", STEEL_OF, solver);
+  breccia_options options = {.size = sizeof options, .threads = threads};
+  breccia_error *error = breccia_error_create();
+  breccia_model *m;
+  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  free(deck);
+  return m;
+}
+
+static void works_are_in_the_books_where_steel_yields(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"explicit: {end time: 0.05}", "implicit: {end time: 0.05, time step: 5e-4}"};
+  for (int s = 0; s < 2; ++s) {
+    breccia_model *m = struck(solvers[s], 1);
+    step_surely(m, INT64_MAX);
+    const Energy e = solver_energy(&m->solver);
+    print_message("kinetic %g stored %g dissipated %g imbalance %g\n", e.kinetic, e.stored, e.dissipated, e.imbalance);
+    assert_true(e.dissipated > 0.05 * m->solver.ledger.kinetic_at_start);
+    assert_near(e.friction, 0, 0);
+    assert_balanced(m, s ? 1e-3 : 2e-4);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void threads_and_restarts_give_the_same_bits(void **state)
+{
+  (void)state;
+  breccia_model *whole = struck("explicit: {end time: 0.05}", 1), *other = struck("explicit: {end time: 0.05}", 2);
+  step_surely(other, 150);
+  StateCopy half = state_of(other);
+  step_surely(other, 150);
+  step_surely(whole, 300);
+  for (int round = 0; round < 2; ++round) {
+    StateCopy a = state_of(whole), b = state_of(other);
+    assert_int_equal(a.count, b.count);
+    for (int k = 0; k < a.count; ++k) {
+      assert_int_equal(a.rows[k].count, b.rows[k].count);
+      if (memcmp(a.values[k], b.values[k], state_size(&a.rows[k]) * (size_t)a.rows[k].count))
+        fail_msg("round %d: %s differs", round, a.rows[k].name);
+    }
+    state_copy_destroy(&a);
+    state_copy_destroy(&b);
+    if (round) break;
+    breccia_model_destroy(&other);
+    other = struck("explicit: {end time: 0.05}", 1);
+    step_surely(other, 1);
+    StateList list = {0};
+    model_state(other, &list);
+    assert_int_equal(state_return(&half, &list, NULL), 0);
+    state_list_destroy(&list);
+    step_surely(other, 150);
+  }
+  state_copy_destroy(&half);
+  breccia_model_destroy(&whole);
+  breccia_model_destroy(&other);
+}
+
+static void lines_that_make_no_bar_are_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *bar, *words;
+  } cases[] = {
+      {"points: [[0, 0.1, 0.1], [1.3, 0.1, 0.1]], diameter: 8 mm, material: steel",
+       "deck:8|outside the body at [1.1, 0.1, 0.1]|keep its line within"},
+      {"points: [[0, 0.1, 0.1]], diameter: 8 mm, material: steel", "two or more"},
+      {"points: [[0, 0.1, 0.1], [0, 0.1, 0.1]], diameter: 8 mm, material: steel", "points 1 and 2 are the same"},
+      {"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], material: steel", "diameter|area"},
+      {"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diameter: 8 mm, area: 1 cm2, material: steel", "diameter|area"},
+      {"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diameter: 8 mm, material: iron", "iron"},
+      {"points: [[0.51, 0.1, 0.1], [0.52, 0.1, 0.1]], diameter: 8 mm, material: steel, snap: yes",
+       "comes to one particle"},
+      {"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diameter: 8 mm, material: clay",
+       "'clay' is 'drucker-prager'|laws of one strain"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *deck = text_format(
+        MATERIALS "  clay: {model: drucker-prager, density: 2, Young modulus: 1e4, Poisson ratio: 0.2, cohesion: 10, "
+                  "friction angle: 30 deg}\n"
+                  "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1, 0.3, 0.3]}}}}\n"
+                  "peridynamics: {formulation: correspondence}\n"
+                  "bars: {r: {%s}}\n" REST,
+        "elastic, Poisson ratio: 0.2", strstr(cases[k].bar, "clay") ? "" : STEEL_OF, cases[k].bar);
+    char *words = refusal_of(deck);
+    holds_words(words, cases[k].words);
+    free(words);
+    free(deck);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_element_feels_uniform_deformation_exactly),
+      cmocka_unit_test(bars_neither_push_nor_turn_the_whole),
+      cmocka_unit_test(bars_carry_nothing_where_the_body_only_turns),
+      cmocka_unit_test(changes_are_those_of_forces_and_of_energy),
+      cmocka_unit_test(a_bar_adds_its_stiffness_times_the_strain),
+      cmocka_unit_test(every_way_to_solve_finds_the_same),
+      cmocka_unit_test(steel_carries_what_its_law_says),
+      cmocka_unit_test(works_are_in_the_books_where_steel_yields),
+      cmocka_unit_test(threads_and_restarts_give_the_same_bits),
+      cmocka_unit_test(lines_that_make_no_bar_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
