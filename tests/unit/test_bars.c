@@ -354,6 +354,33 @@ static void threads_and_restarts_give_the_same_bits(void **state)
   breccia_model_destroy(&other);
 }
 
+static void a_cracked_tie_carries_what_its_steel_yields_at(void **state)
+{
+  (void)state;
+  /* The soft block would carry 1e4 * 1e-3 * 0.09 = 0.9 kN and the steel 5 kN: the block breaks apart, and then the steel yields. */
+  breccia_model *m = model_of(
+      MATERIALS "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}\n"
+                "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+                "failure: {critical stretch: 1e-3}\n"
+                "bars: {tie: {points: [[0.02, 0.14, 0.11], [1.18, 0.14, 0.11]], area: 1e-5, material: steel}}\n"
+                "loads:\n  - {on: {face: x-, layers: 4}, displacement: [0, 0, 0]}\n"
+                "  - {on: {face: x+, layers: 4}, displacement: [0.03, 0, 0], history: {ramp to: 1.5}}\n"
+                "solve: {explicit: {end time: 1.5, damping: 30}}\npictures: []\n",
+      "elastic-1d", "steel: {model: elastic-perfectly-plastic, density: 7, Young modulus: 2e8, yield stress: 5e5}");
+  step_surely(m, INT64_MAX);
+  const Particles *p = m->domain.particles;
+  const Bars *b = bars_of(m);
+  double held = 0, most = 0;
+  for (int64_t n = 0; n < p->count; ++n)
+    if (p->position[0][p->place_of[n]] < 0.4) held += p->volume[p->place_of[n]] * p->internal[0][p->place_of[n]];
+  for (int64_t e = 0; e < b->count; ++e) most = fmax(most, b->stress[e]);
+  assert_true(breccia_model_broken_bonds(m) > 100);
+  assert_near(most, 5e5, 1e-6);
+  assert_near(held, 5e5 * 1e-5, 0.01 * 5);
+  assert_balanced(m, 0.01);
+  breccia_model_destroy(&m);
+}
+
 static void lines_that_make_no_bar_are_refused(void **state)
 {
   (void)state;
@@ -399,6 +426,7 @@ int main(void)
       cmocka_unit_test(steel_carries_what_its_law_says),
       cmocka_unit_test(works_are_in_the_books_where_steel_yields),
       cmocka_unit_test(threads_and_restarts_give_the_same_bits),
+      cmocka_unit_test(a_cracked_tie_carries_what_its_steel_yields_at),
       cmocka_unit_test(lines_that_make_no_bar_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
