@@ -232,7 +232,7 @@ equal "a doubt of the run" "$(grep -c "ended at its end time" errors)" 1
 
 # histories of a material at one particle
 "$breccia" run "$source/examples/block-with-hole/block.yaml" --steps 20 --output block > out 2>&1; equal "block: status" $? 0
-equal "history watched: heading" "$(head -1 block/p-history.csv)" "step,time (s),cap parameter"
+equal "history watched: heading" "$(head -1 block/p-history.csv)" "step,time (s),cap parameter (kPa)"
 equal "history watched: the first cap" "$(sed -n 2p block/p-history.csv | cut -d, -f3 | cut -c1-8)" 8634.069
 
 # material: one point against closed forms

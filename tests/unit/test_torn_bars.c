@@ -29,21 +29,20 @@ static void bars_spend_their_fracture_energy(void **state)
   }
 }
 
-/** One weak column has two gaps that are alike: at rest both open, it floats between them, and nothing but a gap that is weaker parts them. */
-static void a_column_between_two_gaps_floats(void **state)
+/** One weak column has two gaps that are alike. Both open at first; then the body jumps to the cheaper state of rest, in which one of them opens alone. */
+static void of_two_gaps_that_are_alike_one_opens(void **state)
 {
   (void)state;
-  TornBar bar = {"formulation: hybrid", "model: mazars", "plane stress", WEAK_LEANING, 6, 10, 0.3e-3};
+  TornBar bar = {"formulation: hybrid", "model: mazars", "plane stress", WEAK_COLUMN, 6, 10, 0.3e-3};
   TornBarEnd end;
   double opening[TORN_COLUMNS - 1];
   breccia_error *error = breccia_error_create();
   const int gap = TORN_COLUMNS / 2;
   assert_int_equal(torn_bar_pull(&bar, &end, opening, error), 0);
-  assert_near(opening[gap], bar.pull, 0.02 * bar.pull);
-  bar.weak = WEAK_COLUMN;
-  assert_int_equal(torn_bar_pull(&bar, &end, opening, error), 0);
-  assert_near(opening[gap - 1], opening[gap], 0.02 * bar.pull);
-  assert_near(opening[gap], bar.pull / 2, 0.02 * bar.pull);
+  print_message("one weak column: %.3f G_F\n", end.spent);
+  assert_near(fmax(opening[gap - 1], opening[gap]), bar.pull, 0.02 * bar.pull);
+  assert_near(fmin(opening[gap - 1], opening[gap]), 0, 0.02 * bar.pull);
+  assert_near(end.spent, 1, 0.1);
   breccia_error_destroy(&error);
 }
 
@@ -74,7 +73,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bars_spend_their_fracture_energy),
-      cmocka_unit_test(a_column_between_two_gaps_floats),
+      cmocka_unit_test(of_two_gaps_that_are_alike_one_opens),
       cmocka_unit_test(links_of_a_point_carry_nothing_while_open_and_all_when_closed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
