@@ -44,10 +44,11 @@ static void softening_is_followed_to_its_end_without_help(void **state)
   (void)state;
   static const struct {
     const char *law, *formulation;
-    double spent; /* at most, over the fracture energy: bonds of one weak column spend a third more */
-  } bars[] = {{"model: bilinear-softening", "bond-based", 1.4},
-              {"model: mazars, Poisson ratio: 0.2", "correspondence", 1.1},
-              {"model: damage-plasticity, compressive strength: 30e3, Poisson ratio: 0.2", "correspondence", 1.1}};
+    double least,
+        spent; /* over the fracture energy: bonds of one weak column may spend a third more, and the increments in which they jump less */
+  } bars[] = {{"model: bilinear-softening", "bond-based", 0.8, 1.4},
+              {"model: mazars, Poisson ratio: 0.2", "correspondence", 0.9, 1.1},
+              {"model: damage-plasticity, compressive strength: 30e3, Poisson ratio: 0.2", "correspondence", 0.9, 1.1}};
   const int laws = under_sanitizers() ? 1 : 3;
   for (int k = 0; k < 2 * laws; ++k) {
     breccia_model *m = bar_of(bars[k / 2].law, bars[k / 2].formulation, k % 2);
@@ -60,7 +61,7 @@ static void softening_is_followed_to_its_end_without_help(void **state)
     print_message("%s, by %s: %.4f of the largest force left, %.3f G_F\n", bars[k / 2].law,
                   k % 2 ? "opening" : "displacements", left, spent);
     assert_true(fabs(left) < 0.05);
-    assert_true(spent > 0.9 && spent < bars[k / 2].spent);
+    assert_true(spent > bars[k / 2].least && spent < bars[k / 2].spent);
     breccia_model_destroy(&m);
   }
 }
