@@ -51,6 +51,13 @@ static inline bool body_outside(const Body *body, int64_t number)
   return body->margin_of && body->margin_of[number] >= 0;
 }
 
+/** The particle inside of which the particle of a number is an image, or the image of an image; itself, where it stands inside. By numbers. */
+static inline int64_t body_original(const Body *body, int64_t number)
+{
+  while (body_outside(body, number)) number = body->image_of[number];
+  return number;
+}
+
 /** Thickness of a plane body, cross-section of a bar, else 1. */
 static inline double body_section(const Body *body)
 {

@@ -240,8 +240,7 @@ static int tell_misfit(const Work *w, const InitialMisfit *misfit)
 {
   const Particles *p = &w->domain->body.particles;
   const int64_t row = misfit->row;
-  int32_t inside = p->number[row];
-  while (body_outside(&w->domain->body, inside)) inside = w->domain->body.image_of[inside];
+  const int64_t inside = body_original(&w->domain->body, p->number[row]);
   const InitialStressSpec *spec = w->items->items[w->item_of[inside]];
   const Material *m = &w->domain->materials[w->domain->material[row / SLICE]];
   Text words[2] = {{0}, {0}};

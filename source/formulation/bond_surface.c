@@ -74,6 +74,18 @@ static void find_factors(void *context, int64_t place)
         (c->turn ? c->factor[a][place] : 1) * c->inner[3 * b->particles->block[place / SLICE] + a] / own[a];
 }
 
+/** Layers outside a support have the factors of what they are images of: their own outermost ones lack bonds, and turn by turn that would spread
+ *  into the body. */
+static void take_over_factors(void *context, int64_t place)
+{
+  const Correction *c = context;
+  const BondBased *b = c->bonds;
+  const int32_t number = b->particles->number[place];
+  if (number < 0 || !body_outside(b->body, number)) return;
+  const int32_t original = b->particles->place_of[body_original(b->body, number)];
+  for (int a = 0; a < 3; ++a) c->factor[a][place] = c->factor[a][original];
+}
+
 static void correct_slice(void *context, int64_t slice)
 {
   const Correction *c = context;
@@ -106,6 +118,7 @@ int bond_correct_surface(BondBased *b, Error *error)
   }
   for (; c.turn < TURNS && !failed; ++c.turn) {
     team_each(p->places, find_factors, &c);
+    if (b->body->margin_of) team_each(p->places, take_over_factors, &c);
     team_each(p->slices, correct_slice, &c);
   }
   for (int a = 0; a < 3; ++a) places_free(&c.factor[a]);

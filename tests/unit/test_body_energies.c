@@ -59,6 +59,7 @@ static void halves_and_quarters_in_motion_have_their_share(void **state)
       {ELASTIC, "formulation: correspondence", "explicit: {end time: 0.03, time step: 2e-4, damping: 5}"},
       {ELASTIC, "formulation: ordinary", "explicit: {end time: 0.03, time step: 2e-4, stiffness damping: 1e-4}"},
       {FIBRES, "formulation: bond-based", "explicit: {end time: 0.03, time step: 2e-4, damping: 5}"},
+      {FIBRES, "formulation: bond-based, surface correction: energy", "explicit: {end time: 0.03, time step: 2e-4}"},
       {PLASTIC, "formulation: correspondence, strain: small", "explicit: {end time: 0.03, time step: 2e-4}"},
       {ELASTIC, "formulation: correspondence",
        "implicit: {end time: 0.03, time step: 1e-3, local error: 1, residual: 1e-12, damping: 5, stiffness damping: "
