@@ -53,6 +53,8 @@ typedef struct Bars {
   double work; /* on elements that have points, since the beginning */
 } Bars;
 
+extern const ForcesType bars_forces;
+
 /** Where the ends of a bar's elements stand: its corners, and points between them about a spacing apart.
  *  @param[out] nodes  [3] each, to be freed
  *  @return how many; -1: no memory */

@@ -27,6 +27,8 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define ON_ALL(held) "loads: [{on: {face: y-}, support: {held: " held "}}]\n"
 #define CRACK_FROM(x)                                                                                                  \
   "cracks: [{cut: {line: [[" x ", 0.03], [0.04, 0.03]]}}]\nloads: [{on: {face: x-}, support: {held: across}}]\n"
+#define BAR(from, area) "bars: {low: {points: [[" from ", 0.025], [0.05, 0.025]], area: " area ", material: m}}\n"
+#define HALF "loads: [{on: {face: x-}, support: {held: across}}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
 #define MUCH "is much for concrete, which has 60 to 200 N/m"
 
@@ -112,6 +114,11 @@ static const struct {
     {"m", USUAL, CRACK_FROM("0"), NULL},
     {"m", USUAL, CRACK_FROM("-0.02"), NULL},
     {"m", USUAL, CRACK_FROM("-0.04"), NULL},
+    /* bars: a tenth of the volume of the body is 1.6e-3 times this length; and they end with the body */
+    {"m", USUAL, BAR("0.02", "1.59e-3"), NULL},
+    {"m", USUAL, BAR("0.02", "1.61e-3"), "area: bars take 0.101 of the volume of the body"},
+    {"m", USUAL, BAR("0.025", "1e-4") HALF, NULL},
+    {"m", USUAL, BAR("0.015", "1e-4") HALF, "points: bar 'low' comes to a face with 'support'"},
 };
 
 static void limits_are_where_they_say(void **state)
