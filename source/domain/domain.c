@@ -173,6 +173,14 @@ bool domain_lags(const Domain *d)
   return lags;
 }
 
+bool domain_may_lag(const Domain *d)
+{
+  bool may = false;
+  for (int r = 0; r < d->region_count; ++r)
+    may |= d->regions[r].type->may_lag && d->regions[r].type->may_lag(d->regions[r].formulation);
+  return may;
+}
+
 bool domain_has_secants(const Domain *d)
 {
   bool has = false;

@@ -224,6 +224,8 @@ const char *domain_server_problem(const Domain *domain);
 bool domain_has_servers(const Domain *domain);
 /** Whether forces are found with something as the step before left it. */
 bool domain_lags(const Domain *domain);
+/** Whether that may be so after some step to come. */
+bool domain_may_lag(const Domain *domain);
 /** A material whose server cannot repeat a trial, as iterations have it do; NULL: there is none. */
 const Material *domain_without_trials(const Domain *domain);
 /** Why a free body would gain energy as it moves unless its shortest waves are damped; NULL: it would not. */

@@ -422,6 +422,7 @@ const FormulationType formulation_correspondence = {
     .state = correspondence_state,
     .commit = correspondence_commit,
     .lags = correspondence_lags,
+    .may_lag = correspondence_may_lag,
     .stored_energy = correspondence_stored_energy,
     .elongation = correspondence_elongation,
     .keep_turns = correspondence_keep_turns,

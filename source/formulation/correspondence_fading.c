@@ -255,6 +255,11 @@ bool correspondence_lags(const void *formulation)
   return c->fading && c->fading->softened;
 }
 
+bool correspondence_may_lag(const void *formulation)
+{
+  return ((const Correspondence *)formulation)->fading != NULL;
+}
+
 /** Factors were put in place from outside. */
 static int take_up(void *owner, const double *numbers, int64_t count, Error *error)
 {

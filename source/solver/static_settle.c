@@ -5,24 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-/** Whether the state holds something that a step leaves to the next one to find forces with. */
-static bool may_lag(const StateList *list)
-{
-  const char *const name = "zero-energy control";
-  for (int k = 0; k < list->count; ++k)
-    if (!strncmp(list->rows[k].name, name, strlen(name))) return true;
-  return false;
-}
-
 int static_keep(Solver *run, Error *error)
 {
   Static *s = run->own;
-  StateList list = {0};
-  int status = BRECCIA_OK;
   state_copy_destroy(&s->whole);
+  if (!domain_may_lag(s->domain) || domain_is_elastic(s->domain)) return BRECCIA_OK;
+  StateList list = {0};
   domain_state(s->domain, &list);
   solver_state(run, &list);
-  if (may_lag(&list) && !domain_is_elastic(s->domain)) status = state_copy(&s->whole, &list, error);
+  const int status = state_copy(&s->whole, &list, error);
   state_list_destroy(&list);
   return status;
 }
