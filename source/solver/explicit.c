@@ -18,9 +18,9 @@ static bool is_damped(const ExplicitSpec *spec)
 static void check_explicit(const DeckReader *reader, void *section)
 {
   ExplicitSpec *spec = section;
-  static const char *const others[] = {"damping", "Rayleigh damping"};
+  static const char *const others[] = {"damping", "Rayleigh damping", "local damping", NULL};
   spec->damping = damping_of(&spec->damping_given, reader, section);
-  for (int k = 0; spec->quasi_static && k < 2; ++k)
+  for (int k = 0; spec->quasi_static && others[k]; ++k)
     if (section_node(section, others[k]) != spec->head.node)
       node_error(reader->document, section_node(section, others[k]), reader->error,
                  "%s: 'quasi-static' damps the slowest vibration critically by itself; leave one of them out",

@@ -210,6 +210,8 @@ static void what_makes_no_sense_is_refused(void **state)
        "damping: 'quasi-static' damps the slowest vibration"},
       {"{on: {face: x-, layers: 1}, displacement: [0, 0]}",
        "quasi-static: {}, Rayleigh damping: {ratio: 1, from: 2, to: 3}", "Rayleigh damping: 'quasi-static' damps"},
+      {"{on: {face: x-, layers: 1}, displacement: [0, 0]}", "quasi-static: {}, local damping: 0.8",
+       "local damping: 'quasi-static' damps"}, /* it holds back a body that would be steady */
       {"{on: {face: x-, layers: 1}, displacement: [0, 0]}", "quasi-static: {}, steps: 3", "steps|quasi-static"},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
