@@ -119,6 +119,13 @@ static void list_examples(bool tests)
   }
 }
 
+/** Whether these are words for a file, where names of examples have no ending. */
+static bool is_deck(const char *words)
+{
+  const size_t length = strlen(words);
+  return length > 5 && !strcmp(words + length - 5, ".yaml");
+}
+
 /** The example of this name, or of this deck if no other folder has one of that name; else says which there are. */
 static const Example *find_example(const char *name)
 {
@@ -192,8 +199,11 @@ static int run(int argc, char **argv, const Verb *verb)
     return 0;
   }
   if (values[0] && given <= 2) {
-    const Example *example = find_example(argv[first]);
-    return example ? write_example(example, given == 2 ? argv[first + 1] : example->files[0].name) : 2;
+    // NAME DECK; but who writes DECK --example NAME says the deck first
+    const char *last = given == 2 ? argv[first + 1] : NULL;
+    const bool exchanged = last && is_deck(argv[first]) && !is_deck(last);
+    const Example *example = find_example(exchanged ? last : argv[first]);
+    return example ? write_example(example, exchanged ? argv[first] : last ? last : example->files[0].name) : 2;
   }
   if (given != 1) {
     fprintf(stderr, "breccia new: give the name of the deck to write, like plate.yaml\n");

@@ -104,6 +104,8 @@ equal "new --example: examples" "$(grep -c '^  [a-z0-9-]*/' out)" "$(ls "$source
 "$breccia" new --example clay mine.yaml > out; equal "new --example clay: status" $? 0
 cmp -s mine.yaml "$source/examples/plate-with-crack/clay.yaml" || fail "new --example clay writes another deck"
 "$breccia" new --example cap cap.yaml > out; contains "new --example of a test" "$(cat out)" "'breccia material cap.yaml' runs it"
+"$breccia" new other.yaml --example clay > out; equal "new DECK --example clay: status" $? 0
+cmp -s mine.yaml other.yaml || fail "new DECK --example clay writes another deck"
 "$breccia" new --example clay mine.yaml 2> out; equal "new --example over a file: status" $? 2
 contains "new --example over a file" "$(cat out)" "mine.yaml: exists already"
 "$breccia" new --example elastic a.yaml 2> out; equal "new --example of two: status" $? 2
