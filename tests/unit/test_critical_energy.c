@@ -3,6 +3,8 @@
 #include "formulation/ordinary.h"
 #include "support.h"
 
+#include "base/random.h"
+
 #include <unistd.h>
 
 /** What a bond holds by one of its ends, per volume squared, in long hand. */
@@ -44,6 +46,19 @@ static breccia_model *two_blocks(int body, const char *space, const char *more)
       bodies[body].law, flat, deep, flat, deep, plane ? "" : ", 0", bodies[body].formulation, space, more);
 }
 
+/** The same in the plane with an influence, and without parts of volumes: those of bonds that end near the horizon count in full. */
+static breccia_model *weighted_blocks(int body, const char *influence, const char *more)
+{
+  return model_of(
+      "materials: {m: {%s, density: 2, Young modulus: 1e4}}\nbody:\n"
+      "  a: {material: m, spacing: 0.1, lattice: square, thickness: 0.5, shape: {box: {particles: [9, 5]}}}\n"
+      "  b: {material: m, spacing: 0.1, lattice: square, thickness: 0.5, shape: {box: {particles: [8, 5], first "
+      "particle: [0.93, 0.02]}}}\n"
+      "peridynamics: {formulation: %s, space: plane strain, influence: %s, volume correction: none%s}\n%s",
+      bodies[body].law, bodies[body].formulation, influence,
+      strcmp(bodies[body].formulation, "ordinary") ? "" : ", lattice weights: plain", more);
+}
+
 static void the_bonds_of_a_family_hold_what_it_stores_however_it_is_turned(void **state)
 {
   (void)state;
@@ -82,6 +97,71 @@ static void the_bonds_of_a_family_hold_what_it_stores_however_it_is_turned(void 
       assert_near(sum[1], sum[0], 1e-9 * sum[0]);
       assert_near(one[1], one[0], 1e-9 * one[0]);
       breccia_model_destroy(&m);
+    }
+}
+
+/** Whatever weighs bonds by their length: one of them breaks when both its ends hold more than w_c times its two volumes, less the part of these that
+ *  lies beyond the horizon, which is nothing here. Judged one by one, and by a step, which looks only where its sweep says. */
+static void bonds_of_any_influence_break_at_the_same_energy(void **state)
+{
+  (void)state;
+  static const char *const influences[] = {"constant", "conical", "inverse",     "inverse-square",
+                                           "gaussian", "quartic", "cubic-spline"};
+  for (size_t w = 0; w < sizeof influences / sizeof *influences; ++w)
+    for (int n = 0; n < BODIES; ++n) {
+      double limit = 1e9;
+      for (int pass = 0; pass < 2; ++pass) { /* what bonds hold, then a limit in their midst */
+        char more[200];
+        snprintf(more, sizeof more,
+                 "failure: {criterion: critical bond energy, bond energy: %.17g}\n"
+                 "solve: {explicit: {steps: 1, time step: 1e-12}}\n",
+                 limit);
+        breccia_model *m = weighted_blocks(n, influences[w], more);
+        Domain *d = &m->domain;
+        uint64_t seed = 8;
+        for (int k = 0; k < 2; ++k)
+          for (int64_t i = 0; i < d->particles->count; ++i) {
+            const int32_t place = d->particles->place_of[i];
+            d->particles->displacement[k][place] =
+                (k ? -1e-3 : 4e-3) * d->particles->position[k][place] + 4e-4 * (random_uniform(&seed) - 0.5);
+          }
+        compute_forces(m);
+        double most = 0;
+        int64_t beyond = 0, below = 0;
+        for (int64_t place = 0; place < d->particles->places; ++place)
+          for (int64_t slot = d->family.first[place / SLICE]; slot < d->family.first[place / SLICE + 1]; ++slot) {
+            const int lane = (int)(place % SLICE);
+            if (!(d->family.intact[slot] >> lane & 1)) continue;
+            const Bond bond = family_bond(&d->family, place / SLICE, slot, lane);
+            const int64_t there = bond.neighbour / SLICE,
+                          back = family_slot(&d->family, bond.neighbour, (int32_t)place);
+            const double energy =
+                half_energy(d, place / SLICE, slot, lane) + half_energy(d, there, back, bond.neighbour % SLICE);
+            double length = 0;
+            for (int k = 0; k < 3; ++k) {
+              const double *u = d->particles->displacement[k];
+              length += pow(bond.xi[k] + u[bond.neighbour] - u[place], 2);
+            }
+            if (sqrt(length) <= bond.length) continue;
+            most = fmax(most, energy);
+            if (!pass || fabs(energy / limit - 1) < 1e-9) continue;
+            const Bond turned = family_bond(&d->family, there, back, bond.neighbour % SLICE);
+            bool breaks = d->failure.criterion->exceeds(&d->failure, &d->family, place / SLICE, slot, &bond, lane);
+            breaks |= d->failure.criterion->exceeds(&d->failure, &d->family, there, back, &turned,
+                                                    bond.neighbour % SLICE); /* asked of the end that holds more */
+            if (breaks != (energy > limit))
+              fail_msg("%s, %s: a bond of length %g that holds %.6g of its limit %s", bodies[n].formulation,
+                       influences[w], bond.length, energy / limit, breaks ? "breaks" : "holds");
+            energy > limit ? ++beyond : ++below;
+          }
+        if (pass) {
+          assert_true(beyond > 20 && below > 20);
+          step_surely(m, 1);
+          assert_int_equal(2 * m->domain.broken_count, beyond);
+        }
+        limit = 0.3 * most;
+        breccia_model_destroy(&m);
+      }
     }
 }
 
@@ -439,6 +519,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_bonds_of_a_family_hold_what_it_stores_however_it_is_turned),
+      cmocka_unit_test(bonds_of_any_influence_break_at_the_same_energy),
       cmocka_unit_test(a_pulled_pair_breaks_at_its_energy_and_a_pressed_one_does_not),
       cmocka_unit_test(a_fracture_energy_is_that_of_all_bonds_across),
       cmocka_unit_test(a_body_torn_in_two_spends_the_critical_energy_of_each_bond),

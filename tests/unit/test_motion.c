@@ -1,6 +1,7 @@
 /* Intensities, response spectra and transfer functions: against closed forms. */
 #include "base/fourier.h"
 #include "base/shaking.h"
+#include "model/motion.h"
 #include "support.h"
 
 #include <unistd.h>
@@ -102,6 +103,47 @@ static void resonance_is_bounded_by_damping(void **state)
   assert_near(r.displacement, most, 2e-3 * most);
   assert_near(r.velocity, most * omega, 2e-3 * most * omega);
   assert_near(r.acceleration, 1.5 * sqrt(1 + 4 * damping * damping) / (2 * damping), 2e-3 * 15);
+}
+
+/** Every row of the response spectrum of a push of 2 m/s2, and of the one below it: periods at equal ratios, 2 (T / 2 pi)^2 times 1 + exp(-pi zeta /
+ *  sqrt(1 - zeta^2)) of displacement, and that times 2 pi / T once and twice. The
+ *  acceleration in all is that of its spring and its dashpot. */
+static void rows_of_a_spectrum_are_those_of_an_oscillator(void **state)
+{
+  (void)state;
+  const Written w = write_motion("", steady, 0.5, 201);
+  for (int damped = 0; damped < 2; ++damped) {
+    const double damping = damped ? 0.2 : 0, over = 1 + exp(-pi * damping / sqrt(1 - damping * damping));
+    breccia_motion *m = load(&w, NULL, "m/s2"), *below = load(&w, NULL, "g");
+    analyse(below, NULL,
+            &(breccia_motion_wish){
+                .size = sizeof(breccia_motion_wish), .damping = damping, .shortest = NAN, .longest = NAN});
+    analyse(m, below,
+            &(breccia_motion_wish){
+                .size = sizeof(breccia_motion_wish), .damping = damping, .shortest = 0.2, .longest = 20, .periods = 5});
+    assert_int_equal(breccia_motion_rows(m, BRECCIA_MOTION_RESPONSE), 5);
+    const double *column[5];
+    for (int c = 0; c < 5; ++c) column[c] = m->tables[BRECCIA_MOTION_RESPONSE].columns[c];
+    for (int k = 0; k < 5; ++k) {
+      const double period = 0.2 * pow(10, 0.5 * k), omega = 2 * pi / period, most = over * 2 / (omega * omega);
+      assert_near(column[0][k], period, 1e-12 * period);
+      assert_near(column[1][k], most, 2e-3 * most);
+      assert_near(column[2][k], most * omega, 2e-3 * most * omega);
+      assert_near(column[3][k], most * omega * omega, 2e-3 * most * omega * omega);
+      /* The acceleration in all, 2 (1 - exp(-zeta omega t) (cos - zeta / root sin)): its largest by trial. */
+      double largest = 0;
+      const double root = sqrt(1 - damping * damping);
+      for (double t = 0; t < 1; t += 1e-4) {
+        const double turn = 2 * pi * t * root;
+        largest = fmax(largest, 2 * (1 - exp(-damping * 2 * pi * t) * (cos(turn) - damping / root * sin(turn))));
+      }
+      assert_near(column[4][k], largest, 2e-3 * largest);
+      assert_near(m->over_response[k], gravity * most * omega * omega, 2e-3 * gravity * most * omega * omega);
+    }
+    breccia_motion_destroy(&m);
+    breccia_motion_destroy(&below);
+  }
+  unlink(w.path);
 }
 
 static double pulse(double t)
@@ -344,6 +386,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_push_is_overshot),
+      cmocka_unit_test(rows_of_a_spectrum_are_those_of_an_oscillator),
       cmocka_unit_test(a_straight_line_is_followed_exactly),
       cmocka_unit_test(resonance_is_bounded_by_damping),
       cmocka_unit_test(an_oscillator_swings_on_after_the_end),
