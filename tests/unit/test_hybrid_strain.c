@@ -1,0 +1,88 @@
+/* Strains of hybrid points as the sweep finds them: of blocks with spacings of their own and particles that stand anywhere, an even deformation is
+ * the same in every row, to the last digits. */
+#include "base/tensor.h"
+#include "formulation/hybrid.h"
+#include "support.h"
+
+static const struct Blocks {
+  const char *name, *blocks, *space, *horizon;
+} bodies[] = {
+    {"one block",
+     "{a: {material: m, lattice: square, thickness: 0.3, spacing: 0.1, shape: {box: {particles: [19, 9]}}}}",
+     "plane strain", "1.5 spacings"},
+    {"two spacings",
+     "{a: {material: m, lattice: square, thickness: 0.3, spacing: 0.1, shape: {box: {from: [0, 0], to: [1.2, 0.8]}}}, "
+     "b: {material: m, lattice: square, thickness: 0.3, spacing: 0.08, shape: {box: {from: [1.2, 0], to: [2.4, "
+     "0.8]}}}}",
+     "plane stress", "0.17"},
+    {"two spacings, two laws",
+     "{a: {material: m, lattice: square, thickness: 0.3, spacing: 0.1, shape: {box: {from: [0, 0], to: [1.2, 0.8]}}}, "
+     "b: {material: n, lattice: square, thickness: 0.3, spacing: 0.08, shape: {box: {from: [0, 0.8], to: [1.2, "
+     "1.6]}}}}",
+     "plane strain", "0.21"},
+    {"hexagonal beside square",
+     "{a: {material: m, lattice: hexagonal, thickness: 0.3, spacing: 0.1, shape: {box: {from: [0, 0], to: [1.2, "
+     "0.8]}}}, "
+     "b: {material: m, lattice: square, thickness: 0.3, spacing: 0.1, shape: {box: {from: [1.2, 0], to: [2.4, 0.8]}}}}",
+     "plane strain", "0.17"},
+    {"two spacings in space",
+     "{a: {material: m, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [0.5, 0.4, 0.4]}}}, "
+     "b: {material: m, spacing: 0.08, shape: {box: {from: [0.5, 0, 0], to: [0.9, 0.4, 0.4]}}}}",
+     "3-D", "0.151"},
+};
+
+static void even_strains_are_even_in_every_row(void **state)
+{
+  (void)state;
+  static const double f[9] = {1.004, 2.5e-3, -1.5e-3, -5e-4, 0.997, 2e-3, 3.5e-3, -3e-3, 1.0015};
+  for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b)
+    for (int finite = 0; finite < 2; ++finite) {
+      const bool plane = strcmp(bodies[b].space, "3-D") != 0;
+      breccia_model *m =
+          model_of("units: {length: m, force: kN, time: s}\n"
+                   "materials:\n"
+                   "  m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.3, yield stress: 1e9}\n"
+                   "  n: {model: j2, density: 2, Young modulus: 2e4, Poisson ratio: 0.2, yield stress: 1e9}\n"
+                   "body: %s\nperidynamics: {formulation: hybrid, space: %s, strain: %s, horizon: %s}\n"
+                   "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                   bodies[b].blocks, bodies[b].space, finite ? "green-lagrange" : "small", bodies[b].horizon);
+      double u[9], expected[6];
+      for (int k = 0; k < 9; ++k) u[k] = plane && (k % 3 == 2 || k / 3 == 2) ? 0 : f[k] - (k % 4 == 0);
+      for (int k = 0; k < 6; ++k) {
+        static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+        const int r = row[k], c = column[k];
+        expected[k] = u[3 * r + c] + u[3 * c + r];
+        for (int j = 0; j < 3 && finite; ++j) expected[k] += u[3 * j + r] * u[3 * j + c];
+        if (k < 3) expected[k] /= 2;
+      }
+      double deformed[9];
+      for (int k = 0; k < 9; ++k) deformed[k] = u[k] + (k % 4 == 0);
+      deform_uniformly(m, deformed);
+      compute_forces(m);
+      const Region *region = &m->domain.regions[0];
+      const Hybrid *h = region->formulation;
+      int64_t looked = 0;
+      for (int64_t n = 0; n < h->bonds->count; ++n) {
+        HybridView view;
+        hybrid_view(h, n, &view);
+        if (view.idle) continue;
+        ++looked;
+        for (int k = 0; k < 6; ++k) {
+          if (k == ZZ && !strcmp(bodies[b].space, "plane stress")) continue; /* the law's affair */
+          if (!(fabs(region->points.strain[k][n] - expected[k]) < 1e-14))
+            fail_msg("%s, %s: strain %d of row %lld is %.9g, not %.9g", bodies[b].name, finite ? "finite" : "small", k,
+                     (long long)n, region->points.strain[k][n], expected[k]);
+        }
+      }
+      assert_true(looked > 100);
+      breccia_model_destroy(&m);
+    }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(even_strains_are_even_in_every_row),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
