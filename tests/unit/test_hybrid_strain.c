@@ -79,10 +79,43 @@ static void even_strains_are_even_in_every_row(void **state)
     }
 }
 
+/** What single bonds hold adds up to what the body holds, of bonds of two materials, which have two points, too. */
+static void bonds_hold_what_the_body_holds(void **state)
+{
+  (void)state;
+  for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
+    breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
+                                "materials:\n"
+                                "  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.3}\n"
+                                "  n: {model: elastic, density: 2, Young modulus: 2e4, Poisson ratio: 0.2}\n"
+                                "body: %s\nperidynamics: {formulation: hybrid, space: %s, horizon: %s}\n"
+                                "solve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                                bodies[b].blocks, bodies[b].space, bodies[b].horizon);
+    Domain *d = &m->domain;
+    const Family *f = &d->family;
+    deform_uniformly(m, (const double[9]){1.002, 1e-3, 0, 3e-3, 0.999, 0, 0, 0, 1});
+    compute_forces(m);
+    double sum = 0;
+    for (int64_t place = 0; place < d->particles->places; ++place)
+      for (int64_t slot = f->first[place / SLICE]; slot < f->first[place / SLICE + 1]; ++slot) {
+        const int lane = (int)(place % SLICE);
+        if (!(f->intact[slot] >> lane & 1)) continue;
+        StoredEnergy energy;
+        d->regions[0].type->bond_energy(d->regions[0].formulation, place / SLICE, slot, lane, 0, &energy);
+        sum += energy.stored / 2; /* seen from both ends */
+      }
+    const double whole = domain_stored_energy(d);
+    assert_true(whole > 0);
+    assert_near(sum, whole, 1e-10 * whole);
+    breccia_model_destroy(&m);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(even_strains_are_even_in_every_row),
+      cmocka_unit_test(bonds_hold_what_the_body_holds),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
