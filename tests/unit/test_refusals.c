@@ -198,6 +198,42 @@ static const struct Case {
      "range: the lowest value 1 is not below the highest, 1"},
     {{.more = "watch: {e: {opening between: [[0, 0, 0]]}}"}, 6, "expected two points, found 1"},
     {{.more = "units: {length: m, force: kN, time: furlong}"}, 6, "furlong"},
+    /* what no body and no law can be made of */
+    {{.body = "body: {b: {material: m, spacing: 0.001, shape: {box: {from: [0, 0, 0], to: [2, 2, 2]}}}}"},
+     2,
+     "8e+09 lattice cells are more than the 2e9 that can be numbered"},
+    {{.material = "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}",
+      .horizon = "peridynamics: {space: 3-D, formulation: correspondence}"},
+     1,
+     "'elastic-1d' is a law of one strain; correspondence takes elastic, j2, viscoelastic,"},
+    {{.horizon = "peridynamics: {space: 3-D, formulation: bond-based}"},
+     1,
+     "'elastic' is a law of strain in space; bond-based takes elastic-1d, elastic-brittle,"},
+    {{.material =
+          "materials: {m: {model: multi-yield-j2, density: 2, shear modulus: 1e4, bulk modulus: 2e4, octahedral "
+          "strength: 30, surfaces: 7.5}}"},
+     1,
+     "'surfaces' must be a whole number"},
+    {{.material =
+          "materials: {m: {model: multi-yield-j2, density: 2, shear modulus: 1e4, bulk modulus: 2e4, octahedral "
+          "strength: 30, friction angle: 20 deg}}"},
+     1,
+     "with a friction angle the strength is given by 'cohesion'"},
+    {{.material = "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 3, "
+                  "hardening modulus: 10}}",
+      .horizon = "peridynamics: {space: 3-D, formulation: ordinary}"},
+     1,
+     "families yield without hardening"},
+    {{.more = "watch: {e: {bond between: [[0, 0, 0], [0.6, 0.5, 0.4]]}}"},
+     6,
+     "no bond joins the particles nearest to these points"},
+    {{.more = "watch: {e: {bond between: [[0.31, 0, 0], [0.32, 0, 0]]}}"},
+     6,
+     "the same particle is nearest to both points"},
+    {{.loads = "loads: [" HELD ", {on: {face: x+, layers: 1}, velocity: [1, 0, 0], history: {controlled: yes}}]",
+      .solve = "solve: {static: {increments: 2, control: {displacement of: {face: x+}, direction: [1, 0, 0], to: 1}}}"},
+     4,
+     "its factor cannot be found by control; prescribe a displacement instead"},
 };
 
 static char *deck_of(const Parts *p)
