@@ -245,9 +245,49 @@ static void a_law_that_gives_more_than_it_got_stops_the_run(void **state)
   breccia_error_destroy(&error);
 }
 
+/** What damps and what holds shortens the stable step t of the body alone, w = 2 / t its fastest vibration: local damping acts on it like a greater
+ *  stiffness; with stiffness damping b it turns over from step to step where dt^2 w^2 + 2 b w^2 dt = 4; mass damping is followed by steps of its own
+ *  time; springs of k per mass add to w^2. The steps are as many as fit at the share that is safe. */
+static void damping_and_springs_shorten_steps_as_they_must(void **state)
+{
+  (void)state;
+#define CUBE                                                                                                           \
+  "units: {length: m, force: kN, time: s}\n" SOFT_SOLID                                                                \
+  "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 5, 4]}}}}\n"                                     \
+  "peridynamics: {horizon: 1.5 spacings}\nloads: [%s]\nsolve: {explicit: {end time: %.17g, safety: 0.7%s}}\n"
+  breccia_model *m = model_of(CUBE, "", 0.1, "");
+  const double t = m->solver.clock.stable, w = 2 / t, mass = 120 * 2 * 0.001;
+  breccia_model_destroy(&m);
+  const struct {
+    const char *loads, *more;
+    double number, stable; /* of the words; what follows */
+  } cases[] = {{"", "", 0, t},
+               {"", "local damping", 0.44, t / sqrt(1.44)},
+               {"", "damping", 0.5 / t, t},
+               {"", "damping", 3 / t, t / 3},
+               {"", "stiffness damping", 0.75 * t, t / 2},
+               {"spring", "", 3 * mass * w * w, t / 2}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char loads[100] = "", more[100] = "";
+    if (*cases[k].loads)
+      snprintf(loads, sizeof loads, "{on: {all: yes}, %s: {stiffness: %.17g}}", cases[k].loads, cases[k].number);
+    if (*cases[k].more) snprintf(more, sizeof more, ", %s: %.17g", cases[k].more, cases[k].number);
+    const double end = 12.3 * 0.7 * cases[k].stable;
+    m = model_of(CUBE, loads, end, more);
+    assert_near(m->solver.clock.stable, cases[k].stable, 2e-3 * cases[k].stable);
+    assert_int_equal(m->solver.clock.steps, 13);
+    assert_near(m->solver.clock.time_step, end / 13, 1e-12 * end);
+    step_surely(m, 13);
+    assert_true(breccia_model_time(m) == end);
+    breccia_model_destroy(&m);
+  }
+#undef CUBE
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(damping_and_springs_shorten_steps_as_they_must),
       cmocka_unit_test(damped_bodies_come_to_rest_at_the_default_step),
       cmocka_unit_test(a_body_that_supports_hold_is_out_of_balance_while_it_moves),
       cmocka_unit_test(steps_end_with_the_times_that_are_asked_for),
