@@ -21,6 +21,7 @@ static void write_deck(const TornBar *bar, Text *deck)
   static const double strength[] = {3000, 2700, 2850};
   const bool cubic = !strcmp(bar->space, "3-D"), alone = strstr(bar->law, "softening"),
              links = strstr(bar->law, "link-damage");
+  const int left = bar->split ? TORN_COLUMNS / 2 : 3;
   const char *poisson = alone ? "" : ", Poisson ratio: 0.2";
   text_add(deck, "units: {length: m, force: kN, time: s}\nmaterials:\n");
   for (int k = 0; k < 3; ++k)
@@ -36,11 +37,11 @@ static void write_deck(const TornBar *bar, Text *deck)
   }
   text_add(deck,
            "peridynamics: {space: %s, %s}\n"
-           "loads: [{on: {face: x-, layers: 3}, displacement: [%.9g, 0%s], history: {ramp to: 1}},\n"
-           "        {on: {face: x+, layers: 3}, displacement: [%.9g, 0%s], history: {ramp to: 1}}]\n"
+           "loads: [{on: {face: x-, layers: %d}, displacement: [%.9g, 0%s], history: {ramp to: 1}},\n"
+           "        {on: {face: x+, layers: %d}, displacement: [%.9g, 0%s], history: {ramp to: 1}}]\n"
            "solve: {static: {increments: %d}}\n",
-           bar->space, bar->peridynamics, -bar->pull / 2, cubic ? ", 0" : "", bar->pull / 2, cubic ? ", 0" : "",
-           bar->increments);
+           bar->space, bar->peridynamics, left, -bar->pull / 2, cubic ? ", 0" : "",
+           bar->split ? TORN_COLUMNS - left : left, bar->pull / 2, cubic ? ", 0" : "", bar->increments);
 }
 
 static void find_openings(const breccia_model *model, double *opening)

@@ -4,6 +4,8 @@
 
 #include "breccia/breccia.h"
 
+#include <stdbool.h>
+
 /** Where the bar is weaker, so that it opens there. */
 typedef enum TornBarWeak {
   WEAK_COLUMN,  /* one column by a tenth: both gaps beside it are alike */
@@ -18,6 +20,7 @@ typedef struct TornBar {
   TornBarWeak weak;
   int rows, increments;
   double pull; /* how far the ends move apart, m */
+  bool split;  /* both halves are held, so that a flat crack opens between them and nothing else moves */
 } TornBar;
 
 typedef struct TornBarEnd {
