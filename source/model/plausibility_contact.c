@@ -41,7 +41,20 @@ static void length_words(const breccia_model *model, double length, Text *words)
 
 /* ---- blocks ---- */
 
-/** Least length of the bonds that join each two blocks; INFINITY where none does.
+/** Whether the middle of a bond stands in another block than those of its ends: it does not reach across a gap then. */
+static bool is_filled(const Body *body, int32_t place, const Bond *bond, int own, int other)
+{
+  double middle[3];
+  place_point(&body->particles, place, middle);
+  for (int k = 0; k < 3; ++k) middle[k] += bond->xi[k] / 2;
+  for (int k = 0; k < body->block_count; ++k)
+    if (k != own && k != other && fills_lattice(body, k) &&
+        shape_contains(body->blocks[k]->shape, &body->lattices[k].unit, body->dimensions, middle, 0))
+      return true;
+  return false;
+}
+
+/** Least length of the bonds that join each two blocks, but through others; INFINITY where none does.
  *  @param[out] least  [blocks][blocks], of the lower block first */
 static void find_joints(const Domain *d, double *least)
 {
@@ -55,7 +68,9 @@ static void find_joints(const Domain *d, double *least)
         if (!(f->intact[slot] >> lane & 1)) continue;
         const Bond bond = family_bond(f, slice, slot, lane);
         const int own = p->block[slice], other = p->block[bond.neighbour / SLICE];
-        if (own < other) least[own * blocks + other] = fmin(least[own * blocks + other], bond.length);
+        if (own < other && bond.length < least[own * blocks + other] &&
+            !is_filled(&d->body, (int32_t)(slice * SLICE + lane), &bond, own, other))
+          least[own * blocks + other] = bond.length;
       }
 }
 

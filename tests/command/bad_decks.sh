@@ -331,6 +331,14 @@ two 0.01 0.01 "$standard"
 equal "blocks that touch nearly: warnings" "$(cat "$work/errors")" ""
 two 0.02 0 "$standard"
 contains "blocks apart" "$(cat "$work/errors")" "warning: two.yaml:6:3: blocks 'a' and 'b' are 20 mm apart, within the horizon of 60.3 mm: bonded across the gap"
+cp "$work/two.yaml" "$work/apart.yaml"
+for to in 0.2 0.1; do
+  awk -v to=$to '/^peridynamics/ {print "  c: {material: s, lattice: square, spacing: 0.02, thickness: 0.1, shape: {box: {from: [0, 0.1], to: [" to ", 0.12]}}}"} 1' \
+    "$work/apart.yaml" > "$work/filled.yaml"
+  (cd "$work" && "$breccia" check filled.yaml > out 2> errors)
+  equal "a third block in the gap, up to $to: status" $? 0
+  equal "a third block in the gap, up to $to: warnings of it" "$(grep -c "bonded across the gap" "$work/errors")" "$([ $to = 0.2 ] && echo 0 || echo 1)"
+done
 two 0.08 0 "$standard"
 equal "blocks more than a horizon apart: warnings" "$(cat "$work/errors")" ""
 two -0.05 0 "$standard"
