@@ -374,6 +374,16 @@ BRECCIA_API int breccia_test_fit(breccia_test *test, const char *path, breccia_f
 /** @return 1; 0 after the last of the fitted parameters; -1 when memory is out */
 BRECCIA_API int breccia_test_fitted_at(breccia_test *test, int k, breccia_fitted *parameter);
 
+typedef struct breccia_concrete { /* numbers with units, in words; NULL: by rule */
+  size_t size;
+  const char *compression, *tension; /* strengths; one at least is given */
+  const char *fracture_energy, *aggregate, *modulus, *poisson, *density, *spacing;
+  int unverified; /* 1: no plates are run, and with a fracture energy the tensile stretch is that of an even stress */
+} breccia_concrete;
+/** Parameters of 'link-damage' for a lattice of links that is to be such a concrete, and what plates of it bear.
+ *  @return a block of a deck with comments, for breccia_text_free; NULL after a message */
+BRECCIA_API char *breccia_concrete_calibrate(const breccia_concrete *concrete, breccia_error *error);
+
 /* ---- studies: one deck with several values of some of its keys ---- */
 
 typedef struct breccia_study breccia_study;

@@ -1,13 +1,25 @@
-/* Parameters of a law from measured curves. */
+/* Parameters of a law from measured curves, or of concrete as a lattice of links from its strengths. */
 #include "verbs.h"
 
 #include <math.h>
+#include <string.h>
 
-enum { AGAINST, PICTURE, COUNT };
+enum { AGAINST, PICTURE, FC, FT, ENERGY, AGGREGATE, MODULUS, POISSON, DENSITY, SPACING, UNVERIFIED, COUNT };
 
 static const Option options[] = {
     {"against", "DATA.csv", "measured points, instead of those that the file names"},
     {"picture", "FILE", "draw the fitted curve with the points (.png, .svg, .pdf)"},
+    {"fc", "STRESS", "of concrete: strength in compression, like 4000psi or '30 MPa'"},
+    {"ft", "STRESS", "of concrete: strength in tension (0.33 sqrt(w f_c), ACI 209R)"},
+    {"fracture-energy", "ENERGY",
+     "of concrete, per area, like '100 N/m' (by --aggregate; without either links tear at twice their tensile "
+     "stretch)"},
+    {"aggregate", "SIZE", "of concrete: largest grains; fracture energy by CEB-FIP 1990, and spacing of the lattice"},
+    {"modulus", "STRESS", "of concrete: Young's (57000 sqrt(f_c) in psi, ACI 318)"},
+    {"poisson", "RATIO", "of concrete: Poisson's (0.2)"},
+    {"density", "DENSITY", "of concrete (145 lb/ft3, or 2400 kg/m3)"},
+    {"spacing", "LENGTH", "of the lattice (--aggregate, or 1 in, 25 mm)"},
+    {"unverified", NULL, "of concrete: run no plates"},
     {0},
 };
 
@@ -37,15 +49,47 @@ static int draw(breccia_test *test, const char *path, breccia_error *error)
   return status;
 }
 
+static int calibrate_concrete(const char **values)
+{
+  for (int k = AGAINST; k <= PICTURE; ++k)
+    if (values[k]) {
+      fprintf(stderr, "breccia calibrate: --%s is for measured curves, and not for 'concrete'\n", options[k].name);
+      return 2;
+    }
+  breccia_error *error = breccia_error_create();
+  const breccia_concrete wish = {.size = sizeof wish,
+                                 .compression = values[FC],
+                                 .tension = values[FT],
+                                 .fracture_energy = values[ENERGY],
+                                 .aggregate = values[AGGREGATE],
+                                 .modulus = values[MODULUS],
+                                 .poisson = values[POISSON],
+                                 .density = values[DENSITY],
+                                 .spacing = values[SPACING],
+                                 .unverified = values[UNVERIFIED] != NULL};
+  char *words = breccia_concrete_calibrate(&wish, error);
+  if (words) printf("%s", words);
+  const int status = words ? BRECCIA_OK : BRECCIA_USER_ERROR;
+  breccia_text_free(words);
+  return fail(error, status);
+}
+
 static int run(int argc, char **argv, const Verb *verb)
 {
   const char *values[COUNT];
   int first = read_options(argc, argv, verb, values, NULL, NULL);
   if (first < 0) return first == -2 ? 0 : 2;
   if (argc - first != 1) {
-    fprintf(stderr, "breccia calibrate: give one file TEST.yaml; see 'breccia calibrate --help'\n");
+    fprintf(stderr, "breccia calibrate: give one file TEST.yaml, or 'concrete'; see 'breccia calibrate --help'\n");
     return 2;
   }
+  if (!strcmp(argv[first], "concrete")) return calibrate_concrete(values);
+  for (int k = FC; k < COUNT; ++k)
+    if (values[k]) {
+      fprintf(stderr, "breccia calibrate: --%s is for 'breccia calibrate concrete', and not for a file\n",
+              options[k].name);
+      return 2;
+    }
   if (values[PICTURE] && !breccia_can_draw(values[PICTURE])) {
     fprintf(stderr, "breccia calibrate: --picture: '%s' should end in .png, .svg or .pdf\n", values[PICTURE]);
     return 2;
@@ -64,9 +108,12 @@ static int run(int argc, char **argv, const Verb *verb)
 
 const Verb verb_calibrate = {
     .name = "calibrate",
-    .arguments = "TEST.yaml [options]",
-    .about = "fit parameters of a law to a measured curve",
+    .arguments = "TEST.yaml [options], or breccia calibrate concrete --fc STRESS [options]",
+    .about = "fit parameters of a law to a measured curve, or make concrete of links by its strengths",
     .options = options,
-    .more = "TEST.yaml is a file as for 'breccia material', with the measured points under 'against' and under 'fit'\n"
-            "the parameters to choose with their ranges: fit: {cohesion: {from: 5, to: 50}}.",
+    .more =
+        "TEST.yaml is a file as for 'breccia material', with the measured points under 'against' and under 'fit'\n"
+        "the parameters to choose with their ranges: fit: {cohesion: {from: 5, to: 50}}.\n"
+        "'concrete' prints a block for a deck, of the law 'link-damage', by ACI's rules with the factors of Tuniki\n"
+        "2012, and says between which stresses plates of it fail in tension and in compression.",
     .run = run};
