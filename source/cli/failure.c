@@ -101,7 +101,9 @@ static Trial judge(Search *s, const breccia_study *study, int k, double load)
   if (one.state == BRECCIA_CASE_FAILED && cases_body_failed(study, k)) t.verdict = FAILS;
   t.done = one.state == BRECCIA_CASE_DONE;
   if (!t.done) return t;
-  double limit;
+  double limit, told = 1;
+  breccia_study_figure(study, k, "rest.told", &told); /* of quasi-static stages only */
+  if (told == 0) return t;
   if (!s->rest_given && breccia_study_figure(study, k, "rest.limit", &limit)) s->rest = limit;
   if (breccia_study_figure(study, k, "rest.unbalanced", &t.unbalanced) &
       breccia_study_figure(study, k, "rest.kinetic", &t.kinetic))
@@ -131,7 +133,7 @@ static int try_loads(Search *s, const double *loads, int count, breccia_error *e
     if (t.done)
       fprintf(stderr,
               "breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
-              "end, and explicit stages need damping\n",
+              "end, explicit stages need damping, and 'quasi-static' time enough; its log.txt tells more\n",
               t.name);
     else
       fprintf(stderr, "breccia failure: %s/%s/log.txt tells more\n", s->folder, t.name);

@@ -169,7 +169,7 @@ static int try_plate(const Concrete *c, double stress, bool *bears, Error *error
   int status = deck.failed ? error_add(error, BRECCIA_FAILURE, "out of memory: plates")
                            : breccia_model_load_string(text_words(&deck), "plate", &wishes, &model, error);
   while (!status && !solver_is_done(&model->solver)) status = breccia_model_step(model, 1000000, error);
-  if (!status) *bears = model->solver.records[0].steady == 1;
+  if (!status) *bears = model->solver.records[0].steady == STEADY;
   breccia_model_destroy(&model);
   text_free(&deck);
   return status;

@@ -2,6 +2,7 @@
 #include "model/run.h"
 
 #include "results/checkpoint.h"
+#include "solver/quasi_static.h"
 #include "solver/reactions.h"
 #include "solver/rest.h"
 #include <math.h>
@@ -142,11 +143,6 @@ static void add_balance(const Solver *s, Text *text)
   text_add(text, "},\n");
 }
 
-static const char *verdict_of(const StageRecord *record)
-{
-  return record->steady == 1 ? "steady" : record->steady == -1 ? "failed" : "not told";
-}
-
 /** How far a body is from rest that was meant to come to it. */
 static void add_rest(const Solver *s, Text *text)
 {
@@ -158,8 +154,10 @@ static void add_rest(const Solver *s, Text *text)
   add_number(text, "kinetic", rest.kinetic);
   const double limit = solver_stage_steady(s, s->clock.stage);
   if (!isnan(limit)) text_add(text, ", \"limit\": %g", limit);
-  if (s->records[s->clock.stage].steady != 0)
-    text_add(text, ", \"quasi-static\": \"%s\"", verdict_of(&s->records[s->clock.stage]));
+  const StageRecord *record = &s->records[s->clock.stage];
+  if (record->steady != STEADY_UNASKED)
+    text_add(text, ", \"quasi-static\": \"%s\", \"told\": %d", quasi_static_verdict(record),
+             record->steady == STEADY || record->steady == STEADY_NOT);
   text_add(text, "},\n");
 }
 
@@ -269,16 +267,12 @@ static void tell_verdicts(const Solver *s, Text *t)
     const StageRecord *r = &s->records[k];
     const double limit = solver_stage_steady(s, k);
     char name[64];
-    if (r->steady == 0) continue;
+    if (r->steady == STEADY_UNASKED) continue;
     text_add(t, "quasi-static");
     if (s->clock.stages > 1) text_add(t, ", stage '%s'", solver_stage_name(s, k, name, sizeof name));
-    if (r->steady == 2)
-      text_add(t, ": whether the body is steady cannot be told, as a load or motion still changes at the end\n");
-    else
-      text_add(t,
-               ": %s: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (steady: "
-               "both at most %g)\n",
-               verdict_of(r), r->unbalanced, r->kinetic, limit);
+    text_add(t, ": ");
+    quasi_static_tell(r, limit, t);
+    text_add(t, "\n");
   }
 }
 
@@ -288,7 +282,7 @@ static void tell_rest(const Solver *s, const Units *units, Text *t)
   Balance balance;
   Rest rest;
   if (rest_find(s, &rest, NULL) || !rest.meant) return;
-  if (s->records[s->clock.stage].steady != 0)
+  if (s->records[s->clock.stage].steady != STEADY_UNASKED)
     ; /* it is told by what it was judged */
   else if (rest.reached)
     text_add(t, "at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",

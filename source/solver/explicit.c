@@ -22,53 +22,14 @@ static void check_explicit(const DeckReader *reader, void *section)
   spec->damping = damping_of(&spec->damping_given, reader, section);
   for (int k = 0; spec->quasi_static && others[k]; ++k)
     if (section_node(section, others[k]) != spec->head.node)
-      node_error(reader->document, section_node(section, others[k]), reader->error,
-                 "%s: 'quasi-static' damps the slowest vibration critically by itself; leave one of them out",
-                 others[k]);
+      node_error(
+          reader->document, section_node(section, others[k]), reader->error,
+          "%s: 'quasi-static' damps the slowest vibration by itself, by its 'damping ratio'; leave one of them out",
+          others[k]);
   if (!isnan(spec->rest) && !is_damped(spec))
     node_error(reader->document, section_node(section, "rest"), reader->error,
                "rest: without 'damping' or 'local damping' a body does not come to rest");
 }
-
-static const Field quasi_static_fields[] = {
-    {.key = "ramp",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(QuasiStaticSpec, ramp),
-     .dimension = "1",
-     .standard = "2",
-     .range = "(0, 1e6]",
-     .meaning = "periods over which loads grow from 0, along a straight line, that begin with the stage and have no "
-                "'history' of their own; prescribed displacements too"},
-    {.key = "hold",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(QuasiStaticSpec, hold),
-     .dimension = "1",
-     .standard = "1",
-     .range = "[0.1, 1e6]",
-     .meaning = "further periods, in which they stay as they are"},
-    {.key = "period",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(QuasiStaticSpec, period),
-     .dimension = "time",
-     .standard = "",
-     .range = "(0, inf)",
-     .meaning = "when absent: that of the slowest vibration that these loads set off, of the body as the stage holds "
-                "it, elastic and with the bonds that are left, which is found by the program"},
-    {.key = "steady",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(QuasiStaticSpec, steady),
-     .dimension = "1",
-     .standard = "0.05",
-     .range = "(0, 1)",
-     .meaning = "the body counts as steady in the end where forces out of balance are at most this share of those that "
-                "act, and kinetic energy of the work; else it has failed"},
-};
-static const Section quasi_static_section = {
-    .name = "quasi-static",
-    .about = "Loads grow slowly beside the body's slowest vibration, which is damped critically, and are held until "
-             "the body is steady or has failed (Tuniki 2012). quasi-static: {} takes all defaults.",
-    .size = sizeof(QuasiStaticSpec),
-    FIELDS(quasi_static_fields)};
 
 static const Field explicit_fields[] = {
     {.key = "time step",
@@ -226,7 +187,7 @@ static void destroy(Solver *run)
 
 double explicit_mass_damping(const Explicit *s)
 {
-  return s->period > 0 ? 4 * acos(-1) / s->period : s->spec->damping.mass;
+  return s->period > 0 ? quasi_static_damping(s->spec->quasi_static, s->period) : s->spec->damping.mass;
 }
 
 static bool damps(const Solver *run)
@@ -266,16 +227,6 @@ static void describe_stage(const void *section, const char *time, Text *text)
   if (spec->local_damping > 0) text_add(text, ", local damping %g", spec->local_damping);
 }
 
-/** Whether the body bears the loads of a stage that ends with this question. */
-static void judge(Solver *run, const Rest *rest)
-{
-  const double limit = ((const ExplicitSpec *)run->spec)->quasi_static->steady;
-  StageRecord *record = &run->records[run->clock.stage];
-  record->unbalanced = rest->unbalanced;
-  record->kinetic = rest->kinetic;
-  record->steady = !rest->meant ? 2 : rest->unbalanced <= limit && rest->kinetic <= limit ? 1 : -1;
-}
-
 static double steady(const void *section)
 {
   const ExplicitSpec *spec = section;
@@ -296,7 +247,7 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
   if (!asked && !judged) return BRECCIA_OK;
   const int status = rest_find(run, &rest, error);
   if (status) return status;
-  if (s->spec->quasi_static) judge(run, &rest);
+  if (s->spec->quasi_static) quasi_static_judge(run, s->spec->quasi_static, &rest);
   if (!asked) return BRECCIA_OK;
   if (rest.meant && fmax(rest.unbalanced, rest.kinetic) < s->spec->rest) {
     clock->ended = 1;

@@ -5,16 +5,9 @@
 
 #include "solver/damping.h"
 #include "solver/face_work.h"
+#include "solver/quasi_static.h"
 #include "solver/solver.h"
 #include "solver/stiffness_damping.h"
-
-/** Loads that grow slowly beside the body's slowest vibration, which is damped critically. */
-typedef struct QuasiStaticSpec {
-  SectionHead head;
-  double ramp, hold; /* in periods */
-  double period;     /* NaN: found */
-  double steady;
-} QuasiStaticSpec;
 
 typedef struct ExplicitSpec {
   SectionHead head;
@@ -57,7 +50,7 @@ typedef struct Explicit {
   double (*parts)[SUMS]; /* the same for parts of prescribed selections */
 } Explicit;
 
-/** Rate of damping in proportion to mass: of the deck, or critical for the period. */
+/** Rate of damping in proportion to mass: of the deck, or for the period of `quasi_static`. */
 double explicit_mass_damping(const Explicit *solver);
 
 /** Length, number and end of the steps to come, for the body as it is. */

@@ -33,13 +33,15 @@ typedef struct StepCost {
   bool least;                  /* how much more nothing tells beforehand */
 } StepCost;
 
+/** What stages judge of the body at their end: it bears its loads; it does not; a load or motion still changes; the stage is too short to tell. */
+enum { STEADY_UNASKED = 0, STEADY = 1, STEADY_NOT = -1, STEADY_CHANGES = 2, STEADY_TOO_SHORT = 3 };
+
 /** How a stage went. */
 typedef struct StageRecord {
   double first_step, last_step, begin, end; /* steps done and times at its begin and end */
   double came_to_rest;                      /* 1: it ended because the body was at rest */
-  double
-      steady; /* of stages that judge: 1 the body bears its loads, -1 it does not, 2 a load or motion still changes; else 0 */
-  double unbalanced, kinetic; /* by which it was judged (solver/rest.h) */
+  double steady;                            /* one of STEADY_... */
+  double unbalanced, kinetic;               /* by which it was judged (solver/rest.h) */
 } StageRecord;
 enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 

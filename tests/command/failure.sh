@@ -75,4 +75,7 @@ refused "never fails" "give a larger TO" bar.yaml --load 'variables.pull=10 kN:2
 refused "fails at once" "give a smaller FROM" bar.yaml --load 'variables.pull=300 kN:400 kN'
 sed 's/, damping.*}}$/}}/' plate.yaml > free.yaml
 refused "undamped" "cannot be told: loads must have become steady" free.yaml --load 'variables.load=10 N:20 N'
+sed -e 's/explicit: {.*}}$/explicit: {quasi-static: {ramp: 0.01, hold: 0.1}}}/' -e 's/, history: {ramp to:[^}]*}"}//' plate.yaml > short.yaml
+refused "too short to tell" "'quasi-static' time enough; its log.txt tells more" short.yaml --load 'variables.load=10 N:20 N'
+grep -q 'not told: .*; the loading is too short to tell' short-failure/*/log.txt || fail "too short to tell: $(cat short-failure/*/log.txt)"
 finish
