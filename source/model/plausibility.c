@@ -329,7 +329,9 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
     quantity_describe(rise, "s", text);
     if (rests) text_add(text, " of its stage, at rest");
   }
-  if (rise > 0 && !rests) {
+  if (rise > 0 && load->history.grown > 0)
+    text_add(text, ", as 'quasi-static' asks for");
+  else if (rise > 0 && !rests) {
     text_add(text, ", %.3g travel times of a wave: %s", rise / e->crossing,
              rise < e->crossing        ? "a blow"
              : rise < 10 * e->crossing ? "waves will show"

@@ -1,5 +1,6 @@
 /* The lowest frequency of a body as it is held, where a deck asks how long loads, damping and steps should take. */
 #include "model/plausibility_parts.h"
+#include <math.h>
 
 #include "solver/modes.h"
 
@@ -42,7 +43,7 @@ static double lowest_frequency(breccia_model *model, bool *loose)
 static void advise(const breccia_model *model, double frequency, Text *text)
 {
   const Solver *s = &model->solver;
-  if (s->type->rests) return;
+  if (s->type->rests || !isnan(solver_stage_steady(s, s->clock.stage))) return; /* 'quasi-static' has chosen both */
   if (s->type->few_steps) {
     text_add(text, "; steps of ");
     quantity_describe(1 / (20 * frequency), "s", text);

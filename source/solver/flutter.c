@@ -13,7 +13,7 @@ static bool holds_all(const Loading *loading, const Load *load)
   return held > 1 && load_acts(loading, load);
 }
 
-void flutter_warn_of_supports(const Solver *run, double stable, double stiffness, Text *warning)
+void flutter_warn_of_supports(const Solver *run, double stable, double stiffness, bool local, Text *warning)
 {
   const double enough = 0.1, surely = 0.2; /* of critical at the highest frequency: by trials, docs/theory.md 7 */
   const Loading *loading = run->loading;
@@ -27,9 +27,9 @@ void flutter_warn_of_supports(const Solver *run, double stable, double stiffness
              "some ten "
              "travel times of a wave at corners where the body is wider at the face than beyond it; take 'stiffness "
              "damping: "
-             "%.2g' (a fifth of critical at the highest frequency) or 'local damping', or, for undamped "
-             "motions, hold layers by 'displacement'",
-             warning->length ? "\n" : "", where, surely * stable);
+             "%.2g' (a fifth of critical at the highest frequency)%s hold layers by 'displacement'",
+             warning->length ? "\n" : "", where, surely * stable,
+             local ? " or 'local damping', or, for undamped motions," : ", or");
     return;
   }
 }

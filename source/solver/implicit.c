@@ -208,7 +208,7 @@ static int plan(Solver *run, Text *warning, Error *error)
   int status = check(run, s->spec, error);
   if (!status) status = stable_step(s->domain, &s->stable, error);
   if (status) return status;
-  flutter_warn_of_supports(run, s->stable, s->spec->damping.stiffness, warning);
+  flutter_warn_of_supports(run, s->stable, s->spec->damping.stiffness, false, warning);
   s->next = implicit_longest(s->spec);
   run->clock.stable = INFINITY;
   run->clock.time_step = s->next;

@@ -54,6 +54,22 @@ for load in 0.9 1.1; do
   contains "the block under $load" "$(cat log)" "quasi-static: $([ $load = 0.9 ] && echo steady || echo failed)"
 done
 
+# ---- advice does not contradict what quasi-static loading does by itself ----
+"$breccia" check plate.yaml > out 2>&1; equal "check: status" $? 0
+contains "check: loads" "$(cat out)" "as 'quasi-static' asks for"
+contains "check: frequency" "$(cat out)" "lowest frequency as the body is held"
+case $(cat out) in *"waves will show"* | *soonest*) fail "check advises against quasi-static loading: $(cat out)" ;; esac
+cat > held.yaml <<'Y'
+materials: {m: {model: elastic, density: 2400 kg/m3, Young modulus: 25 GPa, Poisson ratio: 0.2}}
+body: {plate: {material: m, lattice: square, spacing: 20 mm, thickness: 20 mm, shape: {box: {particles: [10, 15]}}}}
+peridynamics: {formulation: correspondence, space: plane stress}
+loads: [{on: {face: y-}, support: {held: all}}, {on: {face: y+, layers: 3}, force: [0, 1 kN]}]
+solve: {explicit: {quasi-static: {}}}
+Y
+"$breccia" check held.yaml > out 2>&1
+contains "held: all" "$(cat out)" "take 'stiffness damping"
+case $(cat out) in *"local damping"*) fail "a damping that quasi-static loading refuses is advised: $(cat out)" ;; esac
+
 # ---- what is refused ----
 # refused WORDS OPTIONS...
 refused() {
