@@ -56,6 +56,8 @@ static void halves_and_quarters_in_motion_have_their_share(void **state)
   static const struct {
     const char *material, *peridynamics, *solver;
   } cases[] = {
+      {ELASTIC, "formulation: hybrid", "explicit: {end time: 0.03, time step: 2e-4, damping: 5}"},
+      {PLASTIC, "formulation: hybrid, strain: small", "explicit: {end time: 0.03, time step: 2e-4}"},
       {ELASTIC, "formulation: correspondence", "explicit: {end time: 0.03, time step: 2e-4, damping: 5}"},
       {ELASTIC, "formulation: ordinary", "explicit: {end time: 0.03, time step: 2e-4, stiffness damping: 1e-4}"},
       {FIBRES, "formulation: bond-based", "explicit: {end time: 0.03, time step: 2e-4, damping: 5}"},
@@ -121,6 +123,7 @@ static void half_of_what_breaks_is_released_by_a_half(void **state)
     const char *material, *peridynamics, *solver;
     double tolerance;
   } cases[] = {
+      {ELASTIC, "formulation: hybrid", "explicit: {end time: 0.05, time step: 2e-4}", 1e-9},
       {FIBRES, "formulation: bond-based", "explicit: {end time: 0.05, time step: 2e-4}", 1e-9},
       {ELASTIC, "formulation: correspondence", "explicit: {end time: 0.05, time step: 2e-4}", 1e-9},
       {FIBRES, "formulation: bond-based", "static: {increments: 8, residual: 1e-12}", 1e-8},
