@@ -160,20 +160,21 @@ static void check_material(breccia_model *model, int k)
         m->name, m->law_name);
 }
 
-/** Of most of the body. */
+/** Of most of the space that the body takes. Volumes do not tell: of particles from a file they may be those of masses beside the body. */
 static const Material *main_material(const breccia_model *model)
 {
   const Domain *d = &model->domain;
   int most = 0;
   double largest = -1;
   for (int k = 0; k < d->material_count; ++k) {
-    double volume = 0;
+    double space = 0;
     for (int64_t n = 0; n < d->particles->count; ++n) {
-      const int32_t place = d->particles->place_of[n];
-      if (d->material[place / SLICE] == k) volume += d->particles->volume[place];
+      const int64_t slice = d->particles->place_of[n] / SLICE;
+      if (d->material[slice] == k)
+        space += pow(d->body.lattices[d->particles->block[slice]].spacing, d->body.dimensions);
     }
-    if (volume > largest) {
-      largest = volume;
+    if (space > largest) {
+      largest = space;
       most = k;
     }
   }

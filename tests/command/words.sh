@@ -117,6 +117,12 @@ stage 'fast': explicit, 40 steps, elastic, displacements from zero, 1 new load
 Y
 contains "stages: steps" "$(cat out)" "44 steps at most, the first of 0.25 s, "
 contains "stages: title" "$(cat out)" "Two stages: 96 particles"
+# Waves go through the body, not through the few heavy particles beside it: sqrt(12 MPa / 2 t/m3) and not sqrt(12 kPa / 2 t/m3)
+printf 'x (m),y (m),volume (m3)\n-0.3,0.05,9\n-0.2,0.05,9\n-0.3,0.15,9\n-0.2,0.15,9\n' > beside.csv
+sed -e 's/^materials: {/&water: {model: elastic, density: 2, Young modulus: 10, Poisson ratio: 0.25}, /' \
+  -e 's/^body: {/&water: {material: water, lattice: square, spacing: 0.1, thickness: 0.2, file: beside.csv}, /' staged.yaml > beside.yaml
+"$breccia" check beside.yaml > out 2> errors || fail "beside: $(cat errors)"
+contains "waves of the body" "$(cat out)" "; a wave travels through in 20 ms" # 1.55 m
 "$breccia" run staged.yaml --set 'title=Two stages' > out 2> errors || fail "run of stages: $(cat errors)"
 s=staged/summary.json
 end=$(figures $s time)
