@@ -213,6 +213,8 @@ BRECCIA_API int64_t breccia_model_steps_done(const breccia_model *model);
 BRECCIA_API double breccia_model_time(const breccia_model *model);
 /** "stage 2 of 3, NAME"; "" where a deck has one stage. Valid until the model is next used. */
 BRECCIA_API const char *breccia_model_stage(breccia_model *model);
+/** What has happened to reinforcing bars so far, to tell while a run goes on: "bars yield", "bars torn"; "" before, and without bars. */
+BRECCIA_API const char *breccia_model_event(const breccia_model *model);
 BRECCIA_API double breccia_model_time_step(const breccia_model *model);
 BRECCIA_API double breccia_model_stable_time_step(const breccia_model *model);
 

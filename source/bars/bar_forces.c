@@ -134,33 +134,25 @@ void bars_accept(void *forces)
   Bars *b = forces;
   for (int64_t e = 0; e < b->count; ++e) {
     if (!(b->young[e] > 0))
-      b->work +=
+      b->worked[e] +=
           b->area[e] * b->length[e] * (b->stress[e] + b->stress_held[e]) / 2 * (b->strain[e] - b->strain_held[e]);
     b->strain_held[e] = b->strain[e];
     b->stress_held[e] = b->stress[e];
   }
   if (b->has_points) points_commit(&b->points);
-}
-
-/** Energy that elements would give back: of Hooke's law, or of those that have points. */
-static double stored(const Bars *b, bool hookean)
-{
-  double sum = 0;
-  for (int64_t e = 0; e < b->count; ++e) {
-    if ((b->young[e] > 0) != hookean) continue;
-    const double share = hookean ? 1 : points_elastic_share(&b->points, e, b->strain_held[e]);
-    sum += b->area[e] * b->length[e] * b->stress_held[e] * b->strain_held[e] * share / 2;
-  }
-  return sum;
+  bars_note(b);
 }
 
 double bars_energy(void *forces)
 {
-  return stored(forces, true) + stored(forces, false);
+  const Bars *b = forces;
+  return bars_stored(b, 0, b->count, true) + bars_stored(b, 0, b->count, false);
 }
 
 double bars_dissipated(const void *forces)
 {
   const Bars *b = forces;
-  return b->has_points ? b->work - stored(b, false) : 0;
+  double work = 0;
+  for (int64_t e = 0; e < b->count; ++e) work += b->worked[e];
+  return b->has_points ? work - bars_stored(b, 0, b->count, false) : 0;
 }

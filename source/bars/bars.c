@@ -142,7 +142,11 @@ static int check_line(const BarSpec *bar, const ForcesParts *parts)
   int status = count < 0 ? error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars") : BRECCIA_OK;
   for (int64_t n = 0; n < count && !status; ++n) {
     const double *x = nodes + 3 * n, away = distance(body, body_nearest(body, x), x) / spacing_at(body, x);
-    if (away > farthest(body))
+    if (body->dimensions < 3 && fabs(x[2] - body->particles.position[2][body_nearest(body, x)]) > 0)
+      status = node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
+                          "points: bar '%s' has z = %g, and the body lies in the plane z = 0; give x and y only",
+                          bar->head.name, x[2]);
+    else if (away > farthest(body))
       status =
           node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
                      "points: bar '%s' is outside the body at [%g, %g, %g], %.3g spacings from the nearest particle; "
@@ -202,6 +206,7 @@ static void destroy(void *forces)
   if (b->has_points) points_destroy(&b->points);
   free(b->first);
   free(b->bar_area);
+  free(b->node);
   free(b->rest);
   free(b->length);
   free(b->area);
@@ -222,6 +227,11 @@ static void destroy(void *forces)
   free(b->tangent);
   free(b->across);
   free(b->chunk);
+  free(b->worked);
+  free(b->yielded);
+  free(b->torn);
+  free(b->lowest);
+  free(b->highest);
   free(b);
 }
 
@@ -248,9 +258,11 @@ static bool weigh(const Bars *b, const BarSpec *bar, const Cells *cells, const d
 }
 
 /** Elements of a bar whose nodes are known. @return false: no memory */
-static bool add_elements(Bars *b, const BarSpec *bar, const Cells *cells, const double *nodes, int64_t count)
+static bool add_elements(Bars *b, int number, const Cells *cells, const double *nodes, int64_t count)
 {
+  const BarSpec *bar = b->specs->items[number];
   BarWeights ends[2] = {{0}};
+  memcpy(b->node[b->count + number], nodes, 3 * (size_t)count * sizeof *nodes);
   bool whole = weigh(b, bar, cells, nodes, &ends[0]);
   for (int64_t n = 1; n < count && whole; ++n) {
     const int64_t e = b->count++;
@@ -275,16 +287,21 @@ static bool add_elements(Bars *b, const BarSpec *bar, const Cells *cells, const 
 static bool make_room(Bars *b, int64_t count, Error *error)
 {
   const size_t n = (size_t)count;
+  const size_t bars = (size_t)b->specs->count;
+  b->node = memory_zeroed(n + bars, sizeof *b->node, "bars", error);
+  b->lowest = memory_zeroed(bars, sizeof *b->lowest, "bars", error);
+  b->highest = memory_zeroed(bars, sizeof *b->highest, "bars", error);
   b->rest = memory_zeroed(n, sizeof *b->rest, "bars", error);
   b->along = memory_zeroed(n, sizeof *b->along, "bars", error);
   b->pull = memory_zeroed(n, sizeof *b->pull, "bars", error);
   b->begin = memory_zeroed(n + 1, sizeof *b->begin, "bars", error);
   b->chunk = memory_zeroed(n + 1, sizeof *b->chunk, "bars", error);
-  bool made = b->rest && b->along && b->pull && b->begin && b->chunk;
-  double **const numbers[] = {&b->length,      &b->area,        &b->young,   &b->strain, &b->stress,
-                              &b->strain_held, &b->stress_held, &b->tangent, &b->across};
+  bool made = b->node && b->lowest && b->highest && b->rest && b->along && b->pull && b->begin && b->chunk;
+  double **const numbers[] = {&b->length,      &b->area,    &b->young,  &b->strain, &b->stress,  &b->strain_held,
+                              &b->stress_held, &b->tangent, &b->across, &b->worked, &b->yielded, &b->torn};
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
     made &= (*numbers[k] = memory_zeroed(n, sizeof(double), "bars", error)) != NULL;
+  for (size_t e = 0; e < n && made; ++e) b->yielded[e] = b->torn[e] = -1;
   return made;
 }
 
@@ -308,7 +325,7 @@ static int make_elements(Bars *b, const ForcesParts *parts, double *const *nodes
     const Material *m = material_of(bar, parts);
     b->first[n] = b->count;
     b->bar_area[n] = area_of(bar);
-    whole = add_elements(b, bar, &cells, nodes[n], counts[n]);
+    whole = add_elements(b, n, &cells, nodes[n], counts[n]);
     b->first[n + 1] = b->count;
     for (int64_t e = b->first[n]; e < b->count; ++e) {
       b->area[e] = b->bar_area[n];
@@ -425,7 +442,20 @@ static void state(void *forces, StateList *list)
   row.unit = "stress";
   row.values = b->stress_held;
   state_add(list, &row, "bar stress", NULL);
-  state_add_number(list, "work on bars", "energy", STATE_COMMITTED, &b->work);
+  row.unit = "energy";
+  row.values = b->worked;
+  state_add(list, &row, "work on bars", NULL);
+  row.unit = "time";
+  row.values = b->yielded;
+  state_add(list, &row, "bar yielded", NULL);
+  row.values = b->torn;
+  state_add(list, &row, "bar torn", NULL);
+  row.unit = "stress";
+  row.count = b->specs->count;
+  row.values = b->lowest;
+  state_add(list, &row, "lowest bar stress", NULL);
+  row.values = b->highest;
+  state_add(list, &row, "highest bar stress", NULL);
   if (b->has_points) points_state(&b->points, "bars", list);
 }
 

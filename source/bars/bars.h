@@ -32,6 +32,8 @@ typedef struct Bars {
   int64_t *first;   /* [bars + 1] elements of a bar */
   double *bar_area; /* [bars] of all its parallel bars together */
   int64_t count;    /* elements */
+  double (
+      *node)[3]; /* [count + bars] where ends of elements are: of element e of bar n the nodes e + n and e + n + 1 */
   double (*rest)[3], *length, *area;
   double *young;     /* of elements whose law is Hooke's in space, which have no point; 0: of others */
   int64_t *begin;    /* [count + 1] where the places of an element begin in `joined` */
@@ -50,8 +52,19 @@ typedef struct Bars {
   bool has_points;
   int64_t *chunk; /* [chunk_count + 1] elements of one bar, at most BATCH, gone through together */
   int64_t chunk_count;
-  double work; /* on elements that have points, since the beginning */
+  double *worked;           /* work on elements that have points, since the beginning */
+  double *yielded, *torn;   /* when an element did so first; below zero: it has not */
+  double *lowest, *highest; /* [bars] stresses so far */
 } Bars;
+
+/** What a bar is like, and what it has gone through. */
+typedef struct BarReport {
+  double least_strain, largest_strain, least_stress, largest_stress; /* of its elements, as committed */
+  double lowest_stress, highest_stress;                              /* so far */
+  double stored, dissipated;
+  double yielded, torn;              /* shares of its length */
+  int64_t first_yielded, first_torn; /* the elements that did so first; -1: none has */
+} BarReport;
 
 extern const ForcesType bars_forces;
 
@@ -64,6 +77,24 @@ int64_t bar_nodes(const BarSpec *bar, const Body *body, double **nodes);
 bool bar_weigh(BarWeights *weights, const Body *body, const Cells *cells, const double point[3]);
 /** Adds a place. @return false: no memory */
 bool bar_weights_add(BarWeights *weights, int32_t place, double weight);
+
+/** Middle of an element, before it moves. */
+void bar_middle(const Bars *bars, int bar, int64_t element, double middle[3]);
+
+/* bar_report.c */
+
+/** The bars of a body, or NULL. */
+const Bars *bars_among(const Forces *forces);
+/** @return the number of the bar of a name, or -1 */
+int bars_find(const Bars *bars, const char *name);
+const char *bar_name(const Bars *bars, int bar);
+BarReport bar_report(const Bars *bars, int bar);
+/** The element whose middle is nearest to a point. */
+int64_t bar_nearest(const Bars *bars, int bar, const double point[3]);
+/** Energy that elements would give back: of one bar; of Hooke's law, or of those that have points. */
+double bars_stored(const Bars *bars, int64_t from, int64_t to, bool hookean);
+/** When a step has come out well: notes what has yielded or is torn since. */
+void bars_note(Bars *bars);
 
 /* bar_forces.c: as ForcesType says. */
 void bars_resist(void *forces);

@@ -52,9 +52,10 @@ static void show_progress(void *context, int64_t step, int64_t steps, double lef
   else
     snprintf(time, sizeof time, "%.1f h", left / 3600);
   const char *stage = breccia_model_stage(model);
-  fprintf(stderr, "\r%3.0f %%  %s%sstep %lld of %lld, %s left \033[K",
+  const char *event = breccia_model_event(model);
+  fprintf(stderr, "\r%3.0f %%  %s%sstep %lld of %lld, %s left%s%s \033[K",
           steps ? 100.0 * (double)step / (double)steps : 100.0, stage, *stage ? ", " : "", (long long)step,
-          (long long)steps, time);
+          (long long)steps, time, *event ? "; " : "", event);
 }
 
 /** A word as a shell takes it, in quotation marks where it needs them. */

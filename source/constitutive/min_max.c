@@ -110,6 +110,11 @@ const breccia_law law_min_max = {
     .update = update,
 };
 
+bool material_is_beyond_limits(const Material *material, const double *history)
+{
+  return material->law == &law_min_max && history[material->history_values - 1] > 0;
+}
+
 int material_limit(Material *material, double smallest, double largest, char *reason, size_t size)
 {
   if (isnan(smallest) && isnan(largest)) return BRECCIA_OK;

@@ -6,4 +6,7 @@
 
 extern const breccia_law law_min_max;
 
+/** Whether a point has failed by the limits of its strain. */
+bool material_is_beyond_limits(const Material *material, const double *history);
+
 #endif

@@ -11,6 +11,7 @@ static const struct {
 } definitions[] = {{"material", "materials", NULL},
                    {"block", "body", NULL},
                    {"selection", "selections", NULL},
+                   {"bar", "bars", NULL},
                    {"load", "loads", "solve"}};
 
 static const char *name_of(const Node *item)

@@ -59,9 +59,12 @@ static int create_material(Domain *d, const DeckReader *reader, const MaterialSp
   double length = NAN;
   int bad = BRECCIA_OK;
   bool in_bonds = false;
+  const bool mistaken = error_count(reader->error) > 0;
   for (int r = 0; r < d->region_count && !bad; ++r) {
     const Region *region = &d->regions[r];
     if (!region_has_material(d, region, spec->head.name)) continue;
+    /* Who wants what nothing is made of may be what a message is about already. */
+    if (mistaken && !region_is_made_of(d, region, spec->head.name)) continue;
     if (spec->model && (!region->takes_both || region_is_made_of(d, region, spec->head.name)))
       bad = check_law(region->type, reader, spec, NULL); /* what its parameters lack may follow from that */
     const bool linear = spec->model && law_find(reader->context, spec->model)->linear;

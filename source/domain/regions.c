@@ -87,7 +87,8 @@ bool region_is_made_of(const Domain *d, const Region *region, const char *materi
 
 bool region_has_material(const Domain *d, const Region *region, const char *material)
 {
-  const bool spare = d->region_count == 1 && !forces_use(d->forces_spec, material);
+  /* What nothing is made of is looked at as if the body were, but beside bars: it may be meant for those, or a bar's name for it be mistaken. */
+  const bool spare = d->region_count == 1 && !forces_use_materials(d->forces_spec);
   return spare || region_is_made_of(d, region, material);
 }
 

@@ -20,6 +20,13 @@ bool forces_use(void *const *specs, const char *material)
   return false;
 }
 
+bool forces_use_materials(void *const *specs)
+{
+  for (int k = 0; specs && k < FORCES_KINDS; ++k)
+    if (specs[k] && kinds[k]->uses) return true;
+  return false;
+}
+
 int forces_create(Forces *f, void *const *specs, const ForcesParts *parts, Error *error)
 {
   *f = (Forces){.count = 0};

@@ -103,6 +103,8 @@ void forces_destroy(Forces *forces);
 
 /** Whether a kind uses a material. @param[in] specs  as for forces_create */
 bool forces_use(void *const *specs, const char *material);
+/** Whether any kind of the deck takes materials of its own. */
+bool forces_use_materials(void *const *specs);
 
 /* Each calls what ForcesType describes, of all kinds. */
 void forces_follow(Forces *forces, double motion);

@@ -4,14 +4,6 @@
 #include "bars/bars.h"
 #include <math.h>
 
-static const Bars *bars_of(const breccia_model *model)
-{
-  const Forces *forces = &model->domain.forces;
-  for (int k = 0; k < forces->count; ++k)
-    if (forces->type[k] == &bars_forces) return forces->own[k];
-  return NULL;
-}
-
 static void check_amount(breccia_model *model, const Bars *b)
 {
   const double most = 0.1; /* of the body's volume; reinforced concrete has 0.002 to 0.04 */
@@ -62,7 +54,7 @@ static void check_faces(breccia_model *model, const Bars *b, int n)
 
 void plausibility_warn_of_bars(breccia_model *model)
 {
-  const Bars *b = bars_of(model);
+  const Bars *b = bars_among(&model->domain.forces);
   if (!b) return;
   check_amount(model, b);
   for (int n = 0; n < b->specs->count; ++n) check_faces(model, b, n);

@@ -43,6 +43,9 @@ int run_draw_pictures(Run *run, Error *error);
 
 /** Writes summary.json. @param[in] problem  why the run ended early; may be empty */
 int run_write_summary(Run *run, int status, const char *problem, Error *error);
+/** Reinforcing bars in it: a list for summary.json, and lines for people. Nothing where there are none. */
+void run_add_bars(const breccia_model *model, Text *text);
+void run_tell_bars(const breccia_model *model, Text *text);
 /** Puts what the run did into words, for breccia_model_outcome. */
 void run_tell_outcome(Run *run, int status);
 

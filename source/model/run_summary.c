@@ -209,6 +209,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     add_number(&t, energies[k].key, energies[k].value);
   }
   text_add(&t, "},\n");
+  run_add_bars(model, &t);
   add_balance(s, &t);
   add_rest(s, &t);
   text_add(&t, "  \"peaks\": {");
@@ -413,6 +414,7 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(stress * peaks->mean_high, "Pa", t);
     text_add(t, ", damage %.3g\n", peaks->damage);
   }
+  run_tell_bars(model, t);
   tell_verdicts(s, t);
   tell_rest(s, model->units, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);

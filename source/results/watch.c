@@ -1,5 +1,6 @@
 #include "results/watch_parts.h"
 
+#include "bars/bars.h"
 #include "base/memory.h"
 #include "base/tensor.h"
 #include "results/fields.h"
@@ -17,6 +18,9 @@ static void check_watch(const DeckReader *reader, void *section)
   const WatchSpec *w = section;
   check_between(reader, w, "opening between", &w->opening);
   check_between(reader, w, "bond between", &w->bond);
+  if (!isnan(w->at[0]) && !w->bar)
+    node_error(reader->document, section_node(w, "at"), reader->error,
+               "at: a place on a bar; name it under 'bar', or leave 'at' out");
 }
 
 static const Field watch_fields[] = {
@@ -113,6 +117,20 @@ static const Field watch_fields[] = {
      .standard = "",
      .meaning = "the energy ledger and the number of broken bonds",
      .group = 'A'},
+    {.key = "bar",
+     .kind = FIELD_NAME,
+     .offset = offsetof(WatchSpec, bar),
+     .dimension = "bar",
+     .standard = "",
+     .meaning = "a reinforcing bar: its least and largest strain and stress, its energies, and which shares of its "
+                "length have yielded and are torn; with 'at' the strain, stress and force (of all parallel bars) there",
+     .group = 'A'},
+    {.key = "at",
+     .kind = FIELD_POINT,
+     .offset = offsetof(WatchSpec, at),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "with 'bar': a point, of whose nearest element of the bar it is"},
 };
 
 const Section watch_section = {.name = "watch",
@@ -240,6 +258,21 @@ static void energy_row(const Watch *w, const Solver *s, double *values)
   memcpy(values, row, sizeof row);
 }
 
+static void bar_row(const Watch *w, const Solver *s, double *values)
+{
+  const BarReport r = bar_report(bars_among(&s->domain->forces), w->bar);
+  const double row[] = {r.least_strain, r.largest_strain, r.least_stress, r.largest_stress,
+                        r.stored,       r.dissipated,     r.yielded,      r.torn};
+  memcpy(values, row, sizeof row);
+}
+static void element_row(const Watch *w, const Solver *s, double *values)
+{
+  const Bars *b = bars_among(&s->domain->forces);
+  values[0] = b->strain_held[w->element];
+  values[1] = b->stress_held[w->element];
+  values[2] = b->area[w->element] * b->stress_held[w->element];
+}
+
 static const Kind
     displacement_kind = {"x:length,y:length,z:length", displacement_row},
     velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
@@ -254,7 +287,11 @@ static const Kind
     energy_kind = {"kinetic:energy,internal:energy,stored:energy,dissipated:energy,external:energy,damping:"
                    "energy,fracture:energy,"
                    "imbalance:1,broken bonds:1,friction:energy",
-                   energy_row};
+                   energy_row},
+    bar_kind = {"least strain:1,largest strain:1,least stress:stress,largest stress:stress,stored:energy,"
+                "dissipated:energy,yielded:1,torn:1",
+                bar_row},
+    element_kind = {"strain:1,stress:stress,force:force", element_row};
 static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
 {
   const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;
@@ -342,6 +379,13 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
   if (spec->history.node) {
     int status = selection_create(&w->selection, body, reader, selections, &spec->history);
     return status ? status : name_histories(w, domain, reader);
+  }
+  if (spec->bar) {
+    const Bars *b = bars_among(&domain->forces);
+    if ((w->bar = bars_find(b, spec->bar)) < 0) return BRECCIA_USER_ERROR; /* said when the deck was read */
+    w->kind = isnan(spec->at[0]) ? &bar_kind : &element_kind;
+    w->element = isnan(spec->at[0]) ? 0 : bar_nearest(b, w->bar, spec->at);
+    return BRECCIA_OK;
   }
   if (spec->reaction.node || spec->reaction_of) return resolve_reaction(w, domain, loading, reader, selections);
   const struct {

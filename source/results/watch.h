@@ -9,7 +9,8 @@ typedef struct WatchSpec {
   int64_t every;
   Reference displacement, velocity, force, reaction, stress, history, damage;
   NumberList opening, bond;
-  const char *load, *reaction_of;
+  const char *load, *reaction_of, *bar;
+  double at[3];
   bool energy;
 } WatchSpec;
 

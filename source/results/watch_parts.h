@@ -23,6 +23,8 @@ struct Watch {
   Selection selection;
   int32_t ends[2];
   const LoadSpec *load;
+  int bar;
+  int64_t element; /* of it */
   Reactions reactions;
   uint8_t *on; /* [places] of reactions on a selection */
   FILE *file;

@@ -3,6 +3,8 @@
 
 #include "bars/bars.h"
 #include "base/random.h"
+#include "model/run.h"
+#include "results/watch_parts.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 #define MATERIALS                                                                                                      \
@@ -281,6 +283,91 @@ static void steel_carries_what_its_law_says(void **state)
   }
 }
 
+/** A prism with a bar along it, all of it stretched alike by 0.01 times a factor. */
+static breccia_model *stretched(const char *steel, const char *history)
+{
+  return model_of(MATERIALS
+                  "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}\n"
+                  "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n" TIE
+                  "loads:\n  - {on: {all: yes}, field: {displacement: ['0.01*x', 0 m, 0 m]}, history: {%s}}\n"
+                  "watch: {tie: {bar: tie}, end: {bar: tie, at: [1.2, 0, 0]}}\n"
+                  "solve: {static: {increments: 20, end time: 1}}\npictures: []\n",
+                  "elastic-1d", steel, history);
+}
+
+static void steel_pushed_back_keeps_the_energy_of_its_stress(void **state)
+{
+  (void)state;
+  const struct {
+    const char *history;
+    double stress, strain;
+  } cases[] = {{"table: [[0, 0], [1, 1]]", 5e5 + 0.01 * 2e8 * 7.5e-3, 0.01},
+               {"table: [[0, 0], [0.5, 1], [1, 0.6]]", 5e5 + 0.01 * 2e8 * 7.5e-3 - 2e8 * 0.004, 0.006},
+               {"table: [[0, 0], [0.5, 1], [1, 0]]", -0.99 * 5e5, 0}}; /* on the lower line */
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = stretched(STEEL_OF, cases[k].history);
+    step_surely(m, INT64_MAX);
+    const Bars *b = bars_of(m);
+    const BarReport r = bar_report(b, 0);
+    const double volume = 1.16 * 1e-4, stored = volume * cases[k].stress * cases[k].stress / (2 * 2e8);
+    assert_near(r.least_strain, cases[k].strain, 1e-9);
+    assert_near(r.largest_stress, cases[k].stress, 1e-4 * 5e5);
+    assert_near(r.stored, stored, 1e-4 * stored);
+    assert_near(bars_energy(bars_of(m)), stored, 1e-4 * stored);
+    assert_true(r.dissipated > 0.5 * volume * 5e5 * 6e-3);
+    assert_near(r.dissipated, bars_dissipated(b), 1e-12);
+    assert_near(r.yielded, 1, 1e-12);
+    assert_near(r.torn, 0, 0);
+    assert_near(r.highest_stress, 5e5 + 0.01 * 2e8 * 7.5e-3, 1e-4 * 5e5);
+    const Watch *whole = &m->watches->items[0], *end = &m->watches->items[1];
+    double told[8], there[3];
+    const double expected[] = {r.least_strain, r.largest_strain, r.least_stress, r.largest_stress,
+                               r.stored,       r.dissipated,     r.yielded,      r.torn};
+    assert_int_equal(watch_columns(whole->kind), 8);
+    assert_int_equal(watch_columns(end->kind), 3);
+    whole->kind->row(whole, &m->solver, told);
+    end->kind->row(end, &m->solver, there);
+    for (int c = 0; c < 8; ++c) assert_near(told[c], expected[c], 0);
+    assert_int_equal(end->element, b->count - 1);
+    assert_near(there[0], cases[k].strain, 1e-9);
+    assert_near(there[2], 1e-4 * cases[k].stress, 1e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void bars_tell_when_they_yield_and_tear(void **state)
+{
+  (void)state;
+  /* Strains are 0.01 times the time: it yields at 0.0025 (beyond by 2 %), and tears beyond 0.0071. */
+  breccia_model *m = stretched("steel: {model: steel-bilinear, density: 7, Young modulus: 2e8, yield stress: 5e5, "
+                               "hardening ratio: 0.01, largest strain: 0.0071}",
+                               "table: [[0, 0], [1, 1]]");
+  step_surely(m, INT64_MAX);
+  const Bars *b = bars_of(m);
+  const BarReport r = bar_report(b, 0);
+  assert_near(r.torn, 1, 1e-12);
+  assert_near(r.largest_stress, 0, 0);
+  assert_near(b->yielded[r.first_yielded], 0.3, 1e-9); /* increments of 0.05 */
+  assert_near(b->torn[r.first_torn], 0.75, 1e-9);
+  assert_near(r.highest_stress, 5e5 + 0.01 * 2e8 * 4.5e-3, 1e-3 * 5e5);
+  assert_near(r.stored, 0, 1e-12);
+  assert_string_equal(breccia_model_event(m), "bars torn");
+  Text summary = {0}, words = {0};
+  run_add_bars(m, &summary);
+  run_tell_bars(m, &words);
+  holds_words(text_words(&summary),
+              "\"name\": \"tie\", \"elements\": 12|\"torn_share\": 1|\"first_yielded\": {\"time\": 0.3,|"
+              "\"first_torn\": {\"time\": 0.75,");
+  holds_words(text_words(&words), "bar 'tie'|yields since time 0.3 s|TORN since time 0.75 s|now over 100 %");
+  text_free(&summary);
+  text_free(&words);
+  const double point[3] = {0.61, 0, 0};
+  double middle[3];
+  bar_middle(b, 0, bar_nearest(b, 0, point), middle);
+  assert_true(fabs(middle[0] - 0.61) < 0.06);
+  breccia_model_destroy(&m);
+}
+
 /** A block with a bar along it and one across, whose ends fly apart: the steel yields, and the block swings on. */
 static breccia_model *struck(const char *solver, int threads)
 {
@@ -414,6 +501,47 @@ static void lines_that_make_no_bar_are_refused(void **state)
   }
 }
 
+static void points_in_the_plane_have_no_height(void **state)
+{
+  (void)state;
+  char *deck = text_format(
+      MATERIALS "body: {b: {material: soft, spacing: 0.1, lattice: square, thickness: 0.3, shape: {box: {from: [0, 0], "
+                "to: [1, 0.3]}}}}\n"
+                "peridynamics: {formulation: bond-based, space: plane stress}\n"
+                "bars: {r: {points: [[0, 0.1, 0.04], [0.5, 0.1, 0.04]], diameter: 8 mm, material: steel}}\n" REST,
+      "elastic-1d", STEEL_OF);
+  char *words = refusal_of(deck);
+  holds_words(words, "z = 0.04|give x and y only");
+  free(words);
+  free(deck);
+}
+
+static void materials_beside_bars_need_not_suit_the_formulation(void **state)
+{
+  (void)state;
+  static const char block[] =
+      "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1, 0.3, 0.3]}}}}\n"
+      "peridynamics: {formulation: correspondence}\n";
+  breccia_model_destroy((breccia_model *[]){model_of(
+      MATERIALS "%sbars: {r: {points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diameter: 8 mm, material: soft}}\n" REST,
+      "elastic, Poisson ratio: 0.2", STEEL_OF, block)});
+  static const struct {
+    const char *bar, *words;
+  } mistakes[] = {{"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diameter: 8 mm, material: stel", "no material 'stel'"},
+                  {"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diametre: 8 mm, material: steel", "diametre"},
+                  {"points: [[0, 0.1, 0.1], [0.5, 0.1, 0.1]], diameter: -8 mm, material: steel", "diameter"},
+                  {"points: [[0, 0.1, 0.1]], diameter: 8 mm, material: steel", "two or more"}};
+  for (size_t k = 0; k < sizeof mistakes / sizeof *mistakes; ++k) {
+    char *deck = text_format(MATERIALS "%sbars: {r: {%s}}\n" REST, "elastic, Poisson ratio: 0.2", STEEL_OF, block,
+                             mistakes[k].bar);
+    char *words = refusal_of(deck);
+    holds_words(words, mistakes[k].words);
+    if (strstr(words, "one strain")) fail_msg("%s", words);
+    free(words);
+    free(deck);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -424,10 +552,14 @@ int main(void)
       cmocka_unit_test(a_bar_adds_its_stiffness_times_the_strain),
       cmocka_unit_test(every_way_to_solve_finds_the_same),
       cmocka_unit_test(steel_carries_what_its_law_says),
+      cmocka_unit_test(steel_pushed_back_keeps_the_energy_of_its_stress),
+      cmocka_unit_test(bars_tell_when_they_yield_and_tear),
       cmocka_unit_test(works_are_in_the_books_where_steel_yields),
       cmocka_unit_test(threads_and_restarts_give_the_same_bits),
       cmocka_unit_test(a_cracked_tie_carries_what_its_steel_yields_at),
       cmocka_unit_test(lines_that_make_no_bar_are_refused),
+      cmocka_unit_test(materials_beside_bars_need_not_suit_the_formulation),
+      cmocka_unit_test(points_in_the_plane_have_no_height),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

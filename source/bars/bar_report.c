@@ -1,0 +1,119 @@
+/* What bars are like and have gone through: for histories, results and people. */
+#include "bars/bars.h"
+
+#include "constitutive/min_max.h"
+#include <math.h>
+#include <string.h>
+
+const Bars *bars_among(const Forces *forces)
+{
+  for (int k = 0; k < forces->count; ++k)
+    if (forces->type[k] == &bars_forces) return forces->own[k];
+  return NULL;
+}
+
+const char *bar_name(const Bars *b, int bar)
+{
+  return ((const BarSpec *)b->specs->items[bar])->head.name;
+}
+
+int bars_find(const Bars *b, const char *name)
+{
+  for (int n = 0; b && n < b->specs->count; ++n)
+    if (!strcmp(bar_name(b, n), name)) return n;
+  return -1;
+}
+
+void bar_middle(const Bars *b, int bar, int64_t e, double middle[3])
+{
+  for (int k = 0; k < 3; ++k) middle[k] = (b->node[e + bar][k] + b->node[e + bar + 1][k]) / 2;
+}
+
+int64_t bar_nearest(const Bars *b, int bar, const double point[3])
+{
+  int64_t nearest = b->first[bar];
+  double least = INFINITY;
+  for (int64_t e = b->first[bar]; e < b->first[bar + 1]; ++e) {
+    double middle[3], square = 0;
+    bar_middle(b, bar, e, middle);
+    for (int k = 0; k < 3; ++k) square += (middle[k] - point[k]) * (middle[k] - point[k]);
+    if (!(square < least)) continue;
+    least = square;
+    nearest = e;
+  }
+  return nearest;
+}
+
+double bars_stored(const Bars *b, int64_t from, int64_t to, bool hookean)
+{
+  double sum = 0;
+  for (int64_t e = from; e < to; ++e) {
+    if ((b->young[e] > 0) != hookean) continue;
+    const double elastic = hookean ? b->strain_held[e] : points_elastic_strain(&b->points, e, b->strain_held[e]);
+    sum += b->area[e] * b->length[e] * b->stress_held[e] * elastic / 2;
+  }
+  return sum;
+}
+
+/** Beyond where its law is straight: laws of steel with rounded corners leave the line from the beginning, but by little. */
+static bool has_yielded(const Bars *b, int64_t e)
+{
+  const double beyond = 1.02;
+  return material_young(points_material(&b->points, e)) * fabs(b->strain_held[e]) > beyond * fabs(b->stress_held[e]);
+}
+
+static bool is_torn(const Bars *b, int64_t e)
+{
+  if (b->points.gave_up && b->points.gave_up[e]) return true;
+  return material_is_beyond_limits(points_material(&b->points, e), points_history(&b->points, e));
+}
+
+void bars_note(Bars *b)
+{
+  for (int n = 0; n < b->specs->count; ++n)
+    for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
+      b->lowest[n] = fmin(b->lowest[n], b->stress_held[e]);
+      b->highest[n] = fmax(b->highest[n], b->stress_held[e]);
+      if (b->young[e] > 0) continue;
+      if (b->yielded[e] < 0 && has_yielded(b, e)) b->yielded[e] = b->points.time;
+      if (b->torn[e] < 0 && is_torn(b, e)) b->torn[e] = b->points.time;
+    }
+}
+
+/** Notes which element was first. */
+static void note_first(const double *when, int64_t e, int64_t *first)
+{
+  if (when[e] >= 0 && (*first < 0 || when[e] < when[*first])) *first = e;
+}
+
+BarReport bar_report(const Bars *b, int bar)
+{
+  const int64_t from = b->first[bar], to = b->first[bar + 1];
+  BarReport r = {.least_strain = INFINITY,
+                 .largest_strain = -INFINITY,
+                 .least_stress = INFINITY,
+                 .largest_stress = -INFINITY,
+                 .lowest_stress = b->lowest[bar],
+                 .highest_stress = b->highest[bar],
+                 .first_yielded = -1,
+                 .first_torn = -1};
+  double length = 0;
+  for (int64_t e = from; e < to; ++e) {
+    r.least_strain = fmin(r.least_strain, b->strain_held[e]);
+    r.largest_strain = fmax(r.largest_strain, b->strain_held[e]);
+    r.least_stress = fmin(r.least_stress, b->stress_held[e]);
+    r.largest_stress = fmax(r.largest_stress, b->stress_held[e]);
+    r.dissipated += b->worked[e];
+    length += b->length[e];
+    if (b->yielded[e] >= 0) r.yielded += b->length[e];
+    if (b->torn[e] >= 0) r.torn += b->length[e];
+    note_first(b->yielded, e, &r.first_yielded);
+    note_first(b->torn, e, &r.first_torn);
+  }
+  const double of_points = b->has_points ? bars_stored(b, from, to, false) : 0;
+  r.stored = bars_stored(b, from, to, true) + of_points;
+  r.dissipated -= of_points;
+  r.yielded /= length;
+  r.torn /= length;
+  return r;
+}
