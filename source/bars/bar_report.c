@@ -29,6 +29,15 @@ void bar_middle(const Bars *b, int bar, int64_t e, double middle[3])
   for (int k = 0; k < 3; ++k) middle[k] = (b->node[e + bar][k] + b->node[e + bar + 1][k]) / 2;
 }
 
+void bar_node_displacement(const Bars *b, int64_t node, double u[3])
+{
+  for (int k = 0; k < 3; ++k) {
+    u[k] = 0;
+    for (int64_t n = b->node_begin[node]; n < b->node_begin[node + 1]; ++n)
+      u[k] += b->held.weight[n] * particles_moved(&b->body->particles, k, b->held.place[n]);
+  }
+}
+
 int64_t bar_nearest(const Bars *b, int bar, const double point[3])
 {
   int64_t nearest = b->first[bar];
@@ -53,6 +62,11 @@ double bars_stored(const Bars *b, int64_t from, int64_t to, bool hookean)
     sum += b->area[e] * b->length[e] * b->stress_held[e] * elastic / 2;
   }
   return sum;
+}
+
+double bar_dissipated_in(const Bars *b, int64_t e)
+{
+  return b->young[e] > 0 ? 0 : b->worked[e] - bars_stored(b, e, e + 1, false);
 }
 
 /** Beyond where its law is straight: laws of steel with rounded corners leave the line from the beginning, but by little. */

@@ -207,6 +207,9 @@ static void destroy(void *forces)
   free(b->first);
   free(b->bar_area);
   free(b->node);
+  free(b->node_begin);
+  free(b->held.place);
+  free(b->held.weight);
   free(b->rest);
   free(b->length);
   free(b->area);
@@ -257,13 +260,22 @@ static bool weigh(const Bars *b, const BarSpec *bar, const Cells *cells, const d
   return bar_weigh(weights, b->body, cells, point);
 }
 
+/** Keeps the weights of the next node. */
+static bool hold(Bars *b, int64_t node, const BarWeights *of)
+{
+  bool whole = true;
+  for (int64_t n = 0; n < of->count && whole; ++n) whole = bar_weights_add(&b->held, of->place[n], of->weight[n]);
+  b->node_begin[node + 1] = b->held.count;
+  return whole;
+}
+
 /** Elements of a bar whose nodes are known. @return false: no memory */
 static bool add_elements(Bars *b, int number, const Cells *cells, const double *nodes, int64_t count)
 {
   const BarSpec *bar = b->specs->items[number];
   BarWeights ends[2] = {{0}};
   memcpy(b->node[b->count + number], nodes, 3 * (size_t)count * sizeof *nodes);
-  bool whole = weigh(b, bar, cells, nodes, &ends[0]);
+  bool whole = weigh(b, bar, cells, nodes, &ends[0]) && hold(b, b->count + number, &ends[0]);
   for (int64_t n = 1; n < count && whole; ++n) {
     const int64_t e = b->count++;
     double square = 0;
@@ -274,7 +286,7 @@ static bool add_elements(Bars *b, int number, const Cells *cells, const double *
     b->length[e] = sqrt(square);
     b->begin[e] = b->joined.count;
     whole = weigh(b, bar, cells, nodes + 3 * n, &ends[n % 2]) && join(b, e, &ends[(n - 1) % 2], -1) &&
-            join(b, e, &ends[n % 2], 1);
+            join(b, e, &ends[n % 2], 1) && hold(b, e + number + 1, &ends[n % 2]);
     b->begin[e + 1] = b->joined.count;
   }
   for (int k = 0; k < 2; ++k) {
@@ -289,6 +301,7 @@ static bool make_room(Bars *b, int64_t count, Error *error)
   const size_t n = (size_t)count;
   const size_t bars = (size_t)b->specs->count;
   b->node = memory_zeroed(n + bars, sizeof *b->node, "bars", error);
+  b->node_begin = memory_zeroed(n + bars + 1, sizeof *b->node_begin, "bars", error);
   b->lowest = memory_zeroed(bars, sizeof *b->lowest, "bars", error);
   b->highest = memory_zeroed(bars, sizeof *b->highest, "bars", error);
   b->rest = memory_zeroed(n, sizeof *b->rest, "bars", error);
@@ -296,7 +309,8 @@ static bool make_room(Bars *b, int64_t count, Error *error)
   b->pull = memory_zeroed(n, sizeof *b->pull, "bars", error);
   b->begin = memory_zeroed(n + 1, sizeof *b->begin, "bars", error);
   b->chunk = memory_zeroed(n + 1, sizeof *b->chunk, "bars", error);
-  bool made = b->node && b->lowest && b->highest && b->rest && b->along && b->pull && b->begin && b->chunk;
+  bool made =
+      b->node && b->node_begin && b->lowest && b->highest && b->rest && b->along && b->pull && b->begin && b->chunk;
   double **const numbers[] = {&b->length,      &b->area,    &b->young,  &b->strain, &b->stress,  &b->strain_held,
                               &b->stress_held, &b->tangent, &b->across, &b->worked, &b->yielded, &b->torn};
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)

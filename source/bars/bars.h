@@ -34,6 +34,8 @@ typedef struct Bars {
   int64_t count;    /* elements */
   double (
       *node)[3]; /* [count + bars] where ends of elements are: of element e of bar n the nodes e + n and e + n + 1 */
+  int64_t *node_begin; /* [count + bars + 1] where the places of a node begin in `held` */
+  BarWeights held;     /* of a node the displacement is the sum of weight times displacement */
   double (*rest)[3], *length, *area;
   double *young;     /* of elements whose law is Hooke's in space, which have no point; 0: of others */
   int64_t *begin;    /* [count + 1] where the places of an element begin in `joined` */
@@ -88,6 +90,8 @@ const Bars *bars_among(const Forces *forces);
 /** @return the number of the bar of a name, or -1 */
 int bars_find(const Bars *bars, const char *name);
 const char *bar_name(const Bars *bars, int bar);
+void bar_node_displacement(const Bars *bars, int64_t node, double displacement[3]);
+double bar_dissipated_in(const Bars *bars, int64_t element);
 BarReport bar_report(const Bars *bars, int bar);
 /** The element whose middle is nearest to a point. */
 int64_t bar_nearest(const Bars *bars, int bar, const double point[3]);

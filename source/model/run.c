@@ -7,6 +7,7 @@
 #include "base/tensor.h"
 #include "base/whole_file.h"
 #include "model/sized.h"
+#include "results/bar_lines.h"
 #include "results/checkpoint.h"
 #include "results/journal.h"
 #include "results/result_view.h"
@@ -428,6 +429,10 @@ static int finish(Run *run, int status, Error *error)
            run->wish->folder, run->wish->folder);
   for (int k = 0; k < watches_count(model->watches); ++k) text_add(&own, "  %s\n", watches_path(model->watches, k));
   if (!run->unwritten && profiles_write(model->profiles, run->wish->folder, model->units, &own, error)) {
+    run->unwritten = true;
+    if (!status) status = BRECCIA_FAILURE;
+  }
+  if (!run->unwritten && bar_lines_write(&model->domain, run->wish->folder, model->units, &own, error)) {
     run->unwritten = true;
     if (!status) status = BRECCIA_FAILURE;
   }

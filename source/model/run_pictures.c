@@ -1,6 +1,7 @@
 /* The pictures of a run. */
 #include "model/run.h"
 
+#include "results/bar_lines.h"
 #include "results/curve.h"
 #include "results/result_view.h"
 #include <math.h>
@@ -136,6 +137,19 @@ static void draw_profile(Run *run, int k, const char *folder, Outcome *outcome)
   breccia_error_destroy(&own);
 }
 
+/** Stresses over the length of bars, among the usual pictures. */
+static void draw_bars(Run *run, const char *folder, Outcome *outcome)
+{
+  const breccia_model *model = run->model;
+  Error *own = breccia_error_create();
+  bool no_gnuplot = false;
+  const int status = bar_lines_draw(&model->domain, folder, model->units, &run->files, &no_gnuplot, own);
+  const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
+  if (unwritten) outcome->status = BRECCIA_FAILURE;
+  if (status) error_add(unwritten ? outcome->error : outcome->warnings, status, "%s", breccia_error_text(own));
+  breccia_error_destroy(&own);
+}
+
 static void draw_all(Run *run, const ResultView *view, Outcome *outcome)
 {
   static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
@@ -164,6 +178,7 @@ int run_draw_pictures(Run *run, Error *error)
     outcome.status = BRECCIA_FAILURE;
   else {
     if (view.steps) draw_all(run, &view, &outcome);
+    if (deck_usual_pictures(model->spec)) draw_bars(run, folder, &outcome);
     for (int k = 0; k < profiles_count(model->profiles); ++k) draw_profile(run, k, folder, &outcome);
     result_view_close(&view);
   }

@@ -4,6 +4,7 @@
 #include "bars/bars.h"
 #include "base/random.h"
 #include "model/run.h"
+#include "results/bar_lines.h"
 #include "results/watch_parts.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
@@ -361,6 +362,31 @@ static void bars_tell_when_they_yield_and_tear(void **state)
   holds_words(text_words(&words), "bar 'tie'|yields since time 0.3 s|TORN since time 0.75 s|now over 100 %");
   text_free(&summary);
   text_free(&words);
+  for (int64_t k = 0; k < b->count + 1; ++k) { /* nodes move as the body does */
+    double u[3];
+    bar_node_displacement(b, k, u);
+    assert_near(u[0], 0.01 * b->node[k][0], 1e-12);
+    assert_near(u[1], 0, 1e-12);
+  }
+  char folder[] = "/tmp/breccia-bars-XXXXXX", line[512] = "", last[512] = "";
+  assert_non_null(mkdtemp(folder));
+  Text files = {0};
+  assert_int_equal(bar_lines_write(&m->domain, folder, m->units, &files, NULL), 0);
+  holds_words(text_words(&files), "bars/bars.csv|bars/bars.vtp");
+  text_free(&files);
+  char *path = text_format("%s/bars/bars.csv", folder);
+  FILE *file = fopen(path, "r");
+  int rows = -1;
+  for (; file && fgets(line, sizeof line, file); ++rows) {
+    if (rows < 0) holds_words(line, "bar,along (m),x (m)|strain,stress (kPa),force (kN)|torn since (s)");
+    memcpy(last, line, sizeof last);
+  }
+  fclose(file);
+  assert_int_equal(rows, 12);
+  holds_words(last, "\"tie\",1.111666667,1.131666667,0.14,0.11,0.0|,0.3,0.75");
+  snprintf(line, sizeof line, "rm -r %s", folder);
+  assert_int_equal(system(line), 0);
+  free(path);
   const double point[3] = {0.61, 0, 0};
   double middle[3];
   bar_middle(b, 0, bar_nearest(b, 0, point), middle);
