@@ -244,7 +244,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
   }
   const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : newton_most_iterations(&s->newton);
   if (relaxed || iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, static_whole_increment(s->spec));
-  if (relaxed) ++s->relaxed;
+  if (relaxed) run->records[clock->stage].relaxed = (double)++s->relaxed;
   clock->ended = clock->time >= clock->stage_end - 1e-9 * static_whole_increment(s->spec);
   static_count_steps(run);
   if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
