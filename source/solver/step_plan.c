@@ -221,7 +221,8 @@ int explicit_plan(Solver *run, Text *warning, Error *error)
   if (!status) status = find_period(run, error);
   if (!status) status = find_stable_step(s, error);
   if (status || (status = check_time_step(run, spec, s->clock->stable, warning, error))) return status;
-  if (!(spec->local_damping > 0)) flutter_warn_of_supports(run, s->clock->stable, spec->damping.stiffness, !spec->quasi_static, warning);
+  if (!(spec->local_damping > 0))
+    flutter_warn_of_supports(run, s->clock->stable, spec->damping.stiffness, !spec->quasi_static, warning);
   s->fixed = spec->steps >= 0 && isnan(spec->time_step) ? longest_step(s) : spec->time_step;
   const double step = isnan(s->fixed) ? longest_step(s) : s->fixed;
   const double steps = spec->steps >= 0 ? (double)spec->steps : ceil(duration(s) / step - 1e-6);
