@@ -280,7 +280,7 @@ done
 for least in "cycles 0" "steps 1" "elastic-rows 0"; do
   told "breccia: --${least% *}: '-1' is not a whole number of at least ${least#* }" material --model elastic --test uniaxial --${least% *} -1
 done
-told "breccia calibrate: give one file TEST.yaml; see 'breccia calibrate --help'" calibrate
+told "breccia calibrate: give one file TEST.yaml, or 'concrete'; see 'breccia calibrate --help'" calibrate
 told "breccia calibrate: --picture: 'a.gif' should end in .png, .svg or .pdf" calibrate a.yaml --picture a.gif
 told "breccia schema: 'x' is one argument too many" schema x
 told "breccia new: give the name of the deck to write, like plate.yaml" new
