@@ -336,6 +336,24 @@ static void steel_pushed_back_keeps_the_energy_of_its_stress(void **state)
   }
 }
 
+/** The same of bonds: stretched by 0.01 and pushed back to 0.0065, bonds along the axis have yielded and carry against their stretch. */
+static void bonds_of_steel_pushed_back_store_energy(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS "materials:\n  " STEEL_OF "\n"
+            "body: {b: {material: steel, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}\n"
+            "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+            "loads:\n  - {on: {all: yes}, field: {displacement: ['0.01*x', 0 m, 0 m]}, history: {table: [[0, 0], [0.5, "
+            "1], [1, 0.65]]}}\n"
+            "solve: {static: {increments: 20, end time: 1}}\npictures: []\n");
+  step_surely(m, INT64_MAX);
+  const Energy e = solver_energy(&m->solver);
+  assert_true(e.stored > 0.03 * e.external);
+  assert_near(e.stored + e.dissipated, e.external, 1e-6 * e.external);
+  breccia_model_destroy(&m);
+}
+
 static void bars_tell_when_they_yield_and_tear(void **state)
 {
   (void)state;
@@ -579,6 +597,7 @@ int main(void)
       cmocka_unit_test(every_way_to_solve_finds_the_same),
       cmocka_unit_test(steel_carries_what_its_law_says),
       cmocka_unit_test(steel_pushed_back_keeps_the_energy_of_its_stress),
+      cmocka_unit_test(bonds_of_steel_pushed_back_store_energy),
       cmocka_unit_test(bars_tell_when_they_yield_and_tear),
       cmocka_unit_test(works_are_in_the_books_where_steel_yields),
       cmocka_unit_test(threads_and_restarts_give_the_same_bits),
