@@ -376,6 +376,30 @@ Y
 "$breccia" check ground.yaml > out 2> errors || fail "ground: $(cat errors)"
 lines "ground" out <<< "9 particles begin under stress, mean -33.33 to -6.667 kPa"
 
+# ---- modes: what is told follows from their table, in whatever units the deck is ----
+cat > short.yaml <<'Y'
+units: {length: mm, force: N, time: ms}
+materials: {m: {model: elastic, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2}}
+body: {b: {material: m, lattice: square, spacing: 20, thickness: 20, shape: {box: {particles: [20, 4]}}}}
+peridynamics: {space: plane stress}
+loads: [{on: {face: x-}, displacement: [0, 0]}]
+solve: {explicit: {end time: 1}}
+Y
+"$breccia" modes short.yaml --count 3 > out 2>&1 || fail "modes of a short bar: $(cat out)"
+equal "modes: heading of the file" "$(head -1 short-modes/modes.csv)" "mode,frequency (Hz),mass share x,mass share y,mass share z"
+equal "modes: heading" "$(head -1 out)" "mode   frequency      period   of the mass, along x     y"
+# A cantilever of 39 cm between its support and its end, 8 cm deep, less what shear makes softer; its wave takes 4 times as long as to the end.
+near "modes: bending" "$(awk -F, 'NR == 2 {print $2}' short-modes/modes.csv)" 285 0.15
+near "modes: wave" "$(awk -F, 'NR == 4 {print $2}' short-modes/modes.csv)" 2267 0.03
+awk -F, 'NR > 1 {f[NR - 1] = $2; x[NR - 1] = $3; y[NR - 1] = $4} function told(v,  u) {return sprintf("%.3g", v)}
+  END {for (n = 1; n <= 3; ++n) {p = 1 / f[n]
+    printf "%4d %11s %11s                 %3.0f %% %3.0f %%\n", n, f[n] < 1000 ? told(f[n]) " Hz" : told(f[n] / 1000) " kHz", p < 1e-3 ? told(1e6 * p) " µs" : told(1e3 * p) " ms", 100 * x[n], 100 * y[n]}
+  printf "loads that are to leave the body at rest: over 5 to 10 of its first periods, %s ms to %s ms, or by '"'"'static'"'"'\n", told(5e3 / f[1]), told(1e4 / f[1])
+  printf "to come to rest soonest by '"'"'explicit'"'"': damping: {ratio: 1, at: %.4g Hz}\n", f[1]
+  printf "5 %% of critical damping by '"'"'implicit'"'"': Rayleigh damping: {ratio: 0.05, from: %.4g Hz, to: %.4g Hz}\n", f[1], f[3]
+  printf "steps of '"'"'implicit'"'"' that follow all of these: %s µs\n", told(1e6 / (20 * f[3]))}' short-modes/modes.csv > told
+lines "modes" out < told
+
 # ---- layers that a support puts outside the body are in no picture of it: where nothing moves it looks as if it were held by its own particles ----
 for held in "support: {held: all}" "displacement: [0, 0]"; do
   cat > held.yaml <<Y
