@@ -376,6 +376,34 @@ Y
 "$breccia" check ground.yaml > out 2> errors || fail "ground: $(cat errors)"
 lines "ground" out <<< "9 particles begin under stress, mean -33.33 to -6.667 kPa"
 
+# ---- one bond that is pulled until it breaks: 0.001 of 10 mm at 0.1 mm/ms are 0.1 ms; E s^2 / 2 of its 1000 mm3 are 15 N mm, less a step; masses of 2.4 g on
+# 3e8 N/m vibrate by 5e5 / s, twice the inverse of which is the stable step ----
+cat > pull.yaml <<'Y'
+units: {length: mm, force: N, time: ms}
+materials: {m: {model: elastic-1d, density: 2400 kg/m3, Young modulus: 30 GPa}}
+body: {b: {material: m, lattice: line, area: 100, spacing: 10, shape: {box: {particles: [2, 1]}}}}
+peridynamics: {formulation: bond-based, space: 1-D, horizon: 1.015 spacings, calibration: uniaxial}
+failure: {critical stretch: 1e-3, near grips: break}
+loads: [{on: {face: x-}, displacement: [0, free]}, {on: {face: x+}, velocity: [0.1, free]}]
+solve: {explicit: {steps: 300, time step: 0.5 us}}
+pictures: []
+Y
+"$breccia" run pull.yaml > out 2> errors || fail "pull: $(cat errors)"
+contains "pull: steps" "$(cat out)" "300 steps of 0.0005 ms (0.13 of the stable 0.00399)"
+contains "pull: end" "$(cat out)" "finished at step 300 of 300, time 0.15 ms; "
+lines "pull" out <<'Y'
+first broken bond at step 200, time 0.1 ms, near [10, 0, 0] mm; 1 of 1 bonds broken in all
+Y
+s=pull/summary.json
+near "pull: fracture" "$(figures $s fracture)" 15 0.01
+near "pull: stable step" "$(figures $s stable_time_step)" 0.004 0.003
+near "pull: end of displacement" "$(figures $s displacement)" 0.015 1e-9
+contains "pull: first broken bond" "$(cat $s)" '"first_broken_bond": {"step": 200, "time": 0.1, "particles": [0, 1], "at": [10, 0, 0]}'
+sed 's/solve:.*/solve: {static: {increments: 4}}/; /^failure/d; s/velocity: .0.1, free./displacement: [0.1, free]/' pull.yaml > hold.yaml
+"$breccia" run hold.yaml > out 2> errors || fail "hold: $(cat errors)"
+contains "hold: increments" "$(cat out)" "static, 4 increments up to time 1 ms, for 0 unknowns, "
+near "hold: energy" "$(figures hold/summary.json stored)" 1500 1e-6
+
 # ---- modes: what is told follows from their table, in whatever units the deck is ----
 cat > short.yaml <<'Y'
 units: {length: mm, force: N, time: ms}
