@@ -190,6 +190,56 @@ overlay '1;2\n' ":1: expected x and y"
 overlay '1,2\n\n# words\n 3, \n' ":4: expected x and y"
 overlay 'x,y\n' ": no row begins with two numbers, x and y with a comma between"
 
+# ---- pictures and words of motions: axes with their names and units, and rows of what an oscillator does that is pushed at once ----
+awk 'BEGIN {print "time (s),x (g)"; for (k = 0; k <= 200; ++k) printf "%g,%g\n", k * 0.01, 0.2 * sin(k * 0.2)}' > top.csv
+awk 'BEGIN {print "time (s),x (m/s2)"; for (k = 0; k <= 200; ++k) printf "%g,%g\n", k * 0.01, sin(k * 0.2)}' > base.csv
+rm -f scripts
+"$breccia" spectrum top.csv base.csv --column x > out 2> errors || fail "spectrum: $(cat errors)"
+equal "spectrum: pictures" "$(sed -n "s/^set output '\(.*\).part'/\1/p; s/^set title '\(.*\)' noenhanced/ \1/p; s/^set [xy]label '\(.*\)' noenhanced/ \1/p; s/^set logscale/ log/p" scripts)" "$(cat << 'Y'
+top-spectrum/acceleration.png
+ Acceleration: top
+ Time [s]
+ Acceleration [m/s²]
+top-spectrum/husid.png
+ Share of Arias'' intensity that has come: top
+ Time [s]
+ Husid
+top-spectrum/response-spectrum.png
+ Response spectrum: top
+ Period [s]
+ log x
+ Pseudo-acceleration [m/s²]
+top-spectrum/fourier.png
+ Amplitudes of frequencies: top
+ Frequency [Hz]
+ log x
+ Amplitude [m/s]
+ log y
+top-spectrum/transfer.png
+ Transfer function: top over base
+ Frequency [Hz]
+ log x
+ Ratio
+Y
+)"
+equal "spectrum: lines of both" "$(grep '^plot' scripts | grep -o "title '[^']*'" | tr '\n' ' ')" "title 'top' title 'top' title 'top' title 'base' title 'top' title 'base' title 'top' "
+# 0.2 g against 1 m/s2 at all frequencies at which both have something
+awk -F, 'NR > 1 && $4 != "" && $1 > 1 && $1 < 10 {++n; if ($4 < 1.96 || $4 > 1.963) bad = 1} END {exit bad || n < 20}' top-spectrum/fourier.csv || fail "spectrum: ratios: $(cat top-spectrum/fourier.csv)"
+awk 'BEGIN {print "time (s),x (m/s2)"; for (k = 0; k <= 60; ++k) printf "%g,2\n", k}' > push.csv
+"$breccia" spectrum push.csv --column x --damping 0.1 > out 2> errors || fail "spectrum of a push: $(cat errors)"
+awk 'BEGIN {pi = atan2(0, -1); over = 1 + exp(-pi * 0.1 / sqrt(0.99)); split("0.02 0.05 0.1 0.2 0.3 0.5 0.7 1 1.5 2 3 5 10", period, " ")}
+  function near(a, b) {return a > b * 0.997 && a < b * 1.003}
+  /^ +period/ {row = 1; next} row && NF == 4 {T = period[row++]; x = over * 2 * (T / (2 * pi)) ^ 2; w = 2 * pi / T
+    if ($1 != T || !near($2, x) || !near($3, x * w) || !near($4, x * w * w)) bad = 1}
+  END {exit bad || row != 14}' out || fail "spectrum of a push: $(cat out)"
+checks=$((checks + 2))
+grep -q "^largest acceleration              2 m/s2$" out || fail "spectrum of a push: $(cat out)"
+grep -q "^largest velocity                  120 m/s$" out || fail "spectrum of a push: $(cat out)"
+grep -q "^largest displacement              3.6e+03 m$" out || fail "spectrum of a push: $(cat out)"
+# pi / (2 g) 4 m2/s4 over a minute, of which nine tenths take 54 s
+grep -q "^Arias intensity                   38.44 m/s$" out || fail "spectrum of a push: $(cat out)"
+grep -q "^significant duration (5 to 95 %)  54 s$" out || fail "spectrum of a push: $(cat out)"
+
 # ---- a run: profiles along an axis in space, and a movie of what fades ----
 cat > block.yaml <<'Y'
 title: Block
