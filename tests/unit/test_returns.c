@@ -55,7 +55,7 @@ static void hooke(const Material *m, const double e[6], double s[6])
   } while (0)
 
 /** Drives a point; every second step is asked for its tangent too, which other functions of a law answer. Now and then the strain turns back to where
- *  it was two steps ago, and the point is begun anew. */
+ *  it was two steps ago, and the point starts again from nothing. */
 static void walk(const Material *m, double size, bool plastic, void (*obeys)(const Step *s, void *data), void *data)
 {
   Point p = point_start(m);
