@@ -61,6 +61,10 @@ refuse "fit: 3 parameters cannot be told from 2 points; fit fewer, or measure mo
 
 lines=1
 
+for verb in material calibrate; do
+  refuse "breccia $verb: --picture: 'a.txt' should end in .png, .svg or .pdf" $verb stage.yaml --picture a.txt
+done
+
 # ---- results ----
 cp base.yaml done.yaml
 "$breccia" run done.yaml --quiet > out 2>&1 || fail "run: $(cat out)"

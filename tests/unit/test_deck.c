@@ -53,6 +53,10 @@ static void ambiguous_or_wrong_units_are_refused(void **state)
                                   {"damping rate", "0.1 s"},
                                   {"density", "2.4 gr/cm3"},
                                   {"damping rate", "3 Hz"},
+                                  /* an angle by time to some, turns by time to others; degrees that begin elsewhere */
+                                  {"angular velocity", "30 rpm"},
+                                  {"frequency", "30 rpm"},
+                                  {"1", "3 m @ 5 m"},
                                   {"stress", "0x10"},
                                   {"stress", "nan"},
                                   {"length", "inf"},
