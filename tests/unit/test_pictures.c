@@ -487,6 +487,57 @@ static void bodies_in_the_plane_are_seen_from_the_front(void **state)
   result_view_close(&view);
 }
 
+/** Whatever the shape of a body, nothing of its page is cut off or stands right at an edge: a margin of 14 is left, more beside what has no words. */
+static void pages_have_margins_on_all_sides(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *name, *particles;
+    bool space;
+  } bodies[] = {{"block", "[12, 10]", false},
+                {"wide", "[60, 5]", false},
+                {"tall", "[5, 40]", false},
+                {"solid", "[9, 6, 5]", true}};
+  for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
+    char into[40], path[80];
+    snprintf(into, sizeof into, "%s/margins-%s", folder, bodies[b].name);
+    breccia_model *model =
+        model_of("materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+                 "body: {b: {material: m, %sspacing: 1, shape: {box: {particles: %s}}}}\n"
+                 "peridynamics: {space: %s}\nsolve: {explicit: {steps: 1, time step: 1e-3}}\n"
+                 "loads: [{on: {all: yes}, initial velocity: {translation: [1, 0%s]}}]\n"
+                 "results: {number: 1, fields: [velocity]}\npictures: []\n",
+                 bodies[b].space ? "" : "lattice: square, thickness: 1, ", bodies[b].particles,
+                 bodies[b].space ? "3-D" : "plane stress", bodies[b].space ? ", 0" : "");
+    const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+    assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+    breccia_model_destroy(&model);
+    ResultView view;
+    snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+    assert_int_equal(result_view_open(&view, path, NULL), 0);
+    const PictureOptions o = {
+        .field = "velocity", .component = "x", .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+    PictureSurvey survey;
+    int wide, high, left = 1 << 20, right = 0, top = -1, bottom = 0;
+    assert_int_equal(picture_survey(&view, 1, 1, true, &o, &survey, NULL), 0);
+    unsigned char *pixels = picture_pixels(&view, 1, &o, &survey, &wide, &high, NULL);
+    assert_non_null(pixels);
+    for (int y = 0; y < high; ++y)
+      for (int x = 0; x < wide; ++x) {
+        const unsigned char *at = pixels + 4 * (y * wide + x);
+        if (at[0] + at[1] + at[2] > 740) continue;
+        if (top < 0) top = y;
+        bottom = y;
+        left = x < left ? x : left;
+        right = x > right ? x : right;
+      }
+    const int room[4] = {left, wide - 1 - right, top, high - 1 - bottom};
+    for (int k = 0; k < 4; ++k) assert_true(room[k] >= 9 && room[k] <= 32);
+    free(pixels);
+    result_view_close(&view);
+  }
+}
+
 /** Every dataset that results.xdmf names is there and holds the step's numbers. */
 static void xdmf_names_a_whole_dataset_for_every_step(void **state)
 {
@@ -560,6 +611,7 @@ int main(void)
       cmocka_unit_test(bodies_in_space_stand_as_they_are_seen),
       cmocka_unit_test(thin_plates_are_seen_from_the_front),
       cmocka_unit_test(bodies_in_the_plane_are_seen_from_the_front),
+      cmocka_unit_test(pages_have_margins_on_all_sides),
       cmocka_unit_test(xdmf_names_a_whole_dataset_for_every_step),
       cmocka_unit_test(names_of_pictures_are_short),
   };
