@@ -56,9 +56,10 @@ int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *lin
   const double sum = lattice ? least_crossing(m, block) : mean_crossing(m, block);
   link->tension_end = 4 * link->fracture_energy / (link->tension_begin * sum);
   if (link->tension_end > link->tension_begin) return BRECCIA_OK;
-  const double most = m->body->lattices[block].spacing * link->tension_end / link->tension_begin;
   char advice[80] = "take finer particles";
-  if (lattice) snprintf(advice, sizeof advice, "take a spacing below %.3g", most);
+  if (lattice)
+    snprintf(advice, sizeof advice, "take a spacing %.3g times smaller or less",
+             1.001 * link->tension_begin / link->tension_end);
   return error_add(error, BRECCIA_USER_ERROR,
                    "block '%s': its links store more up to the tensile stretch of %g than the fracture energy of "
                    "material '%s' lets a crack take; %s, or give more fracture energy",

@@ -159,6 +159,8 @@ static void add_plate(const Concrete *c, double load, Text *t)
            load, -load, 2 * ROWS * sqrt(0.75) * c->spacing / sqrt(c->modulus / c->density));
 }
 
+static const char place_in_deck[] = " block 'plate': ";
+
 /** @param[in] stress  over the width, tension positive @param[out] bears  whether the plate is steady in the end */
 static int try_plate(const Concrete *c, double stress, bool *bears, Error *error)
 {
@@ -166,8 +168,15 @@ static int try_plate(const Concrete *c, double stress, bool *bears, Error *error
   const breccia_options wishes = {.size = sizeof wishes, .threads = 1};
   breccia_model *model = NULL;
   add_plate(c, stress * WIDE * c->spacing * c->spacing, &deck);
-  int status = deck.failed ? error_add(error, BRECCIA_FAILURE, "out of memory: plates")
-                           : breccia_model_load_string(text_words(&deck), "plate", &wishes, &model, error);
+  Error *refused = breccia_error_create();
+  int status = deck.failed || !refused
+                   ? error_add(error, BRECCIA_FAILURE, "out of memory: plates")
+                   : breccia_model_load_string(text_words(&deck), "plate", &wishes, &model, refused);
+  if (status) { /* without the place in a deck that nobody has seen */
+    const char *words = breccia_error_text(refused), *block = strstr(words, place_in_deck);
+    if (*words) error_add(error, status, "plates of this concrete: %s", block ? block + strlen(place_in_deck) : words);
+  }
+  breccia_error_destroy(&refused);
   while (!status && !solver_is_done(&model->solver)) status = breccia_model_step(model, 1000000, error);
   if (!status) *bears = model->solver.records[0].steady == STEADY;
   breccia_model_destroy(&model);

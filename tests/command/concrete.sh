@@ -87,7 +87,8 @@ refused "fc: 'strong'" --fc strong
 refused "ft: '4MPa' is not below the strength in compression, '3MPa'" --ft 4MPa --fc 3MPa
 refused "poisson: '0.4' is out of range for concrete; expected 0 to 1/3" --fc 30MPa --poisson 0.4
 refused "fracture-energy: '1e-3 N/m' is out of range" --fc 30MPa --fracture-energy '1e-3 N/m'
-refused "take a spacing below 0.0195" --fc 30MPa --fracture-energy '1 N/m'
+refused "plates of this concrete: its links store" --fc 30MPa --fracture-energy '1 N/m'
+refused "take a spacing 1.28 times smaller" --fc 30MPa --fracture-energy '1 N/m'
 refused "--picture is for measured curves" --fc 30MPa --picture a.png
 "$breccia" calibrate test.yaml --fc 30MPa 2> errors; equal "a strength for a file: status" $? 2
 contains "a strength for a file" "$(cat errors)" "--fc is for 'breccia calibrate concrete'"
