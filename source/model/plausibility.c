@@ -511,6 +511,7 @@ void plausibility_warn(breccia_model *model)
   plausibility_warn_of_contact(model);
   plausibility_warn_of_supports(model);
   plausibility_warn_of_bars(model);
+  plausibility_warn_of_pictures(model);
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
   for (int k = 0; k < model->loading.count; ++k) {
     check_jump(model, &model->loading.loads[k]);

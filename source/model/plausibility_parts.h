@@ -1,5 +1,5 @@
 /* What the files of plausibility share: words and units (plausibility_words.c); blocks and contact
- * (plausibility_contact.c); supports (plausibility_supports.c); bars (plausibility_bars.c); the lowest frequency (plausibility_modes.c). */
+ * (plausibility_contact.c); supports (plausibility_supports.c); bars (plausibility_bars.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 
@@ -23,6 +23,9 @@ void plausibility_warn_of_supports(breccia_model *model);
 
 /** Warns of bars whose size is not that of reinforcement, and where they meet a support. */
 void plausibility_warn_of_bars(breccia_model *model);
+
+/** Warns of pictures that can show nothing of what is meant. */
+void plausibility_warn_of_pictures(breccia_model *model);
 
 /** Adds a line on the lowest frequency of the body as it is held, with advice for loads, damping and steps, where the deck asks for it and the body is
  *  so small that it is soon found. @return whether there is one */

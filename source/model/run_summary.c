@@ -424,7 +424,8 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(stress * peaks->mean_low, "Pa", t);
     text_add(t, " to ");
     quantity_describe(stress * peaks->mean_high, "Pa", t);
-    text_add(t, ", damage %.3g\n", peaks->damage);
+    if (d->failure.criterion || peaks->damage > 0) text_add(t, ", damage %.3g", peaks->damage);
+    text_add(t, "\n");
   }
   run_tell_bars(model, t);
   tell_verdicts(s, t);

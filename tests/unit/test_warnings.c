@@ -28,6 +28,7 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define CRACK_FROM(x)                                                                                                  \
   "cracks: [{cut: {line: [[" x ", 0.03], [0.04, 0.03]]}}]\nloads: [{on: {face: x-}, support: {held: across}}]\n"
 #define BAR(from, area) "bars: {low: {points: [[" from ", 0.025], [0.05, 0.025]], area: " area ", material: m}}\n"
+#define DAMAGE "pictures: [{field: damage}]\n"
 #define HALF "loads: [{on: {face: x-}, support: {held: across}}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
 #define MUCH "is much for concrete, which has 60 to 200 N/m"
@@ -36,6 +37,10 @@ static const struct {
   const char *name, *keys, *more, *warning; /* NULL: there is none */
 } rows[] = {
     {"m", USUAL, "", NULL},
+    {"m", USUAL, DAMAGE, NULL}, /* neither its bonds nor its law can be damaged */
+    {"c", STRONG("2.4", "30 GPa", "3 MPa", "100 N/m"), DAMAGE,
+     "no bond breaks here; take 'material damage', that of material 'c'"},
+    {"c", STRONG("2.4", "30 GPa", "3 MPa", "100 N/m"), DAMAGE "failure: {critical stretch: 0.01}\n", NULL},
     {"m", ELASTIC("101 kg/m3", "100 MPa"), "", NULL},
     {"m", ELASTIC("99 kg/m3", "100 MPa"), "", "density: 99 kg/m3; materials like it have 100 kg/m3 to 25000 kg/m3"},
     {"m", ELASTIC("24900 kg/m3", "9 GPa"), "", NULL},
