@@ -293,6 +293,8 @@ typedef struct breccia_plot {
   const char
       *curve; /* "watch.column : watch.column", further vertical ones behind commas; NULL: all energies over time */
   const char *overlay, *log_axes; /* CSV file whose first two columns are drawn as points; "x", "y" or "xy" */
+  /* of fields */
+  double low_corner[3], high_corner[3]; /* of a box: only particles that stand in it before they move; NaN: no limit */
 } breccia_plot;
 
 /** Fills in what a picture is like if nobody asks for something else: the last state, undistorted colours, no scale of displacements but 1. */

@@ -248,6 +248,16 @@ bool shape_contains(const Shape *shape, const UnitCell *unit, int dimensions, co
   return true;
 }
 
+bool shape_counts_particles(const Shape *shape)
+{
+  if (shape->box) return shape->box->particles[0] >= 0;
+  for (int k = 0; k < shape->together.count; ++k)
+    if (shape_counts_particles(shape->together.items[k])) return true;
+  for (int k = 0; k < shape->difference.count; ++k)
+    if (shape_counts_particles(shape->difference.items[k])) return true;
+  return false;
+}
+
 void shape_bounds(const Shape *shape, const UnitCell *unit, double low[3], double high[3])
 {
   for (int k = 0; k < 3; ++k) {

@@ -50,6 +50,9 @@ void box_corners(const Box *box, const UnitCell *unit, double low[3], double hig
  *  @param[in] dimensions  further coordinates do not count */
 bool shape_contains(const Shape *shape, const UnitCell *unit, int dimensions, const double point[3], double tolerance);
 
+/** Whether it has a box that is given by numbers of particles, which has no size without a lattice. */
+bool shape_counts_particles(const Shape *shape);
+
 /** Corners of a box that holds the shape. */
 void shape_bounds(const Shape *shape, const UnitCell *unit, double low[3], double high[3]);
 

@@ -13,6 +13,7 @@ enum {
   DEFORMED,
   RANGE,
   VIEW,
+  INSIDE,
   BROKEN,
   SIZE,
   MOVIE,
@@ -37,6 +38,9 @@ static const Option options[] = {
     {"range", "LOW:HIGH|each",
      "ends of the colours, in the deck's unit (alike at all times); of the x axis with --curve"},
     {"view", "AZIMUTH:ELEVATION", "where the eye is, in degrees, for bodies in space"},
+    {"inside", "X0:X1,Y0:Y1,Z0:Z1",
+     "only particles of this box, in the deck's unit, to look into a body; what is left out has no limit, as in "
+     ":,0:2,:"},
     {"broken-bonds", NULL, "draw the bonds that have broken"},
     {"size", "PIXELS", "largest width of the body in the picture (640; 460 in space)"},
     {"movie", "FILE.mp4", "all written steps as a movie; needs ffmpeg"},
@@ -66,6 +70,33 @@ static int read_number(const char *words, const char *option, double *value)
   char tail;
   if (sscanf(words, "%lf%c", value, &tail) == 1 && isfinite(*value)) return 0;
   fprintf(stderr, "breccia plot: --%s: '%s' is not a number\n", option, words);
+  return 1;
+}
+
+/** A number, or nothing, which leaves `value` as it is. @return what follows */
+static const char *read_end(const char *at, double *value)
+{
+  char *end;
+  const double found = strtod(at, &end);
+  if (end > at) *value = found;
+  return end;
+}
+
+/** Ranges along x, y, z with commas between them; an end that is left out is no limit. @return 0, or 1 after saying what is wrong */
+static int read_box(const char *words, double low[3], double high[3])
+{
+  const char *at = words;
+  bool good = true;
+  for (int k = 0; k < 3 && good; ++k) {
+    at = read_end(at, &low[k]);
+    good = *at == ':';
+    if (good) at = read_end(at + 1, &high[k]);
+    good = good && *at == (k < 2 ? ',' : 0) && !isinf(low[k]) && !isinf(high[k]);
+    if (*at) ++at;
+  }
+  if (good) return 0;
+  fprintf(stderr, "breccia plot: --inside: '%s' should be three ranges with commas between them, like :,0:2,:\n",
+          words);
   return 1;
 }
 
@@ -119,6 +150,7 @@ static int read_plot(const char **values, breccia_plot *plot)
   }
   if (values[RANGE] && !plot->each_range && read_pair(values[RANGE], "range", &plot->low, &plot->high)) return 1;
   if (values[VIEW] && read_pair(values[VIEW], "view", &plot->azimuth, &plot->elevation)) return 1;
+  if (values[INSIDE] && read_box(values[INSIDE], plot->low_corner, plot->high_corner)) return 1;
   return read_state(values, plot);
 }
 

@@ -36,8 +36,14 @@ static void tell(const breccia_plot *plot, const char *path)
 
 void breccia_plot_begin(breccia_plot *plot, size_t size)
 {
-  const breccia_plot usual = {
-      .field = "octahedral shear stress", .deformed = 1, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+  const breccia_plot usual = {.field = "octahedral shear stress",
+                              .deformed = 1,
+                              .azimuth = NAN,
+                              .elevation = NAN,
+                              .low = NAN,
+                              .high = NAN,
+                              .low_corner = {NAN, NAN, NAN},
+                              .high_corner = {NAN, NAN, NAN}};
   memset(plot, 0, size);
   plot->size = size;
   sized_give(plot, &usual, sizeof usual);
@@ -51,6 +57,10 @@ static int take_plot(breccia_plot *plot, const breccia_plot *given, Error *error
   if (plot->low >= plot->high)
     return error_add(error, BRECCIA_USER_ERROR, "range: the lowest value %g is not below the highest, %g", plot->low,
                      plot->high);
+  for (int k = 0; k < 3; ++k)
+    if (plot->low_corner[k] >= plot->high_corner[k])
+      return error_add(error, BRECCIA_USER_ERROR, "inside: along %c the lower end %g is not below the upper one, %g",
+                       "xyz"[k], plot -> low_corner[k], plot -> high_corner[k]);
   if (plot->log_axes && strcmp(plot->log_axes, "x") && strcmp(plot->log_axes, "y") && strcmp(plot->log_axes, "xy"))
     return error_add(error, BRECCIA_USER_ERROR, "logarithmic axes: '%s' should be x, y or xy", plot->log_axes);
   return BRECCIA_OK;
@@ -68,7 +78,25 @@ int breccia_can_draw(const char *path)
   return picture_format(path);
 }
 
-static PictureOptions field_options(const breccia_plot *plot)
+/** What is drawn of a body: all of it, or the box that is asked for. */
+typedef struct Part {
+  Box box;
+  Shape shape;
+  bool whole;
+} Part;
+
+static void find_part(const breccia_plot *plot, Part *part)
+{
+  *part = (Part){.box = {.particles = {-1, -1, -1}}, .whole = true};
+  part->shape.box = &part->box;
+  for (int k = 0; k < 3; ++k) {
+    part->whole &= isnan(plot->low_corner[k]) && isnan(plot->high_corner[k]);
+    part->box.from[k] = isnan(plot->low_corner[k]) ? -INFINITY : plot->low_corner[k];
+    part->box.to[k] = isnan(plot->high_corner[k]) ? INFINITY : plot->high_corner[k];
+  }
+}
+
+static PictureOptions field_options(const breccia_plot *plot, const Part *part)
 {
   return (PictureOptions){.field = plot->field,
                           .component = plot->component,
@@ -78,6 +106,7 @@ static PictureOptions field_options(const breccia_plot *plot)
                           .deformed = plot->deformed,
                           .azimuth = plot->azimuth,
                           .elevation = plot->elevation,
+                          .inside = part->whole ? NULL : &part->shape,
                           .low = plot->low,
                           .high = plot->high,
                           .broken_bonds = plot->broken_bonds != 0,
@@ -129,15 +158,15 @@ static char *state_path(const ResultView *view, int k, bool many, const breccia_
   return in_pictures(result, name);
 }
 
-static int draw_states(const ResultView *view, const char *result, const breccia_plot *plot, Error *error)
+static int draw_states(const ResultView *view, const char *result, const breccia_plot *plot, const PictureOptions *o,
+                       Error *error)
 {
-  const PictureOptions o = field_options(plot);
   PictureSurvey survey;
   int first, last, status = find_states(view, plot, &first, &last, error);
-  if (!status && !plot->each_range) status = picture_survey(view, 0, view->steps - 1, false, &o, &survey, error);
+  if (!status && !plot->each_range) status = picture_survey(view, 0, view->steps - 1, false, o, &survey, error);
   for (int k = first; k <= last && !status; ++k) {
     char *path = state_path(view, k, first < last, plot, result);
-    status = path ? picture_draw(view, k, &o, plot->each_range ? NULL : &survey, path, error)
+    status = path ? picture_draw(view, k, o, plot->each_range ? NULL : &survey, path, error)
                   : error_add(error, BRECCIA_FAILURE, "out of memory: picture");
     if (!status) tell(plot, path);
     free(path);
@@ -155,9 +184,11 @@ static int draw_fields(const char *result, const breccia_plot *plot, bool movie,
     status = error_add(error, BRECCIA_USER_ERROR, "%s: holds no step yet", path);
     result_view_close(&view);
   } else if (!status) {
-    const PictureOptions o = field_options(plot);
+    Part part;
+    find_part(plot, &part);
+    const PictureOptions o = field_options(plot, &part);
     status = movie ? movie_make(&view, &o, plot->each_range != 0, plot->rate, plot->path, error)
-                   : draw_states(&view, path, plot, error);
+                   : draw_states(&view, path, plot, &o, error);
     if (!status && movie) tell(plot, plot->path);
     result_view_close(&view);
   }

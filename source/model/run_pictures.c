@@ -52,6 +52,7 @@ static PictureOptions picture_options(const PictureSpec *spec)
                           .deformed = spec->deformed,
                           .azimuth = spec->view[0],
                           .elevation = spec->view[1],
+                          .inside = spec->inside,
                           .low = spec->range[0],
                           .high = spec->range[1],
                           .broken_bonds = spec->broken_bonds};

@@ -65,6 +65,14 @@ static const Field picture_fields[] = {
      .meaning =
          "[azimuth, elevation] of the eye; when absent [-60, 25], from the side and a little above; flat bodies are "
          "seen from the front"},
+    {.key = "inside",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(PictureSpec, inside),
+     .standard = "",
+     .meaning =
+         "only particles that stand inside this shape before they move, so that a body in space is seen cut open; "
+         "all when absent",
+     .section = &shape_section},
     {.key = "range",
      .kind = FIELD_POINT,
      .offset = offsetof(PictureSpec, range),
@@ -117,6 +125,12 @@ static void check_picture(const DeckReader *reader, void *section)
   if (p->range[0] >= p->range[1])
     node_error(reader->document, section_node(p, "range"), reader->error,
                "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
+  if (p->inside && !p->field)
+    node_error(reader->document, section_node(p, "inside"), reader->error,
+               "inside: a curve has no particles; leave it out");
+  else if (p->inside && shape_counts_particles(p->inside))
+    node_error(reader->document, section_node(p, "inside"), reader->error,
+               "inside: a box is given by its corners here, 'from' and 'to': no lattice tells the size of 'particles'");
 }
 
 const Section picture_section = {.name = "picture",
@@ -273,7 +287,9 @@ static void project(Scene *scene, const ResultView *view, const double *u, doubl
   scene->x1 = scene->y1 = -INFINITY;
   for (int64_t n = 0; n < scene->count; ++n) {
     const double half = view->spacings[n] * (scene->flat ? 0.5 : BALL);
-    scene->x[n] = scene->y[n] = scene->depth[n] = 0;
+    scene->x[n] = scene->y[n] = scene->hidden[n] ? NAN : 0;
+    scene->depth[n] = 0;
+    if (scene->hidden[n]) continue;
     for (int k = 0; k < 3; ++k) {
       const double p = view->positions[3 * n + k] + (u ? deformed * u[3 * n + k] : 0);
       scene->x[n] += p * scene->right[k];
@@ -315,6 +331,20 @@ static int place_particles(Scene *scene, const ResultView *view, int step, const
 
 /* ---- a picture ---- */
 
+/** Particles that stand outside of what is asked for. */
+static int hide(Scene *scene, const ResultView *view, const PictureOptions *o, Error *error)
+{
+  int64_t shown = 0;
+  for (int64_t n = 0; n < scene->count; ++n) {
+    scene->hidden[n] = o->inside && !shape_contains(o->inside, NULL, view->plane ? 2 : 3, view->positions + 3 * n,
+                                                    1e-6 * view->spacings[n]);
+    shown += !scene->hidden[n];
+  }
+  if (shown) return BRECCIA_OK;
+  return error_add(error, BRECCIA_USER_ERROR, "inside: none of the %lld particles stands in this shape",
+                   (long long)scene->count);
+}
+
 static int scene_create(Scene *scene, const ResultView *view, const PictureOptions *o, Error *error)
 {
   *scene = (Scene){.count = view->particles};
@@ -323,12 +353,15 @@ static int scene_create(Scene *scene, const ResultView *view, const PictureOptio
     *arrays[k] = memory_plain((size_t)(scene->count + 1), sizeof(double));
     if (!*arrays[k]) return error_add(error, BRECCIA_FAILURE, "out of memory: picture");
   }
+  if (!(scene->hidden = memory_zeroed((size_t)(scene->count + 1), sizeof(bool), "picture", error)))
+    return BRECCIA_FAILURE;
   look(scene, view, o);
-  return BRECCIA_OK;
+  return hide(scene, view, o, error);
 }
 
 static void scene_destroy(Scene *scene)
 {
+  free(scene->hidden);
   free(scene->x);
   free(scene->y);
   free(scene->depth);
@@ -345,7 +378,7 @@ int picture_survey(const ResultView *view, int first, int last, bool framing, co
   for (int k = first; k <= last && !status; ++k) {
     status = take_values(view, k, o, scene.value, unit, error);
     for (int64_t n = 0; n < scene.count && !status; ++n)
-      if (isfinite(scene.value[n])) {
+      if (!scene.hidden[n] && isfinite(scene.value[n])) {
         s->least = fmin(s->least, scene.value[n]);
         s->most = fmax(s->most, scene.value[n]);
       }
@@ -374,6 +407,7 @@ static int scene_fill(Scene *scene, const ResultView *view, int step, const Pict
     scene->y1 = s->y1;
   }
   for (int64_t n = 0; n < scene->count; ++n) {
+    if (scene->hidden[n]) continue;
     scene->missing += !isfinite(scene->value[n]);
     scene->outside +=
         !(scene->x[n] >= scene->x0 && scene->x[n] <= scene->x1 && scene->y[n] >= scene->y0 && scene->y[n] <= scene->y1);

@@ -2,6 +2,7 @@
 #ifndef BRECCIA_RESULTS_PICTURE_H
 #define BRECCIA_RESULTS_PICTURE_H
 
+#include "body/shape.h"
 #include "deck/section.h"
 #include "results/result_view.h"
 
@@ -10,6 +11,7 @@ typedef struct PictureSpec {
   const char *field, *component, *curve, *title, *x_label, *y_label, *name, *log_axes;
   NumberList times;
   double deformed, view[3], range[3]; /* view: azimuth and elevation; range: lowest and highest value */
+  Shape *inside;                      /* or NULL: the whole body */
   bool broken_bonds, same_range, energy;
 } PictureSpec;
 
@@ -20,6 +22,7 @@ typedef struct PictureOptions {
   const char *title, *x_label, *y_label; /* NULL: the deck's title; the coordinates */
   double deformed;                       /* scale of displacements */
   double azimuth, elevation;             /* degrees; NaN: chosen from the body's shape */
+  const Shape *inside;                   /* only particles that stand in it, undeformed; NULL: all */
   double low, high;                      /* ends of the colour scale; NaN: from the data */
   bool broken_bonds;
   bool one_of_many; /* a frame of a movie: times with all their digits, all frames of one size */

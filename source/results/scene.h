@@ -12,6 +12,7 @@ typedef struct Scene {
   int64_t count;
   double *x, *y, *depth; /* on the picture plane, and towards the eye */
   double *value;         /* in the deck's unit */
+  bool *hidden;          /* particles that are not asked for; they have no place on the plane */
   ColourRange range;
   DisplayUnit unit, length;
   char heading[160]; /* "Octahedral shear stress [kPa]" */

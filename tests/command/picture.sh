@@ -46,6 +46,25 @@ read -r end_wide end_high <<< "$(sizes 0:0)"
 [ $((end_high - side_high)) -gt 100 ] && [ $((top_high)) = $((end_high)) ] || fail "heights from the side, above, the front: $side_high $top_high $end_high"
 [ $((end_wide - top_wide)) -gt 100 ] && [ $((side_wide)) -gt $((end_wide)) ] || fail "widths from the side, above, the front: $side_wide $top_wide $end_wide"
 checks=$((checks + 2))
+# a part of a body: the deck's shape and the box of a plot are the same picture; a box around all of it leaves nothing out
+sed 's/^  - {field: damage}$/  - {field: displacement, inside: {box: {from: [-1, 3, -1], to: [13, 7, 7]}}, name: half}/' bar.yaml > half.yaml
+"$breccia" run half.yaml > out 2>&1 || fail "half: $(cat out)"
+"$breccia" plot half --field displacement --inside :,3:,: --output half.png > out 2>&1 || fail "half: $(cat out)"
+"$breccia" plot half --field displacement --inside=-1:13,-1:7,-1:7 --output all.png > out 2>&1 || fail "all: $(cat out)"
+"$breccia" plot half --field displacement --output whole.png > out 2>&1 || fail "whole: $(cat out)"
+cmp half.png half/pictures/half.png || fail "half a body differs from the deck's picture of it"
+cmp all.png whole.png || fail "a box around all of a body leaves something out"
+cmp -s half.png whole.png && fail "half a body is drawn as all of it"
+checks=$((checks + 3))
+refused_plot() { # options, words
+  "$breccia" plot half --field displacement --inside "$1" --output no.png > out 2> errors
+  equal "--inside $1: status" $? 2
+  contains "--inside $1" "$(cat errors)" "$2"
+  equal "--inside $1: lines" "$(wc -l < errors)" 1
+}
+for wrong in "1:2" ":,:" ":,:,:,:" "a:2,:,:" "0-1,:,:" ":,:,inf:"; do refused_plot "$wrong" "--inside: '$wrong' should be three ranges with commas between them, like :,0:2,:"; done
+refused_plot ":,2:1,:" "inside: along y the lower end 2 is not below the upper one, 1"
+refused_plot ":,20:,:" "inside: none of the 432 particles stands in this shape"
 printf 'a,b\n0,0\n1,1\n' > measured.csv
 "$breccia" plot bar --curve "end.time : end.x" --output plus.svg > out 2>&1 || fail "plus: $(cat out)"
 "$breccia" plot bar --curve "end.time : - end.x" --output minus.svg > out 2>&1 || fail "minus: $(cat out)"
