@@ -58,6 +58,9 @@ sed 's/model: elastic, \(.*\)Young modulus: 150 MPa, Poisson ratio: 0.25/model: 
 "$breccia" run fibres.yaml --quiet > out 2>&1 || fail "plate of fibres: $(cat out)"
 near "opening of the crack, fibres" "$(value fibres/mouth 4)" 0.003292 0.002
 
+# Under the sanitizers that is enough: what follows has the same laws and solvers on larger bodies.
+[ -z "${BRECCIA_SANITIZED:-}" ] || { finish; exit; }
+
 # Prandtl: (2 + pi) s_u on 1 m x 1 m, s_u = 100 kPa; 5 particles under half of the footing carry 12 % more
 run footing/footing --set "variables.dx=200 mm" --set "variables.settlement=9 mm" --set "solve.static.increments=6"
 near "limit load of the footing" "$(cut -d, -f4 footing/footing.csv | sort -gr | head -1)" 514.16 0.13

@@ -44,6 +44,9 @@ read -r low high <<< "$(bears tension)"
 near "aggregate: what plates bear in tension" "$high" 1.005 0.01
 near "aggregate: what plates bear in tension" "$low" 0.995 0.01
 
+# Under the sanitizers that is enough: plates have run in what was verified.
+[ -z "${BRECCIA_SANITIZED:-}" ] || { finish; exit; }
+
 # ---- the block runs as it is printed: under 0.9 of what plates bear one is steady, under 1.1 it fails ----
 cp out concrete.yaml
 for load in 0.9 1.1; do
