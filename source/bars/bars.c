@@ -491,6 +491,16 @@ static void describe(const void *forces, const Units *units, Text *text)
   text_add(text, "; %lld elements, %.4g %s of steel\n", (long long)b->count, volume, unit);
 }
 
+static void join_places(const void *forces, void (*one)(void *context, int32_t a, int32_t b), void *context)
+{
+  const Bars *b = forces;
+  for (int64_t e = 0; e < b->count; ++e) {
+    if (b->torn[e] >= 0) continue;
+    for (int64_t n = b->begin[e] + 1; n < b->begin[e + 1]; ++n)
+      one(context, b->joined.place[b->begin[e]], b->joined.place[n]);
+  }
+}
+
 const ForcesType bars_forces = {.name = "bars",
                                 .uses = uses,
                                 .check = check,
@@ -501,6 +511,7 @@ const ForcesType bars_forces = {.name = "bars",
                                 .resist = bars_resist,
                                 .linearise = bars_linearise,
                                 .change = bars_change,
+                                .join = join_places,
                                 .point_count = bars_point_count,
                                 .point = bars_point,
                                 .energy = bars_energy,

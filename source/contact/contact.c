@@ -356,6 +356,21 @@ static void visit_across(Contact *c, int32_t place, int32_t other)
   if (contact_common_cut(c, row, their) >= 0) visit_unbonded(c, place, other);
 }
 
+void contact_join(const Contact *c, void (*one)(void *context, int32_t a, int32_t b), void *context)
+{
+  const Particles *p = &c->body->particles;
+  for (int32_t r = 0; r < c->row_count; ++r)
+    for (int32_t n = 0; n < c->rows[r].count; ++n) {
+      const ContactPair *pair = &c->rows[r].pairs[n];
+      double way[3], most = contact_met_reach(c->body->largest_spacing);
+      if (!pair->low) continue;
+      if (pair->kind == PAIR_BROKEN) most = pair->rest;
+      if (pair->kind == PAIR_CUT) most = contact_cut_reach(c);
+      present_way(p, c->rows[r].place, pair->neighbour, way);
+      if (sqrt(dot(way, way)) <= most * (1 + 1e-6)) one(context, c->rows[r].place, pair->neighbour);
+    }
+}
+
 void contact_search(Contact *c)
 {
   const Particles *p = &c->body->particles;

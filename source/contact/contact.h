@@ -145,6 +145,9 @@ void contact_bond_mended(Contact *contact, int32_t a, int32_t b);
 /** Takes back what a step that failed has changed, when its broken bonds are mended. */
 void contact_undo(Contact *contact);
 
+/** Calls `one` for all pairs that are no farther apart than they can be when they press. */
+void contact_join(const Contact *contact, void (*one)(void *context, int32_t a, int32_t b), void *context);
+
 /** Finds the pairs again. */
 void contact_search(Contact *contact);
 

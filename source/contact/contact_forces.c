@@ -77,6 +77,11 @@ static void change(void *forces, double *const v[3], double *const sum[3])
   contact_change(forces, v, sum);
 }
 
+static void join(const void *forces, void (*one)(void *context, int32_t a, int32_t b), void *context)
+{
+  contact_join(forces, one, context);
+}
+
 static const char *unassembled(const void *forces)
 {
   return contact_unassembled(forces);
@@ -143,6 +148,7 @@ const ForcesType contact_forces = {.name = "contact",
                                    .room = room,
                                    .linearise = linearise,
                                    .change = change,
+                                   .join = join,
                                    .unassembled = unassembled,
                                    .pattern = pattern,
                                    .point_count = point_count,

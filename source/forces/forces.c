@@ -132,6 +132,12 @@ void forces_change(Forces *f, double *const v[3], double *const change[3])
     if (f->type[k]->change) f->type[k]->change(f->own[k], v, change);
 }
 
+void forces_join(const Forces *f, void (*join)(void *context, int32_t a, int32_t b), void *context)
+{
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->join) f->type[k]->join(f->own[k], join, context);
+}
+
 const char *forces_unassembled(const Forces *f)
 {
   const char *why = NULL;

@@ -62,6 +62,8 @@ typedef struct ForcesType {
   void (*linearise)(void *forces);
   /** Adds changes of the forces per volume with changes v of displacements to arrays over places, by all threads. */
   void (*change)(void *forces, double *const v[3], double *const change[3]);
+  /** Calls `join` for pairs of places that they keep together now: enough of them to tell which places belong to one piece of the body. */
+  void (*join)(const void *forces, void (*join)(void *context, int32_t a, int32_t b), void *context);
   /** Why these changes cannot be assembled from points; NULL: they can. */
   const char *(*unassembled)(const void *forces);
   /** A number that changes whenever others are joined by points than were. */
@@ -122,6 +124,7 @@ void forces_choose(Forces *forces);
 double forces_room(const Forces *forces);
 void forces_linearise(Forces *forces);
 void forces_change(Forces *forces, double *const v[3], double *const change[3]);
+void forces_join(const Forces *forces, void (*join)(void *context, int32_t a, int32_t b), void *context);
 /** Of all kinds; NULL: there is none. */
 const char *forces_unassembled(const Forces *forces);
 /** @return the name of a kind that knows no changes, or NULL */

@@ -1,4 +1,5 @@
 #include "solver/newton.h"
+#include "solver/pieces.h"
 #include "solver/vectors.h"
 
 #include "base/team.h"
@@ -376,6 +377,13 @@ int64_t newton_most_iterations(const Newton *n)
   return n->spec->iterations * (domain_has_secants(n->domain) ? LONGER : 1);
 }
 
+/** Whether a piece on which loads act is held by nothing any more, inertia neither: no equations have a solution then. */
+static bool is_cut(const Newton *n)
+{
+  LoosePiece loose;
+  return !n->beside && !pieces_find_loose(&n->linear.unknowns, PIECES_WORKED, &loose, NULL) && loose.pieces > 0;
+}
+
 static NewtonOutcome solve(Newton *n, double time, Error *error)
 {
   const Particles *p = n->domain->particles;
@@ -405,11 +413,13 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error))
       return NEWTON_FAILED;
     if (linear.unsuited && !linear.indefinite && !n->linear.is_free) {
+      if (is_cut(n)) return NEWTON_SINGULAR;
+      const bool minimal = !strcmp(linear_solver_name(&n->linear), "minimal residuals");
       error_add(error, BRECCIA_FAILURE,
                 "equations: '%s' cannot solve these: the stiffness is not symmetric, as where a law flows in another "
-                "direction than its yield surface says, or particles turn in space; take 'minimal residuals' or "
-                "'direct', or leave 'equations' out",
-                linear_solver_name(&n->linear));
+                "direction than its yield surface says, or particles turn in space; take %s'direct', or leave "
+                "'equations' out",
+                linear_solver_name(&n->linear), minimal ? "" : "'minimal residuals' or ");
       return NEWTON_FAILED;
     }
     n->products += linear.iterations;

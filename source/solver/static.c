@@ -1,10 +1,12 @@
 /* Bodies at rest under their loads: increments of loads and motions, each brought to equilibrium by Newton's method (newton.h) or dynamic
  * relaxation (relaxation.h), and bonds that break in between, the most loaded first. Histories of loads run in the time of the stage, which need not be one of a clock. */
 #include "solver/static.h"
+#include "solver/pieces.h"
 #include "solver/vectors.h"
 
 #include "base/memory.h"
 #include "base/team.h"
+#include "loading/tie.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -138,15 +140,35 @@ double static_whole_increment(const StaticSpec *spec)
   return spec->end_time / (double)spec->increments;
 }
 
+/** Whether a load of the stage looked at ties particles; ties of stages to come are no rows yet. */
+static bool has_ties(const Loading *loading)
+{
+  for (int l = 0; l < loading->count; ++l)
+    if (loading->loads[l].type == &tie_load && load_acts(loading, &loading->loads[l])) return true;
+  return false;
+}
+
+/** Of a stage to come parts may meet before it begins. Where bonds have broken pieces on which nothing acts are let be. */
+static PiecesTaken pieces_to_hold(const Solver *run, const StaticSpec *spec)
+{
+  if (spec != run->spec && (run->domain->forces.count || has_ties(run->loading))) return PIECES_TOGETHER;
+  return run->domain->broken_count ? PIECES_WORKED : PIECES_ALL;
+}
+
 static int check_hold(const Solver *run, const StaticSpec *spec, Error *error)
 {
   const Unknowns unknowns = unknowns_of(run->domain, run->loading);
-  char motion[16];
-  if (!unknowns_are_loose(&unknowns, motion, sizeof motion)) return BRECCIA_OK;
+  const Particles *p = run->domain->particles;
+  LoosePiece loose;
+  char words[256];
+  if (pieces_find_loose(&unknowns, pieces_to_hold(run, spec), &loose, error)) return BRECCIA_FAILURE;
+  if (!loose.pieces) return BRECCIA_OK;
   return node_error(run->reader->document, spec->head.node, error,
-                    "static: nothing holds the body against moving %s as a whole; hold it by a support, a roller, a "
-                    "displacement or a spring",
-                    motion);
+                    "static: %s; hold it by a support, a roller, a displacement or a spring%s",
+                    pieces_describe(&loose, p, words, sizeof words),
+                    loose.particles == p->count     ? ""
+                    : run->domain->broken_count > 0 ? ", or go on with a stage of 'explicit'"
+                                                    : ", or join it to the rest by bonds, ties or 'contact'");
 }
 
 static int check(Solver *run, const void *section, Error *error)

@@ -1,4 +1,5 @@
 /* Increments of statics, and the tries that make them. */
+#include "solver/pieces.h"
 #include "solver/static.h"
 #include "solver/vectors.h"
 
@@ -126,6 +127,20 @@ static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled)
              newton_describe(&s->newton, outcome, words, sizeof words));
 }
 
+/** Why the body finds no equilibrium, for a message that ends the run: where a crack has cut a piece off that is loaded, this is why, whatever the
+ *  equations say. @return `words` */
+static const char *describe_failure(const Static *s, NewtonOutcome outcome, char *words, size_t size)
+{
+  LoosePiece loose = {0};
+  char piece[256];
+  const bool known = outcome == NEWTON_LAW || outcome == NEWTON_FAR || !s->domain->broken_count;
+  if (known || pieces_find_loose(&s->newton.linear.unknowns, PIECES_WORKED, &loose, NULL) || !loose.pieces)
+    return newton_describe(&s->newton, outcome, words, size);
+  snprintf(words, size, "broken bonds have cut the body, and %s",
+           pieces_describe(&loose, s->domain->particles, piece, sizeof piece));
+  return words;
+}
+
 /** No increment leads on from here, however short. */
 static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *error)
 {
@@ -140,7 +155,7 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
                  ? "allow more 'relaxation iterations', or go on with a stage of 'explicit'"
                  : "take 'method: relaxation' with more 'relaxation iterations', or go on with a stage of 'explicit'";
   } else {
-    newton_describe(&s->newton, outcome, words, sizeof words);
+    describe_failure(s, outcome, words, sizeof words);
     if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
       advice = "allow more 'iterations', or take a larger 'residual'";
     else if (domain_may_soften(s->domain) && static_may_relax(s))
@@ -160,7 +175,7 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
                    "failed at this load: go on with "
                    "a stage of 'explicit', or prescribe displacements instead of forces",
                    (long long)s->domain->broken_count, s->clock->time,
-                   newton_describe(&s->newton, outcome, words, sizeof words));
+                   describe_failure(s, outcome, words, sizeof words));
 }
 
 /** At the end of the stage: what is said to be followed was jumped over. */

@@ -56,8 +56,4 @@ double unknowns_work(const Unknowns *unknowns, double *const force[MOTIONS], dou
 double unknowns_product_of_forces(const Unknowns *unknowns, double *const a[MOTIONS], double *const b[MOTIONS]);
 double unknowns_product_of_motions(const Unknowns *unknowns, double *const a[MOTIONS], double *const b[MOTIONS]);
 
-/** Says along which axis, or about which, the body can move as a whole because nothing holds it.
- *  @param[out] motion  words like "along y"; untouched when all six (in the plane three) are held */
-bool unknowns_are_loose(const Unknowns *unknowns, char *motion, size_t size);
-
 #endif
