@@ -18,8 +18,8 @@ typedef struct LoosePiece {
 
 /** How bodies are taken apart. */
 typedef enum PiecesTaken {
-  PIECES_ALL,     /* every piece */
-  PIECES_WORKED,  /* those on which a load or a prescribed motion acts: where nothing acts on a piece it stays at rest where it is */
+  PIECES_ALL, /* every piece */
+  PIECES_WORKED, /* those on which a load or a prescribed motion acts: where nothing acts on a piece it stays at rest where it is */
   PIECES_TOGETHER /* the body counts as one: of stages to come, before which parts may meet */
 } PiecesTaken;
 
