@@ -73,6 +73,19 @@ static size_t bytes_of(const StateRow *row)
   return state_size(row) * (size_t)row->count;
 }
 
+static bool is_wanted(const StateRow *row, bool only_tried)
+{
+  return row->role != STATE_SHOWN && (!only_tried || row->role == STATE_TRIED);
+}
+
+size_t state_bytes(const StateList *list, bool only_tried)
+{
+  size_t sum = 0;
+  for (int k = 0; k < list->count; ++k)
+    if (list->rows[k].values && is_wanted(&list->rows[k], only_tried)) sum += bytes_of(&list->rows[k]);
+  return sum;
+}
+
 /** Room for the rows that are wanted; those of no fixed length get theirs when they are saved. */
 static int make_room(StateCopy *copy, const StateList *list, bool only_tried, Error *error)
 {
@@ -83,7 +96,7 @@ static int make_room(StateCopy *copy, const StateList *list, bool only_tried, Er
   if (!copy->rows || !copy->values) return BRECCIA_FAILURE;
   for (int k = 0; k < list->count; ++k) {
     const StateRow *row = &list->rows[k];
-    if (row->role == STATE_SHOWN || (only_tried && row->role != STATE_TRIED)) continue;
+    if (!is_wanted(row, only_tried)) continue;
     copy->rows[copy->count] = *row;
     if (row->values &&
         !(copy->values[copy->count] = memory_zeroed((size_t)row->count, state_size(row), "state", error)))

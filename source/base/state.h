@@ -85,6 +85,8 @@ void state_copy_destroy(StateCopy *copy);
 
 /** Makes room for the rows that are tried in a step; their arrays must stay where they are. */
 int state_keep(StateCopy *copy, const StateList *list, Error *error);
+/** Bytes of values that state_copy or, with `only_tried`, state_keep makes room for; without rows of no fixed length. */
+size_t state_bytes(const StateList *list, bool only_tried);
 /** Notes them: those of places first .. last - 1, by any thread; and all others. */
 void state_note_places(const StateCopy *copy, int64_t first, int64_t last);
 void state_note_others(const StateCopy *copy);

@@ -283,9 +283,19 @@ int64_t points_update(Points *points, int64_t first, int count, double *const st
   return bad;
 }
 
+static bool has_stresses_to_keep(const Points *points)
+{
+  return points->components == 6 && !points->shares && !points_are_linear(points);
+}
+
+size_t points_kept_bytes(const Points *points)
+{
+  return has_stresses_to_keep(points) ? 6 * sizeof(double) * (size_t)points->count : 0;
+}
+
 int points_keep_stresses(Points *points, bool keep, Error *error)
 {
-  const bool wanted = keep && points->components == 6 && !points->shares && !points_are_linear(points);
+  const bool wanted = keep && has_stresses_to_keep(points);
   for (int k = 0; k < 6; ++k) {
     if (!wanted)
       places_free(&points->stress_before[k]);

@@ -128,6 +128,8 @@ int points_keep_tangents(Points *points, bool keep, Error *error);
  *  0 if there is none. */
 void points_tangent(const Points *points, int64_t row, double *tangent);
 size_t points_tangent_bytes(const Points *points);
+/** Bytes of what points_keep_stresses makes room for. */
+size_t points_kept_bytes(const Points *points);
 /** Changes of the stresses of `count` rows of six components with changes of their strains, by their tangents. */
 void points_change(const Points *points, int64_t first, int count, double *const strain[6], double *const stress[6]);
 

@@ -11,6 +11,11 @@ int elastic_step_create(ElasticStep *s, const Domain *d, Error *error)
   return made ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
+size_t elastic_step_bytes(const Particles *p)
+{
+  return 2 * vectors_bytes(p);
+}
+
 void elastic_step_destroy(ElasticStep *s)
 {
   vectors_free(s->force);

@@ -12,6 +12,8 @@ typedef struct ElasticStep {
 
 /** `step` is zero; destroy it in any case. */
 int elastic_step_create(ElasticStep *step, const Domain *domain, Error *error);
+/** Bytes that it takes. */
+size_t elastic_step_bytes(const Particles *particles);
 void elastic_step_destroy(ElasticStep *step);
 
 /** Displacements have changed, or bonds have broken. Trial states are touched, committed ones are not. */

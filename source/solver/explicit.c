@@ -3,6 +3,7 @@
  * Works are summed by the trapezium rule over the step. The kinetic energy of v then grows by more than their sum, whatever the forces, by
  * exactly dt^2 / 8 sum m (g'^2 - g^2): the speeds at full steps are not those at which the works are done. */
 #include "solver/explicit.h"
+#include "solver/vectors.h"
 
 #include "base/team.h"
 #include "solver/damping.h"
@@ -142,12 +143,12 @@ static int create(Solver *run, Error *error)
   return stiffness_damping_create(&s->viscous, s->spec->damping.stiffness, d, error);
 }
 
-/** Accelerations, and what stiffness damping takes. */
-static size_t bytes(const Solver *run)
+/** Accelerations, what stiffness damping and work at faces take, and what a step that fails gives back. */
+static size_t bytes(Solver *run)
 {
   const Explicit *s = run->own;
-  const Particles *p = s->domain->particles;
-  return sizeof(double) * (size_t)p->motions * (size_t)p->places + stiffness_damping_bytes(&s->viscous, s->domain);
+  return vectors_bytes(s->domain->particles) + stiffness_damping_bytes(&s->viscous, s->domain) +
+         face_work_bytes(&s->face_work) + solver_kept_bytes(run, false);
 }
 
 static void forget_before(Explicit *s)

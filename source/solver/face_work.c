@@ -76,6 +76,11 @@ void face_work_destroy(FaceWork *w)
   *w = (FaceWork){0};
 }
 
+size_t face_work_bytes(const FaceWork *w)
+{
+  return (size_t)w->count * (sizeof *w->places + sizeof *w->now + sizeof *w->then);
+}
+
 /** On an image t_ij of the bonds that particles inside have with it, on these - t_ji of its own. */
 static void find_force(const Domain *d, int32_t place, double sum[3])
 {

@@ -20,6 +20,7 @@ typedef struct FaceWork {
 /** `work` is zero; destroy it in any case. */
 int face_work_create(FaceWork *work, const Domain *domain, const Loading *loading, Error *error);
 void face_work_destroy(FaceWork *work);
+size_t face_work_bytes(const FaceWork *work);
 
 /** Finds the forces of the state evaluated last. By all threads. */
 void face_work_find(FaceWork *work, const Domain *domain);

@@ -241,8 +241,11 @@ static void foresee(const void *section, const Clock *clock, double *steps, doub
 /** With about the inertia of the longest step, which all bodies have, so that those that nothing holds resist too. */
 static int measure(Solver *run, StepCost *cost, Error *error)
 {
-  Newton *newton = &((Implicit *)run->own)->newton;
+  enum { VECTORS = 5 };
+  Implicit *s = run->own;
+  Newton *newton = &s->newton;
   const double step = implicit_longest(run->spec);
+  cost->bytes += (double)(increment_bytes(&s->increment, run) + VECTORS * vectors_bytes(s->domain->particles));
   newton->linear.mass_factor = 4 / (step * step);
   const int status = newton_measure(newton, cost, error);
   newton->linear.mass_factor = 0;

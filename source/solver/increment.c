@@ -63,6 +63,12 @@ int increment_keep(Increment *i, Solver *run, Error *error)
   return status;
 }
 
+size_t increment_bytes(const Increment *i, Solver *run)
+{
+  return (i->beside[0] ? 4 : 2) * vectors_bytes(i->domain->particles) + face_work_bytes(&i->face_work) +
+         solver_kept_bytes(run, false);
+}
+
 double increment_end(const Solver *run, double length)
 {
   const Clock *clock = &run->clock;

@@ -29,6 +29,9 @@ void increment_destroy(Increment *increment);
 int increment_keep(Increment *increment, Solver *solver, Error *error);
 void increment_forget(Increment *increment);
 
+/** Bytes of what it keeps, and of what increment_keep makes room for. */
+size_t increment_bytes(const Increment *increment, Solver *solver);
+
 /** Where an increment of a length ends: at a time that is asked for, if it comes before its end or hardly behind it. */
 double increment_end(const Solver *solver, double length);
 

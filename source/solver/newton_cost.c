@@ -38,11 +38,9 @@ static int try_equations(Newton *n, Trial *least, Error *error)
 
 int newton_measure(Newton *n, StepCost *cost, Error *error)
 {
-  enum { VECTORS = 3 + 2 + 2 }; /* its own, the increment's, and what a failed one gives back */
-  const Particles *p = n->domain->particles;
-  const double vector = sizeof(double) * (double)p->motions * (double)p->places;
+  const int vectors = 3 + (n->control ? 2 : 0) + (n->change_forces[0] ? 1 : 0);
   const bool elastic = domain_is_elastic(n->domain) && !n->domain->failure.criterion;
-  cost->bytes += VECTORS * vector;
+  cost->bytes += vectors * (double)vectors_bytes(n->domain->particles);
   cost->least = !elastic || n->relaxes;
   if (n->relaxes) {
     cost->evaluations = least_relaxing;

@@ -23,6 +23,11 @@ int relaxation_create(Relaxation *r, Newton *n, Error *error)
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
+size_t relaxation_bytes(const Relaxation *r, const Particles *p)
+{
+  return 3 * vectors_bytes(p) + elastic_step_bytes(p) + preconditioner_bytes(&r->mass);
+}
+
 void relaxation_destroy(Relaxation *r)
 {
   elastic_step_destroy(&r->elastic);

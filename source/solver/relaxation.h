@@ -31,6 +31,8 @@ typedef struct Relaxation {
 
 /** For the same domain, loads, tolerances and vectors as `newton`, which relaxes and has been created. `relaxation` is zero; destroy it in any case. */
 int relaxation_create(Relaxation *relaxation, Newton *newton, Error *error);
+/** Bytes that it takes. */
+size_t relaxation_bytes(const Relaxation *relaxation, const Particles *particles);
 void relaxation_destroy(Relaxation *relaxation);
 
 /** As newton_solve. Where equilibrium is sought again for the same time the mass is that of the first search: what bonds have broken since made nothing

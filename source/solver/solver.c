@@ -274,6 +274,17 @@ int solver_begin(Solver *s, Error *error)
   return status;
 }
 
+size_t solver_kept_bytes(Solver *s, bool whole)
+{
+  StateList list = {0};
+  domain_state(s->domain, &list);
+  solver_state(s, &list);
+  size_t bytes = state_bytes(&list, !whole);
+  state_list_destroy(&list);
+  for (int r = 0; r < s->domain->region_count && !whole; ++r) bytes += points_kept_bytes(&s->domain->regions[r].points);
+  return bytes;
+}
+
 int solver_measure(Solver *s, StepCost *cost, Error *error)
 {
   const double most = 1.2; /* what a step does beside the forces takes 2 to 40 % of them (docs/performance.md) */

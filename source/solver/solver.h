@@ -107,7 +107,7 @@ struct SolverType {
   /** Tries what a step of the stage under way takes, at the displacements held. NULL: little beside an evaluation of the forces. */
   int (*measure)(Solver *solver, StepCost *cost, Error *error);
   /** Memory beside the body and its formulations, of solvers without `measure`. NULL: next to none. */
-  size_t (*bytes)(const Solver *solver);
+  size_t (*bytes)(Solver *solver);
   /** The steps to come of the stage under way, in words. @param[in] time  unit of time */
   void (*describe)(const Solver *solver, const char *time, Text *text);
   /** How a stage with this section goes and ends, in words. */
@@ -169,6 +169,9 @@ int solver_measure(Solver *solver, StepCost *cost, Error *error);
 int solver_advance(Solver *solver, Text *warning, Error *error);
 
 Energy solver_energy(const Solver *solver);
+
+/** Bytes of a copy of what steps try, of the body and of what the solver keeps, by which one that fails is given back; or of the whole state. */
+size_t solver_kept_bytes(Solver *solver, bool whole);
 
 /** Rows of the clock, the ledger and what the solver keeps. */
 void solver_state(Solver *solver, StateList *list);

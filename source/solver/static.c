@@ -234,7 +234,12 @@ static double exerted(const Solver *run)
 
 static int measure(Solver *run, StepCost *cost, Error *error)
 {
-  return newton_measure(&((Static *)run->own)->newton, cost, error);
+  Static *s = run->own;
+  cost->bytes += (double)increment_bytes(&s->increment, run);
+  if (s->newton.relaxes) cost->bytes += (double)relaxation_bytes(&s->relaxation, s->domain->particles);
+  if (static_may_go_on_again(s))
+    cost->bytes += (double)(solver_kept_bytes(run, true) + vectors_bytes(s->domain->particles));
+  return newton_measure(&s->newton, cost, error);
 }
 
 static void describe_stage(const void *section, const char *time, Text *text)

@@ -61,6 +61,8 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error);
 /** Whether dynamic relaxation may be tried where Newton's method finds no equilibrium. */
 bool static_may_relax(const Static *s);
 
+/** Whether an increment may be solved again with what has come of it, and be given back when it has been accepted. */
+bool static_may_go_on_again(const Static *s);
 /** Notes the whole state, if it may be wanted back when an increment has been accepted. */
 int static_keep(Solver *solver, Error *error);
 /** The state as it was noted. */

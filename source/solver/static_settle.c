@@ -5,11 +5,16 @@
 #include <math.h>
 #include <string.h>
 
+bool static_may_go_on_again(const Static *s)
+{
+  return domain_may_lag(s->domain) && !domain_is_elastic(s->domain);
+}
+
 int static_keep(Solver *run, Error *error)
 {
   Static *s = run->own;
   state_copy_destroy(&s->whole);
-  if (!domain_may_lag(s->domain) || domain_is_elastic(s->domain)) return BRECCIA_OK;
+  if (!static_may_go_on_again(s)) return BRECCIA_OK;
   StateList list = {0};
   domain_state(s->domain, &list);
   solver_state(run, &list);

@@ -17,6 +17,11 @@ void vectors_free(double *vector[MOTIONS])
   for (int k = 0; k < MOTIONS; ++k) places_free(&vector[k]);
 }
 
+size_t vectors_bytes(const Particles *p)
+{
+  return sizeof(double) * (size_t)p->motions * (size_t)p->places;
+}
+
 void vectors_clear(double *const vector[MOTIONS], const Particles *p)
 {
   for (int k = 0; k < p->motions; ++k) memset(vector[k], 0, sizeof(double) * (size_t)p->places);

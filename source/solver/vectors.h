@@ -7,6 +7,8 @@
 /** Zeros in the rows that the particles have; rows beyond stay NULL. */
 bool vectors_make(double *vector[MOTIONS], const Particles *particles, const char *label, Error *error);
 void vectors_free(double *vector[MOTIONS]);
+/** Bytes of one. */
+size_t vectors_bytes(const Particles *particles);
 void vectors_clear(double *const vector[MOTIONS], const Particles *particles);
 
 /** a = own a + factor b, by the team; where `own` is 0 nothing that stood in a is left. */

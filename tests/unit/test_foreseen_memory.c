@@ -29,13 +29,14 @@ static const char body_of_laws[] =
 #define LATTICES                                                                                                       \
   LATTICE "}, c: {material: m, spacing: 0.1, shape: {box: {from: [4.03, 0.02, 0.01], to: [6.03, 2.02, 2.01]}}"
 #define ELASTIC "Young modulus: 1e4, Poisson ratio: 0.25"
+#define DAMAGE SOFT ", tensile strength: 3, compressive strength: 30, fracture energy: 0.1"
 #define SOFT "Young modulus: 1e4, Poisson ratio: 0.2"
 
 /** Arrays that are small beside those of particles, bonds and points are not counted beforehand. */
 static void a_body_takes_what_is_foreseen(void **state)
 {
   (void)state;
-  const double least = 0.64, most = 1.05;
+  const double least = 0.75, most = 1.05;
   if (given_out() == 0 || under_sanitizers()) skip();
   static const struct {
     const char *law, *keys, *body, *formulation, *solve;
@@ -58,10 +59,16 @@ static void a_body_takes_what_is_foreseen(void **state)
       {"elastic", ELASTIC, LATTICE, "hybrid", "explicit: {steps: 9, stiffness damping: 1e-3}"},
       {"j2", ELASTIC ", yield stress: 1", LATTICE, "hybrid", "explicit: {steps: 9, stiffness damping: 1e-3}"},
       {"elastic", ELASTIC, LATTICES, "hybrid", "explicit: {steps: 9, stiffness damping: 1e-3}"},
-      {"elastic", ELASTIC, SMALL, "correspondence", "static: {increments: 1}"},
+      {"elastic", ELASTIC, SMALL, "correspondence", "static: {increments: 2}"},
       {"elastic", ELASTIC, SMALL, "correspondence", "implicit: {end time: 1}"},
-      {"elastic", ELASTIC, SMALL, "ordinary", "static: {increments: 1, equations: minimal residuals}"},
-      {"elastic", ELASTIC, SMALL, "ordinary", "static: {increments: 1, method: relaxation}"},
+      {"elastic", ELASTIC, SMALL, "ordinary", "static: {increments: 2, equations: minimal residuals}"},
+      {"elastic", ELASTIC, SMALL, "ordinary", "static: {increments: 2, method: relaxation}"},
+      /* Increments that are solved again while the control of zero-energy modes fades keep the whole state. */
+      {"damage-plasticity", DAMAGE, SMALL, "correspondence", "static: {increments: 2, equations: minimal residuals}"},
+      {"damage-plasticity", DAMAGE, SMALL, "correspondence", "static: {increments: 2, method: relaxation}"},
+      {"j2", ELASTIC ", yield stress: 1", SMALL, "correspondence",
+       "implicit: {end time: 1, time step: 0.5, equations: "
+       "minimal residuals}"},
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     const double before = given_out();
@@ -70,6 +77,8 @@ static void a_body_takes_what_is_foreseen(void **state)
     assert_non_null(strstr(breccia_model_overview(m), " MB, "));
     step_surely(m, 1);
     const double taken = given_out() - before, foreseen = (double)domain_bytes(&m->domain) + m->solver_bytes;
+    print_message("%.3f of what is taken: %s, %s, %s\n", foreseen / taken, cases[k].law, cases[k].formulation,
+                  cases[k].solve);
     if (!(foreseen > least * taken && foreseen < most * taken))
       fail_msg("%s, %s, %s: %.2f MB foreseen, %.2f MB taken", cases[k].law, cases[k].formulation, cases[k].solve,
                foreseen / 1e6, taken / 1e6);
