@@ -1,4 +1,4 @@
-/* What the files of plausibility share: words and units (plausibility_words.c); blocks and contact
+/* What the files of plausibility share: words and units (plausibility_words.c); loads and ground (plausibility_loads.c); blocks and contact
  * (plausibility_contact.c); supports (plausibility_supports.c); bars (plausibility_bars.c); pictures (plausibility_pictures.c); the lowest frequency (plausibility_modes.c). */
 #ifndef BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
 #define BRECCIA_MODEL_PLAUSIBILITY_PARTS_H
@@ -11,6 +11,15 @@ double plausibility_in_si(const breccia_model *model, const char *dimension, dou
 /** Adds a warning about a node of the deck to the model's. */
 __attribute__((format(printf, 3, 4))) void plausibility_say(breccia_model *model, const Node *node, const char *format,
                                                             ...);
+
+/** Whether a load prescribes what a key of the deck says, like "velocity". */
+bool plausibility_is_kind(const LoadSpec *load, const char *kind);
+
+/** Warns of loads that act in another way than is usually meant: all at once, harder than earthquakes, at grips that break. */
+void plausibility_warn_of_loads(breccia_model *model);
+
+/** Warns where ground begins under stresses that nothing balances. */
+void plausibility_warn_of_ground(breccia_model *model);
 
 /** Warns where blocks overlap, or are bonded across a gap. */
 void plausibility_warn_of_blocks(breccia_model *model);

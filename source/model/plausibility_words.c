@@ -1,6 +1,7 @@
 #include "model/plausibility_parts.h"
 
 #include <stdarg.h>
+#include <string.h>
 
 double plausibility_in_si(const breccia_model *model, const char *dimension, double value)
 {
@@ -18,4 +19,10 @@ void plausibility_say(breccia_model *model, const Node *node, const char *format
   node_where(model->document, node, where, sizeof where);
   text_add(&model->warnings, "%swarning: %s: %s", model->warnings.length ? "\n" : "", where, text_words(&words));
   text_free(&words);
+}
+
+bool plausibility_is_kind(const LoadSpec *load, const char *kind)
+{
+  const char *dimension;
+  return !strcmp(load_kind(load, &dimension), kind);
 }

@@ -1,0 +1,157 @@
+/* Loads that are hardly meant, and ground that begins out of balance. */
+#include "model/plausibility_parts.h"
+
+#include "base/memory.h"
+#include "failure/critical_stretch.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- loads ---- */
+
+/** A prescribed displacement that is there at once gives its particles a speed of one displacement per step, and no increment of statics can be cut
+ *  to less of it; at rest an elastic body has nothing against it. */
+static void check_jump(breccia_model *model, const Load *load)
+{
+  const LoadSpec *l = load->spec;
+  const double start = fabs(load_magnitude(l) * history_factor(&load->history, 0));
+  if ((!plausibility_is_kind(l, "displacement") && !plausibility_is_kind(l, "support")) || start == 0) return;
+  if (model->solver.type->rests && model->solver.stages->count == 1 && domain_is_elastic(&model->domain)) return;
+  char length[32];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  plausibility_say(
+      model, load->node,
+      "displacement: the particles jump by %.4g %s in the first step; let it grow, like 'history: {ramp to: ...}'",
+      start, length);
+}
+
+/** Earthquakes stay below 3 g; a record in g acts on a load of 1 g, one in cm/s2 on one of 1 cm/s2. */
+static void check_shaking(breccia_model *model, const Load *load)
+{
+  static const double most = 30, gravity = 9.81; /* m/s2 */
+  if (!plausibility_is_kind(load->spec, "base acceleration") && !plausibility_is_kind(load->spec, "acceleration") &&
+      !plausibility_is_kind(load->spec, "outcrop acceleration"))
+    return;
+  const double peak = fabs(plausibility_in_si(model, "acceleration", load_magnitude(load->spec)) *
+                           history_peak(&load->history, model->solver.clock.end_time - load->begin));
+  if (peak > most)
+    plausibility_say(
+        model, load->node,
+        "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
+        "load's value is what 1 in it means",
+        load->node->key, peak, peak / gravity);
+}
+
+/** Whoever lets the ground settle first must hold it by something else. */
+static void check_dashpots(breccia_model *model, const Load *load)
+{
+  if (load->type->brake && solver_stage_rests(&model->solver, load->first))
+    plausibility_say(model, load->node,
+                     "%s: they hold nothing in a stage at rest; let a support or a prescribed motion hold the body "
+                     "there, and dashpots begin with the stage that shakes",
+                     load->node->key);
+}
+
+/** Bonds near particles that are moved carry most, and break there first. */
+static void check_grips(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const FailureSpec *failure = model->spec->failure; /* laws that soften are not held by it */
+  const CriticalStretchSpec *stretch = critical_stretch_spec(failure);
+  if (!failure || failure->near_grips || failure->nowhere.count ||
+      (stretch && isnan(stretch->stretch) && isnan(stretch->fracture_energy)))
+    return;
+  for (int k = 0; k < model->loading.count; ++k) {
+    const LoadSpec *l = model->loading.loads[k].spec;
+    if (!(plausibility_is_kind(l, "displacement") || plausibility_is_kind(l, "velocity") || plausibility_is_kind(l, "acceleration")) ||
+        load_magnitude(l) == 0)
+      continue;
+    const Selection *held = &model->loading.loads[k].selection;
+    bool breaks = false;
+    for (int64_t n = 0; n < held->count; ++n)
+      breaks |= isfinite(d->failure.limit[d->material[held->places[n] / SLICE]]);
+    if (!breaks) continue;
+    plausibility_say(
+        model, l->head.node,
+        "load: bonds may break at the grips, within a horizon of the particles that it moves, and let the body go; "
+        "'failure: {..., near grips: hold}' keeps them, 'near grips: break' says that it is meant");
+    return;
+  }
+}
+
+void plausibility_warn_of_loads(breccia_model *model)
+{
+  for (int k = 0; k < model->loading.count; ++k) {
+    check_jump(model, &model->loading.loads[k]);
+    check_shaking(model, &model->loading.loads[k]);
+    check_dashpots(model, &model->loading.loads[k]);
+  }
+  check_grips(model);
+}
+
+/* ---- ground ---- */
+
+/** The particle of the body on which most acts when the run begins, of those that no load moves; and how much per volume. */
+static int32_t least_balanced(breccia_model *model, double *most)
+{
+  Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  int32_t found = -1;
+  uint8_t *held = memory_zeroed((size_t)p->places, 1, "balance", NULL);
+  if (!held) return -1;
+  loading_mark_held(&model->loading, held);
+  domain_evaluate(d);
+  loading_apply(&model->loading, d->particles, 0);
+  *most = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double square = 0;
+    for (int k = 0; k < 3; ++k)
+      square += (p->internal[k][i] + p->external[k][i]) * (p->internal[k][i] + p->external[k][i]);
+    if (held[i] || body_outside(&d->body, n) || square <= *most * *most) continue;
+    *most = sqrt(square);
+    found = i;
+  }
+  free(held);
+  return found;
+}
+
+/** Warns where ground that begins under its weight is far from balance. At a free surface, where families are not whole, a third of the weight is
+ *  left; beside faces that are held in few layers, or not at all, several times of it. */
+static void check_balance(breccia_model *model, const InitialStressSpec *item)
+{
+  const double usual = 0.75; /* of the largest load */
+  const Particles *p = model->domain.particles;
+  double most, load = 0;
+  const int32_t at = least_balanced(model, &most);
+  if (at < 0) return;
+  for (int32_t n = 0; n < p->count; ++n) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += p->external[k][p->place_of[n]] * p->external[k][p->place_of[n]];
+    load = fmax(load, sqrt(square));
+  }
+  if (most <= usual * load) return;
+  plausibility_say(model, section_node(item, "surface"),
+                   "surface: the ground begins out of balance: on particle %d at [%g, %g, %g] acts %.3g per volume, "
+                   "beside loads of %.3g at most; hold its faces by 'support', or in layers two horizons deep, and "
+                   "expect a free face to move",
+                   p->number[at], p->position[0][at], p->position[1][at], p->position[2][at], most, load);
+}
+
+/* Only weight balances stresses that grow with depth. */
+void plausibility_warn_of_ground(breccia_model *model)
+{
+  bool weight = false;
+  for (int k = 0; k < model->loading.count; ++k)
+    weight |= model->loading.loads[k].first == 0 && plausibility_is_kind(model->loading.loads[k].spec, "gravity");
+  for (int n = 0; n < model->spec->initial_stress.count; ++n) {
+    const InitialStressSpec *item = model->spec->initial_stress.items[n];
+    if (item->stress.values) continue;
+    if (weight) {
+      check_balance(model, item);
+      return;
+    }
+    plausibility_say(model, section_node(item, "surface"),
+                     "surface: no gravity acts when the run begins, so that the ground heaves; add 'gravity' to the "
+                     "loads");
+  }
+}
