@@ -57,7 +57,7 @@ LANES_INLINE void next_bonds(const Hybrid *h, int64_t group, unsigned *left, Hoo
   for (int lane = 0; lane < SLICE; ++lane) {
     if (!(bonds->lanes >> lane & 1)) continue;
     const HybridGeometry *geometry = &h->table.geometry[mixed[lane]];
-    if (geometry->first != bonds->first || geometry->count != bonds->count) {
+    if (geometry->first != bonds->first) {
       *left |= 1u << lane;
       continue;
     }

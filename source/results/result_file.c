@@ -183,7 +183,6 @@ static int write_geometry(hid_t root, const Domain *d)
 static int give_up(ResultFile *file, const char *reason, Error *error)
 {
   remove(file->part);
-  file->hidden = false;
   file->lost = true;
   return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", file->path, reason);
 }

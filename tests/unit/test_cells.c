@@ -31,6 +31,17 @@ static void every_particle_within_reach_is_found(void **state)
     assert_true(cells.width >= reach);
     assert_true((double)(cells.count[0] * cells.count[1] * cells.count[2]) <= 4.0 * COUNT + 64);
     if (kind < 3) assert_true(cells.width < 1.001 * reach); /* none wider than it needs to be */
+    for (int k = 0; k < 3; ++k) { /* they cover the particles that are somewhere, and no more */
+      double low = INFINITY, high = -INFINITY;
+      for (int64_t n = 0; n < COUNT; ++n) {
+        const double at = x[k][p->place_of[n]];
+        if (!isfinite(at)) continue;
+        low = fmin(low, at);
+        high = fmax(high, at);
+      }
+      assert_true(cells.low[k] == low);
+      assert_int_equal(cells.count[k], 1 + (int64_t)floor((high - low) / cells.width));
+    }
     for (int64_t n = 0; n < COUNT; ++n)
       for (int k = 0; k < 3; ++k) {
         const double there = x[k][cells.places[n]];

@@ -211,6 +211,20 @@ static int differing_pixels(const unsigned char *a, const unsigned char *b, int 
   return count;
 }
 
+/** Whoever gives up closes what may be closed already. */
+static void a_closed_file_may_be_closed_again(void **state)
+{
+  (void)state;
+  ResultView view;
+  open_bar(&view);
+  for (int again = 0; again < 2; ++again) {
+    result_view_close(&view);
+    assert_true(view.file < 0 && !view.times && !view.positions && !view.lattice_numbers);
+  }
+  assert_int_not_equal(result_view_open(&view, "nowhere.vtkhdf", NULL), 0);
+  result_view_close(&view);
+}
+
 static void all_times_of_a_field_have_one_colour_bar_and_one_framing(void **state)
 {
   (void)state;
@@ -603,6 +617,7 @@ int main(void)
       cmocka_unit_test(ticks_are_one_two_or_five_times_a_power_of_ten),
       cmocka_unit_test(colour_bars_end_where_they_should),
       cmocka_unit_test(units_read_well),
+      cmocka_unit_test(a_closed_file_may_be_closed_again),
       cmocka_unit_test(all_times_of_a_field_have_one_colour_bar_and_one_framing),
       cmocka_unit_test(signed_fields_are_grey_at_zero_and_red_in_tension),
       cmocka_unit_test(what_is_no_number_is_grey),

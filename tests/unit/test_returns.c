@@ -211,6 +211,37 @@ static void mohr_and_coulomb_flow_on_planes_edges_and_corners(void **state)
   material_destroy(&tip);
 }
 
+/** Trials beside those that end where planes meet: a multiplier that is all but none says which planes count. */
+static void trials_beside_corners_flow_on_the_planes_that_push(void **state)
+{
+  (void)state;
+  const double degree = acos(-1) / 180, sine = sin(33 * degree), tensile = 13, limit = 40 * cos(33 * degree),
+               least = ((1 + sine) * tensile - limit) / (1 - sine), young = 50e3, nu = 0.23;
+  Material m = material_of("mohr-coulomb", "Young modulus=50e3", "Poisson ratio=0.23", "cohesion=20",
+                           "friction angle=33", "dilation angle=11", "tensile strength=13", NULL);
+  Pyramid c = {sine, sin(11 * degree), limit, tensile, {{0}}};
+  const double corners[][3] = {{tensile, least, least}, {tensile, tensile, least}, {tensile, tensile, tensile}};
+  uint64_t seed = 77;
+  for (int n = 0; n < 600; ++n) {
+    const double *corner = corners[n % 3], size = pow(10, -5 - 3 * random_uniform(&seed));
+    Point p = point_start(&m);
+    Step s = {.m = &m, .before = p.committed, .number = n};
+    for (int k = 0; k < 3; ++k) {
+      const double others = corner[0] + corner[1] + corner[2] - corner[k];
+      s.strain[k] = (corner[k] - nu * others) / young + size * (2 * random_uniform(&seed) - 1);
+    }
+    point_try(&p, s.strain, s.stress, NULL, 0);
+    s.after = p.trial;
+    for (int k = 0; k < 6; ++k) s.increment[k] = s.after[k];
+    pyramid_obeys(&s, &c);
+    point_stop(&p);
+  }
+  static const int wanted[] = {0, 1, 2, 3, 4, 5, 6, 8, 9};
+  for (size_t k = 0; k < sizeof wanted / sizeof *wanted; ++k)
+    if (c.visits.count[wanted[k]] < 2) fail_msg("only %d trials of kind %d", c.visits.count[wanted[k]], wanted[k]);
+  material_destroy(&m);
+}
+
 /* ---- The cap: compression positive ---- */
 
 typedef struct CapNumbers {
@@ -581,6 +612,7 @@ int main(void)
       cmocka_unit_test(j2_flows_along_its_normal_and_hardens),
       cmocka_unit_test(drucker_and_prager_flow_on_cone_cut_off_and_tip),
       cmocka_unit_test(mohr_and_coulomb_flow_on_planes_edges_and_corners),
+      cmocka_unit_test(trials_beside_corners_flow_on_the_planes_that_push),
       cmocka_unit_test(the_cap_model_flows_on_all_its_surfaces),
       cmocka_unit_test(damage_of_mazars_follows_its_curves),
       cmocka_unit_test(concrete_yields_and_loses_stiffness_as_it_says),
