@@ -224,6 +224,34 @@ static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(v
   assert_near(spent[0], spent[1], 0.1 * 0.1);
 }
 
+/** A limit of the deck is that of every material, whichever is named first: all bonds hold just below it, and all that are stretched break beyond. */
+static void all_materials_have_the_limit_of_the_deck(void **state)
+{
+  (void)state;
+  for (int trial = 0; trial < 4; ++trial) {
+    const bool turned = trial & 1, beyond = trial & 2;
+    breccia_model *m =
+        model_of("materials:\n"
+                 "  %s: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.2}\n"
+                 "  %s: {model: elastic, density: 2, Young modulus: 3e4, Poisson ratio: 0.2}\n"
+                 "body:\n"
+                 "  a: {material: soft, spacing: 0.1, shape: {box: {particles: [6, 4, 4]}}}\n"
+                 "  b: {material: hard, spacing: 0.1, shape: {box: {from: [0, 0, 1], to: [0.6, 0.4, 1.4]}}}\n"
+                 "failure: {critical stretch: 0.01}\n"
+                 "solve: {explicit: {steps: 2, time step: 1e-9}}\n",
+                 turned ? "hard" : "soft", turned ? "soft" : "hard");
+    const Particles *p = m->domain.particles;
+    for (int64_t i = 0; i < p->places; ++i) p->displacement[0][i] = (beyond ? 0.0101 : 0.0099) * p->position[0][i];
+    assert_int_equal(breccia_model_step(m, 1, NULL), 0);
+    int64_t broken[2] = {0};
+    for (int64_t k = 0; k < m->domain.broken_count; ++k)
+      ++broken[p->position[2][p->place_of[m->domain.broken[k].a]] > 0.7];
+    assert_int_equal(broken[0], broken[1]);
+    assert_true(beyond ? broken[0] >= 5 * 4 * 4 : broken[0] == 0);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Fails if a bond is left that is beyond its limit. */
 static void assert_none_is_beyond(const breccia_model *m, const char *what)
 {
@@ -424,6 +452,7 @@ int main(void)
       cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
       cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
+      cmocka_unit_test(all_materials_have_the_limit_of_the_deck),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
       cmocka_unit_test(bonds_of_what_is_moved_break_in_time),
       cmocka_unit_test(bonds_at_rest_break_in_the_increment_that_overloads_them),
