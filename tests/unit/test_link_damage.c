@@ -246,6 +246,55 @@ static void links_crush_beside_broken_ones(void **state)
   breccia_model_destroy(&model);
 }
 
+/** The damage of a broken link stays what it was, also between blocks whose lattices do not fit, however far its ends go apart. */
+static void broken_links_are_damaged_no_further(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS
+      "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, tensile stretch: "
+      "1e-4, tensile ductility: 40}}\n"
+      "body:\n  a: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, shape: {box: {particles: [9, 5]}}}\n"
+      "  b: {material: m, lattice: square, spacing: 0.08, thickness: 0.3, shape: {box: {from: [0, 0.5], to: [0.72, "
+      "0.9]}}}\n"
+      "peridynamics: {formulation: micropolar, space: plane stress, horizon: 1.5 spacings}\n"
+      "solve: {explicit: {steps: 1}}\n");
+  model->threads = 1;
+  Family *f = &model->domain.family;
+  const double *const *tension = (const double *const *)formulation_of(model)->damage->tension;
+  disturb(model, 1e-3, 8);
+  compute_forces(model);
+  domain_commit_points(&model->domain);
+  int kinds[2] = {0}, grown[2] = {0};
+  for (int64_t slice = 0; slice < model->domain.particles->slices; ++slice)
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        if (!(f->intact[slot] >> lane & 1) || (slot + lane) % 2) continue;
+        const int32_t place = (int32_t)(slice * SLICE + lane);
+        assert_true(family_break(f, place, family_bond(f, slice, slot, lane).neighbour));
+      }
+  double *before = calloc((size_t)(f->slots * SLICE), sizeof(double));
+  memcpy(before, tension[0], sizeof(double) * (size_t)(f->slots * SLICE));
+  disturb(model, 3e-3, 9);
+  compute_forces(model);
+  domain_commit_points(&model->domain);
+  for (int64_t slice = 0; slice < model->domain.particles->slices; ++slice)
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+      for (int lane = 0; lane < SLICE; ++lane) {
+        const int64_t at = slot * SLICE + lane;
+        const int between = slot >= f->stored[slice];
+        if (f->intact[slot] >> lane & 1) {
+          grown[between] += tension[0][at] > before[at];
+          continue;
+        }
+        kinds[between] += before[at] > 0;
+        assert_near(tension[0][at], before[at], 0);
+      }
+  assert_true(kinds[0] > 10 && kinds[1] > 3 && grown[0] > 10 && grown[1] > 3);
+  free(before);
+  breccia_model_destroy(&model);
+}
+
 /** A step that fails, and an elastic stage, leave no damage. */
 static void damage_stays_only_where_steps_come_out_well(void **state)
 {
@@ -452,6 +501,7 @@ int main(void)
       cmocka_unit_test(a_fracture_energy_says_where_the_force_ends),
       cmocka_unit_test(links_crush_beside_torn_ones),
       cmocka_unit_test(links_crush_beside_broken_ones),
+      cmocka_unit_test(broken_links_are_damaged_no_further),
       cmocka_unit_test(damage_stays_only_where_steps_come_out_well),
       cmocka_unit_test(cracks_take_the_fracture_energy_at_any_spacing),
       cmocka_unit_test(families_of_scattered_particles_are_taken_as_whole),
