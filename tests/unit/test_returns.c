@@ -363,7 +363,7 @@ static void mazars_obeys(const Step *s, void *data)
   }
   for (int k = 0; k < 3 && square > 0; ++k)
     share += past(value[k]) * ((1 + nu) * past(effective[k]) - nu * tension) / young / square;
-  share = fmin(past(share), 1);
+  share = fmin(share, 1);
   const double largest = fmax(s->before[0], sqrt(square));
   double damage = s->before[1];
   if (largest > k0) {
@@ -379,15 +379,26 @@ static void mazars_obeys(const Step *s, void *data)
 static void damage_of_mazars_follows_its_curves(void **state)
 {
   (void)state;
-  /* Near the threshold, where the one or the other curve rules, far beyond, and where the curve of compression would pass 1. */
-  for (int n = 0; n < 4; ++n) {
-    Material m = material_of("mazars", "Young modulus=30e6", "Poisson ratio=0.2", "tensile strength=2400",
-                             "fracture energy=0.1", "length=0.04", n == 1 ? "compression share=0.7" : NULL,
-                             n == 1 ? "compression rate=900" : NULL, NULL);
+  /* Near the threshold, where the one or the other curve rules, far beyond, where the curve of compression would pass 1, and with a negative Poisson ratio,
+   * where tensile stresses would make more strain than there is. */
+  const struct {
+    double size, nu, share, rate;
+  } cases[] = {{4e-4, 0.2, 1.2, 1500},
+               {1.5e-3, 0.2, 0.7, 900},
+               {6e-5, 0.2, 1.2, 1500},
+               {8e-3, 0.2, 1.2, 1500},
+               {4e-4, -0.4, 1.2, 1500}};
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; ++n) {
+    char nu[40], share[40], rate[40];
+    snprintf(nu, sizeof nu, "Poisson ratio=%g", cases[n].nu);
+    snprintf(share, sizeof share, "compression share=%g", cases[n].share);
+    snprintf(rate, sizeof rate, "compression rate=%g", cases[n].rate);
+    const bool standard = cases[n].share == 1.2; /* then they are left out */
+    Material m = material_of("mazars", "Young modulus=30e6", nu, "tensile strength=2400", "fracture energy=0.1",
+                             "length=0.04", standard ? NULL : share, standard ? NULL : rate, NULL);
     const double k0 = 2400 / 30e6;
-    double v[] = {30e6, 0.2, k0, 0.1 / (0.04 * 2400) - k0 / 2, n == 1 ? 0.7 : 1.2, n == 1 ? 900 : 1500};
-    static const double sizes[] = {4e-4, 1.5e-3, 6e-5, 8e-3};
-    walk(&m, sizes[n], false, mazars_obeys, v);
+    double v[] = {30e6, cases[n].nu, k0, 0.1 / (0.04 * 2400) - k0 / 2, cases[n].share, cases[n].rate};
+    walk(&m, cases[n].size, false, mazars_obeys, v);
     material_destroy(&m);
   }
 }

@@ -90,7 +90,7 @@ static void respond(const Mazars *c, const Dual strain[3], const double *committ
   *largest = equivalent.value > committed[LARGEST] ? equivalent : dual_constant(committed[LARGEST]);
   *damage = dual_constant(committed[DAMAGE]);
   if (largest->value > c->threshold) {
-    /* a_t: the strain that positive stresses make, against the equivalent strain (bounded, as both are positive parts). */
+    /* a_t: the strain that positive stresses make, against the equivalent strain: never below 0; above 1 where Poisson's ratio is negative. */
     Dual share = dual_constant(0);
     if (square.value > 0) {
       for (int k = 0; k < 3; ++k) {
@@ -98,7 +98,7 @@ static void respond(const Mazars *c, const Dual strain[3], const double *committ
             dual_sum(1 / twice, dual_positive(effective[k]), -lambda / (twice * (3 * lambda + twice)), tension);
         share = dual_sum(1, share, 1, dual_product(dual_positive(strain[k]), by_tension));
       }
-      share = dual_positive(dual_quotient(share, square));
+      share = dual_quotient(share, square);
       if (share.value > 1) share = dual_constant(1);
     }
     const Dual past = dual_shift(*largest, -c->threshold),
