@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-bars bench-elements bench-report recovery docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -20,6 +20,11 @@ demo: setup all
 demo-opensees: setup all
 	@sh scripts/opensees.sh
 	@build/release/breccia run examples/plate-with-crack/clay-opensees.yaml
+
+# All examples, or some: `make examples EXAMPLES="beam-plain footing"`. One page of computed beside published, examples/report.html; pages of examples stay as they are.
+# Some need OpenSees (scripts/opensees.sh). STRICT=1: figures that are not as in these pages count as failures, too.
+examples: all
+	@python3 -B scripts/examples.py $(if $(STRICT),--strict) . build/release build/examples $(EXAMPLES)
 
 test:
 	@sh scripts/setup.sh test
