@@ -2,7 +2,7 @@
 
     examples.py [--strict] [--page PAGE] SOURCE PROGRAMS WORK [EXAMPLE ...]
 
-SOURCE: the project; PROGRAMS: the folder with the command breccia; WORK: a folder of its own, which is made anew; PAGE: SOURCE/examples/report.html when absent.
+SOURCE: the project; PROGRAMS: the folder with the command breccia; WORK: a folder of its own, which is emptied first; PAGE: SOURCE/examples/report.html when absent.
 Tables are those between marks in the pages of the examples, which report.sh has written there. A row with columns 'computed' and 'accepted' must keep to what is accepted,
 '2.2 to 3.0' or words; a column whose head says '(accepted -5 to 5)' to these. --strict: numbers that differ from those of the project's own pages by more than a hundredth count, too.
 Ends with 1 if anything is red."""
