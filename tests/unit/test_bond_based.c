@@ -455,10 +455,11 @@ static void surface_correction_evens_out_surfaces_and_leaves_the_inside_alone(vo
 static void forces_do_not_depend_on_how_bonds_are_kept(void **state)
 {
   (void)state;
-  static const char *const bodies[] = {"{b: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [9, 5, 4]}}}}",
-                                       "{b: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [4, 5, 4]}}}, "
-                                       "c: {material: m, spacing: 1, shape: {box: {from: [4, 0, 0], to: [9, 5, 4]}}}}",
-                                       "{b: {material: m, spacing: 1, file: test_kept.csv}}"};
+  static const char *const bodies[] = {
+      "{b: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [9, 5, 4]}}}}",
+      ("{b: {material: m, spacing: 1, shape: {box: {from: [0, 0, 0], to: [4, 5, 4]}}}, "
+       "c: {material: m, spacing: 1, shape: {box: {from: [4, 0, 0], to: [9, 5, 4]}}}}"),
+      "{b: {material: m, spacing: 1, file: test_kept.csv}}"};
   static const char *const laws[] = {"elastic-1d", "bilinear-softening, tensile strength: 1, fracture energy: 1"};
   FILE *file = fopen("test_kept.csv", "w");
   fprintf(file, "x,y,z,volume\n");
