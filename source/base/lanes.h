@@ -1,21 +1,30 @@
-/* Short vectors: four doubles side by side, written with the compilers' own vector types so that one text serves
- * every processor. A slice is eight particles: two such vectors. Eight, because one byte then holds the intact bits of
- * a slot; four per vector, because a 3 x 3 accumulator and its operands then fit in the 16 registers of AVX2. */
+/* Short vectors: doubles side by side, written with the compilers' own vector types so that one text serves every processor. A slice is eight
+ * particles, because one byte then holds the intact bits of a slot. A vector has four lanes, because a 3 x 3 accumulator and its operands then
+ * fit in the 16 registers of AVX2: a slice is two of them, its halves. The hottest files are compiled for more than one kind of processor
+ * (base/lane_kinds.h), and with eight lanes for those of AVX-512: there the first half is the whole slice, and there is no other.
+ * A lane is a particle, so that bits do not depend on how many there are. */
 #ifndef BRECCIA_BASE_LANES_H
 #define BRECCIA_BASE_LANES_H
 
 #include <stdint.h>
 #include <string.h>
 
-enum { LANES = 4, SLICE = 8 };
+#ifdef BRECCIA_EIGHT_LANES
+enum { LANES = 8 };
+#else
+enum { LANES = 4 };
+#endif
+enum { SLICE = 8, HALVES = SLICE / LANES, QUAD = 4 };
 
-typedef double Lanes __attribute__((vector_size(32)));
-typedef int64_t LaneMask __attribute__((vector_size(32)));
+typedef double Lanes __attribute__((vector_size(8 * LANES)));
+typedef int64_t LaneMask __attribute__((vector_size(8 * LANES)));
+/* Four numbers, however many lanes there are. */
+typedef double Quad __attribute__((vector_size(8 * QUAD)));
 
-/* Hot loops are compiled once per processor generation and chosen when the program starts. The sanitizers' start-up
- * comes after that choice, so their builds have the plain version only; and clang does not let functions of another
- * generation pass vectors to inlined ones, so that with clang -march=native is the way to speed. */
-#if defined(__x86_64__) && !defined(__clang__) && !defined(BRECCIA_NO_CLONES)
+/* Hot loops in files that are compiled once are compiled once per processor generation and chosen when the program starts. The sanitizers' start-up
+ * comes after that choice, so their builds have the plain version only; and clang does not let functions of another generation pass vectors to
+ * inlined ones. */
+#if defined(__x86_64__) && !defined(__clang__) && !defined(BRECCIA_NO_CLONES) && !defined(BRECCIA_LANE_KIND)
 #define BRECCIA_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define BRECCIA_CLONES
@@ -54,62 +63,24 @@ LANES_INLINE void lanes_store(double *to, Lanes lanes)
 #endif
 }
 
-/** One number in all lanes. By way of its bits, because gcc then makes one load of it instead of a load and a permutation. */
-LANES_INLINE Lanes lanes_set(double value)
+LANES_INLINE Quad quad_load(const double *from)
 {
-  int64_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return (Lanes)(LaneMask){bits, bits, bits, bits};
+  Quad quad;
+#ifdef BRECCIA_NARROW_LANES
+  for (int k = 0; k < QUAD; ++k) quad[k] = from[k];
+#else
+  memcpy(&quad, from, sizeof quad);
+#endif
+  return quad;
 }
 
-LANES_INLINE Lanes lanes_widen(const float *from)
+LANES_INLINE void quad_store(double *to, Quad quad)
 {
-  typedef float Narrow __attribute__((vector_size(16)));
-  Narrow narrow;
-  memcpy(&narrow, from, sizeof narrow);
-  return __builtin_convertvector(narrow, Lanes);
-}
-
-LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
-{
-  return (Lanes){from[index[0]], from[index[1]], from[index[2]], from[index[3]]};
-}
-
-/** Four rows of four numbers, turned round: out[k] has the k-th of each row. */
-LANES_INLINE void lanes_turn(Lanes a, Lanes b, Lanes c, Lanes d, Lanes out[LANES])
-{
-  Lanes ac = __builtin_shufflevector(a, c, 0, 1, 4, 5), bd = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-  out[0] = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
-  out[1] = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
-  ac = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-  bd = __builtin_shufflevector(b, d, 2, 3, 6, 7);
-  out[2] = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
-  out[3] = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
-}
-
-/** Four numbers side by side in each of four rows of an array, turned round.
- *  @param[in] stride  numbers per row */
-LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_t *index, Lanes out[LANES])
-{
-  lanes_turn(lanes_load(from + (int64_t)index[0] * stride), lanes_load(from + (int64_t)index[1] * stride),
-             lanes_load(from + (int64_t)index[2] * stride), lanes_load(from + (int64_t)index[3] * stride), out);
-}
-
-/** All bits set in the lanes whose bit (0 to 3) is set in `bits`. Looked up: computing it took two registers that the sweeps
- *  need for their sums. */
-LANES_INLINE LaneMask lanes_mask(unsigned bits)
-{
-  static const LaneMask masks[16] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
-                                     {0, 0, -1, 0},  {-1, 0, -1, 0},  {0, -1, -1, 0},  {-1, -1, -1, 0},
-                                     {0, 0, 0, -1},  {-1, 0, 0, -1},  {0, -1, 0, -1},  {-1, -1, 0, -1},
-                                     {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
-  return masks[bits];
-}
-
-/** The same for one half (0 or 1) of the eight bits of a slot. */
-LANES_INLINE LaneMask lanes_half(unsigned bits, int half)
-{
-  return lanes_mask(bits >> (LANES * half) & 15u);
+#ifdef BRECCIA_NARROW_LANES
+  for (int k = 0; k < QUAD; ++k) to[k] = quad[k];
+#else
+  memcpy(to, &quad, sizeof quad);
+#endif
 }
 
 /** The lanes of `lanes` where the mask is set, zero elsewhere. */
@@ -118,18 +89,11 @@ LANES_INLINE Lanes lanes_where(LaneMask mask, Lanes lanes)
   return (Lanes)((LaneMask)lanes & mask);
 }
 
-/** Four numbers of which those count whose bit is set; zero for the others, which others may be writing. */
-LANES_INLINE Lanes lanes_load_some(const double *from, unsigned bits)
-{
-#ifdef BRECCIA_NARROW_LANES
-  Lanes lanes = {0};
-  for (int k = 0; k < LANES; ++k)
-    if (bits >> k & 1u) lanes[k] = from[k];
-  return lanes;
+#ifdef BRECCIA_EIGHT_LANES
+#include "base/lanes_eight.h"
 #else
-  return lanes_where(lanes_mask(bits), lanes_load(from));
+#include "base/lanes_four.h"
 #endif
-}
 
 /** a where the mask is set, b elsewhere. */
 LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
@@ -184,17 +148,12 @@ LANES_INLINE void lanes_sine_cosine(Lanes x, Lanes *sine, Lanes *cosine)
   c = c * r2 + lanes_set(-1.0 / 720);
   c = c * r2 + lanes_set(1.0 / 24);
   c = c * r2 * r2 + (lanes_set(1) - lanes_set(0.5) * r2);
-  const LaneMask quarter = (LaneMask)shifted, one = {1, 1, 1, 1}, two = one + one;
+  const LaneMask quarter = (LaneMask)shifted, one = (LaneMask){0} + 1, two = one + one;
   const LaneMask odd = (quarter & one) != 0, sign = (LaneMask)lanes_set(-0.0);
   const Lanes a = (Lanes)(((LaneMask)s & ~odd) | ((LaneMask)c & odd)),
               b = (Lanes)(((LaneMask)c & ~odd) | ((LaneMask)s & odd));
   *sine = (Lanes)((LaneMask)a ^ (sign & ((quarter & two) != 0)));
   *cosine = (Lanes)((LaneMask)b ^ (sign & (((quarter + one) & two) != 0)));
-}
-
-LANES_INLINE Lanes lanes_root(Lanes x)
-{
-  return (Lanes){__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
 }
 
 /** The smaller of two, lane by lane; a where b is not a number. */
@@ -209,18 +168,6 @@ LANES_INLINE Lanes lanes_greatest(Lanes a, Lanes b)
 {
   LaneMask greater = b > a;
   return lanes_where(greater, b) + lanes_where(~greater, a);
-}
-
-LANES_INLINE Lanes lanes_absolute(Lanes a)
-{
-  const LaneMask magnitude = {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX};
-  return (Lanes)((LaneMask)a & magnitude);
-}
-
-/** Sum of the four lanes, always in the same order. */
-LANES_INLINE double lanes_total(Lanes a)
-{
-  return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
 #endif

@@ -55,13 +55,12 @@ LANES_INLINE int lattice_row_begin(const RowKind *kind, bool late)
 LANES_INLINE void lattice_row_sums_of(const RowKind *kind, int begin, int neighbours, const uint8_t *present,
                                       const double *q, double *sum, double *moment)
 {
-  for (int half = 0; half < SLICE / LANES; ++half) {
+  for (int half = 0; half < HALVES; ++half) {
     Lanes s = {0}, m = {0};
     for (int n = 0; n < neighbours; ++n) {
       const int along = begin + n;
       const double *there = q + LANES * half + along;
-      const Lanes value =
-          present ? lanes_load_some(there, (unsigned)present[along] >> (LANES * half) & 15u) : lanes_load(there);
+      const Lanes value = present ? lanes_load_some(there, present[along], half) : lanes_load(there);
       if (sum) s += value * lanes_set(kind->weight[n]);
       if (moment) m += value * lanes_set(kind->moment[n]);
     }

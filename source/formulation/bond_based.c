@@ -261,7 +261,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   else if (b->bonds)
     bond_resist_points(b, sweep->first, sweep->last);
   else
-    bond_resist_springs(b, sweep->first, sweep->last);
+    b->resist_springs(b, sweep->first, sweep->last);
   return -1;
 }
 

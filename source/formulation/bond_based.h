@@ -1,8 +1,9 @@
 /* What the parts of bond-based peridynamics share: the table entry (bond_based.c), constants (bond_constants.c), sweeps over linear bonds
- * (bond_springs.c) and over bonds with points (bond_points.c), surfaces (bond_surface.c). */
+ * (bond_springs_sweep.c, what they read bond_springs.c) and over bonds with points (bond_points.c), surfaces (bond_surface.c). */
 #ifndef BRECCIA_FORMULATION_BOND_BASED_H
 #define BRECCIA_FORMULATION_BOND_BASED_H
 
+#include "base/lane_kinds.h"
 #include "formulation/formulation.h"
 #include "formulation/stretch.h"
 
@@ -14,10 +15,16 @@ typedef struct SpringRow {
   int32_t xi[3], length;
 } SpringRow;
 
-/* What is read of a length in them, and how often each stands there. */
-enum { LENGTH_PULL = 0, LENGTH_LIMIT = STRETCH_TERMS * LANES };
+/* What is read of a length in them; each stands there four times. */
+enum { LENGTH_PULL = 0, LENGTH_LIMIT = STRETCH_TERMS * QUAD };
 
-typedef struct BondBased {
+typedef struct BondBased BondBased;
+
+/** Forces on slices first .. last - 1 from linear bonds (bond_springs_sweep.c). */
+typedef void BondResist(const BondBased *b, int64_t first, int64_t last);
+LANES_CHOICE(BondResist, bond_resist_springs)
+
+struct BondBased {
   const Particles *particles;
   const Family *family;
   const Body *body;
@@ -39,8 +46,8 @@ typedef struct BondBased {
   double *tension, *slope; /* [rows of bonds] of bonds with points, as of the last linearisation; NULL before */
   uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
-  bool wide;               /* sweeps take whole slots on long vectors where they can (base/wide.h) */
-} BondBased;
+  BondResist *resist_springs;
+};
 
 /** Material of a block. */
 const Material *bond_material(const BondBased *b, int block);
@@ -71,12 +78,6 @@ LANES_INLINE Lanes bond_constant(const BondBased *b, int64_t slice, const Stretc
 {
   return lanes_set(0.5) * (lanes_set(b->shown[BOND_SHOWN * slice * SLICE + 7]) + ends->last);
 }
-
-/** Forces on slices first .. last - 1 from linear bonds. */
-void bond_resist_springs(const BondBased *b, int64_t first, int64_t last);
-/** The same of one slice whose stretches are small and whose slots all stretch_is_wide (bond_springs_wide.c).
- *  @return the way that they should go */
-StretchRange bond_resist_springs_wide(const BondBased *b, int64_t slice);
 
 /** Of bonds with points: stretches of a batch of rows, their pulls from stresses, forces from pulls (bond_points.c). */
 int64_t bond_stretch(void *formulation, const Sweep *sweep);

@@ -13,6 +13,7 @@
 #ifndef BRECCIA_FORMULATION_CORRESPONDENCE_H
 #define BRECCIA_FORMULATION_CORRESPONDENCE_H
 
+#include "base/lane_kinds.h"
 #include "base/tensor.h"
 #include "formulation/formulation.h"
 #include "formulation/shape_table.h"
@@ -27,7 +28,19 @@ enum { CORRESPONDENCE_SHOWN = 8 }; /* of a place, where bonds are stored: x, y, 
 typedef enum ControlFades { FADES_NEVER, FADES_WITH_SOFTENING, FADES_WITH_YIELDING } ControlFades;
 typedef struct Fading Fading; /* of the control where laws soften (correspondence_fading.c) */
 
-typedef struct Correspondence {
+typedef struct Correspondence Correspondence;
+
+/** The phases that go over all bonds (correspondence_sweep.c). */
+typedef struct CorrespondenceSweeps {
+  int64_t (*show_displacements)(const Correspondence *c, const Sweep *sweep);
+  int64_t (*deform)(const Correspondence *c, const Sweep *sweep);
+  int64_t (*respond)(const Correspondence *c, const Sweep *sweep);
+  int64_t (*sum_states)(const Correspondence *c, const Sweep *sweep);
+  int64_t (*resist)(const Correspondence *c, const Sweep *sweep);
+} CorrespondenceSweeps;
+LANES_CHOICE(const CorrespondenceSweeps, correspondence_sweeps)
+
+struct Correspondence {
   const Particles *particles;
   const Family *family;
   const Points *points;
@@ -50,14 +63,15 @@ typedef struct Correspondence {
   double *row_pull
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
-  /* What bonds of stored slots read of a neighbour, together (correspondence.c); NULL if there are none. */
+  /* What bonds of stored slots read of a neighbour, together (correspondence_stored.h); NULL if there are none. */
   double *shown;     /* [places][CORRESPONDENCE_SHOWN] */
   double *row;       /* [places][state_length] of its response */
   double *gradients; /* [slices][9][8] G of the state at which it was linearised; NULL before */
   double *turns;  /* [slices][9][8] how families have turned, less 1 (correspondence_breaking.c); NULL: nobody asks */
   int32_t *axial; /* places whose bonds act as springs, ascending (some may have become free since) */
   int64_t axial_count;
-} Correspondence;
+  const CorrespondenceSweeps *sweeps;
+};
 
 /** Numbers per place that C takes. */
 static inline int hold_components(Control control)
@@ -84,10 +98,10 @@ static inline int pull_count(Control control)
   return 9 + (hold_is_read(control) ? 3 + hold_components(control) : 0);
 }
 
-/** Numbers of a row that shows a particle's response: Q and x, then C u and C if they are read, in whole vectors. */
+/** Numbers of a row that shows a particle's response: Q and x, then C u and C if they are read, in fours. */
 static inline int state_length(Control control)
 {
-  return 12 + (hold_is_read(control) ? (3 + hold_components(control) + LANES - 1) / LANES * LANES : 0);
+  return 12 + (hold_is_read(control) ? (3 + hold_components(control) + QUAD - 1) / QUAD * QUAD : 0);
 }
 
 /* Making, and what follows from the shapes of families (correspondence_setup.c). */
@@ -123,8 +137,9 @@ void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 
 /** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
- *  1 + (G - G^T) / 2. Written less 1. */
-void correspondence_keep_turn(const Correspondence *c, int64_t place, const Lanes g[9]);
+ *  1 + (G - G^T) / 2. Written less 1.
+ *  @param[in] gradient  [9][BATCH] G of four places */
+void correspondence_keep_turn(const Correspondence *c, int64_t place, const double *gradient);
 int correspondence_keep_turns(void *formulation, Error *error);
 void correspondence_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
 double correspondence_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);

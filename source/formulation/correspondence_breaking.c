@@ -6,11 +6,14 @@
 
 #include <math.h>
 
-void correspondence_keep_turn(const Correspondence *c, int64_t place, const Lanes g[9])
+void correspondence_keep_turn(const Correspondence *c, int64_t place, const double *gradient)
 {
   double *turn = c->turns + place / SLICE * (9 * SLICE) + place % SLICE;
-  Lanes f[9], cofactor[9], determinant = {0};
-  for (int k = 0; k < 9; ++k) f[k] = g[k] + lanes_set(k % 4 == 0);
+  Lanes g[9], f[9], cofactor[9], determinant = {0};
+  for (int k = 0; k < 9; ++k) {
+    g[k] = lanes_load(gradient + k * BATCH);
+    f[k] = g[k] + lanes_set(k % 4 == 0);
+  }
   for (int r = 0; r < 3; ++r)
     for (int k = 0; k < 3; ++k) {
       const int r1 = (r + 1) % 3 * 3, r2 = (r + 2) % 3 * 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;

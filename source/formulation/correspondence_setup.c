@@ -225,6 +225,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
   c->body = parts->body;
   c->foreign = parts->foreign;
   c->plane = parts->body->dimensions == 2;
+  c->sweeps = correspondence_sweeps_chosen();
   const CorrespondenceSpec *spec = parts->keys;
   const ControlSpec *control = spec->control;
   c->finite = !strcmp(spec->strain, "green-lagrange");

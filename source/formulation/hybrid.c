@@ -7,7 +7,6 @@
 
 #include "base/memory.h"
 #include "base/tensor.h"
-#include "base/wide.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -109,7 +108,7 @@ static void *create(const FormulationParts *parts, Error *error)
                 .bonds = parts->bonds,
                 .materials = parts->materials,
                 .material = parts->material,
-                .wide = wide_lanes_pay(),
+                .hooke_sweep = hybrid_hooke_chosen(),
                 .foreign = parts->foreign,
                 .space = parts->space,
                 .finite = !strcmp(spec->strain, "green-lagrange"),

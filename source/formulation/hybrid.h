@@ -14,6 +14,7 @@
 #ifndef BRECCIA_FORMULATION_HYBRID_H
 #define BRECCIA_FORMULATION_HYBRID_H
 
+#include "base/lane_kinds.h"
 #include "formulation/formulation.h"
 
 enum {
@@ -68,7 +69,13 @@ typedef struct HybridHooke {
   double across; /* strain across the plane over the trace of that in it; 0 but in plane stress */
 } HybridHooke;
 
-typedef struct Hybrid {
+typedef struct Hybrid Hybrid;
+
+/** What bonds along lattices exert, of slices whose laws are all Hooke's (hybrid_hooke.c). */
+typedef void HybridHookeSweep(const Hybrid *hybrid, const Sweep *sweep);
+LANES_CHOICE(HybridHookeSweep, hybrid_hooke)
+
+struct Hybrid {
   const Particles *particles;
   const Family *family;
   const Body *body;
@@ -77,7 +84,7 @@ typedef struct Hybrid {
   const Material *materials;
   const int32_t *material; /* [slices] which of the materials */
   HybridHooke *hooke;      /* [materials]; NULL: points keep their strains and stresses */
-  bool wide;               /* sweeps take whole slots on long vectors (base/wide.h) */
+  HybridHookeSweep *hooke_sweep;
   const uint8_t *
       foreign; /* as in FormulationParts; bonds to such places have half of their section here, and those between them never break */
   Space space;
@@ -117,7 +124,7 @@ typedef struct Hybrid {
   double *force;
   double *shown;      /* [places][LANES] displacements, for the same reason; NULL: no rows are listed */
   double (*tried)[3]; /* [most members of a listed row] for geometries that are tried out, by one thread */
-} Hybrid;
+};
 
 /** Where a row stands. */
 typedef struct HybridRow {
@@ -221,10 +228,6 @@ void hybrid_strain_change(const Hybrid *hybrid, const double at[9], const double
 /** F S of a gradient and a stress; or its change F dS + dG S. @param[in] at, held  gradient and stress that change, or NULL */
 void hybrid_first_stress(const Hybrid *hybrid, const double g[9], const double stress[6], const double *at,
                          const double *held, double p[9]);
-
-/** What bonds along lattices exert, of slices whose laws are all Hooke's: on short vectors and on long ones (hybrid_hooke_text.h). */
-void hybrid_hooke_narrow(const Hybrid *hybrid, const Sweep *sweep);
-void hybrid_hooke_wide(const Hybrid *hybrid, const Sweep *sweep);
 
 /** Phases, as FormulationType describes them (hybrid_sweep.c). */
 int64_t hybrid_show(void *formulation, const Sweep *sweep);

@@ -70,16 +70,16 @@ LANES_INLINE void add_row(const SliceOf *s, const HybridStripe *stripe, const do
     if (s->base[vectors[m]] < first) first = s->base[vectors[m]];
   const int64_t size = stripe->high - stripe->low;
   double *to = stripe->sums + (first - stripe->low);
-  Lanes sum[3][HYBRID_WIDTH / LANES];
+  Quad sum[3][HYBRID_WIDTH / QUAD];
   for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < width / LANES; ++i) sum[k][i] = lanes_load(to + k * size + LANES * i);
+    for (int i = 0; i < width / QUAD; ++i) sum[k][i] = quad_load(to + k * size + QUAD * i);
   for (int m = 0; m < count; ++m) {
     const double *from = sums + 3 * (int64_t)vectors[m] * room - (s->base[vectors[m]] - first);
     for (int k = 0; k < 3; ++k)
-      for (int i = 0; i < width / LANES; ++i) sum[k][i] += lanes_load(from + k * room + LANES * i);
+      for (int i = 0; i < width / QUAD; ++i) sum[k][i] += quad_load(from + k * room + QUAD * i);
   }
   for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < width / LANES; ++i) lanes_store(to + k * size + LANES * i, sum[k][i]);
+    for (int i = 0; i < width / QUAD; ++i) quad_store(to + k * size + QUAD * i, sum[k][i]);
 }
 
 /** Adds to the sums of a stripe what the places of all lattice vectors receive, by lattice rows. */
@@ -98,8 +98,8 @@ LANES_INLINE void add_to_stripe(const SliceOf *s, const HybridStripe *stripe, co
     for (; slot < last && lattice->window[f->pattern[slot] - begin] == n; ++slot)
       vectors[count++] = f->pattern[slot] - begin;
     if (!count) continue;
-    if (h->width == 3 * LANES) /* reaches of two places at most; loops of known length keep their sums in registers */
-      add_row(s, stripe, sums, room, 3 * LANES, vectors, count);
+    if (h->width == 3 * QUAD) /* reaches of two places at most; loops of known length keep their sums in registers */
+      add_row(s, stripe, sums, room, 3 * QUAD, vectors, count);
     else
       add_row(s, stripe, sums, room, h->width, vectors, count);
   }

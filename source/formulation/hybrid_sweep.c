@@ -350,7 +350,7 @@ int64_t hybrid_respond(void *formulation, const Sweep *sweep)
 {
   const Hybrid *h = formulation;
   if (h->hooke) {
-    (h->wide ? hybrid_hooke_wide : hybrid_hooke_narrow)(h, sweep);
+    h->hooke_sweep(h, sweep);
     for (int64_t slice = sweep->first; slice < sweep->last && h->listed; ++slice)
       respond_slice_by_hooke(h, sweep, slice);
     return -1;

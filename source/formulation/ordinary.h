@@ -13,6 +13,7 @@
 #ifndef BRECCIA_FORMULATION_ORDINARY_H
 #define BRECCIA_FORMULATION_ORDINARY_H
 
+#include "base/lane_kinds.h"
 #include "formulation/formulation.h"
 #include "formulation/stretch.h"
 
@@ -20,7 +21,7 @@
  *  several patterns share. */
 typedef struct OrdinaryDilating {
   double twice[3], series[STRETCH_TERMS]; /* of w |xi|^2 stretch */
-  double limit;                           /* of the series, squared */
+  double limit;                           /* of the series */
 } OrdinaryDilating;
 typedef struct OrdinaryResisting {
   double twice[3], series[STRETCH_TERMS]; /* of w g / 2 */
@@ -48,7 +49,17 @@ typedef struct Flow {
   int64_t *back;          /* [slots][8] the other end's place in the arrays of slots */
 } Flow;
 
-typedef struct Ordinary {
+typedef struct Ordinary Ordinary;
+
+/** Sweeps over bonds (ordinary_sweep.c): dilatations; what families make of them; forces. */
+typedef struct OrdinarySweeps {
+  int64_t (*dilate)(const Ordinary *o, const Sweep *sweep);
+  int64_t (*respond)(const Ordinary *o, const Sweep *sweep);
+  int64_t (*resist)(const Ordinary *o, const Sweep *sweep);
+} OrdinarySweeps;
+LANES_CHOICE(const OrdinarySweeps, ordinary_sweeps)
+
+struct Ordinary {
   const Particles *particles;
   const Family *family;
   const Body *body;
@@ -73,8 +84,8 @@ typedef struct Ordinary {
   Flow *flow;                   /* NULL: all families are elastic */
   uint8_t *range;               /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;                /* [slices] 1: a bond of a lattice slot is missing */
-  bool wide;                    /* sweeps take whole slots on long vectors where they can (base/wide.h) */
-} Ordinary;
+  const OrdinarySweeps *sweeps;
+};
 
 /** A bond with its weight. */
 static inline Bond ordinary_bond(const Ordinary *o, int64_t slice, int64_t slot, int lane)
@@ -128,10 +139,6 @@ Across ordinary_coupling(Space space, const Material *material);
 void ordinary_balance(const Ordinary *o, int block);
 /** Shear modulus that a lattice shows in a deviatoric strain (shear components as of a tensor), over the wanted one. */
 double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
-
-/** Sweeps over a slice whose stretches are small and whose slots all stretch_is_wide (ordinary_wide.c). @return the way that bonds should go */
-StretchRange ordinary_dilate_wide(const Ordinary *o, int64_t slice);
-void ordinary_resist_wide(const Ordinary *o, int64_t slice);
 
 /** As FormulationType describes them (ordinary_setup.c, ordinary_bonds.c, ordinary_linear.c, ordinary_flow_state.c). */
 extern const Section ordinary_section;

@@ -3,7 +3,6 @@
 
 #include "base/team.h"
 #include "base/tensor.h"
-#include "base/wide.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +82,7 @@ static int create_rows(Ordinary *o, Error *error)
       dilating->series[n] = (stretch /= square) * stretch_terms[n];
       resisting->series[n] = (shortened /= square) * shortening_terms[n];
     }
-    dilating->limit = pow(range_limit[RANGE_SERIES] * square, 2);
+    dilating->limit = range_limit[RANGE_SERIES] * square;
     resisting->weight = weight / 2;
   }
   return BRECCIA_OK;
@@ -188,7 +187,7 @@ void *ordinary_create(const FormulationParts *parts, Error *error)
     ordinary_destroy(o);
     return NULL;
   }
-  o->wide = wide_lanes_pay();
+  o->sweeps = ordinary_sweeps_chosen();
   for (int p = 0; p < o->family->pattern_count; ++p) o->factor[p] = 1;
   for (int block = 0; block < o->body->block_count && !strcmp(spec->weights, "isotropic"); ++block)
     ordinary_balance(o, block);

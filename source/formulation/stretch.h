@@ -69,22 +69,16 @@ typedef struct StretchEnds {
   Lanes y[3], d, square, by_length, weight, last; /* square: |xi|^2 */
 } StretchEnds;
 
-/** A slice can be gone through by whole slots on long vectors (base/wide.h): all its bonds are along a lattice. */
-static inline bool stretch_is_wide(const Family *f, int64_t slice)
-{
-  return f->stored[slice] == f->first[slice + 1];
-}
-
 /** @param[in] shown  [places][STRETCH_SHOWN]
  *  @param[in] own    displacements of the half slice */
 LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int64_t slice, int64_t slot, int half,
                                       const Lanes own[3])
 {
   const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
-  Lanes x[LANES], u[LANES];
+  Lanes x[QUAD], u[QUAD];
   StretchEnds ends = {.d = {0}, .square = {0}};
   lanes_gather_rows(shown, STRETCH_SHOWN, f->neighbour + at, x);
-  lanes_gather_rows(shown + LANES, STRETCH_SHOWN, f->neighbour + at, u);
+  lanes_gather_rows(shown + QUAD, STRETCH_SHOWN, f->neighbour + at, u);
   for (int k = 0; k < 3; ++k) {
     Lanes xi = x[k] - lanes_load(f->particles->position[k] + here), eta = u[k] - own[k];
     ends.y[k] = xi + eta;
@@ -92,7 +86,7 @@ LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int6
     ends.square += xi * xi;
   }
   /* 1 / |xi| from its value to single precision by one step of third order */
-  Lanes r = lanes_where(lanes_half(f->intact[slot], half), lanes_widen(f->inverse_length + at));
+  Lanes r = lanes_intact(f->intact[slot], half, lanes_widen(f->inverse_length + at));
   Lanes off = lanes_set(1) - ends.square * r * r;
   r += r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
   ends.d *= r * r;

@@ -1,0 +1,132 @@
+/* Vectors of eight lanes beside those of four (base/lane_kinds.h): the same bits, of all formulations, along lattices and among scattered
+ * particles. */
+#include "support.h"
+
+#include "base/lane_kinds.h"
+#include "base/random.h"
+
+#include <stdlib.h>
+
+static breccia_model *body(const char *peridynamics, const char *law, const char *shape)
+{
+  return model_of("materials: {m: {model: %s, density: 1, Young modulus: 150}}\n"
+                  "peridynamics: {formulation: %s, horizon: 3.015}\n"
+                  "cracks: [{cut: {line: [[9.05, -9], [9.05, 3.1]]}}]\n"
+                  "body: {b: {material: m, spacing: 1, %s}}\n"
+                  "solve: {explicit: {steps: 20}}\n",
+                  law, peridynamics, shape);
+}
+
+/** Displacements with stretches of a thousandth; of one particle, if wanted, so large that bonds around it leave the series. */
+static void displace(const Domain *d, double far)
+{
+  const Particles *p = d->particles;
+  uint64_t seed = 5;
+  for (int64_t n = 0; n < p->count; ++n)
+    for (int k = 0; k < 3; ++k) p->displacement[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
+  p->displacement[0][p->place_of[p->count / 3]] += far;
+}
+
+/** Forces of one evaluation, by `lanes`. @return [3][places], to be freed */
+static double *forces_by(const char *lanes, const char *peridynamics, const char *law, const char *shape, double far,
+                         int64_t *count)
+{
+  setenv("BRECCIA_LANES", lanes, 1);
+  breccia_model *model = body(peridynamics, law, shape);
+  const Particles *p = model->domain.particles;
+  *count = 3 * p->places;
+  double *forces = malloc(sizeof(double) * (size_t)*count);
+  displace(&model->domain, far);
+  compute_forces(model);
+  for (int k = 0; k < 3; ++k) memcpy(forces + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+  breccia_model_destroy(&model);
+  return forces;
+}
+
+static void check(const char *peridynamics, const char *law, const char *shape)
+{
+  for (int n = 0; n < 3; ++n) {
+    const double far = n == 0 ? 0 : n == 1 ? 0.05 : 0.6; /* by the series, by Newton's steps, by roots */
+    int64_t count, other;
+    double *four = forces_by("4", peridynamics, law, shape, far, &count),
+           *eight = forces_by("8", peridynamics, law, shape, far, &other), largest = 0;
+    assert_int_equal(count, other);
+    for (int64_t i = 0; i < count; ++i) {
+      largest = fmax(largest, fabs(four[i]));
+      if (memcmp(&four[i], &eight[i], sizeof(double)))
+        fail_msg("%s, %s, %s, far %g: %a by four lanes, %a by eight", peridynamics, law, shape, far, four[i], eight[i]);
+    }
+    assert_true(largest > 0);
+    free(four);
+    free(eight);
+  }
+}
+
+static const char *const lattice = "shape: {difference: [{box: {particles: [29, 8, 7]}}, {sphere: {centre: [20, 4, 3], "
+                                   "radius: 1.7}}]}";
+
+static const char *const of[][2] = {
+    {"bond-based", "elastic-1d"},
+    {"bond-based, surface correction: energy", "elastic-1d"},
+    {"bond-based", "bilinear-softening, tensile strength: 0.01, fracture energy: 0.001"},
+    {"bond-based, influence: gaussian", "elastic-1d"},
+    {"ordinary", "elastic, Poisson ratio: 0.3"},
+    {"correspondence", "elastic, Poisson ratio: 0.3"},
+    {"correspondence, strain: small", "elastic, Poisson ratio: 0.3"},
+    {"correspondence, influence: gaussian", "elastic, Poisson ratio: 0.3"},
+    {"correspondence, zero-energy control: {none: yes}", "elastic, Poisson ratio: 0.3"},
+    {"correspondence, zero-energy control: {wan: 0.5}", "elastic, Poisson ratio: 0.3"},
+    {"hybrid", "elastic, Poisson ratio: 0.3"},
+    {"hybrid, strain: small", "elastic, Poisson ratio: 0.3"},
+    {"micropolar", "elastic, Poisson ratio: 0.2"}};
+
+static void skip_without_eight(void)
+{
+  setenv("BRECCIA_LANES", "8", 1);
+  if (lane_kind() != LANES_OF_AVX512) skip();
+}
+
+static void a_variable_chooses_four_lanes(void **state)
+{
+  (void)state;
+  skip_without_eight();
+  setenv("BRECCIA_LANES", "4", 1);
+  assert_int_equal(lane_kind(), LANES_OF_AVX2);
+  unsetenv("BRECCIA_LANES");
+  assert_int_equal(lane_kind(), LANES_OF_AVX512);
+}
+
+static void eight_lanes_give_the_bits_of_four_along_lattices(void **state)
+{
+  (void)state;
+  skip_without_eight();
+  for (size_t k = 0; k < sizeof of / sizeof *of; ++k) check(of[k][0], of[k][1], lattice);
+}
+
+static void eight_lanes_give_the_bits_of_four_among_scattered_particles(void **state)
+{
+  (void)state;
+  skip_without_eight();
+  FILE *file = fopen("lanes.csv", "w");
+  uint64_t seed = 3;
+  fprintf(file, "x,y,z,volume\n");
+  for (int n = 0; n < 15 * 7 * 6; ++n) {
+    const int at[3] = {n % 15, n / 15 % 7, n / 105};
+    for (int k = 0; k < 3; ++k) fprintf(file, "%.17g,", at[k] + 0.6 * (random_uniform(&seed) - 0.5));
+    fprintf(file, "%.17g\n", 0.9 + 0.2 * random_uniform(&seed));
+  }
+  fclose(file);
+  for (size_t k = 0; k < sizeof of / sizeof *of; ++k)
+    if (strncmp(of[k][0], "micropolar", 10) && strncmp(of[k][0], "hybrid", 6))
+      check(of[k][0], of[k][1], "file: lanes.csv");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_variable_chooses_four_lanes),
+      cmocka_unit_test(eight_lanes_give_the_bits_of_four_along_lattices),
+      cmocka_unit_test(eight_lanes_give_the_bits_of_four_among_scattered_particles),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
