@@ -274,16 +274,27 @@ void plausibility_in_short(const breccia_model *model, Text *text)
   describe_body(model, &e, text);
 }
 
+/** Of rods. */
+static double bar_speed(const breccia_model *model)
+{
+  const Material *m = main_material(model);
+  return sqrt(plausibility_in_si(model, "stress", material_young(m)) /
+              plausibility_in_si(model, "density", m->density));
+}
+
+double plausibility_frequency_along(const breccia_model *model)
+{
+  return bar_speed(model) / (2 * extent_of(model).largest);
+}
+
 /** The lowest frequency as the body is held. Where that is not looked for, those of a free body, estimated as a bar's: along it wave speed /
  *  (2 largest size), and bending as a beam of rectangular section, 1.03 speed thickness / length^2 (4.730^2 / (2 pi sqrt 12)), both with the speed of
  *  bars. Supports change them: a beam on two supports bends at 0.44 of the second, a cantilever at 0.16. */
 static void describe_frequencies(breccia_model *model, const Extent *e, bool search, Text *text)
 {
   if (search && plausibility_describe_mode(model, text)) return;
-  const Material *m = main_material(model);
-  const double bar =
-      sqrt(plausibility_in_si(model, "stress", material_young(m)) / plausibility_in_si(model, "density", m->density));
-  const double along = bar / (2 * e->largest), bending = 1.028 * bar * e->smallest / (e->largest * e->largest);
+  const double along = plausibility_frequency_along(model);
+  const double bending = 1.028 * bar_speed(model) * e->smallest / (e->largest * e->largest);
   text_add(text, "  lowest frequency of the free body: about ");
   quantity_describe(along, "Hz", text);
   if (model->domain.body.dimensions > 1 && bending < along) {
@@ -373,6 +384,7 @@ void plausibility_warn(breccia_model *model)
   for (int k = 0; k < model->domain.material_count; ++k) check_material(model, k);
   plausibility_warn_of_loads(model);
   plausibility_warn_of_ground(model);
+  plausibility_warn_of_damping(model);
 }
 
 void plausibility_describe(breccia_model *model, bool search, Text *text)

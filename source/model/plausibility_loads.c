@@ -62,7 +62,8 @@ static void check_grips(breccia_model *model)
     return;
   for (int k = 0; k < model->loading.count; ++k) {
     const LoadSpec *l = model->loading.loads[k].spec;
-    if (!(plausibility_is_kind(l, "displacement") || plausibility_is_kind(l, "velocity") || plausibility_is_kind(l, "acceleration")) ||
+    if (!(plausibility_is_kind(l, "displacement") || plausibility_is_kind(l, "velocity") ||
+          plausibility_is_kind(l, "acceleration")) ||
         load_magnitude(l) == 0)
       continue;
     const Selection *held = &model->loading.loads[k].selection;

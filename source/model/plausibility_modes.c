@@ -71,3 +71,25 @@ bool plausibility_describe_mode(breccia_model *model, Text *text)
   text_add(text, "\n");
   return true;
 }
+
+void plausibility_warn_of_damping(breccia_model *model)
+{
+  const double most =
+      20; /* times what is critical along the body, which is more than what is critical of its slowest vibration */
+  const double frequency = plausibility_frequency_along(model), critical = 4 * acos(-1) * frequency;
+  for (int64_t k = 0; k < model->solver.clock.stages; ++k) {
+    const Node *node;
+    const double rate = solver_stage_damping(&model->solver, k, &node) / plausibility_in_si(model, "time", 1);
+    if (!(rate > most * critical)) continue;
+    Text words[2] = {{0}, {0}};
+    quantity_describe(frequency, "Hz", &words[0]);
+    quantity_describe(rate / pow(2 * acos(-1) * frequency, 2), "s", &words[1]);
+    plausibility_say(model, node,
+                     "%s: it is %.3g times critical for the vibration along the body of about %s, so that the body "
+                     "creeps: a deflection fades to a third in %s or longer; 'damping: {ratio: 1, at: ...}' with the "
+                     "frequency that 'breccia modes' finds brings it to rest soonest",
+                     node->key, rate / critical, text_words(&words[0]), text_words(&words[1]));
+    text_free(&words[0]);
+    text_free(&words[1]);
+  }
+}

@@ -36,6 +36,13 @@ void plausibility_warn_of_bars(breccia_model *model);
 /** Warns of pictures that can show nothing of what is meant. */
 void plausibility_warn_of_pictures(breccia_model *model);
 
+/** In Hz, of the vibration along the longest side of the body if nothing held it, estimated as a bar's: vibrations across, and of a body that is held
+ *  at one end, are slower. */
+double plausibility_frequency_along(const breccia_model *model);
+
+/** Warns of damping with which no vibration is left, and the body creeps. */
+void plausibility_warn_of_damping(breccia_model *model);
+
 /** Adds a line on the lowest frequency of the body as it is held, with advice for loads, damping and steps, where the deck asks for it and the body is
  *  so small that it is soon found. @return whether there is one */
 bool plausibility_describe_mode(breccia_model *model, Text *text);

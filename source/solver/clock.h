@@ -14,7 +14,8 @@ typedef struct Clock {
   double stage_time;
   int64_t stage_last; /* step and time at which it ends, as far as that can be foreseen */
   double stage_end;
-  int64_t ended; /* the stage has come to its end */
+  int64_t ended;      /* the stage has come to its end */
+  char time_unit[32]; /* of all times, for messages */
 } Clock;
 
 #endif

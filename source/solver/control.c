@@ -398,7 +398,7 @@ bool control_is_spent(const Control *c)
   return c->spec && c->spec->bond.node && c->domain->broken_count && c->exerted <= share * c->exerted_most;
 }
 
-void control_tell_torn(const Control *c, double time, Text *warning)
+void control_tell_torn(const Control *c, const Clock *clock, Text *warning)
 {
   const Domain *d = c->domain;
   const Particles *p = d->particles;
@@ -410,10 +410,10 @@ void control_tell_torn(const Control *c, double time, Text *warning)
   node_where(c->reader->document, section_node(c->spec, "stretch in"), where, sizeof where);
   text_add(
       warning,
-      "%s%s: warning: stretch in: the body is torn at time %.6g, its last bond near [%.4g, %.4g, %.4g], and the "
+      "%s%s: warning: stretch in: the body is torn at time %.6g %s, its last bond near [%.4g, %.4g, %.4g], and the "
       "controlled loads exert less than a thousandth of their most: the stage ends here; to draw the parts further, "
       "control an 'opening between' them",
-      warning->length ? "\n" : "", where, time, middle[0], middle[1], middle[2]);
+      warning->length ? "\n" : "", where, clock->time, clock->time_unit, middle[0], middle[1], middle[2]);
 }
 
 void control_state(Control *c, StateList *list)

@@ -10,6 +10,7 @@
 
 #include "base/state.h"
 #include "body/selection.h"
+#include "solver/clock.h"
 #include "solver/unknowns.h"
 
 typedef struct ControlSpec {
@@ -79,7 +80,7 @@ void control_note_exerted(Control *control, double force);
 /** Whether a crack that is followed by its stretch has torn the body: next to nothing is left of what they exerted. */
 bool control_is_spent(const Control *control);
 /** That the stage ends because of this. */
-void control_tell_torn(const Control *control, double time, Text *warning);
+void control_tell_torn(const Control *control, const Clock *clock, Text *warning);
 
 /** Rows of what it keeps from one increment to the next. */
 void control_state(Control *control, StateList *list);

@@ -228,6 +228,12 @@ static void describe_stage(const void *section, const char *time, Text *text)
   if (spec->local_damping > 0) text_add(text, ", local damping %g", spec->local_damping);
 }
 
+static double damping(const void *section)
+{
+  const ExplicitSpec *spec = section;
+  return spec->damping.mass;
+}
+
 static double steady(const void *section)
 {
   const ExplicitSpec *spec = section;
@@ -480,6 +486,7 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .advance = advance,
                                     .state = list_state,
                                     .damps = damps,
+                                    .damping = damping,
                                     .steady = steady,
                                     .inertia = explicit_inertia,
                                     .foresee = explicit_foresee,

@@ -187,6 +187,12 @@ static bool damps(const Solver *run)
   return spec->damping.mass > 0 || spec->damping.stiffness > 0;
 }
 
+static double damping(const void *section)
+{
+  const ImplicitSpec *spec = section;
+  return spec->damping.mass;
+}
+
 static int check(Solver *run, const void *section, Error *error)
 {
   const ImplicitSpec *spec = section;
@@ -218,9 +224,10 @@ static int plan(Solver *run, Text *warning, Error *error)
     char where[WHERE_SIZE];
     node_where(run->reader->document, section_node(s->spec, "time step"), where, sizeof where);
     text_add(warning,
-             "%s%s: warning: time step: %g is below the stable step %.4g of explicit dynamics, which takes a step at a "
+             "%s%s: warning: time step: %g %s is below the stable step of %.4g %s of explicit dynamics, which takes a "
+             "step at a "
              "small part of the price; choose a longer one, or 'explicit'",
-             warning->length ? "\n" : "", where, s->next, s->stable);
+             warning->length ? "\n" : "", where, s->next, run->clock.time_unit, s->stable, run->clock.time_unit);
   }
   return BRECCIA_OK;
 }
@@ -294,6 +301,7 @@ const SolverType implicit_solver = {.name = "implicit",
                                     .advance = implicit_advance,
                                     .state = list_state,
                                     .damps = damps,
+                                    .damping = damping,
                                     .few_steps = true,
                                     .inertia = inertia,
                                     .foresee = foresee,

@@ -318,11 +318,13 @@ static int give_up(Implicit *s, double next, int64_t cuts)
 static void tell_coarse(Implicit *s, double found, Text *warning)
 {
   if (!s->coarse)
-    text_add(warning,
-             "%swarning: implicit: from time %.6g on steps cut to the 'smallest time step' (%.3g) err by %.2g of the "
-             "largest displacements, more than the 'local error' of %g; make it smaller, or go on with a stage of "
-             "'explicit'",
-             warning->length ? "\n" : "", s->clock->time, s->length, found, s->spec->local_error);
+    text_add(
+        warning,
+        "%swarning: implicit: from time %.6g %s on steps cut to the 'smallest time step' (%.3g %s) err by %.2g of the "
+        "largest displacements, more than the 'local error' of %g; make it smaller, or go on with a stage of "
+        "'explicit'",
+        warning->length ? "\n" : "", s->clock->time, s->clock->time_unit, s->length, s->clock->time_unit, found,
+        s->spec->local_error);
   s->coarse = true;
 }
 
@@ -339,7 +341,8 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
   s->newton.log = &run->log;
   for (;; ++s->cuts) {
     end = increment_end(run, s->next);
-    text_add(&run->log, "step %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, clock->time, end);
+    text_add(&run->log, "step %lld, from time %.6g to %.6g %s\n", (long long)clock->step + 1, clock->time, end,
+             clock->time_unit);
     const NewtonOutcome outcome = try_step(s, end, &found, error);
     if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     const double change = wanted_change(s, found);
@@ -369,9 +372,9 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
     s->next = s->length / 2;
     if (s->next < shortest) {
       error_add(error, BRECCIA_FAILURE,
-                "implicit: no equilibrium with inertia beyond time %g, with steps cut to %.2g: %s; go on with a "
+                "implicit: no equilibrium with inertia beyond time %g %s, with steps cut to %.2g %s: %s; go on with a "
                 "stage of 'explicit', or look at the loads and at the last pictures",
-                clock->time, s->length, words);
+                clock->time, clock->time_unit, s->length, clock->time_unit, words);
       return give_up(s, first, cuts);
     }
   }

@@ -51,12 +51,14 @@ static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, E
   const int64_t i = fastest_place(p);
   return error_add(
       error, BRECCIA_FAILURE,
-      "step %lld (time %g): the computation has blown up: particle %d at [%g, %g, %g] moves at %.3g, more than %g "
+      "step %lld (time %g %s): the computation has blown up: particle %d at [%g, %g, %g] moves at %.3g, more than %g "
       "times the waves of the materials (%.4g) and the speeds at the start and prescribed (%.4g) together; the time "
-      "step of %.4g (stable step %.4g) is too long for what happens, or bonds that break or close give more than they "
+      "step of %.4g %s (stable step %.4g %s) is too long for what happens, or bonds that break or close give more than "
+      "they "
       "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
-      (long long)clock->step, clock->time, p->number[i], p->position[0][i], p->position[1][i], p->position[2][i],
-      l->fastest, most_of_speed, l->wave, l->given, clock->time_step, clock->stable);
+      (long long)clock->step, clock->time, clock->time_unit, p->number[i], p->position[0][i], p->position[1][i],
+      p->position[2][i], l->fastest, most_of_speed, l->wave, l->given, clock->time_step, clock->time_unit,
+      clock->stable, clock->time_unit);
 }
 
 bool ledger_is_doubtful(const Ledger *l)
@@ -86,11 +88,12 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
   if (l->unsound_steps < LASTING) return BRECCIA_OK;
   return error_add(
       error, BRECCIA_FAILURE,
-      "step %lld (time %g): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
-      "motions have put in %.4g at most; the time step of %.4g (stable step %.4g) is too long for what "
+      "step %lld (time %g %s): energy from nothing: kinetic %.4g, internal %.4g, fracture %.4g, while loads and "
+      "motions have put in %.4g at most; the time step of %.4g %s (stable step %.4g %s) is too long for what "
       "happens, or bonds that break or close give more than they got: choose a smaller 'safety' or 'time step', more "
       "zero-energy control, or leave contact out",
-      (long long)clock->step, clock->time, l->kinetic, internal, fracture, l->paid, clock->time_step, clock->stable);
+      (long long)clock->step, clock->time, clock->time_unit, l->kinetic, internal, fracture, l->paid, clock->time_step,
+      clock->time_unit, clock->stable, clock->time_unit);
 }
 
 Energy ledger_energy(const Ledger *l, Domain *d)

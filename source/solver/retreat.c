@@ -45,18 +45,19 @@ int explicit_retreat(Explicit *s, Error *error)
   else if (left < 4)
     cause = "it has lost nearly all its bonds";
   if (d->out_of_memory || forces_failed(&d->forces))
-    error_add(error, BRECCIA_FAILURE, "step %lld (time %g): out of memory: %s", (long long)s->clock->step + 1,
-              s->clock->time + dt, d->out_of_memory ? "broken bonds" : forces_failed(&d->forces));
+    error_add(error, BRECCIA_FAILURE, "step %lld (time %g %s): out of memory: %s", (long long)s->clock->step + 1,
+              s->clock->time + dt, s->clock->time_unit, d->out_of_memory ? "broken bonds" : forces_failed(&d->forces));
   else if (*domain_server_problem(d))
-    error_add(error, BRECCIA_FAILURE, "step %lld (time %g): %s", (long long)s->clock->step + 1, s->clock->time + dt,
-              domain_server_problem(d));
+    error_add(error, BRECCIA_FAILURE, "step %lld (time %g %s): %s", (long long)s->clock->step + 1, s->clock->time + dt,
+              s->clock->time_unit, domain_server_problem(d));
   else
     error_add(
         error, BRECCIA_FAILURE,
-        "step %lld (time %g): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
-        "%g, stable step %g, kinetic energy %g)",
-        (long long)s->clock->step + 1, s->clock->time + dt, p->number[bad], p->position[0][bad], p->position[1][bad],
-        p->position[2][bad], cause, dt, s->clock->stable, s->ledger->kinetic);
+        "step %lld (time %g %s): the force on particle %d at [%g, %g, %g] is not a number; likely cause: %s (time step "
+        "%g %s, stable step %g %s, kinetic energy %g)",
+        (long long)s->clock->step + 1, s->clock->time + dt, s->clock->time_unit, p->number[bad], p->position[0][bad],
+        p->position[1][bad], p->position[2][bad], cause, dt, s->clock->time_unit, s->clock->stable, s->clock->time_unit,
+        s->ledger->kinetic);
   state_undo(&s->before);
   domain_put_stresses_by(d);
   domain_mend(d);

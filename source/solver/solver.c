@@ -184,6 +184,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
   bool zeroes = false;
   s->clock.stages = s->stages->count;
   s->clock.stable = INFINITY;
+  units_name(s->reader->units, dimension_find("time"), s->clock.time_unit, sizeof s->clock.time_unit);
   s->ledger.stored_at_start = s->domain->initial_energy;
   s->records = memory_zeroed((size_t)s->clock.stages, sizeof *s->records, "stages", error);
   for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
@@ -329,6 +330,14 @@ double solver_stage_steady(const Solver *s, int64_t stage)
   return types[type]->steady ? types[type]->steady(stage_of(s, stage)->of[type]) : NAN;
 }
 
+double solver_stage_damping(const Solver *s, int64_t stage, const Node **node)
+{
+  const int type = type_of(stage_of(s, stage));
+  const void *spec = stage_of(s, stage)->of[type];
+  *node = section_node(spec, "damping");
+  return types[type]->damping ? types[type]->damping(spec) : 0;
+}
+
 double solver_time_in_motion(const Solver *s)
 {
   double whole = solver_stage_rests(s, s->clock.stage) ? 0 : s->clock.stage_end - s->clock.stage_time;
@@ -340,14 +349,14 @@ double solver_time_in_motion(const Solver *s)
   return whole;
 }
 
-/** @param[in] step, time  at the end of the step in which the trap has sprung, if it has */
-static int tell_trap(const Trap *trap, int64_t step, double time, Error *error)
+/** @param[in] step, time, unit  at the end of the step in which the trap has sprung, if it has; and of that time */
+static int tell_trap(const Trap *trap, int64_t step, double time, const char *unit, Error *error)
 {
   Text words = {0};
   int status = BRECCIA_OK;
   if (trap_tell(trap, &words))
-    status = error_add(error, BRECCIA_FAILURE, "step %lld (time %g): floating-point trap: %s", (long long)step, time,
-                       text_words(&words));
+    status = error_add(error, BRECCIA_FAILURE, "step %lld (time %g %s): floating-point trap: %s", (long long)step, time,
+                       unit, text_words(&words));
   text_free(&words);
   return status;
 }
@@ -361,7 +370,7 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   if (s->trap) trap_begin(&trap);
   const int failed = s->type->advance(s, warning, error);
   if (s->trap) trap_end();
-  const int trapped = tell_trap(&trap, step, time + s->clock.time_step, error);
+  const int trapped = tell_trap(&trap, step, time + s->clock.time_step, s->clock.time_unit, error);
   if (failed && s->clock.step < step) return failed; /* and the state is a good one, even if a trap has sprung */
   foresee(s);
   s->records[s->clock.stage].last_step = (double)s->clock.step;

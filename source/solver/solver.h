@@ -91,6 +91,8 @@ struct SolverType {
   void (*state)(Solver *solver, StateList *list);
   /** Whether something takes energy out of motions, so that a body may come to rest. */
   bool (*damps)(const Solver *solver);
+  /** The rate at which a stage with this section damps motions in proportion to mass. NULL: not at all, or by what it finds itself. */
+  double (*damping)(const void *spec);
   /** Whether its steps are few and long, so that histories have a row for each. */
   bool few_steps;
   /** Below which forces out of balance and kinetic energy count as none where a stage with this section judges, when it ends, whether the body bears its
@@ -133,6 +135,9 @@ bool solver_stage_rests(const Solver *solver, int64_t stage);
 
 /** Time of the stage under way and of later ones in which the body may move, as far as it can be foreseen. */
 double solver_time_in_motion(const Solver *solver);
+
+/** SolverType.damping of a stage, or 0. @param[out] node  of the deck, where it is said */
+double solver_stage_damping(const Solver *solver, int64_t stage, const Node **node);
 
 /** SolverType.steady of a stage. */
 double solver_stage_steady(const Solver *solver, int64_t stage);

@@ -108,7 +108,7 @@ static void end_torn(Solver *run, Text *warning)
 {
   const Static *s = run->own;
   Clock *clock = &run->clock;
-  control_tell_torn(&s->control, clock->time, warning);
+  control_tell_torn(&s->control, clock, warning);
   clock->ended = 1;
   clock->stage_last = clock->step;
   clock->stage_end = clock->time;
@@ -163,18 +163,19 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
           "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', go on with "
           "a stage of 'explicit', or look at the loads and at the last pictures";
   }
-  return error_add(error, BRECCIA_FAILURE, "static: no equilibrium beyond time %g, with increments cut to %.2g: %s; %s",
-                   s->clock->time, s->next, words, advice);
+  return error_add(error, BRECCIA_FAILURE,
+                   "static: no equilibrium beyond time %g %s, with increments cut to %.2g %s: %s; %s", s->clock->time,
+                   s->clock->time_unit, s->next, s->clock->time_unit, words, advice);
 }
 
 static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error)
 {
   char words[320];
   return error_add(error, BRECCIA_FAILURE,
-                   "static: with %lld broken bonds the body finds no equilibrium any more at time %g: %s; it has "
+                   "static: with %lld broken bonds the body finds no equilibrium any more at time %g %s: %s; it has "
                    "failed at this load: go on with "
                    "a stage of 'explicit', or prescribe displacements instead of forces",
-                   (long long)s->domain->broken_count, s->clock->time,
+                   (long long)s->domain->broken_count, s->clock->time, s->clock->time_unit,
                    describe_failure(s, outcome, words, sizeof words));
 }
 
@@ -234,7 +235,8 @@ int static_advance(Solver *run, Text *warning, Error *error)
   s->newton.log = &run->log;
   for (int64_t cut = 0;; s->cuts = cuts + ++cut) {
     const double begin = clock->time, end = increment_end(run, s->next);
-    text_add(&run->log, "increment %lld, from time %.6g to %.6g\n", (long long)clock->step + 1, begin, end);
+    text_add(&run->log, "increment %lld, from time %.6g to %.6g %s\n", (long long)clock->step + 1, begin, end,
+             clock->time_unit);
     bool settled = true;
     relaxed = false;
     NewtonOutcome outcome = try_first(s, end, &may_relax, &relaxed, error);

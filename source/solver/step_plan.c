@@ -100,10 +100,12 @@ int explicit_follow(Solver *run, Text *warning, Error *error)
     if (status) return status;
     if (is_too_long(s, s->clock->time_step)) {
       if (!isnan(s->spec->time_step))
-        text_add(warning,
-                 "%swarning: step %lld: broken bonds have lowered the stable step to %.4g; the time step of %g is "
-                 "divided from here on",
-                 warning->length ? "\n" : "", (long long)s->clock->step, s->clock->stable, s->fixed);
+        text_add(
+            warning,
+            "%swarning: step %lld: broken bonds have lowered the stable step to %.4g %s; the time step of %g %s is "
+            "divided from here on",
+            warning->length ? "\n" : "", (long long)s->clock->step, s->clock->stable, s->clock->time_unit, s->fixed,
+            s->clock->time_unit);
       plan_steps(s, run);
     }
   }
@@ -123,17 +125,18 @@ static int check_time_step(const Solver *run, const ExplicitSpec *spec, double s
   const double chosen = spec->time_step, share = chosen / stable;
   const Document *document = run->reader->document;
   const Node *node = section_node(spec, "time step");
+  const char *unit = run->clock.time_unit;
   if (share > 1 && !run->force)
     return node_error(
         document, node, error,
-        "time step: %g is %.2f times the stable step of %.4g; choose a smaller one, leave it out, or run with "
+        "time step: %g %s is %.2f times the stable step of %.4g %s; choose a smaller one, leave it out, or run with "
         "--force",
-        chosen, share, stable);
+        chosen, unit, share, stable, unit);
   if (warning && share > 0.9) {
     char where[WHERE_SIZE];
     node_where(document, node, where, sizeof where);
-    text_add(warning, "%s%s: warning: time step: %g is %.2f times the stable step of %.4g", warning->length ? "\n" : "",
-             where, chosen, share, stable);
+    text_add(warning, "%s%s: warning: time step: %g %s is %.2f times the stable step of %.4g %s",
+             warning->length ? "\n" : "", where, chosen, unit, share, stable, unit);
   }
   return BRECCIA_OK;
 }
@@ -156,9 +159,9 @@ static int check_formulations(const Solver *run, const ExplicitSpec *spec, doubl
   const int status = stable_step(run->domain, &stable, error);
   if (status || isinf(stable) || spec->damping.stiffness >= slack * share * stable) return status;
   return node_error(run->reader->document, spec->head.node, error,
-                    "explicit: %s: expected 'form: variational', or 'stiffness damping' of at least %.3g, %g %% of "
+                    "explicit: %s: expected 'form: variational', or 'stiffness damping' of at least %.3g %s, %g %% of "
                     "critical at the highest frequency",
-                    why, share * stable, 100 * share);
+                    why, share * stable, run->clock.time_unit, 100 * share);
 }
 
 /** Damping by stiffness asks laws for elastic forces beside those of the step. */

@@ -210,7 +210,7 @@ contains "a body in millimetres" "$("$breccia" check small.yaml 2>&1)" "body: 10
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
 "$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2
 "$breccia" run burst.yaml --force > out 2> errors; equal "burst: status" $? 1
-contains "burst" "$(cat errors)" "step 4 (time 0.0004): the computation has blown up: particle "
+contains "burst" "$(cat errors)" "step 4 (time 0.0004 s): the computation has blown up: particle "
 contains "burst" "$(cat out)" "stopped by a failure"
 if "$breccia" run plate.yaml --steps 20 --trap --output trapped > out 2> errors; then
   "$breccia" run plate.yaml --steps 20 --output untrapped > out 2>&1

@@ -126,7 +126,7 @@ fault() { # FAULT WORDS STEPS: those that are left for the restart; 32 after the
   "$breccia" run faulty.yaml > out 2> err
   equal "$1: status" $? 1
   equal "$1: lines" "$(wc -l < err)" 1
-  contains "$1: message" "$(cat err)" "step 29 (time 0.000232): material 'clay': server at unix:$PWD/relay: $2"
+  contains "$1: message" "$(cat err)" "step 29 (time 0.000232 s): material 'clay': server at unix:$PWD/relay: $2"
   [ -f faulty/checkpoint.h5 ] || fail "$1: no checkpoint"
   kill $relay 2> /dev/null; wait $relay 2> /dev/null
   # From the last checkpoint, with a server that is well, to the same end.

@@ -349,7 +349,7 @@ static void energy_from_nothing_stops_the_run(void **state)
   holds_words(
       words,
       "energy from nothing: kinetic |, internal |, fracture |, while loads and motions have put in |; the time step "
-      "of 0.01 (stable step |) is too long for what happens, or bonds that break or close give more than they "
+      "of 0.01 s (stable step |) is too long for what happens, or bonds that break or close give more than they "
       "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out");
   assert_true(m->solver.clock.step < 100);
   breccia_model_destroy(&m);
@@ -379,7 +379,7 @@ static void a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed
   holds_words(
       breccia_error_text(error),
       "has blown up: particle |] moves at |, more than |times the waves of the materials (77.46) and the speeds at the "
-      "start and prescribed (0) together; the time step of 0.0005 (stable step |) is too long for what happens, or "
+      "start and prescribed (0) together; the time step of 0.0005 s (stable step |) is too long for what happens, or "
       "bonds that break or close give more than they got: choose a smaller 'safety' or 'time step', more zero-energy "
       "control, or leave contact out");
   assert_true(absurd > 0 && m->solver.clock.step <= absurd + 10);

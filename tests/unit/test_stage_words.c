@@ -56,7 +56,7 @@ static void implicit_steps_are_measured_by_explicit_ones(void **state)
     m = model_of(BODY LOADS "solve: {implicit: {end time: 2, time step: %.17g}}\n", shares[k] * stable);
     snprintf(words, sizeof words, " (%.3g times the stable step of explicit dynamics)", shares[k]);
     has(breccia_model_overview(m), words);
-    snprintf(words, sizeof words, "time step: %g is below the stable step %.4g of explicit dynamics",
+    snprintf(words, sizeof words, "time step: %g s is below the stable step of %.4g s of explicit dynamics",
              shares[k] * stable, stable);
     assert_int_equal(strstr(breccia_model_warnings(m), words) != NULL, shares[k] < 1);
     breccia_model_destroy(&m);
@@ -72,9 +72,31 @@ static void steps_close_to_the_stable_one_are_warned_of(void **state)
   for (int k = 0; k < 4; ++k) {
     char words[128];
     m = model_of(BODY LOADS "solve: {explicit: {time step: %.17g, steps: 1}}\n", shares[k] * stable * (1 - 1e-12));
-    snprintf(words, sizeof words, "warning: time step: %g is %.2f times the stable step of %.4g", shares[k] * stable,
-             shares[k], stable);
+    snprintf(words, sizeof words, "warning: time step: %g s is %.2f times the stable step of %.4g s",
+             shares[k] * stable, shares[k], stable);
     assert_int_equal(strstr(breccia_model_warnings(m), words) != NULL, shares[k] > 0.9);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** Of the deck, which need not be seconds. */
+static void times_of_logs_have_their_unit(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *solve, *words;
+  } cases[] = {{"{static: {increments: 2, end time: 5}}", "increment 1, from time 0 to 2.5 ms\n"},
+               {"{implicit: {end time: 40, time step: 20}}", "step 1, from time 0 to 20 ms\n"}};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m =
+        model_of("units: {length: m, force: kN, time: ms}\n"
+                 "materials: {m: {model: elastic, density: 2e6, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+                 "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: "
+                 "{particles: [12, 8]}}}}\n"
+                 "peridynamics: {space: plane strain}\n" LOADS "solve: %s\n",
+                 cases[k].solve);
+    step_surely(m, 1);
+    has(text_words(&m->solver.log), cases[k].words);
     breccia_model_destroy(&m);
   }
 }
@@ -215,6 +237,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solvers_say_what_they_will_do),
       cmocka_unit_test(implicit_steps_are_measured_by_explicit_ones),
+      cmocka_unit_test(times_of_logs_have_their_unit),
       cmocka_unit_test(steps_close_to_the_stable_one_are_warned_of),
       cmocka_unit_test(a_stage_that_does_not_come_to_rest_says_why),
       cmocka_unit_test(steps_foreseen_are_those_taken),

@@ -373,8 +373,9 @@ static void a_bar_that_flows_carries_its_strength_and_no_more(void **state)
             " {on: {face: x+, layers: 1}, traction: [12, 0, 0], history: {ramp to: 1}}]\n"
             "solve: {static: {increments: 12}}\n");
   const Particles *p = model->domain.particles;
-  step_must_fail(model, "no equilibrium beyond time 0.8|, with increments cut to |; the body may fail at this load: go "
-                        "on with a stage of 'explicit', or look at the loads and at the last pictures");
+  step_must_fail(model,
+                 "no equilibrium beyond time 0.8| s, with increments cut to | s: |; the body may fail at this load: go "
+                 "on with a stage of 'explicit', or look at the loads and at the last pictures");
   /* At the other end one layer alone takes the reaction, which spreads over a horizon, where the bar is confined and a little stronger. */
   assert_near(model->solver.clock.time, 10.55 / 12, 0.01);
   double pull = 0, carried = 0;
@@ -414,8 +415,9 @@ static void a_step_that_fails_before_anything_broke_does_not_count(void **state)
             " {on: {face: x+, layers: 1}, traction: [30, 0, 0], history: {ramp to: 1}}]\n"
             "solve: {static: {increments: 2, smallest increment: 0.6}}\n");
   const double next = number_of(model, "next increment");
-  step_must_fail(model, "no equilibrium beyond time 0,|, with increments cut to |; the body may fail at this load: go "
-                        "on with a stage of 'explicit', or look at the loads and at the last pictures");
+  step_must_fail(model,
+                 "no equilibrium beyond time 0 s,|, with increments cut to |; the body may fail at this load: go "
+                 "on with a stage of 'explicit', or look at the loads and at the last pictures");
   assert_int_equal(model->solver.clock.step, 0);
   assert_true(number_of(model, "next increment") == next && number_of(model, "cuts of increments") == 0);
   breccia_model_destroy(&model);

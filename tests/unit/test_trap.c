@@ -240,7 +240,7 @@ static void a_run_stops_at_the_first_trap_and_is_the_same_up_to_it(void **state)
     for (int64_t k = 0; k < breccia_model_places(plain); ++k) strain = fmax(strain, plain->domain.strain[0][k]);
     assert_true(strain > 0.02 && strain < 0.03); /* the very step */
     char words[128];
-    snprintf(words, sizeof words, "step %lld (time %g): floating-point trap: division by zero in ",
+    snprintf(words, sizeof words, "step %lld (time %g s): floating-point trap: division by zero in ",
              (long long)breccia_model_steps_done(plain), breccia_model_time(plain));
     if (!strstr(breccia_error_text(error), words)) fail_msg("%s", breccia_error_text(error));
     assert_true(ledger_is_doubtful(&trapped->solver.ledger)); /* so that the checkpoint before stays */

@@ -179,10 +179,45 @@ static void of_equal_blocks_the_first_tells_how_waves_run(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Of 0.5 x 0.3 m waves of bars run at 100 m/s: f = 100 Hz along, critical at 4 pi f = 1256.6 1/s. */
+static void damping_that_lets_a_body_creep_is_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *solve;
+    bool told;
+  } cases[] = {{"{explicit: {steps: 1, damping: 25000}}", false},
+               {"{explicit: {steps: 1, damping: 25200}}", true},
+               {"{explicit: {steps: 1, damping: {ratio: 19.9, at: 100}}}", false},
+               {"{explicit: {steps: 1, damping: {ratio: 20.1, at: 100}}}", true},
+               {"{implicit: {end time: 1, time step: 0.1, damping: 25200}}", true},
+               {"[{explicit: {steps: 1}}, {explicit: {steps: 1, damping: 25200}}]", true},
+               {"{static: {increments: 1}}", false}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {" ELASTIC(
+                     "1", "1e4") "}}\n"
+                                 "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.1, shape: {box: "
+                                 "{from: [0, 0], to: [0.5, 0.3]}}}}\nperidynamics: {space: plane strain}\n"
+                                 "loads: [{on: {face: x-}, displacement: [0, 0]}]\nsolve: %s\n",
+                 cases[k].solve);
+    const bool told = strstr(breccia_model_warnings(m), "times critical for the vibration along the body of about 100 "
+                                                        "Hz, so that the body creeps") != NULL;
+    if (told != cases[k].told) fail_msg("%s: %s", cases[k].solve, breccia_model_warnings(m));
+    breccia_model_destroy(&m);
+  }
+  char *words = refusal_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {" USUAL "}}\n"
+                           "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.1, shape: {box: "
+                           "{particles: [5, 3]}}}}\nsolve: {explicit: {steps: 1, damping: -3}}\n");
+  holds_words(words, "damping: |at least 0");
+  free(words);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say),
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
+                                     cmocka_unit_test(damping_that_lets_a_body_creep_is_told),
                                      cmocka_unit_test(of_equal_blocks_the_first_tells_how_waves_run)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
