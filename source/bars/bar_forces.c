@@ -28,7 +28,7 @@ static void spread(const Bars *b, double (*const pull)[3], double *const force[3
   }
 }
 
-/** Strains and directions of elements, strains without the difference of two lengths that are nearly the same. */
+/** Strains and directions of elements in the concrete, strains without the difference of two lengths that are nearly the same. */
 static void find_strains(Bars *b, int64_t from, int64_t to)
 {
   double *const *u = b->body->particles.displacement;
@@ -42,7 +42,7 @@ static void find_strains(Bars *b, int64_t from, int64_t to)
       square += now[k] * now[k];
     }
     const double long_now = sqrt(square);
-    b->strain[e] = more / (long_now + length) / length;
+    b->strain[e] = b->line_strain[e] = more / (long_now + length) / length;
     for (int k = 0; k < 3; ++k) b->along[e][k] = long_now > 0 ? now[k] / long_now : rest[k] / length;
   }
 }
@@ -50,9 +50,14 @@ static void find_strains(Bars *b, int64_t from, int64_t to)
 void bars_resist(void *forces)
 {
   Bars *b = forces;
+  TEAM_FOR (n, b->slips ? b->specs->count : 0) {
+    if (!bar_slips(b, (int)n)) continue;
+    find_strains(b, b->first[n], b->first[n + 1]);
+    bar_find_slips(b, (int)n);
+  }
   TEAM_FOR (c, b->chunk_count) {
     const int64_t from = b->chunk[c], to = b->chunk[c + 1];
-    find_strains(b, from, to);
+    if (!bar_slips(b, b->chunk_bar[c])) find_strains(b, from, to);
     if (b->young[from] > 0) {
       for (int64_t e = from; e < to; ++e) b->stress[e] = b->young[e] * b->strain[e];
     } else {
@@ -67,10 +72,17 @@ void bars_resist(void *forces)
 
 /* ---- changes ---- */
 
+double bar_stress_at(const Bars *b, int64_t e, double strain, double *slope)
+{
+  if (!(b->young[e] > 0)) return points_try(&b->points, e, strain, slope);
+  if (slope) *slope = b->young[e];
+  return b->young[e] * strain;
+}
+
 static double slope(const Bars *b, int64_t e)
 {
-  double tangent = b->young[e];
-  if (!(tangent > 0)) points_try(&b->points, e, b->strain[e], &tangent);
+  double tangent;
+  bar_stress_at(b, e, b->strain[e], &tangent);
   return tangent;
 }
 
@@ -79,21 +91,39 @@ void bars_linearise(void *forces)
   Bars *b = forces;
   for (int64_t e = 0; e < b->count; ++e) {
     b->tangent[e] = b->area[e] * slope(b, e) / b->length[e];
-    b->across[e] = b->area[e] * b->stress[e] / (b->length[e] * (1 + b->strain[e]));
+    b->across[e] = b->area[e] * b->stress[e] / (b->length[e] * (1 + b->line_strain[e]));
   }
+  for (int n = 0; n < b->specs->count; ++n)
+    if (bar_slips(b, n)) bar_factor_slips(b, n);
 }
 
 void bars_change(void *forces, double *const v[3], double *const change[3])
 {
   Bars *b = forces;
   TEAM_FOR (e, b->count) {
-    double d[3], longer = 0;
-    gather(b, e, v, d);
-    for (int k = 0; k < 3; ++k) longer += b->along[e][k] * d[k];
-    for (int k = 0; k < 3; ++k)
-      b->pull[e][k] = b->tangent[e] * longer * b->along[e][k] + b->across[e] * (d[k] - longer * b->along[e][k]);
+    gather(b, e, v, b->pull[e]);
+    b->longer[e] = 0;
+    for (int k = 0; k < 3; ++k) b->longer[e] += b->along[e][k] * b->pull[e][k];
+    for (int k = 0; k < 3; ++k) b->pull[e][k] = b->across[e] * (b->pull[e][k] - b->longer[e] * b->along[e][k]);
   }
+  TEAM_FOR (n, b->slips ? b->specs->count : 0)
+    if (bar_slips(b, (int)n)) bar_change_slips(b, (int)n);
+  TEAM_FOR (e, b->count)
+    for (int k = 0; k < 3; ++k) b->pull[e][k] += b->tangent[e] * b->longer[e] * b->along[e][k];
   spread(b, b->pull, change);
+}
+
+const char *bars_unassembled(const void *forces)
+{
+  return ((const Bars *)forces)->slips ? "the slips of a bar join all particles along it" : NULL;
+}
+
+const char *bars_stuck(const void *forces)
+{
+  const Bars *b = forces;
+  for (int n = 0; n < b->specs->count && b->slips; ++n)
+    if (bar_slips(b, n) && b->slips->stuck[n]) return bar_name(b, n);
+  return NULL;
 }
 
 int64_t bars_point_count(const void *forces)
@@ -140,13 +170,16 @@ void bars_accept(void *forces)
     b->stress_held[e] = b->stress[e];
   }
   if (b->has_points) points_commit(&b->points);
+  bar_accept_slips(b);
   bars_note(b);
 }
 
 double bars_energy(void *forces)
 {
   const Bars *b = forces;
-  return bars_stored(b, 0, b->count, true) + bars_stored(b, 0, b->count, false);
+  double bond = 0;
+  for (int n = 0; n < b->specs->count; ++n) bond += bar_bond_stored(b, n);
+  return bars_stored(b, 0, b->count, true) + bars_stored(b, 0, b->count, false) + bond;
 }
 
 double bars_dissipated(const void *forces)
@@ -154,5 +187,7 @@ double bars_dissipated(const void *forces)
   const Bars *b = forces;
   double work = 0;
   for (int64_t e = 0; e < b->count; ++e) work += b->worked[e];
-  return b->has_points ? work - bars_stored(b, 0, b->count, false) : 0;
+  if (b->has_points) work -= bars_stored(b, 0, b->count, false);
+  for (int n = 0; n < b->specs->count; ++n) work += bar_bond_dissipated(b, n);
+  return work;
 }

@@ -127,6 +127,12 @@ BarReport bar_report(const Bars *b, int bar)
   const double of_points = b->has_points ? bars_stored(b, from, to, false) : 0;
   r.stored = bars_stored(b, from, to, true) + of_points;
   r.dissipated -= of_points;
+  r.stored += bar_bond_stored(b, bar);
+  r.dissipated += bar_bond_dissipated(b, bar);
+  for (int64_t k = from + bar; k <= to + bar && bar_slips(b, bar); ++k) {
+    r.least_slip = fmin(r.least_slip, b->slips->slip_held[k]);
+    r.largest_slip = fmax(r.largest_slip, b->slips->slip_held[k]);
+  }
   r.yielded /= length;
   r.torn /= length;
   return r;

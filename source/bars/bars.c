@@ -1,3 +1,4 @@
+/* Bars as they are made for a body, and their table entry. */
 #include "bars/bars.h"
 
 #include "base/text.h"
@@ -5,205 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void check_bar(const DeckReader *reader, void *section)
-{
-  const BarSpec *bar = section;
-  const Node *node = section_node(section, "points");
-  if (bar->points.count < 2) {
-    node_error(reader->document, node, reader->error, "points: a bar needs two or more");
-    return;
-  }
-  for (int n = 1; n < bar->points.count; ++n)
-    if (!memcmp(bar->points.values + 3 * n, bar->points.values + 3 * (n - 1), 3 * sizeof(double)))
-      node_error(reader->document, node, reader->error, "points: points %d and %d are the same; leave one out", n,
-                 n + 1);
-}
-
-static const Field bar_fields[] = {
-    {.key = "points",
-     .kind = FIELD_POINTS,
-     .offset = offsetof(BarSpec, points),
-     .dimension = "length",
-     .meaning = "two or more, which straight lines join; of a stirrup the last is the first again"},
-    {.key = "diameter",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(BarSpec, diameter),
-     .dimension = "length",
-     .standard = "",
-     .range = "(0, inf)",
-     .meaning = "of one bar",
-     .group = 'a'},
-    {.key = "area",
-     .kind = FIELD_NUMBER,
-     .offset = offsetof(BarSpec, area),
-     .dimension = "area",
-     .standard = "",
-     .range = "(0, inf)",
-     .meaning = "cross-section of one bar, instead of 'diameter'",
-     .group = 'a'},
-    {.key = "number",
-     .kind = FIELD_COUNT,
-     .offset = offsetof(BarSpec, number),
-     .standard = "1",
-     .range = "[1, inf)",
-     .meaning = "of parallel bars on this line; in the plane of those in the whole thickness"},
-    {.key = "material",
-     .kind = FIELD_NAME,
-     .offset = offsetof(BarSpec, material),
-     .dimension = "material",
-     .meaning = "name of one of the materials: of a law of one strain, or 'elastic', of which Young's modulus counts"},
-    {.key = "snap",
-     .kind = FIELD_FLAG,
-     .offset = offsetof(BarSpec, snap),
-     .standard = "no",
-     .meaning = "ends of elements are moved to the nearest particles, and pull on those only"},
-};
-
-const Section bars_section = {
-    .name = "bar",
-    .about =
-        "Reinforcing bars in perfect bond, in any formulation: straight elements about a spacing long, whose ends "
-        "move as the particles around them and pull on them. The body goes on where bars are, nothing is taken out "
-        "of it, and bars have no mass of their own.",
-    .size = sizeof(BarSpec),
-    FIELDS(bar_fields),
-    .check = check_bar};
-
-/* ---- lines ---- */
-
-/** How far a point in a body can be from the nearest particle, in spacings, with some room. */
-static double farthest(const Body *body)
-{
-  return 0.55 * sqrt(body->dimensions);
-}
-
-static double distance(const Body *body, int32_t place, const double point[3])
-{
-  double square = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double d = body->particles.position[k][place] - point[k];
-    square += d * d;
-  }
-  return sqrt(square);
-}
-
-static double spacing_at(const Body *body, const double point[3])
-{
-  return body->lattices[body->particles.block[body_nearest(body, point) / SLICE]].spacing;
-}
-
-int64_t bar_nodes(const BarSpec *bar, const Body *body, double **out)
-{
-  int64_t count = 0, capacity = 0;
-  double *nodes = NULL;
-  for (int s = 1; s < bar->points.count; ++s) {
-    const double *a = bar->points.values + 3 * (s - 1), *b = a + 3;
-    const double length =
-        sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
-    const double middle[3] = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
-    const int64_t parts = (int64_t)fmax(1, round(length / spacing_at(body, middle)));
-    if (count + parts + 1 > capacity) {
-      capacity = 2 * (count + parts + 1);
-      double *grown = memory_grown(nodes, (size_t)capacity, 3 * sizeof *nodes);
-      if (!grown) {
-        free(nodes);
-        return -1;
-      }
-      nodes = grown;
-    }
-    for (int64_t n = s > 1; n <= parts; ++n, ++count)
-      for (int k = 0; k < 3; ++k)
-        nodes[3 * count + k] = n == parts ? b[k] : a[k] + (b[k] - a[k]) * (double)n / (double)parts;
-  }
-  *out = nodes;
-  return count;
-}
-
-/** Moves nodes to the nearest particles; what becomes of no length is left out. @return how many are left */
-static int64_t snap(const Body *body, double *nodes, int64_t count)
-{
-  int64_t kept = 0;
-  int32_t before = -1;
-  for (int64_t n = 0; n < count; ++n) {
-    const int32_t near = body_nearest(body, nodes + 3 * n);
-    if (near == before) continue;
-    before = near;
-    for (int k = 0; k < 3; ++k) nodes[3 * kept + k] = body->particles.position[k][near];
-    ++kept;
-  }
-  return kept;
-}
-
-static int check_line(const BarSpec *bar, const ForcesParts *parts)
-{
-  const Body *body = parts->body;
-  double *nodes;
-  const int64_t count = bar_nodes(bar, body, &nodes);
-  int status = count < 0 ? error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars") : BRECCIA_OK;
-  for (int64_t n = 0; n < count && !status; ++n) {
-    const double *x = nodes + 3 * n, away = distance(body, body_nearest(body, x), x) / spacing_at(body, x);
-    if (body->dimensions < 3 && fabs(x[2] - body->particles.position[2][body_nearest(body, x)]) > 0)
-      status = node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
-                          "points: bar '%s' has z = %g, and the body lies in the plane z = 0; give x and y only",
-                          bar->head.name, x[2]);
-    else if (away > farthest(body))
-      status =
-          node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
-                     "points: bar '%s' is outside the body at [%g, %g, %g], %.3g spacings from the nearest particle; "
-                     "keep its line within the body",
-                     bar->head.name, x[0], x[1], x[2], away);
-  }
-  if (!status && bar->snap && snap(body, nodes, count) < 2)
-    status = node_error(parts->reader->document, section_node(bar, "snap"), parts->reader->error,
-                        "snap: all of bar '%s' comes to one particle; leave 'snap' out", bar->head.name);
-  if (count >= 0) free(nodes);
-  return status;
-}
-
-static const Material *material_of(const BarSpec *bar, const ForcesParts *parts)
-{
-  for (int k = 0; k < parts->material_count; ++k)
-    if (!strcmp(parts->materials[k].name, bar->material)) return &parts->materials[k];
-  return NULL;
-}
-
-static bool uses(const void *spec, const char *material)
-{
-  const SectionList *list = spec;
-  for (int n = 0; n < list->count; ++n)
-    if (!strcmp(((const BarSpec *)list->items[n])->material, material)) return true;
-  return false;
-}
-
-static int check(const void *spec, const ForcesParts *parts)
-{
-  const SectionList *list = spec;
-  int status = BRECCIA_OK;
-  for (int n = 0; n < list->count; ++n) {
-    const BarSpec *bar = list->items[n];
-    const Material *m = material_of(bar, parts);
-    int bad = check_line(bar, parts);
-    if (m && m->remote)
-      bad =
-          node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
-                     "material: '%s' runs in a material server, which bars do not ask yet; take a law of this program",
-                     bar->material);
-    else if (m && m->law->components != 1 && !material_is_hookean(m))
-      bad = node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
-                       "material: '%s' is '%s', a law of strain in space; bars take laws of one strain, like "
-                       "'steel-bilinear', and 'elastic'",
-                       bar->material, m->law_name);
-    if (bad) status = bad;
-  }
-  return status;
-}
-
-/* ---- making ---- */
-
 static void destroy(void *forces)
 {
   Bars *b = forces;
   if (b->has_points) points_destroy(&b->points);
+  bar_slips_destroy(b);
   free(b->first);
   free(b->bar_area);
   free(b->node);
@@ -222,6 +29,8 @@ static void destroy(void *forces)
   free(b->touching);
   free(b->touching_weight);
   free(b->along);
+  free(b->line_strain);
+  free(b->longer);
   free(b->strain);
   free(b->stress);
   free(b->strain_held);
@@ -230,6 +39,7 @@ static void destroy(void *forces)
   free(b->tangent);
   free(b->across);
   free(b->chunk);
+  free(b->chunk_bar);
   free(b->worked);
   free(b->yielded);
   free(b->torn);
@@ -309,10 +119,12 @@ static bool make_room(Bars *b, int64_t count, Error *error)
   b->pull = memory_zeroed(n, sizeof *b->pull, "bars", error);
   b->begin = memory_zeroed(n + 1, sizeof *b->begin, "bars", error);
   b->chunk = memory_zeroed(n + 1, sizeof *b->chunk, "bars", error);
-  bool made =
-      b->node && b->node_begin && b->lowest && b->highest && b->rest && b->along && b->pull && b->begin && b->chunk;
-  double **const numbers[] = {&b->length,      &b->area,    &b->young,  &b->strain, &b->stress,  &b->strain_held,
-                              &b->stress_held, &b->tangent, &b->across, &b->worked, &b->yielded, &b->torn};
+  b->chunk_bar = memory_zeroed(n + 1, sizeof *b->chunk_bar, "bars", error);
+  bool made = b->node && b->node_begin && b->lowest && b->highest && b->rest && b->along && b->pull && b->begin &&
+              b->chunk && b->chunk_bar;
+  double **const numbers[] = {&b->length,      &b->area,        &b->young,       &b->strain, &b->stress,
+                              &b->strain_held, &b->stress_held, &b->tangent,     &b->across, &b->worked,
+                              &b->yielded,     &b->torn,        &b->line_strain, &b->longer};
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
     made &= (*numbers[k] = memory_zeroed(n, sizeof(double), "bars", error)) != NULL;
   for (size_t e = 0; e < n && made; ++e) b->yielded[e] = b->torn[e] = -1;
@@ -336,7 +148,7 @@ static int make_elements(Bars *b, const ForcesParts *parts, double *const *nodes
   bool whole = !cells_create(&cells, p, position, 3 * b->body->largest_spacing, error);
   for (int n = 0; n < b->specs->count && whole; ++n) {
     const BarSpec *bar = b->specs->items[n];
-    const Material *m = material_of(bar, parts);
+    const Material *m = bar_material(bar, parts);
     b->first[n] = b->count;
     b->bar_area[n] = area_of(bar);
     whole = add_elements(b, n, &cells, nodes[n], counts[n]);
@@ -344,7 +156,10 @@ static int make_elements(Bars *b, const ForcesParts *parts, double *const *nodes
     for (int64_t e = b->first[n]; e < b->count; ++e) {
       b->area[e] = b->bar_area[n];
       b->young[e] = m->law->components == 1 ? 0 : material_young(m);
-      if ((e - b->first[n]) % BATCH == 0) b->chunk[b->chunk_count++] = e;
+      if ((e - b->first[n]) % BATCH == 0) {
+        b->chunk_bar[b->chunk_count] = n;
+        b->chunk[b->chunk_count++] = e;
+      }
     }
     b->chunk[b->chunk_count] = b->count;
   }
@@ -393,7 +208,7 @@ static int make_points(Bars *b, const ForcesParts *parts, Error *error)
                      .may_give_up = true, /* a bar that is torn carries nothing */
                      .length = NAN};
   for (int n = 0; runs && n < b->specs->count; ++n) {
-    const Material *m = material_of(b->specs->items[n], parts);
+    const Material *m = bar_material(b->specs->items[n], parts);
     if (m->law->components != 1) continue;
     runs[spec.run_count++] = (PointsRun){(int)(m - parts->materials), b->first[n], b->first[n + 1] - b->first[n]};
   }
@@ -416,13 +231,14 @@ static int make(Bars *b, const ForcesParts *parts, Error *error)
     const BarSpec *bar = b->specs->items[n];
     counts[n] = bar_nodes(bar, b->body, &nodes[n]);
     if (counts[n] < 0) status = error_add(error, BRECCIA_FAILURE, "out of memory: bars");
-    if (!status && bar->snap) counts[n] = snap(b->body, nodes[n], counts[n]);
+    if (!status && bar->snap) counts[n] = bar_snap(b->body, nodes[n], counts[n]);
   }
   if (!status) status = make_elements(b, parts, nodes, counts, error);
   for (int n = 0; nodes && n < bars; ++n) free(nodes[n]);
   free(nodes);
   free(counts);
   if (!status) status = make_touching(b, error);
+  if (!status) status = bar_slips_create(b, parts, error);
   return status ? status : make_points(b, parts, error);
 }
 
@@ -440,10 +256,11 @@ static void *create(const void *spec, const ForcesParts *parts, Error *error)
 
 /* ---- the rest of the table ---- */
 
+/** Where there are none they are told the stage and the tangents wanted all the same, for bond. */
 static Points *points(void *forces)
 {
   Bars *b = forces;
-  return b->has_points ? &b->points : NULL;
+  return b->has_points || b->slips ? &b->points : NULL;
 }
 
 static void state(void *forces, StateList *list)
@@ -471,6 +288,7 @@ static void state(void *forces, StateList *list)
   row.values = b->highest;
   state_add(list, &row, "highest bar stress", NULL);
   if (b->has_points) points_state(&b->points, "bars", list);
+  if (b->slips) bar_slips_state(b, list);
 }
 
 static void describe(const void *forces, const Units *units, Text *text)
@@ -502,8 +320,8 @@ static void join_places(const void *forces, void (*one)(void *context, int32_t a
 }
 
 const ForcesType bars_forces = {.name = "bars",
-                                .uses = uses,
-                                .check = check,
+                                .uses = bars_use,
+                                .check = bars_check,
                                 .create = create,
                                 .destroy = destroy,
                                 .points = points,
@@ -512,6 +330,8 @@ const ForcesType bars_forces = {.name = "bars",
                                 .linearise = bars_linearise,
                                 .change = bars_change,
                                 .join = join_places,
+                                .unassembled = bars_unassembled,
+                                .stuck = bars_stuck,
                                 .point_count = bars_point_count,
                                 .point = bars_point,
                                 .energy = bars_energy,

@@ -6,6 +6,7 @@
 #ifndef BRECCIA_BARS_BARS_H
 #define BRECCIA_BARS_BARS_H
 
+#include "bars/bond_law.h"
 #include "family/cells.h"
 #include "forces/forces.h"
 
@@ -16,7 +17,24 @@ typedef struct BarSpec {
   int64_t number;
   const char *material;
   bool snap;
+  BondSpec *bond;    /* NULL: perfect */
+  NumberList bonded; /* from where to where along the bar */
+  TextList anchored; /* ends that do not slip */
 } BarSpec;
+
+/** What bars that slip have at their nodes: how far each is ahead of the concrete along its bar. Rows of nodes as in Bars. */
+typedef struct BarSlips {
+  BondLaw *law;                                         /* [bars]; those of bars that do not slip are not used */
+  bool *slips;                                          /* [bars] */
+  bool *fixed;                                          /* a node that is anchored */
+  double *surface;                                      /* of the bar that belongs to a node */
+  double *slip, *stress;                                /* as of the last evaluation */
+  double *slip_held, *stress_held, *forward, *backward; /* as committed; largest slips so far both ways */
+  double *worked;                                       /* work on bond so far */
+  double *pivot, *factor;                               /* of a linearised step: the equations of nodes as L D L^T */
+  double *residual, *change, *stiffness;                /* while equations are solved */
+  bool *stuck;                                          /* [bars] the last evaluation found no equilibrium */
+} BarSlips;
 
 /** Places whose displacements make that of a point, and by what weights. */
 typedef struct BarWeights {
@@ -46,14 +64,18 @@ typedef struct Bars {
   int64_t *touching;       /* elements that pull on a place, in ascending order */
   double *touching_weight;
   double (*along)[3];                /* unit vector of an element as of the last evaluation */
-  double *strain, *stress;           /* as of the last evaluation */
+  double *line_strain;               /* of the concrete along an element, as of the last evaluation */
+  double *strain, *stress;           /* the same of the bar: of one that slips its own */
   double *strain_held, *stress_held; /* as committed */
   double (*pull)[3];                 /* of a linearised step: changes of what elements pull with */
+  double *longer;                    /* of a linearised step: changes of the lengths of elements */
   double *tangent, *across;          /* of a linearised step: stiffness along an element and across it */
   Points points;                     /* a row an element, of those that are not Hooke's */
   bool has_points;
   int64_t *chunk; /* [chunk_count + 1] elements of one bar, at most BATCH, gone through together */
+  int *chunk_bar; /* [chunk_count] */
   int64_t chunk_count;
+  BarSlips *slips;          /* NULL: no bar does */
   double *worked;           /* work on elements that have points, since the beginning */
   double *yielded, *torn;   /* when an element did so first; below zero: it has not */
   double *lowest, *highest; /* [bars] stresses so far */
@@ -63,9 +85,10 @@ typedef struct Bars {
 typedef struct BarReport {
   double least_strain, largest_strain, least_stress, largest_stress; /* of its elements, as committed */
   double lowest_stress, highest_stress;                              /* so far */
-  double stored, dissipated;
-  double yielded, torn;              /* shares of its length */
-  int64_t first_yielded, first_torn; /* the elements that did so first; -1: none has */
+  double stored, dissipated;                                         /* with its bond */
+  double least_slip, largest_slip;                                   /* of its nodes, as committed; 0 in perfect bond */
+  double yielded, torn;                                              /* shares of its length */
+  int64_t first_yielded, first_torn;                                 /* the elements that did so first; -1: none has */
 } BarReport;
 
 extern const ForcesType bars_forces;
@@ -75,6 +98,14 @@ extern const ForcesType bars_forces;
  *  @return how many; -1: no memory */
 int64_t bar_nodes(const BarSpec *bar, const Body *body, double **nodes);
 
+/** Moves nodes to the nearest particles; what becomes of no length is left out. @return how many are left */
+int64_t bar_snap(const Body *body, double *nodes, int64_t count);
+/** The material of a bar, or NULL. */
+const Material *bar_material(const BarSpec *bar, const ForcesParts *parts);
+/* bar_section.c: as ForcesType says. */
+bool bars_use(const void *spec, const char *material);
+int bars_check(const void *spec, const ForcesParts *parts);
+
 /** Weights of the particles around a point, by moving least squares of first order. @return false: no memory */
 bool bar_weigh(BarWeights *weights, const Body *body, const Cells *cells, const double point[3]);
 /** Adds a place. @return false: no memory */
@@ -82,6 +113,28 @@ bool bar_weights_add(BarWeights *weights, int32_t place, double weight);
 
 /** Middle of an element, before it moves. */
 void bar_middle(const Bars *bars, int bar, int64_t element, double middle[3]);
+
+/* bar_slip.c: bars that slip. */
+
+/** Makes room, laws and surfaces for bars that slip, when elements are there. @return status */
+int bar_slips_create(Bars *bars, const ForcesParts *parts, Error *error);
+void bar_slips_destroy(Bars *bars);
+bool bar_slips(const Bars *bars, int bar);
+/** Slips of a bar, and with them strains of its elements, at the strains of the concrete along it. By one thread. */
+void bar_find_slips(Bars *bars, int bar);
+/** Keeps the equations of its nodes, when `tangent` of its elements is known. */
+void bar_factor_slips(Bars *bars, int bar);
+/** Adds to changes of the lengths of its elements in the concrete (`longer`) what its nodes slip with them. */
+void bar_change_slips(Bars *bars, int bar);
+void bar_accept_slips(Bars *bars);
+/** Rows of what bond remembers. */
+void bar_slips_state(Bars *bars, StateList *list);
+/** Energy that the bond of a bar would give back, and work that it has not kept. */
+double bar_bond_stored(const Bars *bars, int bar);
+double bar_bond_dissipated(const Bars *bars, int bar);
+/** Slip and bond stress in the middle of an element, as committed; 0 in perfect bond. */
+double bar_slip_in(const Bars *bars, int bar, int64_t element);
+double bar_bond_stress_in(const Bars *bars, int bar, int64_t element);
 
 /* bar_report.c */
 
@@ -99,6 +152,8 @@ int64_t bar_nearest(const Bars *bars, int bar, const double point[3]);
 double bars_stored(const Bars *bars, int64_t from, int64_t to, bool hookean);
 /** When a step has come out well: notes what has yielded or is torn since. */
 void bars_note(Bars *bars);
+/** Stress of an element at a strain, from its committed state. @param[out] slope  of it; NULL: not wanted */
+double bar_stress_at(const Bars *bars, int64_t element, double strain, double *slope);
 
 /* bar_forces.c: as ForcesType says. */
 void bars_resist(void *forces);
@@ -109,5 +164,7 @@ int bars_point(const void *forces, int64_t number, Operator *point, Error *error
 void bars_accept(void *forces);
 double bars_energy(void *forces);
 double bars_dissipated(const void *forces);
+const char *bars_unassembled(const void *forces);
+const char *bars_stuck(const void *forces);
 
 #endif

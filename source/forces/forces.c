@@ -213,6 +213,16 @@ const char *forces_failed(const Forces *f)
   return NULL;
 }
 
+const char *forces_stuck(const Forces *f, const char **kind)
+{
+  for (int k = 0; k < f->count; ++k) {
+    const char *stuck = f->type[k]->stuck ? f->type[k]->stuck(f->own[k]) : NULL;
+    if (stuck && kind) *kind = f->type[k]->name;
+    if (stuck) return stuck;
+  }
+  return NULL;
+}
+
 void forces_state(Forces *f, StateList *list)
 {
   for (int k = 0; k < f->count; ++k)

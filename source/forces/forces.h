@@ -79,6 +79,8 @@ typedef struct ForcesType {
   double (*eigenvalue)(const void *forces);
   /** Whether memory was out. */
   bool (*failed)(const void *forces);
+  /** After an evaluation: what part of them, by its name, has found no equilibrium of its own, so that its forces are not to be had; NULL: none. */
+  const char *(*stuck)(const void *forces);
   /** Rows of what they remember; bonds and displacements stand before them. */
   void (*state)(void *forces, StateList *list);
   /** Adds a line that ends: what they are, for people. */
@@ -139,6 +141,8 @@ double forces_eigenvalue(const Forces *forces);
 bool forces_strike(const Forces *forces);
 /** @return the name of a kind for which memory was out, or NULL */
 const char *forces_failed(const Forces *forces);
+/** @param[out] kind  of which kind; NULL: not wanted @return the name of a part without equilibrium, or NULL */
+const char *forces_stuck(const Forces *forces, const char **kind);
 void forces_state(Forces *forces, StateList *list);
 
 #endif

@@ -37,7 +37,7 @@ int explicit_retreat(Explicit *s, Error *error)
   const int32_t failed = (int32_t)d->failed_place, bad = failed >= 0 ? failed : first_bad_particle(p);
   const int left = family_count(&d->family, bad);
   char words[320];
-  const char *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
+  const char *kind, *cause = "the deformation has grown beyond all bounds; look at the loads and at the last pictures";
   if (dt > s->clock->stable)
     cause = "the time step is above the stable one";
   else if (failed >= 0)
@@ -50,6 +50,12 @@ int explicit_retreat(Explicit *s, Error *error)
   else if (*domain_server_problem(d))
     error_add(error, BRECCIA_FAILURE, "step %lld (time %g %s): %s", (long long)s->clock->step + 1, s->clock->time + dt,
               s->clock->time_unit, domain_server_problem(d));
+  else if (forces_stuck(&d->forces, &kind))
+    error_add(
+        error, BRECCIA_FAILURE,
+        "step %lld (time %g %s): no equilibrium of '%s' (%s) with its bond was found at the displacements of the body; "
+        "likely cause: it moves too far in a step; choose a smaller 'safety', or a slower load",
+        (long long)s->clock->step + 1, s->clock->time + dt, s->clock->time_unit, forces_stuck(&d->forces, NULL), kind);
   else
     error_add(
         error, BRECCIA_FAILURE,

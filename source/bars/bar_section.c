@@ -1,0 +1,237 @@
+/* Bars as decks have them: their keys, the nodes of their lines, and what a body does not take. */
+#include "bars/bars.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/** Mistakes in what only bars that slip have. */
+static void check_slip(const DeckReader *reader, const BarSpec *bar)
+{
+  for (int n = 0; n < bar->anchored.count; ++n)
+    if (strcmp(bar->anchored.items[n], "start") != 0 && strcmp(bar->anchored.items[n], "end") != 0)
+      node_error(reader->document, section_node(bar, "anchored"), reader->error,
+                 "anchored: '%s' is no end of a bar; take 'start' (its first point) or 'end' (its last)",
+                 bar->anchored.items[n]);
+  if (bar->bonded.count && (bar->bonded.count != 2 || !(bar->bonded.values[0] < bar->bonded.values[1])))
+    node_error(reader->document, section_node(bar, "bonded"), reader->error,
+               "bonded: two lengths along the bar, from its first point; the second is the larger one");
+  if (bar->bond) return;
+  if (bar->anchored.count)
+    node_error(reader->document, section_node(bar, "anchored"), reader->error,
+               "anchored: a bar in perfect bond slips nowhere; add 'bond', or leave this out");
+  if (bar->bonded.count)
+    node_error(reader->document, section_node(bar, "bonded"), reader->error,
+               "bonded: says where a bar with 'bond' has it; add 'bond', or leave this out");
+}
+
+static void check_bar(const DeckReader *reader, void *section)
+{
+  const BarSpec *bar = section;
+  const Node *node = section_node(section, "points");
+  if (bar->points.count < 2) {
+    node_error(reader->document, node, reader->error, "points: a bar needs two or more");
+    return;
+  }
+  for (int n = 1; n < bar->points.count; ++n)
+    if (!memcmp(bar->points.values + 3 * n, bar->points.values + 3 * (n - 1), 3 * sizeof(double)))
+      node_error(reader->document, node, reader->error, "points: points %d and %d are the same; leave one out", n,
+                 n + 1);
+  check_slip(reader, bar);
+}
+
+static const Field bar_fields[] = {
+    {.key = "points",
+     .kind = FIELD_POINTS,
+     .offset = offsetof(BarSpec, points),
+     .dimension = "length",
+     .meaning = "two or more, which straight lines join; of a stirrup the last is the first again"},
+    {.key = "diameter",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(BarSpec, diameter),
+     .dimension = "length",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "of one bar",
+     .group = 'a'},
+    {.key = "area",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(BarSpec, area),
+     .dimension = "area",
+     .standard = "",
+     .range = "(0, inf)",
+     .meaning = "cross-section of one bar, instead of 'diameter'",
+     .group = 'a'},
+    {.key = "number",
+     .kind = FIELD_COUNT,
+     .offset = offsetof(BarSpec, number),
+     .standard = "1",
+     .range = "[1, inf)",
+     .meaning = "of parallel bars on this line; in the plane of those in the whole thickness"},
+    {.key = "material",
+     .kind = FIELD_NAME,
+     .offset = offsetof(BarSpec, material),
+     .dimension = "material",
+     .meaning = "name of one of the materials: of a law of one strain, or 'elastic', of which Young's modulus counts"},
+    {.key = "snap",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(BarSpec, snap),
+     .standard = "no",
+     .meaning = "ends of elements are moved to the nearest particles, and pull on those only"},
+    {.key = "bond",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(BarSpec, bond),
+     .standard = "",
+     .section = &bond_section,
+     .meaning = "how stress on the surface of the bar grows with its slip; when absent it does not slip"},
+    {.key = "bonded",
+     .kind = FIELD_NUMBERS,
+     .offset = offsetof(BarSpec, bonded),
+     .dimension = "length",
+     .standard = "",
+     .meaning = "where a bar that slips has bond: [from, to] along it, from its first point; elsewhere it runs free, as in a "
+                "sleeve; all of it when absent"},
+    {.key = "anchored",
+     .kind = FIELD_TEXTS,
+     .offset = offsetof(BarSpec, anchored),
+     .standard = "",
+     .meaning = "ends of a bar that slips which do not, by a hook or a plate: of 'start' and 'end'"},
+};
+
+const Section bars_section = {
+    .name = "bar",
+    .about =
+        "Reinforcing bars, in perfect bond or with slip, in any formulation: straight elements about a spacing long, whose ends "
+        "move as the particles around them and pull on them. The body goes on where bars are, nothing is taken out "
+        "of it, and bars have no mass of their own.",
+    .size = sizeof(BarSpec),
+    FIELDS(bar_fields),
+    .check = check_bar};
+
+/* ---- lines ---- */
+
+/** How far a point in a body can be from the nearest particle, in spacings, with some room. */
+static double farthest(const Body *body)
+{
+  return 0.55 * sqrt(body->dimensions);
+}
+
+static double distance(const Body *body, int32_t place, const double point[3])
+{
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = body->particles.position[k][place] - point[k];
+    square += d * d;
+  }
+  return sqrt(square);
+}
+
+static double spacing_at(const Body *body, const double point[3])
+{
+  return body->lattices[body->particles.block[body_nearest(body, point) / SLICE]].spacing;
+}
+
+int64_t bar_nodes(const BarSpec *bar, const Body *body, double **out)
+{
+  int64_t count = 0, capacity = 0;
+  double *nodes = NULL;
+  for (int s = 1; s < bar->points.count; ++s) {
+    const double *a = bar->points.values + 3 * (s - 1), *b = a + 3;
+    const double length =
+        sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+    const double middle[3] = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+    const int64_t parts = (int64_t)fmax(1, round(length / spacing_at(body, middle)));
+    if (count + parts + 1 > capacity) {
+      capacity = 2 * (count + parts + 1);
+      double *grown = memory_grown(nodes, (size_t)capacity, 3 * sizeof *nodes);
+      if (!grown) {
+        free(nodes);
+        return -1;
+      }
+      nodes = grown;
+    }
+    for (int64_t n = s > 1; n <= parts; ++n, ++count)
+      for (int k = 0; k < 3; ++k)
+        nodes[3 * count + k] = n == parts ? b[k] : a[k] + (b[k] - a[k]) * (double)n / (double)parts;
+  }
+  *out = nodes;
+  return count;
+}
+
+int64_t bar_snap(const Body *body, double *nodes, int64_t count)
+{
+  int64_t kept = 0;
+  int32_t before = -1;
+  for (int64_t n = 0; n < count; ++n) {
+    const int32_t near = body_nearest(body, nodes + 3 * n);
+    if (near == before) continue;
+    before = near;
+    for (int k = 0; k < 3; ++k) nodes[3 * kept + k] = body->particles.position[k][near];
+    ++kept;
+  }
+  return kept;
+}
+
+static int check_line(const BarSpec *bar, const ForcesParts *parts)
+{
+  const Body *body = parts->body;
+  double *nodes;
+  const int64_t count = bar_nodes(bar, body, &nodes);
+  int status = count < 0 ? error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars") : BRECCIA_OK;
+  for (int64_t n = 0; n < count && !status; ++n) {
+    const double *x = nodes + 3 * n, away = distance(body, body_nearest(body, x), x) / spacing_at(body, x);
+    if (body->dimensions < 3 && fabs(x[2] - body->particles.position[2][body_nearest(body, x)]) > 0)
+      status = node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
+                          "points: bar '%s' has z = %g, and the body lies in the plane z = 0; give x and y only",
+                          bar->head.name, x[2]);
+    else if (away > farthest(body))
+      status =
+          node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
+                     "points: bar '%s' is outside the body at [%g, %g, %g], %.3g spacings from the nearest particle; "
+                     "keep its line within the body",
+                     bar->head.name, x[0], x[1], x[2], away);
+  }
+  if (!status && bar->snap && bar_snap(body, nodes, count) < 2)
+    status = node_error(parts->reader->document, section_node(bar, "snap"), parts->reader->error,
+                        "snap: all of bar '%s' comes to one particle; leave 'snap' out", bar->head.name);
+  if (count >= 0) free(nodes);
+  return status;
+}
+
+const Material *bar_material(const BarSpec *bar, const ForcesParts *parts)
+{
+  for (int k = 0; k < parts->material_count; ++k)
+    if (!strcmp(parts->materials[k].name, bar->material)) return &parts->materials[k];
+  return NULL;
+}
+
+bool bars_use(const void *spec, const char *material)
+{
+  const SectionList *list = spec;
+  for (int n = 0; n < list->count; ++n)
+    if (!strcmp(((const BarSpec *)list->items[n])->material, material)) return true;
+  return false;
+}
+
+int bars_check(const void *spec, const ForcesParts *parts)
+{
+  const SectionList *list = spec;
+  int status = BRECCIA_OK;
+  for (int n = 0; n < list->count; ++n) {
+    const BarSpec *bar = list->items[n];
+    const Material *m = bar_material(bar, parts);
+    int bad = check_line(bar, parts);
+    if (m && m->remote)
+      bad =
+          node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
+                     "material: '%s' runs in a material server, which bars do not ask yet; take a law of this program",
+                     bar->material);
+    else if (m && m->law->components != 1 && !material_is_hookean(m))
+      bad = node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
+                       "material: '%s' is '%s', a law of strain in space; bars take laws of one strain, like "
+                       "'steel-bilinear', and 'elastic'",
+                       bar->material, m->law_name);
+    if (bad) status = bad;
+  }
+  return status;
+}
