@@ -224,6 +224,7 @@ static const struct Case {
       .horizon = "peridynamics: {space: 3-D, formulation: ordinary}"},
      1,
      "families yield without hardening"},
+    {{.more = "pictures: [{field: pressur, component: xx}]"}, 6, "there is no field 'pressur'"},
     {{.more = "watch: {e: {bond between: [[0, 0, 0], [0.6, 0.5, 0.4]]}}"},
      6,
      "no bond joins the particles nearest to these points"},
