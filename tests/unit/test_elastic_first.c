@@ -93,8 +93,8 @@ static void the_law_goes_on_from_there_to_its_strength(void **state)
   breccia_model_destroy(&m);
 }
 
-/** Weight that the law cannot bear as the elastic body did is shared anew: no stress is beyond the strength, and the weight is still borne. */
-static void what_is_beyond_the_strength_is_shared_anew(void **state)
+/** Where the law cannot bear the stresses of the elastic stage they are redistributed: none is beyond the strength, and the weight is borne. */
+static void what_is_beyond_the_strength_is_redistributed(void **state)
 {
   (void)state;
   const double strength = 8; /* half of what the elastic column has at its foot */
@@ -125,7 +125,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stresses_of_the_elastic_stage_stay),
       cmocka_unit_test(the_law_goes_on_from_there_to_its_strength),
-      cmocka_unit_test(what_is_beyond_the_strength_is_shared_anew),
+      cmocka_unit_test(what_is_beyond_the_strength_is_redistributed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
