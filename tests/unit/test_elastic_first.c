@@ -1,7 +1,6 @@
 /* Ground that settles under its weight by an elastic stage and goes on by its own law, which begins at the stresses of that stage. */
 #include "support.h"
 
-
 #define SPACING 0.25
 #define HEIGHT 4.0
 #define WEIGHT (2 * 9.81)
@@ -78,10 +77,9 @@ static void the_law_goes_on_from_there_to_its_strength(void **state)
 {
   (void)state;
   const double pressure = 800;
-  breccia_model *m =
-      column(STRENGTH, "laws: elastic, ",
-             "  - {name: press, displacements: zero, static: {increments: 20, iterations: 30},\n"
-             "     loads: [{on: {face: y+}, pressure: 800, history: {ramp to: 1}}]}\n");
+  breccia_model *m = column(STRENGTH, "laws: elastic, ",
+                            "  - {name: press, displacements: zero, static: {increments: 20, iterations: 30},\n"
+                            "     loads: [{on: {face: y+}, pressure: 800, history: {ramp to: 1}}]}\n");
   step_surely(m, INT64_MAX);
   double s[6], mean = 0, square = 0;
   for (int k = 0; k < 6; ++k) s[k] = stress_at_middle(m, k);
