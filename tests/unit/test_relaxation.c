@@ -157,7 +157,7 @@ static void it_needs_few_steps_for_any_size(void **state)
     iterations[size] = strtoll(last + strlen("iteration "), NULL, 10);
     breccia_model_destroy(&model);
   }
-  if (iterations[0] > 150 || iterations[1] > 1.5 * (double)iterations[0])
+  if (iterations[0] > 150 || (double)iterations[1] > 1.5 * (double)iterations[0])
     fail_msg("%lld and %lld iterations", (long long)iterations[0], (long long)iterations[1]);
 }
 
