@@ -59,6 +59,12 @@ def table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
+def compared(rows):
+    """A table of rows (what, the thesis or test, a hand calculation, computed, accepted). 'accepted', a range like 2.2 to 3.0 or words, is what all
+    numbers or the words under 'computed' must keep to, or empty; scripts/examples.py marks what does not."""
+    return table(["", "published", "by hand", "computed", "accepted"], rows)
+
+
 def between(mark, text, page="README.md"):
     """Puts a text between the marks of a page."""
     old = open(page).read()

@@ -66,4 +66,23 @@ report 1 --strict . "$(dirname "$breccia")" build/examples same other
 report 0 --strict . "$(dirname "$breccia")" build/examples same
 report 1 . "$(dirname "$breccia")" build/examples another
 contains "an example that is not there" "$(cat "$work/out")" "there is no example 'another' with a report.sh; there are broken, other, outside, same"
+
+# Hand calculations of ACI 318 beside sums over the fibres of a section.
+python3 -B - "$source/examples" > "$work/out" 2>&1 << 'END' || fail "aci318: $(cat "$work/out")"
+import sys
+sys.path.insert(0, sys.argv[1])
+from aci318 import block_depth, cracking_moment, deep_shear_limit, nominal_moment, rupture, shear_strength
+width, height, depth, steel, fy, fc, strength, count = 20, 15, 13.5, 1.374, 60e3, 4e3, 251, 20000
+fibres = [(n + 0.5) * height / count for n in range(count)]  # places below the top
+area = width * height / count
+linear = sum(strength * (y - height / 2) / (height / 2) * area * (y - height / 2) for y in fibres)
+assert abs(linear / cracking_moment(strength, width, height) - 1) < 1e-6, linear
+pressed = [y for y in fibres if y < block_depth(steel, fy, fc, width)]
+assert abs(0.85 * fc * area * len(pressed) - steel * fy) < 0.85 * fc * area, len(pressed)
+moment = sum(0.85 * fc * area * (depth - y) for y in pressed)
+assert abs(moment / nominal_moment(steel, fy, fc, width, depth) - 1) < 2e-3, moment
+assert abs(shear_strength(fc, width, depth) - 34153) < 1 and abs(deep_shear_limit(fc, 12, 10) - 75895) < 1  # 34.15 and 75.9 kips
+assert abs(rupture(fc) - 474.3) < 0.1
+END
+checks=$((checks + 1))
 finish

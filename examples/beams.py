@@ -1,0 +1,70 @@
+"""What the examples with beams share (Tuniki 2012, chapter 5): failure loads that the program finds, runs under one load, pictures, times."""
+import csv
+import json
+import os
+import resource
+import shutil
+
+from reporting import breccia, work
+
+
+def last(path):
+    """The last row of a history, by the names of its columns without their units."""
+    with open(path) as file:
+        rows = list(csv.reader(file))
+    return {name.split(" (")[0]: float(value) for name, value in zip(rows[0], rows[-1])}
+
+
+class Beam:
+    """A deck with a variable `load`; unit: that of the load in the deck; settings: other variables."""
+
+    def __init__(self, deck, unit, **settings):
+        self.deck, self.unit = deck, unit
+        self.words = [word for key, value in settings.items() for word in ("--set", f"variables.{key}={value}")]
+        self.folder = os.path.join(work.name, "-".join([deck, *(f"{key}-{value}" for key, value in settings.items())]).replace(" ", "").replace("/", "-"))
+
+    def search(self, low, high, within=0.01):
+        """The largest load that it bears and the smallest under which it fails."""
+        folder = self.folder + "-search"
+        breccia("failure", self.deck, *self.words, "--load", f"variables.load={low} {self.unit}:{high} {self.unit}", "--within", str(within), "--output", folder)
+        with open(os.path.join(folder, "failure.csv")) as file:
+            trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
+        self.fails = min(load for load, outcome in trials if outcome != "bears it")
+        self.bears = max(load for load, outcome in trials if outcome == "bears it" and load < self.fails)
+        return self.bears, self.fails
+
+    def run(self, load, pictures=()):
+        """Runs it under a load and keeps pictures: (what the program calls one, its name here)."""
+        folder = os.path.join(self.folder, f"{load:g}")
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        breccia("run", self.deck, *self.words, "--set", f"variables.load={load} {self.unit}", "--quiet", "--output", folder)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return Result(folder, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, pictures)
+
+
+class Result:
+    """seconds: of a processor, with the period, the pictures and all files."""
+
+    def __init__(self, folder, seconds, pictures):
+        self.folder, self.seconds = folder, seconds
+        with open(os.path.join(folder, "summary.json")) as file:
+            self.summary = json.load(file)
+        os.makedirs("pictures", exist_ok=True)
+        for name, here in pictures:
+            shutil.copy(os.path.join(folder, "pictures", name + ".png"), f"pictures/{here}.png")
+
+    def verdict(self):
+        return self.summary["rest"]["quasi-static"]
+
+    def history(self, name):
+        return last(os.path.join(self.folder, name + ".csv"))
+
+    def bar(self):
+        return self.summary["bars"][0]
+
+    def bar_stresses(self):
+        """(place along the x axis [in], stress [ksi]) of all elements."""
+        with open(os.path.join(self.folder, "bars", "bars.csv")) as file:
+            rows = list(csv.reader(file))
+        names = [name.split(" (")[0] for name in rows[0]]
+        return [(float(row[names.index("x")]), float(row[names.index("stress")]) / 1e3) for row in rows[1:]]
