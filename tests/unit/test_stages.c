@@ -411,7 +411,7 @@ static void explicit_steps_behind_long_ones_are_done(void **state)
                  "watch: {end: {displacement of: {nearest: [1, 0, 0]}}}\n"
                  "solve: [{%s}, {explicit: {end time: 5e-3}}]\n",
              before[k]);
-    breccia_model *model = model_of(deck);
+    breccia_model *model = model_of("%s", deck);
     breccia_run run = {.size = sizeof(breccia_run), .folder = folder};
     Error *error = breccia_error_create();
     assert_false(solver_foresees_steps(&model->solver));
