@@ -89,8 +89,9 @@ static const Field bar_fields[] = {
      .offset = offsetof(BarSpec, bonded),
      .dimension = "length",
      .standard = "",
-     .meaning = "where a bar that slips has bond: [from, to] along it, from its first point; elsewhere it runs free, as in a "
-                "sleeve; all of it when absent"},
+     .meaning =
+         "where a bar that slips has bond: [from, to] along it, from its first point; elsewhere it runs free, as in a "
+         "sleeve; all of it when absent"},
     {.key = "anchored",
      .kind = FIELD_TEXTS,
      .offset = offsetof(BarSpec, anchored),
@@ -101,7 +102,8 @@ static const Field bar_fields[] = {
 const Section bars_section = {
     .name = "bar",
     .about =
-        "Reinforcing bars, in perfect bond or with slip, in any formulation: straight elements about a spacing long, whose ends "
+        "Reinforcing bars, in perfect bond or with slip, in any formulation: straight elements about a spacing long, "
+        "whose ends "
         "move as the particles around them and pull on them. The body goes on where bars are, nothing is taken out "
         "of it, and bars have no mass of their own.",
     .size = sizeof(BarSpec),

@@ -56,7 +56,8 @@ static double share_surface(Bars *b, int n)
   for (int64_t e = b->first[n]; e < b->first[n + 1]; along += b->length[e++])
     for (int half = 0; half < 2; ++half) {
       const double from = along + half * b->length[e] / 2, to = from + b->length[e] / 2;
-      const double least = all ? from : fmax(from, bar->bonded.values[0]), most = all ? to : fmin(to, bar->bonded.values[1]);
+      const double least = all ? from : fmax(from, bar->bonded.values[0]),
+                   most = all ? to : fmin(to, bar->bonded.values[1]);
       const double surface = number * pi * diameter * fmax(0, most - least);
       b->slips->surface[e + n + half] += surface;
       sum += surface;
@@ -78,9 +79,9 @@ int bar_slips_create(Bars *b, const ForcesParts *parts, Error *error)
   s->stuck = memory_zeroed((size_t)bars, sizeof *s->stuck, "bars", error);
   s->fixed = memory_zeroed(nodes, sizeof *s->fixed, "bars", error);
   bool made = s->law && s->slips && s->stuck && s->fixed;
-  double **const numbers[] = {&s->surface,  &s->slip,    &s->stress, &s->slip_held, &s->stress_held, &s->forward,
-                              &s->backward, &s->worked,  &s->pivot,  &s->factor,    &s->residual,    &s->change,
-                              &s->stiffness};
+  double **const numbers[] = {&s->surface,  &s->slip,     &s->stress,   &s->slip_held, &s->stress_held,
+                              &s->forward,  &s->backward, &s->worked,   &s->pivot,     &s->factor,
+                              &s->residual, &s->change,   &s->stiffness};
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
     made &= (*numbers[k] = memory_zeroed(nodes, sizeof(double), "bars", error)) != NULL;
   if (!made) return BRECCIA_FAILURE;
@@ -91,10 +92,11 @@ int bar_slips_create(Bars *b, const ForcesParts *parts, Error *error)
     s->fixed[b->first[n] + n] = is_anchored(bar, "start");
     s->fixed[b->first[n + 1] + n] = is_anchored(bar, "end");
     if (!(share_surface(b, n) > 0) && !bar->anchored.count)
-      return node_error(parts->reader->document, section_node(bar, "bonded"), parts->reader->error,
-                        "bonded: no part of bar '%s' lies between these lengths along it, and it is not anchored: nothing "
-                        "would hold it",
-                        bar->head.name);
+      return node_error(
+          parts->reader->document, section_node(bar, "bonded"), parts->reader->error,
+          "bonded: no part of bar '%s' lies between these lengths along it, and it is not anchored: nothing "
+          "would hold it",
+          bar->head.name);
   }
   return BRECCIA_OK;
 }

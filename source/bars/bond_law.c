@@ -46,8 +46,8 @@ static void check_bond(const DeckReader *reader, void *section)
               {"splitting stress", bond->splitting, false}};
   for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k)
     if (!isnan(keys[k].value) && keys[k].linear != is_linear(bond))
-      node_error(reader->document, section_node(section, keys[k].key), reader->error, "%s: is for law '%s'; leave it out",
-                 keys[k].key, keys[k].linear ? "linear" : "fib");
+      node_error(reader->document, section_node(section, keys[k].key), reader->error,
+                 "%s: is for law '%s'; leave it out", keys[k].key, keys[k].linear ? "linear" : "fib");
   if (is_linear(bond)) {
     if (isnan(bond->stiffness))
       node_error(reader->document, bond->head.node, reader->error,
@@ -58,9 +58,10 @@ static void check_bond(const DeckReader *reader, void *section)
     node_error(reader->document, bond->head.node, reader->error,
                "compressive strength: law 'fib' needs it, the mean strength f_cm of cylinders");
   if (isnan(bond->rib_spacing) && !splits_unconfined(bond))
-    node_error(reader->document, bond->head.node, reader->error,
-               "rib spacing: law 'fib' needs it, the clear distance between the ribs of the bar, over which bond falls to "
-               "friction");
+    node_error(
+        reader->document, bond->head.node, reader->error,
+        "rib spacing: law 'fib' needs it, the clear distance between the ribs of the bar, over which bond falls to "
+        "friction");
 }
 
 static const Field bond_fields[] = {
@@ -82,8 +83,9 @@ static const Field bond_fields[] = {
      .offset = offsetof(BondSpec, condition),
      .standard = "good",
      .choice = condition_word,
-     .meaning = "of 'fib': good bond (tau_max = 2.5 sqrt(f_cm / MPa) MPa, s1 = 1 mm, s2 = 2 mm), or all other conditions "
-                "(1.25 sqrt(f_cm / MPa) MPa, 1.8 mm, 3.6 mm)"},
+     .meaning =
+         "of 'fib': good bond (tau_max = 2.5 sqrt(f_cm / MPa) MPa, s1 = 1 mm, s2 = 2 mm), or all other conditions "
+         "(1.25 sqrt(f_cm / MPa) MPa, 1.8 mm, 3.6 mm)"},
     {.key = "compressive strength",
      .kind = FIELD_NUMBER,
      .offset = offsetof(BondSpec, strength),
@@ -97,16 +99,18 @@ static const Field bond_fields[] = {
      .dimension = "length",
      .standard = "",
      .range = "(0, inf)",
-     .meaning = "of 'fib': clear distance between ribs, the slip at which friction is left (half of it, where concrete splits "
-                "within stirrups)"},
+     .meaning =
+         "of 'fib': clear distance between ribs, the slip at which friction is left (half of it, where concrete splits "
+         "within stirrups)"},
     {.key = "splitting stress",
      .kind = FIELD_NUMBER,
      .offset = offsetof(BondSpec, splitting),
      .dimension = "stress",
      .standard = "",
      .range = "(0, inf)",
-     .meaning = "of 'fib': bond stress at which the concrete splits (tau_bu,split of equation 6.1-5); bars are pulled out "
-                "where it is absent or above tau_max"},
+     .meaning =
+         "of 'fib': bond stress at which the concrete splits (tau_bu,split of equation 6.1-5); bars are pulled out "
+         "where it is absent or above tau_max"},
     {.key = "confinement",
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, confinement),
@@ -122,12 +126,13 @@ static const Field bond_fields[] = {
      .meaning = "of 'fib': by which bond stress rises from nothing, and falls when the slip goes back"},
 };
 
-const Section bond_section = {.name = "bond",
-                              .about = "Bond of a bar that slips in the concrete: stress on its surface by the slip. Slip that "
-                                       "goes back unloads steeply, down to friction the other way.",
-                              .size = sizeof(BondSpec),
-                              FIELDS(bond_fields),
-                              .check = check_bond};
+const Section bond_section = {
+    .name = "bond",
+    .about = "Bond of a bar that slips in the concrete: stress on its surface by the slip. Slip that "
+             "goes back unloads steeply, down to friction the other way.",
+    .size = sizeof(BondSpec),
+    FIELDS(bond_fields),
+    .check = check_bond};
 
 /** A number of a unit of SI in the units of the deck. */
 static double of_si(double value, const Units *units, const char *dimension)

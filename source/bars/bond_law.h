@@ -17,7 +17,8 @@ extern const Section bond_section;
 typedef struct BondLaw {
   double stiffness; /* stress per slip where nothing slides */
   bool linear;      /* nothing ever slides */
-  double peak, plateau_from, plateau_to, friction_from; /* the largest stress; slips where it begins, ends, and where friction is left */
+  double peak, plateau_from, plateau_to,
+      friction_from; /* the largest stress; slips where it begins, ends, and where friction is left */
   double friction, exponent;
 } BondLaw;
 

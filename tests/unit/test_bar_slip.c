@@ -20,15 +20,15 @@ static Bars *bars_of(breccia_model *m)
 /** A prism along x whose particles are all moved as the deck says, with a bar of section 1e-4 along it. */
 static breccia_model *led(const char *steel, const char *keys, const char *field, const char *history, int increments)
 {
-  return model_of(
-      UNITS "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n  %s\n"
-            "body: {b: {material: soft, spacing: 0.05, shape: {box: {from: [0, 0, 0], to: [1.2, 0.2, 0.2]}}}}\n"
-            "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
-            "bars: {bar: {points: [[0, 0.1, 0.1], [1.2, 0.1, 0.1]], area: 1e-4, material: rod, %s}}\n"
-            "loads: [{on: {all: yes}, field: {displacement: ['%s', 0 m, 0 m]}, history: {table: [%s]}}]\n"
-            "watch: {bar: {bar: bar}, place: {bar: bar, at: [0.175, 0, 0]}}\n"
-            "solve: {static: {increments: %d, end time: 1}}\npictures: []\n",
-      steel, keys, field, history, increments);
+  return model_of(UNITS
+                  "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n  %s\n"
+                  "body: {b: {material: soft, spacing: 0.05, shape: {box: {from: [0, 0, 0], to: [1.2, 0.2, 0.2]}}}}\n"
+                  "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+                  "bars: {bar: {points: [[0, 0.1, 0.1], [1.2, 0.1, 0.1]], area: 1e-4, material: rod, %s}}\n"
+                  "loads: [{on: {all: yes}, field: {displacement: ['%s', 0 m, 0 m]}, history: {table: [%s]}}]\n"
+                  "watch: {bar: {bar: bar}, place: {bar: bar, at: [0.175, 0, 0]}}\n"
+                  "solve: {static: {increments: %d, end time: 1}}\npictures: []\n",
+                  steel, keys, field, history, increments);
 }
 
 static const double section = 1e-4, young = 2e8;
@@ -45,8 +45,7 @@ static void slip_along_a_free_bar_is_that_of_the_closed_form(void **state)
   breccia_model *m = led(ROD, "bond: {law: linear, stiffness: 1.4e7}", "1e-4*x", "[0, 0], [1, 1]", 1);
   step_surely(m, INT64_MAX);
   const Bars *b = bars_of(m);
-  const double l = 1.2, lambda = sqrt(1.4e7 * around() / (young * section)),
-               end = 1e-4 * tanh(lambda * l / 2) / lambda;
+  const double l = 1.2, lambda = sqrt(1.4e7 * around() / (young * section)), end = 1e-4 * tanh(lambda * l / 2) / lambda;
   for (int64_t k = 0; k <= b->count; ++k) {
     const double x = b->node[k][0] - l / 2;
     assert_near(b->slips->slip_held[k], -1e-4 * sinh(lambda * x) / (lambda * cosh(lambda * l / 2)), 0.01 * end);
@@ -64,8 +63,8 @@ static void slip_along_a_free_bar_is_that_of_the_closed_form(void **state)
 static void a_bar_is_pulled_out_as_by_the_closed_form(void **state)
 {
   (void)state;
-  breccia_model *m = led(ROD, "bond: {law: linear, stiffness: 1.4e7}, bonded: [0, 0.4], anchored: [end]", PULL,
-                         "[0, 0], [1, 1]", 1);
+  breccia_model *m =
+      led(ROD, "bond: {law: linear, stiffness: 1.4e7}, bonded: [0, 0.4], anchored: [end]", PULL, "[0, 0], [1, 1]", 1);
   step_surely(m, INT64_MAX);
   const Bars *b = bars_of(m);
   const Particles *p = m->domain.particles;
@@ -114,7 +113,8 @@ static void a_short_bar_bears_the_bond_stress_of_its_surface(void **state)
       if (c == 0) at = s < 1e-3 ? pow(s / 1e-3, 0.4) : s < 2e-3 ? 1 : s < 8e-3 ? 1 - 0.6 * (s - 2e-3) / 6e-3 : 0.4;
       if (c == 0 && s > 5e-5) assert_near(last, at * peak * surface, 5e-3 * peak * surface);
     }
-    assert_near(most, peak * surface, (c < 2 ? 2e-3 : 0.09) * peak * surface); /* a sharp peak is passed between increments */
+    assert_near(most, peak * surface,
+                (c < 2 ? 2e-3 : 0.09) * peak * surface); /* a sharp peak is passed between increments */
     assert_near(last, cases[c].friction * peak * surface, 1e-9 * peak * surface);
     assert_balanced(m, c < 2 ? 0.01 : 0.06);
     breccia_model_destroy(&m);
@@ -143,8 +143,8 @@ static void bond_follows_the_table_of_the_code(void **state)
                {FIB ", condition: other", 1.25 * root, 1.8e-3, 3.6e-3, 8e-3, 0.5 * root},
                {FIB ", splitting stress: 20 MPa", 2.5 * root, 1e-3, 2e-3, 8e-3, root},
                {FIB ", splitting stress: 6 MPa", 6e3, 1e-3 * pow(6e3 / (2.5 * root), 2.5), NAN, 1.2e-3, 0},
-               {FIB ", splitting stress: 6 MPa, confinement: stirrups", 6e3, 1e-3 * pow(6e3 / (2.5 * root), 2.5), NAN, 4e-3,
-                2.4e3}};
+               {FIB ", splitting stress: 6 MPa, confinement: stirrups", 6e3, 1e-3 * pow(6e3 / (2.5 * root), 2.5), NAN,
+                4e-3, 2.4e3}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
     const BondLaw law = law_of(cases[c].keys);
     const double to = isnan(cases[c].to) ? cases[c].from : cases[c].to;
@@ -413,8 +413,8 @@ static void works_are_in_the_books_where_bars_slip(void **state)
     step_surely(m, INT64_MAX);
     const Energy e = solver_energy(&m->solver);
     const BarReport r = bar_report(bars_of(m), 0);
-    print_message("kinetic %g stored %g dissipated %g imbalance %g; slips %g to %g\n", e.kinetic, e.stored, e.dissipated,
-                  e.imbalance, r.least_slip, r.largest_slip);
+    print_message("kinetic %g stored %g dissipated %g imbalance %g; slips %g to %g\n", e.kinetic, e.stored,
+                  e.dissipated, e.imbalance, r.least_slip, r.largest_slip);
     assert_true(e.dissipated > 0.01 * m->solver.ledger.kinetic_at_start);
     assert_balanced(m, s ? 2e-3 : 5e-4);
     breccia_model_destroy(&m);
@@ -458,7 +458,8 @@ static void threads_and_restarts_give_the_same_bits(void **state)
 static void every_way_to_solve_finds_the_same(void **state)
 {
   (void)state;
-  static const char *const solvers[] = {"static: {increments: 4}", "static: {increments: 4, equations: conjugate gradients}",
+  static const char *const solvers[] = {"static: {increments: 4}",
+                                        "static: {increments: 4, equations: conjugate gradients}",
                                         "static: {increments: 4, method: relaxation, residual: 1e-9}"};
   double first = 0;
   for (size_t s = 0; s < sizeof solvers / sizeof *solvers; ++s) {
@@ -466,7 +467,8 @@ static void every_way_to_solve_finds_the_same(void **state)
         UNITS "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e6}\n  " ROD "\n"
               "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}\n"
               "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
-              "bars: {bar: {points: [[0.02, 0.14, 0.11], [1.18, 0.14, 0.11]], area: 1e-4, material: rod, bond: {" FIB "}}}\n"
+              "bars: {bar: {points: [[0.02, 0.14, 0.11], [1.18, 0.14, 0.11]], area: 1e-4, material: rod, bond: {" FIB
+              "}}}\n"
               "loads:\n  - {on: {face: x-, layers: 2}, displacement: [0, 0, 0]}\n"
               "  - {on: {face: x+, layers: 2}, displacement: [0.004, 0, 0]}\nsolve: {%s}\npictures: []\n",
         solvers[s]);
