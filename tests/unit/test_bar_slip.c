@@ -424,11 +424,13 @@ static void works_are_in_the_books_where_bars_slip(void **state)
 static void threads_and_restarts_give_the_same_bits(void **state)
 {
   (void)state;
-  breccia_model *whole = struck("explicit: {end time: 0.05}", 1), *other = struck("explicit: {end time: 0.05}", 2);
-  step_surely(other, 150);
+  enum { HALF = 300, LAST = 500 };
+  breccia_model *whole = struck("explicit: {end time: 1}", 1), *other = struck("explicit: {end time: 1}", 2);
+  step_surely(other, HALF);
   StateCopy half = state_of(other);
-  step_surely(other, 150);
-  step_surely(whole, 300);
+  step_surely(other, LAST - HALF);
+  step_surely(whole, LAST);
+  assert_int_equal(whole->solver.clock.step, LAST);
   for (int round = 0; round < 2; ++round) {
     StateCopy a = state_of(whole), b = state_of(other);
     assert_int_equal(a.count, b.count);
@@ -441,13 +443,13 @@ static void threads_and_restarts_give_the_same_bits(void **state)
     state_copy_destroy(&b);
     if (round) break;
     breccia_model_destroy(&other);
-    other = struck("explicit: {end time: 0.05}", 1);
+    other = struck("explicit: {end time: 1}", 1);
     step_surely(other, 1);
     StateList list = {0};
     model_state(other, &list);
     assert_int_equal(state_return(&half, &list, NULL), 0);
     state_list_destroy(&list);
-    step_surely(other, 150);
+    step_surely(other, LAST - HALF);
   }
   state_copy_destroy(&half);
   breccia_model_destroy(&whole);
