@@ -219,3 +219,39 @@ StateCopy state_of(breccia_model *m)
   state_list_destroy(&list);
   return copy;
 }
+
+static void assert_same_state(breccia_model *one, breccia_model *other, const char *what)
+{
+  StateCopy a = state_of(one), b = state_of(other);
+  assert_int_equal(a.count, b.count);
+  for (int k = 0; k < a.count; ++k) {
+    assert_int_equal(a.rows[k].count, b.rows[k].count);
+    if (memcmp(a.values[k], b.values[k], state_size(&a.rows[k]) * (size_t)a.rows[k].count))
+      fail_msg("%s: %s differs", what, a.rows[k].name);
+  }
+  state_copy_destroy(&a);
+  state_copy_destroy(&b);
+}
+
+void assert_same_bits_by_threads_and_restart(breccia_model *(*make)(int threads), int64_t half, int64_t last)
+{
+  breccia_model *whole = make(1), *other = make(2);
+  step_surely(other, half);
+  StateCopy kept = state_of(other);
+  step_surely(other, last - half);
+  step_surely(whole, last);
+  assert_int_equal(whole->solver.clock.step, last);
+  assert_same_state(whole, other, "two threads");
+  breccia_model_destroy(&other);
+  other = make(1);
+  step_surely(other, 1);
+  StateList list = {0};
+  model_state(other, &list);
+  assert_int_equal(state_return(&kept, &list, NULL), 0);
+  state_list_destroy(&list);
+  step_surely(other, last - half);
+  assert_same_state(whole, other, "restart");
+  state_copy_destroy(&kept);
+  breccia_model_destroy(&whole);
+  breccia_model_destroy(&other);
+}

@@ -421,39 +421,15 @@ static void works_are_in_the_books_where_bars_slip(void **state)
   }
 }
 
+static breccia_model *struck_for_long(int threads)
+{
+  return struck("explicit: {end time: 1}", threads);
+}
+
 static void threads_and_restarts_give_the_same_bits(void **state)
 {
   (void)state;
-  enum { HALF = 300, LAST = 500 };
-  breccia_model *whole = struck("explicit: {end time: 1}", 1), *other = struck("explicit: {end time: 1}", 2);
-  step_surely(other, HALF);
-  StateCopy half = state_of(other);
-  step_surely(other, LAST - HALF);
-  step_surely(whole, LAST);
-  assert_int_equal(whole->solver.clock.step, LAST);
-  for (int round = 0; round < 2; ++round) {
-    StateCopy a = state_of(whole), b = state_of(other);
-    assert_int_equal(a.count, b.count);
-    for (int k = 0; k < a.count; ++k) {
-      assert_int_equal(a.rows[k].count, b.rows[k].count);
-      if (memcmp(a.values[k], b.values[k], state_size(&a.rows[k]) * (size_t)a.rows[k].count))
-        fail_msg("round %d: %s differs", round, a.rows[k].name);
-    }
-    state_copy_destroy(&a);
-    state_copy_destroy(&b);
-    if (round) break;
-    breccia_model_destroy(&other);
-    other = struck("explicit: {end time: 1}", 1);
-    step_surely(other, 1);
-    StateList list = {0};
-    model_state(other, &list);
-    assert_int_equal(state_return(&half, &list, NULL), 0);
-    state_list_destroy(&list);
-    step_surely(other, LAST - HALF);
-  }
-  state_copy_destroy(&half);
-  breccia_model_destroy(&whole);
-  breccia_model_destroy(&other);
+  assert_same_bits_by_threads_and_restart(struck_for_long, 300, 500);
 }
 
 /** A block on a bar that is pulled out of it: what must be found by solvers, by every one of them the same. */

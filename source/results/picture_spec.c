@@ -1,0 +1,130 @@
+/* What a deck says of a picture. */
+#include "results/picture.h"
+
+#include <stddef.h>
+
+static const char *log_axes(int k)
+{
+  static const char *const words[] = {"none", "x", "y", "xy"};
+  return k < 4 ? words[k] : NULL;
+}
+
+static const Field picture_fields[] = {
+    {.key = "field",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, field),
+     .standard = "",
+     .meaning = "field of the particles to colour by",
+     .group = 'A'},
+    {.key = "curve",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, curve),
+     .standard = "",
+     .meaning = "columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis; several "
+                "for the vertical one have commas between them; a minus before a name turns the sign",
+     .group = 'A'},
+    {.key = "energy",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(PictureSpec, energy),
+     .standard = "",
+     .meaning = "all energies over time; needs a watch with 'energy: yes'",
+     .group = 'A'},
+    {.key = "component",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, component),
+     .standard = "",
+     .meaning = "of a vector or tensor, like x or xy; when absent the length of a vector"},
+    {.key = "at",
+     .kind = FIELD_NUMBERS,
+     .offset = offsetof(PictureSpec, times),
+     .dimension = "time",
+     .standard = "",
+     .range = "[0, inf)",
+     .meaning = "times to draw; the end when absent"},
+    {.key = "deformed",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(PictureSpec, deformed),
+     .dimension = "1",
+     .standard = "1",
+     .meaning = "scale of the displacements drawn"},
+    {.key = "view",
+     .kind = FIELD_POINT,
+     .offset = offsetof(PictureSpec, view),
+     .dimension = "angle",
+     .standard = "",
+     .meaning =
+         "[azimuth, elevation] of the eye; when absent [-60, 25], from the side and a little above; flat bodies are "
+         "seen from the front"},
+    {.key = "inside",
+     .kind = FIELD_SECTION,
+     .offset = offsetof(PictureSpec, inside),
+     .standard = "",
+     .meaning =
+         "only particles that stand inside this shape before they move, so that a body in space is seen cut open; "
+         "all when absent",
+     .section = &shape_section},
+    {.key = "range",
+     .kind = FIELD_POINT,
+     .offset = offsetof(PictureSpec, range),
+     .dimension = "1",
+     .standard = "",
+     .meaning =
+         "[lowest, highest] value of the colour scale, or of the horizontal axis of a curve, in the deck's units"},
+    {.key = "same range",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(PictureSpec, same_range),
+     .standard = "yes",
+     .meaning = "where 'range' is absent: colours mean the same at all times of the run; no: each picture has a range "
+                "of its own"},
+    {.key = "broken bonds",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(PictureSpec, broken_bonds),
+     .standard = "no",
+     .meaning = "draw bonds that have broken"},
+    {.key = "title",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, title),
+     .standard = "",
+     .meaning = "over the picture; the deck's when absent"},
+    {.key = "x label",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, x_label),
+     .standard = "",
+     .meaning = "words at the horizontal axis; when absent what it shows and its unit"},
+    {.key = "y label",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, y_label),
+     .standard = "",
+     .meaning = "words at the vertical axis"},
+    {.key = "log axes",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(PictureSpec, log_axes),
+     .standard = "none",
+     .meaning = "which axes of a curve are logarithmic",
+     .choice = log_axes},
+    {.key = "name",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, name),
+     .standard = "",
+     .meaning = "of the file, without its ending; made from the field or the curve when absent"},
+};
+
+static void check_picture(const DeckReader *reader, void *section)
+{
+  const PictureSpec *p = section;
+  if (p->range[0] >= p->range[1])
+    node_error(reader->document, section_node(p, "range"), reader->error,
+               "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
+  if (p->inside && !p->field)
+    node_error(reader->document, section_node(p, "inside"), reader->error,
+               "inside: a curve has no particles; leave it out");
+  else if (p->inside && shape_counts_particles(p->inside))
+    node_error(reader->document, section_node(p, "inside"), reader->error,
+               "inside: a box is given by its corners here, 'from' and 'to': no lattice tells the size of 'particles'");
+}
+
+const Section picture_section = {.name = "picture",
+                                 .about = "A picture made at the end of a run, in the folder 'pictures'.",
+                                 .size = sizeof(PictureSpec),
+                                 FIELDS(picture_fields),
+                                 .check = check_picture};
