@@ -66,7 +66,8 @@ static const Field selection_fields[] = {
      .kind = FIELD_FLAG,
      .offset = offsetof(SelectionSpec, outside),
      .standard = "no",
-     .meaning = "yes: of the layers that supports put outside the body, instead of the body's own particles"},
+     .meaning = "yes: of the layers that supports put outside the body, instead of the body's own particles; "
+                "what lies outside a shape is had by 'except'"},
     {.key = "any of",
      .kind = FIELD_REFERENCES,
      .offset = offsetof(SelectionSpec, any_of),

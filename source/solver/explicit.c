@@ -151,27 +151,6 @@ static size_t bytes(Solver *run)
          face_work_bytes(&s->face_work) + solver_kept_bytes(run, false);
 }
 
-static void forget_before(Explicit *s)
-{
-  state_copy_destroy(&s->before);
-  domain_keep_stresses(s->domain, false, NULL);
-}
-
-/** Room for what a step tries; only while steps are taken, as pictures and the like need room afterwards. */
-static int keep_before(Solver *run, Error *error)
-{
-  Explicit *s = run->own;
-  if (s->before.rows) return BRECCIA_OK;
-  StateList list = {0};
-  domain_state(s->domain, &list);
-  solver_state(run, &list);
-  int status = state_keep(&s->before, &list, error);
-  state_list_destroy(&list);
-  if (!status) status = domain_keep_stresses(s->domain, true, error);
-  if (status) forget_before(s);
-  return status;
-}
-
 static void destroy(Solver *run)
 {
   Explicit *s = run->own;
@@ -181,7 +160,7 @@ static void destroy(Solver *run)
   free(s->motions);
   stiffness_damping_destroy(&s->viscous);
   face_work_destroy(&s->face_work);
-  forget_before(s);
+  solver_forget(s->domain, &s->before);
   free(s);
   run->own = NULL;
 }
@@ -450,7 +429,7 @@ static void take_step(void *context)
 static int advance(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
-  if (keep_before(run, error)) return BRECCIA_FAILURE;
+  if (solver_keep(run, &s->before, error)) return BRECCIA_FAILURE;
   state_note_others(&s->before); /* first, so that a step that fails gives back the plan and the stable step too */
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
@@ -472,7 +451,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   domain_commit_points(s->domain);
   forces_commit(&s->domain->forces);
   const int looked = look_for_rest(run, warning, error);
-  if (run->clock.ended) forget_before(s);
+  if (run->clock.ended) solver_forget(s->domain, &s->before);
   return looked;
 }
 

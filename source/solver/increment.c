@@ -36,8 +36,7 @@ int increment_create(Increment *i, Domain *domain, const Loading *loading, Error
 
 void increment_forget(Increment *i)
 {
-  state_copy_destroy(&i->before);
-  domain_keep_stresses(i->domain, false, NULL);
+  solver_forget(i->domain, &i->before);
 }
 
 void increment_destroy(Increment *i)
@@ -52,15 +51,7 @@ void increment_destroy(Increment *i)
 
 int increment_keep(Increment *i, Solver *run, Error *error)
 {
-  if (i->before.rows) return BRECCIA_OK;
-  StateList list = {0};
-  domain_state(i->domain, &list);
-  solver_state(run, &list);
-  int status = state_keep(&i->before, &list, error);
-  state_list_destroy(&list);
-  if (!status) status = domain_keep_stresses(i->domain, true, error);
-  if (status) increment_forget(i);
-  return status;
+  return solver_keep(run, &i->before, error);
 }
 
 size_t increment_bytes(const Increment *i, Solver *run)

@@ -286,6 +286,25 @@ size_t solver_kept_bytes(Solver *s, bool whole)
   return bytes;
 }
 
+int solver_keep(Solver *s, StateCopy *before, Error *error)
+{
+  if (before->rows) return BRECCIA_OK;
+  StateList list = {0};
+  domain_state(s->domain, &list);
+  solver_state(s, &list);
+  int status = state_keep(before, &list, error);
+  state_list_destroy(&list);
+  if (!status) status = domain_keep_stresses(s->domain, true, error);
+  if (status) solver_forget(s->domain, before);
+  return status;
+}
+
+void solver_forget(Domain *domain, StateCopy *before)
+{
+  state_copy_destroy(before);
+  domain_keep_stresses(domain, false, NULL);
+}
+
 int solver_measure(Solver *s, StepCost *cost, Error *error)
 {
   const double most = 1.2; /* what a step does beside the forces takes 2 to 40 % of them (docs/performance.md) */

@@ -178,6 +178,11 @@ Energy solver_energy(const Solver *solver);
 /** Bytes of a copy of what steps try, of the body and of what the solver keeps, by which one that fails is given back; or of the whole state. */
 size_t solver_kept_bytes(Solver *solver, bool whole);
 
+/** Makes room for that copy, if there is none yet; only while steps are taken, as pictures and the like need room afterwards. */
+int solver_keep(Solver *solver, StateCopy *before, Error *error);
+/** Frees the copy. */
+void solver_forget(Domain *domain, StateCopy *before);
+
 /** Rows of the clock, the ledger and what the solver keeps. */
 void solver_state(Solver *solver, StateList *list);
 
