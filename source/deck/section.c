@@ -64,6 +64,43 @@ static const Field *field_with(const Section *section, const char *given, const 
   return NULL;
 }
 
+/** Where in the deck a key stands. */
+typedef struct Elsewhere {
+  const char *key;
+  const Section *seen[128];
+  int count, found; /* sections seen, and those of them with the key */
+  const Field *under;
+} Elsewhere;
+
+/** @param[in] under  the field under which the section stands; NULL for the whole deck */
+static void find_elsewhere(Elsewhere *e, const Section *section, const Field *under)
+{
+  for (int k = 0; k < e->count; ++k)
+    if (e->seen[k] == section) return;
+  if (e->count == (int)(sizeof e->seen / sizeof *e->seen)) return;
+  e->seen[e->count++] = section;
+  for (int f = 0; f < section->field_count; ++f) {
+    const Field *field = &section->fields[f];
+    if (field->kind == FIELD_CHOSEN) {
+      for (int k = 0; field_choice(field)->word(k); ++k) find_elsewhere(e, field_choice(field)->chosen(k), under);
+      continue;
+    }
+    if (under && !strcmp(field->key, e->key)) {
+      ++e->found;
+      e->under = under;
+    }
+    if (field->section) find_elsewhere(e, field->section, field);
+  }
+}
+
+/** Says where a key stands, if only one section of the deck has it. */
+static void say_elsewhere(const DeckReader *reader, const char *key, Text *advice)
+{
+  Elsewhere e = {.key = key};
+  if (reader->whole) find_elsewhere(&e, reader->whole, NULL);
+  if (e.found == 1) text_add(advice, "'%s' stands under '%s'; ", key, e.under->key);
+}
+
 /** @param[in] chosen  a section whose keys may stand here too, or NULL */
 static void say_unknown_key(const DeckReader *reader, const Node *item, const Section *section, const Section *chosen,
                             const breccia_parameter *parameters, int parameter_count)
@@ -86,8 +123,10 @@ static void say_unknown_key(const DeckReader *reader, const Node *item, const Se
     text_add(&advice, "lists stand in square brackets, like [0, 0]");
   else if (above && !nearest)
     text_add(&advice, "'%s' stands under '%s', like %s: {%s: ...}", key, above->key, above->key, key);
-  else
+  else {
+    if (!nearest) say_elsewhere(reader, item->key, &advice);
     spelling_advice(&advice, item->key, names, count, "the keys here are");
+  }
   node_error(reader->document, &where, reader->error, "%s: unknown key '%s'; %s", section->name, item->key,
              text_words(&advice));
   text_free(&advice);

@@ -101,8 +101,9 @@ typedef struct DeckReader {
   const Units *units;
   const void *context; /* what Section.parameters needs */
   Error *error;
-  int *unknown; /* counts the messages that are only about unknown names; may be NULL */
-  Text *files;  /* gathers those that the deck names, a line each: checksum, bytes and name; may be NULL */
+  int *unknown;         /* counts the messages that are only about unknown names; may be NULL */
+  const Section *whole; /* of the deck, to say where a key stands that was given elsewhere; may be NULL */
+  Text *files;          /* gathers those that the deck names, a line each: checksum, bytes and name; may be NULL */
 } DeckReader;
 
 struct Section {

@@ -95,7 +95,11 @@ int element_deck_load(ElementDeck *deck, const char *path, Error *error)
   if (!node_get(root, "material") && (node_get(root, "body") || node_get(root, "solve")))
     return error_add(error, BRECCIA_USER_ERROR, "%s: is a deck; 'breccia run %s' runs it", path, path);
   const int before = error_count(error);
-  deck->reader = (DeckReader){.document = deck->document, .units = deck->units, .context = &deck->laws, .error = error};
+  deck->reader = (DeckReader){.document = deck->document,
+                              .units = deck->units,
+                              .context = &deck->laws,
+                              .whole = &element_deck_section,
+                              .error = error};
   deck->spec = section_read(&deck->reader, deck->document->root, &element_deck_section);
   if (!deck->spec || error_count(error) > before) return BRECCIA_USER_ERROR;
   if (deck->spec->material->processes < 0) deck->spec->material->processes = 1; /* there is one point */

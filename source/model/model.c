@@ -35,6 +35,7 @@ static int open_deck(breccia_model *model, const DeckText *words, Error *error)
 {
   const int status = deck_open(words, &deck_section, &model->laws, &model->document, &model->units, error);
   model->reader = (DeckReader){.document = model->document,
+                               .whole = &deck_section,
                                .units = model->units,
                                .context = &model->laws,
                                .error = error,

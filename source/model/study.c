@@ -170,7 +170,8 @@ static int read_deck(StudyCase *one, int setting_count, const char *text, const 
   const int before = error_count(error);
   int status = deck_open(&words, &deck_section, &laws, &document, &units, error);
   if (!status) {
-    const DeckReader reader = {.document = document, .units = units, .context = &laws, .error = error};
+    const DeckReader reader = {
+        .document = document, .units = units, .context = &laws, .whole = &deck_section, .error = error};
     deck_write(document, &deck);
     if (!section_read(&reader, document->root, &deck_section) || error_count(error) > before)
       status = BRECCIA_USER_ERROR;

@@ -68,7 +68,7 @@ static const Field explicit_fields[] = {
      .standard = "",
      .meaning =
          "loads grow over two periods of the slowest vibration that they set off, and are held for a third, with "
-         "critical damping; the run says whether the body is steady then or has failed",
+         "critical damping (all three can be set); the run says whether the body is steady then or has failed",
      .section = &quasi_static_section,
      .group = 'A'},
     DAMPING_FIELDS(ExplicitSpec, damping_given),
@@ -183,9 +183,9 @@ static void describe(const Solver *run, const char *time, Text *text)
     text_add(
         text,
         "quasi-static: a period of %.4g %s; loads without a history grow over %.4g and stay so up to %.4g, damping "
-        "%.4g 1/%s\n",
+        "%.4g 1/%s, which is %g of critical\n",
         s->period, time, s->spec->quasi_static->ramp * s->period, clock->stage_end - clock->stage_time,
-        explicit_mass_damping(s), time);
+        explicit_mass_damping(s), time, s->spec->quasi_static->ratio);
   text_add(text, "%lld steps of %.4g %s (%.2f of the stable %.4g)", (long long)(clock->stage_last - clock->stage_step),
            clock->time_step, time, clock->time_step / clock->stable, clock->stable);
   const double last = explicit_last_step(s);
@@ -200,7 +200,8 @@ static void describe_stage(const void *section, const char *time, Text *text)
   if (spec->steps >= 0)
     text_add(text, "%lld steps", (long long)spec->steps);
   else if (spec->quasi_static)
-    text_add(text, "quasi-static, %g periods", spec->quasi_static->ramp + spec->quasi_static->hold);
+    text_add(text, "quasi-static, %g periods, damping %g of critical",
+             spec->quasi_static->ramp + spec->quasi_static->hold, spec->quasi_static->ratio);
   else
     text_add(text, "%g %s", spec->end_time, time);
   damping_describe(&spec->damping, time, text);

@@ -46,8 +46,9 @@ static const Field quasi_static_fields[] = {
 };
 const Section quasi_static_section = {
     .name = "quasi-static",
-    .about = "Loads grow slowly beside the body's slowest vibration, which is damped critically, and are held until "
-             "the body is steady or has failed (Tuniki 2012). quasi-static: {} takes all defaults.",
+    .about = "Loads grow slowly beside the body's slowest vibration, which is damped (critically, unless "
+             "'damping ratio' says less), and are held until the body is steady or has failed (Tuniki 2012). "
+             "quasi-static: {} takes all defaults.",
     .size = sizeof(QuasiStaticSpec),
     FIELDS(quasi_static_fields)};
 

@@ -151,6 +151,7 @@ refuse 's/field: damage/field: damage, component: x/' 24:32 "component: damage h
 refuse 's/, history: {ramp to: 0.1 s}/, ramp: 0.1 s/' 18:50 "unknown key 'ramp'; 'ramp to' stands under 'history', like history: {ramp to: ...}"
 refuse 's/{face: x+, layers: 2}/{box: {from: [0, 0, 0], to: [1, 1, 1]}}/' 12:9 "'box' stands under 'inside', like inside: {box: ...}"
 refuse 's/{explicit: {steps: 10}}/{steps: 10}/' 19:9 "unknown key 'steps'; 'steps' stands under 'explicit'"
+refuse 's/{explicit: {steps: 10}}/{static: {quasi-static: {}}}/' 19:18 "static: unknown key 'quasi-static'; 'quasi-static' stands under 'explicit'; the keys here are"
 refuse 's/body force: \[1, 0, 0\]/fix: [x]/' 18:27 "did you mean 'displacement'? (0 holds a direction and 'free' leaves it"
 refuse 's/body force: \[1, 0, 0\]/displacement: [0, fixed]/' 18:45 "expected a number or 'free', found 'fixed'"
 refuse 's/^body:/geometry:/' 6:1 "unknown key 'geometry'; did you mean 'body'?"
