@@ -78,7 +78,7 @@ int loading_create(const LoadMaking *making, const SectionList *loads, const Loa
   size_t most = (size_t)loads->count;
   for (int s = 0; s < stage_count; ++s) most += (size_t)stages[s].loads->count;
   loading->loads = memory_zeroed(most, sizeof(Load), "loads", reader->error);
-  loading->constraints = memory_zeroed(3 * most, sizeof(Constraint), "loads", reader->error);
+  loading->constraints = memory_zeroed(MOTIONS * most, sizeof(Constraint), "loads", reader->error);
   if (!loading->loads || !loading->constraints) return BRECCIA_FAILURE;
   int status = add_loads(making, loads, 0);
   for (int s = 0; s < stage_count; ++s) {

@@ -18,7 +18,7 @@ static bool does_work(const Domain *d, const Loading *loading)
     if (!c->images) continue;
     if (c->load != load) held = 0;
     load = c->load;
-    held += c->share < 0;
+    held += c->share < 0 && !c->row;
     if (held > 1 || c->value != 0) return true;
   }
   for (int m = 0; m < body->margins.count; ++m) {

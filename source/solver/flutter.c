@@ -8,7 +8,7 @@ static bool holds_all(const Loading *loading, const Load *load)
   int held = 0;
   for (int n = 0; n < loading->constraint_count; ++n) {
     const Constraint *c = &loading->constraints[n];
-    held += c->load == load && c->images && c->share < 0;
+    held += c->load == load && c->images && !c->row && c->share < 0;
   }
   return held > 1 && load_acts(loading, load);
 }

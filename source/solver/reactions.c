@@ -127,7 +127,7 @@ static void add_turning(Summing *s, const Constraint *c, int64_t n)
   for (int k = 0; k < 3 && counts(s, c, i); ++k) {
     if (c->direction[k] == 0) continue;
     double moment = -p->volume[i] * (p->internal[c->row + k][i] + p->external[c->row + k][i]);
-    if (s->solver->type->inertia) moment += s->solver->type->inertia(s->solver, c, n);
+    if (s->solver->type->inertia && !c->images) moment += s->solver->type->inertia(s->solver, c, n);
     s->sum.moment[p->motions == 4 ? 2 : k] += moment;
   }
 }

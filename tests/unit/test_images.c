@@ -90,10 +90,78 @@ static void images_move_as_what_they_are_images_of(void **state)
   }
 }
 
+/* ---- lattices, whose particles turn ---- */
+
+#define LATTICE                                                                                                        \
+  "units: {length: m, force: kN, time: s}\nmaterials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson "   \
+  "ratio: 0.2}}\nperidynamics: {formulation: micropolar, space: %s}\n"                                                 \
+  "body: {b: {material: m, spacing: 0.1, %s shape: {box: {from: %s, to: %s}}}}\nloads: [%s]\nsolve: {%s}\n"
+
+/** A lattice symmetric about the plane in which a support holds it across is half of one that is loaded alike on both sides: a beam under a force across
+ *  it bends at the plane, where its particles do not turn about axes along it, and twisted about the normal they do. */
+static void half_a_lattice_moves_as_the_whole(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"static: {increments: 2, residual: 1e-10}",
+                                        "explicit: {end time: 0.02, time step: 2e-4}"};
+  static const struct {
+    const char *space, *lattice, *from[2], *to, *loads;
+  } bodies[] = {
+      {"plane stress",
+       "lattice: square, thickness: 0.3,",
+       {"[-1, 0]", "[0, 0]"},
+       "[1, 0.4]",
+       "{on: {face: x+, layers: 1}, force: [0, 1e-2]}%s%s"},
+      {"3-D",
+       "lattice: cubic,",
+       {"[-0.8, 0, 0]", "[0, 0, 0]"},
+       "[0.8, 0.3, 0.3]",
+       "{on: {face: x+, layers: 1}, force: [0, 1e-2, 3e-3]}%s%s"},
+  };
+  for (int b = 0; b < 2; ++b)
+    for (int s = 0; s < 2; ++s) {
+      breccia_model *m[2];
+      for (int half = 0; half < 2; ++half) {
+        char loads[600];
+        snprintf(loads, sizeof loads, bodies[b].loads,
+                 half ? ", {on: {face: x-}, support: {held: across}}"
+                 : b  ? ", {on: {face: x-, layers: 1}, force: [0, 1e-2, 3e-3]}"
+                      : ", {on: {face: x-, layers: 1}, force: [0, 1e-2]}",
+                 b ? ", {on: {inside: {box: {from: [-0.1, -1, -1], to: [0.1, 0.1, 1]}}}, displacement: [0, 0, 0]}"
+                   : ", {on: {inside: {box: {from: [-0.1, -1], to: [0.1, 0.1]}}}, displacement: [0, 0]}");
+        m[half] = model_of(LATTICE, bodies[b].space, bodies[b].lattice, bodies[b].from[half], bodies[b].to, loads,
+                           solvers[s]);
+        while (!solver_is_done(&m[half]->solver)) step_surely(m[half], 1);
+        assert_balanced(m[half], 1e-4);
+      }
+      const Particles *whole = m[0]->domain.particles, *p = m[1]->domain.particles;
+      double most = 0, turned = 0;
+      int64_t images = 0;
+      for (int64_t n = 0; n < p->count; ++n) {
+        const int32_t i = p->place_of[n];
+        double at[3], here[3], there[3];
+        for (int k = 0; k < 3; ++k) at[k] = p->position[k][i];
+        images += body_outside(&m[1]->domain.body, n);
+        const int32_t j = body_nearest(&m[0]->domain.body, at);
+        particles_rotation(p, i, here);
+        particles_rotation(whole, j, there);
+        for (int k = 0; k < 3; ++k) {
+          assert_near(p->displacement[k][i], whole->displacement[k][j], 1e-9);
+          assert_near(here[k], there[k], 1e-8);
+          most = fmax(most, fabs(p->displacement[k][i]));
+          turned = fmax(turned, fabs(here[k]));
+        }
+      }
+      assert_true(images > 5 && most > 1e-5 && turned > 1e-5);
+      for (int half = 0; half < 2; ++half) breccia_model_destroy(&m[half]);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(images_move_as_what_they_are_images_of),
+      cmocka_unit_test(half_a_lattice_moves_as_the_whole),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,10 +101,10 @@ static void push(breccia_model *m)
 static void one_period_moves_as_two(void **state)
 {
   (void)state;
-  static const char *const formulations[] = {"correspondence", "ordinary", "bond-based", "hybrid"};
+  static const char *const formulations[] = {"correspondence", "ordinary", "bond-based", "hybrid", "micropolar"};
   static const char *const solvers[] = {"explicit: {end time: 0.04, time step: 5e-4}",
                                         "implicit: {end time: 0.04, time step: 2e-3, local error: 1, residual: 1e-11}"};
-  for (int f = 0; f < 4; ++f)
+  for (int f = 0; f < 5; ++f)
     for (int s = 0; s < (f ? 1 : 2); ++s) {
       breccia_model *pieces[2];
       double momentum[2] = {0};

@@ -41,35 +41,42 @@ void load_constrain(Load *load, const LoadMaking *making, const double d[3], dou
   constrain(load, making, 0, d, value, order);
 }
 
+void load_constrain_rotation(Load *load, const LoadMaking *making, int k, double value, int order)
+{
+  const double axis[3] = {k == 0, k == 1, k == 2};
+  constrain(load, making, ROTATION, axis, value, order);
+}
+
+int load_turning(const Particles *p, int axis[3])
+{
+  int count = 0;
+  for (int k = 0; k < 3; ++k)
+    if (p->motions == 6 || (p->motions == 4 && k == 2)) axis[count++] = k;
+  return count;
+}
+
 int load_rotations(const Load *load, const LoadMaking *making, int axis[3])
 {
   const Particles *p = &making->body->particles;
-  int count = 0;
   if (p->motions == ROTATION)
     return node_error(making->reader->document, load->node, making->reader->error,
                       "%s: the particles of this body have no rotations; those of `formulation: micropolar` do",
                       load->node->key),
            -1;
-  for (int k = 0; k < 3; ++k) {
-    if (p->motions == 6 || k == 2)
-      axis[count++] = k;
-    else if (!isnan(load->value->point[k]) && load->value->point[k] != 0)
+  for (int k = 0; k < 2 && p->motions == 4; ++k)
+    if (!isnan(load->value->point[k]) && load->value->point[k] != 0)
       return node_error(making->reader->document, load->node, making->reader->error,
                         "%s: the body is plane and turns about z only: [0, 0, value]", load->node->key),
              -1;
-  }
-  return count;
+  return load_turning(p, axis);
 }
 
 int load_constrain_rotations(Load *load, const LoadMaking *making, int order)
 {
   int of[3];
   const int count = load_rotations(load, making, of);
-  for (int k = 0; k < count; ++k) {
-    double axis[3] = {0};
-    axis[k] = 1;
-    if (!isnan(load->value->point[of[k]])) constrain(load, making, ROTATION, axis, load->value->point[of[k]], order);
-  }
+  for (int k = 0; k < count; ++k)
+    if (!isnan(load->value->point[of[k]])) load_constrain_rotation(load, making, k, load->value->point[of[k]], order);
   return count < 0 ? BRECCIA_USER_ERROR : BRECCIA_OK;
 }
 

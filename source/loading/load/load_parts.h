@@ -14,7 +14,11 @@ void load_push(const Load *load, Particles *particles, const double uniform[3], 
 
 /** Prescribes a motion along a direction of any length. @param[in] order  0 displacement, 1 velocity, 2 acceleration */
 void load_constrain(Load *load, const LoadMaking *making, const double direction[3], double value, int order);
-/** Axes about which the particles of a body turn. @return how many; -1 after a message where there are none, or where its vector has a part about another */
+/** Prescribes a rotation about an axis that `load_rotations` found: the k-th of them. */
+void load_constrain_rotation(Load *load, const LoadMaking *making, int k, double value, int order);
+/** Axes about which particles turn. @return how many */
+int load_turning(const Particles *particles, int axis[3]);
+/** The same, of those of the body of a load. @return how many; -1 after a message where there are none, or where its vector has a part about another */
 int load_rotations(const Load *load, const LoadMaking *making, int axis[3]);
 /** Prescribes the components of its vector that are not free as rotations. */
 int load_constrain_rotations(Load *load, const LoadMaking *making, int order);

@@ -29,10 +29,9 @@ static const Field support_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(SupportSpec, held),
      .meaning =
-         "all: the face does not move; across: it slides along itself without friction, as in a plane of symmetry; "
-         "periodic: it is not held, but the body goes on beyond it and the face opposite as it is, again and again: "
-         "what "
-         "leaves by one comes in by the other, of which nothing is said",
+         "all: the face does not move; across: it slides along itself without friction, as in a plane of "
+         "symmetry; periodic: it is not held, but the body goes on beyond it and the face opposite as it is, again "
+         "and again: what leaves by one comes in by the other, of which nothing is said",
      .choice = held_word},
     {.key = "displacement",
      .kind = FIELD_POINT,
@@ -174,6 +173,29 @@ static int list_images(Load *load, const LoadMaking *making)
   return BRECCIA_OK;
 }
 
+/** Lets the images follow in the motion that was prescribed last. */
+static int follow_images(Load *load, const LoadMaking *making, double share)
+{
+  Constraint *constraint = &making->loading->constraints[making->loading->constraint_count - 1];
+  constraint->images = ((Support *)load->own)->images;
+  constraint->share = share;
+  constraint->moved = memory_zeroed((size_t)load->selection.count, sizeof(double), "supports", making->reader->error);
+  return constraint->moved ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
+/** A mirror turns rotations about axes along it the other way, and not those about the axis across. */
+static int turn_images(Load *load, const LoadMaking *making, int axis)
+{
+  const bool periodic = is_periodic(load->value->section);
+  int of[3];
+  const int count = load_turning(&making->body->particles, of);
+  for (int k = 0; k < count; ++k) {
+    load_constrain_rotation(load, making, k, 0, 0);
+    if (follow_images(load, making, periodic || of[k] == axis ? 1 : -1)) return BRECCIA_FAILURE;
+  }
+  return BRECCIA_OK;
+}
+
 static int create(Load *load, const LoadMaking *making)
 {
   const SupportSpec *spec = load->value->section;
@@ -183,11 +205,12 @@ static int create(Load *load, const LoadMaking *making)
   while (margin < body->margins.count && body->margins.items[margin].owner != load->spec) ++margin;
   if (margin == body->margins.count) return BRECCIA_USER_ERROR; /* said when the margins were found */
   const int axis = body->margins.items[margin].axis;
-  if (body->particles.motions > ROTATION)
+  if (body->particles.motions > ROTATION && !strcmp(spec->held, "all"))
     return node_error(
         making->reader->document, load->node, error,
-        "support: its images do not mirror rotations, which particles of this body have; hold the face by "
-        "'displacement' and 'rotation'");
+        "support: held in all directions its images are no mirror images, and what they do to particles that have "
+        "rotations, as in this body, would be missing in the energies; hold layers by 'displacement' and 'rotation', "
+        "or take 'across' or 'periodic'");
   if (!(load->own = memory_zeroed(1, sizeof(Support), "supports", error))) return BRECCIA_FAILURE;
   const int status = list_images(load, making);
   if (status) return status;
@@ -210,13 +233,9 @@ static int create(Load *load, const LoadMaking *making)
                                    "%c must be 0",
                         "xyz"[k]);
     load_constrain(load, making, direction, 2 * moved, 0);
-    Constraint *constraint = &making->loading->constraints[making->loading->constraint_count - 1];
-    constraint->images = ((Support *)load->own)->images;
-    constraint->share = held ? -1 : 1;
-    constraint->moved = memory_zeroed((size_t)load->selection.count, sizeof(double), "supports", error);
-    if (!constraint->moved) return BRECCIA_FAILURE;
+    if (follow_images(load, making, held ? -1 : 1)) return BRECCIA_FAILURE;
   }
-  return BRECCIA_OK;
+  return body->particles.motions > ROTATION ? turn_images(load, making, axis) : BRECCIA_OK;
 }
 
 static void destroy(Load *load)
