@@ -385,8 +385,8 @@ typedef struct breccia_concrete { /* numbers with units, in words; NULL: by rule
   int unverified; /* 1: no plates are run, and with a fracture energy the tensile stretch is that of an even stress */
 } breccia_concrete;
 /** Parameters of 'link-damage' for a lattice of links that is to be such a concrete, and what plates of it bear.
- *  @return a block of a deck with comments, for breccia_text_free; NULL after a message */
-BRECCIA_API char *breccia_concrete_calibrate(const breccia_concrete *concrete, breccia_error *error);
+ *  @param[out] words  a block of a deck with comments, for breccia_text_free; NULL after a message */
+BRECCIA_API int breccia_concrete_calibrate(const breccia_concrete *concrete, char **words, breccia_error *error);
 
 /* ---- studies: one deck with several values of some of its keys ---- */
 

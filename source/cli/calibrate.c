@@ -67,9 +67,9 @@ static int calibrate_concrete(const char **values)
                                  .density = values[DENSITY],
                                  .spacing = values[SPACING],
                                  .unverified = values[UNVERIFIED] != NULL};
-  char *words = breccia_concrete_calibrate(&wish, error);
-  if (words) printf("%s", words);
-  const int status = words ? BRECCIA_OK : BRECCIA_USER_ERROR;
+  char *words;
+  int status = breccia_concrete_calibrate(&wish, &words, error);
+  if (words && fputs(words, stdout) < 0) status = BRECCIA_FAILURE;
   breccia_text_free(words);
   return fail(error, status);
 }

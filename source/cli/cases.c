@@ -54,9 +54,15 @@ static int run_case(const CaseWork *work, int k, const breccia_case *one, bool r
   const breccia_options wishes = {
       .size = sizeof wishes, .threads = work->threads, .settings = one->settings, .setting_count = one->setting_count};
   breccia_model *model;
+  const char *problem = error ? NULL : "out of memory: messages";
   int status = breccia_model_load_file(work->deck, &wishes, &model, error);
   if (!status) {
-    status = show(breccia_model_overview(model), log);
+    const char *overview = breccia_model_overview(model);
+    if (!overview) {
+      problem = "out of memory: words about the model";
+      status = BRECCIA_FAILURE;
+    }
+    fprintf(log, "%s\n", overview ? overview : "");
     fflush(log);
     const breccia_run wish = {
         .size = sizeof wish, .folder = one->folder, .restart = restart, .interrupted = &interrupted};
@@ -64,12 +70,16 @@ static int run_case(const CaseWork *work, int k, const breccia_case *one, bool r
     fprintf(log, "%s\n%s\n", breccia_model_warnings(model), breccia_model_outcome(model));
     breccia_model_destroy(&model);
   }
-  const char *words = status && !error ? "out of memory: messages" : breccia_error_text(error);
+  const char *words = status && problem ? problem : breccia_error_text(error);
   fprintf(log, "%s\n", words);
   const bool said = status && status != BRECCIA_INTERRUPTED && !(work->may_fail && cases_body_failed(work->study, k));
   if (said) fprintf(stderr, "%s: %s\n", one->name, words);
   breccia_error_destroy(&error);
-  fclose(log);
+  const bool bad = ferror(log) != 0;
+  if (fclose(log) || bad) {
+    fprintf(stderr, "%s: cannot be written%s%s\n", path, bad ? "" : ": ", bad ? "" : strerror(errno));
+    if (!status) status = BRECCIA_FAILURE;
+  }
   return status == BRECCIA_INTERRUPTED ? 130 : status;
 }
 

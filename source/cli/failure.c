@@ -248,16 +248,13 @@ static int find_failure(const char *deck, const char **values, const DeckSetting
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &s.jobs)) return BRECCIA_USER_ERROR;
   if (s.jobs > 2) s.jobs = 2; /* a round has two loads */
   if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &s.threads)) return BRECCIA_USER_ERROR;
-  char *beside = values[OUTPUT] ? NULL : result_folder(deck), *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT])
-                                                                        : beside       ? words_of("%s-failure", beside)
-                                                                                       : NULL;
+  char *folder = output_folder(values[OUTPUT], deck, "-failure");
   breccia_error *error = breccia_error_create();
   s.folder = folder;
   cases_catch_signals();
   int status = folder ? cases_make_folder(folder) : BRECCIA_FAILURE;
   if (!status) status = search(&s, from, to, error);
   free(folder);
-  free(beside);
   return fail(error, status);
 }
 

@@ -64,11 +64,12 @@ char *words_of(const char *format, ...)
   return words;
 }
 
-char *result_folder(const char *deck)
+char *output_folder(const char *asked, const char *file, const char *ending)
 {
-  const char *slash = strrchr(deck, '/'), *dot = strrchr(deck, '.');
-  if (!dot || dot == deck || (slash && dot <= slash + 1)) return words_of("%s.results", deck);
-  return words_of("%.*s", (int)(dot - deck), deck);
+  if (asked) return words_of("%s", asked);
+  const char *slash = strrchr(file, '/'), *dot = strrchr(file, '.');
+  const bool bare = !dot || dot == file || (slash && dot <= slash + 1);
+  return words_of("%.*s%s", (int)(bare ? strlen(file) : (size_t)(dot - file)), file, bare && !*ending ? ".results" : ending);
 }
 
 int read_whole(const char *words, const char *option, long long least, long long *value)

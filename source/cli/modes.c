@@ -21,15 +21,10 @@ static int find(const char *deck, const char **values, const DeckSettings *setti
   int status = breccia_model_load_file(deck, &wishes, &model, error);
   if (status) return fail(error, status);
   if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
-  char *beside = result_folder(deck), *folder = words_of("%s", values[OUTPUT] ? values[OUTPUT] : "");
-  if (!values[OUTPUT]) {
-    free(folder);
-    folder = words_of("%s-modes", beside);
-  }
+  char *folder = output_folder(values[OUTPUT], deck, "-modes");
   const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = (int)(count > 1000000 ? 1000000 : count)};
-  status = breccia_model_modes(model, &wish, error);
+  status = folder ? breccia_model_modes(model, &wish, error) : BRECCIA_FAILURE;
   if (!status) status = show(breccia_model_outcome(model), stdout);
-  free(beside);
   free(folder);
   breccia_model_destroy(&model);
   return fail(error, status);

@@ -121,7 +121,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
     return fail(error, status);
   }
   size_t told = strlen(breccia_model_warnings(model));
-  char *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : result_folder(deck);
+  char *folder = output_folder(values[OUTPUT], deck, "");
   if (!folder) {
     breccia_model_destroy(&model);
     breccia_error_destroy(&error);

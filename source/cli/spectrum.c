@@ -76,16 +76,14 @@ static int look(char **paths, const char **values, const breccia_motion_wish *wi
   }
   if (!status) status = breccia_motion_analyse(motion, below, wish, error);
   if (!status && fputs(breccia_motion_words(motion), stdout) < 0) status = BRECCIA_FAILURE;
-  char *beside = result_folder(paths[0]);
-  char *folder = values[OUTPUT] ? words_of("%s", values[OUTPUT]) : beside ? words_of("%s-spectrum", beside) : NULL;
-  if (!folder && !status) status = BRECCIA_FAILURE;
+  char *folder = status ? NULL : output_folder(values[OUTPUT], paths[0], "-spectrum");
+  if (!status && !folder) status = BRECCIA_FAILURE;
   if (!status) {
     status = breccia_motion_write(motion, folder, error);
     for (const char *line = breccia_motion_files(motion); *line; line += strcspn(line, "\n") + 1)
       printf("%s  %.*s", line == breccia_motion_files(motion) ? "\nwritten:\n" : "", (int)strcspn(line, "\n") + 1,
              line);
   }
-  free(beside);
   free(folder);
   breccia_motion_destroy(&motion);
   breccia_motion_destroy(&below);

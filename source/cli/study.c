@@ -100,10 +100,7 @@ static int run(int argc, char **argv, const Verb *verb)
     status = BRECCIA_USER_ERROR;
   } else {
     cases_catch_signals();
-    char *beside = values[OUTPUT] ? NULL : result_folder(argv[first]), *folder = values[OUTPUT]
-                                                                                     ? words_of("%s", values[OUTPUT])
-                                                                                 : beside ? words_of("%s-study", beside)
-                                                                                          : NULL;
+    char *folder = output_folder(values[OUTPUT], argv[first], "-study");
     const breccia_study_plan plan = {.size = sizeof plan,
                                      .deck = argv[first],
                                      .folder = folder,
@@ -118,7 +115,6 @@ static int run(int argc, char **argv, const Verb *verb)
                                      .together = values[TOGETHER] != NULL};
     status = folder ? study_deck(&plan, values, error) : BRECCIA_FAILURE;
     free(folder);
-    free(beside);
   }
   for (int k = 0; k < COUNT; ++k) free(lists.items[k]);
   return fail(error, status);

@@ -75,8 +75,9 @@ void warn(const char *lines);
 /** Formatted text, to be freed. @return NULL when memory is out, after saying so */
 char *words_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** Folder for a deck's results: beside it, named after it. To be freed; NULL as above. */
-char *result_folder(const char *deck);
+/** Folder for what is written: the one asked for, or else beside a file and named after it, without the file's own ending.
+ *  @param[in] asked  NULL: none @param[in] ending  of the second, like "-modes" @return as above */
+char *output_folder(const char *asked, const char *file, const char *ending);
 
 /** Reads a whole number of at least `least`; says what is wrong. */
 int read_whole(const char *words, const char *option, long long least, long long *value);

@@ -51,6 +51,7 @@ int cells_create(Cells *cells, const Particles *p, const double *const position[
   int64_t *own = memory_zeroed((size_t)p->count, sizeof(int64_t), "search cells", error);
   if (!cells->first || !cells->places || !cells->position || !own) {
     free(own);
+    cells_destroy(cells);
     return BRECCIA_FAILURE;
   }
   for (int64_t n = 0; n < p->count; ++n) {

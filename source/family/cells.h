@@ -12,7 +12,7 @@ typedef struct Cells {
   double *position; /* [particles][3] in the same order */
 } Cells;
 
-/** @param[in] position  where the particles are taken to be, [places] each; what is not a finite number falls into the first cell */
+/** @param[in] position  where the particles are taken to be, [places] each; what is not a finite number falls into the first cell. Without memory for them nothing is left to destroy */
 int cells_create(Cells *cells, const Particles *particles, const double *const position[3], double reach, Error *error);
 void cells_destroy(Cells *cells);
 

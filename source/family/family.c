@@ -312,6 +312,10 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
   if (!status && spec->row_sums) status = lattice_rows_create(family, body, error);
   free(rows);
   stored_bonds_destroy(&stored);
+  if (status) { /* what needs bonds asks for this */
+    free(family->first);
+    family->first = NULL;
+  }
   return status;
 }
 

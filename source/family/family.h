@@ -42,7 +42,7 @@ struct Family {
   const Lattice *lattices;            /* one per block */
   double horizon, reach;              /* reach: no bond is longer; beyond the horizon if parts of volumes count there */
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
-  int64_t *first;                     /* [slices + 1] */
+  int64_t *first;                     /* [slices + 1]; NULL where the bonds could not be made */
   int64_t *stored;                    /* [slices] first stored slot */
   int32_t *base;     /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and scale */
   uint16_t *pattern; /* [slots] row of patterns; unused in stored slots */

@@ -255,7 +255,7 @@ static int verify(Concrete *c, Text *words, Error *error)
   return status;
 }
 
-char *breccia_concrete_calibrate(const breccia_concrete *given, breccia_error *error)
+int breccia_concrete_calibrate(const breccia_concrete *given, char **words, breccia_error *error)
 {
   breccia_concrete wish;
   Concrete c;
@@ -274,7 +274,8 @@ char *breccia_concrete_calibrate(const breccia_concrete *given, breccia_error *e
   }
   if (!status && (t.failed || found.failed)) status = error_add(error, BRECCIA_FAILURE, "out of memory: calibration");
   text_free(&found);
-  if (!host_leave(&host, status, error)) return t.characters;
+  status = host_leave(&host, status, error);
+  *words = status ? NULL : text_take(&t);
   text_free(&t);
-  return NULL;
+  return status;
 }

@@ -34,6 +34,7 @@ int model_make_schedule(breccia_model *model, bool again, Error *error)
                       (long long)(r->every > 0 ? model->solver.clock.steps / r->every : most));
   free(model->schedule);
   free(model->stops);
+  model->schedule_count = 0;
   model->schedule = memory_zeroed((size_t)most, sizeof(double), "schedule", error);
   model->stops = memory_zeroed((size_t)most, sizeof(double), "schedule", error);
   if (!model->schedule || !model->stops) return BRECCIA_FAILURE;

@@ -126,10 +126,10 @@ static int name_case(const Study *study, StudyCase *one, const char *folder, Err
   for (int v = 0; v < study->varied_count; ++v)
     text_add(&words, "%s%s-%s", v ? "--" : "", study_key(study, v), study->varied[v].values[one->which[v]]);
   text_file_name(text_words(&words), name, sizeof name);
+  one->folder = words.failed ? NULL : text_format("%s/%s", folder, name);
   text_free(&words);
-  one->folder = text_format("%s/%s", folder, name);
   for (const StudyCase *other = study->cases; one->folder && other < one; ++other)
-    if (!strcmp(other->folder, one->folder)) { /* different values, spelt alike as a file */
+    if (other->folder && !strcmp(other->folder, one->folder)) { /* different values, spelt alike as a file */
       free(one->folder);
       one->folder = text_format("%s/%s--%d", folder, name, (int)(one - study->cases) + 1);
       break;

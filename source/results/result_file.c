@@ -277,16 +277,16 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
   return cause ? give_up(file, strerror(cause), error) : put_in_place(file, error);
 }
 
-static int grow_times(ResultFile *file)
+static int grow_times(ResultFile *file, Error *error)
 {
-  if (file->writes < file->capacity) return 0;
+  if (file->writes < file->capacity) return BRECCIA_OK;
   int64_t capacity = file->capacity ? 2 * file->capacity : 64;
   double *times = memory_grown(file->times, (size_t)capacity, sizeof(double));
   if (times) file->times = times;
   int64_t *steps = memory_grown(file->steps, (size_t)capacity, sizeof(int64_t));
   if (steps) file->steps = steps;
   if (times && steps) file->capacity = capacity;
-  return !times || !steps;
+  return times && steps ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: result file");
 }
 
 static int write_xdmf(const ResultFile *file, Error *error)
@@ -421,7 +421,7 @@ int result_file_write(ResultFile *file, const Domain *d, int64_t step, double ti
 {
   if (file->lost) return BRECCIA_FAILURE; /* said when it was lost */
   if (file->writes && file->steps[file->writes - 1] == step) return BRECCIA_OK;
-  if (grow_times(file)) return error_add(error, BRECCIA_FAILURE, "out of memory: result file");
+  if (grow_times(file, error)) return BRECCIA_FAILURE;
   struct stat status;
   if (!file->hidden && stat(file->path, &status)) return give_up(file, strerror(errno), error);
   const bool in_place = !file->hidden && status.st_size >= COPY_LIMIT;
@@ -487,7 +487,8 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   ResultView view;
   int status = result_view_open(&view, file->path, error);
   if (status) return status;
-  for (int k = 0; k < view.steps && view.step_numbers[k] <= last && !grow_times(file); ++k) {
+  for (int k = 0; k < view.steps && view.step_numbers[k] <= last; ++k) {
+    if ((status = grow_times(file, error))) break;
     file->times[file->writes] = view.times[k];
     file->steps[file->writes++] = view.step_numbers[k];
   }
@@ -496,6 +497,7 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   bool same = view.rows == file->particles;
   const bool own = !names->deck || is_of_deck(&view, names->deck);
   result_view_close(&view);
+  if (status) return status;
   if (!same)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds another number of particles than the deck", file->path);
   if (!own)

@@ -2,7 +2,7 @@
  * BRECCIA_FAIL_AT=N      the N-th call from 1; 0 only counts
  * BRECCIA_FAIL_ON=1      and all that come after it
  * BRECCIA_FAIL_WHOSE=all calls of the libraries too; otherwise those of the program itself, by the address they return to
- * BRECCIA_FAIL_COUNT=F   file that takes the number of calls when the program ends
+ * BRECCIA_FAIL_COUNT=F   file that takes a line for each call: its number, and one made of its innermost callers in the program
  * At the end of the program a line tells what the program itself was given and has not given back; after a crash, or when there is no end, in
  * whose code that was. What the program starts in its turn is left alone. For glibc, whose own names for the functions are used, so that
  * nothing must be looked up while memory is being given. */
@@ -34,7 +34,7 @@ static uintptr_t first_byte, last_byte; /* of the program */
 static atomic_long calls;
 static long fail_at;
 static bool counting, all_from_there, everybody;
-static char count_file[4096];
+static FILE *count_file;
 
 static bool is_program(const void *caller)
 {
@@ -43,7 +43,7 @@ static bool is_program(const void *caller)
 
 /* ---- what the program was given and has not given back ---- */
 
-enum { PLACES = 1 << 18, DEPTH = 6 };
+enum { PLACES = 1 << 18, DEPTH = 6, NEAREST = 3 };
 
 static struct {
   const void *memory; /* NULL: free for ever; &gone: was given back */
@@ -148,7 +148,7 @@ __attribute__((constructor)) static void begin(void)
   fail_at = atol(at);
   all_from_there = on && *on == '1';
   everybody = whose && !strcmp(whose, "all");
-  if (file) snprintf(count_file, sizeof count_file, "%s", file);
+  if (file && *file && !((count_file = fopen(file, "w")) && !setvbuf(count_file, NULL, _IOLBF, 0))) abort();
   unsetenv("LD_PRELOAD");
   backtrace(&frame, 1); /* loads what it needs */
   for (int k = 0; k < 5; ++k) signal((const int[]){SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGVTALRM}[k], tell_end);
@@ -158,21 +158,32 @@ __attribute__((constructor)) static void begin(void)
 
 __attribute__((destructor)) static void end(void)
 {
-  char words[32];
   if (counting) tell_kept();
-  if (!*count_file) return;
-  const int file = open(count_file, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  const int length = snprintf(words, sizeof words, "%ld\n", atomic_load(&calls));
-  if (file < 0 || write(file, words, (size_t)length) != length) abort();
-  close(file);
+  counting = false;
+  if (count_file && fclose(count_file)) abort();
 }
 
 /* ---- the functions ---- */
+
+/** Children of the program write to the same file, line by line, and count on from where they began. */
+static void tell_place(long call)
+{
+  void *callers[NEAREST + 8];
+  const int count = backtrace(callers, NEAREST + 8);
+  uint64_t place = 0;
+  for (int k = 2, told = 0; k < count && told < NEAREST; ++k) {
+    if (!is_program(callers[k])) continue;
+    place = (place ^ ((uintptr_t)callers[k] - first_byte)) * 0x9e3779b97f4a7c15u;
+    ++told;
+  }
+  fprintf(count_file, "%ld %016lx\n", call, (unsigned long)place);
+}
 
 static bool refuses(const void *caller)
 {
   if (!counting || (!everybody && !is_program(caller))) return false;
   const long call = atomic_fetch_add(&calls, 1) + 1;
+  if (count_file) tell_place(call);
   if (!fail_at || call < fail_at || (call > fail_at && !all_from_there)) return false;
   errno = ENOMEM;
   return true;

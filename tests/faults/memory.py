@@ -7,7 +7,7 @@ the same output and files as with all its memory. What a run leaves that ended s
 unless it says that there is nothing to take up.
 
 usage: memory.py COMMAND SHIM COMPARE_RESULTS [--every K] [--verb NAME] [--libraries]
-  --every K    one call in K only (1: all)
+  --every K    the first call from each place of the program, and one in K of the others (1: all)
   --verb NAME  one verb only
   --libraries  calls of the libraries too: these may say it in their own way, and some of them crash or never end (KNOWN_ENDS), but none may
                let the program end with status 0 and wrong files, and the program's own code may not crash
@@ -21,6 +21,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "relations"))
+from decks import decks as RELATIONS
+from quantities import System
 
 PLATE = """\
 title: Plate
@@ -103,6 +107,8 @@ solve:
   - {name: swing, implicit: {end time: 1e-5, time step: 1e-5, Rayleigh damping: {ratio: 0.05, from: 3000, to: 20000}}}
 watch: {energy: {energy: yes, every: 1}}""")
 
+TORN = "variables: {load: 1 MPa}\n" + REST.replace("displacement: [5e-6, free]", "pressure: '-${load}'").replace("increments: 3", "increments: 2, smallest increment: 0.4")
+
 TEST = """\
 title: Steel under cycles
 units: {length: m, force: kN, time: s}
@@ -113,8 +119,21 @@ fit: {yield stress: {from: 1e5, to: 1e6}}
 """
 
 
+def file_of(name):
+    """The file name of a deck of the relations."""
+    return "relation-" + re.sub("[^a-z0-9]+", "-", name.lower())
+
+
+def write_relation(folder, name):
+    with open(os.path.join(folder, file_of(name) + ".yaml"), "w") as file:
+        file.write(System().deck(RELATIONS[name]["text"]))
+    for other, text in RELATIONS[name]["files"].items():
+        with open(os.path.join(folder, other), "w") as file:
+            file.write(text(System()))
+
+
 def write_decks(folder):
-    for name, words in (("plate", PLATE), ("grains", GRAINS), ("halves", HALVES), ("rest", REST), ("stages", STAGES), ("test", TEST)):
+    for name, words in (("plate", PLATE), ("grains", GRAINS), ("halves", HALVES), ("rest", REST), ("stages", STAGES), ("torn", TORN), ("test", TEST)):
         with open(os.path.join(folder, name + ".yaml"), "w") as file:
             file.write(words)
     with open(os.path.join(folder, "grains.csv"), "w") as file:
@@ -123,6 +142,8 @@ def write_decks(folder):
             for j in range(4):
                 for i in range(5):
                     file.write(f"{i}.0{(i * 7 + j * 3 + k) % 10},{j}.0{(i * 3 + j * 5 + k * 7) % 10},{k}.0{(i + j * 9 + k) % 10},1\n")
+    with open(os.path.join(folder, "motion.csv"), "w") as file:
+        file.write("time (s),velocity\n" + "".join(f"{k * 0.01},{(k % 7) * 0.1 - 0.3}\n" for k in range(40)))
     with open(os.path.join(folder, "measured.csv"), "w") as file:
         file.write("axial strain,deviator (kPa)\n" + "".join(f"{k * 1e-3},{min(k * 2e5, 2.5e5 + k * 4e3)}\n" for k in range(11)))
 
@@ -152,7 +173,13 @@ WALKS = {
     "new-list": ([], "new --example", []),
     "study": ([], "study plate.yaml --vary body.plate.spacing=1\\ cm,1.5\\ cm --threads 1 --jobs 1 --curve mouth.distance:grip.x",
               ["plate-study/table.csv", "plate-study/table.txt"]),
+    "modes": ([], "modes rest.yaml --count 2", ["rest-modes"]),
+    "failure": ([], "failure torn.yaml --load variables.load=1\\ MPa:9\\ MPa --within 0.9 --jobs 1 --threads 1", ["torn-failure/failure.csv"]),
+    "spectrum": ([], "spectrum motion.csv --column velocity --unit m/s --periods 0.1:1 --count 3", ["motion-spectrum"]),
+    "calibrate-concrete": ([], "calibrate concrete --fc 4000psi", []),
 }
+RELATION = "relation: "
+WALKS |= {RELATION + name: ([], f"run {file_of(name)}.yaml", [file_of(name)]) for name in RELATIONS}
 
 # what differs from one good run to the next
 TIMES = re.compile(rb"[0-9.]+ ns per directed bond|[0-9.]+ s for [0-9]+ steps|\"(wall_seconds|ns_per_directed_bond_step)\": [0-9.e+-]+|"
@@ -164,6 +191,8 @@ TOLD = re.compile("out of memory|Cannot allocate memory")
 
 # what crashes by itself when it is refused memory, or tries again without end
 KNOWN_ENDS = ("crash in libhdf5", "crash in libudunits2", "crash in libfontconfig", "no end in libfontconfig")
+CASES = ("study", "failure")  # verbs of which each case tells it, and whose own last line says in which file there is more
+LOG = re.compile(r"/log\.txt tells more$")
 KEPT = re.compile("^kept: .*$", re.M)
 END = re.compile("^(?:crash|no end) in .*$", re.M)
 
@@ -173,14 +202,19 @@ def words_of(command):
 
 
 class Walk:
-    def __init__(self, options, verb):
+    def __init__(self, options, verb, known):
         self.options, self.verb = options, verb
+        self.known = known  # places of calls that other verbs were refused; those of this one are added
         self.before, self.command, self.files = WALKS[verb]
         self.folder = tempfile.mkdtemp(prefix="memory.")
         self.ends = collections.Counter()
         self.start = os.path.join(self.folder, "start")
         os.mkdir(self.start)
-        write_decks(self.start)
+        self.of_relation = verb.startswith(RELATION)
+        if self.of_relation:
+            write_relation(self.start, verb.removeprefix(RELATION))
+        else:
+            write_decks(self.start)
         for command in self.before:
             self.run(self.start, command, None)
 
@@ -267,10 +301,12 @@ class Walk:
             if done.returncode > 2 or not words:
                 problem = f"status {done.returncode}"
         else:
-            lines = [line for line in words.split("\n") if not line.startswith("warning:")]
+            lines = [line for line in words.split("\n") if not re.match("(\\S+: )?warning:", line)]
+            if self.verb in CASES:
+                lines = [line for line in lines if not LOG.search(line)]
             if done.returncode != 1:
                 problem = f"status {done.returncode}"
-            elif not all(TOLD.search(line) for line in lines) or (len(lines) > 1 and self.verb != "study"):
+            elif not lines or not all(TOLD.search(line) for line in lines) or (len(lines) > 1 and self.verb not in CASES):
                 problem = "not one line that tells it"
         if done.returncode and not problem and words_of(self.command)[0] == "run":
             problem = self.taken_up(folder)
@@ -284,17 +320,21 @@ class Walk:
         self.printed = TIMES.sub(b"", self.run(self.good, self.command, 0).stdout)
         self.expected = self.written(self.good)
         with open(os.path.join(self.folder, "count")) as file:
-            calls = int(file.read())
-        # neighbours in time are alike: every K-th, of verbs with few calls some at least, from a first that differs from verb to verb
-        if not calls:
+            rows = [line.split() for line in file]
+        if not rows:
             sys.exit(f"{self.verb}: asks for no memory: is the command the right one?")
-        every = min(self.options.every, max(1, calls // 3))
-        chosen = range(1 + sum(map(ord, self.verb)) % every, calls + 1, every)
+        first = {place: int(call) for call, place in reversed(rows) if place not in self.known}
+        calls = max(int(call) for call, _ in rows)
+        self.known.update(first)
+        # Neighbours in time are alike: of the others every K-th, from a first that differs from verb to verb; of verbs with few calls some at
+        # least, but of the decks of the relations, which are many, no more than that.
+        every = self.options.every if self.of_relation else min(self.options.every, max(1, calls // 3))
+        chosen = sorted({*first.values(), *range(1 + sum(map(ord, self.verb)) % every, calls + 1, every)})
         problems = [p for p in pool.map(lambda n: self.judge(n, n % 2 == 0), chosen) if p]
         shutil.rmtree(self.folder)
         for problem in problems:
             print("FAIL:", problem)
-        print(f"{self.verb}: {calls} calls, {len(chosen)} refused, {len(problems)} problems{tell(self.ends)}", flush=True)
+        print(f"{self.verb}: {calls} calls, {len(first)} of them from new places, {len(chosen)} refused, {len(problems)} problems{tell(self.ends)}", flush=True)
         return len(chosen), problems, self.ends
 
 
@@ -313,10 +353,10 @@ def main():
     options = parser.parse_args()
     for name in ("command", "shim", "compare"):
         setattr(options, name, os.path.abspath(getattr(options, name)))
-    refused, problems, ends = 0, [], collections.Counter()
+    refused, problems, ends, places = 0, [], collections.Counter(), set()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for verb in [options.verb] if options.verb else WALKS:
-            count, found, known = Walk(options, verb).go(pool)
+            count, found, known = Walk(options, verb, places).go(pool)
             refused += count
             problems += found
             ends += known
