@@ -30,7 +30,7 @@ static int run(int argc, char **argv, const Verb *verb)
     text = breccia_page(BRECCIA_PAGE_LAWS);
   else if (!(text = breccia_describe_law(name, error)))
     status = name && !is_law(name) ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
-  if (!status) status = print_page(text);
+  if (!status) status = text || error ? print_page(text) : BRECCIA_FAILURE; /* told once */
   breccia_text_free(text);
   return fail(error, status);
 }

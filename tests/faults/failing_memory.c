@@ -102,18 +102,21 @@ static void tell_kept(void)
 
 /* ---- beginning and end ---- */
 
-/** The program is the first of all that is loaded. */
+/** The program is the first of all that is loaded, and its own code a library where there is one of all rooms (BRECCIA_ONE_LIBRARY). */
 static int find_program(struct dl_phdr_info *info, size_t size, void *context)
 {
-  (void)size, (void)context;
+  int *objects = context;
+  (void)size;
+  if ((*objects)++ && !strstr(info->dlpi_name, "libbreccia_objects")) return 0;
   first_byte = UINTPTR_MAX;
+  last_byte = 0;
   for (int k = 0; k < info->dlpi_phnum; ++k) {
     if (info->dlpi_phdr[k].p_type != PT_LOAD) continue;
     const uintptr_t from = info->dlpi_addr + info->dlpi_phdr[k].p_vaddr, to = from + info->dlpi_phdr[k].p_memsz;
     if (from < first_byte) first_byte = from;
     if (to > last_byte) last_byte = to;
   }
-  return 1;
+  return *objects > 1;
 }
 
 /** Says in whose code the program crashes or stays: the innermost that is neither the system's nor here. */
@@ -144,7 +147,8 @@ __attribute__((constructor)) static void begin(void)
              *file = getenv("BRECCIA_FAIL_COUNT");
   void *frame;
   if (!at) return;
-  dl_iterate_phdr(find_program, NULL);
+  int objects = 0;
+  dl_iterate_phdr(find_program, &objects);
   fail_at = atol(at);
   all_from_there = on && *on == '1';
   everybody = whose && !strcmp(whose, "all");
