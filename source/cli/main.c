@@ -69,7 +69,8 @@ char *output_folder(const char *asked, const char *file, const char *ending)
   if (asked) return words_of("%s", asked);
   const char *slash = strrchr(file, '/'), *dot = strrchr(file, '.');
   const bool bare = !dot || dot == file || (slash && dot <= slash + 1);
-  return words_of("%.*s%s", (int)(bare ? strlen(file) : (size_t)(dot - file)), file, bare && !*ending ? ".results" : ending);
+  return words_of("%.*s%s", (int)(bare ? strlen(file) : (size_t)(dot - file)), file,
+                  bare && !*ending ? ".results" : ending);
 }
 
 int read_whole(const char *words, const char *option, long long least, long long *value)
