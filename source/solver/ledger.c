@@ -77,8 +77,9 @@ void ledger_note_paid(Ledger *l)
 int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
   const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
-  const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_dissipated(&d->forces);
-  const bool sound = isfinite(l->paid) && internal >= -most_given * l->paid && fracture >= -most_given * l->paid &&
+  const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_friction(&d->forces);
+  const double lost = forces_dissipated(&d->forces) - forces_friction(&d->forces); /* cannot be given back */
+  const bool sound = isfinite(l->paid) && internal - lost >= -most_given * l->paid && fracture >= -most_given * l->paid &&
                      l->between <= most_unexplained * l->paid;
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;
   if (is_too_fast(l)) {
@@ -99,7 +100,7 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
 Energy ledger_energy(const Ledger *l, Domain *d)
 {
   Energy e = {.kinetic = fmax(0, l->kinetic), /* what prescribed motions take back may leave a rounding */
-              .internal = l->bond_work - d->fracture_energy - forces_dissipated(&d->forces),
+              .internal = l->bond_work - d->fracture_energy - forces_friction(&d->forces),
               .external = l->external_work,
               .damping = l->damped ? l->damping_work : 0, /* else roundings */
               .fracture = d->fracture_energy,
@@ -108,8 +109,8 @@ Energy ledger_energy(const Ledger *l, Domain *d)
               .between = l->between};
   const bool elastic = domain_is_elastic(d);
   e.stored = domain_stored_energy(d) + forces_energy(&d->forces);
-  if (!elastic) e.dissipated = fmax(0, e.internal - e.stored);
-  e.dissipated += forces_dissipated(&d->forces) - e.friction;
+  e.dissipated = forces_dissipated(&d->forces) - e.friction;
+  if (!elastic) e.dissipated = fmax(e.dissipated, e.internal - e.stored);
   const double error = l->external_work + l->kinetic_at_start + l->stored_at_start + l->between - l->kinetic -
                        l->damping_work - l->numerical - e.stored - e.dissipated - e.fracture - e.friction;
   const double largest = l->paid > 0 ? l->paid : fmax(fmax(l->kinetic, fabs(l->bond_work)), fabs(e.fracture));

@@ -375,6 +375,9 @@ solve: {explicit: {steps: 2}}
 Y
 "$breccia" check ground.yaml > out 2> errors || fail "ground: $(cat errors)"
 lines "ground" out <<< "9 particles begin under stress, mean -33.33 to -6.667 kPa"
+# held by a wall at its left side: the same 9 particles, and not those that stand for the ground behind the wall
+"$breccia" check ground.yaml --set 'loads=[{on: {face: x-}, support: {held: across}}]' > out 2> errors || fail "ground beside a wall: $(cat errors)"
+lines "ground beside a wall" out <<< "9 particles begin under stress, mean -33.33 to -6.667 kPa"
 
 # ---- one bond that is pulled until it breaks: 0.001 of 10 mm at 0.1 mm/ms are 0.1 ms; E s^2 / 2 of its 1000 mm3 are 15 N mm, less a step; masses of 2.4 g on
 # 3e8 N/m vibrate by 5e5 / s, twice the inverse of which is the stable step ----

@@ -190,6 +190,19 @@ deck("no failure within", more="failure: {critical stretch: 0.01, near grips: br
      solve="{explicit: {time step: 1.5e-4 s, steps: 60}}", watch=GRIPS, tolerance=1e-6)
 deck("breaking at rest", material=SOFT, more="failure: {critical stretch: 0.01, near grips: break}\n", cracks=CUT, peridynamics="formulation: ordinary",
      loads=STRETCH[2].replace("0.004 m", "0.02 m"), solve="{static: {end time: 1 s, increments: 4, residual: 1e-11}}", watch=GRIPS, ways=("broken",))
+# ---- bars, two that are parallel and one across; one of each kind slips
+
+STEEL = "{m: " + SOFT + ", s: {model: steel-bilinear, density: 7 t/m3, Young modulus: 2e6 kPa, yield stress: 4 MPa, hardening ratio: 0.01}}"
+BARS = ("bars:\n"
+        "  long: {material: s, points: [V[0.15 m, 0.35 m], V[0.85 m, 0.5 m]], diameter: 0.02 m, number: 2}\n"
+        "  short: {material: s, points: [V[0.45 m, 0.25 m], V[0.55 m, 0.65 m]], area: 2e-4 m2}\n")
+SLIPPING = BARS.replace("number: 2", "number: 2, bond: {law: linear, stiffness: 2e4 kN/m3}, bonded: [0.1 m, 0.6 m], anchored: [start]").replace(
+    "area: 2e-4 m2", "area: 2e-4 m2, bond: {law: fib, compressive strength: 30 MPa, rib spacing: 8 mm}")
+deck("bars", materials=STEEL, more=BARS, watch=GRIPS, ways=("work", ))
+deck("bars at rest", materials=STEEL.replace("4 MPa", "40 MPa"), more=BARS, solve=REST, watch=GRIPS, ways=("work", ))
+deck("bars that slip", materials=STEEL, more=SLIPPING, watch=GRIPS, ways=("work", ))
+deck("bars that slip at rest", materials=STEEL, more=SLIPPING, solve=REST, watch=GRIPS, ways=("work", ))
+
 deck("notch", cracks="cracks: [{remove: {box: {from: V[0.4 m, 0.1 m], to: V[0.5 m, 0.4 m]}}, cut faces: yes}]\n", watch=GRIPS)
 deck("cut in space", 3, cracks="cracks: [{cut: {polygon: [V[0.4 m, 0.1 m, -0.2 m], V[0.4 m, 0.4 m, -0.2 m], V[0.4 m, 0.4 m, 0.3 m], V[0.4 m, 0.1 m, 0.3 m]]}}]\n", watch=GRIPS,
      variants="u")

@@ -94,6 +94,8 @@ SUMMARY_UNITS = {"time": "times", "time_step": "times", "stable_time_step": "tim
                  "reactions": "forces", "loads": "forces", "moment of reactions": "moments", "moment of loads": "moments",
                  "displacement": "positions and displacements", "velocity": "velocities", "octahedral_shear_stress": "stresses",
                  "mean_stress_lowest": "stresses", "mean_stress_highest": "stresses"}
+BAR_UNITS = {"elements": "", "area": "areas", "stress": "stresses", "strain": "", "stress_so_far": "stresses", "stored": "energies", "dissipated": "energies", "yielded_share": "",
+             "torn_share": ""}
 
 
 def groups_of_summary(path):
@@ -111,7 +113,11 @@ def groups_of_summary(path):
                 walk(name + "/" + k, k, v, key)
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             for n, item in enumerate(value):
-                if key == "loads":
+                if key == "bars":
+                    for k, unit in BAR_UNITS.items():
+                        if k in item:
+                            groups[f"{name}/{n}/{k}"] = Group("number", units.get(unit, unit), [[float(v)] for v in (item[k] if isinstance(item[k], list) else [item[k]])], where, 10)
+                elif key == "loads":
                     if item["peak"] is not None:
                         groups[f"{name}/{n}"] = Group("number", item["unit"], [[item["peak"]]], where, 10)
                 else:
