@@ -5,6 +5,7 @@
  * FAULT_AT      the number of the call that fails, from 1 on; 0: none, and they are only counted
  * FAULT_ERROR   its errno, a number
  * FAULT_LASTS   1: all calls after it fail too
+ * FAULT_READS   1: calls that read are counted and fail, in place of those that write
  * FAULT_EXCEPT  words in the names of files that pass too
  * FAULT_LARGER  bytes by which files of results seem larger to those who ask for their size by name
  * FAULT_KILLS   instead of failing: 1: the process is killed before the call, 2: where it writes, when half of it is written
@@ -41,7 +42,8 @@ typedef enum Kind {
   MAKE = 'm', /* a folder */
   RENAME = 'r',
   LINK = 'l', /* this and the next one never fail, but a process may be killed at them */
-  REMOVE = 'u'
+  REMOVE = 'u',
+  READ = 'd'
 } Kind;
 
 static atomic_long calls;
@@ -63,7 +65,9 @@ static bool fails(const char *path, Kind kind)
   const char *folder = getenv("FAULT_FOLDER"), *count = getenv("FAULT_COUNT"), *except = getenv("FAULT_EXCEPT");
   char whole[PATH_MAX];
   const long kills = number_of("FAULT_KILLS");
-  if (!folder || !path || ((kind == LINK || kind == REMOVE) && !kills)) return false;
+  if (!folder || !path || (kind == READ) != (number_of("FAULT_READS") != 0) ||
+      ((kind == LINK || kind == REMOVE) && !kills))
+    return false;
   if (*path != '/') {
     char here[PATH_MAX];
     if (!getcwd(here, sizeof here)) return false;
@@ -134,6 +138,18 @@ ssize_t writev(int descriptor, const struct iovec *pieces, int count)
 {
   return fails_open(descriptor, WRITE) ? cut_short(descriptor, pieces->iov_base, pieces->iov_len, -1)
                                        : NEXT(writev)(descriptor, pieces, count);
+}
+ssize_t read(int descriptor, void *buffer, size_t size)
+{
+  return fails_open(descriptor, READ) ? -1 : NEXT(read)(descriptor, buffer, size);
+}
+ssize_t pread(int descriptor, void *buffer, size_t size, off_t from)
+{
+  return fails_open(descriptor, READ) ? -1 : NEXT(pread)(descriptor, buffer, size, from);
+}
+ssize_t pread64(int descriptor, void *buffer, size_t size, off64_t from)
+{
+  return fails_open(descriptor, READ) ? -1 : NEXT(pread64)(descriptor, buffer, size, from);
 }
 int fsync(int descriptor)
 {

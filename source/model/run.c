@@ -172,7 +172,8 @@ static int spare_files_of_others(const Run *run, Error *error)
   if (!path) return error_add(error, BRECCIA_FAILURE, "out of memory: deck.yaml");
   const int file = text_open_file(path);
   const ssize_t n = file < 0 ? 0 : read(file, there, sizeof there - 1);
-  int status = watches_spare(run->model->watches, run->wish->folder, text_words(&run->model->files), error);
+  int status = BRECCIA_OK;
+  if (!status && n < 0) status = error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, strerror(errno));
   if (!status && n > 0 && strncmp(there, deck_heading, sizeof there - 1) != 0)
     status = error_add(error, BRECCIA_USER_ERROR,
                        "%s: was not written by a run, and would be replaced by the deck as it is run: give it another "
@@ -180,7 +181,7 @@ static int spare_files_of_others(const Run *run, Error *error)
                        path);
   if (file >= 0) close(file);
   free(path);
-  return status;
+  return status ? status : watches_spare(run->model->watches, run->wish->folder, text_words(&run->model->files), error);
 }
 
 /** The deck as it is run, beside its results. */

@@ -251,7 +251,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   static const char *const units[][2] = {{"times", "time"},          {"positions and displacements", "length"},
                                          {"velocities", "velocity"}, {"stresses", "stress"},
                                          {"energies", "energy"},     {"forces", "force"},
-                                         {"moments", "energy"},     {"areas", "area"}}; /* shares have none */
+                                         {"moments", "energy"},      {"areas", "area"}}; /* shares have none */
   for (size_t k = 0; k < sizeof units / sizeof *units; ++k) {
     char unit[64];
     units_name(model->units, dimension_find(units[k][1]), unit, sizeof unit);

@@ -148,6 +148,14 @@ static int load_row(hid_t file, const StateRow *row, Error *error)
   return status;
 }
 
+/** Says why a checkpoint cannot be gone on from: what of it does not fit, or that the disk does not let it be read. */
+static int refuse(const Checkpoint *c, Error *error, const char *problem)
+{
+  if (c->file.error)
+    return error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", c->path, strerror(c->file.error));
+  return error_add(error, BRECCIA_USER_ERROR, "%s: %s", c->path, problem);
+}
+
 /** Whether the files that the deck names are as they were. Of the same deck they come in the same order. */
 static int check_files(hid_t file, const char *path, const char *now, Error *error)
 {
@@ -174,22 +182,22 @@ static int check_files(hid_t file, const char *path, const char *now, Error *err
 }
 
 /** Whether the file is one of this body and deck. */
-static int check_file(hid_t file, const char *path, const CheckpointOf *of, Error *error)
+static int check_file(const Checkpoint *c, const CheckpointOf *of, Error *error)
 {
+  const hid_t file = c->file.id;
   int64_t particles;
   if (!same_text(file, "version", BRECCIA_VERSION))
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "%s: was written by another version of the program than %s; run without --restart", path,
-                     BRECCIA_VERSION);
+    return refuse(c, error,
+                  "was written by another version of the program than " BRECCIA_VERSION "; run without --restart");
   if (!same_text(file, "deck", of->deck))
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "%s: was written with another deck; put the deck back as it was, or run without --restart", path);
-  const int status = check_files(file, path, of->files, error);
+    return refuse(c, error, "was written with another deck; put the deck back as it was, or run without --restart");
+  const int status = check_files(file, c->path, of->files, error);
   if (status) return status;
   if (load(file, "particles", H5T_NATIVE_INT64, 1, &particles)) return STATE_MISFIT;
+  if (c->file.error) return refuse(c, error, NULL);
   if (particles != of->particles)
     return error_add(error, BRECCIA_USER_ERROR, "%s: holds %lld particles, the deck makes %lld; run without --restart",
-                     path, (long long)particles, (long long)of->particles);
+                     c->path, (long long)particles, (long long)of->particles);
   return BRECCIA_OK;
 }
 
@@ -197,10 +205,11 @@ static int check_file(hid_t file, const char *path, const CheckpointOf *of, Erro
 static int say_way_out(const Checkpoint *c, const char *folder, CheckpointWhich which, const char *problem,
                        Error *error)
 {
-  Checkpoint before = {.file = -1};
+  if (c->file.error) return refuse(c, error, problem);
+  Checkpoint before = {.file = {.id = -1}};
   int64_t step = -1;
   if (which == CHECKPOINT_LAST && (before.path = path_of(folder, CHECKPOINT_BEFORE)) && !seal_is_broken(before.path)) {
-    before.file = H5Fopen(before.path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    hdf5_file_open(&before.file, before.path);
     step = checkpoint_count(&before, "step");
   }
   checkpoint_close(&before);
@@ -212,16 +221,17 @@ static int say_way_out(const Checkpoint *c, const char *folder, CheckpointWhich 
 
 int checkpoint_open(Checkpoint *c, const char *folder, CheckpointWhich which, const CheckpointOf *of, Error *error)
 {
-  *c = (Checkpoint){.path = path_of(folder, which), .file = -1};
+  *c = (Checkpoint){.path = path_of(folder, which), .file = {.id = -1}};
   if (!c->path) return error_add(error, BRECCIA_FAILURE, "out of memory: checkpoint");
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   if (access(c->path, F_OK)) return say_way_out(c, folder, which, "there is no checkpoint to restart from", error);
   const int broken = seal_is_broken(c->path);
   if (broken < 0)
-    return error_add(error, BRECCIA_USER_ERROR, "%s: cannot be read: %s", c->path, text_why_unread(errno));
+    return error_add(error, errno == EIO ? BRECCIA_FAILURE : BRECCIA_USER_ERROR, "%s: cannot be read: %s", c->path,
+                     text_why_unread(errno));
   const bool whole = !broken;
-  if (whole) c->file = H5Fopen(c->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  const int status = c->file >= 0 ? check_file(c->file, c->path, of, error) : STATE_MISFIT;
+  if (whole) hdf5_file_open(&c->file, c->path);
+  const int status = c->file.id >= 0 ? check_file(c, of, error) : STATE_MISFIT;
   if (status != STATE_MISFIT) return status;
   return say_way_out(c, folder, which,
                      whole ? "is of another build of the program"
@@ -233,24 +243,23 @@ int checkpoint_read(const Checkpoint *c, const StateList *state, Error *error)
 {
   if (state->failed) return error_add(error, BRECCIA_FAILURE, "out of memory: state");
   int status = BRECCIA_OK;
-  for (int k = 0; !status && k < state->count; ++k) status = load_row(c->file, &state->rows[k], error);
-  if (status == STATE_MISFIT)
-    status =
-        error_add(error, BRECCIA_USER_ERROR, "%s: is of another build of the program; run without --restart", c->path);
+  for (int k = 0; !status && k < state->count; ++k) status = load_row(c->file.id, &state->rows[k], error);
+  if (status == STATE_MISFIT || (!status && c->file.error))
+    status = refuse(c, error, "is of another build of the program; run without --restart");
   return status;
 }
 
 int64_t checkpoint_count(const Checkpoint *c, const char *name)
 {
   int64_t count = -1;
-  return c->file < 0 || load(c->file, name, H5T_NATIVE_INT64, 1, &count) ? -1 : count;
+  return c->file.id < 0 || load(c->file.id, name, H5T_NATIVE_INT64, 1, &count) ? -1 : count;
 }
 
 void checkpoint_close(Checkpoint *c)
 {
-  if (c->file >= 0) H5Fclose(c->file);
+  hdf5_file_close(&c->file);
   free(c->path);
-  *c = (Checkpoint){.file = -1};
+  *c = (Checkpoint){.file = {.id = -1}};
 }
 
 int checkpoint_return_to_before(const char *folder, Error *error)

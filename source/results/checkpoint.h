@@ -6,7 +6,7 @@
 #define BRECCIA_RESULTS_CHECKPOINT_H
 
 #include "base/state.h"
-#include <hdf5.h>
+#include "results/hdf5_file.h"
 
 /** What a checkpoint belongs to. */
 typedef struct CheckpointOf {
@@ -23,7 +23,7 @@ int checkpoint_write(const char *folder, const StateList *state, const Checkpoin
 /** One that is open to be taken up. */
 typedef struct Checkpoint {
   char *path;
-  hid_t file;
+  Hdf5File file; /* stays where it is while it is open */
 } Checkpoint;
 
 /** Opens one if it is whole and of this body, deck, files and version; of a damaged one the message says what to go on from.

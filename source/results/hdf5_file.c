@@ -120,11 +120,8 @@ static herr_t driver_read(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr
   for (char *at = buffer; size;) {
     const ssize_t n = pread(driver->descriptor, at, size, (off_t)from);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      note(driver);
-      return -1;
-    }
-    if (!n) { /* behind the end of the file there are zeros */
+    if (n < 0) note(driver);
+    if (n <= 0) { /* behind the end of the file there are zeros */
       memset(at, 0, size);
       break;
     }
@@ -209,7 +206,8 @@ static void forget_driver(Hdf5File *file)
   file->driver = -1;
 }
 
-static int open_file(Hdf5File *file, const char *path, bool create, bool whole, hid_t creation)
+/** @param[in] flags  H5F_ACC_...; TRUNC: of a new file with these properties */
+static int open_file(Hdf5File *file, const char *path, unsigned flags, bool whole, hid_t creation)
 {
   *file = (Hdf5File){.id = -1, .driver = -1};
   const Info info = {&file->error, whole};
@@ -218,7 +216,7 @@ static int open_file(Hdf5File *file, const char *path, bool create, bool whole, 
   const hid_t driver = file->driver = H5FDregister(&driver_class), properties = H5Pcreate(H5P_FILE_ACCESS);
   if (driver >= 0 && properties >= 0 && H5Pset_driver(properties, driver, &info) >= 0 &&
       H5Pset_libver_bounds(properties, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
-    file->id = create ? H5Fcreate(path, H5F_ACC_TRUNC, creation, properties) : H5Fopen(path, H5F_ACC_RDWR, properties);
+    file->id = flags == H5F_ACC_TRUNC ? H5Fcreate(path, flags, creation, properties) : H5Fopen(path, flags, properties);
   Driver *own = NULL;
   if (whole && file->id >= 0 && H5Fget_vfd_handle(file->id, properties, (void **)&own) >= 0)
     journal_keep(own->journal, (int64_t)own->end); /* only now it is known where HDF5's own bytes end */
@@ -229,17 +227,22 @@ static int open_file(Hdf5File *file, const char *path, bool create, bool whole, 
 
 int hdf5_file_create(Hdf5File *file, const char *path, hid_t creation)
 {
-  return open_file(file, path, true, false, creation);
+  return open_file(file, path, H5F_ACC_TRUNC, false, creation);
+}
+
+int hdf5_file_open(Hdf5File *file, const char *path)
+{
+  return open_file(file, path, H5F_ACC_RDONLY, false, H5P_DEFAULT);
 }
 
 int hdf5_file_extend(Hdf5File *file, const char *path)
 {
-  return open_file(file, path, false, false, H5P_DEFAULT);
+  return open_file(file, path, H5F_ACC_RDWR, false, H5P_DEFAULT);
 }
 
 int hdf5_file_extend_in_place(Hdf5File *file, const char *path)
 {
-  return open_file(file, path, false, true, H5P_DEFAULT);
+  return open_file(file, path, H5F_ACC_RDWR, true, H5P_DEFAULT);
 }
 
 int hdf5_file_close(Hdf5File *file)

@@ -93,7 +93,7 @@ static int take_values(const ResultView *view, int step, const PictureOptions *o
 {
   int components, chosen = 0;
   double *all = result_view_read(view, o->field, step, &components, unit, error);
-  if (!all) return BRECCIA_USER_ERROR;
+  if (!all) return result_view_lost(view);
   if (o->component && (chosen = component_index(o->component, components)) < 0) {
     free(all);
     return error_add(error, BRECCIA_USER_ERROR, "field '%s' has %d component%s and none called '%s'", o->field,
@@ -188,7 +188,7 @@ static int place_particles(Scene *scene, const ResultView *view, int step, const
   if (!moved && o->deformed != 0 && o->deformed != 1)
     return error_add(error, BRECCIA_USER_ERROR, "a deformed picture needs the field 'displacement' in the result file");
   if (moved && o->deformed != 0 && !(u = result_view_read(view, "displacement", step, &components, NULL, error)))
-    return BRECCIA_USER_ERROR;
+    return result_view_lost(view);
   project(scene, view, NULL, 0);
   const double room = fmax(scene->x1 - scene->x0, scene->y1 - scene->y0);
   const double x0 = scene->x0 - room, x1 = scene->x1 + room, y0 = scene->y0 - room, y1 = scene->y1 + room;

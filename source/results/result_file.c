@@ -472,7 +472,7 @@ static int cut(ResultFile *file, Hdf5File *h5)
 static bool is_of_deck(const ResultView *view, const char *deck)
 {
   int64_t sum = -1;
-  const hid_t attribute = H5Aopen_by_name(view->file, "Breccia", deck_checksum, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t attribute = H5Aopen_by_name(view->file.id, "Breccia", deck_checksum, H5P_DEFAULT, H5P_DEFAULT);
   if (attribute < 0) return false;
   const bool read = H5Aread(attribute, H5T_NATIVE_INT64, &sum) >= 0;
   H5Aclose(attribute);

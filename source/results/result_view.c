@@ -24,24 +24,30 @@ static void attribute_read_text(hid_t where, const char *name, char *words, size
   H5Aclose(attribute);
 }
 
-/** The file is ours, but what stands in it is not what was written. @param[in] what  of the file */
-static int say_damaged(const ResultView *view, const char *what, Error *error)
+int result_view_say_damaged(const ResultView *view, const char *what, Error *error)
 {
   char path[1024] = "";
-  H5Fget_name(view->file, path, sizeof path);
+  H5Fget_name(view->file.id, path, sizeof path);
+  if (view->file.error)
+    return error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, strerror(view->file.error));
   return error_add(error, BRECCIA_USER_ERROR,
                    "%s: is damaged: %s cannot be read, or its bytes do not have the checksum written with them; put a "
                    "whole copy in its place, or run again",
                    path, what);
 }
 
+int result_view_lost(const ResultView *view)
+{
+  return view->file.error ? BRECCIA_FAILURE : BRECCIA_USER_ERROR;
+}
+
 /** All numbers of a dataset, to be freed; NULL with a message. @param[out] rows  how many it has; may be NULL */
 static void *read_all(const ResultView *view, const char *name, hid_t type, size_t size, int64_t *rows, Error *error)
 {
   hsize_t extent[2] = {0, 1};
-  hid_t set = H5Dopen2(view->file, name, H5P_DEFAULT);
+  hid_t set = H5Dopen2(view->file.id, name, H5P_DEFAULT);
   if (set < 0) {
-    say_damaged(view, name, error);
+    result_view_say_damaged(view, name, error);
     return NULL;
   }
   hid_t space = H5Dget_space(set);
@@ -51,7 +57,7 @@ static void *read_all(const ResultView *view, const char *name, hid_t type, size
   void *values = memory_plain(count ? count : 1, size);
   if (!values) error_add(error, BRECCIA_FAILURE, "out of memory: %s", name);
   if (values && count && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
-    say_damaged(view, name, error);
+    result_view_say_damaged(view, name, error);
     free(values);
     values = NULL;
   }
@@ -66,14 +72,14 @@ static int read_lattices(ResultView *view, Error *error)
 {
   const LatticeType *square = lattice_find("square");
   for (int k = 0; k < MOST_LATTICES; ++k) view->lattice_types[k] = square;
-  if (H5Lexists(view->file, "Breccia/Lattice", H5P_DEFAULT) <= 0) {
+  if (H5Lexists(view->file.id, "Breccia/Lattice", H5P_DEFAULT) <= 0) {
     view->lattice_numbers = memory_plain((size_t)view->particles + 1, 1);
     return view->lattice_numbers ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: Breccia/Lattice");
   }
   view->lattice_numbers = read_all(view, "Breccia/Lattice", H5T_NATIVE_UINT8, 1, NULL, error);
-  if (!view->lattice_numbers) return BRECCIA_USER_ERROR;
+  if (!view->lattice_numbers) return result_view_lost(view);
   char names[512];
-  hid_t set = H5Dopen2(view->file, "Breccia/Lattice", H5P_DEFAULT);
+  hid_t set = H5Dopen2(view->file.id, "Breccia/Lattice", H5P_DEFAULT);
   attribute_read_text(set, "names", names, sizeof names);
   H5Dclose(set);
   int k = 0;
@@ -91,8 +97,8 @@ const LatticeType *result_view_lattice(const ResultView *view, int64_t particle)
 /** Title, units and shape. */
 static int read_heading(ResultView *view, Error *error)
 {
-  hid_t own = H5Gopen2(view->file, "Breccia", H5P_DEFAULT);
-  if (own < 0) return say_damaged(view, "the group Breccia", error);
+  hid_t own = H5Gopen2(view->file.id, "Breccia", H5P_DEFAULT);
+  if (own < 0) return result_view_say_damaged(view, "the group Breccia", error);
   attribute_read_text(own, "title", view->title, sizeof view->title);
   attribute_read_text(own, "length unit", view->length_unit, sizeof view->length_unit);
   attribute_read_text(own, "time unit", view->time_unit, sizeof view->time_unit);
@@ -118,9 +124,9 @@ static void keep_rows(const ResultView *view, double *values, int components)
  *  versions, say nothing. */
 static int leave_outside(ResultView *view, Error *error)
 {
-  if (H5Lexists(view->file, "Breccia/Outside", H5P_DEFAULT) <= 0) return BRECCIA_OK;
+  if (H5Lexists(view->file.id, "Breccia/Outside", H5P_DEFAULT) <= 0) return BRECCIA_OK;
   uint8_t *outside = read_all(view, "Breccia/Outside", H5T_NATIVE_UINT8, 1, NULL, error);
-  if (!outside) return BRECCIA_USER_ERROR;
+  if (!outside) return result_view_lost(view);
   int64_t *number = memory_plain((size_t)view->rows + 1, sizeof(int64_t)); /* among the body's particles; -1: outside */
   view->row_of = memory_plain((size_t)view->rows + 1, sizeof(int64_t));
   int status =
@@ -152,22 +158,22 @@ static int read_numbers(ResultView *view, Error *error)
 {
   int64_t steps = 0;
   view->positions = read_all(view, "VTKHDF/Points", H5T_NATIVE_DOUBLE, sizeof(double), &view->rows, error);
-  if (!view->positions) return BRECCIA_USER_ERROR;
+  if (!view->positions) return result_view_lost(view);
   view->particles = view->rows;
   view->times = read_all(view, "VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps, error);
-  if (!view->times) return BRECCIA_USER_ERROR;
+  if (!view->times) return result_view_lost(view);
   view->steps = (int)steps;
   view->step_numbers = read_all(view, "VTKHDF/Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL, error);
-  if (!view->step_numbers) return BRECCIA_USER_ERROR;
+  if (!view->step_numbers) return result_view_lost(view);
   view->spacings = read_all(view, "Breccia/Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL, error);
-  if (!view->spacings) return BRECCIA_USER_ERROR;
+  if (!view->spacings) return result_view_lost(view);
   for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
   view->broken = read_all(view, "Breccia/BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &view->broken_count, error);
-  if (!view->broken) return BRECCIA_USER_ERROR;
-  if (H5Lexists(view->file, "Breccia/Frequencies", H5P_DEFAULT) > 0) {
+  if (!view->broken) return result_view_lost(view);
+  if (H5Lexists(view->file.id, "Breccia/Frequencies", H5P_DEFAULT) > 0) {
     view->frequencies =
         read_all(view, "Breccia/Frequencies", H5T_NATIVE_DOUBLE, sizeof(double), &view->frequency_count, error);
-    if (!view->frequencies) return BRECCIA_USER_ERROR;
+    if (!view->frequencies) return result_view_lost(view);
   }
   const int status = read_lattices(view, error);
   return status ? status : leave_outside(view, error);
@@ -196,7 +202,7 @@ static int finish_rest(const char *path, Error *error)
 
 int result_view_open(ResultView *view, const char *path, Error *error)
 {
-  *view = (ResultView){.file = -1};
+  *view = (ResultView){.file = {.id = -1}};
   int status = finish_rest(path, error);
   if (status) return status;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
@@ -205,26 +211,29 @@ int result_view_open(ResultView *view, const char *path, Error *error)
     return error_add(error, BRECCIA_USER_ERROR, "%s: %s", path,
                      errno == ENOENT || errno == ENOTDIR ? "there is no such file" : text_why_unread(errno));
   close(there);
-  view->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (view->file < 0) {
+  if (hdf5_file_open(&view->file, path) && view->file.error)
+    return error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, hdf5_file_reason(&view->file));
+  if (view->file.id < 0) {
     if (H5Fis_hdf5(path) <= 0) return error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file", path);
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: is damaged: it is shorter than it was, or its beginning does not have the checksum written "
                      "with it; put a whole copy in its place, or run again",
                      path);
   }
-  const htri_t vtk = H5Lexists(view->file, "VTKHDF", H5P_DEFAULT), own = H5Lexists(view->file, "Breccia", H5P_DEFAULT);
-  status = vtk < 0 || own < 0 ? say_damaged(view, "its list of groups", error)
+  const htri_t vtk = H5Lexists(view->file.id, "VTKHDF", H5P_DEFAULT),
+               own = H5Lexists(view->file.id, "Breccia", H5P_DEFAULT);
+  status = vtk < 0 || own < 0 ? result_view_say_damaged(view, "its list of groups", error)
            : vtk && own       ? read_heading(view, error)
                               : error_add(error, BRECCIA_USER_ERROR, "%s: is not a result file of this program", path);
   if (!status) status = read_numbers(view, error);
+  if (!status && view->file.error) status = result_view_say_damaged(view, "", error);
   if (status) result_view_close(view);
   return status;
 }
 
 void result_view_close(ResultView *view)
 {
-  if (view->file >= 0) H5Fclose(view->file);
+  hdf5_file_close(&view->file);
   free(view->positions);
   free(view->times);
   free(view->step_numbers);
@@ -233,7 +242,7 @@ void result_view_close(ResultView *view)
   free(view->broken);
   free(view->frequencies);
   free(view->row_of);
-  *view = (ResultView){.file = -1};
+  *view = (ResultView){.file = {.id = -1}};
 }
 
 static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *names)
@@ -246,7 +255,7 @@ static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, vo
 
 void result_view_fields(const ResultView *view, Text *names)
 {
-  hid_t data = H5Gopen2(view->file, "VTKHDF/PointData", H5P_DEFAULT);
+  hid_t data = H5Gopen2(view->file.id, "VTKHDF/PointData", H5P_DEFAULT);
   if (data < 0) return;
   H5Literate(data, H5_INDEX_NAME, H5_ITER_INC, NULL, add_name, names);
   H5Gclose(data);
@@ -256,7 +265,7 @@ bool result_view_has(const ResultView *view, const char *field)
 {
   char path[256];
   snprintf(path, sizeof path, "VTKHDF/PointData/%s", field);
-  return *field && !strchr(field, '/') && H5Lexists(view->file, path, H5P_DEFAULT) != 0;
+  return *field && !strchr(field, '/') && H5Lexists(view->file.id, path, H5P_DEFAULT) != 0;
 }
 
 double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error)
@@ -271,9 +280,9 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
     text_free(&names);
     return NULL;
   }
-  hid_t set = H5Dopen2(view->file, path, H5P_DEFAULT);
+  hid_t set = H5Dopen2(view->file.id, path, H5P_DEFAULT);
   if (set < 0) {
-    say_damaged(view, path, error);
+    result_view_say_damaged(view, path, error);
     return NULL;
   }
   hsize_t size[2] = {0, 1};
@@ -287,6 +296,7 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
             H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
             H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) < 0;
   if (unit) attribute_read_text(set, "unit", unit, 64);
+  bad |= view->file.error;
   H5Sclose(memory);
   H5Sclose(space);
   H5Dclose(set);
@@ -296,7 +306,7 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
   }
   snprintf(what, sizeof what, "%s at step %lld", path, (long long)view->step_numbers[step]);
   if (values)
-    say_damaged(view, what, error);
+    result_view_say_damaged(view, what, error);
   else
     error_add(error, BRECCIA_FAILURE, "out of memory: %s", what);
   free(values);

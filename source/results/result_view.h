@@ -6,12 +6,13 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "body/lattice.h"
+#include "results/hdf5_file.h"
 #include <stdint.h>
 
 enum { MOST_LATTICES = 32 };
 
 typedef struct ResultView {
-  int64_t file;            /* HDF5 handle */
+  Hdf5File file;           /* stays where it is while it is open */
   int64_t particles, rows; /* of the body; of the file, with those outside it */
   int64_t *row_of;         /* [particles] in the file; NULL: all rows are of the body */
   int steps;
@@ -29,11 +30,17 @@ typedef struct ResultView {
   char title[256], length_unit[64], time_unit[64];
 } ResultView;
 
-/** @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that tells what of the file is missing or damaged */
+/** @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that tells what of the file is missing or damaged, BRECCIA_FAILURE where the disk fails */
 int result_view_open(ResultView *view, const char *path, Error *error);
-/** Reads every dataset once. @return BRECCIA_OK; BRECCIA_USER_ERROR after a line that names one that is not as it was written */
+/** Reads every dataset once. @return as above, after a line that names one that is not as it was written */
 int result_view_verify(const ResultView *view, const char *path, Error *error);
 void result_view_close(ResultView *view);
+/** The file is ours, but what stands in it is not what was written, or the disk does not let it be read.
+ *  @param[in] what  of the file @return status, as result_view_lost() */
+int result_view_say_damaged(const ResultView *view, const char *what, Error *error);
+/** The status where something of the file could not be had, which was said. */
+int result_view_lost(const ResultView *view);
+
 /** The lattice that a particle stands on. */
 const LatticeType *result_view_lattice(const ResultView *view, int64_t particle);
 /** Names of the fields, comma separated. */

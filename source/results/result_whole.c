@@ -62,11 +62,8 @@ static herr_t look_at(hid_t root, const char *name, const H5L_info_t *info, void
 int result_view_verify(const ResultView *view, const char *path, Error *error)
 {
   Look look = {.no_memory = false};
-  const bool bad = H5Lvisit(view->file, H5_INDEX_NAME, H5_ITER_INC, look_at, &look) != 0;
+  const bool bad = H5Lvisit(view->file.id, H5_INDEX_NAME, H5_ITER_INC, look_at, &look) != 0;
   if (look.no_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
-  return bad ? error_add(error, BRECCIA_USER_ERROR,
-                         "%s: is damaged: %s cannot be read, or its bytes do not have the checksum written with them; "
-                         "put a whole copy in its place, or run again",
-                         path, *look.damaged ? look.damaged : "its list of groups")
-             : BRECCIA_OK;
+  if (!bad && !view->file.error) return BRECCIA_OK;
+  return result_view_say_damaged(view, *look.damaged ? look.damaged : "its list of groups", error);
 }

@@ -59,11 +59,19 @@ static char *path_in(const char *folder, const Watch *w)
   return text_format("%s/%s.csv", folder, name);
 }
 
+/** The disk fails: the file may be whole. */
+static int say_unread(const char *path, Error *error)
+{
+  return error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, strerror(EIO));
+}
+
 static int check_rows(const Watch *w, const char *path, int64_t step, Error *error)
 {
   uint32_t sum;
   int64_t count;
-  if (checksum_of_file(path, 0, w->kept_bytes, &sum, &count))
+  const bool unread = checksum_of_file(path, 0, w->kept_bytes, &sum, &count) != 0;
+  if (unread && errno == EIO) return say_unread(path, error);
+  if (unread)
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: %s; the run goes on from step %lld and needs its rows up to there: put the file back, or "
                      "run without --restart",
@@ -97,6 +105,8 @@ int watches_spare(const Watches *watches, const char *folder, const char *files,
     int64_t count;
     if (path && !checksum_of_file(path, 0, INT64_MAX, &sum, &count))
       bytes = text_format("%08" PRIx32 " %" PRId64 " ", sum, count);
+    else if (path && errno == EIO)
+      status = say_unread(path, error);
     for (const char *line = files; bytes && *line && !status; line += strcspn(line, "\n") + 1)
       if (!strncmp(line, bytes, strlen(bytes)))
         status = error_add(error, BRECCIA_USER_ERROR,

@@ -79,8 +79,8 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
   const double most_given = forces_strike(&d->forces) ? 0.15 : 0.1, most_unexplained = 1000;
   const double fracture = d->fracture_energy, internal = l->bond_work - fracture - forces_friction(&d->forces);
   const double lost = forces_dissipated(&d->forces) - forces_friction(&d->forces); /* cannot be given back */
-  const bool sound = isfinite(l->paid) && internal - lost >= -most_given * l->paid && fracture >= -most_given * l->paid &&
-                     l->between <= most_unexplained * l->paid;
+  const bool sound = isfinite(l->paid) && internal - lost >= -most_given * l->paid &&
+                     fracture >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;
   if (is_too_fast(l)) {
     l->unsound_steps = LASTING;

@@ -153,6 +153,30 @@ FAULT_FOLDER="$work/deep" FAULT_AT=1 FAULT_ERROR=28 LD_PRELOAD="$build/tests/lib
 equal "no folder" "$(cat out)" "deep/inner: the folder cannot be made: No space left on device"
 run bar.yaml/inner; equal "no folder in a file: status" $? 2
 
+# What lies in the folder cannot be read: a restart, and a look at results. One line tells it, and nothing is harmed.
+run half --steps 30 || fail "the first half failed: $(cat out)"
+reading() { # reading NUMBER COMMAND...: one command whose NUMBERth call that reads in 'faulty' fails
+  rm -rf faulty count
+  cp -r half faulty
+  FAULT_FOLDER="$work/faulty" FAULT_COUNT="$work/count" FAULT_READS=1 FAULT_AT=$1 FAULT_ERROR=5 LD_PRELOAD="$build/tests/libio_faults.so" \
+    "$breccia" "${@:2}" > told 2> out
+}
+restart="run bar.yaml --quiet --threads 1 --output faulty --restart" look="plot faulty --field damage" reads=
+for command in "$restart" "$look"; do
+  reading 0 $command; equal "$command: status" $? 0
+  all=$(wc -c < count)
+  [ "$all" -gt 20 ] || fail "$command: only $all calls that read were seen"
+  for number in $(seq 1 "${IO_FAULTS:-7}" "$all") "$all"; do
+    reading "$number" $command
+    status=$? checks=$((checks + 3))
+    [ $status = 1 ] || fail "$command: read $number: status $status: $(cat out)"
+    [ "$(wc -l < out)" = 1 ] && grep -q "^faulty/[a-z.]*[a-z0-9]: .*Input/output error" out || fail "$command: read $number: $(cat out)"
+    run faulty --restart || fail "$command: read $number: cannot be taken up: $(cat out)"
+    same faulty "$command: read $number"
+  done
+  reads="$reads, $all reads of ${command%% *}"
+done
+
 # A picture that cannot be written: the others and all else are, and the status tells.
 sed 's/^pictures: .*/pictures: [{field: damage}, {curve: "end.time : end.x"}]/' bar.yaml > drawn.yaml
 pictures() { # pictures [NUMBER]: one run whose NUMBERth call on a picture fails, in each process
@@ -180,5 +204,5 @@ for number in $(seq 1 "$drawn"); do
     fail "pictures, call $number: histories or results differ"
   contains "pictures, call $number" "$(cat drawn/summary.json)" '"completed": true'
 done
-echo "failing writes: $tried tried, $lost lost; $calls calls in a run, $large with a journal, $drawn on pictures"
+echo "failing writes: $tried tried, $lost lost; $calls calls in a run, $large with a journal, $drawn on pictures$reads"
 finish

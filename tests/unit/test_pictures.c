@@ -219,7 +219,7 @@ static void a_closed_file_may_be_closed_again(void **state)
   open_bar(&view);
   for (int again = 0; again < 2; ++again) {
     result_view_close(&view);
-    assert_true(view.file < 0 && !view.times && !view.positions && !view.lattice_numbers);
+    assert_true(view.file.id < 0 && !view.times && !view.positions && !view.lattice_numbers);
   }
   assert_int_not_equal(result_view_open(&view, "nowhere.vtkhdf", NULL), 0);
   result_view_close(&view);
@@ -576,7 +576,7 @@ static void xdmf_names_a_whole_dataset_for_every_step(void **state)
     double *expected = result_view_read(&view, "stress", k, &components, NULL, NULL);
     double *found = calloc((size_t)view.particles * 6, sizeof *found);
     name[strlen(name) - 1] = 0;
-    hid_t set = H5Dopen2(view.file, strchr(name, ':') + 1, H5P_DEFAULT), space = H5Dget_space(set);
+    hid_t set = H5Dopen2(view.file.id, strchr(name, ':') + 1, H5P_DEFAULT), space = H5Dget_space(set);
     assert_int_equal(H5Sget_simple_extent_npoints(space), view.particles * 6);
     assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, found) >= 0);
     assert_memory_equal(found, expected, sizeof *found * (size_t)view.particles * 6);
