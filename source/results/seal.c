@@ -2,6 +2,7 @@
 
 #include "base/checksum.h"
 #include "base/whole_file.h"
+#include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -36,7 +37,9 @@ int seal_is_broken(const char *path)
   if (words_for(path, words)) return -1;
   const int file = open(path, O_RDONLY);
   if (file < 0) return -1;
-  const int bad = pread(file, there, SEAL_BYTES, 0) != SEAL_BYTES || memcmp(words, there, SEAL_BYTES);
+  const ssize_t n = pread(file, there, SEAL_BYTES, 0);
+  const int problem = errno;
   close(file);
-  return bad;
+  errno = problem;
+  return n < 0 ? -1 : n != SEAL_BYTES || memcmp(words, there, SEAL_BYTES) != 0;
 }
