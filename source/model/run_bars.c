@@ -33,6 +33,7 @@ void run_add_bars(const breccia_model *model, Text *t)
     add_number(t, "area", b->bar_area[n]);
     text_add(t, ", \"stress\": [%.10g, %.10g], \"strain\": [%.10g, %.10g], \"stress_so_far\": [%.10g, %.10g]",
              r.least_stress, r.largest_stress, r.least_strain, r.largest_strain, r.lowest_stress, r.highest_stress);
+    if (bar_slips(b, n)) text_add(t, ", \"slip\": [%.10g, %.10g]", r.least_slip, r.largest_slip);
     add_number(t, "stored", r.stored);
     add_number(t, "dissipated", r.dissipated);
     add_number(t, "yielded_share", r.yielded);

@@ -11,14 +11,15 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static void add_heading(const Units *units, Text *t)
+static void add_heading(const Units *units, bool slips, Text *t)
 {
-  static const char *const columns[][2] = {{"along", "length"},   {"x", "length"},          {"y", "length"},
-                                           {"z", "length"},       {"strain", "1"},          {"stress", "stress"},
-                                           {"force", "force"},    {"dissipated", "energy"}, {"yielded since", "time"},
-                                           {"torn since", "time"}};
+  static const char *const columns[][2] = {{"along", "length"},    {"x", "length"},          {"y", "length"},
+                                           {"z", "length"},        {"strain", "1"},          {"stress", "stress"},
+                                           {"force", "force"},     {"dissipated", "energy"}, {"yielded since", "time"},
+                                           {"torn since", "time"}, {"slip", "length"},       {"bond stress", "stress"}};
+  const size_t count = sizeof columns / sizeof *columns;
   text_add(t, "bar");
-  for (size_t c = 0; c < sizeof columns / sizeof *columns; ++c) {
+  for (size_t c = 0; c < (slips ? count : count - 2); ++c) {
     char unit[64];
     units_name(units, dimension_find(columns[c][1]), unit, sizeof unit);
     text_add(t, *unit ? ",%s (%s)" : ",%s", columns[c][0], unit);
@@ -44,7 +45,7 @@ static void add_time(Text *t, double when)
 
 static void add_table(const Bars *b, const Units *units, Text *t)
 {
-  add_heading(units, t);
+  add_heading(units, b->slips != NULL, t);
   for (int n = 0; n < b->specs->count; ++n) {
     double along = 0;
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
@@ -55,6 +56,7 @@ static void add_table(const Bars *b, const Units *units, Text *t)
                b->strain_held[e], b->stress_held[e], b->area[e] * b->stress_held[e], bar_dissipated_in(b, e));
       add_time(t, b->yielded[e]);
       add_time(t, b->torn[e]);
+      if (b->slips) text_add(t, ",%.17g,%.17g", bar_slip_in(b, n, e), bar_bond_stress_in(b, n, e));
       text_add(t, "\n");
       along += b->length[e];
     }
@@ -76,6 +78,13 @@ static void add_of_elements(Text *t, const Bars *b, const char *name, const doub
   text_add(t, "</DataArray>\n");
 }
 
+static void add_of_nodes(Text *t, const Bars *b, const char *name, const double *values)
+{
+  open_array(t, name, 1, "Float64");
+  for (int64_t k = 0; k < b->count + b->specs->count; ++k) text_add(t, "%.17g\n", values[k]);
+  text_add(t, "</DataArray>\n");
+}
+
 static void add_lines(const Bars *b, Text *t)
 {
   const int64_t nodes = b->count + b->specs->count;
@@ -92,7 +101,10 @@ static void add_lines(const Bars *b, Text *t)
     bar_node_displacement(b, k, u);
     text_add(t, "%.17g %.17g %.17g\n", u[0], u[1], u[2]);
   }
-  text_add(t, "</DataArray>\n</PointData>\n<Lines>\n");
+  text_add(t, "</DataArray>\n");
+  if (b->slips) add_of_nodes(t, b, "slip", b->slips->slip_held);
+  if (b->slips) add_of_nodes(t, b, "bond stress", b->slips->stress_held);
+  text_add(t, "</PointData>\n<Lines>\n");
   open_array(t, "connectivity", 1, "Int64");
   for (int n = 0; n < b->specs->count; ++n)
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e)

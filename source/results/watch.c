@@ -122,8 +122,10 @@ static const Field watch_fields[] = {
      .offset = offsetof(WatchSpec, bar),
      .dimension = "bar",
      .standard = "",
-     .meaning = "a reinforcing bar: its least and largest strain and stress, its energies, and which shares of its "
-                "length have yielded and are torn; with 'at' the strain, stress and force (of all parallel bars) there",
+     .meaning =
+         "a reinforcing bar: its least and largest strain and stress, its energies, and which shares of its "
+         "length have yielded and are torn; with 'at' the strain, stress and force (of all parallel bars) there; and "
+         "slips, with 'at' bond stress too, of a bar with 'bond'",
      .group = 'A'},
     {.key = "at",
      .kind = FIELD_POINT,
@@ -273,6 +275,22 @@ static void element_row(const Watch *w, const Solver *s, double *values)
   values[2] = b->area[w->element] * b->stress_held[w->element];
 }
 
+static void slipping_bar_row(const Watch *w, const Solver *s, double *values)
+{
+  const BarReport r = bar_report(bars_among(&s->domain->forces), w->bar);
+  bar_row(w, s, values);
+  values[8] = r.least_slip;
+  values[9] = r.largest_slip;
+}
+
+static void slipping_element_row(const Watch *w, const Solver *s, double *values)
+{
+  const Bars *b = bars_among(&s->domain->forces);
+  element_row(w, s, values);
+  values[3] = bar_slip_in(b, w->bar, w->element);
+  values[4] = bar_bond_stress_in(b, w->bar, w->element);
+}
+
 static const Kind
     displacement_kind = {"x:length,y:length,z:length", displacement_row},
     velocity_kind = {"x:velocity,y:velocity,z:velocity", velocity_row},
@@ -288,10 +306,15 @@ static const Kind
                    "energy,fracture:energy,"
                    "imbalance:1,broken bonds:1,friction:energy",
                    energy_row},
-    bar_kind = {"least strain:1,largest strain:1,least stress:stress,largest stress:stress,stored:energy,"
-                "dissipated:energy,yielded:1,torn:1",
-                bar_row},
-    element_kind = {"strain:1,stress:stress,force:force", element_row};
+#define BAR_COLUMNS                                                                                                    \
+  "least strain:1,largest strain:1,least stress:stress,largest stress:stress,stored:energy,dissipated:energy,"         \
+  "yielded:1,torn:1"
+#define ELEMENT_COLUMNS "strain:1,stress:stress,force:force"
+    bar_kind = {BAR_COLUMNS, bar_row}, element_kind = {ELEMENT_COLUMNS, element_row},
+    slipping_bar_kind = {BAR_COLUMNS ",least slip:length,largest slip:length", slipping_bar_row},
+    slipping_element_kind = {ELEMENT_COLUMNS ",slip:length,bond stress:stress", slipping_element_row};
+#undef BAR_COLUMNS
+#undef ELEMENT_COLUMNS
 static int resolve_ends(Watch *w, const Body *body, const Family *family, const DeckReader *reader)
 {
   const NumberList *points = w->spec->opening.count ? &w->spec->opening : &w->spec->bond;
@@ -383,7 +406,10 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
   if (spec->bar) {
     const Bars *b = bars_among(&domain->forces);
     if ((w->bar = bars_find(b, spec->bar)) < 0) return BRECCIA_USER_ERROR; /* said when the deck was read */
-    w->kind = isnan(spec->at[0]) ? &bar_kind : &element_kind;
+    if (bar_slips(b, w->bar))
+      w->kind = isnan(spec->at[0]) ? &slipping_bar_kind : &slipping_element_kind;
+    else
+      w->kind = isnan(spec->at[0]) ? &bar_kind : &element_kind;
     w->element = isnan(spec->at[0]) ? 0 : bar_nearest(b, w->bar, spec->at);
     return BRECCIA_OK;
   }

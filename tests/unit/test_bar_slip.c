@@ -3,6 +3,8 @@
 
 #include "bars/bars.h"
 #include "base/random.h"
+#include "results/bar_lines.h"
+#include "results/watch_parts.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
 #define ROD "rod: {model: elastic, density: 7, Young modulus: 2e8, Poisson ratio: 0.3}"
@@ -77,6 +79,36 @@ static void a_bar_is_pulled_out_as_by_the_closed_form(void **state)
   for (int64_t k = 0; b->node[k][0] < l + 1e-9; ++k)
     assert_near(b->slips->slip_held[k], slip * cosh(lambda * b->node[k][0]) / cosh(lambda * l), 0.01 * slip);
   assert_near(b->slips->slip_held[b->count], 0, 0);
+  const Watch *whole = &m->watches->items[0], *place = &m->watches->items[1];
+  double told[10], there[5];
+  assert_int_equal(watch_columns(whole->kind), 10);
+  assert_int_equal(watch_columns(place->kind), 5);
+  whole->kind->row(whole, &m->solver, told);
+  place->kind->row(place, &m->solver, there);
+  const double middle = slip * cosh(lambda * 0.175) / cosh(lambda * l);
+  assert_near(told[8], 0, 1e-15);
+  double most = 0;
+  for (int64_t k = 0; k <= b->count; ++k) most = fmax(most, b->slips->slip_held[k]);
+  assert_near(told[9], most, 0);
+  assert_near(there[3], middle, 0.01 * slip);
+  assert_near(there[4], 1.4e7 * middle, 0.01 * 1.4e7 * slip);
+  char folder[] = "/tmp/breccia-slips-XXXXXX", line[512] = "";
+  assert_non_null(mkdtemp(folder));
+  Text files = {0};
+  assert_int_equal(bar_lines_write(&m->domain, folder, m->units, &files, NULL), 0);
+  text_free(&files);
+  char *path = text_format("%s/bars/bars.csv", folder);
+  FILE *file = fopen(path, "r");
+  double told_slip = 0;
+  assert_non_null(fgets(line, sizeof line, file));
+  holds_words(line, "torn since (s),slip (m),bond stress (kPa)");
+  for (int row = 0; row < 4; ++row) assert_non_null(fgets(line, sizeof line, file));
+  assert_int_equal(sscanf(strstr(line, ",,,") + 3, "%lf", &told_slip), 1);
+  assert_near(told_slip, there[3], 0);
+  fclose(file);
+  free(path);
+  snprintf(line, sizeof line, "rm -r %s", folder);
+  assert_int_equal(system(line), 0);
   for (int64_t e = 8; e < b->count; ++e) assert_near(section * b->stress_held[e], force, 0.01 * force);
   double *f[3];
   for (int k = 0; k < 3; ++k) f[k] = places_array(p->places, "test", NULL);
