@@ -21,6 +21,7 @@ void bar_slips_destroy(Bars *b)
   free(s->slips);
   free(s->fixed);
   free(s->surface);
+  free(s->bonded);
   free(s->slip_held);
   free(s->stress_held);
   free(s->forward);
@@ -45,12 +46,18 @@ static bool is_anchored(const BarSpec *bar, const char *end)
   return false;
 }
 
-/** Gives halves of elements, as far as they are bonded, to their nodes. @return surface that is bonded */
+static double perimeter(const Bars *b, int n)
+{
+  const BarSpec *bar = b->specs->items[n];
+  const double pi = acos(-1), diameter = isnan(bar->area) ? bar->diameter : sqrt(4 / pi * bar->area);
+  return (double)bar->number * pi * diameter;
+}
+
+/** Finds how much of both halves of elements is bonded, and gives it to their nodes. @return surface that is bonded */
 static double share_surface(Bars *b, int n)
 {
   const BarSpec *bar = b->specs->items[n];
-  const double pi = acos(-1), number = (double)bar->number,
-               diameter = isnan(bar->area) ? bar->diameter : sqrt(4 / pi * bar->area);
+  const double around = perimeter(b, n);
   const bool all = !bar->bonded.count;
   double along = 0, sum = 0;
   for (int64_t e = b->first[n]; e < b->first[n + 1]; along += b->length[e++])
@@ -58,7 +65,8 @@ static double share_surface(Bars *b, int n)
       const double from = along + half * b->length[e] / 2, to = from + b->length[e] / 2;
       const double least = all ? from : fmax(from, bar->bonded.values[0]),
                    most = all ? to : fmin(to, bar->bonded.values[1]);
-      const double surface = number * pi * diameter * fmax(0, most - least);
+      const double surface = around * fmax(0, most - least);
+      b->slips->bonded[2 * e + half] = surface;
       b->slips->surface[e + n + half] += surface;
       sum += surface;
     }
@@ -78,7 +86,8 @@ int bar_slips_create(Bars *b, const ForcesParts *parts, Error *error)
   s->slips = memory_zeroed((size_t)bars, sizeof *s->slips, "bars", error);
   s->stuck = memory_zeroed((size_t)bars, sizeof *s->stuck, "bars", error);
   s->fixed = memory_zeroed(nodes, sizeof *s->fixed, "bars", error);
-  bool made = s->law && s->slips && s->stuck && s->fixed;
+  s->bonded = memory_zeroed(2 * (size_t)b->count, sizeof *s->bonded, "bars", error);
+  bool made = s->law && s->slips && s->stuck && s->fixed && s->bonded;
   double **const numbers[] = {&s->surface,  &s->slip,     &s->stress,   &s->slip_held, &s->stress_held,
                               &s->forward,  &s->backward, &s->worked,   &s->pivot,     &s->factor,
                               &s->residual, &s->change,   &s->stiffness};
@@ -103,10 +112,12 @@ int bar_slips_create(Bars *b, const ForcesParts *parts, Error *error)
 
 /* ---- equilibrium ---- */
 
-/** Stress and stiffness of the bond at a node, at its slip. */
+/** Stress and stiffness of the bond at a node, at its slip; none where nothing of its surface is bonded. */
 static double bond_stress(const Bars *b, int n, int64_t k, double *slope)
 {
   const BarSlips *s = b->slips;
+  *slope = 0;
+  if (!(s->surface[k] > 0)) return 0;
   const BondState held = {s->slip_held[k], s->stress_held[k], s->forward[k], s->backward[k]};
   return bond_law_stress(&s->law[n], &held, s->slip[k], b->points.elastic_stage, slope);
 }
@@ -119,7 +130,6 @@ static void evaluate(Bars *b, int n)
     s->stress[k] = bond_stress(b, n, k, &s->stiffness[k]);
     s->stiffness[k] *= s->surface[k];
     s->residual[k] = s->surface[k] * s->stress[k];
-    if (!(s->surface[k] > 0)) s->stiffness[k] = 0;
   }
   for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
     const int64_t k = e + n;
@@ -262,7 +272,7 @@ void bar_factor_slips(Bars *b, int n)
   for (int64_t k = b->first[n] + n; k <= b->first[n + 1] + n; ++k) {
     double slope;
     bond_stress(b, n, k, &slope);
-    s->stiffness[k] = s->surface[k] > 0 ? s->surface[k] * ((1 - share) * slope + share * s->law[n].stiffness) : 0;
+    s->stiffness[k] = s->surface[k] * ((1 - share) * slope + share * s->law[n].stiffness);
   }
   if (!factor(b, n, 0)) factor(b, n, none);
 }
@@ -323,7 +333,10 @@ double bar_slip_in(const Bars *b, int n, int64_t e)
 
 double bar_bond_stress_in(const Bars *b, int n, int64_t e)
 {
-  return bar_slips(b, n) ? (b->slips->stress_held[e + n] + b->slips->stress_held[e + n + 1]) / 2 : 0;
+  const BarSlips *s = b->slips;
+  if (!bar_slips(b, n)) return 0;
+  return (s->bonded[2 * e] * s->stress_held[e + n] + s->bonded[2 * e + 1] * s->stress_held[e + n + 1]) /
+         (perimeter(b, n) * b->length[e]);
 }
 
 void bar_slips_state(Bars *b, StateList *list)

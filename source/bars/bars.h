@@ -27,7 +27,8 @@ typedef struct BarSlips {
   BondLaw *law;                                         /* [bars]; those of bars that do not slip are not used */
   bool *slips;                                          /* [bars] */
   bool *fixed;                                          /* a node that is anchored */
-  double *surface;                                      /* of the bar that belongs to a node */
+  double *surface;                                      /* of the bar, as far as it is bonded, that belongs to a node */
+  double *bonded;                                       /* [2 count] the same of both halves of an element */
   double *slip, *stress;                                /* as of the last evaluation */
   double *slip_held, *stress_held, *forward, *backward; /* as committed; largest slips so far both ways */
   double *worked;                                       /* work on bond so far */
@@ -132,7 +133,7 @@ void bar_slips_state(Bars *bars, StateList *list);
 /** Energy that the bond of a bar would give back, and work that it has not kept. */
 double bar_bond_stored(const Bars *bars, int bar);
 double bar_bond_dissipated(const Bars *bars, int bar);
-/** Slip and bond stress in the middle of an element, as committed; 0 in perfect bond. */
+/** Slip in the middle of an element and mean bond stress on its surface, as committed; 0 in perfect bond. */
 double bar_slip_in(const Bars *bars, int bar, int64_t element);
 double bar_bond_stress_in(const Bars *bars, int bar, int64_t element);
 

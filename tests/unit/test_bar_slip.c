@@ -110,6 +110,12 @@ static void a_bar_is_pulled_out_as_by_the_closed_form(void **state)
   snprintf(line, sizeof line, "rm -r %s", folder);
   assert_int_equal(system(line), 0);
   for (int64_t e = 8; e < b->count; ++e) assert_near(section * b->stress_held[e], force, 0.01 * force);
+  double borne = 0;
+  for (int64_t e = 0; e < b->count; ++e) borne += bar_bond_stress_in(b, 0, e) * around() * b->length[e];
+  assert_near(borne, section * b->stress_held[b->count - 1], 1e-9 * force);
+  for (int64_t e = 8; e < b->count; ++e)
+    assert_near(bar_bond_stress_in(b, 0, e), 0, 1e-9 * there[4]); /* in its sleeve */
+  for (int64_t k = 9; k <= b->count; ++k) assert_near(b->slips->stress_held[k], 0, 0);
   double *f[3];
   for (int k = 0; k < 3; ++k) f[k] = places_array(p->places, "test", NULL);
   domain_forces_beside(&m->domain, f);
