@@ -95,7 +95,7 @@ SUMMARY_UNITS = {"time": "times", "time_step": "times", "stable_time_step": "tim
                  "displacement": "positions and displacements", "velocity": "velocities", "octahedral_shear_stress": "stresses",
                  "mean_stress_lowest": "stresses", "mean_stress_highest": "stresses"}
 BAR_UNITS = {"elements": "", "area": "areas", "stress": "stresses", "strain": "", "stress_so_far": "stresses", "stored": "energies", "dissipated": "energies", "yielded_share": "",
-             "torn_share": ""}
+             "torn_share": "", "slip": "positions and displacements"}
 
 
 def groups_of_summary(path):
