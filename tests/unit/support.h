@@ -29,6 +29,11 @@ char *refusal_of(const char *deck);
 /** Fails unless |a - b| <= tolerance. */
 #define assert_near(a, b, tolerance) assert_near_at((a), (b), (tolerance), #a, __FILE__, __LINE__)
 void assert_near_at(double a, double b, double tolerance, const char *what, const char *file, int line);
+/** Of errors that are collected: where one is no number it is that one. fmax() would pass over it, and the test with it. */
+static inline double larger_of(double a, double b)
+{
+  return isnan(a) || b <= a ? a : b;
+}
 
 /** Sets displacements u = (F - I) X of all particles; F row by row. */
 void deform_uniformly(breccia_model *model, const double f[9]);

@@ -88,7 +88,7 @@ static void a_bar_is_pulled_out_as_by_the_closed_form(void **state)
   const double middle = slip * cosh(lambda * 0.175) / cosh(lambda * l);
   assert_near(told[8], 0, 1e-15);
   double most = 0;
-  for (int64_t k = 0; k <= b->count; ++k) most = fmax(most, b->slips->slip_held[k]);
+  for (int64_t k = 0; k <= b->count; ++k) most = larger_of(most, b->slips->slip_held[k]);
   assert_near(told[9], most, 0);
   assert_near(there[3], middle, 0.01 * slip);
   assert_near(there[4], 1.4e7 * middle, 0.01 * 1.4e7 * slip);
@@ -145,7 +145,7 @@ static void a_short_bar_bears_the_bond_stress_of_its_surface(void **state)
     for (int t = 0; t < 200; ++t) {
       step_surely(m, 1);
       last = section * b->stress_held[b->count - 1];
-      most = fmax(most, last);
+      most = larger_of(most, last);
       const double s = (b->slips->slip_held[3] + b->slips->slip_held[4]) / 2;
       double at = 2 * s; /* the law by its words */
       if (c == 0) at = s < 1e-3 ? pow(s / 1e-3, 0.4) : s < 2e-3 ? 1 : s < 8e-3 ? 1 - 0.6 * (s - 2e-3) / 6e-3 : 0.4;
@@ -212,7 +212,7 @@ static double lead(const BondLaw *law, BondState *at, double slip)
     work += (stress + at->stress) / 2 * step;
     at->slip = next;
     at->stress = stress;
-    at->forward = fmax(at->forward, next);
+    at->forward = larger_of(at->forward, next);
     at->backward = fmin(at->backward, next);
   }
   return work;
@@ -339,11 +339,11 @@ static void a_body_that_is_turned_has_the_same_slips(void **state)
     find_beside(turned, g);
     const Bars *a = bars_of(straight), *b = bars_of(turned);
     double most = 0, size = 0;
-    for (int64_t k = 0; k <= a->count; ++k) most = fmax(most, fabs(a->slips->slip[k]));
+    for (int64_t k = 0; k <= a->count; ++k) most = larger_of(most, fabs(a->slips->slip[k]));
     assert_true(most > 1e-5);
     for (int64_t k = 0; k <= a->count; ++k) assert_near(b->slips->slip[k], a->slips->slip[k], 1e-9 * most);
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = fmax(size, fabs(f[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(f[k][i]));
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i)
         assert_near(g[k][i], q[3 * k] * f[0][i] + q[3 * k + 1] * f[1][i] + q[3 * k + 2] * f[2][i], 1e-8 * size);
@@ -381,7 +381,7 @@ static void changes_are_those_of_forces(void **state)
       find_beside(m, side ? down : up);
     }
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = fmax(size, fabs(changed[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed[k][i]));
     assert_true(size > 0);
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i)
@@ -405,7 +405,7 @@ static void stiff_bond_comes_to_perfect_bond(void **state)
   find_beside(stiff, f);
   find_beside(perfect, g);
   for (int k = 0; k < 3; ++k)
-    for (int64_t i = 0; i < stiff->domain.particles->places; ++i) size = fmax(size, fabs(g[k][i]));
+    for (int64_t i = 0; i < stiff->domain.particles->places; ++i) size = larger_of(size, fabs(g[k][i]));
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < stiff->domain.particles->places; ++i) assert_near(f[k][i], g[k][i], 1e-4 * size);
   drop(f);

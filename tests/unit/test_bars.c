@@ -191,7 +191,7 @@ static void changes_are_those_of_forces_and_of_energy(void **state)
     }
     double size = 0;
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < p->places; ++i) size = fmax(size, fabs(changed[k][i]));
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed[k][i]));
     assert_true(size > 0);
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i) {
@@ -482,7 +482,7 @@ static void a_cracked_tie_carries_what_its_steel_yields_at(void **state)
   double held = 0, most = 0;
   for (int64_t n = 0; n < p->count; ++n)
     if (p->position[0][p->place_of[n]] < 0.4) held += p->volume[p->place_of[n]] * p->internal[0][p->place_of[n]];
-  for (int64_t e = 0; e < b->count; ++e) most = fmax(most, b->stress[e]);
+  for (int64_t e = 0; e < b->count; ++e) most = larger_of(most, b->stress[e]);
   assert_true(breccia_model_broken_bonds(m) > 100);
   assert_near(most, 5e5, 1e-6);
   assert_near(held, 5e5 * 1e-5, 0.01 * 5);

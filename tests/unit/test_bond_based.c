@@ -288,7 +288,7 @@ static void rigid_rotation_makes_no_force(void **state)
     deform_uniformly(model, turn ? f : stretch);
     compute_forces(model);
     for (int64_t n = 0; n < p->count; ++n)
-      for (int k = 0; k < 3; ++k) largest[turn] = fmax(largest[turn], fabs(p->internal[k][p->place_of[n]]));
+      for (int k = 0; k < 3; ++k) largest[turn] = larger_of(largest[turn], fabs(p->internal[k][p->place_of[n]]));
   }
   assert_true(largest[0] > 0);
   assert_near(largest[1] / largest[0], 0, 1e-12);
@@ -488,7 +488,7 @@ static void forces_do_not_depend_on_how_bonds_are_kept(void **state)
           const int32_t i = particles_nearest(p, (double[]){n % 9 + 0.5, n / 9 % 5 + 0.5, n / 45 + 0.5});
           for (int k = 0; k < 3; ++k) {
             force[b][n][k] = p->internal[k][i];
-            largest = fmax(largest, fabs(p->internal[k][i]));
+            largest = larger_of(largest, fabs(p->internal[k][i]));
             if (b) farthest[b - 1] = fmax(farthest[b - 1], fabs(force[b][n][k] - force[0][n][k]));
           }
         }

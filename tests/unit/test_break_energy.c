@@ -112,7 +112,7 @@ static void bodies_gain_no_energy_as_they_break(void **state)
       const Energy e = solver_energy(&m->solver);
       const Particles *p = m->domain.particles;
       for (int64_t n = 0; n < p->count; ++n)
-        fastest = fmax(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
+        fastest = larger_of(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
       print_message("%s: external %.1f J, stored %.1f J, fracture %.2f J, given back %.4f J, %lld bonds\n", words,
                     e.external, e.stored, e.fracture, given, (long long)m->domain.broken_count);
       assert_true(m->domain.broken_count > 100);

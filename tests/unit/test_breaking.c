@@ -78,7 +78,7 @@ static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
       const Particles *p = m->domain.particles;
       double fastest = 0;
       for (int64_t n = 0; n < p->count; ++n)
-        fastest = fmax(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
+        fastest = larger_of(fastest, hypot(p->velocity[0][p->place_of[n]], p->velocity[1][p->place_of[n]]));
       assert_true(fastest < 10 * 16.5);
       assert_true(m->domain.broken_count > 500);
       assert_true(e.imbalance < 5e-3);

@@ -16,7 +16,7 @@ static double largest(const Particles *p, double *const v[3])
 {
   double most = 0;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) most = fmax(most, fabs(v[k][p->place_of[n]]));
+    for (int k = 0; k < 3; ++k) most = larger_of(most, fabs(v[k][p->place_of[n]]));
   return most;
 }
 

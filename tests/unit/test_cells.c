@@ -37,7 +37,7 @@ static void every_particle_within_reach_is_found(void **state)
         const double at = x[k][p->place_of[n]];
         if (!isfinite(at)) continue;
         low = fmin(low, at);
-        high = fmax(high, at);
+        high = larger_of(high, at);
       }
       assert_true(cells.low[k] == low);
       assert_int_equal(cells.count[k], 1 + (int64_t)floor((high - low) / cells.width));

@@ -100,8 +100,8 @@ static void a_lattice_read_from_a_file_has_the_forces_of_the_lattice(void **stat
       for (int32_t n = 0; n < p->count; ++n)
         for (int c = 0; c < 3; ++c) {
           double f = p->internal[c][p->place_of[n]];
-          most = fmax(most, fabs(f));
-          off = fmax(off, fabs(f - q->internal[c][q->place_of[number_of[n]]]));
+          most = larger_of(most, fabs(f));
+          off = larger_of(off, fabs(f - q->internal[c][q->place_of[number_of[n]]]));
         }
       assert_true(most > 0);
       assert_near(off, 0, 2e-13 * most);

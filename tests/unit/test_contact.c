@@ -51,7 +51,7 @@ static Motion motion_of(const breccia_model *model)
     if (p->block[i / SLICE])
       right = fmin(right, x[0]);
     else
-      left = fmax(left, x[0]);
+      left = larger_of(left, x[0]);
   }
   m.gap = right - left;
   return m;
@@ -205,7 +205,7 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
     for (int k = 0; k < 3; ++k) {
       x[k] = p->position[k][i] + p->displacement[k][i];
       sum[k] += f[k] = force[k * p->places + i];
-      largest = fmax(largest, fabs(f[k]));
+      largest = larger_of(largest, fabs(f[k]));
     }
     for (int k = 0; k < 3; ++k) couple[k] += x[(k + 1) % 3] * f[(k + 2) % 3] - x[(k + 2) % 3] * f[(k + 1) % 3];
   }
@@ -224,7 +224,7 @@ static void check_derivative(breccia_model *model, double spacing, const char *w
         energy[side] = contact_energy(contact_of(d));
       }
       p->displacement[k][i] = here;
-      worst = fmax(worst, fabs((energy[1] - energy[0]) / (2 * h) + force[k * p->places + i]));
+      worst = larger_of(worst, fabs((energy[1] - energy[0]) / (2 * h) + force[k * p->places + i]));
       checked += fabs(force[k * p->places + i]) > 1e-3 * largest;
     }
   }

@@ -192,7 +192,7 @@ static void a_block_that_slides_on_a_cut_gains_nothing(void **state)
       const double given = model->solver.ledger.kinetic_at_start + e.external;
       assert_near(e.kinetic + e.stored, given, 0.01 * model->solver.ledger.kinetic_at_start);
       assert_true(e.imbalance < 5e-3);
-      most = fmax(most, contact_energy(contact_of(&model->domain)));
+      most = larger_of(most, contact_energy(contact_of(&model->domain)));
     }
     assert_true(mean_motion(model, 0, 0.04, 1) - mean_motion(model, 0, 0.04, -1) > 0.019);
     assert_true(most > 1e-4 * model->solver.ledger.kinetic_at_start); /* it was pressed */

@@ -44,7 +44,7 @@ static double space_between(const breccia_model *model, int axis)
     if (p->block[i / SLICE])
       bottom = fmin(bottom, x);
     else
-      top = fmax(top, x);
+      top = larger_of(top, x);
   }
   return bottom - top;
 }
@@ -86,7 +86,7 @@ static void the_stable_step_holds_when_faces_press(void **state)
           assert_true(pressed < 0.99 * alone);
           if (told > pressed)
             fail_msg("%s, kind %d, horizon %d, friction %d: %g of it", lattices[l], kind, wide, rough, told / pressed);
-          most = fmax(most, told / pressed);
+          most = larger_of(most, told / pressed);
           breccia_model_destroy(&m);
         }
   print_message("the step told is at most %.2f of the stable one of pressed bodies\n", most);
@@ -239,7 +239,7 @@ static void corners_of_other_lattices_meet_and_keep_their_books(void **state)
       breccia_error *error = breccia_error_create();
       while (m->solver.clock.step < 1500) {
         if (breccia_model_step(m, 10, error)) fail_msg("%s: %s", lattices[l], breccia_error_text(error));
-        most = fmax(most, contact_energy(contact_of(m)));
+        most = larger_of(most, contact_energy(contact_of(m)));
         assert_true(solver_energy(&m->solver).imbalance < 0.02);
       }
       for (int64_t i = 0; i < p->places; ++i)

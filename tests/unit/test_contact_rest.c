@@ -58,8 +58,8 @@ static void check_changes(breccia_model *m, const char *what)
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < p->places; ++i) {
       const double expected = (forces[1][k][i] - forces[0][k][i]) / (2 * h);
-      largest = fmax(largest, fabs(expected));
-      worst = fmax(worst, fabs(change[k][i] - expected));
+      largest = larger_of(largest, fabs(expected));
+      worst = larger_of(worst, fabs(change[k][i] - expected));
     }
   print_message("%s: %.1e\n", what, worst / largest);
   assert_true(largest > 0);
@@ -146,8 +146,8 @@ static void points_of_pairs_are_what_the_matrix_needs(void **state)
   for (int64_t row = 0; row < matrix.size; ++row) {
     double sum = 0;
     for (int64_t t = matrix.first[row]; t < matrix.first[row + 1]; ++t) sum += matrix.value[t] * x[matrix.column[t]];
-    largest = fmax(largest, fabs(y[row]));
-    most = fmax(most, fabs(sum - y[row]));
+    largest = larger_of(largest, fabs(y[row]));
+    most = larger_of(most, fabs(sum - y[row]));
   }
   assert_near(most, 0, 1e-10 * largest);
   free(x), free(y);
@@ -163,7 +163,7 @@ static double top_of(const breccia_model *m)
   const Particles *p = m->domain.particles;
   double sum = 0, highest = -INFINITY;
   int64_t count = 0;
-  for (int64_t n = 0; n < p->count; ++n) highest = fmax(highest, p->position[1][p->place_of[n]]);
+  for (int64_t n = 0; n < p->count; ++n) highest = larger_of(highest, p->position[1][p->place_of[n]]);
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
     if (p->position[1][i] < highest - 1e-9) continue;

@@ -89,7 +89,7 @@ static void the_bonds_of_a_family_hold_what_it_stores_however_it_is_turned(void 
             const double half = half_energy(d, place / SLICE, slot, lane) * d->particles->volume[place] *
                                 d->particles->volume[family_bond(&d->family, place / SLICE, slot, lane).neighbour];
             sum[turned] += half;
-            one[turned] = fmax(one[turned], half);
+            one[turned] = larger_of(one[turned], half);
           }
         assert_near(sum[turned], whole[turned], 3e-3 * whole[turned]);
       }
@@ -143,7 +143,7 @@ static void bonds_of_any_influence_break_at_the_same_energy(void **state)
               length += pow(bond.xi[k] + u[bond.neighbour] - u[place], 2);
             }
             if (sqrt(length) <= bond.length) continue;
-            most = fmax(most, energy);
+            most = larger_of(most, energy);
             if (!pass || fabs(energy / limit - 1) < 1e-9) continue;
             const Bond turned = family_bond(&d->family, there, back, bond.neighbour % SLICE);
             bool breaks = d->failure.criterion->exceeds(&d->failure, &d->family, place / SLICE, slot, &bond, lane);
@@ -355,7 +355,7 @@ static double strip_bears(const char *formulation, const char *law, const char *
     double pull = 0;
     for (int64_t n = 0; n < held->count; ++n)
       pull += m->domain.particles->internal[0][held->places[n]] * m->domain.particles->volume[held->places[n]];
-    most = fmax(most, pull);
+    most = larger_of(most, pull);
   }
   assert_true(m->domain.broken_count > 100);
   breccia_model_destroy(&m);
@@ -433,7 +433,7 @@ static void particles_may_move_as_far_as_the_sweep_says(void **state)
     compute_forces(m);
     double most = 0;
     for (int64_t slot = d->family.first[slice]; slot < d->family.first[slice + 1]; ++slot)
-      most = fmax(most, half_energy(d, slice, slot, place % SLICE));
+      most = larger_of(most, half_energy(d, slice, slot, place % SLICE));
     print_message("%s: the largest half is %.3f of half the limit\n", twice ? "twice" : "once", most / (limit / 2));
     assert_true(most < limit / 2);
     assert_true(most > 0.02 * limit / 2); /* and the sweep is no more careful than that */

@@ -86,7 +86,7 @@ static double shear_in(const breccia_model *m)
 {
   const Particles *p = m->domain.particles;
   double most = 0;
-  for (int64_t n = 0; n < p->count; ++n) most = fmax(most, fabs(p->velocity[1][p->place_of[n]]));
+  for (int64_t n = 0; n < p->count; ++n) most = larger_of(most, fabs(p->velocity[1][p->place_of[n]]));
   return most;
 }
 

@@ -57,13 +57,13 @@ static void stresses_of_the_elastic_stage_stay(void **state)
   const double poisson = (3 * BULK - 2 * SHEAR) / (2 * (3 * BULK + SHEAR));
   assert_near(stress_at_middle(m, 0), vertical * poisson / (1 - poisson), 0.01 * fabs(vertical));
   step_surely(m, INT64_MAX);
-  for (int64_t i = 0; i < p->places; ++i) most = fmax(most, fabs(settled[i]));
+  for (int64_t i = 0; i < p->places; ++i) most = larger_of(most, fabs(settled[i]));
   for (int64_t i = 0; i < p->places; ++i) assert_near(p->displacement[1][i], settled[i], 1e-9 * most);
   assert_near(stress_at_middle(m, 1), vertical, 1e-9 * fabs(vertical));
   breccia_model *at_once = column(STRENGTH, "", "");
   step_surely(at_once, INT64_MAX);
   double more = 0;
-  for (int64_t i = 0; i < p->places; ++i) more = fmax(more, fabs(at_once->domain.particles->displacement[1][i]));
+  for (int64_t i = 0; i < p->places; ++i) more = larger_of(more, fabs(at_once->domain.particles->displacement[1][i]));
   print_message("settled by %.4g m elastically, by %.4g m by the law\n", most, more);
   assert_true(more > 1.02 * most);
   free(settled);
@@ -107,7 +107,7 @@ static void what_is_beyond_the_strength_is_redistributed(void **state)
       const double mean = (s[0][i] + s[1][i] + s[2][i]) / 3;
       double square = 0;
       for (int k = 0; k < 3; ++k) square += (s[k][i] - mean) * (s[k][i] - mean) + 2 * s[k + 3][i] * s[k + 3][i];
-      if (!body_outside(&d->body, n)) most[stage] = fmax(most[stage], sqrt(square / 3));
+      if (!body_outside(&d->body, n)) most[stage] = larger_of(most[stage], sqrt(square / 3));
     }
   }
   print_message("octahedral shear stress at most %.4g, then %.4g kPa\n", most[0], most[1]);

@@ -59,7 +59,7 @@ static double largest_left(breccia_model *m, const char *space)
   loading_apply(&m->loading, p, 1);
   for (int32_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k)
-      most = fmax(most, fabs(p->internal[k][p->place_of[n]] + p->external[k][p->place_of[n]]));
+      most = larger_of(most, fabs(p->internal[k][p->place_of[n]] + p->external[k][p->place_of[n]]));
   return most * 0.1 / 3; /* times the spacing, over the largest stress */
 }
 
@@ -177,7 +177,7 @@ static void a_pulled_bar_strains_evenly_to_its_end(void **state)
         for (int32_t n = 0; n < p->count; ++n) {
           const int32_t i = p->place_of[n];
           if (body_outside(&m->domain.body, n)) continue;
-          off = fmax(off, fabs(p->displacement[0][i] - 2e-4 * p->position[0][i]));
+          off = larger_of(off, fabs(p->displacement[0][i] - 2e-4 * p->position[0][i]));
         }
         if (spread)
           assert_true(off > 1e-2 * 2e-5);

@@ -125,7 +125,7 @@ static void increments_that_are_solved_again_do_their_work_once(void **state)
       for (int64_t n = 0; n < held->count; ++n) now -= p->volume[held->places[n]] * p->internal[0][held->places[n]];
       const double where = p->displacement[0][held->places[0]];
       work += (exerted[end] + now) / 2 * (where - moved[end]);
-      largest = fmax(largest, fabs(work));
+      largest = larger_of(largest, fabs(work));
       exerted[end] = now;
       moved[end] = where;
     }
@@ -354,7 +354,7 @@ static void forces_of_a_half_torn_bar_are_those_of_its_operator(void **state)
     if (point.count) operator_add_forces(&point, p->displacement, sum);
   }
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) largest = fmax(largest, fabs(sum[k][p->place_of[n]]));
+    for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(sum[k][p->place_of[n]]));
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k)
       assert_near(p->internal[k][p->place_of[n]] * p->volume[p->place_of[n]], sum[k][p->place_of[n]], 1e-9 * largest);
@@ -438,7 +438,7 @@ static void noise_in_a_half_torn_bar_does_not_grow(void **state)
   for (int k = 0; k < 50; ++k) {
     step_surely(m, 10);
     step_surely(quiet, 10);
-    most = fmax(most, fabs(checkerboard_of(m) - checkerboard_of(quiet)));
+    most = larger_of(most, fabs(checkerboard_of(m) - checkerboard_of(quiet)));
   }
   print_message("noise: %.2f of what it was at most\n", most / noise);
   assert_true(most < 1.2 * noise);

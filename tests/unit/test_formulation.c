@@ -32,7 +32,7 @@ static double largest_force(const breccia_model *model)
   const Particles *p = model->domain.particles;
   double largest = 0;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) largest = fmax(largest, fabs(p->internal[k][p->place_of[n]]));
+    for (int k = 0; k < 3; ++k) largest = larger_of(largest, fabs(p->internal[k][p->place_of[n]]));
   return largest;
 }
 

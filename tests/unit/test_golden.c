@@ -154,13 +154,13 @@ static void follow(Point *p, const char *file, const double *tangents, int tange
     for (int k = 0; k < 6 && !told_late(p->m, i ? row - 12 : NULL, row); ++k) {
       double off = fabs(stress[k] - row[6 + k]);
       if (off > c->stress) c->worst_row = first_row + i + 1;
-      c->stress = fmax(c->stress, off);
-      c->largest = fmax(c->largest, fabs(row[6 + k]));
+      c->stress = larger_of(c->stress, off);
+      c->largest = larger_of(c->largest, fabs(row[6 + k]));
     }
     for (int t = 0; t < tangent_rows; ++t)
       for (int k = 0; (int)tangents[37 * t] == first_row + i + 1 && k < 36; ++k) {
-        c->largest_tangent = fmax(c->largest_tangent, fabs(tangents[37 * t + 1 + k]));
-        c->tangent = fmax(c->tangent, fabs(tangent[k] - tangents[37 * t + 1 + k]));
+        c->largest_tangent = larger_of(c->largest_tangent, fabs(tangents[37 * t + 1 + k]));
+        c->tangent = larger_of(c->tangent, fabs(tangent[k] - tangents[37 * t + 1 + k]));
       }
     point_commit(p);
   }
@@ -317,10 +317,10 @@ static void uniaxial_laws_follow_opensees(void **state)
         point_try(&p, path + 3 * i, &stress, &tangent, 0);
         point_commit(&p);
         if (slope_off > off) off_row = i + 1;
-        worst = fmax(worst, fabs(stress - path[3 * i + 1]));
-        off = fmax(off, slope_off);
-        largest = fmax(largest, fabs(path[3 * i + 1]));
-        stiffest = fmax(stiffest, fabs(path[3 * i + 2]));
+        worst = larger_of(worst, fabs(stress - path[3 * i + 1]));
+        off = larger_of(off, slope_off);
+        largest = larger_of(largest, fabs(path[3 * i + 1]));
+        stiffest = larger_of(stiffest, fabs(path[3 * i + 2]));
       }
       if (!(worst <= set->tolerance * largest))
         fail_msg("%s: stress off by %.3g of %.3g in row %d", found.gl_pathv[k], worst, largest, worst_row);

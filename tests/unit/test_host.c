@@ -105,7 +105,7 @@ static double use_all(const char *folder)
   assert_int_equal(status, BRECCIA_OK);
   double most = 0;
   const double *u = breccia_model_array(model, "displacement z");
-  for (int64_t i = 0; i < breccia_model_places(model); ++i) most = fmax(most, u[i]);
+  for (int64_t i = 0; i < breccia_model_places(model); ++i) most = larger_of(most, u[i]);
   breccia_model_destroy(&model);
   breccia_plot plot;
   breccia_plot_begin(&plot, sizeof plot);
@@ -297,7 +297,7 @@ static void test_arrays_are_all_named_and_what_is_written_to_them_counts(void **
   for (int64_t i = 0; i < breccia_model_places(model); ++i) v[i] = 3;
   assert_int_equal(breccia_model_step(model, 1, error), BRECCIA_OK);
   double most = 0;
-  for (int64_t i = 0; i < breccia_model_places(model); ++i) most = fmax(most, u[i]);
+  for (int64_t i = 0; i < breccia_model_places(model); ++i) most = larger_of(most, u[i]);
   assert_near(most, 3 * breccia_model_time(model), 1e-12);
   assert_null(breccia_model_array(model, "no such"));
   breccia_model_destroy(&model);

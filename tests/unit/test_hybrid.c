@@ -419,8 +419,8 @@ static void assert_alike(double *const a[3], double *const b[3], int64_t count)
   double largest = 0, apart = 0;
   for (int k = 0; k < 3; ++k)
     for (int64_t i = 0; i < count; ++i) {
-      largest = fmax(largest, fabs(a[k][i]));
-      apart = fmax(apart, fabs(a[k][i] - b[k][i]));
+      largest = larger_of(largest, fabs(a[k][i]));
+      apart = larger_of(apart, fabs(a[k][i] - b[k][i]));
     }
   assert_true(largest > 0);
   assert_near(apart / largest, 0, 1e-11);
@@ -513,8 +513,8 @@ static void stresses_are_foreseen_by_the_law(void **state)
       for (int c = 0; c < 6; ++c) strain[c] = points->strain[c][row];
       assert_true(points_try_stress(points, row, strain, stress));
       for (int c = 0; c < 6; ++c) {
-        size = fmax(size, fabs(points->stress[c][row]));
-        off = fmax(off, fabs(points->stress[c][row] - stress[c]));
+        size = larger_of(size, fabs(points->stress[c][row]));
+        off = larger_of(off, fabs(points->stress[c][row] - stress[c]));
       }
       if (!(off <= 1e-9 * size)) fail_msg("row %lld: off by %g of %g", (long long)row, off, size);
       asked += size > 5;

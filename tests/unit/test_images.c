@@ -148,8 +148,8 @@ static void half_a_lattice_moves_as_the_whole(void **state)
         for (int k = 0; k < 3; ++k) {
           assert_near(p->displacement[k][i], whole->displacement[k][j], 1e-9);
           assert_near(here[k], there[k], 1e-8);
-          most = fmax(most, fabs(p->displacement[k][i]));
-          turned = fmax(turned, fabs(here[k]));
+          most = larger_of(most, fabs(p->displacement[k][i]));
+          turned = larger_of(turned, fabs(here[k]));
         }
       }
       assert_true(images > 5 && most > 1e-5 && turned > 1e-5);

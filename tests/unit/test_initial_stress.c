@@ -13,7 +13,7 @@ static double largest_displacement(const breccia_model *m)
   const Particles *p = m->domain.particles;
   double most = 0;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) most = fmax(most, fabs(particles_moved(p, k, p->place_of[n])));
+    for (int k = 0; k < 3; ++k) most = larger_of(most, fabs(particles_moved(p, k, p->place_of[n])));
   return most;
 }
 
@@ -24,7 +24,7 @@ static double largest_force(const breccia_model *m)
   double most = 0;
   for (int64_t n = 0; n < p->count; ++n)
     for (int k = 0; k < 3; ++k)
-      if (!body_outside(&m->domain.body, n)) most = fmax(most, fabs(p->internal[k][p->place_of[n]]));
+      if (!body_outside(&m->domain.body, n)) most = larger_of(most, fabs(p->internal[k][p->place_of[n]]));
   return most;
 }
 
@@ -167,7 +167,7 @@ static void a_body_let_go_in_motion_keeps_its_energy(void **state)
   assert_near(solver_energy(&m->solver).stored, energy, 1e-3 * energy);
   for (int k = 0; k < 100; ++k) {
     step_surely(m, 4);
-    most = fmax(most, solver_energy(&m->solver).kinetic);
+    most = larger_of(most, solver_energy(&m->solver).kinetic);
     assert_balanced(m, 1e-3);
   }
   assert_true(most > 0.3 * energy && most < energy);

@@ -52,7 +52,7 @@ static void check(const char *peridynamics, const char *law, const char *shape)
            *eight = forces_by("8", peridynamics, law, shape, far, &other), largest = 0;
     assert_int_equal(count, other);
     for (int64_t i = 0; i < count; ++i) {
-      largest = fmax(largest, fabs(four[i]));
+      largest = larger_of(largest, fabs(four[i]));
       if (memcmp(&four[i], &eight[i], sizeof(double)))
         fail_msg("%s, %s, %s, far %g: %a by four lanes, %a by eight", peridynamics, law, shape, far, four[i], eight[i]);
     }

@@ -305,7 +305,7 @@ static void face_centred_bonds_have_cubic_symmetry_and_differ_less_than_cubic_on
       for (int i = 0; i < 3; ++i) n[i] /= sqrt(size);
       stress_of_stretch(model, n, stress);
       low = fmin(low, along(stress, n));
-      high = fmax(high, along(stress, n));
+      high = larger_of(high, along(stress, n));
     }
     spread[l] = high / low;
     if (!l) {
@@ -410,7 +410,7 @@ static void waves_run_as_the_sum_over_the_lattice_says(void **state)
             for (int m = 0; m < 3; ++m)
               want[m] -= amplitude * c * volume / length * (1 - cos(turn)) * pull * xi[m] / length;
           }
-      for (int m = 0; m < 3; ++m) size = fmax(size, fabs(want[m]));
+      for (int m = 0; m < 3; ++m) size = larger_of(size, fabs(want[m]));
       for (int m = 0; m < 3; ++m) assert_near(p->internal[m][centre], want[m], 1e-6 * size);
     }
     breccia_model_destroy(&model);

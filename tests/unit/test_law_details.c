@@ -29,7 +29,7 @@ static void compress(const Material *m, double confining, double strain, int ste
 static void keep_peak(void *context, const Driver *d)
 {
   double *peak = context;
-  *peak = fmax(*peak, -d->stress[0]);
+  *peak = larger_of(*peak, -d->stress[0]);
 }
 
 #define CONCRETE                                                                                                       \

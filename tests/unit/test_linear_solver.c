@@ -156,7 +156,7 @@ static void solve_densely(Problem *p, double *const v[MOTIONS])
     for (int row = 0; row < size; ++row)
       matrix[row * size + column] += p->kv[row % rows][particles->place_of[row / rows]];
     right[column] = p->f[column % rows][place];
-    scale = fmax(scale, fabs(matrix[column * size + column]));
+    scale = larger_of(scale, fabs(matrix[column * size + column]));
   }
   assert_true(linear_solve(size, matrix, 1, right));
   for (int row = 0; row < size; ++row) v[row % rows][particles->place_of[row / rows]] = right[row];
@@ -169,8 +169,8 @@ static void assert_same_answer(const Problem *p, double *const wanted[MOTIONS], 
   double most = 0, off = 0;
   for (int k = 0; k < p->domain->particles->motions; ++k)
     for (int64_t i = 0; i < p->domain->particles->places; ++i) {
-      most = fmax(most, fabs(wanted[k][i]));
-      off = fmax(off, fabs(wanted[k][i] - p->v[k][i]));
+      most = larger_of(most, fabs(wanted[k][i]));
+      off = larger_of(off, fabs(wanted[k][i] - p->v[k][i]));
     }
   if (!(off <= tolerance * most) || !(most > 0)) fail_msg("%s: off by %g of %g", name, off, most);
 }
@@ -634,8 +634,8 @@ static void the_matrix_is_the_stiffness(void **state)
     for (int64_t row = 0; row < m.size; ++row) {
       double sum = 0;
       for (int64_t t = m.first[row]; t < m.first[row + 1]; ++t) sum += m.value[t] * x[m.column[t]];
-      most = fmax(most, fabs(sum));
-      off = fmax(off, fabs(sum - kx[row]));
+      most = larger_of(most, fabs(sum));
+      off = larger_of(off, fabs(sum - kx[row]));
     }
     if (!(off <= 1e-11 * most)) fail_msg("%s: off by %g of %g", cases[c].name, off, most);
     matrix_destroy(&m);

@@ -65,7 +65,7 @@ static void damaged_bodies_keep_their_momenta(void **state)
         for (int k = 0; k < 3; ++k) {
           sum[k] += f[k];
           sum[3 + k] += arm[k] + moment[k];
-          most = fmax(most, fabs(f[k]));
+          most = larger_of(most, fabs(f[k]));
         }
       }
       double damaged = 0;
@@ -334,9 +334,9 @@ static double work_to_part(const char *lattice, double size, int particles, int 
   model->threads = 1;
   for (int64_t n = 0; n < p->count; ++n) {
     low = fmin(low, p->position[1][p->place_of[n]]);
-    high = fmax(high, p->position[1][p->place_of[n]]);
+    high = larger_of(high, p->position[1][p->place_of[n]]);
     left = fmin(left, p->position[0][p->place_of[n]]);
-    right = fmax(right, p->position[0][p->place_of[n]]);
+    right = larger_of(right, p->position[0][p->place_of[n]]);
   }
   *width = right - left;
   enum { INCREMENTS = 600 };
@@ -487,7 +487,7 @@ static void notched_bars_spend_the_fracture_energy_at_any_spacing(void **state)
     step_surely(model, INT64_MAX);
     const Energy e = solver_energy(&model->solver);
     const double share = e.dissipated / (0.08 * 50 * 50);
-    if (fabs(share - 1) > 0.05) fail_msg("spacing %g: %.3f of the fracture energy", sizes[k], share);
+    if (!(fabs(share - 1) <= 0.05)) fail_msg("spacing %g: %.3f of the fracture energy", sizes[k], share);
     breccia_model_destroy(&model);
   }
 }

@@ -37,7 +37,7 @@ static void run(breccia_model *model, double *most)
   *most = 0;
   for (int64_t k = 0; !model->solver.clock.ended; ++k) {
     step_surely(model, 1);
-    if (model->solver.type->rests || k % 50 == 0) *most = fmax(*most, pull(model));
+    if (model->solver.type->rests || k % 50 == 0) *most = larger_of(*most, pull(model));
   }
 }
 

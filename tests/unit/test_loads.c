@@ -164,7 +164,7 @@ static void the_ground_moves_as_seen_from_itself(void **state)
       for (int k = 0; k < 3; k += 2) {
         const int32_t i = p->place_of[n];
         const double relative = q->displacement[k][i] - q->displacement[k][held];
-        largest = fmax(largest, fabs(relative));
+        largest = larger_of(largest, fabs(relative));
         assert_near(relative, p->displacement[k][i], 2e-6);
       }
   }
@@ -257,7 +257,7 @@ static void half_a_body_on_a_support_across_is_half_a_whole(void **state)
     }
     const int32_t j = particles_nearest(p, (double[]){q->position[0][i], q->position[1][i], 0});
     for (int k = 0; k < 2; ++k) {
-      largest = fmax(largest, fabs(p->displacement[k][j]));
+      largest = larger_of(largest, fabs(p->displacement[k][j]));
       assert_near(q->displacement[k][i], p->displacement[k][j], 1e-10);
     }
     assert_near(half->domain.stress[0][i], whole->domain.stress[0][j], 1e-6);
@@ -274,7 +274,7 @@ static void assert_part_moves_as_whole(const breccia_model *part, const breccia_
   const Particles *p = whole->domain.particles, *q = part->domain.particles;
   double largest = 0;
   for (int k = 0; k < 3; ++k)
-    for (int64_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->displacement[k][p->place_of[n]]));
+    for (int64_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->displacement[k][p->place_of[n]]));
   assert_true(largest > 0);
   for (int64_t n = 0; n < q->count; ++n) {
     const int32_t i = q->place_of[n];

@@ -399,7 +399,7 @@ static void links_of_the_thesis_resist_rotation(void **state)
       most[secant][k] = 0;
       for (int row = 0; row < 2; ++row)
         for (int64_t i = 0; i < p->places; ++i)
-          most[secant][k] = fmax(most[secant][k], fabs(p->internal[row][i] * p->volume[i]));
+          most[secant][k] = larger_of(most[secant][k], fabs(p->internal[row][i] * p->volume[i]));
       breccia_model_destroy(&model);
     }
   /* At one degree as much as a stretch of 1.5e-4, twice what cracks concrete; four times as much at two. */

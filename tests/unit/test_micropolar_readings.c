@@ -220,7 +220,7 @@ static void check_tells_how_unlike_the_directions_are(void **state)
       region->type->stored_energy(region->formulation, place, 0, &energy);
       const double share = energy.stored / (model->domain.particles->volume[place] * (lambda / 2 + mu) * 1e-12);
       least = fmin(least, share);
-      largest = fmax(largest, share);
+      largest = larger_of(largest, share);
     }
     const char *words = strstr(breccia_model_overview(model), "stretched in one direction only its lattice shows ");
     assert_non_null(words);

@@ -135,7 +135,7 @@ static void rows_of_a_spectrum_are_those_of_an_oscillator(void **state)
       const double root = sqrt(1 - damping * damping);
       for (double t = 0; t < 1; t += 1e-4) {
         const double turn = 2 * pi * t * root;
-        largest = fmax(largest, 2 * (1 - exp(-damping * 2 * pi * t) * (cos(turn) - damping / root * sin(turn))));
+        largest = larger_of(largest, 2 * (1 - exp(-damping * 2 * pi * t) * (cos(turn) - damping / root * sin(turn))));
       }
       assert_near(column[4][k], largest, 2e-3 * largest);
       assert_near(m->over_response[k], gravity * most * omega * omega, 2e-3 * gravity * most * omega * omega);

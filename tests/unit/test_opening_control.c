@@ -144,8 +144,8 @@ static void a_long_brittle_bar_snaps_back_and_spends_its_fracture_energy(void **
       assert_true(fabs(p->displacement[0][right] - p->displacement[0][left] - part * 0.12e-3) < 1e-12);
       force = pull_of(model);
       if (force > most) farthest = p->displacement[0][end];
-      most = fmax(most, force);
-      back = fmax(back, farthest - p->displacement[0][end]);
+      most = larger_of(most, force);
+      back = larger_of(back, farthest - p->displacement[0][end]);
     }
     const Energy e = solver_energy(&model->solver);
     assert_true(most > 2e3 * 0.05 && most < 3e3 * 0.05); /* strength of the weak part and of the strong ones */
@@ -169,8 +169,8 @@ static void a_crack_is_followed_wherever_it_runs(void **state)
     step(model, 1);
     force = pull_of(model);
     if (force > most) farthest = p->displacement[0][end];
-    most = fmax(most, force);
-    back = fmax(back, farthest - p->displacement[0][end]);
+    most = larger_of(most, force);
+    back = larger_of(back, farthest - p->displacement[0][end]);
   } while (force > 0.03 * most);
   const Energy e = solver_energy(&model->solver);
   assert_true(most > 2e3 * 0.05 && most < 3e3 * 0.05);
@@ -298,7 +298,7 @@ static void a_torn_body_ends_the_stage(void **state)
         const int32_t i = p->place_of[n];
         if (p->position[0][i] > 0.2) pull -= p->volume[i] * p->internal[0][i];
       }
-      most = fmax(most, pull);
+      most = larger_of(most, pull);
       assert_true(pull > -1e-3 * most); /* nobody pushes */
     }
     assert_true(pull < 1e-3 * most);

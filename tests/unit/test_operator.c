@@ -265,7 +265,7 @@ static double largest(const Particles *p, double *const *v)
 {
   double most = 0;
   for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = 0; i < p->places; ++i) most = fmax(most, fabs(v[k][i]));
+    for (int64_t i = 0; i < p->places; ++i) most = larger_of(most, fabs(v[k][i]));
   return most;
 }
 

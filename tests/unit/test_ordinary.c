@@ -183,7 +183,7 @@ static void uniform_strain_gives_hookes_stress_and_no_force_inside(void **state)
     compute_forces(m);
     double largest = 0;
     int inside = 0;
-    for (int32_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->internal[0][p->place_of[n]]));
+    for (int32_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->internal[0][p->place_of[n]]));
     for (int32_t n = 0; n < p->count; ++n) {
       const int32_t place = p->place_of[n];
       const double reach = d->family.horizon + 0.51;
@@ -361,13 +361,13 @@ static void check_tells_the_shear_modulus_of_the_lattice(void **state)
         domain_look(&m->domain, middle, strain, stress);
         const double found = (way ? (stress[XX] - stress[YY]) / 4 : stress[XY] / 2) / s;
         least = fmin(least, found / shear);
-        largest = fmax(largest, found / shear);
+        largest = larger_of(largest, found / shear);
       }
       const Ordinary *o = ordinary_of(m);
       double light = INFINITY, heavy = 0;
       for (int k = 0; k < m->domain.family.pattern_count; ++k) {
         light = fmin(light, o->factor[k]);
-        heavy = fmax(heavy, o->factor[k]);
+        heavy = larger_of(heavy, o->factor[k]);
       }
       char *wanted = plain
                          ? text_format("b: the lattice shows the wanted bulk modulus, and %.3f to %.3f of the wanted "

@@ -181,7 +181,7 @@ static int numbers_of(breccia_model *m, int unit, double numbers[NUMBERS], int64
 static double largest_of(const double *numbers, int first, int last)
 {
   double most = 0;
-  for (int k = first; k < last; ++k) most = fmax(most, fabs(numbers[k]));
+  for (int k = first; k < last; ++k) most = larger_of(most, fabs(numbers[k]));
   return most;
 }
 

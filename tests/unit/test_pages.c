@@ -104,7 +104,7 @@ static void has_colour(const Sheet *s, const Scene *scene, double x, double y, d
   pixel(s, x, y, found);
   scene_colour(scene, value, expected);
   for (int c = 0; c < 3; ++c)
-    if (fabs(found[c] - expected[c]) > slack)
+    if (!(fabs(found[c] - expected[c]) <= slack))
       fail_msg("at %g, %g: colour %.3f %.3f %.3f, expected that of %g: %.3f %.3f %.3f", x, y, found[0], found[1],
                found[2], value, expected[0], expected[1], expected[2]);
 }
@@ -358,9 +358,9 @@ static void make(Made *m, int count, const double places[][3], double spacing, c
     m->spacings[n] = spacing;
     const double half = spacing * (flat ? 0.5 : BALL);
     m->scene.x0 = fmin(m->scene.x0, m->x[n] - half);
-    m->scene.x1 = fmax(m->scene.x1, m->x[n] + half);
+    m->scene.x1 = larger_of(m->scene.x1, m->x[n] + half);
     m->scene.y0 = fmin(m->scene.y0, m->y[n] - half);
-    m->scene.y1 = fmax(m->scene.y1, m->y[n] + half);
+    m->scene.y1 = larger_of(m->scene.y1, m->y[n] + half);
   }
   m->scene.x = m->x;
   m->scene.y = m->y;

@@ -75,7 +75,7 @@ static void plane_waves_stay_plane(void **state)
         first = p->velocity[0][other];
         across = p->velocity[1][other];
       }
-      most = fmax(most, fabs(first));
+      most = larger_of(most, fabs(first));
       assert_near(p->velocity[0][i], first, 1e-10);
       assert_near(p->velocity[1][i], f ? across : 0,
                   1e-10); /* bonds that turn lengthen: at finite strain shear swells */
@@ -139,7 +139,7 @@ static void one_period_moves_as_two(void **state)
         assert_true(other >= 0);
         for (int axis = 0; axis < 2; ++axis) {
           assert_near(two->displacement[axis][i], one->displacement[axis][other], s ? 1e-8 : 1e-12);
-          most = fmax(most, fabs(two->displacement[axis][i]));
+          most = larger_of(most, fabs(two->displacement[axis][i]));
         }
       }
       assert_true(most > 1e-3);

@@ -106,7 +106,8 @@ static void colour_bars_end_where_they_should(void **state)
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     const ColourRange r =
         scale_colours(cases[k].least, cases[k].most, cases[k].has_sign, cases[k].given_low, cases[k].given_high);
-    if (fabs(r.low - cases[k].low) > 1e-9 || fabs(r.high - cases[k].high) > 1e-9 || r.diverging != cases[k].diverging)
+    if (!(fabs(r.low - cases[k].low) <= 1e-9) || !(fabs(r.high - cases[k].high) <= 1e-9) ||
+        r.diverging != cases[k].diverging)
       fail_msg("%g to %g: the bar goes from %g to %g%s", cases[k].least, cases[k].most, r.low, r.high,
                r.diverging ? ", diverging" : "");
   }
@@ -149,7 +150,7 @@ static void units_read_well(void **state)
                {"m", INFINITY, "m", 1}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     const DisplayUnit u = display_unit(cases[k].unit, cases[k].largest);
-    if (strcmp(u.name, cases[k].name) || fabs(u.factor - cases[k].factor) > 1e-9 * cases[k].factor)
+    if (strcmp(u.name, cases[k].name) || !(fabs(u.factor - cases[k].factor) <= 1e-9 * cases[k].factor))
       fail_msg("%g %s is shown as %g %s", cases[k].largest, cases[k].unit, cases[k].largest * u.factor, u.name);
   }
   char heading[64];
@@ -335,7 +336,7 @@ static void layers_outside_the_body_are_not_shown(void **state)
     for (int k = 0; k < 2; ++k) {
       assert_true(view.positions[3 * own + k] == p->position[k][p->place_of[n]]);
       assert_near(u[3 * own + k], p->displacement[k][p->place_of[n]], 1e-8); /* single precision in the file */
-      largest = fmax(largest, fabs(u[3 * own + k]));
+      largest = larger_of(largest, fabs(u[3 * own + k]));
     }
     ++own;
   }

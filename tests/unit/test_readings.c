@@ -351,7 +351,7 @@ static void results_hold_every_broken_bond_in_its_order(void **state)
   for (int64_t n = 0; n < p->count; ++n) {
     const double damage = domain_damage(&m->domain, p->place_of[n]);
     mean += damage / (double)p->count;
-    most = fmax(most, damage);
+    most = larger_of(most, damage);
   }
   assert_true(most > 3 * mean && mean > 0 && domain_damage(&m->domain, p->place_of[p->count - 1]) < most);
   snprintf(file, sizeof file, "%s/worn.csv", path);

@@ -61,7 +61,7 @@ static void a_polynomial_is_taken_off_whole_by_one_of_its_degree_or_more(void **
       assert_near(sum, 0, 1e-10);
     }
     double most = 0;
-    for (int k = 0; k < 81; ++k) most = fmax(most, fabs(history_factor(history_of(m), 1 + 0.05 * k)));
+    for (int k = 0; k < 81; ++k) most = larger_of(most, fabs(history_factor(history_of(m), 1 + 0.05 * k)));
     if (degree == 3) assert_true(most < 1e-11);
     if (degree < 3) assert_true(most > 0.1);
     breccia_model_destroy(&m);

@@ -46,7 +46,7 @@ static void a_patch_pulls_at_the_joint_only_and_not_in_all(void **state)
       if (fabs(x) > horizon)
         assert_near(force, 0, 1e-8 * stress);
       else
-        most = fmax(most, fabs(force));
+        most = larger_of(most, fabs(force));
       side[x > 0] += force;
     }
     assert_true(most > 1e-3 * stress && most < 0.3 * stress);
@@ -220,7 +220,7 @@ static void a_free_bar_keeps_its_energy(void **state)
     assert_int_equal(breccia_model_step(model, 100, NULL), 0);
     const Energy e = solver_energy(&model->solver);
     least = fmin(least, e.kinetic + e.stored);
-    most = fmax(most, e.kinetic + e.stored);
+    most = larger_of(most, e.kinetic + e.stored);
   }
   const double whole = first.kinetic + first.stored;
   assert_near(least, whole, 0.01 * whole);

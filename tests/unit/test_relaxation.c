@@ -77,10 +77,10 @@ static void it_finds_the_rest_that_newton_finds(void **state)
     double most = 0, largest = 0, force = 0, strongest = 0;
     for (int k = 0; k < 3; ++k)
       for (int64_t i = 0; i < p->places; ++i) {
-        most = fmax(most, fabs(p->displacement[k][i] - q->displacement[k][i]));
-        largest = fmax(largest, fabs(p->displacement[k][i]));
-        force = fmax(force, p->volume[i] * fabs(p->internal[k][i] - q->internal[k][i])); /* reactions among them */
-        strongest = fmax(strongest, p->volume[i] * fabs(p->internal[k][i]));
+        most = larger_of(most, fabs(p->displacement[k][i] - q->displacement[k][i]));
+        largest = larger_of(largest, fabs(p->displacement[k][i]));
+        force = larger_of(force, p->volume[i] * fabs(p->internal[k][i] - q->internal[k][i])); /* reactions among them */
+        strongest = larger_of(strongest, p->volume[i] * fabs(p->internal[k][i]));
       }
     if (!(most <= 1e-5 * largest)) fail_msg("%s: displacements differ by %g of %g", cases[c].name, most, largest);
     if (!(force <= 1e-5 * strongest)) fail_msg("%s: forces differ by %g of %g", cases[c].name, force, strongest);
@@ -105,10 +105,10 @@ static void an_unloaded_body_is_at_rest_again(void **state)
   const Particles *p = model->domain.particles;
   double bent = 0, left = 0;
   step_surely(model, 2);
-  for (int64_t i = 0; i < p->places; ++i) bent = fmax(bent, fabs(p->displacement[2][i]));
+  for (int64_t i = 0; i < p->places; ++i) bent = larger_of(bent, fabs(p->displacement[2][i]));
   step_surely(model, INT64_MAX);
   assert_true(model->solver.clock.time == 1);
-  for (int64_t i = 0; i < p->places; ++i) left = fmax(left, fabs(p->displacement[2][i]));
+  for (int64_t i = 0; i < p->places; ++i) left = larger_of(left, fabs(p->displacement[2][i]));
   assert_true(bent > 1e-3);
   assert_near(left, 0, 1e-5 * bent);
   breccia_model_destroy(&model);

@@ -369,7 +369,7 @@ static void mazars_obeys(const Step *s, void *data)
   if (largest > k0) {
     const double in_tension = 1 - k0 / largest * exp(-rate * (largest - k0)),
                  in_compression = 1 - k0 * (1 - v[4]) / largest - v[4] * exp(-v[5] * (largest - k0));
-    damage = fmax(damage, share * in_tension + (1 - share) * fmin(past(in_compression), 1));
+    damage = larger_of(damage, share * in_tension + (1 - share) * fmin(past(in_compression), 1));
   }
   SMALL(s, "equivalent strain", s->after[0] - largest, k0);
   SMALL(s, "damage", s->after[1] - damage, 1);
@@ -475,8 +475,8 @@ static void concrete_obeys(const Step *s, void *data)
          cohesion = c->compression *
                     ((1 + c->hump) * exp(-bc * in_compression) - c->hump * exp(-2 * bc * in_compression)) /
                     exp(-c->compression_share * bc * in_compression);
-  strength = fmax(strength, 1e-9 * c->tension);
-  cohesion = fmax(cohesion, 1e-9 * c->compression);
+  strength = larger_of(strength, 1e-9 * c->tension);
+  cohesion = larger_of(cohesion, 1e-9 * c->compression);
   const double beta = cohesion / strength * (1 - c->alpha) - (1 + c->alpha),
                yield = (q + c->alpha * first + beta * past(most) - c->gamma * past(-most)) / (1 - c->alpha) - cohesion;
   /* beta grows as tension goes, and with it what roundings of a stress count. */

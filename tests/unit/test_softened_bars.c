@@ -55,7 +55,7 @@ static void softening_is_followed_to_its_end_without_help(void **state)
     double most = 0;
     while (!solver_is_done(&m->solver)) {
       step_surely(m, 1);
-      most = fmax(most, drawn_with(m));
+      most = larger_of(most, drawn_with(m));
     }
     const double left = drawn_with(m) / most, spent = solver_energy(&m->solver).external / 0.05 / 0.1;
     print_message("%s, by %s: %.4f of the largest force left, %.3f G_F\n", bars[k / 2].law,

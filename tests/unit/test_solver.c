@@ -175,7 +175,7 @@ static void the_stable_step_is_stable_and_a_tenth_more_is_not(void **state)
         for (int64_t n = 0; n < p->count; ++n) p->velocity[n % 2][p->place_of[n]] = (double)(n * 7919 % 13) * 1e-9;
         const int stopped = breccia_model_step(m, 4000, NULL);
         double largest = 0;
-        for (int64_t n = 0; n < p->count; ++n) largest = fmax(largest, fabs(p->displacement[0][p->place_of[n]]));
+        for (int64_t n = 0; n < p->count; ++n) largest = larger_of(largest, fabs(p->displacement[0][p->place_of[n]]));
         if (over ? !stopped && largest < 1e-3 : stopped || !(largest < 1e-3))
           fail_msg("body %d, control %s, %s the stable step: displacement %g", b, controls[c], over ? "above" : "at",
                    largest);

@@ -137,8 +137,8 @@ static void the_matrix_does_what_a_linearised_step_does(void **state)
     for (int64_t row = 0; row < m.size; ++row) {
       double sum = 0;
       for (int64_t t = m.first[row]; t < m.first[row + 1]; ++t) sum += m.value[t] * x[m.column[t]];
-      largest = fmax(largest, fabs(y[row]));
-      most = fmax(most, fabs(sum - y[row]));
+      largest = larger_of(largest, fabs(y[row]));
+      most = larger_of(most, fabs(sum - y[row]));
     }
     if (!(most <= 1e-9 * largest)) fail_msg("%s: K v is off by %g of %g", cases[c].name, most, largest);
     assert_true(largest > 0);
@@ -168,9 +168,9 @@ static void both_ways_find_the_same_rest_and_reactions_are_the_loads(void **stat
       for (int k = 0; k < 3; ++k)
         for (int64_t i = 0; i < p->places; ++i) {
           found[way][k][i] = p->displacement[k][i];
-          largest = fmax(largest, fabs(p->displacement[k][i]));
+          largest = larger_of(largest, fabs(p->displacement[k][i]));
           forces[k] += p->volume[i] * p->internal[k][i];
-          size = fmax(size, fabs(p->volume[i] * p->internal[k][i]));
+          size = larger_of(size, fabs(p->volume[i] * p->internal[k][i]));
         }
       for (int k = 0; k < 3; ++k) assert_near(forces[k], 0, 1e-10 * size * 100);
       assert_balanced(model, 2e-3); /* two increments, and strains that are not quite linear */
@@ -178,7 +178,7 @@ static void both_ways_find_the_same_rest_and_reactions_are_the_loads(void **stat
       breccia_model_destroy(&model);
     }
     for (int k = 0; k < 3; ++k)
-      for (int64_t i = 0; i < places; ++i) most = fmax(most, fabs(found[0][k][i] - found[1][k][i]));
+      for (int64_t i = 0; i < places; ++i) most = larger_of(most, fabs(found[0][k][i] - found[1][k][i]));
     if (!(most <= 1e-7 * largest)) fail_msg("%s: displacements differ by %g of %g", cases[c].name, most, largest);
     assert_true(largest > 0);
     vectors_free(found[0]), vectors_free(found[1]);

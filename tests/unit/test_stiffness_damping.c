@@ -367,7 +367,7 @@ static void what_grows_beside_a_held_base_is_told_and_damped(void **state)
   double first = 0;
   while (!solver_is_done(&m->solver)) {
     step_surely(m, 20);
-    if (m->solver.clock.time < 0.02) first = fmax(first, solver_energy(&m->solver).kinetic);
+    if (m->solver.clock.time < 0.02) first = larger_of(first, solver_energy(&m->solver).kinetic);
   }
   assert_true(solver_energy(&m->solver).kinetic < 1e-3 * first);
   breccia_model_destroy(&m);

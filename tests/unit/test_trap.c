@@ -237,7 +237,7 @@ static void a_run_stops_at_the_first_trap_and_is_the_same_up_to_it(void **state)
     }
     assert_int_equal(status, BRECCIA_FAILURE);
     double strain = 0;
-    for (int64_t k = 0; k < breccia_model_places(plain); ++k) strain = fmax(strain, plain->domain.strain[0][k]);
+    for (int64_t k = 0; k < breccia_model_places(plain); ++k) strain = larger_of(strain, plain->domain.strain[0][k]);
     assert_true(strain > 0.02 && strain < 0.03); /* the very step */
     char words[128];
     snprintf(words, sizeof words, "step %lld (time %g s): floating-point trap: division by zero in ",
