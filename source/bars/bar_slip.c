@@ -73,6 +73,36 @@ static double share_surface(Bars *b, int n)
   return sum;
 }
 
+static double length_of(const Bars *b, int n)
+{
+  double length = 0;
+  for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) length += b->length[e];
+  return length;
+}
+
+/** @return status of a bar whose bond goes on beyond it, or which nothing would hold */
+static int check_bonded(const Bars *b, int n, double surface, const ForcesParts *parts)
+{
+  const double rounding = 1e-9;
+  const BarSpec *bar = b->specs->items[n];
+  const Node *node = section_node(bar, "bonded");
+  if (!(surface > 0) && !bar->anchored.count)
+    return node_error(
+        parts->reader->document, node, parts->reader->error,
+        "bonded: no part of bar '%s' lies between these lengths along it, and it is not anchored: nothing "
+        "would hold it",
+        bar->head.name);
+  const double length = length_of(b, n);
+  if (!bar->bonded.count ||
+      (bar->bonded.values[0] >= -rounding * length && bar->bonded.values[1] <= (1 + rounding) * length))
+    return BRECCIA_OK;
+  char unit[64];
+  units_name(parts->reader->units, dimension_find("length"), unit, sizeof unit);
+  return node_error(parts->reader->document, node, parts->reader->error,
+                    "bonded: bar '%s' is %.6g %s long, from 0 to there; give lengths along it", bar->head.name, length,
+                    unit);
+}
+
 int bar_slips_create(Bars *b, const ForcesParts *parts, Error *error)
 {
   const int bars = b->specs->count;
@@ -100,12 +130,8 @@ int bar_slips_create(Bars *b, const ForcesParts *parts, Error *error)
     s->law[n] = bond_law(bar->bond, parts->reader->units);
     s->fixed[b->first[n] + n] = is_anchored(bar, "start");
     s->fixed[b->first[n + 1] + n] = is_anchored(bar, "end");
-    if (!(share_surface(b, n) > 0) && !bar->anchored.count)
-      return node_error(
-          parts->reader->document, section_node(bar, "bonded"), parts->reader->error,
-          "bonded: no part of bar '%s' lies between these lengths along it, and it is not anchored: nothing "
-          "would hold it",
-          bar->head.name);
+    const int status = check_bonded(b, n, share_surface(b, n), parts);
+    if (status) return status;
   }
   return BRECCIA_OK;
 }
@@ -324,6 +350,37 @@ double bar_bond_dissipated(const Bars *b, int n)
   if (!bar_slips(b, n) || b->slips->law[n].linear) return 0;
   for (int64_t k = b->first[n] + n; k <= b->first[n + 1] + n; ++k) sum += b->slips->worked[k];
   return sum - bar_bond_stored(b, n);
+}
+
+void bar_slips_describe(const Bars *b, int n, const Units *units, Text *text)
+{
+  const BarSpec *bar = b->specs->items[n];
+  const BondLaw *law = &b->slips->law[n];
+  const bool start = is_anchored(bar, "start"), end = is_anchored(bar, "end");
+  const double metre = units_in_si(units, dimension_find("length"), 1),
+               newton = units_in_si(units, dimension_find("force"), 1);
+  double surface = 0;
+  for (int64_t k = b->first[n] + n; k <= b->first[n + 1] + n; ++k) surface += b->slips->surface[k];
+  text_add(text, "bars: '%s' slips: ", bar->head.name);
+  bond_law_describe(law, units, text);
+  text_add(text, ", along ");
+  if (bar->bonded.count) {
+    quantity_describe(metre * surface / perimeter(b, n), "m", text);
+    text_add(text, " of ");
+    quantity_describe(metre * length_of(b, n), "m", text);
+  } else {
+    text_add(text, "all of it");
+  }
+  if (!law->linear) {
+    text_add(text, ", ");
+    quantity_describe(newton * law->peak * surface, "N", text);
+    text_add(text, " in all");
+  }
+  text_add(text, "; anchored at %s\n",
+           start && end ? "both ends"
+           : start      ? "its start"
+           : end        ? "its end"
+                        : "neither end");
 }
 
 double bar_slip_in(const Bars *b, int n, int64_t e)

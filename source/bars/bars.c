@@ -307,6 +307,12 @@ static void describe(const void *forces, const Units *units, Text *text)
   if (b->specs->count > 6) text_add(text, " and others, %lld in all", (long long)bars);
   units_name(units, dimension_find("volume"), unit, sizeof unit);
   text_add(text, "; %lld elements, %.4g %s of steel\n", (long long)b->count, volume, unit);
+  int told = 0;
+  for (int n = 0; n < b->specs->count && told < 6; ++n) {
+    if (!bar_slips(b, n)) continue;
+    bar_slips_describe(b, n, units, text);
+    ++told;
+  }
 }
 
 static void join_places(const void *forces, void (*one)(void *context, int32_t a, int32_t b), void *context)

@@ -133,6 +133,8 @@ void bar_slips_state(Bars *bars, StateList *list);
 /** Energy that the bond of a bar would give back, and work that it has not kept. */
 double bar_bond_stored(const Bars *bars, int bar);
 double bar_bond_dissipated(const Bars *bars, int bar);
+/** Adds a line on the bond of a bar: what it bears, where, and which ends are anchored. */
+void bar_slips_describe(const Bars *bars, int bar, const Units *units, Text *text);
 /** Slip in the middle of an element and mean bond stress on its surface, as committed; 0 in perfect bond. */
 double bar_slip_in(const Bars *bars, int bar, int64_t element);
 double bar_bond_stress_in(const Bars *bars, int bar, int64_t element);

@@ -54,6 +54,9 @@ static void check_bond(const DeckReader *reader, void *section)
                  "stiffness: law 'linear' needs it, the stress on the surface of the bar per slip, like 100 MPa/mm");
     return;
   }
+  if (isnan(bond->splitting) && !strcmp(bond->confinement, "stirrups"))
+    node_error(reader->document, section_node(section, "confinement"), reader->error,
+               "confinement: counts where concrete splits; give 'splitting stress', or leave this out");
   if (isnan(bond->strength))
     node_error(reader->document, bond->head.node, reader->error,
                "compressive strength: law 'fib' needs it, the mean strength f_cm of cylinders");
@@ -162,6 +165,35 @@ BondLaw bond_law(const BondSpec *spec, const Units *units)
   }
   law.friction_from = fmax(law.friction_from, 1.01 * law.plateau_to); /* ribs so near that nothing would be between */
   return law;
+}
+
+static void add_quantity(double value, const Units *units, const char *dimension, Text *text)
+{
+  quantity_describe(value * units_in_si(units, dimension_find(dimension), 1), !strcmp(dimension, "length") ? "m" : "Pa",
+                    text);
+}
+
+void bond_law_describe(const BondLaw *law, const Units *units, Text *text)
+{
+  text_add(text, "bond of ");
+  if (law->linear) {
+    add_quantity(law->stiffness * of_si(1e-3, units, "length"), units, "stress", text);
+    text_add(text, " per mm of slip");
+    return;
+  }
+  const bool level = law->plateau_to > law->plateau_from;
+  add_quantity(law->peak, units, "stress", text);
+  text_add(text, level ? " between slips of " : " at a slip of ");
+  add_quantity(law->plateau_from, units, "length", text);
+  text_add(text, level ? " and " : ", ");
+  if (level) add_quantity(law->plateau_to, units, "length", text);
+  text_add(text, level ? ", " : "");
+  if (law->friction > 0)
+    add_quantity(law->friction, units, "stress", text);
+  else
+    text_add(text, "none");
+  text_add(text, " beyond ");
+  add_quantity(law->friction_from, units, "length", text);
 }
 
 double bond_law_envelope(const BondLaw *law, double slip, double *slope)

@@ -30,6 +30,9 @@ typedef struct BondState {
 
 BondLaw bond_law(const BondSpec *spec, const Units *units);
 
+/** Adds what it bears at which slips, as words without an end. */
+void bond_law_describe(const BondLaw *law, const Units *units, Text *text);
+
 /** Stress that a slip would reach from where nothing has slipped yet, without the rise of the unloading branch. @param[in] slip  not negative
  *  @param[out] slope  of it; NULL: not wanted */
 double bond_law_envelope(const BondLaw *law, double slip, double *slope);

@@ -3,6 +3,7 @@
 
 #include "bars/bars.h"
 #include <math.h>
+#include <string.h>
 
 static void check_amount(breccia_model *model, const Bars *b)
 {
@@ -52,10 +53,40 @@ static void check_faces(breccia_model *model, const Bars *b, int n)
   }
 }
 
+/** Warns of a number that a bond law takes root or slip from, so that a wrong unit would not show elsewhere. */
+static void check_size(breccia_model *model, const BondSpec *bond, const char *key, const char *dimension, double value,
+                       const char *unit, double least, double most, const char *what, const char *how)
+{
+  const double real = plausibility_in_si(model, dimension, value);
+  if (!(real < least || real > most)) return;
+  const Node *node = section_node(bond, key);
+  Text words = {0}, low = {0}, high = {0};
+  quantity_describe(real, unit, &words);
+  quantity_describe(least, unit, &low);
+  quantity_describe(most, unit, &high);
+  const bool told = node->kind != NODE_SCALAR || !strcmp(node->text, text_words(&words));
+  plausibility_say(model, node, "%s: %s%s%s; %s %s to %s%s; look at its unit", key, told ? "" : node->text,
+                   told ? "" : " is ", text_words(&words), what, text_words(&low), text_words(&high), how);
+  text_free(&words);
+  text_free(&low);
+  text_free(&high);
+}
+
+static void check_bond(breccia_model *model, const BondSpec *bond)
+{
+  if (!bond || !strcmp(bond->law, "linear")) return;
+  check_size(model, bond, "compressive strength", "stress", bond->strength, "Pa", 8e6, 200e6,
+             "concrete around bars has", "");
+  check_size(model, bond, "rib spacing", "length", bond->rib_spacing, "m", 1e-3, 50e-3, "ribs of bars stand", " apart");
+}
+
 void plausibility_warn_of_bars(breccia_model *model)
 {
   const Bars *b = bars_among(&model->domain.forces);
   if (!b) return;
   check_amount(model, b);
-  for (int n = 0; n < b->specs->count; ++n) check_faces(model, b, n);
+  for (int n = 0; n < b->specs->count; ++n) {
+    check_faces(model, b, n);
+    check_bond(model, ((const BarSpec *)b->specs->items[n])->bond);
+  }
 }

@@ -46,7 +46,7 @@ void run_add_bars(const breccia_model *model, Text *t)
 }
 
 typedef struct Telling { /* in which units */
-  double stress, energy;
+  double stress, energy, slip;
   char time[64], length[64];
 } Telling;
 
@@ -72,9 +72,15 @@ static void tell_bar(const Bars *b, int n, const BarReport *r, const Telling *in
   quantity_describe(in->stress * r->highest_stress, "Pa", t);
   text_add(t, "), stored ");
   quantity_describe(in->energy * r->stored, "J", t);
-  if (r->first_yielded >= 0) {
+  if (r->first_yielded >= 0 || bar_slips(b, n)) {
     text_add(t, ", dissipated ");
     quantity_describe(in->energy * r->dissipated, "J", t);
+  }
+  if (bar_slips(b, n)) {
+    text_add(t, ", slip ");
+    quantity_describe(in->slip * r->least_slip, "m", t);
+    text_add(t, " to ");
+    quantity_describe(in->slip * r->largest_slip, "m", t);
   }
   tell_event(b, n, "yields", r->yielded, r->first_yielded, b->yielded, in, t);
   tell_event(b, n, "TORN", r->torn, r->first_torn, b->torn, in, t);
@@ -87,7 +93,8 @@ void run_tell_bars(const breccia_model *model, Text *t)
   const Bars *b = bars_among(&model->domain.forces);
   if (!b) return;
   Telling in = {units_in_si(model->units, dimension_find("stress"), 1),
-                units_in_si(model->units, dimension_find("energy"), 1), "", ""};
+                units_in_si(model->units, dimension_find("energy"), 1),
+                units_in_si(model->units, dimension_find("length"), 1), "", ""};
   units_name(model->units, dimension_find("time"), in.time, sizeof in.time);
   units_name(model->units, dimension_find("length"), in.length, sizeof in.length);
   int quiet = 0;

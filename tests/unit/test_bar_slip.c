@@ -3,6 +3,7 @@
 
 #include "bars/bars.h"
 #include "base/random.h"
+#include "model/run.h"
 #include "results/bar_lines.h"
 #include "results/watch_parts.h"
 
@@ -503,16 +504,20 @@ static void bond_that_makes_no_sense_is_refused(void **state)
   (void)state;
   static const struct {
     const char *keys, *words;
-  } cases[] = {{"bond: {law: linear}", "stiffness: law 'linear' needs it"},
-               {"bond: {rib spacing: 8 mm}", "compressive strength: law 'fib' needs it"},
-               {"bond: {compressive strength: 30 MPa}", "rib spacing: law 'fib' needs it"},
-               {"bond: {" FIB ", stiffness: 1e6}", "stiffness: is for law 'linear'"},
-               {"bond: {law: linear, stiffness: 1e6, rib spacing: 8 mm}", "rib spacing: is for law 'fib'"},
-               {"bond: {" FIB "}, anchored: [middle]", "'middle' is no end of a bar|'start'|'end'"},
-               {"anchored: [end]", "a bar in perfect bond slips nowhere; add 'bond'"},
-               {"bonded: [0, 1]", "add 'bond'"},
-               {"bond: {" FIB "}, bonded: [0.4, 0.2]", "two lengths along the bar"},
-               {"bond: {" FIB "}, bonded: [4, 5]", "nothing would hold it"}};
+  } cases[] = {
+      {"bond: {law: linear}", "stiffness: law 'linear' needs it"},
+      {"bond: {rib spacing: 8 mm}", "compressive strength: law 'fib' needs it"},
+      {"bond: {compressive strength: 30 MPa}", "rib spacing: law 'fib' needs it"},
+      {"bond: {" FIB ", stiffness: 1e6}", "stiffness: is for law 'linear'"},
+      {"bond: {law: linear, stiffness: 1e6, rib spacing: 8 mm}", "rib spacing: is for law 'fib'"},
+      {"bond: {" FIB "}, anchored: [middle]", "'middle' is no end of a bar|'start'|'end'"},
+      {"anchored: [end]", "a bar in perfect bond slips nowhere; add 'bond'"},
+      {"bonded: [0, 1]", "add 'bond'"},
+      {"bond: {" FIB "}, bonded: [0.4, 0.2]", "two lengths along the bar"},
+      {"bond: {" FIB "}, bonded: [4, 5]", "nothing would hold it"},
+      {"bond: {" FIB "}, bonded: [0.4, 0.91]", "bonded: bar 'r' is 0.9 m long, from 0 to there"},
+      {"bond: {" FIB "}, bonded: [-0.01, 0.9]", "bonded: bar 'r' is 0.9 m long, from 0 to there"},
+      {"bond: {" FIB ", confinement: stirrups}", "confinement: counts where concrete splits; give 'splitting"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     char *deck = text_format(
         UNITS "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e6}\n  " ROD "\n"
@@ -525,6 +530,34 @@ static void bond_that_makes_no_sense_is_refused(void **state)
     holds_words(words, cases[k].words);
     free(words);
     free(deck);
+  }
+}
+
+/** What is told of a bar of 0.2 m in 0.1 m of bond before the run, and after it. */
+static void words_tell_bond_and_slip(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *keys, *words;
+  } cases[] = {{"bond: {" FIB "}, bonded: [0.4, 0.5], anchored: [end]",
+                "'bar' slips: bond of 13.7 MPa between slips of 1 mm and 2 mm, 5.48 MPa beyond 8 mm, along 100 mm of "
+                "1.2 m, 48.5 "
+                "kN in all; anchored at its end\n"},
+               {"bond: {" FIB ", splitting stress: 6 MPa}",
+                "'bar' slips: bond of 6 MPa at a slip of 127 µm, none beyond 1.2 mm, along all of it, 255 kN in all; "
+                "anchored at "
+                "neither end\n"},
+               {"bond: {law: linear, stiffness: 1.4e7}, anchored: [start, end]",
+                "'bar' slips: bond of 14 MPa per mm of slip, along all of it; anchored at both ends\n"}};
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+    breccia_model *m = led(ROD, cases[c].keys, PULL, "[0, 0], [1, 1]", 1);
+    holds_words(breccia_model_overview(m), cases[c].words);
+    Text words = {0};
+    step_surely(m, INT64_MAX);
+    run_tell_bars(m, &words);
+    holds_words(text_words(&words), c ? "stored|slip" : "stored|dissipated|slip 0 m to 9.4");
+    text_free(&words);
+    breccia_model_destroy(&m);
   }
 }
 
@@ -544,6 +577,7 @@ int main(void)
       cmocka_unit_test(threads_and_restarts_give_the_same_bits),
       cmocka_unit_test(every_way_to_solve_finds_the_same),
       cmocka_unit_test(bond_that_makes_no_sense_is_refused),
+      cmocka_unit_test(words_tell_bond_and_slip),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,6 +28,9 @@ static breccia_model *body_of(const char *name, const char *keys, const char *mo
 #define CRACK_FROM(x)                                                                                                  \
   "cracks: [{cut: {line: [[" x ", 0.03], [0.04, 0.03]]}}]\nloads: [{on: {face: x-}, support: {held: across}}]\n"
 #define BAR(from, area) "bars: {low: {points: [[" from ", 0.025], [0.05, 0.025]], area: " area ", material: m}}\n"
+#define SLIPS(strength, ribs)                                                                                          \
+  "bars: {low: {points: [[0.02, 0.025], [0.05, 0.025]], area: 1e-4, material: m, bond: {compressive "                  \
+  "strength: " strength ", rib spacing: " ribs "}}}\n"
 #define DAMAGE "pictures: [{field: damage}]\n"
 #define HALF "loads: [{on: {face: x-}, support: {held: across}}]\n"
 #define LITTLE "is little for concrete, which has 60 to 200 N/m"
@@ -124,6 +127,15 @@ static const struct {
     {"m", USUAL, BAR("0.02", "1.61e-3"), "area: bars take 0.101 of the volume of the body"},
     {"m", USUAL, BAR("0.025", "1e-4") HALF, NULL},
     {"m", USUAL, BAR("0.015", "1e-4") HALF, "points: bar 'low' comes to a face with 'support'"},
+    {"m", USUAL, SLIPS("8.1 MPa", "1.1 mm"), NULL},
+    {"m", USUAL, SLIPS("199 MPa", "49 mm"), NULL},
+    {"m", USUAL, SLIPS("7.9 MPa", "8 mm"), "compressive strength: 7.9 MPa; concrete around bars has 8 MPa to 200 MPa"},
+    {"m", USUAL, SLIPS("30", "8 mm"),
+     "compressive strength: 30 is 30 kPa; concrete around bars has 8 MPa to 200 MPa; look at its unit"},
+    {"m", USUAL, SLIPS("201 MPa", "8 mm"), "compressive strength: 201 MPa; concrete around bars"},
+    {"m", USUAL, SLIPS("30 MPa", "0.9 mm"),
+     "rib spacing: 0.9 mm is 900 µm; ribs of bars stand 1 mm to 50 mm apart; look at its unit"},
+    {"m", USUAL, SLIPS("30 MPa", "8"), "rib spacing: 8 is 8 m; ribs of bars stand"},
 };
 
 static void limits_are_where_they_say(void **state)
