@@ -141,9 +141,9 @@ void domain_evaluate(Domain *domain);
 /** Makes again what particles show their neighbours, from displacements and stresses as they stand; no law is asked. */
 void domain_show_states(Domain *domain);
 
-/** Lets linearised steps take the secant of bonds whose slope is below zero, or no longer: those who iterate come on by it where bonds soften and
+/** Lets linearised steps take secants where laws soften, or no longer: those who iterate come on by them where points soften and
  *  unload in turn, if slowly. @return whether the body has bonds of such laws */
-bool domain_take_secants(Domain *domain, bool take);
+bool domain_take_secants(Domain *domain, Secants of);
 /** Whether linearised steps are secants anyway, of what is damaged. */
 bool domain_has_secants(const Domain *domain);
 

@@ -335,11 +335,11 @@ void domain_follow(Domain *d)
 
 /* ---- linearised steps ---- */
 
-bool domain_take_secants(Domain *d, bool take)
+bool domain_take_secants(Domain *d, Secants of)
 {
   bool any = false;
   for (int r = 0; r < d->region_count; ++r) {
-    d->regions[r].points.secants = take;
+    d->regions[r].points.secants = of;
     any |= d->regions[r].points.components == 1;
   }
   return any;

@@ -67,10 +67,14 @@ static const BrokenBond *first_broken(const Domain *d, double middle[3])
 }
 
 /** Increments that are not followed, but jumped over. */
-static void add_relaxed(const Solver *s, Text *text)
+static void add_jumps(const Solver *s, Text *text)
 {
-  double relaxed = 0;
-  for (int64_t k = 0; k <= s->clock.stage; ++k) relaxed += s->records[k].relaxed;
+  double descended = 0, relaxed = 0;
+  for (int64_t k = 0; k <= s->clock.stage; ++k) {
+    descended += s->records[k].descended;
+    relaxed += s->records[k].relaxed;
+  }
+  if (descended > 0) text_add(text, "  \"increments_by_secants\": %.0f,\n", descended);
   if (relaxed > 0) text_add(text, "  \"increments_by_relaxation\": %.0f,\n", relaxed);
 }
 
@@ -192,7 +196,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n", s->clock.time, s->clock.time_step);
   if (isfinite(s->clock.stable)) text_add(&t, "  \"stable_time_step\": %.10g,\n", s->clock.stable);
   add_stages(s, &t);
-  add_relaxed(s, &t);
+  add_jumps(s, &t);
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
   double x[3];

@@ -20,6 +20,13 @@ typedef struct PointsRun {
   int64_t first, count;
 } PointsRun;
 
+/** Where secants are told in the place of tangents. */
+typedef enum Secants {
+  SECANTS_OF_NONE,
+  SECANTS_OF_BONDS, /* of points of one strain, instead of a slope below zero */
+  SECANTS_OF_ALL, /* and of points of six components whose law softens: the first moduli, by the share of them that is left */
+} Secants;
+
 typedef struct PointServers PointServers; /* laws in other processes (points/servers.c) */
 typedef struct Untouched Untouched;       /* rows that remember nothing yet (points/untouched.c) */
 
@@ -46,7 +53,7 @@ typedef struct Points {
   double *elastic_tangent; /* [materials][36] of linear laws theirs, of others by their first moduli */
   double elastic_weight;   /* of elastic tangents in those that are told, 0 to 1; the rest is as kept */
   bool keeps_tangents;
-  bool secants; /* points_try tells the secant instead of a slope below zero */
+  Secants secants;
   uint8_t
       *gave_up; /* [count] 1: the law could not be integrated, and the point carries nothing; NULL: that is a failure */
   int elastic_stage;      /* laws respond elastically while it is set */

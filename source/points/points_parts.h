@@ -1,9 +1,26 @@
-/* What stands behind the door of points: plane stress (plane_stress.c), laws in other processes (servers.c), and histories that nothing has
- * happened to (untouched.c). */
+/* What stands behind the door of points: tangents and secants (points_tangents.c), trials (points_trials.c), plane stress (plane_stress.c), laws in other
+ * processes (servers.c), and histories that nothing has happened to (untouched.c). */
 #ifndef BRECCIA_POINTS_PARTS_H
 #define BRECCIA_POINTS_PARTS_H
 
 #include "points/points.h"
+
+enum { MOST_TRIED_VALUES = 256 }; /* history numbers of a point that can be tried out */
+
+/** Where the tangents from a row of run n on are kept; NULL: its law is linear. */
+double *points_kept_tangent(const Points *points, int64_t n, int64_t row);
+
+/** What laws see of rows of one run. */
+void points_make_batch(breccia_batch *batch, const Points *points, int64_t first, int count, double *const *strain,
+                       double *const *stress);
+
+/** Asks a law, in plane stress such that stresses zz vanish. @return -1, or the index of a point whose law could not be integrated */
+int points_update_batch(const Points *points, const Material *m, breccia_batch *batch, double *const strain[6]);
+
+/** In place of the tangents of rows whose law softens: its first moduli times the share of them with which a point unloads, or that stands between its
+ *  stress and its strain. */
+void points_take_secants(const Points *points, int64_t first, int count, double *const strain[6],
+                         double *const stress[6]);
 
 /** Part of a batch of points of so many components. */
 breccia_batch batch_part(const breccia_batch *whole, const Material *m, int components, int first, int count);

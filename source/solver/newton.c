@@ -1,4 +1,4 @@
-#include "solver/newton.h"
+#include "solver/newton_parts.h"
 #include "solver/pieces.h"
 #include "solver/vectors.h"
 
@@ -136,8 +136,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   return NEWTON_CONVERGED;
 }
 
-/** What motions that are prescribed up to a time do to forces by themselves. @return whether anything moves */
-static bool add_motions(Newton *n, double time)
+bool newton_add_motions(Newton *n, double time)
 {
   const Particles *p = n->domain->particles;
   const Unknowns *u = &n->linear.unknowns;
@@ -185,9 +184,8 @@ static void exchange(const Newton *n, double *displacement[MOTIONS])
   }
 }
 
-/** Factors or a preconditioner for the next linear equations; the changes are 0 afterwards. Assembling and factoring the matrix of a plate takes tens of
- *  times as long as a step with factors that are there. */
-static int prepare(Newton *n, Error *error)
+/* Assembling and factoring the matrix of a plate takes tens of times as long as a step with factors that are there. */
+int newton_prepare(Newton *n, Error *error)
 {
   LinearSolver *l = &n->linear;
   const Domain *d = n->domain;
@@ -217,8 +215,7 @@ static int prepare(Newton *n, Error *error)
   return status ? status : domain_linearise(n->domain, error);
 }
 
-/** Adds a share of the change to the displacements. */
-static void move(Newton *n, double share)
+void newton_move(Newton *n, double share)
 {
   const Particles *p = n->domain->particles;
   for (int k = 0; k < p->motions; ++k)
@@ -229,8 +226,7 @@ static void move(Newton *n, double share)
   if (n->control) control_add(n->loading, share * n->factor_change);
 }
 
-/** How closely the next linear equations are to be solved: no closer than what their linearity is worth, but for bodies that are elastic. */
-static double wanted_accuracy(const Newton *n, double force, double before)
+double newton_wanted_accuracy(const Newton *n, double force, double before)
 {
   const double enough = 0.3 * n->spec->residual * n->exerted / force;
   double worth = 1e-3;
@@ -239,7 +235,7 @@ static double wanted_accuracy(const Newton *n, double force, double before)
   return fmin(0.1, fmax(fmax(enough, worth), 1e-12));
 }
 
-static void tell(const Newton *n, double correction, double work, double share, const LinearRecord *linear)
+void newton_tell(const Newton *n, double correction, double work, double share, const LinearRecord *linear)
 {
   if (!n->log) return;
   text_add(n->log, "    iteration %lld: residual %.2e, correction %.2e, energy %.2e", (long long)n->iterations,
@@ -250,13 +246,12 @@ static void tell(const Newton *n, double correction, double work, double share, 
   text_add(n->log, "\n");
 }
 
-/** Sizes of vectors over places: of forces, and of motions. */
-static double size_of_forces(const Newton *n, double *const f[MOTIONS])
+double newton_size_of_forces(const Newton *n, double *const f[MOTIONS])
 {
   return sqrt(unknowns_product_of_forces(&n->linear.unknowns, f, f));
 }
 
-static double size_of_motions(const Newton *n, double *const v[MOTIONS])
+double newton_size_of_motions(const Newton *n, double *const v[MOTIONS])
 {
   return sqrt(unknowns_product_of_motions(&n->linear.unknowns, v, v));
 }
@@ -277,7 +272,7 @@ static NewtonOutcome search_line(Newton *n, double time, bool whole, double firs
     double wanted = *share / 2;
     if (!bad && (*work < 0) != (first_work < 0)) wanted = *share * fmax(0.1, first_work / (first_work - *work));
     if (!bad && (*work < 0) == (first_work < 0)) break; /* it goes on down: the next iteration will see to that */
-    move(n, wanted - *share);
+    newton_move(n, wanted - *share);
     *share = wanted;
     outcome = newton_find_forces(n, time, error);
     *work = unknowns_work(&n->linear.unknowns, n->force, n->change);
@@ -291,15 +286,14 @@ bool newton_has_gone_far(const Newton *n)
   return isfinite(room) && vectors_apart(n->domain->particles, n->moved) > room;
 }
 
-/** Where a body only moves as a whole nothing is exerted but roundings. */
-static bool is_balanced(const Newton *n, double force)
+bool newton_is_balanced(const Newton *n, double force)
 {
   return force <= fmax(n->spec->residual * n->exerted, n->roundings);
 }
 
-static bool has_converged(const Newton *n, double force, double correction, double work, double first_work)
+bool newton_has_converged(const Newton *n, double force, double correction, double work, double first_work)
 {
-  if (!is_balanced(n, force)) return false;
+  if (!newton_is_balanced(n, force)) return false;
   const double off = n->control ? fabs(n->target - control_shown(n->control)) : 0;
   if (n->control && !(off <= n->spec->residual * fmax(fabs(n->target), fabs(n->control->step))))
     return false; /* only a part of the last change was taken */
@@ -307,8 +301,7 @@ static bool has_converged(const Newton *n, double force, double correction, doub
   return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
 }
 
-/** Whether displacements are beyond all reason: factors of a stiffness that is singular but for rounding give such ones, in balance. */
-static bool is_carried_away(const Particles *p)
+bool newton_is_carried_away(const Particles *p)
 {
   const double most = 1e3; /* sizes of the body */
   double low[3], high[3], size = 0, farthest = 0;
@@ -357,12 +350,12 @@ static bool choose_slopes(Newton *n, Pace *pace, double force)
     pace->since = halved ? 0 : pace->since + 1;
     if (halved) pace->least = force;
     const bool again = pace->enough > 0; /* they were tried near to it: one step must do better */
-    if (pace->since >= (again ? 1 : PATIENCE) && domain_take_secants(n->domain, true)) {
+    if (pace->since >= (again ? 1 : PATIENCE) && domain_take_secants(n->domain, SECANTS_OF_BONDS)) {
       pace->by_secants = true;
       pace->enough = near * fmin(force, again ? pace->enough : force);
     }
   } else if (force < pace->enough) {
-    domain_take_secants(n->domain, false);
+    domain_take_secants(n->domain, SECANTS_OF_NONE);
     pace->by_secants = false;
     pace->least = force;
     pace->since = 0;
@@ -384,6 +377,31 @@ static bool is_cut(const Newton *n)
   return !n->beside && !pieces_find_loose(&n->linear.unknowns, PIECES_WORKED, &loose, NULL) && loose.pieces > 0;
 }
 
+/** Answer of the linearised equations to the forces out of balance. Where they have none, because parts of a body are torn so far that nothing holds them,
+ *  a trace of the first moduli holds those where they are, from then on in this search.
+ *  @param[out] start  work of the forces along it; no number where there is none */
+static int find_change(Newton *n, double force, double accuracy, LinearRecord *linear, double *start, Error *error)
+{
+  const double trace = 1e-8;
+  for (bool again = false;; again = true) {
+    if (newton_prepare(n, error)) return BRECCIA_FAILURE;
+    if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, linear, error))
+      return BRECCIA_FAILURE;
+    *start = unknowns_work(&n->linear.unknowns, n->force, n->change);
+    if (isfinite(*start) || again || n->beside || !domain_may_soften(n->domain)) return BRECCIA_OK;
+    domain_mix_tangents(n->domain, trace);
+    if (newton_linearise(n, error)) return BRECCIA_FAILURE;
+  }
+}
+
+/** Whether an iteration has led a body that softens far away: where parts are held by next to nothing, equilibrium may be found in which bars are folded and
+ *  have yielded a hundred times over, which no path leads to. @param[in] energy  work after the iteration over that of the first one */
+static bool is_astray(const Newton *n, double energy)
+{
+  const double most = 1e3;
+  return energy > most && !n->beside && !n->control && domain_may_soften(n->domain);
+}
+
 static NewtonOutcome solve(Newton *n, double time, Error *error)
 {
   const Particles *p = n->domain->particles;
@@ -393,13 +411,13 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   vectors_clear(n->moved, p);
   NewtonOutcome outcome = newton_find_forces(n, time, error);
   if (outcome != NEWTON_CONVERGED) return outcome;
-  const bool moves = add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
+  const bool moves = newton_add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
   const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
   double before = 0, first_work = 0;
   vectors_clear(n->moved, p);
-  double force = size_of_forces(n, n->force);
+  double force = newton_size_of_forces(n, n->force);
   n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
-  if (!moves && is_balanced(n, force)) {
+  if (!moves && newton_is_balanced(n, force)) {
     n->unbalanced = n->unbalanced_before;
     n->reference = n->exerted;
     return NEWTON_CONVERGED;
@@ -408,10 +426,9 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   const int64_t most = newton_most_iterations(n);
   for (n->iterations = 1; n->iterations <= (pace.enough > 0 ? LONGER * n->spec->iterations : most); ++n->iterations) {
     LinearRecord linear = {0};
-    if (prepare(n, error)) return NEWTON_FAILED;
-    const double accuracy = n->exerted > 0 ? wanted_accuracy(n, force, before) : n->spec->residual / 10;
-    if (force > 0 && linear_solver_solve(&n->linear, n->force, n->change, accuracy, &linear, error))
-      return NEWTON_FAILED;
+    const double accuracy = n->exerted > 0 ? newton_wanted_accuracy(n, force, before) : n->spec->residual / 10;
+    double start;
+    if (find_change(n, force, accuracy, &linear, &start, error)) return NEWTON_FAILED;
     if (linear.unsuited && !linear.indefinite && !n->linear.is_free) {
       if (is_cut(n)) return NEWTON_SINGULAR;
       const bool minimal = !strcmp(linear_solver_name(&n->linear), "minimal residuals");
@@ -424,29 +441,29 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     }
     n->products += linear.iterations;
     n->indefinite |= linear.indefinite;
-    double start = unknowns_work(&n->linear.unknowns, n->force, n->change);
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
     if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
     if (n->change_forces[0] && n->iterations == 1) n->foreseen = foresee_work(n);
     double share = 1, work;
-    move(n, 1);
+    newton_move(n, 1);
     outcome = search_line(n, time, n->control || (moves && n->iterations == 1), start, &work, &share, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
     before = force;
-    force = size_of_forces(n, n->force);
+    force = newton_size_of_forces(n, n->force);
     n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
     if (n->iterations == 1) first_work = start;
-    const double all = size_of_motions(n, n->moved),
-                 correction = all > 0 ? share * size_of_motions(n, n->change) / all : 0;
+    const double all = newton_size_of_motions(n, n->moved),
+                 correction = all > 0 ? share * newton_size_of_motions(n, n->change) / all : 0;
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
-    tell(n, correction, energy, share, &linear);
-    if (has_converged(n, force, correction, work, first_work)) {
-      if (!n->beside && is_carried_away(p)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
+    newton_tell(n, correction, energy, share, &linear);
+    if (newton_has_converged(n, force, correction, work, first_work)) {
+      if (!n->beside && newton_is_carried_away(p)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
       n->reference = n->exerted;
       return NEWTON_CONVERGED;
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
+    if (is_astray(n, energy)) return NEWTON_ASTRAY;
     if (choose_slopes(n, &pace, force) && domain_linearise(n->domain, error)) return NEWTON_FAILED;
     if (keeps_factors(n) && force > enough * before) n->follows = 1;
   }
@@ -456,7 +473,8 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
 NewtonOutcome newton_solve(Newton *n, double time, Error *error)
 {
   const NewtonOutcome outcome = solve(n, time, error);
-  domain_take_secants(n->domain, false);
+  domain_take_secants(n->domain, SECANTS_OF_NONE);
+  if (!n->beside) domain_mix_tangents(n->domain, 0);
   return outcome == NEWTON_CONVERGED && newton_has_gone_far(n) ? NEWTON_FAR : outcome;
 }
 
@@ -480,6 +498,7 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
     break;
   }
   case NEWTON_SINGULAR: snprintf(words, size, "the body does not resist some motion at all%s", parts); break;
+  case NEWTON_ASTRAY: snprintf(words, size, "an iteration led far away from the body as it was"); break;
   case NEWTON_COARSE: snprintf(words, size, "the body softens on the way, which is gone in smaller parts"); break;
   case NEWTON_FAR:
     snprintf(words, size, "particles have moved by more than %.3g against each other, farther than contact looks ahead",

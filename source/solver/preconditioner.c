@@ -24,7 +24,7 @@ void preconditioner_destroy(Preconditioner *m)
 
 size_t preconditioner_bytes(const Preconditioner *m)
 {
-  return coarse_grid_bytes(m->grid);
+  return m->grid ? coarse_grid_bytes(m->grid) : 0;
 }
 
 /* ---- the diagonal ---- */

@@ -29,6 +29,7 @@ int preconditioner_prepare(Preconditioner *preconditioner, LinearSolver *solver,
 void preconditioner_apply(const Preconditioner *preconditioner, const LinearSolver *solver, double *const f[MOTIONS],
                           double *const v[MOTIONS]);
 
+/** Bytes of its coarse grid, beside which the rest is small; 0 before it is made. */
 size_t preconditioner_bytes(const Preconditioner *preconditioner);
 
 #endif

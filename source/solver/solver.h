@@ -42,7 +42,8 @@ typedef struct StageRecord {
   double came_to_rest;                      /* 1: it ended because the body was at rest */
   double steady;                            /* one of STEADY_... */
   double unbalanced, kinetic;               /* by which it was judged (solver/rest.h) */
-  double relaxed; /* increments in which the body gave way, and whose ends dynamic relaxation found */
+  double descended,
+      relaxed; /* increments in which the body gave way, and whose ends descent by secants, and dynamic relaxation found */
 } StageRecord;
 enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 

@@ -82,12 +82,14 @@ static void list_state(Solver *run, StateList *list)
   newton_state(&s->newton, list);
   control_state(&s->control, list);
   state_add_count(list, "cuts of increments", STATE_LEARNED, &s->cuts);
+  state_add_count(list, "increments by secants", STATE_COMMITTED, &s->descended);
   state_add_count(list, "increments by relaxation", STATE_COMMITTED, &s->relaxed);
 }
 
 static void destroy(Solver *run)
 {
   Static *s = run->own;
+  descent_destroy(&s->descent);
   relaxation_destroy(&s->relaxation);
   newton_destroy(&s->newton);
   state_copy_destroy(&s->whole);
@@ -236,7 +238,9 @@ static int measure(Solver *run, StepCost *cost, Error *error)
 {
   Static *s = run->own;
   cost->bytes += (double)increment_bytes(&s->increment, run);
-  if (s->newton.relaxes) cost->bytes += (double)relaxation_bytes(&s->relaxation, s->domain->particles);
+  const bool jumps = domain_may_soften(s->domain) && static_may_relax(s); /* then both other ways may be made */
+  if (jumps) cost->bytes += (double)descent_bytes(&s->descent, s->domain->particles);
+  if (jumps || s->newton.relaxes) cost->bytes += (double)relaxation_bytes(&s->relaxation, s->domain->particles);
   if (static_may_go_on_again(s))
     cost->bytes += (double)(solver_kept_bytes(run, true) + vectors_bytes(s->domain->particles));
   return newton_measure(&s->newton, cost, error);

@@ -4,6 +4,7 @@
 #define BRECCIA_SOLVER_STATIC_H
 
 #include "solver/increment.h"
+#include "solver/newton_descent.h"
 #include "solver/relaxation.h"
 
 typedef struct StaticSpec {
@@ -29,15 +30,17 @@ typedef struct Static {
   Clock *clock;
   Ledger *ledger;
   Newton newton;
-  Relaxation relaxation; /* made when the first try asks for it */
+  Descent descent; /* these two are made when the first try asks for them */
+  Relaxation relaxation;
   Control control;
   Increment increment;
   StateCopy
       whole; /* the state at the begin of the increment, where what follows from it may leave no equilibrium near; else empty */
   Way way;
-  double next;     /* length of the increment to be tried next */
-  int64_t cuts;    /* in the stage */
-  int64_t relaxed; /* increments in which dynamic relaxation found what Newton's method did not */
+  double next;  /* length of the increment to be tried next */
+  int64_t cuts; /* in the stage */
+  int64_t descended,
+      relaxed; /* increments in which descent by secants, and dynamic relaxation found what Newton's method did not */
   double
       lag; /* forces out of balance over the reference, with what the last increment that was given back had led to */
 } Static;
@@ -49,16 +52,19 @@ void static_count_steps(const Solver *solver);
 
 int static_advance(Solver *solver, Text *warning, Error *error);
 
+/** By the method of the stage, or by another one, whatever that is. */
+typedef enum TryBy { BY_METHOD, BY_SECANTS, BY_RELAXATION } TryBy;
+
 /** How a try to come to equilibrium goes. */
 typedef struct Try {
-  bool again;   /* on with the way of the try before, which came to equilibrium at the same time */
-  bool relaxes; /* by dynamic relaxation, whatever the method of the stage is */
+  bool again; /* on with the way of the try before, which came to equilibrium at the same time */
+  TryBy by;
 } Try;
 
 /** One try to come to equilibrium at a time of the run; if there is none the state is that before the try. */
 NewtonOutcome static_try(Static *s, double end, Try how, Error *error);
 
-/** Whether dynamic relaxation may be tried where Newton's method finds no equilibrium. */
+/** Whether other ways may be tried where Newton's method finds no equilibrium. */
 bool static_may_relax(const Static *s);
 
 /** Whether an increment may be solved again with what has come of it, and be given back when it has been accepted. */
@@ -72,7 +78,7 @@ int static_give_back(Solver *solver, Error *error);
  *  the control of zero-energy modes that fades in correspondence. Where increments are few, what that holds besides would be spent as fracture energy.
  *  @param[out] outcome  why there is no equilibrium with the bonds that are left
  *  @param[out] settled  false: there is none with the control as far as it has faded, and the increment is to be given back
- *  @param[in,out] relaxed  true if dynamic relaxation was asked */
-int static_settle(Solver *solver, NewtonOutcome *outcome, bool *settled, bool *relaxed, Error *error);
+ *  @param[in,out] way  the last that was asked: secants before dynamic relaxation */
+int static_settle(Solver *solver, NewtonOutcome *outcome, bool *settled, TryBy *way, Error *error);
 
 #endif

@@ -57,16 +57,16 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
 
 /** Once more at the same time, on the way of the last try, which came to equilibrium.
  *  @param[in] first  it was the first on this way */
-static int try_again(Static *s, bool first, bool relaxes, NewtonOutcome *outcome, Error *error)
+static int try_again(Static *s, bool first, TryBy by, NewtonOutcome *outcome, Error *error)
 {
   if (!s->way.moved[0] && !vectors_make(s->way.moved, s->domain->particles, "static solver", error))
     return BRECCIA_FAILURE;
   if (first) vectors_combine(s->domain, 0, s->way.moved, 1, s->newton.moved);
-  *outcome = static_try(s, s->clock->time, (Try){.again = true, .relaxes = relaxes}, error);
+  *outcome = static_try(s, s->clock->time, (Try){.again = true, .by = by}, error);
   return *outcome == NEWTON_FAILED ? BRECCIA_FAILURE : BRECCIA_OK;
 }
 
-int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, bool *relaxed, Error *error)
+int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, TryBy *way, Error *error)
 {
   enum { MOST = 20 };
   const double enough = 1e-2; /* of forces out of balance: what comes of so few is left to the next increment */
@@ -77,16 +77,16 @@ int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, bool *rela
   for (int k = 0; !status && *outcome == NEWTON_CONVERGED && domain_lags(s->domain); ++k) {
     text_add(&run->log, "  again, with the control of zero-energy modes as it is now\n");
     NewtonOutcome again;
-    if (try_again(s, first, false, &again, error)) return BRECCIA_FAILURE;
+    if (try_again(s, first, BY_METHOD, &again, error)) return BRECCIA_FAILURE;
     const bool few = s->newton.unbalanced_before < enough;
     if (again != NEWTON_CONVERGED && few) {
       text_add(&run->log, "    no equilibrium: control as it was is kept in this increment\n");
       break;
     }
-    if (again != NEWTON_CONVERGED && static_may_relax(s)) { /* the body jumps: there is none near */
-      text_add(&run->log, "    no equilibrium: by dynamic relaxation\n");
-      if (try_again(s, false, true, &again, error)) return BRECCIA_FAILURE;
-      *relaxed = true;
+    for (TryBy by = BY_SECANTS; by <= BY_RELAXATION && again != NEWTON_CONVERGED && static_may_relax(s); ++by) {
+      text_add(&run->log, "    no equilibrium\n"); /* none near: the body jumps */
+      if (try_again(s, false, by, &again, error)) return BRECCIA_FAILURE;
+      *way = by > *way ? by : *way;
     }
     if (again != NEWTON_CONVERGED || (k == MOST && !few)) {
       s->lag = s->newton.unbalanced_before;

@@ -67,10 +67,20 @@ static NewtonOutcome relax(Static *s, double end, Error *error)
   n->relaxes = true;
   if (!s->relaxation.velocity[0] && relaxation_create(&s->relaxation, n, error)) return NEWTON_FAILED;
   n->linear.elastic = &s->relaxation.elastic;
+  if (n->log && !always) text_add(n->log, "  by dynamic relaxation\n");
   const NewtonOutcome outcome = relaxation_solve(&s->relaxation, n, end, s->spec->relaxation_iterations, error);
   n->relaxes = always;
   if (!always) n->linear.elastic = NULL;
   return outcome;
+}
+
+static NewtonOutcome descend(Static *s, double end, Error *error)
+{
+  enum { LONGER = 10 }; /* than by tangents */
+  Newton *n = &s->newton;
+  if (!s->descent.room[0] && descent_create(&s->descent, n, error)) return NEWTON_FAILED;
+  if (n->log) text_add(n->log, "  by secants\n");
+  return descent_solve(&s->descent, n, end, LONGER * s->spec->newton.iterations, error);
 }
 
 NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
@@ -86,8 +96,10 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
     const double begin = s->clock->stage_time, whole = s->clock->stage_end - begin;
     s->newton.target = control_target(&s->control, (s->clock->time - begin) / whole, (end - begin) / whole);
   }
-  const bool relaxes = how.relaxes || s->newton.relaxes;
-  NewtonOutcome outcome = relaxes ? relax(s, end, error) : newton_solve(&s->newton, end, error);
+  const bool relaxes = how.by == BY_RELAXATION || s->newton.relaxes;
+  NewtonOutcome outcome = relaxes                ? relax(s, end, error)
+                          : how.by == BY_SECANTS ? descend(s, end, error)
+                                                 : newton_solve(&s->newton, end, error);
   if (outcome == NEWTON_CONVERGED && !s->newton.relaxes && !how.again && is_coarse(s, end - s->clock->time))
     outcome = NEWTON_COARSE;
   if (outcome != NEWTON_CONVERGED) {
@@ -180,13 +192,17 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
 }
 
 /** At the end of the stage: what is said to be followed was jumped over. */
-static void tell_relaxed(const Static *s, Text *warning)
+static void tell_jumps(const Static *s, Text *warning)
 {
-  text_add(
-      warning,
-      "%swarning: static: in %lld of %lld increments the body gave way: Newton's method found no equilibrium near, "
-      "and dynamic relaxation the state of rest at their ends; what is between is not followed",
-      warning->length ? "\n" : "", (long long)s->relaxed, (long long)(s->clock->step - s->clock->stage_step));
+  text_add(warning,
+           "%swarning: static: in %lld of %lld increments the body gave way: Newton's method found no equilibrium "
+           "near, and ",
+           warning->length ? "\n" : "", (long long)(s->descended + s->relaxed),
+           (long long)(s->clock->step - s->clock->stage_step));
+  if (s->descended) text_add(warning, "descent by secants%s", s->relaxed ? "" : " the state of rest at their ends");
+  if (s->descended && s->relaxed) text_add(warning, " (in %lld) or ", (long long)s->descended);
+  if (s->relaxed) text_add(warning, "dynamic relaxation the state of rest at their ends");
+  text_add(warning, "; what is between is not followed");
 }
 
 /** Whether Newton's method is not asked alone any more, after it has failed: there is no equilibrium near, or only by secants that hardly come on.
@@ -198,19 +214,27 @@ static bool is_stuck(const Static *s, double length)
          length / 2 < fmax(least, s->spec->smallest) * static_whole_increment(s->spec);
 }
 
-/** First try of an increment, and by dynamic relaxation where Newton's method is stuck: the body jumps to another equilibrium.
- *  @param[in,out] may_relax  until that was tried in vain; @param[out] relaxed  it was */
-static NewtonOutcome try_first(Static *s, double end, bool *may_relax, bool *relaxed, Error *error)
+static bool came_to_equilibrium(NewtonOutcome outcome)
+{
+  return outcome == NEWTON_CONVERGED || outcome == NEWTON_COARSE;
+}
+
+/** First try of an increment, and by other ways where Newton's method is stuck: the body jumps to another equilibrium.
+ *  @param[in,out] may_relax  until that was tried in vain; @param[out] way  what found equilibrium */
+static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *way, Error *error)
 {
   NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
-  if (outcome == NEWTON_FAILED || outcome == NEWTON_CONVERGED || outcome == NEWTON_COARSE || !*may_relax ||
-      !is_stuck(s, end - s->clock->time) || !domain_may_soften(s->domain) || !static_may_relax(s))
+  if (outcome == NEWTON_FAILED || came_to_equilibrium(outcome) || !is_stuck(s, end - s->clock->time) ||
+      !domain_may_soften(s->domain) || !static_may_relax(s))
     return outcome;
   tell_refused(s, outcome, true);
-  text_add(s->newton.log, "  again, by dynamic relaxation\n");
-  outcome = static_try(s, end, (Try){.relaxes = true}, error);
-  *relaxed = outcome == NEWTON_CONVERGED;
-  *may_relax = *relaxed || outcome == NEWTON_COARSE;
+  outcome = static_try(s, end, (Try){.by = BY_SECANTS}, error);
+  if (outcome == NEWTON_CONVERGED) *way = BY_SECANTS;
+  if (outcome == NEWTON_FAILED || came_to_equilibrium(outcome) || !*may_relax) return outcome;
+  tell_refused(s, outcome, true);
+  outcome = static_try(s, end, (Try){.by = BY_RELAXATION}, error);
+  if (outcome == NEWTON_CONVERGED) *way = BY_RELAXATION;
+  *may_relax = came_to_equilibrium(outcome);
   return outcome;
 }
 
@@ -230,7 +254,8 @@ int static_advance(Solver *run, Text *warning, Error *error)
   const bool was_spent = control_is_spent(&s->control);
   const int64_t broken = s->domain->broken_count, cuts = s->cuts;
   int64_t iterations = 0;
-  bool relaxed = false, may_relax = true;
+  bool may_relax = true;
+  TryBy way;
   if (increment_keep(&s->increment, run, error) || static_keep(run, error)) return BRECCIA_FAILURE;
   s->newton.log = &run->log;
   for (int64_t cut = 0;; s->cuts = cuts + ++cut) {
@@ -238,14 +263,14 @@ int static_advance(Solver *run, Text *warning, Error *error)
     text_add(&run->log, "increment %lld, from time %.6g to %.6g %s\n", (long long)clock->step + 1, begin, end,
              clock->time_unit);
     bool settled = true;
-    relaxed = false;
-    NewtonOutcome outcome = try_first(s, end, &may_relax, &relaxed, error);
+    way = BY_METHOD;
+    NewtonOutcome outcome = try_first(s, end, &may_relax, &way, error);
     if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
     if (outcome == NEWTON_CONVERGED) {
       clock->time_step = end - begin;
       clock->time = end;
       iterations = s->newton.iterations;
-      const int status = static_settle(run, &outcome, &settled, &relaxed, error);
+      const int status = static_settle(run, &outcome, &settled, &way, error);
       if (settled) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
       if (status) return BRECCIA_FAILURE;
       if (settled && outcome == NEWTON_CONVERGED) break;
@@ -260,8 +285,9 @@ int static_advance(Solver *run, Text *warning, Error *error)
     }
   }
   const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : newton_most_iterations(&s->newton);
-  if (relaxed || iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, static_whole_increment(s->spec));
-  if (relaxed) run->records[clock->stage].relaxed = (double)++s->relaxed;
+  if (way != BY_METHOD || iterations <= (most + 1) / 2) s->next = fmin(2 * s->next, static_whole_increment(s->spec));
+  if (way == BY_SECANTS) run->records[clock->stage].descended = (double)++s->descended;
+  if (way == BY_RELAXATION) run->records[clock->stage].relaxed = (double)++s->relaxed;
   clock->ended = clock->time >= clock->stage_end - 1e-9 * static_whole_increment(s->spec);
   static_count_steps(run);
   if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
@@ -269,7 +295,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
   const bool again = was_spent || s->domain->broken_count > broken;
   if (!clock->ended && again && control_is_spent(&s->control)) end_torn(run, warning);
   if (clock->ended) {
-    if (s->relaxed) tell_relaxed(s, warning);
+    if (s->descended || s->relaxed) tell_jumps(s, warning);
     increment_forget(&s->increment);
     state_copy_destroy(&s->whole);
   }

@@ -1,0 +1,37 @@
+/* Steps of an iteration that Newton's method (newton.c) and the descent by secants (newton_descent.c) share, inside of this room. */
+#ifndef BRECCIA_SOLVER_NEWTON_PARTS_H
+#define BRECCIA_SOLVER_NEWTON_PARTS_H
+
+#include "solver/newton.h"
+
+/** Adds to the forces out of balance what motions that are prescribed up to a time do to them by themselves. `change` and `moved` are lost.
+ *  @return whether anything moves */
+bool newton_add_motions(Newton *newton, double time);
+
+/** Factors or a preconditioner for the next linear equations; the changes are 0 afterwards. */
+int newton_prepare(Newton *newton, Error *error);
+
+/** Adds a share of the change to the displacements. */
+void newton_move(Newton *newton, double share);
+
+/** How closely the next linear equations are to be solved: no closer than what their linearity is worth, but for bodies that are elastic.
+ *  @param[in] force, before  forces out of balance now and an iteration before; 0: there was none */
+double newton_wanted_accuracy(const Newton *newton, double force, double before);
+
+/** Adds a line on the iteration to the log. @param[in] work  over that of the first iteration */
+void newton_tell(const Newton *newton, double correction, double work, double share, const LinearRecord *linear);
+
+/** Sizes of vectors over places: of forces, and of motions. */
+double newton_size_of_forces(const Newton *newton, double *const f[MOTIONS]);
+double newton_size_of_motions(const Newton *newton, double *const v[MOTIONS]);
+
+/** Whether so much force is none: where a body only moves as a whole nothing is exerted but roundings. */
+bool newton_is_balanced(const Newton *newton, double force);
+
+/** Whether the tolerances of the deck hold. @param[in] work, first_work  of forces out of balance along the last and the first correction */
+bool newton_has_converged(const Newton *newton, double force, double correction, double work, double first_work);
+
+/** Whether displacements are beyond all reason: factors of a stiffness that is singular but for rounding give such ones, in balance. */
+bool newton_is_carried_away(const Particles *particles);
+
+#endif
