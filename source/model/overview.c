@@ -219,6 +219,8 @@ const char *breccia_model_overview(breccia_model *model)
            model->outlook.least ? "at least" : "about");
   const Task task = model_task(model, s->clock.step, s->clock.steps, 0);
   add_duration(text, outlook_left(&model->outlook, &task));
+  if (model->outlook.least && s->type->few_steps && domain_may_soften(d))
+    text_add(text, ", ten to a hundred times that where it cracks");
   if (domain_has_servers(d)) text_add(text, " and what its material servers take");
   return host_leave(&host, BRECCIA_OK, NULL) ? NULL : text_words(text);
 }
