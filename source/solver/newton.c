@@ -399,7 +399,7 @@ static int find_change(Newton *n, double force, double accuracy, LinearRecord *l
 static bool is_astray(const Newton *n, double energy)
 {
   const double most = 1e3;
-  return energy > most && !n->beside && !n->control && domain_may_soften(n->domain);
+  return energy > most && !n->beside && domain_may_soften(n->domain);
 }
 
 static NewtonOutcome solve(Newton *n, double time, Error *error)
