@@ -231,7 +231,7 @@ typedef struct breccia_array {
   int components;                 /* 1, 3 or 6 */
   int writable;                   /* 1: what is written to it between steps takes effect; others are for reading */
   const char *component_names[6]; /* "x", "xx"; NULL for one */
-  double *values[6]; /* the model's own arrays, [places] each; they stay where they are until the next step */
+  double *values[6]; /* the model's own arrays, [places] each; they stay where they are as long as the stage lasts */
 } breccia_array;
 
 /** What the model has of each particle: its arrays, one after another. Strains and stresses are as of this call.

@@ -88,6 +88,14 @@ LANES_INLINE LanesWithin lanes_within(LanesWithin so_far, Lanes a, Lanes limit)
   return _mm512_mask_cmp_pd_mask(so_far, (__m512d)lanes_absolute(a), (__m512d)limit, _CMP_NGT_UQ);
 }
 
+LANES_INLINE LanesWithin lanes_within_where(LanesWithin so_far, unsigned bits, int half, Lanes a, Lanes limit)
+{
+  (void)half;
+  const __mmask8 beyond =
+      _mm512_mask_cmp_pd_mask((__mmask8)bits, (__m512d)lanes_absolute(a), (__m512d)limit, _CMP_GT_OQ);
+  return (LanesWithin)(so_far & ~beyond);
+}
+
 LANES_INLINE int lanes_are_within(LanesWithin within)
 {
   return within == 255;

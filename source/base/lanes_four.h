@@ -111,6 +111,12 @@ LANES_INLINE LanesWithin lanes_within(LanesWithin so_far, Lanes a, Lanes limit)
   return so_far & ~(LaneMask)(lanes_absolute(a) > limit);
 }
 
+/** The same of those lanes of a half whose bit of a slot is set. */
+LANES_INLINE LanesWithin lanes_within_where(LanesWithin so_far, unsigned bits, int half, Lanes a, Lanes limit)
+{
+  return so_far & ~((LaneMask)(lanes_absolute(a) > limit) & lanes_half(bits, half));
+}
+
 LANES_INLINE int lanes_are_within(LanesWithin within)
 {
   return (within[0] & within[1] & within[2] & within[3]) != 0;

@@ -1,6 +1,7 @@
 #include "body/particles.h"
 
 #include "base/team.h"
+#include "body/orientation.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -101,18 +102,25 @@ int particles_make_rotations(Particles *p, int dimensions, Error *error)
   return BRECCIA_OK;
 }
 
+BRECCIA_CLONES
+static void take_rotations(Particles *p, int64_t first, int64_t last)
+{
+  for (int64_t i = first; i < last; i += LANES) {
+    Lanes q[4], square = lanes_set(0);
+    LaneMask stays = ~(LaneMask){0}; /* those at rest, to the bit */
+    turned_by(p->orientation, p->displacement, i, q);
+    for (int k = 0; k < 4; ++k) square += q[k] * q[k];
+    for (int k = 0; k < 3; ++k) stays &= (LaneMask)(lanes_load(p->displacement[ROTATION + k] + i) == lanes_set(0));
+    const Lanes by_length = lanes_set(1) / lanes_root(square);
+    for (int k = 0; k < 4; ++k)
+      lanes_store(p->orientation[k] + i, lanes_choose(stays, lanes_load(p->orientation[k] + i), by_length * q[k]));
+    for (int k = 0; k < 3; ++k) lanes_store(p->displacement[ROTATION + k] + i, lanes_set(0));
+  }
+}
+
 void particles_take_rotations(Particles *p, int64_t first, int64_t last)
 {
-  if (!p->orientation[0]) return;
-  for (int64_t i = first; i < last; ++i) {
-    double turn[3], q[4];
-    for (int k = 0; k < 3; ++k) turn[k] = p->displacement[ROTATION + k][i];
-    if (turn[0] == 0 && turn[1] == 0 && turn[2] == 0) continue;
-    particles_orientation(p, p->displacement, i, q);
-    const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int k = 0; k < 4; ++k) p->orientation[k][i] = q[k] / length;
-    for (int k = 0; k < 3; ++k) p->displacement[ROTATION + k][i] = 0;
-  }
+  if (p->orientation[0]) take_rotations(p, first, last);
 }
 
 void particles_rotation(const Particles *p, int32_t place, double rotation[3])

@@ -45,7 +45,7 @@ void particles_destroy(Particles *particles);
 /** Gives all places rotations. Their inertia is 0 yet. @param[in] dimensions  of the body */
 int particles_make_rotations(Particles *particles, int dimensions, Error *error);
 
-/** At the end of a step that came out well: rotations in space of places first .. last - 1 become part of their orientation. */
+/** At the end of a step that came out well: rotations in space of places first .. last - 1, whole slices, become part of their orientation. */
 void particles_take_rotations(Particles *particles, int64_t first, int64_t last);
 
 /** Unit quaternion of a place in space, with the rotation since `orientation` as it stands in some displacements. */

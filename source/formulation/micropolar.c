@@ -107,7 +107,8 @@ static void *create(const FormulationParts *parts, Error *error)
                     .space = parts->space,
                     .influence = parts->influence,
                     .secant = !strcmp(spec->kinematics, "thesis"),
-                    .torsion = spec->torsion};
+                    .torsion = spec->torsion,
+                    .sweeps = parts->space == SPACE_3D ? micropolar_space_chosen() : micropolar_plane_chosen()};
   const int blocks = m->body->block_count;
   m->constants = memory_zeroed((size_t)blocks, sizeof *m->constants, "links", error);
   m->rows = memory_zeroed((size_t)m->family->pattern_count, sizeof *m->rows, "links", error);
@@ -134,10 +135,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
   double *const *u = sweep->at ? sweep->at : m->particles->displacement;
-  if (m->particles->motions == 4)
-    micropolar_show_plane(m, u[ROTATION], sweep->first, sweep->last);
-  else if (!sweep->at)
-    micropolar_show_space(m, sweep->first, sweep->last);
+  if (m->particles->motions == 4 || !sweep->at) m->sweeps->show(m, u, sweep->first, sweep->last);
   return -1;
 }
 
@@ -158,8 +156,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
       continue;
     }
     if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
-    const bool swept =
-        !m->secant && (p->motions == 4 ? micropolar_resist_plane(m, slice) : micropolar_resist_space(m, slice));
+    const bool swept = !m->secant && m->sweeps->resist(m, slice);
     if (!swept)
       for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
     micropolar_add_links(m, slice, swept);

@@ -4,6 +4,7 @@
 #ifndef BRECCIA_FORMULATION_MICROPOLAR_H
 #define BRECCIA_FORMULATION_MICROPOLAR_H
 
+#include "base/lane_kinds.h"
 #include "formulation/formulation.h"
 #include "formulation/stretch.h"
 
@@ -42,7 +43,20 @@ typedef struct LinkDamage {
   uint8_t *touched;                    /* [slices] some link has been beyond its bounds */
 } LinkDamage;
 
-typedef struct Micropolar {
+typedef struct Micropolar Micropolar;
+
+/** What sweeps over links of lattices do, for each kind of vectors. */
+typedef struct MicropolarSweeps {
+  /** Forces and moments on a slice of links of lattices, by series for small strains.
+   *  @return false if some link is beyond them: what was written is of no use then */
+  bool (*resist)(const Micropolar *m, int64_t slice);
+  /** What slices first .. last - 1 show at rotations among these displacements. */
+  void (*show)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
+} MicropolarSweeps;
+LANES_CHOICE(const MicropolarSweeps, micropolar_plane)
+LANES_CHOICE(const MicropolarSweeps, micropolar_space)
+
+struct Micropolar {
   const Particles *particles;
   const Family *family;
   const Body *body;
@@ -57,7 +71,8 @@ typedef struct Micropolar {
   LinkRow *rows;            /* [patterns] */
   LinkDamage *damage;       /* NULL: all links are elastic */
   double *shown[4]; /* [places] cosine and sine of the rotation in the plane, or the quaternion of a place in space */
-} Micropolar;
+  const MicropolarSweeps *sweeps;
+};
 
 /** Material of a block. */
 const Material *micropolar_material(const Micropolar *m, int block);
@@ -135,14 +150,6 @@ Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int6
 
 /** Forces and moments of all links of a slice, or of its stored slots only, added to what stands there. */
 void micropolar_add_links(const Micropolar *m, int64_t slice, bool stored_only);
-
-/** Forces and moments on a slice of links of lattices, by series for small strains.
- *  @return false if some link is beyond them: what was written is of no use then */
-bool micropolar_resist_plane(const Micropolar *m, int64_t slice);
-bool micropolar_resist_space(const Micropolar *m, int64_t slice);
-/** Cosines and sines of rotations of slices first .. last - 1, or quaternions of places in space. */
-void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last);
-void micropolar_show_space(const Micropolar *m, int64_t first, int64_t last);
 
 /* ---- damage ---- */
 

@@ -1,11 +1,11 @@
-/* What sweeps over links of lattices in the plane and in space share, four links at a time. */
+/* What sweeps over links of lattices in the plane and in space share, vectors of links at a time. */
 #ifndef BRECCIA_FORMULATION_MICROPOLAR_LANES_H
 #define BRECCIA_FORMULATION_MICROPOLAR_LANES_H
 
 #include "formulation/micropolar.h"
 
-/* Largest |sine| of an end rotation for which the series are good to double precision. */
-static const double largest_sine = 0x1p-5;
+/* Largest |sine| of an end rotation for which the series are good to double precision, as the cosine's distance from 1: 1 - (1 - 2^-10)^1/2. */
+static const double largest_cosine_loss = 0x1.001002005p-11;
 
 /** Angle over sine, less 1, of the square of the sine: of the series of the arc sine. */
 LANES_INLINE Lanes angle_excess(Lanes square)
@@ -35,9 +35,13 @@ LANES_INLINE const breccia_link *weakened_by(const Micropolar *m, int64_t slice)
   return micropolar_is_weak(m, slice) ? &m->damage->laws[m->particles->block[slice]] : NULL;
 }
 
-LANES_INLINE bool in_any_lane(LaneMask mask)
+/** Whether the series of intact links of half a slot hold too: of their lengths, by d, and of both end rotations, by their cosines. */
+LANES_INLINE LanesWithin links_within(LanesWithin so_far, unsigned bits, int half, Lanes d, Lanes cosine, Lanes other)
 {
-  return mask[0] | mask[1] | mask[2] | mask[3];
+  const Lanes limit = lanes_set(largest_cosine_loss), one = lanes_set(1);
+  so_far = lanes_within_where(so_far, bits, half, d, lanes_set(range_limit[RANGE_SERIES]));
+  so_far = lanes_within_where(so_far, bits, half, one - cosine, limit);
+  return lanes_within_where(so_far, bits, half, one - other, limit);
 }
 
 #endif

@@ -1,4 +1,4 @@
-/* Links of lattices in the plane, four at a time. With the cosine and sine of each particle's rotation a link needs no trigonometry: the sine of
+/* Links of lattices in the plane, as many at a time as vectors have lanes. With the cosine and sine of each particle's rotation a link needs no trigonometry: the sine of
  * an end rotation is the cross product of the chord with where the section points, and the angle a series of it. */
 #include "formulation/micropolar_lanes.h"
 
@@ -12,7 +12,7 @@ LANES_INLINE Lanes angle_of(Lanes sine)
 typedef struct HalfSlice {
   Lanes u[2], cosine, sine;
   Lanes force[2], moment;
-  LaneMask beyond; /* the series */
+  LanesWithin within; /* the series */
 } HalfSlice;
 
 LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const breccia_link *weak, HalfSlice *own)
@@ -21,7 +21,6 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   double *const *u = m->particles->displacement;
   const LinkRow *row = &m->rows[f->pattern[slot]];
   const int64_t there = f->base[slot] + LANES * half;
-  const LaneMask intact = lanes_half(f->intact[slot], half);
   const Lanes nx = lanes_set(row->n[0]), ny = lanes_set(row->n[1]), by_length = lanes_set(row->by_length);
   /* all over the reference length */
   const Lanes ex = (lanes_load(u[0] + there) - own->u[0]) * by_length,
@@ -32,12 +31,9 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   const Lanes ax = own->cosine * nx - own->sine * ny, ay = own->sine * nx + own->cosine * ny;
   const Lanes bx = cosine * nx - sine * ny, by = sine * nx + cosine * ny;
   const Lanes here = mx * ay - my * ax, other = mx * by - my * bx;
-  const LaneMask beyond = (LaneMask)(lanes_absolute(d) > lanes_set(range_limit[RANGE_SERIES])) |
-                          (LaneMask)(lanes_absolute(here) > lanes_set(largest_sine)) |
-                          (LaneMask)(lanes_absolute(other) > lanes_set(largest_sine)) |
-                          (LaneMask)(mx * ax + my * ay < lanes_set(0)) | (LaneMask)(mx * bx + my * by < lanes_set(0));
   const Lanes a = angle_of(here), b = angle_of(other), sum = a + b;
-  Lanes axial = lanes_set(row->axial), bending = lanes_set(row->bending);
+  Lanes axial = lanes_intact(f->intact[slot], half, lanes_set(row->axial)),
+        bending = lanes_intact(f->intact[slot], half, lanes_set(row->bending));
   if (weak) {
     Lanes left[2];
     find_left(m, slot, half, weak, stretch, &left[0], &left[1]);
@@ -45,28 +41,29 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
     bending *= left[1];
   }
   const Lanes pull = axial * stretch, shear = lanes_set(6) * bending * by_length * inverse * sum;
-  own->beyond |= beyond & intact;
-  own->force[0] += lanes_where(intact, pull * mx + shear * my);
-  own->force[1] += lanes_where(intact, pull * my - shear * mx);
-  own->moment -= lanes_where(intact, bending * (sum + sum + (a + a)));
+  own->within = links_within(own->within, f->intact[slot], half, d, mx * ax + my * ay, mx * bx + my * by);
+  own->force[0] += pull * mx;
+  own->force[0] += shear * my;
+  own->force[1] += pull * my;
+  own->force[1] -= shear * mx;
+  own->moment -= bending * (sum + sum + (a + a));
 }
 
-BRECCIA_CLONES
-static bool resist_plane(const Micropolar *m, int64_t slice)
+static bool resist(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
   const breccia_link *weak = weakened_by(m, slice);
-  for (int half = 0; half < SLICE / LANES; ++half) {
+  for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
     HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
                      .cosine = lanes_load(m->shown[0] + place),
                      .sine = lanes_load(m->shown[1] + place),
                      .moment = {0},
-                     .beyond = {0}};
+                     .within = lanes_all_within()};
     own.force[0] = own.force[1] = lanes_set(0);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, weak, &own);
-    if (in_any_lane(own.beyond)) return false;
+    if (!lanes_are_within(own.within)) return false;
     lanes_store(p->internal[0] + place, own.force[0]);
     lanes_store(p->internal[1] + place, own.force[1]);
     lanes_store(p->internal[2] + place, lanes_set(0));
@@ -75,9 +72,9 @@ static bool resist_plane(const Micropolar *m, int64_t slice)
   return true;
 }
 
-BRECCIA_CLONES
-static void show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last)
+static void show(const Micropolar *m, double *const *at, int64_t first, int64_t last)
 {
+  const double *angle = at[ROTATION];
   for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
     Lanes sine, cosine;
     lanes_sine_cosine(lanes_load(angle + place), &sine, &cosine);
@@ -86,14 +83,4 @@ static void show_plane(const Micropolar *m, const double *angle, int64_t first, 
   }
 }
 
-/* Clones of functions that other files see would be among the names that the library exports. */
-
-bool micropolar_resist_plane(const Micropolar *m, int64_t slice)
-{
-  return resist_plane(m, slice);
-}
-
-void micropolar_show_plane(const Micropolar *m, const double *angle, int64_t first, int64_t last)
-{
-  show_plane(m, angle, first, last);
-}
+const MicropolarSweeps LANES_NAMED(micropolar_plane) = {.resist = resist, .show = show};

@@ -1,29 +1,18 @@
-/* Links of lattices in space, four at a time (docs/theory.md 6.4). With the quaternion of each particle a link needs no trigonometry: squares of the sines of
+/* Links of lattices in space, as many at a time as vectors have lanes (docs/theory.md 6.4). With the quaternion of each particle a link needs no trigonometry: squares of the sines of
  * end rotations are b . b, and the angles series of them. Derivatives by the spins of the ends are written in b_i = m x a_i; with f = t / sin t,
  * k = (1 - t cot t) / sin^2 t and t cot t = 1 - k b . b, that of bending by the spin of the first end is
  *   S_1 = B ((4 f_1 + 2 k_1 f_2 b_1 . b_2) b_1 + 2 f_2 (1 - k_1 b_1 . b_1) b_2 - 2 f_1 f_2 (a_1 . b_2) m),
- * and as nothing changes when all turn together, the force across the chord is m x (S_1 + S_2) / |y|: 200 operations for four links instead of calls for
- * each. */
+ * and as nothing changes when all turn together, the force across the chord is m x (S_1 + S_2) / |y|: 200 operations for a vector of links instead of
+ * calls for each. */
+#include "body/orientation.h"
 #include "formulation/micropolar_lanes.h"
 
 /** Half a slice: what it has, and what acts on it. */
 typedef struct HalfSlice {
   Lanes u[3], q[4], turned[3][3]; /* quaternion, and its matrix */
   Lanes force[3], moment[3];
-  LaneMask beyond; /* the series */
+  LanesWithin within; /* the series */
 } HalfSlice;
-
-LANES_INLINE void cross_lanes(const Lanes a[3], const Lanes b[3], Lanes c[3])
-{
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-LANES_INLINE Lanes dot_lanes(const Lanes a[3], const Lanes b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /** R n. */
 LANES_INLINE void turn_lanes(const Lanes q[4], const Lanes n[3], Lanes a[3])
@@ -61,7 +50,7 @@ typedef struct Spins {
 } Spins;
 
 LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes n[3], const Lanes chord[3],
-                            const LinkRow *row, Lanes bending, Lanes twist, LaneMask *beyond)
+                            const LinkRow *row, Lanes bending, Lanes twist, Lanes cosine[2])
 {
   Lanes a[3], c[3], b[3], d[3]; /* where the sections of this end and the other point, and the chord x these */
   Spins s;
@@ -70,9 +59,8 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   cross_lanes(chord, a, b);
   cross_lanes(chord, c, d);
   const Lanes bb = dot_lanes(b, b), dd = dot_lanes(d, d), bd = dot_lanes(b, d), one = lanes_set(1);
-  const Lanes limit = lanes_set(largest_sine * largest_sine), none = lanes_set(0);
-  *beyond |= (LaneMask)(bb > limit) | (LaneMask)(dd > limit) | (LaneMask)(dot_lanes(chord, a) < none) |
-             (LaneMask)(dot_lanes(chord, c) < none);
+  cosine[0] = dot_lanes(chord, a);
+  cosine[1] = dot_lanes(chord, c);
   const Lanes f = one + angle_excess(bb), g = one + angle_excess(dd), bend = bend_of(bb), other = bend_of(dd);
   const Lanes twice = bending + bending, by_f = twice * f, by_g = twice * g;
   /* this end by b and d, then the other by d and b */
@@ -105,7 +93,7 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   double *const *u = m->particles->displacement;
   const LinkRow *row = &m->rows[f->pattern[slot]];
   const int64_t there = f->base[slot] + LANES * half;
-  const LaneMask intact = lanes_half(f->intact[slot], half);
+  const unsigned intact = f->intact[slot];
   const Lanes by_length = lanes_set(row->by_length);
   Lanes n[3], chord[3], d = lanes_set(0); /* lengths over that of the link */
   for (int k = 0; k < 3; ++k) {
@@ -116,16 +104,16 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   }
   const Lanes g = shortening_series(d), inverse = lanes_set(1) - g, stretch = d * inverse - g;
   for (int k = 0; k < 3; ++k) chord[k] *= inverse;
-  LaneMask beyond = (LaneMask)(lanes_absolute(d) > lanes_set(range_limit[RANGE_SERIES]));
+  Lanes cosine[2] = {lanes_set(1), lanes_set(1)};
   Lanes left[2] = {lanes_set(1), lanes_set(1)};
   if (weak) find_left(m, slot, half, weak, stretch, &left[0], &left[1]);
-  const Lanes pull = lanes_where(intact, lanes_set(row->axial) * left[0] * stretch);
+  const Lanes pull = lanes_intact(intact, half, lanes_set(row->axial)) * left[0] * stretch;
   for (int k = 0; k < 3; ++k) own->force[k] += pull * chord[k];
   if (row->bending > 0) {
     const Lanes q[4] = {lanes_load(m->shown[0] + there), lanes_load(m->shown[1] + there),
                         lanes_load(m->shown[2] + there), lanes_load(m->shown[3] + there)};
-    const Spins s = spins_of(own, q, n, chord, row, lanes_where(intact, lanes_set(row->bending) * left[1]),
-                             lanes_where(intact, lanes_set(row->twist) * left[1]), &beyond);
+    const Spins s = spins_of(own, q, n, chord, row, lanes_intact(intact, half, lanes_set(row->bending)) * left[1],
+                             lanes_intact(intact, half, lanes_set(row->twist)) * left[1], cosine);
     const Lanes by_present = by_length * inverse;
     Lanes across[3];
     cross_lanes(chord, s.both, across);
@@ -134,7 +122,7 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
       own->moment[k] -= s.own[k];
     }
   }
-  own->beyond |= beyond & intact;
+  own->within = links_within(own->within, intact, half, d, cosine[0], cosine[1]);
 }
 
 /** The matrix of the own quaternion, as every link of the half slice turns its direction by it. */
@@ -147,15 +135,14 @@ LANES_INLINE void find_matrix(HalfSlice *own)
   }
 }
 
-BRECCIA_CLONES
-static bool resist_space(const Micropolar *m, int64_t slice)
+static bool resist(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
   const breccia_link *weak = weakened_by(m, slice);
-  for (int half = 0; half < SLICE / LANES; ++half) {
+  for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfSlice own = {.beyond = {0}};
+    HalfSlice own = {.within = lanes_all_within()};
     for (int k = 0; k < 3; ++k) {
       own.u[k] = lanes_load(p->displacement[k] + place);
       own.force[k] = own.moment[k] = lanes_set(0);
@@ -163,7 +150,7 @@ static bool resist_space(const Micropolar *m, int64_t slice)
     for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
     find_matrix(&own);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, weak, &own);
-    if (in_any_lane(own.beyond)) return false;
+    if (!lanes_are_within(own.within)) return false;
     for (int k = 0; k < 3; ++k) {
       lanes_store(p->internal[k] + place, own.force[k]);
       lanes_store(p->internal[ROTATION + k] + place, own.moment[k]);
@@ -172,39 +159,13 @@ static bool resist_space(const Micropolar *m, int64_t slice)
   return true;
 }
 
-/** particles_orientation, four at a time. */
-BRECCIA_CLONES
-static void show_space(const Micropolar *m, int64_t first, int64_t last)
+static void show(const Micropolar *m, double *const *at, int64_t first, int64_t last)
 {
-  const Particles *p = m->particles;
+  Lanes q[4];
   for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
-    Lanes turn[3], o[4], square = lanes_set(0), sine, cosine;
-    for (int k = 0; k < 4; ++k) o[k] = lanes_load(p->orientation[k] + place);
-    for (int k = 0; k < 3; ++k) {
-      turn[k] = lanes_load(p->displacement[ROTATION + k] + place);
-      square += turn[k] * turn[k];
-    }
-    const Lanes half = lanes_set(0.5) * lanes_root(square);
-    const LaneMask small = (LaneMask)(half < lanes_set(1e-4));
-    lanes_sine_cosine(half, &sine, &cosine);
-    const Lanes share = lanes_choose(small, lanes_set(0.5) - half * half * lanes_set(1.0 / 12),
-                                     lanes_set(0.5) * sine / lanes_choose(small, lanes_set(1), half));
-    for (int k = 0; k < 3; ++k) turn[k] *= share;
-    lanes_store(m->shown[0] + place, cosine * o[0] - dot_lanes(turn, o + 1));
-    Lanes across[3];
-    cross_lanes(turn, o + 1, across);
-    for (int k = 0; k < 3; ++k) lanes_store(m->shown[1 + k] + place, cosine * o[1 + k] + turn[k] * o[0] + across[k]);
+    turned_by(m->particles->orientation, at, place, q);
+    for (int k = 0; k < 4; ++k) lanes_store(m->shown[k] + place, q[k]);
   }
 }
 
-/* Clones of functions that other files see would be among the names that the library exports. */
-
-bool micropolar_resist_space(const Micropolar *m, int64_t slice)
-{
-  return resist_space(m, slice);
-}
-
-void micropolar_show_space(const Micropolar *m, int64_t first, int64_t last)
-{
-  show_space(m, first, last);
-}
+const MicropolarSweeps LANES_NAMED(micropolar_space) = {.resist = resist, .show = show};

@@ -336,6 +336,7 @@ int breccia_model_step(breccia_model *model, int64_t steps, breccia_error *error
   int status = model_begin(model, error);
   for (int64_t k = 0; !status && k < steps && !solver_is_done(&model->solver); ++k)
     status = model_advance(model, error);
+  solver_put_arrays_back(&model->solver);
   return model_leave(&entry, status, error);
 }
 

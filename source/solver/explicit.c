@@ -127,6 +127,9 @@ static int create(Solver *run, Error *error)
                   .clock = &run->clock,
                   .ledger = &run->ledger,
                   .force = run->force};
+  /* Nothing leads out of a plane, or off a line: loads that would are refused. */
+  for (int k = 0; k < d->particles->motions; ++k)
+    if (k < d->body.dimensions || k >= ROTATION) s->rows[s->row_count++] = k;
   run->ledger.wave = ledger_wave_speed(d);
   int failed = 0;
   for (int k = 0; k < d->particles->motions; ++k)
@@ -147,8 +150,37 @@ static int create(Solver *run, Error *error)
 static size_t bytes(Solver *run)
 {
   const Explicit *s = run->own;
-  return vectors_bytes(s->domain->particles) + stiffness_damping_bytes(&s->viscous, s->domain) +
-         face_work_bytes(&s->face_work) + solver_kept_bytes(run, false);
+  const size_t begun = 2 * (size_t)s->row_count * sizeof(double) * (size_t)s->domain->particles->places;
+  return vectors_bytes(s->domain->particles) + begun + stiffness_damping_bytes(&s->viscous, s->domain) +
+         face_work_bytes(&s->face_work) + solver_kept_bytes(run, KEPT_BUT_MOTION);
+}
+
+/** Room for the state that a step begins with; only while steps are taken, as pictures and the like need room afterwards. */
+static int make_room(Explicit *s, Solver *run, Error *error)
+{
+  static const char label[] = "motion before a step";
+  int failed = solver_keep(run, KEPT_BUT_MOTION, &s->before, error);
+  for (int r = 0; r < s->row_count && !failed && !s->begun.displacement[s->rows[r]]; ++r) {
+    const int64_t places = s->domain->particles->places;
+    failed = !(s->begun.velocity[s->rows[r]] = places_array(places, label, error)) ||
+             !(s->begun.displacement[s->rows[r]] = places_array(places, label, error));
+  }
+  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+}
+
+static void give_up_room(Explicit *s)
+{
+  explicit_put_arrays_back(s);
+  for (int k = 0; k < MOTIONS; ++k) {
+    places_free(&s->begun.displacement[k]);
+    places_free(&s->begun.velocity[k]);
+  }
+  solver_forget(s->domain, &s->before);
+}
+
+static void put_arrays_back(Solver *run)
+{
+  explicit_put_arrays_back(run->own);
 }
 
 static void destroy(Solver *run)
@@ -160,7 +192,7 @@ static void destroy(Solver *run)
   free(s->motions);
   stiffness_damping_destroy(&s->viscous);
   face_work_destroy(&s->face_work);
-  solver_forget(s->domain, &s->before);
+  give_up_room(s);
   free(s);
   run->own = NULL;
 }
@@ -258,75 +290,6 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
 
 /* ---- steps ---- */
 
-/** First half: velocities to the middle of the step, displacements to its end. */
-BRECCIA_CLONES
-static void kick_and_drift(Explicit *s, int64_t batch)
-{
-  const Particles *p = s->domain->particles;
-  const Lanes dt = lanes_set(s->clock->time_step), c = lanes_set(explicit_mass_damping(s)), one_half = lanes_set(0.5);
-  Lanes bond = {0}, external = {0}, damping = {0}, between = {0}, still = {0};
-  const double *counted = s->domain->counted;
-  int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = first; i < last; i += LANES) {
-      Lanes v = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
-      Lanes fe = lanes_load(p->external[k] + i);
-      Lanes gain = lanes_load(s->acceleration[k] + i) - c * v, drag = fi + fe - lanes_load(p->inertia[k] + i) * gain;
-      Lanes half = v + one_half * dt * gain, du = dt * half, work = one_half * du * lanes_load(counted + i);
-      bond -= fi * work;
-      external += fe * work;
-      damping += drag * work;
-      between -= lanes_load(p->inertia[k] + i) * lanes_load(counted + i) * gain * gain;
-      if (k < ROTATION) still = lanes_least(still, -lanes_absolute(du));
-      lanes_store(p->displacement[k] + i, lanes_load(p->displacement[k] + i) + du);
-      lanes_store(p->velocity[k] + i, half);
-    }
-  double *sums = s->sums[batch];
-  sums[BOND_WORK] = lanes_total(bond);
-  sums[EXTERNAL_WORK] = lanes_total(external);
-  sums[DAMPING_WORK] = lanes_total(damping);
-  sums[BETWEEN] = s->clock->time_step * s->clock->time_step / 8 * lanes_total(between);
-  sums[MOTION] = fmax(fmax(-still[0], -still[1]), fmax(-still[2], -still[3]));
-}
-
-/** Second half: accelerations and velocities at the end of the step. */
-BRECCIA_CLONES
-static void kick(Explicit *s, int64_t batch)
-{
-  const Particles *p = s->domain->particles;
-  const double c = explicit_mass_damping(s);
-  const bool stiff = s->viscous.time > 0;
-  const Lanes dt = lanes_set(s->clock->time_step), one_half = lanes_set(0.5), local = lanes_set(s->spec->local_damping);
-  const Lanes slow = lanes_set(1 / (1 + 0.5 * c * s->clock->time_step)), viscous = lanes_set(c);
-  Lanes bond = {0}, external = {0}, damping = {0}, kinetic = {0}, between = {0};
-  const double *counted = s->domain->counted;
-  int64_t first = s->domain->batches[batch].first * SLICE, last = s->domain->batches[batch].last * SLICE;
-  for (int k = 0; k < p->motions; ++k)
-    for (int64_t i = first; i < last; i += LANES) {
-      Lanes half = lanes_load(p->velocity[k] + i), fi = lanes_load(p->internal[k] + i);
-      Lanes fe = lanes_load(p->external[k] + i), density = lanes_load(p->inertia[k] + i);
-      Lanes volume = lanes_load(counted + i), force = fi + fe, size = local * lanes_absolute(force);
-      Lanes drag = lanes_where(half > lanes_set(0), size) - lanes_where(half < lanes_set(0), size);
-      if (stiff) drag += lanes_load(s->viscous.drag[k] + i);
-      Lanes acceleration = (force - drag) / density, end = (half + one_half * dt * acceleration) * slow;
-      Lanes work = one_half * dt * half * volume;
-      bond -= fi * work;
-      external += fe * work;
-      damping += (drag + viscous * density * end) * work;
-      kinetic += one_half * density * volume * end * end;
-      Lanes gain = acceleration - viscous * end;
-      between += density * volume * gain * gain;
-      lanes_store(s->acceleration[k] + i, acceleration);
-      lanes_store(p->velocity[k] + i, end);
-    }
-  double *sums = s->sums[batch];
-  sums[BOND_WORK] += lanes_total(bond);
-  sums[EXTERNAL_WORK] += lanes_total(external);
-  sums[DAMPING_WORK] += lanes_total(damping);
-  sums[BETWEEN] += s->clock->time_step * s->clock->time_step / 8 * lanes_total(between);
-  sums[KINETIC] = lanes_total(kinetic);
-}
-
 static void add_sums(Explicit *s)
 {
   s->ledger->kinetic = 0;
@@ -370,8 +333,7 @@ static void move(void *context)
   TEAM_FOR (b, d->batch_count) {
     const int64_t first = d->batches[b].first * SLICE, last = d->batches[b].last * SLICE;
     state_note_places(&s->before, first, last);
-    if (s->viscous.time > 0) stiffness_damping_note(&s->viscous, d, first, last);
-    kick_and_drift(s, b);
+    explicit_kick_and_drift(s, b);
   }
   explicit_prescribe_displacements(s);
 }
@@ -408,7 +370,7 @@ static void answer(void *context)
   }
   apply_loads(s, end);
   TEAM_FOR (b, d->batch_count) {
-    kick(s, b);
+    explicit_kick(s, b);
     particles_take_rotations(d->particles, d->batches[b].first * SLICE, d->batches[b].last * SLICE);
   }
   TEAM_SINGLE
@@ -421,6 +383,20 @@ static void answer(void *context)
   loading_keep_ties(s->loading, d->particles, s->acceleration);
 }
 
+/** Drag of stiffness in the step under way. */
+static void find_drag(Explicit *s)
+{
+  Domain *d = s->domain;
+  double *was[MOTIONS] = {NULL};
+  for (int k = 0; k < d->particles->motions; ++k) was[k] = d->particles->displacement[k];
+  for (int r = 0; r < s->row_count; ++r) was[s->rows[r]] = s->begun.displacement[s->rows[r]];
+  stiffness_damping_find(&s->viscous, d, was, s->clock->time_step);
+  if (!d->failure.criterion && !d->gave_up) return;
+  explicit_exchange_motion(s); /* bonds that break next are judged by what particles showed before the step */
+  domain_show_states(d);
+  explicit_exchange_motion(s);
+}
+
 static void take_step(void *context)
 {
   move(context);
@@ -430,7 +406,7 @@ static void take_step(void *context)
 static int advance(Solver *run, Text *warning, Error *error)
 {
   Explicit *s = run->own;
-  if (solver_keep(run, &s->before, error)) return BRECCIA_FAILURE;
+  if (make_room(s, run, error)) return BRECCIA_FAILURE;
   state_note_others(&s->before); /* first, so that a step that fails gives back the plan and the stable step too */
   const int status = explicit_follow(run, warning, error);
   if (status) return status;
@@ -441,9 +417,10 @@ static int advance(Solver *run, Text *warning, Error *error)
   loading_move(s->loading, &(LoadMotion){.velocity = s->domain->particles->velocity,
                                          .lag = s->clock->time_step / 2,
                                          .damping = explicit_mass_damping(s)});
+  explicit_exchange_motion(s);
   if (s->viscous.time > 0) {
     team_run(move, s);
-    stiffness_damping_find(&s->viscous, s->domain, s->clock->time_step);
+    find_drag(s);
     team_run(answer, s);
   } else
     team_run(take_step, s);
@@ -452,7 +429,7 @@ static int advance(Solver *run, Text *warning, Error *error)
   domain_commit_points(s->domain);
   forces_commit(&s->domain->forces);
   const int looked = look_for_rest(run, warning, error);
-  if (run->clock.ended) solver_forget(s->domain, &s->before);
+  if (run->clock.ended) give_up_room(s);
   return looked;
 }
 
@@ -464,6 +441,7 @@ const SolverType explicit_solver = {.name = "explicit",
                                     .plan_again = explicit_plan_again,
                                     .begin = begin,
                                     .advance = advance,
+                                    .put_arrays_back = put_arrays_back,
                                     .state = list_state,
                                     .damps = damps,
                                     .damping = damping,

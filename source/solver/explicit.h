@@ -1,5 +1,5 @@
-/* Explicit dynamics by velocity Verlet, inside of this room: one file for the keys, the sweeps and a whole step (explicit.c), one for how long steps
- * are (step_plan.c), one for prescribed motions (prescribed.c), one for steps that fail (retreat.c). */
+/* Explicit dynamics by velocity Verlet, inside of this room: one file for the keys and a whole step (explicit.c), one for its passes over all particles
+ * (verlet.c), one for how long steps are (step_plan.c), one for prescribed motions (prescribed.c), one for steps that fail (retreat.c). */
 #ifndef BRECCIA_SOLVER_EXPLICIT_H
 #define BRECCIA_SOLVER_EXPLICIT_H
 
@@ -30,6 +30,13 @@ typedef struct Explicit {
   bool force;    /* accept a chosen step above the stable one */
   double period; /* of `quasi_static`: of the slowest vibration that loads set off; else 0 */
   double *acceleration[MOTIONS];
+  int rows[MOTIONS], row_count; /* of motion, that something can move */
+  /* What a step begins with stays here: it writes displacements and velocities into other arrays, which change places with these. So nothing need be copied
+   * for a step that fails, and each row is read once. NULL in rows that nothing moves, and while no steps are taken. */
+  struct {
+    double *displacement[MOTIONS], *velocity[MOTIONS];
+  } begun;
+  bool exchanged;           /* the particles have arrays of `begun` */
   StiffnessDamping viscous; /* with damping.stiffness only */
   /* Steps of one length, from a time to a time. */
   struct {
@@ -38,7 +45,7 @@ typedef struct Explicit {
   } plan;
   double fixed; /* the step that the deck says, or the program's where the deck counts steps; NaN: free to follow */
   int64_t broken_at_estimate, step_at_estimate; /* when the stable step was found */
-  StateCopy before;                             /* what the step under way has tried, as it was */
+  StateCopy before;                             /* what else the step under way has tried, as it was */
   struct Motion {                               /* of each constraint in the step under way */
     double target;                              /* displacement at its end */
     double moved;                               /* in the step */
@@ -65,6 +72,15 @@ double explicit_time_after_step(const Explicit *solver);
 
 /** Steps and time of a stage with this section, for the stable step on the clock. */
 void explicit_foresee(const void *spec, const Clock *clock, double *steps, double *time);
+
+/** The arrays of the particles' motion change places with those of `begun`. By one thread. */
+void explicit_exchange_motion(Explicit *solver);
+/** After steps: the particles have their own arrays again, with what they hold now; a program may have asked for these once and read them ever since. */
+void explicit_put_arrays_back(Explicit *solver);
+/** First half of a step of a batch, from `begun`: velocities to the middle of the step, displacements to its end. */
+void explicit_kick_and_drift(Explicit *solver, int64_t batch);
+/** Second half: accelerations and velocities at the end of the step. */
+void explicit_kick(Explicit *solver, int64_t batch);
 
 /** Parts into which the particles of a constraint are shared out among threads. */
 int64_t explicit_parts_of(const Constraint *constraint);

@@ -51,13 +51,13 @@ void increment_destroy(Increment *i)
 
 int increment_keep(Increment *i, Solver *run, Error *error)
 {
-  return solver_keep(run, &i->before, error);
+  return solver_keep(run, KEPT_TRIED, &i->before, error);
 }
 
 size_t increment_bytes(const Increment *i, Solver *run)
 {
   return (i->beside[0] ? 4 : 2) * vectors_bytes(i->domain->particles) + face_work_bytes(&i->face_work) +
-         solver_kept_bytes(run, false);
+         solver_kept_bytes(run, KEPT_TRIED);
 }
 
 double increment_end(const Solver *run, double length)

@@ -275,23 +275,34 @@ int solver_begin(Solver *s, Error *error)
   return status;
 }
 
-size_t solver_kept_bytes(Solver *s, bool whole)
+/** The state's rows; what the caller gives back by itself counts as what changes only when a step has come out well. */
+static void list_kept(Solver *s, Kept kept, StateList *list)
+{
+  const Particles *p = s->domain->particles;
+  domain_state(s->domain, list);
+  solver_state(s, list);
+  for (int n = 0; n < list->count && kept == KEPT_BUT_MOTION; ++n)
+    for (int k = 0; k < p->motions; ++k)
+      if (list->rows[n].values == p->displacement[k] || list->rows[n].values == p->velocity[k])
+        list->rows[n].role = STATE_COMMITTED;
+}
+
+size_t solver_kept_bytes(Solver *s, Kept kept)
 {
   StateList list = {0};
-  domain_state(s->domain, &list);
-  solver_state(s, &list);
-  size_t bytes = state_bytes(&list, !whole);
+  list_kept(s, kept, &list);
+  size_t bytes = state_bytes(&list, kept != KEPT_ALL);
   state_list_destroy(&list);
-  for (int r = 0; r < s->domain->region_count && !whole; ++r) bytes += points_kept_bytes(&s->domain->regions[r].points);
+  for (int r = 0; r < s->domain->region_count && kept != KEPT_ALL; ++r)
+    bytes += points_kept_bytes(&s->domain->regions[r].points);
   return bytes;
 }
 
-int solver_keep(Solver *s, StateCopy *before, Error *error)
+int solver_keep(Solver *s, Kept kept, StateCopy *before, Error *error)
 {
   if (before->rows) return BRECCIA_OK;
   StateList list = {0};
-  domain_state(s->domain, &list);
-  solver_state(s, &list);
+  list_kept(s, kept, &list);
   int status = state_keep(before, &list, error);
   state_list_destroy(&list);
   if (!status) status = domain_keep_stresses(s->domain, true, error);
@@ -398,6 +409,11 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   if (failed) return failed;
   s->ledger.trapped = trapped;
   return trapped ? trapped : ledger_watch(&s->ledger, s->domain, &s->clock, error);
+}
+
+void solver_put_arrays_back(Solver *s)
+{
+  if (s->own && s->type->put_arrays_back) s->type->put_arrays_back(s);
 }
 
 Energy solver_energy(const Solver *s)

@@ -88,6 +88,8 @@ struct SolverType {
   int (*begin)(Solver *solver, Error *error);
   /** One step, of the clock too, and whether the stage has ended; solver_advance says what holds after a failure. */
   int (*advance)(Solver *solver, Text *warning, Error *error);
+  /** After steps that a program has asked for: the body's arrays are where they were before these. NULL: they never move. */
+  void (*put_arrays_back)(Solver *solver);
   /** Rows of what it keeps. */
   void (*state)(Solver *solver, StateList *list);
   /** Whether something takes energy out of motions, so that a body may come to rest. */
@@ -173,14 +175,20 @@ int solver_measure(Solver *solver, StepCost *cost, Error *error);
  *  and no equilibrium was found without them: the state is then one with these bonds broken that is not in equilibrium.
  *  @param[out] warning  a remark for the user is added, if there is one */
 int solver_advance(Solver *solver, Text *warning, Error *error);
+/** After steps, whatever has become of them: arrays of the body are where they were before. */
+void solver_put_arrays_back(Solver *solver);
 
 Energy solver_energy(const Solver *solver);
 
-/** Bytes of a copy of what steps try, of the body and of what the solver keeps, by which one that fails is given back; or of the whole state. */
-size_t solver_kept_bytes(Solver *solver, bool whole);
+/** What is copied: the whole state; what steps try, of the body and of what the solver keeps, by which one that fails is given back; or that without
+ *  displacements and velocities, which the solver has. */
+typedef enum Kept { KEPT_ALL, KEPT_TRIED, KEPT_BUT_MOTION } Kept;
 
-/** Makes room for that copy, if there is none yet; only while steps are taken, as pictures and the like need room afterwards. */
-int solver_keep(Solver *solver, StateCopy *before, Error *error);
+/** Bytes of a copy. */
+size_t solver_kept_bytes(Solver *solver, Kept kept);
+
+/** Makes room for a copy of what steps try, if there is none yet; only while steps are taken, as pictures and the like need room afterwards. */
+int solver_keep(Solver *solver, Kept kept, StateCopy *before, Error *error);
 /** Frees the copy. */
 void solver_forget(Domain *domain, StateCopy *before);
 

@@ -11,29 +11,21 @@ int stiffness_damping_create(StiffnessDamping *s, double time, const Domain *d, 
   const Particles *p = d->particles;
   s->time = time;
   if (!(time > 0)) return BRECCIA_OK;
-  const bool made = !aside_create(&s->aside, d, label, error) && vectors_make(s->was, p, label, error) &&
-                    vectors_make(s->drag, p, label, error) && vectors_make(s->left, p, label, error);
+  const bool made = !aside_create(&s->aside, d, label, error) && vectors_make(s->drag, p, label, error) &&
+                    vectors_make(s->left, p, label, error);
   return made ? BRECCIA_OK : BRECCIA_FAILURE;
 }
 
 void stiffness_damping_destroy(StiffnessDamping *s)
 {
   aside_destroy(&s->aside);
-  vectors_free(s->was);
   vectors_free(s->drag);
   vectors_free(s->left);
 }
 
 size_t stiffness_damping_bytes(const StiffnessDamping *s, const Domain *d)
 {
-  const size_t rows = s->drag[0] ? 9 : 0;
-  return rows * sizeof(double) * (size_t)d->particles->places + aside_bytes(&s->aside, d);
-}
-
-void stiffness_damping_note(StiffnessDamping *s, const Domain *d, int64_t first, int64_t last)
-{
-  for (int k = 0; k < d->particles->motions; ++k)
-    memcpy(s->was[k] + first, d->particles->displacement[k] + first, sizeof(double) * (size_t)(last - first));
+  return (s->drag[0] ? 2 * vectors_bytes(d->particles) : 0) + aside_bytes(&s->aside, d);
 }
 
 /** Elastic forces at these displacements. */
@@ -46,31 +38,17 @@ static void evaluate(StiffnessDamping *s, Domain *d, double *const at[MOTIONS])
   aside_exchange(&s->aside, d);
 }
 
-static void exchange_displacements(StiffnessDamping *s, Particles *p)
-{
-  for (int k = 0; k < p->motions; ++k) {
-    double *u = p->displacement[k];
-    p->displacement[k] = s->was[k];
-    s->was[k] = u;
-  }
-}
-
-void stiffness_damping_find(StiffnessDamping *s, Domain *d, double step)
+void stiffness_damping_find(StiffnessDamping *s, Domain *d, double *const was[MOTIONS], double step)
 {
   const size_t bytes = sizeof(double) * (size_t)d->particles->places;
   const bool elastic = domain_in_elastic_stage(d), linear = domain_is_elastic(d);
   domain_set_elastic_stage(d, true);
-  if (!linear) evaluate(s, d, s->was); /* else they are those that the body has */
+  if (!linear) evaluate(s, d, was); /* else they are those that the body has */
   for (int k = 0; k < d->particles->motions; ++k)
     memcpy(s->drag[k], linear ? d->particles->internal[k] : s->aside.internal[k], bytes);
   evaluate(s, d, d->particles->displacement);
   domain_set_elastic_stage(d, elastic);
   vectors_combine(d, s->time / step, s->drag, -s->time / step, s->aside.internal);
-  if (!d->failure.criterion && !d->gave_up) return;
-  exchange_displacements(s,
-                         d->particles); /* bonds that break next are judged by what particles showed before the step */
-  domain_show_states(d);
-  exchange_displacements(s, d->particles);
 }
 
 static void exchange_forces(StiffnessDamping *s, Domain *d)

@@ -8,7 +8,6 @@
 typedef struct StiffnessDamping {
   double time;           /* b; 0: there is none, and no array */
   Aside aside;           /* where elastic forces are found */
-  double *was[MOTIONS];  /* displacements before the step */
   double *drag[MOTIONS]; /* [places] force per volume against the motion, as found last */
   double *left[MOTIONS]; /* internal forces less these, for loads that look at all forces */
 } StiffnessDamping;
@@ -19,12 +18,10 @@ void stiffness_damping_destroy(StiffnessDamping *damping);
 /** Memory that it takes. */
 size_t stiffness_damping_bytes(const StiffnessDamping *damping, const Domain *domain);
 
-/** Before displacements change, of the places first .. last - 1; by any thread. */
-void stiffness_damping_note(StiffnessDamping *damping, const Domain *domain, int64_t first, int64_t last);
-
 /** When displacements are those at the end of the step and nothing else is yet: finds the drag. By one thread, which has the team work.
+ *  @param[in] was   displacements before the step
  *  @param[in] step  its length */
-void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double step);
+void stiffness_damping_find(StiffnessDamping *damping, Domain *domain, double *const was[MOTIONS], double step);
 
 /** Puts internal forces less drag in the place of internal forces, and back: by all threads. */
 void stiffness_damping_take_off(StiffnessDamping *damping, Domain *domain);

@@ -299,6 +299,11 @@ static void test_arrays_are_all_named_and_what_is_written_to_them_counts(void **
   double most = 0;
   for (int64_t i = 0; i < breccia_model_places(model); ++i) most = larger_of(most, u[i]);
   assert_near(most, 3 * breccia_model_time(model), 1e-12);
+  for (int k = 0; k < 3; ++k) { /* after one step, two, and the last, when room is given up */
+    assert_int_equal(breccia_model_step(model, k < 2 ? 1 + k : INT64_MAX, error), BRECCIA_OK);
+    assert_ptr_equal(breccia_model_array(model, "velocity x"), v);
+    assert_ptr_equal(breccia_model_array(model, "displacement x"), u);
+  }
   assert_null(breccia_model_array(model, "no such"));
   breccia_model_destroy(&model);
   breccia_error_destroy(&error);

@@ -23,22 +23,25 @@ static void displace(const Domain *d, double far)
   const Particles *p = d->particles;
   uint64_t seed = 5;
   for (int64_t n = 0; n < p->count; ++n)
-    for (int k = 0; k < 3; ++k) p->displacement[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
+    for (int k = 0; k < p->motions; ++k)
+      if (p->position[2][p->place_of[p->count - 1]] > 0 || k != 2) /* a plane stays one */
+        p->displacement[k][p->place_of[n]] = 1e-3 * (random_uniform(&seed) - 0.5);
   p->displacement[0][p->place_of[p->count / 3]] += far;
 }
 
-/** Forces of one evaluation, by `lanes`. @return [3][places], to be freed */
+/** Forces of one evaluation, by `lanes`. @return [motions][places], to be freed */
 static double *forces_by(const char *lanes, const char *peridynamics, const char *law, const char *shape, double far,
                          int64_t *count)
 {
   setenv("BRECCIA_LANES", lanes, 1);
   breccia_model *model = body(peridynamics, law, shape);
   const Particles *p = model->domain.particles;
-  *count = 3 * p->places;
+  *count = p->motions * p->places;
   double *forces = malloc(sizeof(double) * (size_t)*count);
   displace(&model->domain, far);
   compute_forces(model);
-  for (int k = 0; k < 3; ++k) memcpy(forces + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+  for (int k = 0; k < p->motions; ++k)
+    memcpy(forces + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
   breccia_model_destroy(&model);
   return forces;
 }
@@ -64,6 +67,9 @@ static void check(const char *peridynamics, const char *law, const char *shape)
 
 static const char *const lattice = "shape: {difference: [{box: {particles: [29, 8, 7]}}, {sphere: {centre: [20, 4, 3], "
                                    "radius: 1.7}}]}";
+
+static const char *const plane = "lattice: hexagonal, thickness: 1, shape: {difference: [{box: {particles: [29, 13]}}, "
+                                 "{sphere: {centre: [20, 4], radius: 1.7}}]}";
 
 static const char *const of[][2] = {
     {"bond-based", "elastic-1d"},
@@ -101,6 +107,7 @@ static void eight_lanes_give_the_bits_of_four_along_lattices(void **state)
   (void)state;
   skip_without_eight();
   for (size_t k = 0; k < sizeof of / sizeof *of; ++k) check(of[k][0], of[k][1], lattice);
+  check("micropolar, space: plane strain", "elastic, Poisson ratio: 0.2", plane);
 }
 
 static void eight_lanes_give_the_bits_of_four_among_scattered_particles(void **state)
