@@ -157,7 +157,8 @@ static const char *describe_failure(const Static *s, NewtonOutcome outcome, char
 static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *error)
 {
   char words[320];
-  const char *advice = "the body may fail at this load: go on with a stage of 'explicit', or look at the loads and at "
+  const char *tried = "",
+             *advice = "the body may fail at this load: go on with a stage of 'explicit', or look at the loads and at "
                        "the last pictures";
   if (!settled) {
     snprintf(words, sizeof words,
@@ -170,14 +171,15 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
     describe_failure(s, outcome, words, sizeof words);
     if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
       advice = "allow more 'iterations', or take a larger 'residual'";
-    else if (domain_may_soften(s->domain) && static_may_relax(s))
-      advice =
-          "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', go on with "
-          "a stage of 'explicit', or look at the loads and at the last pictures";
+    else if (domain_may_soften(s->domain) && static_may_relax(s)) {
+      tried = "by Newton's method, descent by secants and dynamic relaxation; at last ";
+      advice = "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', or "
+               "'quasi-static', go on with a stage of 'explicit', or look at the loads and at the last pictures";
+    }
   }
   return error_add(error, BRECCIA_FAILURE,
-                   "static: no equilibrium beyond time %g %s, with increments cut to %.2g %s: %s; %s", s->clock->time,
-                   s->clock->time_unit, s->next, s->clock->time_unit, words, advice);
+                   "static: no equilibrium beyond time %g %s, with increments cut to %.2g %s: %s%s; %s", s->clock->time,
+                   s->clock->time_unit, s->next, s->clock->time_unit, tried, words, advice);
 }
 
 static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error)
