@@ -33,18 +33,19 @@ static const char body_of_laws[] =
 #define DAMAGE SOFT ", tensile strength: 3, compressive strength: 30, fracture energy: 0.1"
 #define SOFT "Young modulus: 1e4, Poisson ratio: 0.2"
 
-/** What a static solver takes only where a body of a law that softens jumps from one state of rest to another. */
-static void take_other_ways(breccia_model *m)
+/** What a static solver takes only where a body of a law that softens jumps from one state of rest to another. @return whether it may */
+static bool take_other_ways(breccia_model *m)
 {
-  if (!m->solver.type->rests || !domain_may_soften(&m->domain)) return;
+  if (!m->solver.type->rests || !domain_may_soften(&m->domain)) return false;
   Static *s = m->solver.own;
-  if (s->newton.relaxes) return;
+  if (s->newton.relaxes) return false;
   breccia_error *error = breccia_error_create();
   assert_null(s->descent.room[0]); /* nothing has jumped yet */
   assert_null(s->relaxation.velocity[0]);
   assert_int_equal(descent_create(&s->descent, &s->newton, error), 0);
   assert_int_equal(relaxation_create(&s->relaxation, &s->newton, error), 0);
   breccia_error_destroy(&error);
+  return true;
 }
 
 /** Arrays that are small beside those of particles, bonds and points are not counted beforehand. */
@@ -91,11 +92,11 @@ static void a_body_takes_what_is_foreseen(void **state)
         model_of(body_of_laws, cases[k].law, cases[k].keys, cases[k].body, cases[k].formulation, cases[k].solve);
     assert_non_null(strstr(breccia_model_overview(m), " MB, "));
     step_surely(m, 1);
-    take_other_ways(m);
+    const double enough = take_other_ways(m) ? 0.95 : least; /* they are an eighth of it */
     const double taken = given_out() - before, foreseen = (double)domain_bytes(&m->domain) + m->solver_bytes;
     print_message("%.3f of what is taken: %s, %s, %s\n", foreseen / taken, cases[k].law, cases[k].formulation,
                   cases[k].solve);
-    if (!(foreseen > least * taken && foreseen < most * taken))
+    if (!(foreseen > enough * taken && foreseen < most * taken))
       fail_msg("%s, %s, %s: %.2f MB foreseen, %.2f MB taken", cases[k].law, cases[k].formulation, cases[k].solve,
                foreseen / 1e6, taken / 1e6);
     breccia_model_destroy(&m);
