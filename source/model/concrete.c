@@ -1,5 +1,5 @@
 /* Parameters of the law 'link-damage' for a lattice of links, from what is known of a concrete: by the rules of ACI 318 and ACI 209R with the factors of Tuniki
- * 2012 (eqs. 4.1 to 4.6), or with a fracture energy. Plates of 15 by 51 rows are then pulled and pressed, as there, until they fail: the
+ * 2012 (eqs. 4.1 to 4.6), or with a fracture energy. Plates of 15 by 51 rows are then pulled and pressed, as there, until they fail, and pulled along the rows of the lattice besides: the
  * stretches are set right by what they bear, where a fracture energy lets cracks grow, and the loads stand beside the strengths wanted. */
 #include "base/memory.h"
 #include "deck/quantity.h"
@@ -142,10 +142,12 @@ static void add_spacing(const Concrete *c, Text *t)
 
 enum { WIDE = 15, ROWS = 51 };
 
-/** The deck of a plate 15 spacings wide and one thick; a load shared by the particles of the outermost three rows. Its period is that of a bar. */
-static void add_plate(const Concrete *c, double load, Text *t)
+/** Which way a plate is loaded, where the rows of its lattice run along x. */
+typedef enum Way { ACROSS_ROWS, ALONG_ROWS } Way;
+
+/** A body and its loads: 15 spacings wide, with straight sides, 51 rows high, and loaded across them. */
+static void add_upright(const Concrete *c, double load, Text *t)
 {
-  add_block(c, t);
   text_add(t,
            "body: {plate: {material: concrete, lattice: hexagonal, spacing: %.17g m, thickness: %.17g m, shape: {box: "
            "{particles: [%d, %d], first particle: [0, 0]}}}}\n",
@@ -153,21 +155,45 @@ static void add_plate(const Concrete *c, double load, Text *t)
   text_add(t, "cracks: [{remove: {box: {from: [%.17g, -1e3], to: [%.17g, 1e6]}}}]\n", (WIDE + 0.25) * c->spacing,
            (WIDE + 1) * c->spacing);
   text_add(t,
+           "loads: [{on: {face: y+, layers: 3}, force: [0, %.17g]}, {on: {face: y-, layers: 3}, force: [0, %.17g]}]\n",
+           load, -load);
+}
+
+/** 15 rows of 51, loaded along them at the three outermost particles of each. */
+static void add_lying(const Concrete *c, double load, Text *t)
+{
+  text_add(t,
+           "body: {plate: {material: concrete, lattice: hexagonal, spacing: %.17g m, thickness: %.17g m, shape: {box: "
+           "{particles: [%d, %d], first particle: [0, 0]}}}}\n",
+           c->spacing, c->spacing, ROWS, WIDE);
+  text_add(t,
+           "loads: [{on: {inside: {box: {from: [%.17g, -1e3], to: [1e6, 1e6]}}}, force: [%.17g, 0]}, "
+           "{on: {inside: {box: {from: [-1e3, -1e3], to: [%.17g, 1e6]}}}, force: [%.17g, 0]}]\n",
+           (ROWS - 3.25) * c->spacing, load, 2.75 * c->spacing, -load);
+}
+
+/** The deck of a plate one spacing thick under a stress at its ends. Its period is that of a bar. */
+static void add_plate(const Concrete *c, Way way, double stress, Text *t)
+{
+  const double row = sqrt(0.75) * c->spacing, length = ROWS * (way == ALONG_ROWS ? c->spacing : row),
+               width = WIDE * (way == ALONG_ROWS ? row : c->spacing);
+  add_block(c, t);
+  (way == ALONG_ROWS ? add_lying : add_upright)(c, stress * width * c->spacing, t);
+  text_add(t,
            "peridynamics: {formulation: micropolar, space: plane stress}\n"
-           "loads: [{on: {face: y+, layers: 3}, force: [0, %.17g]}, {on: {face: y-, layers: 3}, force: [0, %.17g]}]\n"
-           "solve: {explicit: {quasi-static: {period: %.17g s}}}\n",
-           load, -load, 2 * ROWS * sqrt(0.75) * c->spacing / sqrt(c->modulus / c->density));
+           "solve: {explicit: {quasi-static: {period: %.17g s%s}}}\n",
+           2 * length / sqrt(c->modulus / c->density), way == ALONG_ROWS ? ", hold: 10" : "");
 }
 
 static const char place_in_deck[] = " block 'plate': ";
 
 /** @param[in] stress  over the width, tension positive @param[out] bears  whether the plate is steady in the end */
-static int try_plate(const Concrete *c, double stress, bool *bears, Error *error)
+static int try_plate(const Concrete *c, Way way, double stress, bool *bears, Error *error)
 {
   Text deck = {0};
   const breccia_options wishes = {.size = sizeof wishes, .threads = 1};
   breccia_model *model = NULL;
-  add_plate(c, stress * WIDE * c->spacing * c->spacing, &deck);
+  add_plate(c, way, stress, &deck);
   Error *refused = breccia_error_create();
   int status = deck.failed || !refused
                    ? error_add(error, BRECCIA_FAILURE, "out of memory: plates")
@@ -185,14 +211,14 @@ static int try_plate(const Concrete *c, double stress, bool *bears, Error *error
 }
 
 /** Stresses of one sign between which the plate fails, a hundredth apart; looked for from the wanted one. */
-static int find_strength(const Concrete *c, double wanted, double *low, double *high, Error *error)
+static int find_strength(const Concrete *c, Way way, double wanted, double *low, double *high, Error *error)
 {
   const double stride = 1.25, most = 16, near = 0.01;
   double bears = 0, fails = INFINITY, stress = fabs(wanted);
   int status = BRECCIA_OK;
   while (!status && (isinf(fails) || fails - bears > near * fails)) {
     bool held = false;
-    status = try_plate(c, wanted > 0 ? stress : -stress, &held, error);
+    status = try_plate(c, way, wanted > 0 ? stress : -stress, &held, error);
     *(held ? &bears : &fails) = stress;
     stress = isinf(fails) ? bears * stride : bears > 0 ? sqrt(bears * fails) : fails / stride;
     if (!status && !(stress < most * fabs(wanted) && stress * most > fabs(wanted)))
@@ -244,13 +270,15 @@ static int verify(Concrete *c, Text *words, Error *error)
   double low, high;
   int status = BRECCIA_OK;
   for (int turn = 0; turn < 2 && !isnan(c->energy) && !status; ++turn) {
-    status = find_strength(c, c->tension, &low, &high, error);
+    status = find_strength(c, ACROSS_ROWS, c->tension, &low, &high, error);
     if (!status) c->tensile_stretch *= 2 * c->tension / (low + high);
   }
   text_add(words, "# Plates %d spacings wide and %d rows high, loaded by three rows at each end, fail\n", WIDE, ROWS);
-  if (!status) status = find_strength(c, c->tension, &low, &high, error);
+  if (!status) status = find_strength(c, ACROSS_ROWS, c->tension, &low, &high, error);
   if (!status) tell_strength(c, "tension", low, high, c->tension, words);
-  if (!status) status = find_strength(c, -c->compression, &low, &high, error);
+  if (!status) status = find_strength(c, ALONG_ROWS, c->tension, &low, &high, error);
+  if (!status) tell_strength(c, "tension along the rows of the lattice", low, high, c->tension, words);
+  if (!status) status = find_strength(c, ACROSS_ROWS, -c->compression, &low, &high, error);
   if (!status) tell_strength(c, "compression", low, high, c->compression, words);
   return status;
 }

@@ -57,6 +57,19 @@ for load in 0.9 1.1; do
   contains "the block under $load" "$(cat log)" "quasi-static: $([ $load = 0.9 ] && echo steady || echo failed)"
 done
 
+# ---- pulled along the rows of its lattice it bears another stress, which is told: links across it are whole when those along it soften ----
+read -r low high <<< "$(bears "tension along the rows of the lattice")"
+near "along the rows" "$low" 1.28 0.04
+for share in 0.95 1.05; do
+  awk -v s="$(awk -v l="$low" -v h="$high" -v f="$share" 'BEGIN {print f * (l + h) / 2}')" 'BEGIN {
+    d = 0.016; f = s * 1.837e6 * 15 * sqrt(0.75) * d * d; printf "include: concrete.yaml\nunits: {length: m, force: N, time: s}\n"
+    print "body: {plate: {material: concrete, lattice: hexagonal, spacing: 16 mm, thickness: 16 mm, shape: {box: {particles: [81, 15]}}}}"
+    printf "loads: [{on: {inside: {box: {from: [%g, -1], to: [9, 9]}}}, force: [%g, 0]}, {on: {inside: {box: {from: [-1, -1], to: [%g, 9]}}}, force: [%g, 0]}]\n", 78.25 * d, f, 3.25 * d, -f
+    print "solve: {explicit: {quasi-static: {hold: 10}}}"}' > along.yaml
+  "$breccia" run along.yaml --output "along-$share" > log 2>&1; equal "along the rows, under $share: status" $? 0
+  contains "along the rows, under $share" "$(cat log)" "quasi-static: $([ $share = 0.95 ] && echo steady || echo failed)"
+done
+
 # ---- advice does not contradict what quasi-static loading does by itself ----
 "$breccia" check plate.yaml > out 2>&1; equal "check: status" $? 0
 contains "check: loads" "$(cat out)" "as 'quasi-static' asks for"
