@@ -30,7 +30,8 @@ typedef enum Verdict { BEARS, FAILS, UNKNOWN } Verdict;
 typedef struct Trial {
   double load, unbalanced, kinetic; /* NaN where the run stopped */
   Verdict verdict;
-  bool done; /* it came to its end; otherwise why not has been said */
+  bool done;    /* it came to its end; otherwise why not has been said */
+  bool settles; /* it counts as failing, but still came to rest at the end */
   char name[96];
 } Trial;
 
@@ -108,6 +109,9 @@ static Trial judge(Search *s, const breccia_study *study, int k, double load)
   if (breccia_study_figure(study, k, "rest.unbalanced", &t.unbalanced) &
       breccia_study_figure(study, k, "rest.kinetic", &t.kinetic))
     t.verdict = t.unbalanced <= s->rest && t.kinetic <= s->rest ? BEARS : FAILS;
+  double settles = 0;
+  breccia_study_figure(study, k, "rest.settles", &settles);
+  t.settles = settles != 0 && t.verdict == FAILS;
   return t;
 }
 
@@ -228,6 +232,11 @@ static int search(Search *s, double from, double to, breccia_error *error)
       "\nfails between %.9g%s and %.9g%s (%s): a body bears a load if forces out of balance are below %g of those that "
       "act in the end, and kinetic energy below %g of the work\n",
       sign * bears, s->unit, sign * fails, s->unit, s->key, s->rest, s->rest);
+  for (int k = 0; k < s->count; ++k)
+    if (s->trials[k].settles)
+      printf("under %.9g%s it still came to rest when the run ended: a longer 'hold' of 'quasi-static' may find that "
+             "it bears this load\n",
+             s->trials[k].load, s->unit);
   if (!s->quiet) printf("\nwritten:\n  %s/failure.csv\n", s->folder);
   return status;
 }

@@ -170,6 +170,9 @@ static void add_rest(const Solver *s, Text *text)
   if (record->steady != STEADY_UNASKED)
     text_add(text, ", \"quasi-static\": \"%s\", \"told\": %d", quasi_static_verdict(record),
              record->steady == STEADY || record->steady == STEADY_NOT);
+  if (record->midway > 0)
+    text_add(text, ", \"unbalanced midway\": %.6g, \"settles\": %d", record->midway,
+             quasi_static_still_settles(record));
   text_add(text, "},\n");
 }
 

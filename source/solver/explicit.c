@@ -261,12 +261,16 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
   const bool last = clock->step >= clock->stage_last;
   Rest rest;
   clock->ended = last;
+  const QuasiStaticSpec *slow = s->spec->quasi_static;
+  const double midway = slow ? clock->stage_time + quasi_static_midway(slow, s->period) : INFINITY;
+  const bool half = clock->time >= midway && clock->time - clock->time_step < midway;
   const bool asked = !isnan(s->spec->rest) && (last || (clock->step - clock->stage_step) % EVERY == 0),
-             judged = s->spec->quasi_static && last;
-  if (!asked && !judged) return BRECCIA_OK;
+             judged = slow && last;
+  if (!asked && !judged && !half) return BRECCIA_OK;
   const int status = rest_find(run, &rest, error);
   if (status) return status;
-  if (s->spec->quasi_static) quasi_static_judge(run, s->spec->quasi_static, &rest);
+  if (half) quasi_static_look(run, &rest);
+  if (judged) quasi_static_judge(run, slow, &rest);
   if (!asked) return BRECCIA_OK;
   if (rest.meant && fmax(rest.unbalanced, rest.kinetic) < s->spec->rest) {
     clock->ended = 1;

@@ -41,8 +41,9 @@ static const Field quasi_static_fields[] = {
      .dimension = "1",
      .standard = "0.05",
      .range = "(0, 1)",
-     .meaning = "the body counts as steady in the end where forces out of balance are at most this share of those that "
-                "act, and kinetic energy of the work; else it has failed"},
+     .meaning =
+         "the body counts as steady in the end where forces out of balance are at most this share of those that "
+         "act, and kinetic energy of the work; else it counts as failed, and it is said if it still came to rest"},
 };
 const Section quasi_static_section = {
     .name = "quasi-static",
@@ -94,6 +95,22 @@ static bool is_too_short(const Solver *run, const QuasiStaticSpec *spec)
   return !(e.dissipated + e.fracture + e.friction > 1e-9 * run->ledger.paid);
 }
 
+double quasi_static_midway(const QuasiStaticSpec *spec, double period)
+{
+  return (spec->ramp + 0.5 * spec->hold) * period;
+}
+
+void quasi_static_look(Solver *run, const Rest *rest)
+{
+  run->records[run->clock.stage].midway = rest->meant ? rest->unbalanced : 0;
+}
+
+bool quasi_static_still_settles(const StageRecord *record)
+{
+  const double less = 0.98; /* bodies that fail slowly stay as far from rest as they are, or get farther */
+  return record->steady == STEADY_NOT && record->unbalanced < less * record->midway;
+}
+
 void quasi_static_judge(Solver *run, const QuasiStaticSpec *spec, const Rest *rest)
 {
   StageRecord *record = &run->records[run->clock.stage];
@@ -123,6 +140,11 @@ void quasi_static_tell(const StageRecord *record, double limit, Text *text)
       "%s: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (steady: both at most "
       "%g)",
       quasi_static_verdict(record), record->unbalanced, record->kinetic, limit);
+  if (quasi_static_still_settles(record))
+    text_add(text,
+             "; but the former were %.2g half-way through the hold, so that the body still came to rest: a longer "
+             "'hold' may find that it bears these loads",
+             record->midway);
   if (record->steady == STEADY_TOO_SHORT)
     text_add(text, "; the loading is too short to tell, as a body that bears its loads may be no nearer to rest then: "
                    "take a longer 'ramp' or 'hold', and leave a 'period' out, which is found then");

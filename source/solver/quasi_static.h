@@ -22,9 +22,15 @@ double quasi_static_damping(const QuasiStaticSpec *spec, double period);
  *  is more: a body that bears its loads is no nearer to rest. */
 double quasi_static_left(const QuasiStaticSpec *spec);
 
+/** Time of the stage at which half of the hold is over. */
+double quasi_static_midway(const QuasiStaticSpec *spec, double period);
+/** Then: notes how far the body is from rest. */
+void quasi_static_look(Solver *run, const Rest *rest);
 /** Notes whether the body bears the loads of the stage under way, which ends with this question. */
 void quasi_static_judge(Solver *run, const QuasiStaticSpec *spec, const Rest *rest);
 
+/** Whether a body that counts as failed was still coming to rest at the end: a longer hold may find that it bears its loads. */
+bool quasi_static_still_settles(const StageRecord *record);
 /** What was noted of a stage, in a word: steady, failed, not told. */
 const char *quasi_static_verdict(const StageRecord *record);
 /** The same in a sentence. */

@@ -42,6 +42,7 @@ typedef struct StageRecord {
   double came_to_rest;                      /* 1: it ended because the body was at rest */
   double steady;                            /* one of STEADY_... */
   double unbalanced, kinetic;               /* by which it was judged (solver/rest.h) */
+  double midway; /* unbalanced, where the time in which it was to come to rest was half over; 0: not looked at */
   double descended,
       relaxed; /* increments in which the body gave way, and whose ends descent by secants, and dynamic relaxation found */
 } StageRecord;

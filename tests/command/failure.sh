@@ -57,6 +57,19 @@ equal "a bar that does not fail: status" $? 2
 grep -q 'the body does not fail under 200 kN; give a larger TO' errors || fail "a bar that does not fail: $(cat out errors)"
 grep -q 'was done' out && fail "cases without space for their files count as done: $(cat out)"
 # What is wrong is said, with status 2.
+# ---- a body that is slower than its loading: what counts as failed and still came to rest is told ----
+cat > slow.yaml <<'DECK'
+units: {length: m, force: kN, time: s}
+variables: {pull: 1}
+materials: {m: {model: steel-bilinear, Young modulus: 1e6, density: 2, yield stress: 80, hardening ratio: 0.05}}
+body: {bar: {material: m, lattice: line, spacing: 0.05, area: 0.01, shape: {box: {particles: [40, 1]}}}}
+peridynamics: {formulation: bond-based, space: 1-D, surface correction: energy}
+loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+, layers: 3}, force: ["${pull}", 0]}]
+solve: {explicit: {quasi-static: {}}}
+DECK
+"$breccia" failure slow.yaml --load variables.pull=0.7:1.1 --within 0.2 > out 2>&1; equal "a slow body: status" $? 0
+grep -q "under 1.1 it still came to rest when the run ended: a longer 'hold'" out || fail "a slow body: $(cat out)"
+grep -q "under 0.7 it still" out && fail "what it bears is called slow: $(cat out)"
 refused() { # name, words, arguments
   local name=$1 words=$2
   shift 2
