@@ -1,4 +1,5 @@
 /* How a body vibrates, in words, files and pictures. */
+#include "base/folder.h"
 #include "base/folder_lock.h"
 #include "base/memory.h"
 #include "base/whole_file.h"
@@ -123,7 +124,7 @@ static int draw(const char *folder, const Modes *modes, Text *files, Error *erro
 {
   int status = BRECCIA_OK;
   char *pictures = text_format("%s/pictures", folder);
-  if (!pictures || run_make_folder(pictures, error)) status = BRECCIA_FAILURE;
+  if (!pictures || folder_make(pictures, error)) status = BRECCIA_FAILURE;
   for (int n = 0; n < modes->count && !status; ++n) {
     char *path = text_format("%s/mode-%d.png", pictures, n + 1);
     breccia_plot plot;
@@ -183,7 +184,7 @@ int breccia_model_modes(breccia_model *model, const breccia_modes *given, brecci
   if (!status && wish.count < 1)
     status = error_add(error, BRECCIA_USER_ERROR, "modes: %d are asked for; ask for one or more", wish.count);
   if (!status && wish.folder) {
-    status = run_make_folder(wish.folder, error);
+    status = folder_make(wish.folder, error);
     if (!status) status = folder_lock_take(&lock, wish.folder, error);
     if (!status) status = look_for_run(wish.folder, error);
   }

@@ -1,6 +1,7 @@
 /* What was found of a motion, in words, files and pictures. */
 #include "model/motion.h"
 
+#include "base/folder.h"
 #include "base/memory.h"
 #include "base/whole_file.h"
 #include "deck/quantity.h"
@@ -220,7 +221,7 @@ int breccia_motion_write(breccia_motion *m, const char *folder, breccia_error *e
   static const char *const names[] = {"motion", "response-spectrum", "fourier"};
   const Host host = host_enter();
   text_free(&m->files);
-  int status = m->words.length ? run_make_folder(folder, error)
+  int status = m->words.length ? folder_make(folder, error)
                                : error_add(error, BRECCIA_USER_ERROR, "a motion is written after it was analysed");
   for (int t = 0; t < MOTION_TABLES && !status; ++t) status = write_table(m, t, folder, names[t], error);
   const bool moves = m->intensity.acceleration > 0; /* else nothing can be drawn on logarithmic axes */

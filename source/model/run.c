@@ -2,6 +2,7 @@
 #include "model/run.h"
 
 #include "base/clock.h"
+#include "base/folder.h"
 #include "base/folder_lock.h"
 #include "base/memory.h"
 #include "base/tensor.h"
@@ -17,33 +18,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- pieces ---- */
-
-int run_make_folder(const char *path, Error *error)
-{
-  char *part = text_format("%s", path);
-  if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: folder");
-  for (char *slash = strchr(part + (*part != 0), '/');; slash = strchr(slash + 1, '/')) {
-    if (slash) *slash = 0;
-    int bad = mkdir(part, 0777);
-    struct stat status;
-    if (bad && (errno != EEXIST || stat(part, &status) || !S_ISDIR(status.st_mode))) {
-      const int cause = errno;
-      const bool machine = cause == ENOSPC || cause == EDQUOT || cause == EIO || cause == ENOMEM || cause == EMLINK;
-      const int why = error_add(error, machine ? BRECCIA_FAILURE : BRECCIA_USER_ERROR,
-                                "%s: the folder cannot be made: %s", part, strerror(cause));
-      free(part);
-      return why;
-    }
-    if (!slash) break;
-    *slash = '/';
-  }
-  free(part);
-  return BRECCIA_OK;
-}
 
 static void update_peaks(breccia_model *model)
 {
@@ -460,7 +437,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   int status = model_enter(model, &entry, error);
   if (status) return status;
   run.host = &entry.host;
-  status = run_make_folder(wish->folder, error);
+  status = folder_make(wish->folder, error);
   if (!status) status = folder_lock_take(&lock, wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
   if (!status && wish->progress) status = model_expect(model, error);

@@ -24,8 +24,6 @@ typedef struct Run {
   Text logs; /* its line among the files that were written */
 } Run;
 
-/** Makes a folder and those above it. */
-int run_make_folder(const char *path, Error *error);
 /** Writes a small file whole, or not at all. */
 int run_write_file(Run *run, const char *name, const Text *words, Error *error);
 

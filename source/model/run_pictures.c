@@ -1,6 +1,7 @@
 /* The pictures of a run. */
 #include "model/run.h"
 
+#include "base/folder.h"
 #include "results/bar_lines.h"
 #include "results/curve.h"
 #include "results/result_view.h"
@@ -175,7 +176,7 @@ int run_draw_pictures(Run *run, Error *error)
   ResultView view;
   if (!path || !folder)
     outcome.status = error_add(error, BRECCIA_FAILURE, "out of memory: pictures");
-  else if (run_make_folder(folder, error) || result_view_open(&view, path, error))
+  else if (folder_make(folder, error) || result_view_open(&view, path, error))
     outcome.status = BRECCIA_FAILURE;
   else {
     if (view.steps) draw_all(run, &view, &outcome);

@@ -1,15 +1,14 @@
 #include "results/bar_lines.h"
 
 #include "bars/bars.h"
+#include "base/folder.h"
 #include "base/memory.h"
 #include "base/whole_file.h"
 #include "results/plot.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static void add_heading(const Units *units, bool slips, Text *t)
 {
@@ -142,9 +141,7 @@ int bar_lines_write(const Domain *domain, const char *folder, const Units *units
   if (!b) return BRECCIA_OK;
   char *inside = text_format("%s/bars", folder);
   if (!inside) return error_add(error, BRECCIA_FAILURE, "out of memory: bars");
-  int status = BRECCIA_OK;
-  if (mkdir(inside, 0777) && errno != EEXIST)
-    status = error_add(error, BRECCIA_FAILURE, "%s: the folder cannot be made: %s", inside, strerror(errno));
+  int status = folder_make(inside, error);
   Text words = {0};
   if (!status) {
     add_table(b, units, &words);

@@ -1,16 +1,15 @@
 #include "results/profile.h"
 
+#include "base/folder.h"
 #include "base/memory.h"
 #include "base/tensor.h"
 #include "base/whole_file.h"
 #include "results/plot.h"
 #include "results/watch.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char *axis_word(int k)
 {
@@ -282,10 +281,8 @@ static int write_one(const Profiles *profiles, const Profile *profile, const cha
 
 int profiles_write(const Profiles *profiles, const char *folder, const Units *units, Text *files, Error *error)
 {
-  int status = BRECCIA_OK;
   char *inside = profiles->count ? text_format("%s/profiles", folder) : NULL;
-  if (inside && mkdir(inside, 0777) && errno != EEXIST)
-    status = error_add(error, BRECCIA_FAILURE, "%s: the folder cannot be made: %s", inside, strerror(errno));
+  int status = inside ? folder_make(inside, error) : BRECCIA_OK;
   for (int k = 0; k < profiles->count && !status; ++k) {
     char name[160];
     text_file_name(profiles->items[k].spec->head.name, name, sizeof name);

@@ -235,8 +235,12 @@ mkdir beside
 : > beside/pictures
 "$breccia" run block.yaml --output beside > out 2> errors
 equal "no folder for pictures: status" $? 1
-equal "no folder for pictures" "$(grep -v ^warning errors)" "beside/pictures: the folder cannot be made: File exists"
+equal "no folder for pictures" "$(grep -v ^warning errors)" "beside/pictures: it is a file; expected a folder, or a name that is not there yet"
 contains "no folder for pictures: the rest is there" "$(cat out)" "beside/results.vtkhdf"
+ln -s nowhere leads
+"$breccia" run block.yaml --output leads > out 2> errors
+equal "a link that leads nowhere: status" $? 2
+contains "a link that leads nowhere" "$(cat errors)" "leads: the folder cannot be made: it is a link that leads nowhere"
 
 # ---- wrong wishes: one line each, and status 2 ----
 # told WORDS ARGUMENTS
