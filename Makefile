@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -96,6 +96,14 @@ tsan:
 	@cmake --preset tsan > /dev/null
 	@cmake --build --preset tsan --target tests_of_threads --parallel $(cores)
 	@$$(setarch -R true 2> /dev/null && echo setarch -R) ctest --preset tsan --parallel $(jobs)
+
+# Built for arm64 on another machine, without warnings; some quick tests of it under an emulator. Servers are none of these: programs that it starts are for this machine.
+arm64_tests := test_golden test_elastic_first test_bar test_faces test_many test_springs_and_ties test_hybrid_strain test_micropolar test_carried_reactions test_checkpoint test_result_file
+arm64:
+	@sh scripts/arm64.sh
+	@cmake --preset arm64 > /dev/null
+	@cmake --build --preset arm64 --target breccia_command $(arm64_tests) --parallel $(cores)
+	@ctest --preset arm64 --parallel $(jobs) -R '^($(subst $() ,|,$(arm64_tests)))$$'
 
 coverage:
 	@sh scripts/setup.sh test

@@ -4,6 +4,8 @@
 #   setup.sh test    what its tests need besides
 #   setup.sh peers   the programs that it is measured against
 #   setup.sh opensees   what OpenSees from the Python index needs
+#   setup.sh arm64   what builds for arm64 on another machine (scripts/arm64.sh)
+#   setup.sh libraries   prints which libraries program and tests are linked with, and installs nothing
 set -eu
 
 build="gcc:C_compiler cmake:build ninja-build:build pkg-config:build libc6-dev:C_library libfyaml-dev:decks_in_YAML
@@ -13,9 +15,15 @@ test="libcmocka-dev:unit_tests clang:second_compiler_and_fuzzing clang-format:la
 python3:external_tests python3-venv:external_tests locales:a_country_with_decimal_commas"
 
 peers="lammps:its_PERI_package"
+arm64="gcc-aarch64-linux-gnu:compiler_for_arm64 libc6-dev-arm64-cross:compiler_for_arm64 qemu-user:emulator mmdebstrap:libraries_for_arm64"
 opensees="python3:OpenSees python3-venv:OpenSees python3-tk:OpenSees libblas3:OpenSees libmimalloc-dev:speed_of_OpenSees"
 
+if [ "${1:-build}" = libraries ]; then
+  for entry in $build $test; do echo "${entry%%:*}"; done | sed -n '/^lib.*-dev$/p; /^zlib/p; /^libopenblas/p' | paste -sd, -
+  exit 0
+fi
 wanted=$build
+[ "${1:-build}" = arm64 ] && wanted="$build $arm64"
 [ "${1:-build}" = peers ] && wanted="$build $peers"
 [ "${1:-build}" = test ] && wanted="$build $test"
 [ "${1:-build}" = opensees ] && wanted="$build $opensees"
