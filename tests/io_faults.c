@@ -6,6 +6,7 @@
  * FAULT_ERROR   its errno, a number
  * FAULT_LASTS   1: all calls after it fail too
  * FAULT_READS   1: calls that read are counted and fail, in place of those that write
+ * FAULT_TRICKLES  1: nothing fails, but every other call that reads or writes is interrupted by a signal, and the others do at most half of what is asked
  * FAULT_EXCEPT  words in the names of files that pass too
  * FAULT_LARGER  bytes by which files of results seem larger to those who ask for their size by name
  * FAULT_KILLS   instead of failing: 1: the process is killed before the call, 2: where it writes, when half of it is written
@@ -59,15 +60,12 @@ static void die(void)
   kill(getpid(), SIGKILL);
 }
 
-/** Counts a call on a file of the folder. @return true with errno set where it is to fail, or to be cut short by death */
-static bool fails(const char *path, Kind kind)
+/** Whether a call is on a file of the folder that does not pass. */
+static bool concerns(const char *path, Kind kind)
 {
-  const char *folder = getenv("FAULT_FOLDER"), *count = getenv("FAULT_COUNT"), *except = getenv("FAULT_EXCEPT");
+  const char *folder = getenv("FAULT_FOLDER"), *except = getenv("FAULT_EXCEPT");
   char whole[PATH_MAX];
-  const long kills = number_of("FAULT_KILLS");
-  if (!folder || !path || (kind == READ) != (number_of("FAULT_READS") != 0) ||
-      ((kind == LINK || kind == REMOVE) && !kills))
-    return false;
+  if (!folder || !path) return false;
   if (*path != '/') {
     char here[PATH_MAX];
     if (!getcwd(here, sizeof here)) return false;
@@ -75,8 +73,17 @@ static bool fails(const char *path, Kind kind)
     path = whole;
   }
   const size_t length = strlen(folder);
-  if (strncmp(path, folder, length) || (path[length] != '/' && (path[length] || kind == MAKE)) ||
-      (except && strstr(path + length, except)))
+  return !strncmp(path, folder, length) && (path[length] == '/' || (!path[length] && kind != MAKE)) &&
+         !(except && strstr(path + length, except));
+}
+
+/** Counts a call on a file of the folder. @return true with errno set where it is to fail, or to be cut short by death */
+static bool fails(const char *path, Kind kind)
+{
+  const char *count = getenv("FAULT_COUNT");
+  const long kills = number_of("FAULT_KILLS");
+  if ((kind == READ) != (number_of("FAULT_READS") != 0) || ((kind == LINK || kind == REMOVE) && !kills) ||
+      number_of("FAULT_TRICKLES") || !concerns(path, kind))
     return false;
   const long number = atomic_fetch_add(&calls, 1) + 1, at = number_of("FAULT_AT");
   if (count) {
@@ -90,14 +97,31 @@ static bool fails(const char *path, Kind kind)
   return true;
 }
 
+/** Of a file that is open; "" where it has none. */
+static const char *path_of(int descriptor, char path[PATH_MAX])
+{
+  char link[64];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+  const ssize_t n = readlink(link, path, PATH_MAX - 1);
+  path[n < 0 ? 0 : n] = 0;
+  return path;
+}
+
 static bool fails_open(int descriptor, Kind kind)
 {
-  char link[64], path[PATH_MAX];
-  snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
-  const ssize_t n = readlink(link, path, sizeof path - 1);
-  if (n <= 0) return false;
-  path[n] = 0;
-  return fails(path, kind);
+  char path[PATH_MAX];
+  return fails(path_of(descriptor, path), kind);
+}
+
+/** Whether a call that reads or writes is interrupted, with errno set. @param[in,out] size  how much it is to do */
+static bool is_interrupted(int descriptor, size_t *size)
+{
+  char path[PATH_MAX];
+  if (!number_of("FAULT_TRICKLES") || !concerns(path_of(descriptor, path), READ)) return false;
+  if (*size > 1) *size /= 2;
+  if (atomic_fetch_add(&calls, 1) % 2) return false;
+  errno = EINTR;
+  return true;
 }
 
 static bool for_writing(int descriptor)
@@ -121,16 +145,19 @@ static ssize_t cut_short(int descriptor, const void *buffer, size_t size, off_t 
 
 ssize_t write(int descriptor, const void *buffer, size_t size)
 {
+  if (is_interrupted(descriptor, &size)) return -1;
   return fails_open(descriptor, WRITE) ? cut_short(descriptor, buffer, size, -1)
                                        : NEXT(write)(descriptor, buffer, size);
 }
 ssize_t pwrite(int descriptor, const void *buffer, size_t size, off_t from)
 {
+  if (is_interrupted(descriptor, &size)) return -1;
   return fails_open(descriptor, WRITE) ? cut_short(descriptor, buffer, size, from)
                                        : NEXT(pwrite)(descriptor, buffer, size, from);
 }
 ssize_t pwrite64(int descriptor, const void *buffer, size_t size, off64_t from)
 {
+  if (is_interrupted(descriptor, &size)) return -1;
   return fails_open(descriptor, WRITE) ? cut_short(descriptor, buffer, size, from)
                                        : NEXT(pwrite64)(descriptor, buffer, size, from);
 }
@@ -141,14 +168,17 @@ ssize_t writev(int descriptor, const struct iovec *pieces, int count)
 }
 ssize_t read(int descriptor, void *buffer, size_t size)
 {
+  if (is_interrupted(descriptor, &size)) return -1;
   return fails_open(descriptor, READ) ? -1 : NEXT(read)(descriptor, buffer, size);
 }
 ssize_t pread(int descriptor, void *buffer, size_t size, off_t from)
 {
+  if (is_interrupted(descriptor, &size)) return -1;
   return fails_open(descriptor, READ) ? -1 : NEXT(pread)(descriptor, buffer, size, from);
 }
 ssize_t pread64(int descriptor, void *buffer, size_t size, off64_t from)
 {
+  if (is_interrupted(descriptor, &size)) return -1;
   return fails_open(descriptor, READ) ? -1 : NEXT(pread64)(descriptor, buffer, size, from);
 }
 int fsync(int descriptor)

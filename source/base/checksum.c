@@ -1,5 +1,6 @@
 #include "base/checksum.h"
 
+#include "base/file_bytes.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include <errno.h>
@@ -12,13 +13,11 @@ int checksum_of_file(const char *path, int64_t from, int64_t most, uint32_t *sum
   enum { PIECE = 1 << 18 }; /* stays in the cache */
   const int file = text_open_file(path);
   unsigned char *piece = file < 0 ? NULL : memory_plain(PIECE, 1);
-  ssize_t n = piece ? 0 : -1;
+  int64_t n = piece ? 0 : -1;
   uLong crc = crc32(0, NULL, 0);
   *bytes = 0;
-  while (piece && (n = pread(file, piece, (size_t)(most - *bytes < PIECE ? most - *bytes : PIECE),
-                             (off_t)(from + *bytes))) != 0) {
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) break;
+  while (piece &&
+         (n = file_read_at(file, piece, (size_t)(most - *bytes < PIECE ? most - *bytes : PIECE), from + *bytes)) > 0) {
     crc = crc32(crc, piece, (uInt)n);
     *bytes += n;
   }

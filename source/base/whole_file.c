@@ -1,5 +1,6 @@
 #include "base/whole_file.h"
 
+#include "base/file_bytes.h"
 #include "base/memory.h"
 #include "breccia/breccia.h"
 #include <errno.h>
@@ -28,19 +29,17 @@ int whole_file_write(const char *path, const Text *words, Error *error)
 
 int whole_file_copy(const char *from, const char *to)
 {
+  enum { PIECE = 1 << 20 };
   const int in = open(from, O_RDONLY), out = in < 0 ? -1 : open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   int cause = out < 0 ? errno : 0;
-  char *buffer = memory_plain(1 << 20, 1);
+  char *buffer = memory_plain(PIECE, 1);
   if (!buffer) cause = ENOMEM;
-  while (!cause) {
-    const ssize_t n = read(in, buffer, 1 << 20);
-    if (!n) break;
-    if (n < 0 && errno != EINTR) cause = errno;
-    for (ssize_t done = 0; done < n && !cause;) {
-      const ssize_t m = write(out, buffer + done, (size_t)(n - done));
-      if (m >= 0) done += m;
-      if (m < 0 && errno != EINTR) cause = errno;
-    }
+  for (int64_t done = 0; !cause;) {
+    const int64_t n = file_read_at(in, buffer, PIECE, done);
+    if (n < 0) cause = errno;
+    if (n <= 0) break;
+    cause = file_write_at(out, buffer, (size_t)n, done);
+    done += n;
   }
   free(buffer);
   if (in >= 0) close(in);

@@ -2,6 +2,7 @@
 #include "model/run.h"
 
 #include "base/clock.h"
+#include "base/file_bytes.h"
 #include "base/folder.h"
 #include "base/folder_lock.h"
 #include "base/memory.h"
@@ -148,7 +149,7 @@ static int spare_files_of_others(const Run *run, Error *error)
   char *path = text_format("%s/deck.yaml", run->wish->folder), there[sizeof deck_heading] = "";
   if (!path) return error_add(error, BRECCIA_FAILURE, "out of memory: deck.yaml");
   const int file = text_open_file(path);
-  const ssize_t n = file < 0 ? 0 : read(file, there, sizeof there - 1);
+  const int64_t n = file < 0 ? 0 : file_read_at(file, there, sizeof there - 1, 0);
   int status = BRECCIA_OK;
   if (!status && n < 0) status = error_add(error, BRECCIA_FAILURE, "%s: cannot be read: %s", path, strerror(errno));
   if (!status && n > 0 && strncmp(there, deck_heading, sizeof there - 1) != 0)

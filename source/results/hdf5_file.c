@@ -1,5 +1,6 @@
 #include "results/hdf5_file.h"
 
+#include "base/file_bytes.h"
 #include "base/memory.h"
 #include "results/journal.h"
 
@@ -115,21 +116,11 @@ static herr_t driver_read(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, haddr
 {
   (void)type, (void)transfer;
   const Driver *driver = (const Driver *)shared;
-  const haddr_t first = from;
-  const size_t all = size;
-  for (char *at = buffer; size;) {
-    const ssize_t n = pread(driver->descriptor, at, size, (off_t)from);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) note(driver);
-    if (n <= 0) { /* behind the end of the file there are zeros */
-      memset(at, 0, size);
-      break;
-    }
-    at += n;
-    from += (haddr_t)n;
-    size -= (size_t)n;
-  }
-  if (driver->journal) journal_overlay(driver->journal, (int64_t)first, all, buffer);
+  const int64_t n = file_read_at(driver->descriptor, buffer, size, (int64_t)from);
+  if (n < 0) note(driver);
+  const size_t there = n < 0 ? 0 : (size_t)n;
+  memset((char *)buffer + there, 0, size - there); /* behind the end of the file there are zeros */
+  if (driver->journal) journal_overlay(driver->journal, (int64_t)from, size, buffer);
   return 0;
 }
 
@@ -142,20 +133,8 @@ static herr_t driver_write(H5FD_t *shared, H5FD_mem_t type, hid_t transfer, hadd
   const size_t old = driver->journal ? journal_share(driver->journal, (int64_t)from, size) : 0;
   if (old && !*driver->error)
     *driver->error = journal_write(driver->journal, driver->descriptor, (int64_t)from, old, buffer);
-  from += old;
-  size -= old;
-  for (const char *at = (const char *)buffer + old; size && !*driver->error;) {
-    errno = 0;
-    const ssize_t n = pwrite(driver->descriptor, at, size, (off_t)from);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) {
-      note(driver);
-      break;
-    }
-    at += n;
-    from += (haddr_t)n;
-    size -= (size_t)n;
-  }
+  if (!*driver->error)
+    *driver->error = file_write_at(driver->descriptor, (const char *)buffer + old, size - old, (int64_t)(from + old));
   return 0;
 }
 

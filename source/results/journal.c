@@ -1,6 +1,7 @@
 #include "results/journal.h"
 
 #include "base/checksum.h"
+#include "base/file_bytes.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/whole_file.h"
@@ -66,30 +67,11 @@ static size_t page_size(const Journal *journal, int64_t k)
   return left > PAGE ? PAGE : left > 0 ? (size_t)left : 0;
 }
 
-static int write_at(int descriptor, const void *bytes, size_t size, int64_t from)
-{
-  for (const char *at = bytes; size;) {
-    const ssize_t n = pwrite(descriptor, at, size, (off_t)from);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return n ? errno : EIO;
-    at += n;
-    from += n;
-    size -= (size_t)n;
-  }
-  return 0;
-}
-
+/** Reads bytes that are all there. @return 0, or errno of what failed */
 static int read_at(int descriptor, void *bytes, size_t size, int64_t from)
 {
-  for (char *at = bytes; size;) {
-    const ssize_t n = pread(descriptor, at, size, (off_t)from);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return n ? errno : EIO;
-    at += n;
-    from += n;
-    size -= (size_t)n;
-  }
-  return 0;
+  const int64_t n = file_read_at(descriptor, bytes, size, from);
+  return n < 0 ? errno : n < (int64_t)size ? EIO : 0;
 }
 
 size_t journal_share(const Journal *journal, int64_t from, size_t size)
@@ -167,7 +149,7 @@ static int put_in(int descriptor, const unsigned char *all)
     int64_t place[2];
     memcpy(place, all, sizeof place);
     all += sizeof place;
-    const int cause = write_at(descriptor, all, (size_t)place[1], place[0]);
+    const int cause = file_write_at(descriptor, all, (size_t)place[1], place[0]);
     if (cause) return cause;
     all += place[1];
   }
@@ -178,7 +160,7 @@ static int put_in(int descriptor, const unsigned char *all)
 static int write_journal(const Journal *j, const unsigned char *all, size_t size)
 {
   const int file = open(j->part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  int cause = file < 0 ? errno : write_at(file, all, size, 0);
+  int cause = file < 0 ? errno : file_write_at(file, all, size, 0);
   if (!cause && file_settle(file)) cause = errno;
   if (file >= 0 && close(file) && !cause) cause = errno;
   if (!cause && rename(j->part, j->path)) cause = errno;

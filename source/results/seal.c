@@ -1,6 +1,7 @@
 #include "results/seal.h"
 
 #include "base/checksum.h"
+#include "base/file_bytes.h"
 #include "base/whole_file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -26,7 +27,7 @@ int seal_file(const char *path)
   char words[SEAL_BYTES];
   if (words_for(path, words)) return 1;
   const int file = open(path, O_WRONLY);
-  int bad = file < 0 || pwrite(file, words, SEAL_BYTES, 0) != SEAL_BYTES || file_settle(file);
+  int bad = file < 0 || file_write_at(file, words, SEAL_BYTES, 0) || file_settle(file);
   if (file >= 0 && close(file)) bad = 1;
   return bad;
 }
@@ -37,7 +38,7 @@ int seal_is_broken(const char *path)
   if (words_for(path, words)) return -1;
   const int file = open(path, O_RDONLY);
   if (file < 0) return -1;
-  const ssize_t n = pread(file, there, SEAL_BYTES, 0);
+  const int64_t n = file_read_at(file, there, SEAL_BYTES, 0);
   const int problem = errno;
   close(file);
   errno = problem;

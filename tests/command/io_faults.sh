@@ -177,6 +177,23 @@ for command in "$restart" "$look"; do
   reads="$reads, $all reads of ${command%% *}"
 done
 
+# Signals interrupt calls, and a call may do less than it was asked for: nothing of it is seen.
+trickle() { # trickle FOLDER COMMAND...: one command that reads and writes in the folder by halves
+  FAULT_FOLDER="$work/$1" FAULT_TRICKLES=1 LD_PRELOAD="$build/tests/libio_faults.so" "$breccia" "${@:2}" > out 2>&1
+  equal "by halves: ${*:2}: status: $(cat out)" $? 0
+}
+rm -rf faulty looked
+trickle slow run bar.yaml --quiet --threads 1 --output slow
+same slow "a run by halves"
+FAULT_LARGER=300000000 trickle slower run bar.yaml --quiet --threads 1 --output slower
+same slower "a run with large results by halves"
+cp -r half faulty
+trickle faulty run bar.yaml --quiet --threads 1 --output faulty --restart
+same faulty "a restart by halves"
+trickle slow plot slow --field damage --output slow.png
+"$breccia" plot whole --field damage --output whole.png > out 2>&1
+equal "a picture by halves" "$(cksum < slow.png)" "$(cksum < whole.png)"
+
 # A picture that cannot be written: the others and all else are, and the status tells.
 sed 's/^pictures: .*/pictures: [{field: damage}, {curve: "end.time : end.x"}]/' bar.yaml > drawn.yaml
 pictures() { # pictures [NUMBER]: one run whose NUMBERth call on a picture fails, in each process
