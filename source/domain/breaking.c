@@ -89,7 +89,8 @@ static bool was_squeezed(const Domain *d, const Moment *moment, const Bond *bond
 /** What to do with the bonds that break. */
 typedef enum Deed { COUNT_THEM, NOTE_THEM, BREAK_THEM } Deed;
 
-/** Goes through the bonds of the suspect slices in order. @return how many break; each may be met from both its ends */
+/** Goes through the bonds of the suspect slices in order. @return how many break; each may be met from both its ends, of which those outside the body's
+ *  supports do not count: what breaks there is the image of what breaks inside */
 static int64_t judge(Domain *d, const Moment *moment, Deed deed)
 {
   const Family *f = &d->family;
@@ -106,7 +107,7 @@ static int64_t judge(Domain *d, const Moment *moment, Deed deed)
             !(d->failure.criterion && d->failure.criterion->exceeds(&d->failure, f, s, slot, &bond, lane) &&
               !was_squeezed(d, moment, &bond, place)))
           continue;
-        ++count;
+        count += !body_outside(&d->body, d->particles->number[place]);
         if (deed == NOTE_THEM) {
           note_torn(d, place);
           note_torn(d, bond.neighbour);

@@ -61,6 +61,22 @@ static bool looks_like_test(const Node *root)
   return node_get(root, "material") && (node_get(root, "test") || node_get(root, "stages")) && !node_get(root, "body");
 }
 
+/** Marks particles that are moved or held. Images beyond planes of symmetry and periodic faces are none of them: there the body goes on, and breaks as
+ *  inside. */
+static void mark_grips(const breccia_model *model, uint8_t *marked)
+{
+  const Body *body = &model->domain.body;
+  loading_mark_held(&model->loading, marked);
+  for (int64_t n = 0; n < body->particles.count; ++n) {
+    bool goes_on = body_outside(body, n);
+    for (int64_t m = n; body_outside(body, m); m = body->image_of[m]) {
+      const Margin *margin = &body->margins.items[body->margin_of[m]];
+      goes_on &= margin->repeats || support_slides(margin);
+    }
+    if (goes_on) marked[body->particles.place_of[n]] = 0;
+  }
+}
+
 /** Where no bond breaks, by one item of the deck. @param[out] marked  [places] room, zeros */
 static int keep_within(breccia_model *model, const NoFailureSpec *spec, uint8_t *marked, Error *error)
 {
@@ -70,7 +86,7 @@ static int keep_within(breccia_model *model, const NoFailureSpec *spec, uint8_t 
   if (spec->of.node)
     status = selection_create(&selection, &d->body, &model->reader, &model->spec->selections, &spec->of);
   else
-    loading_mark_held(&model->loading, marked);
+    mark_grips(model, marked);
   for (int64_t n = 0; n < selection.count; ++n) marked[selection.places[n]] = 1;
   selection_destroy(&selection);
   const double unit = spec->distance.in_spacings ? d->body.largest_spacing : 1;
@@ -85,7 +101,7 @@ static int keep_bonds(breccia_model *model, Error *error)
   uint8_t *marked = memory_zeroed(places, 1, "kept bonds", error);
   int status = marked ? BRECCIA_OK : BRECCIA_FAILURE;
   if (!status && failure->near_grips && !strcmp(failure->near_grips, "hold")) {
-    loading_mark_held(&model->loading, marked);
+    mark_grips(model, marked);
     status = domain_hold_grips(&model->domain, marked, error);
   }
   for (int k = 0; !status && k < failure->nowhere.count; ++k) {

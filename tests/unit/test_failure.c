@@ -401,6 +401,33 @@ static void the_most_loaded_bonds_break_at_once(void **state)
   breccia_model_destroy(&m);
 }
 
+/** Half of a body beside its plane of symmetry breaks half as many bonds at once as the whole one, in as many turns: images outside are not among them. */
+static void images_are_not_among_the_bonds_at_once(void **state)
+{
+  (void)state;
+  int turns[2];
+  for (int half = 0; half < 2; ++half) {
+    breccia_model *m = model_of(
+        "materials: {m: {model: elastic-1d, density: 1, Young modulus: 100}}\n"
+        "body: {b: {material: m, lattice: square, thickness: 1, spacing: 1, shape: {box: {particles: [20, %d], first "
+        "particle: [0, %g]}}}}\n"
+        "cracks: [{cut: {line: [[9.5, 4.2], [9.5, 9]]}}, {cut: {line: [[9.5, -4.2], [9.5, -9]]}}]\n"
+        "peridynamics: {formulation: bond-based, space: plane stress}\n"
+        "failure: {critical stretch: 0.03, near grips: hold}\n"
+        "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {on: {face: x+, layers: 2}, displacement: [%g, "
+        "0]}%s]\n"
+        "solve: {static: {increments: 1, bonds at once: %d}}\n",
+        half ? 8 : 16, half ? 0.5 : -7.5, 0.4, half ? ", {on: {face: y-}, support: {held: across}}" : "", half ? 3 : 6);
+    breccia_model_step(m, 1, NULL); /* it may be torn in the end */
+    turns[half] = 0;
+    for (const char *at = text_words(&m->solver.log); (at = strstr(at, " bonds break")); ++at) ++turns[half];
+    breccia_model_destroy(&m);
+  }
+  print_message("the whole body breaks in %d turns, its half in %d\n", turns[0], turns[1]);
+  assert_true(turns[0] > 3);
+  assert_int_equal(turns[1], turns[0]);
+}
+
 /** In bodies of many rows, some of whose bonds are in lattice slots and some between blocks, whatever way their particles fly: no bond is left beyond its
  *  limit after any step, and none has broken below it. */
 static void bonds_break_in_the_step_in_which_they_pass_their_limit(void **state)
@@ -457,6 +484,7 @@ int main(void)
       cmocka_unit_test(bonds_of_what_is_moved_break_in_time),
       cmocka_unit_test(bonds_at_rest_break_in_the_increment_that_overloads_them),
       cmocka_unit_test(the_most_loaded_bonds_break_at_once),
+      cmocka_unit_test(images_are_not_among_the_bonds_at_once),
       cmocka_unit_test(bonds_break_in_the_step_in_which_they_pass_their_limit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
