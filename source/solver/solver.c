@@ -195,10 +195,10 @@ int solver_create(Solver *s, Text *warning, Error *error)
   if (!status) status = s->type->plan(s, warning, error);
   for (int64_t k = 1; !status && k < s->clock.stages; ++k) {
     const int type = type_of(stage_of(s, k));
-    s->loading->stage = k; /* with its springs */
-    status = types[type]->check(s, stage_of(s, k)->of[type], error);
+    status = loading_enter(s->loading, s->domain->particles, k, error); /* with its springs and ties */
+    if (!status) status = types[type]->check(s, stage_of(s, k)->of[type], error);
   }
-  s->loading->stage = 0;
+  if (!status && s->clock.stages > 1) status = loading_enter(s->loading, s->domain->particles, 0, error);
   if (!status) foresee(s);
   return status;
 }

@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "base/team.h"
-#include "loading/tie.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,18 +141,10 @@ double static_whole_increment(const StaticSpec *spec)
   return spec->end_time / (double)spec->increments;
 }
 
-/** Whether a load of the stage looked at ties particles; ties of stages to come are no rows yet. */
-static bool has_ties(const Loading *loading)
-{
-  for (int l = 0; l < loading->count; ++l)
-    if (loading->loads[l].type == &tie_load && load_acts(loading, &loading->loads[l])) return true;
-  return false;
-}
-
 /** Of a stage to come parts may meet before it begins. Where bonds have broken pieces on which nothing acts are let be. */
 static PiecesTaken pieces_to_hold(const Solver *run, const StaticSpec *spec)
 {
-  if (spec != run->spec && (run->domain->forces.count || has_ties(run->loading))) return PIECES_TOGETHER;
+  if (spec != run->spec && run->domain->forces.count) return PIECES_TOGETHER;
   return run->domain->broken_count ? PIECES_WORKED : PIECES_ALL;
 }
 

@@ -126,6 +126,44 @@ static void a_tie_in_one_direction_leaves_the_others(void **state)
   breccia_model_destroy(&m);
 }
 
+/** A plane body has no z in which particles could move as one. */
+static void a_tie_that_leads_out_of_the_plane_is_refused(void **state)
+{
+  (void)state;
+  char *words = refusal_of(
+      UNITS "materials: {m: {model: elastic, density: 2, Young modulus: 250, Poisson ratio: 0.25}}\n"
+            "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [6, 6]}}}}\n"
+            "peridynamics: {space: plane strain}\n"
+            "loads: [{on: {face: y-}, tie: {directions: z}}]\nsolve: {explicit: {steps: 1}}\n");
+  holds_words(words, "directions: 'z' leads out of the body, which is plane");
+  free(words);
+}
+
+/** Two blocks at rest on one spring between them: it is longer by the force over its stiffness, and pulls at both alike. */
+static void a_spring_between_blocks_at_rest_is_stretched_by_its_force(void **state)
+{
+  (void)state;
+  for (int later = 0; later < 2; ++later) { /* from the beginning, or from a stage on in which its block is let go */
+    const char *spring = "{on: {block: b}, spring: {to: {block: a}, stiffness: 9}}",
+               *pull = "{on: {block: b, face: x+}, force: [0.018, 0, 0]}",
+               *hold = "{name: held, on: {block: b}, displacement: [0, free, free]}";
+    char rest[600];
+    snprintf(
+        rest, sizeof rest,
+        later
+            ? ", %s]\nsolve: [{static: {increments: 1}}, {without: [held], loads: [%s, %s], static: {increments: 1}}]\n"
+            : ", %s, %s]\nsolve: {static: {increments: 1}}\n",
+        later ? hold : spring, later ? spring : pull, pull);
+    breccia_model *m = model_of(PAIR "loads: [{on: {block: a}, displacement: [0, 0, 0]},"
+                                     " {on: {block: b}, roller: [0, 1, 0]}, {on: {block: b}, roller: [0, 0, 1]}%s",
+                                rest);
+    step_surely(m, INT64_MAX);
+    const Particles *p = m->domain.particles;
+    assert_near(mean_along(m, 1, p->displacement[0]), 0.018 / 9, 1e-8 * 0.018 / 9);
+    breccia_model_destroy(&m);
+  }
+}
+
 /* A shear column whose sides are tied is one of infinite width: with a = g sin a along it, rest is at u(z) = rho a (H z - z^2 / 2) / G. */
 static void a_column_with_tied_sides_shears_as_if_it_had_none(void **state)
 {
@@ -160,6 +198,8 @@ int main(void)
       cmocka_unit_test(springs_shorten_the_stable_step_as_they_must),
       cmocka_unit_test(tied_bodies_move_as_one_and_keep_their_momentum),
       cmocka_unit_test(a_tie_in_one_direction_leaves_the_others),
+      cmocka_unit_test(a_tie_that_leads_out_of_the_plane_is_refused),
+      cmocka_unit_test(a_spring_between_blocks_at_rest_is_stretched_by_its_force),
       cmocka_unit_test(a_column_with_tied_sides_shears_as_if_it_had_none),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

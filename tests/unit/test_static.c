@@ -554,6 +554,33 @@ static void a_loose_body_is_refused(void **state)
   free(words);
 }
 
+/** Of three blocks two are let go when a stage ties one to the one that is held; the other is loose from then on, and this is said before anything runs. */
+static void a_block_that_a_later_stage_leaves_loose_is_refused(void **state)
+{
+  (void)state;
+  static const char deck[] = UNITS
+      "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+      "body:\n"
+      "  a: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [0, 0], to: [0.6, 0.6]}}}\n"
+      "  b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [2, 0], to: [2.6, 0.6]}}}\n"
+      "  c: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {from: [4, 0], to: [4.6, 0.6]}}}\n"
+      "peridynamics: {space: plane strain}\n"
+      "loads: [{on: {block: a, face: x-}, displacement: [0, 0]}, {name: b held, on: {block: b}, displacement: [0, 0]},"
+      " {name: c held, on: {block: c}, displacement: [0, 0]}]\n"
+      "solve: [{static: {increments: 1}}, {without: [b held%s], loads: [{on: {block: b, face: x-}, tie: {to: "
+      "{block: a, face: x+}}}, {on: {block: b, face: x+}, traction: [1, 0]}], static: {increments: 1}}]\n";
+  char text[2048];
+  snprintf(text, sizeof text, deck, ", c held");
+  char *words = refusal_of(text);
+  holds_words(words, "nothing holds a piece of 36 particles|[4.05, 0.05, 0]");
+  free(words);
+  breccia_model *m = model_of(deck, "");
+  run_all(m);
+  assert_true(m->domain.particles->displacement[0][particles_nearest(m->domain.particles, (double[]){2.55, 0.3, 0})] >
+              0);
+  breccia_model_destroy(&m);
+}
+
 /** Conjugate gradients that were asked for by name: nothing would come of them, increment after increment. */
 static void equations_that_do_not_suit_are_named(void **state)
 {
@@ -619,6 +646,7 @@ int main(void)
       cmocka_unit_test(an_unloaded_body_is_at_rest),
       cmocka_unit_test(the_last_load_is_taken_away_in_few_iterations),
       cmocka_unit_test(a_loose_body_is_refused),
+      cmocka_unit_test(a_block_that_a_later_stage_leaves_loose_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
