@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "body/cloud.h"
+#include "body/nearer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -217,7 +218,7 @@ int32_t body_nearest(const Body *body, const double point[3])
     const int32_t i = p->place_of[n];
     double square = 0;
     for (int k = 0; k < 3; ++k) square += (p->position[k][i] - point[k]) * (p->position[k][i] - point[k]);
-    if (square >= least || body_outside(body, n)) continue;
+    if (!is_nearer(square, least) || body_outside(body, n)) continue;
     least = square;
     found = i;
   }

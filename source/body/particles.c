@@ -1,6 +1,7 @@
 #include "body/particles.h"
 
 #include "base/team.h"
+#include "body/nearer.h"
 #include "body/orientation.h"
 #include <math.h>
 #include <stdlib.h>
@@ -224,7 +225,7 @@ int32_t particles_nearest(const Particles *particles, const double point[3])
       double d = particles->position[k][place] - point[k];
       distance += d * d;
     }
-    if (distance < best * (1 - 1e-12)) { /* roundings must not decide between equals */
+    if (is_nearer(distance, best)) {
       best = distance;
       nearest = place;
     }

@@ -183,17 +183,20 @@ const char *breccia_model_overview(breccia_model *model)
   Text *text = &model->overview;
   text_free(text);
   int fewest = INT32_MAX, most = 0;
+  int64_t outside = 0;
   for (int64_t n = 0; n < d->particles->count; ++n) {
     int count = family_count(&d->family, d->particles->place_of[n]);
+    outside += body_outside(&d->body, n);
     if (count < fewest) fewest = count;
     if (count > most) most = count;
   }
   char length[64], time[64];
   units_name(model->units, dimension_find("length"), length, sizeof length);
   units_name(model->units, dimension_find("time"), time, sizeof time);
-  text_add(text, "%s: %lld particles, %lld bonds, %d to %d per particle (mean %.1f), horizon %g %s\n",
-           model->spec->title, (long long)d->particles->count, (long long)d->family.bonds / 2, fewest, most,
-           (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
+  text_add(text, "%s: %lld particles", model->spec->title, (long long)d->particles->count);
+  if (outside) text_add(text, ", of them %lld in layers outside supports", (long long)outside);
+  text_add(text, ", %lld bonds, %d to %d per particle (mean %.1f), horizon %g %s\n", (long long)d->family.bonds / 2,
+           fewest, most, (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
   describe_regions(d, text);
   for (int k = 0; k < d->material_count; ++k)
     text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law_name);

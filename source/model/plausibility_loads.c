@@ -2,6 +2,7 @@
 #include "model/plausibility_parts.h"
 
 #include "base/memory.h"
+#include "body/nearer.h"
 #include "failure/critical_stretch.h"
 #include <math.h>
 #include <stdlib.h>
@@ -39,6 +40,34 @@ static void check_shaking(breccia_model *model, const Load *load)
         "%s: its peak is %.3g m/s2, %.3g times gravity; earthquakes stay below 3: look at the unit of the record, the "
         "load's value is what 1 in it means",
         load->node->key, peak, peak / gravity);
+}
+
+/** A load on the particle nearest to a point, to which several are: one that is meant for the middle of the body stands beside it. */
+static void check_middle(breccia_model *model, const Load *load)
+{
+  const Body *body = &model->domain.body;
+  const Particles *p = &body->particles;
+  const SelectionSpec *on = selection_spec(&model->spec->selections, &load->spec->on);
+  if (!on || isnan(on->nearest[0]) || load->selection.count != 1) return;
+  const int32_t taken = load->selection.places[0];
+  int count = 0;
+  double least = 0;
+  for (int k = 0; k < 3; ++k)
+    least += (p->position[k][taken] - on->nearest[k]) * (p->position[k][taken] - on->nearest[k]);
+  for (int64_t n = 0; n < p->count; ++n) {
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double away = p->position[k][p->place_of[n]] - on->nearest[k];
+      square += away * away;
+    }
+    count += !body_outside(body, n) && !is_nearer(least, square);
+  }
+  if (count < 2) return;
+  plausibility_say(
+      model, section_node(on, "nearest"),
+      "nearest: %d particles are equally near to this point, and %d at [%g, %g, %g], of the lowest number, is "
+      "taken; move the point to the one that is meant, or select all of them by 'inside'",
+      count, p->number[taken], p->position[0][taken], p->position[1][taken], p->position[2][taken]);
 }
 
 /** Whoever lets the ground settle first must hold it by something else. */
@@ -83,6 +112,7 @@ void plausibility_warn_of_loads(breccia_model *model)
 {
   for (int k = 0; k < model->loading.count; ++k) {
     check_jump(model, &model->loading.loads[k]);
+    check_middle(model, &model->loading.loads[k]);
     check_shaking(model, &model->loading.loads[k]);
     check_dashpots(model, &model->loading.loads[k]);
   }

@@ -172,6 +172,86 @@ static void held_faces_of_what_keeps_its_volume_are_told(void **state)
   }
 }
 
+/** A plate in pure bending under forces in proportion to the height at one end, at its plane of symmetry at the other.
+ *  @return its deflection over that of beams, 1/2 M x^2 / (E / (1 - nu^2) I); `told`: whether loading warned */
+static double bending(const char *formulation, double poisson, bool *told)
+{
+  enum { ROWS = 11, COLUMNS = 36 };
+  const double dx = 0.1, middle = (ROWS / 2 + 0.5) * dx;
+  char loads[ROWS * 160] = "";
+  double moment = 0;
+  for (int r = 0; r < ROWS; ++r) {
+    const double y = (r + 0.5) * dx, force = y - middle;
+    if (r == ROWS / 2) continue;
+    moment += force * (y - middle);
+    snprintf(loads + strlen(loads), sizeof loads - strlen(loads),
+             ", {on: {face: x+, layers: 3, inside: {box: {from: [0, %g], to: [9, %g]}}}, force: [%g, 0]}", y - 0.02,
+             y + 0.02, force);
+  }
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: elastic, density: 2, Young modulus: 1e6, Poisson ratio: %g}}\n"
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [%d, %d], first "
+      "particle: [0.05, 0.05]}}}}\n"
+      "peridynamics: {formulation: %s, space: plane strain}\n"
+      "loads: [{on: {face: x-}, support: {held: across}}, {on: {nearest: [0.05, %g]}, displacement: [free, 0]}%s]\n"
+      "solve: {static: {increments: 1}}\n",
+      poisson, COLUMNS, ROWS, formulation, middle, loads);
+  *told = strstr(breccia_model_warnings(m), "a body of Poisson ratio") != NULL;
+  step_surely(m, 1);
+  const double x = 18.5 * dx, height = ROWS * dx;
+  const int32_t at = particles_nearest(m->domain.particles, (double[]){x, middle, 0});
+  const double found = -m->domain.particles->displacement[1][at];
+  breccia_model_destroy(&m);
+  return found / (moment * (x * x - 0.05 * 0.05) / 2 / (1e6 / (1 - poisson * poisson) * pow(height, 3) / 12));
+}
+
+/** Families at free faces that cannot tell their volume hold a body that keeps it; what the warning advises does not. */
+static void bodies_that_lock_are_told(void **state)
+{
+  (void)state;
+  const struct {
+    const char *formulation;
+    double poisson, low, high;
+    bool told;
+  } bent[] = {{"ordinary", 0.45, 0.7, 0.9, false},
+              {"ordinary", 0.49, 0.5, 0.7, true},
+              {"correspondence", 0.49, 0.95, 1.05, false},
+              {"hybrid", 0.49, 0.95, 1.1, false}};
+  for (size_t k = 0; k < sizeof bent / sizeof *bent; ++k) {
+    bool told;
+    const double found = bending(bent[k].formulation, bent[k].poisson, &told);
+    print_message("%s, Poisson ratio %g: %.3f of the deflection of beams\n", bent[k].formulation, bent[k].poisson,
+                  found);
+    assert_true(found > bent[k].low && found < bent[k].high);
+    assert_int_equal(told, bent[k].told);
+  }
+}
+
+/** A load on the particle nearest to a point in the middle of four: told, and one beside it is not. */
+static void points_between_particles_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *point;
+    const char *words;
+  } points[] = {{"[0.04, 0.03]", "4 particles are equally near to this point"},
+                {"[0.04, 0.025]", "2 particles are equally near"},
+                {"[0.0399, 0.025]", NULL},
+                {"[0.035, 0.025]", NULL},
+                {"[-0.005, 0.025]", NULL}}; /* outside there are images of those inside */
+  for (size_t k = 0; k < sizeof points / sizeof *points; ++k) {
+    char loads[300];
+    snprintf(loads, sizeof loads,
+             "loads: [{on: {face: x-}, support: {held: across}}, {on: {nearest: %s}, force: [0, 1e-6]}]\n",
+             points[k].point);
+    breccia_model *m = body_of("m", USUAL, loads);
+    const char *words = breccia_model_warnings(m);
+    if (points[k].words ? !strstr(words, points[k].words) : *words) fail_msg("%s: %s", points[k].point, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Sums over the particles of blocks that take the same space differ by roundings: 9 times 0.1^2 is less than 36 times 0.05^2. */
 static void of_equal_blocks_the_first_tells_how_waves_run(void **state)
 {
@@ -229,6 +309,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say),
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
+                                     cmocka_unit_test(bodies_that_lock_are_told),
+                                     cmocka_unit_test(points_between_particles_are_told),
                                      cmocka_unit_test(damping_that_lets_a_body_creep_is_told),
                                      cmocka_unit_test(of_equal_blocks_the_first_tells_how_waves_run)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,6 @@
 #include "loading/tie.h"
 
+#include "body/nearer.h"
 #include "loading/load.h"
 #include <math.h>
 #include <stdlib.h>
@@ -46,7 +47,7 @@ static int32_t nearest(const Particles *p, int32_t place, const Selection *to)
   for (int64_t n = 0; n < to->count; ++n) {
     double square = 0;
     for (int k = 0; k < 3; ++k) square += pow(p->position[k][to->places[n]] - p->position[k][place], 2);
-    if (square < least) {
+    if (is_nearer(square, least)) {
       least = square;
       found = to->places[n];
     }
@@ -70,7 +71,15 @@ static int create(Load *load, const LoadMaking *making)
   const DeckReader *reader = making->reader;
   Tie *tie = load->own = memory_zeroed(1, sizeof *tie, "tie", reader->error);
   if (!tie) return BRECCIA_FAILURE;
-  for (int k = 0; k < 3; ++k) tie->along[k] = strchr(spec->directions, "xyz"[k]) && k < making->body->dimensions;
+  bool any = false;
+  for (int k = 0; k < 3; ++k) {
+    tie->along[k] = strchr(spec->directions, "xyz"[k]) && k < making->body->dimensions;
+    any |= tie->along[k];
+  }
+  if (!any)
+    return node_error(reader->document, section_node(spec, "directions"), reader->error,
+                      "directions: '%s' leads out of the body, which is %s", spec->directions,
+                      making->body->dimensions == 2 ? "plane" : "a bar along x");
   tie->masters = memory_zeroed((size_t)load->selection.count, sizeof *tie->masters, "tie", reader->error);
   if (!tie->masters) return BRECCIA_FAILURE;
   if (spec->to.node) {

@@ -1,0 +1,13 @@
+/* Which of two particles is nearer to a point: roundings must not decide between equals. */
+#ifndef BRECCIA_BODY_NEARER_H
+#define BRECCIA_BODY_NEARER_H
+
+#include <stdbool.h>
+
+/** Whether a square of a distance is less than the least so far. */
+static inline bool is_nearer(double square, double least)
+{
+  return square < least * (1 - 1e-9);
+}
+
+#endif
