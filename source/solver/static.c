@@ -17,6 +17,12 @@ static const char *method_word(int k)
   return words[k];
 }
 
+static const char *no_equilibrium_word(int k)
+{
+  static const char *const words[] = {"stop", "next stage", NULL};
+  return words[k];
+}
+
 static const Field static_fields[] = {
     {.key = "end time",
      .kind = FIELD_NUMBER,
@@ -60,6 +66,14 @@ static const Field static_fields[] = {
      .range = "[1, 1e9]",
      .meaning = "an increment that takes more by relaxation, at an evaluation of forces each, is tried again with half "
                 "of its length"},
+    {.key = "no equilibrium",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(StaticSpec, no_equilibrium),
+     .standard = "stop",
+     .meaning = "what happens where none is found: the run stops there, with an error; or the stage ends and the next "
+                "one, as of "
+                "'explicit', goes on from the last state of rest, without the bonds that have broken since",
+     .choice = no_equilibrium_word},
     {.key = "control",
      .kind = FIELD_SECTION,
      .offset = offsetof(StaticSpec, control),
@@ -170,6 +184,10 @@ static int check(Solver *run, const void *section, Error *error)
   int status = increment_check(run, section, "find rest by 'explicit' with 'local damping'", error);
   if (!status && !run->loose) status = check_hold(run, spec, error);
   if (status) return status;
+  const SolveSpec *last = run->stages->items[run->stages->count - 1];
+  if (static_hands_over(spec) && section_node(last, "static") == spec->head.node)
+    return node_error(run->reader->document, section_node(spec, "no equilibrium"), error,
+                      "no equilibrium: no stage comes after this one; add one, as of 'explicit', or leave this out");
   if (spec->control && !strcmp(spec->method, "relaxation"))
     return node_error(run->reader->document, section_node(spec, "control"), error,
                       "control: dynamic relaxation cannot find factors of loads; leave 'method: relaxation' out");

@@ -7,14 +7,23 @@
 #include "solver/newton_descent.h"
 #include "solver/relaxation.h"
 
+#include <stdbool.h>
+#include <string.h>
+
 typedef struct StaticSpec {
   SectionHead head;
   double end_time, smallest;
   int64_t increments, bonds_at_once, relaxation_iterations;
-  const char *method;
+  const char *method, *no_equilibrium;
   const ControlSpec *control;
   NewtonSpec newton;
 } StaticSpec;
+
+/** Whether the next stage goes on where no equilibrium is found. */
+static inline bool static_hands_over(const StaticSpec *spec)
+{
+  return !strcmp(spec->no_equilibrium, "next stage");
+}
 
 /** From equilibrium at the begin of an increment, or with bonds that have broken in it, to the one that was found last: works are those between these
  *  two, whatever was tried on the way. */

@@ -115,12 +115,9 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error)
   return outcome;
 }
 
-/** The stage ends now: the body is torn. */
-static void end_torn(Solver *run, Text *warning)
+/** The stage ends now, before its time. */
+static void end_now(Clock *clock)
 {
-  const Static *s = run->own;
-  Clock *clock = &run->clock;
-  control_tell_torn(&s->control, clock, warning);
   clock->ended = 1;
   clock->stage_last = clock->step;
   clock->stage_end = clock->time;
@@ -191,6 +188,19 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
                    "a stage of 'explicit', or prescribe displacements instead of forces",
                    (long long)s->domain->broken_count, s->clock->time, s->clock->time_unit,
                    describe_failure(s, outcome, words, sizeof words));
+}
+
+/** The next stage goes on from where the body is: at the last state of rest, without the bonds that have broken since. */
+static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *warning)
+{
+  const Static *s = run->own;
+  char words[320], name[64];
+  Clock *clock = &run->clock;
+  text_add(warning, "%swarning: static: no equilibrium beyond time %g %s: %s; stage '%s' goes on from there",
+           warning->length ? "\n" : "", clock->time, clock->time_unit,
+           settled ? describe_failure(s, outcome, words, sizeof words) : "the control of zero-energy modes fades",
+           solver_stage_name(run, clock->stage + 1, name, sizeof name));
+  end_now(clock);
 }
 
 /** At the end of the stage: what is said to be followed was jumped over. */
@@ -276,12 +286,22 @@ int static_advance(Solver *run, Text *warning, Error *error)
       if (settled) ++clock->step; /* what was found in it is committed, whatever has become of the rest */
       if (status) return BRECCIA_FAILURE;
       if (settled && outcome == NEWTON_CONVERGED) break;
+      if (settled && static_hands_over(s->spec)) {
+        hand_over(run, outcome, true, warning);
+        break;
+      }
       if (settled) return fail_with_broken(s, outcome, error);
       if (static_give_back(run, error)) return BRECCIA_FAILURE;
     }
     tell_refused(s, outcome, settled);
     s->next = (end - begin) / 2;
     if (s->next < s->spec->smallest * static_whole_increment(s->spec)) {
+      if (static_hands_over(s->spec)) {
+        hand_over(run, outcome, settled, warning);
+        ++clock->step; /* one of no length */
+        clock->stage_last = clock->step;
+        break;
+      }
       fail(s, outcome, settled, error);
       return give_up(s, first, cuts);
     }
@@ -295,7 +315,10 @@ int static_advance(Solver *run, Text *warning, Error *error)
   if (s->spec->control) control_note_exerted(&s->control, newton_controlled_force(&s->newton));
   /* Once without broken bonds it may be a load that changes its sign. */
   const bool again = was_spent || s->domain->broken_count > broken;
-  if (!clock->ended && again && control_is_spent(&s->control)) end_torn(run, warning);
+  if (!clock->ended && again && control_is_spent(&s->control)) {
+    control_tell_torn(&s->control, clock, warning);
+    end_now(clock);
+  }
   if (clock->ended) {
     if (s->descended || s->relaxed) tell_jumps(s, warning);
     increment_forget(&s->increment);
