@@ -415,7 +415,10 @@ void plausibility_describe(breccia_model *model, bool search, Text *text)
   text_add(text, "in SI units:\n");
   for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
   describe_frequencies(model, &e, search, text);
-  for (int k = 0; k < model->loading.count; ++k) describe_load(model, &model->loading.loads[k], &e, text);
+  for (int k = 0; k < model->loading.count; ++k) {
+    describe_load(model, &model->loading.loads[k], &e, text);
+    plausibility_describe_middle(model, &model->loading.loads[k], text);
+  }
   const double time = plausibility_in_si(model, "time", solver_time_in_motion(&model->solver));
   bool rests = false;
   for (int64_t k = model->solver.clock.stage; k < model->solver.clock.stages; ++k)

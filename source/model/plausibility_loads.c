@@ -42,8 +42,7 @@ static void check_shaking(breccia_model *model, const Load *load)
         load->node->key, peak, peak / gravity);
 }
 
-/** A load on the particle nearest to a point, to which several are: one that is meant for the middle of the body stands beside it. */
-static void check_middle(breccia_model *model, const Load *load)
+void plausibility_describe_middle(const breccia_model *model, const Load *load, Text *text)
 {
   const Body *body = &model->domain.body;
   const Particles *p = &body->particles;
@@ -63,11 +62,10 @@ static void check_middle(breccia_model *model, const Load *load)
     count += !body_outside(body, n) && !is_nearer(least, square);
   }
   if (count < 2) return;
-  plausibility_say(
-      model, section_node(on, "nearest"),
-      "nearest: %d particles are equally near to this point, and %d at [%g, %g, %g], of the lowest number, is "
-      "taken; move the point to the one that is meant, or select all of them by 'inside'",
-      count, p->number[taken], p->position[0][taken], p->position[1][taken], p->position[2][taken]);
+  text_add(text,
+           "  load in line %d: %d particles are equally near to its point; it acts on that of the lowest number, at "
+           "[%g, %g, %g]\n",
+           load->spec->head.node->line, count, p->position[0][taken], p->position[1][taken], p->position[2][taken]);
 }
 
 /** Whoever lets the ground settle first must hold it by something else. */
@@ -112,7 +110,6 @@ void plausibility_warn_of_loads(breccia_model *model)
 {
   for (int k = 0; k < model->loading.count; ++k) {
     check_jump(model, &model->loading.loads[k]);
-    check_middle(model, &model->loading.loads[k]);
     check_shaking(model, &model->loading.loads[k]);
     check_dashpots(model, &model->loading.loads[k]);
   }
