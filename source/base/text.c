@@ -130,8 +130,10 @@ void text_file_name(const char *words, char *name, size_t size)
   size_t n = 0;
   for (; *words && n + 1 < size; ++words) {
     unsigned char c = (unsigned char)*words;
-    name[n++] = (char)(isalnum(c) || c == '-' || c == '.' ? c : '-');
+    name[n] = (char)(isalnum(c) || c == '-' || (c == '.' && n) ? c : '-');
+    ++n;
   }
+  if (!n && size > 1) name[n++] = '-';
   name[n] = 0;
 }
 

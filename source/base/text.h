@@ -37,7 +37,8 @@ int text_distance(const char *a, const char *b);
 /** @return true if `candidate` is close enough to `word` to be suggested for it */
 bool text_resembles(const char *word, const char *candidate, int distance);
 
-/** Copies `words` into `name` (size bytes) with everything but letters, digits, - and . replaced by -. */
+/** Copies `words` into `name` (size bytes) with everything but letters, digits, - and . replaced by -; so is a . at the
+ *  beginning, behind which shells and browsers of files would hide the file. Words without a letter give -. */
 void text_file_name(const char *words, char *name, size_t size);
 
 /** @return how many bytes from the beginning are UTF-8 text (RFC 3629, section 4): `length` if all are */

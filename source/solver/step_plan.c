@@ -129,13 +129,13 @@ static int check_time_step(const Solver *run, const ExplicitSpec *spec, double s
   if (share > 1 && !run->force)
     return node_error(
         document, node, error,
-        "time step: %g %s is %.2f times the stable step of %.4g %s; choose a smaller one, leave it out, or run with "
+        "time step: %g %s is %.3g times the stable step of %.4g %s; choose a smaller one, leave it out, or run with "
         "--force",
         chosen, unit, share, stable, unit);
   if (warning && share > 0.9) {
     char where[WHERE_SIZE];
     node_where(document, node, where, sizeof where);
-    text_add(warning, "%s%s: warning: time step: %g %s is %.2f times the stable step of %.4g %s",
+    text_add(warning, "%s%s: warning: time step: %g %s is %.3g times the stable step of %.4g %s",
              warning->length ? "\n" : "", where, chosen, unit, share, stable, unit);
   }
   return BRECCIA_OK;

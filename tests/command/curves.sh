@@ -273,7 +273,7 @@ mkdir full
 touch full/profiles
 "$breccia" run block.yaml --output full > out 2> errors
 equal "no folder for profiles: status" $? 1
-equal "no folder for profiles" "$(grep -v ^warning errors)" "full/profiles/wall.csv: cannot be written: Not a directory"
+equal "no folder for profiles" "$(grep -v ^warning errors)" "full/profiles: it is a file; expected a folder, or a name that is not there yet"
 
 movie() { # movie OPTIONS: made of all states, its words in one line
   "$breccia" plot block --field velocity --size 60 --movie fade.mp4 "$@" > out 2> errors || fail "movie $*: $(cat errors)"

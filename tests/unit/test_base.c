@@ -83,6 +83,10 @@ static void names_and_places_of_files_are_made_of_words(void **state)
   char name[12];
   text_file_name("tip x/y.\u00e9_2", name, sizeof name);
   assert_string_equal(name, "tip-x-y.---"); /* as much as there is room for */
+  text_file_name("../end", name, sizeof name);
+  assert_string_equal(name, "-.-end"); /* a file that is not hidden */
+  text_file_name("", name, sizeof name);
+  assert_string_equal(name, "-");
   static const char *const beside[][3] = {{"a/b/deck.yaml", "c.csv", "a/b/c.csv"},
                                           {"deck.yaml", "c.csv", "c.csv"},
                                           {"a/deck.yaml", "/c.csv", "/c.csv"},

@@ -72,7 +72,7 @@ static void steps_close_to_the_stable_one_are_warned_of(void **state)
   for (int k = 0; k < 4; ++k) {
     char words[128];
     m = model_of(BODY LOADS "solve: {explicit: {time step: %.17g, steps: 1}}\n", shares[k] * stable * (1 - 1e-12));
-    snprintf(words, sizeof words, "warning: time step: %g s is %.2f times the stable step of %.4g s",
+    snprintf(words, sizeof words, "warning: time step: %g s is %.3g times the stable step of %.4g s",
              shares[k] * stable, shares[k], stable);
     assert_int_equal(strstr(breccia_model_warnings(m), words) != NULL, shares[k] > 0.9);
     breccia_model_destroy(&m);
