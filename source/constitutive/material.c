@@ -329,6 +329,31 @@ double material_young(const Material *material)
   return 9 * material->bulk * material->shear / (3 * material->bulk + material->shear);
 }
 
+bool material_has_tangent(const Material *m)
+{
+  double none[6] = {0}, stress[6], tangent[36], *history = calloc(2 * (size_t)m->history_values + 1, sizeof *history);
+  const int numbers = m->law->components == 6 ? 36 : 1;
+  breccia_batch one = {.size = sizeof one, .count = 1, .tangent = tangent};
+  if (m->remote || !history) {
+    free(history);
+    return true; /* what lacks memory is told by those who need more of it */
+  }
+  for (int k = 0; k < 6; ++k) {
+    one.strain[k] = &none[k];
+    one.stress[k] = &stress[k];
+  }
+  for (int k = 0; k < numbers; ++k) tangent[k] = NAN;
+  one.committed = history;
+  one.trial = history + m->history_values;
+  for (int twin = 0; twin < 2 && m->law->begin; ++twin)
+    m->law->begin(m->constants, history + twin * (ptrdiff_t)m->history_values);
+  const bool gave_up = m->law->update(m->constants, &one) >= 0;
+  bool told = true;
+  for (int k = 0; k < numbers && !gave_up; ++k) told &= isfinite(tangent[k]) != 0;
+  free(history);
+  return told;
+}
+
 bool material_is_hookean(const Material *m)
 {
   if (!m->law->linear || m->law->components != 6 || m->remote || m->history_values) return false;

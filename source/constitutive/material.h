@@ -53,6 +53,9 @@ void material_destroy(Material *material);
 
 /** Young's modulus of the undamaged material. */
 double material_young(const Material *material);
+/** Whether the law tells how stress changes with strain, asked of an unstrained point; that of a server is taken to do so, as is one that cannot be
+ *  integrated there. */
+bool material_has_tangent(const Material *material);
 /** Whether the law in space is Hooke's by the moduli that it tells: linear, isotropic, without history. */
 bool material_is_hookean(const Material *material);
 #endif

@@ -203,6 +203,13 @@ const Material *domain_without_trials(const Domain *d)
   return NULL;
 }
 
+const Material *domain_without_tangents(const Domain *d)
+{
+  for (int k = 0; k < d->material_count; ++k)
+    if (!material_has_tangent(&d->materials[k])) return &d->materials[k];
+  return NULL;
+}
+
 static void store_batch(void *context, int64_t b)
 {
   const Domain *d = context;

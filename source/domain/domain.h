@@ -228,6 +228,8 @@ bool domain_lags(const Domain *domain);
 bool domain_may_lag(const Domain *domain);
 /** A material whose server cannot repeat a trial, as iterations have it do; NULL: there is none. */
 const Material *domain_without_trials(const Domain *domain);
+/** A material whose law does not tell how stress changes with strain; NULL: there is none. */
+const Material *domain_without_tangents(const Domain *domain);
 /** Why a free body would gain energy as it moves unless its shortest waves are damped; NULL: it would not. */
 const char *domain_flutters(const Domain *domain);
 /** Whether the stable step may fall as bonds break. */

@@ -18,8 +18,10 @@ typedef struct Increment {
 } Increment;
 
 /** Refuses what solvers that iterate have no place for.
- *  @param[in] section  of the solver's keys, to be named; @param[in] instead  what to do without the solver */
-int increment_check(const Solver *solver, const void *section, const char *instead, Error *error);
+ *  @param[in] section   of the solver's keys, to be named
+ *  @param[in] tangents  whether it needs to know how stresses change with strains
+ *  @param[in] instead   what to do without the solver */
+int increment_check(const Solver *solver, const void *section, bool tangents, const char *instead, Error *error);
 
 /** `increment` is zero; destroy it in any case. */
 int increment_create(Increment *increment, Domain *domain, const Loading *loading, Error *error);

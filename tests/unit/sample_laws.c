@@ -221,6 +221,8 @@ static int glass_update(const void *constants, const breccia_batch *batch)
     const double volumetric = 6e4 * (batch->strain[0][i] + batch->strain[1][i] + batch->strain[2][i]);
     for (int k = 0; k < 6; ++k)
       batch->stress[k][i] = (k < 3 ? volumetric : 0) + (k < 3 ? 2 : 1) * 6e4 * batch->strain[k][i];
+    for (int k = 0; k < 36 && batch->tangent; ++k)
+      batch->tangent[36 * i + k] = (k % 7 ? 0 : k / 7 < 3 ? 12e4 : 6e4) + (k / 6 < 3 && k % 6 < 3 ? 6e4 : 0);
   }
   return -1;
 }

@@ -1,5 +1,4 @@
 /* Where bonds break and where they hold, and what breaking costs. */
-#include "sample_laws.h"
 #include "support.h"
 
 #include "base/random.h"
@@ -79,110 +78,6 @@ static void particles_right_at_the_distance_are_kept_too(void **state)
       kept += m->domain.failure.kept[m->domain.particles->place_of[n]] != 0;
     assert_int_equal(kept, (2 + spacings) * 5 * 3);
     breccia_model_destroy(&m);
-  }
-}
-
-static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **state)
-{
-  (void)state;
-  const breccia_law *const laws[] = {&law_of_glass};
-  for (int breaks = 0; breaks < 2; ++breaks) {
-    const breccia_options options = {
-        .size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1 + breaks};
-    breccia_error *error = breccia_error_create();
-    breccia_model *model = NULL;
-    char deck[1024];
-    snprintf(deck, sizeof deck,
-             "units: {length: m, force: kN, time: s}\nmaterials: {vase: {model: glass, density: 2}}\n"
-             "body: {b: {material: vase, spacing: 0.1, shape: {box: {particles: [12, 4, 4]}}}}\n"
-             "failure: {failed laws: %s}\n"
-             "loads: [{on: {face: x-, layers: 3}, velocity: [0, 0, 0]}, {on: {face: x+, layers: 3}, velocity: [0.5, 0, "
-             "0]}]\n"
-             "solve: {explicit: {steps: 400}}\n",
-             breaks ? "break" : "stop");
-    assert_int_equal(breccia_model_load_string(deck, "deck", &options, &model, error), 0);
-    const int status = breccia_model_step(model, INT64_MAX, error);
-    if (breaks) {
-      assert_int_equal(status, 0);
-      assert_true(breccia_model_broken_bonds(model) > 100);
-      for (int64_t i = 0; i < model->domain.particles->places; ++i)
-        for (int k = 0; k < 3; ++k) assert_true(isfinite(model->domain.particles->displacement[k][i]));
-      assert_true(model->domain.gave_up != NULL);
-    } else {
-      assert_int_equal(status, BRECCIA_FAILURE);
-      assert_non_null(strstr(breccia_error_text(error),
-                             "the law glass of material 'vase' could not be integrated at the strain xx 0.001"));
-      assert_int_equal(breccia_model_broken_bonds(model), 0);
-    }
-    breccia_model_destroy(&model);
-    breccia_error_destroy(&error);
-  }
-}
-
-/* "string": elastic up to a strain of 1e-3, where it gives up. */
-static int string_prepare(const double *values, void *constants, char *reason, size_t size)
-{
-  (void)values, (void)constants, (void)reason, (void)size;
-  return 0;
-}
-static void string_moduli(const void *constants, double *bulk, double *shear)
-{
-  (void)constants;
-  *bulk = 1e4 / 1.5;
-  *shear = 1e4 / 2.5;
-}
-static int string_update(const void *constants, const breccia_batch *batch)
-{
-  (void)constants;
-  for (int i = 0; i < batch->count; ++i) {
-    if (batch->strain[0][i] > 1e-3) return i;
-    batch->stress[0][i] = 1e4 * batch->strain[0][i];
-    if (batch->tangent) batch->tangent[i] = 1e4;
-  }
-  return -1;
-}
-static const breccia_law law_of_string = {.size = sizeof(breccia_law),
-                                          .name = "string",
-                                          .about = "gives up",
-                                          .source = "the tests",
-                                          .maturity = "experimental",
-                                          .constants_size = 1,
-                                          .components = 1,
-                                          .prepare = string_prepare,
-                                          .moduli = string_moduli,
-                                          .update = string_update};
-
-static void a_bond_whose_law_gives_up_takes_both_its_particles_along(void **state)
-{
-  (void)state;
-  /* A row bonded to next neighbours, one gap of which is opened: the two beside it lose the bonds on their other sides too, and no other
-   * particle loses any, wherever the gap is. */
-  enum { COUNT = 21 };
-  for (int gap = 2; gap < COUNT - 3; gap += 3) {
-    const breccia_law *const laws[] = {&law_of_string};
-    const breccia_options options = {
-        .size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1 + gap % 2};
-    breccia_error *error = breccia_error_create();
-    breccia_model *m;
-    if (breccia_model_load_string(
-            "units: {length: m, force: kN, time: s}\nmaterials: {s: {model: string, density: 2}}\n"
-            "body: {b: {material: s, lattice: line, area: 1, spacing: 1, shape: {box: {particles: "
-            "[21, 1, 1]}}}}\nperidynamics: {formulation: bond-based, space: 1-D, horizon: 1.2}\n"
-            "failure: {failed laws: break}\nsolve: {explicit: {time step: 1e-4, steps: 3}}\n",
-            "deck", &options, &m, error))
-      fail_msg("%s", breccia_error_text(error));
-    const Particles *p = m->domain.particles;
-    for (int32_t n = gap + 1; n < COUNT; ++n) p->displacement[0][p->place_of[n]] = 5e-3;
-    step_surely(m, 2);
-    assert_near(solver_energy(&m->solver).fracture, 0, 1e-4); /* what gives up carries nothing: 0.125 was stored */
-    for (int32_t n = 0; n < COUNT; ++n) {
-      const int ends = n == 0 || n == COUNT - 1, lost = n == gap || n == gap + 1       ? 2
-                                                        : n == gap - 1 || n == gap + 2 ? 1
-                                                                                       : 0;
-      assert_int_equal(family_count(&m->domain.family, p->place_of[n]), 2 - ends - lost);
-    }
-    breccia_model_destroy(&m);
-    breccia_error_destroy(&error);
   }
 }
 
@@ -476,8 +371,6 @@ int main(void)
       cmocka_unit_test(bonds_near_grips_hold_where_the_deck_says_so),
       cmocka_unit_test(no_bond_breaks_where_the_deck_says_so),
       cmocka_unit_test(particles_right_at_the_distance_are_kept_too),
-      cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
-      cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
       cmocka_unit_test(a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing),
       cmocka_unit_test(all_materials_have_the_limit_of_the_deck),
       cmocka_unit_test(bonds_whose_ends_fly_apart_on_the_diagonal_break_in_time),
