@@ -10,10 +10,10 @@ enum { RIGID = 6 };
 
 /** How a piece is held against motions as a whole: moment[a][b] = sum over rows of what a and b do to them. */
 typedef struct Hold {
-  int64_t particles;
-  int32_t place; /* of its particle of the lowest number */
-  bool sprung;   /* by springs, which hold */
-  bool worked;   /* a load or a prescribed motion acts on it */
+  int64_t particles, inside; /* all, and without images outside supports */
+  int32_t place;             /* of its particle of the lowest number inside */
+  bool sprung;               /* by springs, which hold */
+  bool worked;               /* a load or a prescribed motion acts on it */
   double low[3], high[3], centre[3], size;
   double moment[RIGID][RIGID];
 } Hold;
@@ -117,11 +117,11 @@ static int find_pieces(Pieces *q, bool together, Error *error)
     if (!q->hold_of[first]) { /* counted from 1 */
       q->hold_of[first] = ++next;
       Hold *new = &q->holds[next - 1];
-      new->place = i;
       for (int k = 0; k < 3; ++k) new->low[k] = new->high[k] = p->position[k][i];
     }
     Hold *h = &q->holds[q->hold_of[first] - 1];
     ++h->particles;
+    if (q->unknowns->domain->counted[i] > 0 && !h->inside++) h->place = i;
     for (int k = 0; k < 3; ++k) {
       h->low[k] = fmin(h->low[k], p->position[k][i]);
       h->high[k] = fmax(h->high[k], p->position[k][i]);
@@ -247,12 +247,14 @@ static void judge(Pieces *q, PiecesTaken taken, LoosePiece *loose)
   note_loads(q);
   for (int64_t n = 0; n < q->count; ++n) {
     Hold *h = &q->holds[n];
-    if (h->sprung || (h->particles == 1 && q->count > 1) || (taken == PIECES_WORKED && !h->worked)) continue;
+    if (h->sprung || !h->inside || (h->particles == 1 && q->count > 1) || (taken == PIECES_WORKED && !h->worked))
+      continue;
     const int motion = find_free_motion(h, wanted);
     if (motion < 0) continue;
     ++loose->pieces;
-    if (h->particles <= loose->particles) continue;
-    loose->particles = h->particles;
+    if (h->inside <= loose->particles) continue;
+    loose->particles = h->inside;
+    loose->whole = h->particles == q->count;
     loose->place = h->place;
     snprintf(loose->motion, sizeof loose->motion, "%s %c", motion < 3 ? "along" : "about", "xyz"[motion % 3]);
   }
@@ -261,7 +263,7 @@ static void judge(Pieces *q, PiecesTaken taken, LoosePiece *loose)
 int pieces_find_loose(const Unknowns *unknowns, PiecesTaken taken, LoosePiece *loose, Error *error)
 {
   Pieces q = {.unknowns = unknowns, .particles = unknowns->domain->particles};
-  *loose = (LoosePiece){.of_particles = q.particles->count};
+  *loose = (LoosePiece){0};
   const int status = find_pieces(&q, taken == PIECES_TOGETHER, error);
   if (!status) judge(&q, taken, loose);
   free(q.nearer);
@@ -272,7 +274,7 @@ int pieces_find_loose(const Unknowns *unknowns, PiecesTaken taken, LoosePiece *l
 
 const char *pieces_describe(const LoosePiece *loose, const Particles *particles, char *words, size_t size)
 {
-  if (loose->particles == loose->of_particles) {
+  if (loose->whole) {
     snprintf(words, size, "nothing holds the body against moving %s as a whole", loose->motion);
     return words;
   }

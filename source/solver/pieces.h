@@ -9,11 +9,11 @@
 
 /** A piece that nothing holds. */
 typedef struct LoosePiece {
-  int64_t pieces;       /* that are loose; 0: none, and nothing else counts */
-  int64_t particles;    /* of the largest of them, and of two as large of the first */
-  int64_t of_particles; /* of the body */
-  int32_t place;        /* of its particle of the lowest number */
-  char motion[16];      /* the first motion as a whole that nothing holds: words like "along y" */
+  int64_t pieces;    /* that are loose; 0: none, and nothing else counts */
+  int64_t particles; /* of the largest of them, and of two as large of the first, without images outside supports */
+  bool whole;        /* it is all of the body */
+  int32_t place;     /* of its particle of the lowest number */
+  char motion[16];   /* the first motion as a whole that nothing holds: words like "along y" */
 } LoosePiece;
 
 /** How bodies are taken apart. */

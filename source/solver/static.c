@@ -173,7 +173,7 @@ static int check_hold(const Solver *run, const StaticSpec *spec, Error *error)
   return node_error(run->reader->document, spec->head.node, error,
                     "static: %s; hold it by a support, a roller, a displacement or a spring%s",
                     pieces_describe(&loose, p, words, sizeof words),
-                    loose.particles == p->count     ? ""
+                    loose.whole                     ? ""
                     : run->domain->broken_count > 0 ? ", or go on with a stage of 'explicit'"
                                                     : ", or join it to the rest by bonds, ties or 'contact'");
 }

@@ -101,6 +101,27 @@ watch: {energy: {energy: yes, every: 10}}
 results: {number: 3, precision: double, checkpoint steps: 50}
 pictures: []
 Y
+# comes to its strength at rest, flows on in motion, and is at rest again
+cat > handed.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening modulus: 0}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 5, 5]}}}}
+failure: {critical stretch: 0.003, near grips: hold}
+peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}
+loads:
+  - {on: {face: x-}, support: {held: across}}
+  - {on: {face: y-}, support: {held: across}}
+  - {on: {face: z-}, support: {held: across}}
+  - {name: pull, on: {face: x+, layers: 1}, traction: [12, 0, 0], history: {ramp to: 1}}
+solve:
+  - {static: {increments: 4, no equilibrium: next stage}}
+  - {name: flow, loads: [{name: pull, on: {face: x+, layers: 1}, traction: [11, 0, 0], history: {table: [[0, 1], [0.2, 1], [0.3, 0.4545454545]]}}],
+     explicit: {steps: 100, local damping: 0.8}}
+  - {loads: [{name: pull, on: {face: x+, layers: 1}, traction: [9, 0, 0], history: {table: [[0, 0.5555555556], [1, 1]]}}], static: {increments: 2}}
+watch: {energy: {energy: yes, every: 1}}
+results: {number: 3, precision: double}
+pictures: []
+Y
 # begins under stress, which hardens a part of it
 cat > stressed.yaml <<'Y'
 units: {length: m, force: kN, time: s}
@@ -147,7 +168,7 @@ for server in one two; do
 done
 several="2 3"
 [ -n "${BRECCIA_SANITIZED:-}" ] && several=3
-for deck in correspondence ordinary bonds regions hybrid stressed served; do
+for deck in correspondence ordinary bonds regions hybrid handed stressed served; do
   run $deck 1
   for threads in $several; do
     run $deck $threads

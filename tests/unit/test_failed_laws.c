@@ -48,18 +48,19 @@ static void a_law_that_gives_up_at_rest_is_named_with_its_particle(void **state)
   const breccia_options options = {.size = sizeof(breccia_options), .laws = laws, .law_count = 1, .threads = 1};
   breccia_error *error = breccia_error_create();
   breccia_model *m = NULL;
-  if (breccia_model_load_string(
-          "units: {length: m, force: kN, time: s}\n"
-          "materials:\n  vase: {model: glass, density: 2}\n"
-          "  m: {model: elastic, density: 2, Young modulus: 1.5e5, Poisson ratio: 0.25}\n"
-          "body:\n  left: {material: m, spacing: 0.1, shape: {box: {particles: [6, 3, 3]}}}\n"
-          "  middle: {material: vase, spacing: 0.1, shape: {box: {particles: [3, 3, 3], first particle: [0.65, 0.05, 0.05]}}}\n"
-          "  right: {material: m, spacing: 0.1, shape: {box: {particles: [6, 3, 3], first particle: [0.95, 0.05, 0.05]}}}\n"
-          "peridynamics: {formulation: correspondence, horizon: 1.5 spacings, strain: small}\n"
-          "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0, 0]},"
-          " {on: {face: x+, layers: 2}, displacement: [0.002, 0, 0], history: {ramp to: 1}}]\n"
-          "solve: {static: {increments: 7}}\n",
-          "deck", &options, &m, error))
+  if (breccia_model_load_string("units: {length: m, force: kN, time: s}\n"
+                                "materials:\n  vase: {model: glass, density: 2}\n"
+                                "  m: {model: elastic, density: 2, Young modulus: 1.5e5, Poisson ratio: 0.25}\n"
+                                "body:\n  left: {material: m, spacing: 0.1, shape: {box: {particles: [6, 3, 3]}}}\n"
+                                "  middle: {material: vase, spacing: 0.1, shape: {box: {particles: [3, 3, 3], first "
+                                "particle: [0.65, 0.05, 0.05]}}}\n"
+                                "  right: {material: m, spacing: 0.1, shape: {box: {particles: [6, 3, 3], first "
+                                "particle: [0.95, 0.05, 0.05]}}}\n"
+                                "peridynamics: {formulation: correspondence, horizon: 1.5 spacings, strain: small}\n"
+                                "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0, 0]},"
+                                " {on: {face: x+, layers: 2}, displacement: [0.002, 0, 0], history: {ramp to: 1}}]\n"
+                                "solve: {static: {increments: 7}}\n",
+                                "deck", &options, &m, error))
     fail_msg("%s", breccia_error_text(error));
   assert_int_equal(breccia_model_step(m, INT64_MAX, error), BRECCIA_FAILURE);
   const char *words = strstr(breccia_error_text(error), "static: no equilibrium beyond time 0.");

@@ -54,6 +54,9 @@ static void each_piece_must_be_held(void **state)
   /* Rollers that held one body hold two pieces not. */
   pair_is_refused(0.5, "loads:\n" HELD "  - {on: {block: right, face: y-, layers: 1}, roller: [0, 1]}\n" SOLVE,
                   "a piece of 35 particles|against moving along x");
+  /* Images beyond a plane of symmetry are neither counted nor named. */
+  pair_is_refused(0.5, "loads:\n" HELD "  - {on: {block: right, face: y-}, support: {held: across}}\n" SOLVE,
+                  "a piece of 35 particles|at [1.35, 0.05, 0], against moving along x");
   pair_is_refused(0.5, "loads:\n" HELD "  - {on: {nearest: [2, 0.5]}, displacement: [0, 0]}\n" SOLVE,
                   "a piece of 35 particles|against moving about z");
   pair_is_refused(0.5, "loads:\n  - {on: {block: right, face: x+, layers: 1}, displacement: [0, 0]}\n" SOLVE,
