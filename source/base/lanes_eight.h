@@ -22,10 +22,13 @@ LANES_INLINE Lanes lanes_widen(const float *from)
   return (Lanes)_mm512_cvtps_pd(_mm256_loadu_ps(from));
 }
 
+#pragma GCC diagnostic push /* without optimisation this is a macro of gcc's, which makes a mask of 255 a signed byte */
+#pragma GCC diagnostic ignored "-Wsign-conversion"
 LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
 {
   return (Lanes)_mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)index), from, 8);
 }
+#pragma GCC diagnostic pop
 
 /** Two rows of four side by side. */
 LANES_INLINE __m512d lanes_pair(const double *low, const double *high)
