@@ -1,12 +1,14 @@
 # A run that was killed at random moments and taken up again ends in the same bits as one never stopped.
 . "$(dirname "$0")/common.sh"
 cd "$work"
-cat > plate.yaml <<'Y'
+rows=22
+[ -n "${BRECCIA_SANITIZED:-}" ] && rows=12
+cat > plate.yaml <<Y
 title: Restart
 materials:
   clay: {model: multi-yield-j2, density: 1500, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30 kPa}
 body:
-  plate: {material: clay, spacing: 0.1, shape: {box: {particles: [26, 22, 2]}}}
+  plate: {material: clay, spacing: 0.1, shape: {box: {particles: [26, $rows, 2]}}}
 cracks: [{cut: {line: [[1.3, -1], [1.3, 0.85]]}}]
 failure: {critical stretch: 0.01}
 loads:
@@ -38,7 +40,8 @@ same() { # same FOLDER: all that a run leaves is as in the whole run
 same parts
 
 # a run whose steps have become more than were foreseen does not end with the number foreseen
-cat > longer.yaml <<'Z'
+foresees() {
+  cat > longer.yaml <<'Z'
 materials: {steel: {model: elastic, Young modulus: 190 GPa, Poisson ratio: 0.3, density: 8000}}
 body: {plate: {material: steel, lattice: square, thickness: 0.01, spacing: 0.001, shape: {box: {from: [0, 0], to: [0.1, 0.2]}}}}
 cracks: [{cut: {line: [[-0.001, 0.075], [0.05, 0.075]]}}, {cut: {line: [[-0.001, 0.125], [0.05, 0.125]]}}]
@@ -49,14 +52,16 @@ solve: {explicit: {end time: 60 us}}
 pictures: [{field: damage, at: [1.2345 us, 33 us, 59.9999 us]}]
 results: {times: [7.3 us, 33.33 us], number: 3}
 Z
-"$breccia" run longer.yaml --output longer > out 2>&1 || fail "longer: $(cat out)"
-most=$(json longer/summary.json steps)
-"$breccia" run longer.yaml --output shorter --steps $((most - 3)) > out 2>&1 || fail "shorter: $(cat out)"
-equal "steps beyond those foreseen" "$(json shorter/summary.json steps)" $((most - 3))
-"$breccia" run longer.yaml --output shorter --restart > out 2>&1 || fail "shorter: $(cat out)"
-equal "restart beyond the steps foreseen" "$(json shorter/summary.json steps)" "$most"
-# states that were written while steps were longer stay
-"$build/tests/compare_results" longer/results.vtkhdf shorter/results.vtkhdf || fail "shorter: results differ"
+  "$breccia" run longer.yaml --output longer > out 2>&1 || fail "longer: $(cat out)"
+  most=$(json longer/summary.json steps)
+  "$breccia" run longer.yaml --output shorter --steps $((most - 3)) > out 2>&1 || fail "shorter: $(cat out)"
+  equal "steps beyond those foreseen" "$(json shorter/summary.json steps)" $((most - 3))
+  "$breccia" run longer.yaml --output shorter --restart > out 2>&1 || fail "shorter: $(cat out)"
+  equal "restart beyond the steps foreseen" "$(json shorter/summary.json steps)" "$most"
+  # states that were written while steps were longer stay
+  "$build/tests/compare_results" longer/results.vtkhdf shorter/results.vtkhdf || fail "shorter: results differ"
+}
+[ -n "${BRECCIA_SANITIZED:-}" ] || foresees # it takes long there, and is about numbers
 
 # a time of the results half way between two steps belongs to the second of them, whatever roundings say
 cat > between.yaml <<'Z'
@@ -319,7 +324,7 @@ checks=$((checks + 2))
 sed 's/steps: 1500/steps: 1600/' plate.yaml > other.yaml
 "$breccia" run other.yaml --output parts --restart > /dev/null 2> out; equal "another deck: status" $? 2
 contains "another deck" "$(cat out)" "was written with another deck"
-sed 's/\[26, 22, 2\]/[26, 21, 2]/' plate.yaml > other.yaml
+sed 's/\[26, /[25, /' plate.yaml > other.yaml
 "$breccia" run other.yaml --output parts --restart > /dev/null 2> out; equal "another body: status" $? 2
 contains "another body" "$(cat out)" "was written with another deck"
 "$breccia" run plate.yaml --output nowhere --restart > /dev/null 2> out; equal "no checkpoint: status" $? 2
