@@ -783,6 +783,8 @@ def parse_address(address, open_to_all):
 def open_listener(address, open_to_all, file):
     """The socket that listens at an address, and where it listens in words."""
     if address.startswith("unix:"):
+        if address == "unix:":  # Linux would choose a name that no file has
+            raise ValueError("the path of a socket is missing")
         listener = socket.socket(socket.AF_UNIX)
         file.bind(listener, address[5:])
         listener.listen(GUESTS)
@@ -799,6 +801,17 @@ def open_listener(address, open_to_all, file):
     return listener, f"{kind}://{'[' + where[0] + ']' if ':' in where[0] else where[0]}:{where[1]}"
 
 
+def read_secret(path):
+    """The first line of a file; of a device or pipe nothing is read, which might never end."""
+    with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), encoding="utf-8") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise ValueError("it is no file")
+        secret = file.readline(MOST_GREETING).strip()
+    if not secret:
+        raise ValueError("its first line is empty")
+    return secret
+
+
 def main():
     parser = argparse.ArgumentParser(prog="breccia-opensees", description=__doc__.split("\n")[0])
     parser.add_argument("--listen", required=True, metavar="ADDRESS", help="tcp://127.0.0.1:PORT, unix:/PATH or udp://127.0.0.1:PORT")
@@ -807,10 +820,10 @@ def main():
     options = parser.parse_args()
     secret = None
     if options.secret_file:
-        with open(options.secret_file, encoding="utf-8") as file:
-            secret = file.readline().strip()
-        if not secret:
-            parser.error(f"{options.secret_file}: no secret stands there")
+        try:
+            secret = read_secret(options.secret_file)
+        except (OSError, ValueError) as problem:  # of bytes that are no UTF-8 too
+            parser.exit(2, f"breccia-opensees: {options.secret_file}: no secret can be read there: {problem}\n")
     for number in ENDS:
         if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # nohup keeps it running
             signal.signal(number, lambda *_: sys.exit(0))

@@ -514,6 +514,9 @@ proc server::parseArguments {words} {
 }
 
 proc server::readSecret {path} {
+  if {[file exists $path] && ![file isfile $path]} { # a device or pipe may never end
+    leave "$path: no secret can be read there: it is no file"
+  }
   if {[catch {open $path} file]} {
     leave "--secret-file: $file"
   }

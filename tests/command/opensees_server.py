@@ -230,12 +230,24 @@ def addresses_are_refused_in_one_line():
         ("gopher://x", "an address is tcp://HOST:PORT, udp://HOST:PORT or unix:/PATH"),
         ("tcp://0.0.0.0:0", "a server listens on this machine only, unless a secret guards it (--secret-file)"),
         (f"unix:{WORK}/ordinary", "Address already in use"),
+        ("unix:", "the path of a socket is missing"),
     ]
     if TCL:
         table = [row for row in table if row[0] in ("tcp://127.0.0.1:65536", "tcp://0.0.0.0:0")]
     for address, words in table:
         run = subprocess.run([*SERVER, "--listen", address], capture_output=True, text=True, timeout=PATIENCE)
         check(address, run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1, f"{run.returncode}: {run.stderr}")
+    empty, latin, pipe = (f"{WORK}/{name}" for name in ("empty", "latin", "pipe"))
+    for path, words in ((empty, b"\nsesame\n"), (latin, b"s\xe9same\n")):
+        with open(path, "wb") as file:
+            file.write(words)
+    if not os.path.exists(pipe):
+        os.mkfifo(pipe)
+    for path in (f"{WORK}/nowhere", WORK, pipe, "/dev/zero", empty) + (() if TCL else (latin,)):  # Tcl reads any bytes
+        words = [*SERVER, "--listen", "tcp://127.0.0.1:0", "--secret-file", path]
+        run = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE)
+        told = path in run.stderr and "secret" in run.stderr and run.stderr.count("\n") == 1
+        check(f"a secret in {path}", run.returncode == 2 and told, f"{run.returncode}: {run.stderr}")
     with open(f"{WORK}/ordinary", encoding="utf-8") as file:
         check("an ordinary file stays", file.read() == "results")
 
