@@ -38,6 +38,10 @@ BRECCIA_API breccia_error *breccia_error_create(void);
 BRECCIA_API const char *breccia_error_text(const breccia_error *error);
 BRECCIA_API void breccia_error_destroy(breccia_error **error);
 
+/** Words that came from elsewhere, for a message: control characters and bytes that are no UTF-8 as \n, \t, \xNN, so that they stay in one line and a
+ *  terminal does not obey them. @return a copy to be given back by breccia_text_free; NULL when memory is out */
+BRECCIA_API char *breccia_visible_text(const char *words);
+
 /** Gives back text that was handed out for the caller to keep; NULL: nothing. */
 BRECCIA_API void breccia_text_free(char *text);
 

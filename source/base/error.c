@@ -56,25 +56,46 @@ static void cut_line(Text *line)
   line->length = from + 5 + line->length - to;
 }
 
+static void add_line(Error *error, const char *line)
+{
+  ++error->told;
+  if (holds_line(error, line)) return;
+  if (error->count < MOST_LINES)
+    text_add(&error->text, "%s%s", error->count ? "\n" : "", line);
+  else if (error->count == MOST_LINES)
+    text_add(&error->text, "\nand more, which are told when these are mended");
+  ++error->count;
+}
+
 int error_add(Error *error, int status, const char *format, ...)
 {
   CHECK(*format);
   if (!error) return status;
-  Text line = {0};
+  Text said = {0}, line = {0};
   va_list arguments;
   va_start(arguments, format);
-  text_add_list(&line, format, arguments);
+  text_add_list(&said, format, arguments);
   va_end(arguments);
-  cut_line(&line);
-  ++error->told;
-  if (!line.characters || !holds_line(error, line.characters)) {
-    if (error->count < MOST_LINES)
-      text_add(&error->text, "%s%s", error->count ? "\n" : "", line.characters ? line.characters : format);
-    else if (error->count == MOST_LINES)
-      text_add(&error->text, "\nand more, which are told when these are mended");
-    ++error->count;
+  text_add_visible(&line, text_words(&said));
+  if (said.failed || line.failed || !line.characters) {
+    text_free(&line);
+    add_line(error, format);
+  } else {
+    cut_line(&line);
+    add_line(error, line.characters);
   }
+  text_free(&said);
   text_free(&line);
+  return status;
+}
+
+int error_add_all(Error *error, int status, const Error *other)
+{
+  for (const char *line = breccia_error_text(other); *line;) {
+    const int length = (int)strcspn(line, "\n");
+    error_add(error, status, "%.*s", length, line);
+    line += length + (line[length] != 0);
+  }
   return status;
 }
 

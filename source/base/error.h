@@ -10,9 +10,12 @@
 typedef struct breccia_error Error;
 
 /** Adds one line to the error (NULL: the line is dropped; a line that stands there already is not said twice;
- *  of very many the first are kept).
+ *  of very many the first are kept). What would begin another line or move a terminal's cursor, in names of files say, becomes \n, \xNN.
  *  @return `status`, so that a caller can write `return error_add(error, BRECCIA_USER_ERROR, "...")` */
 int error_add(Error *error, int status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/** Adds all lines of another error. @return `status` */
+int error_add_all(Error *error, int status, const Error *other);
 
 /** Leaves of all lines the first that says that memory was out, or says so itself: what else was found may be only for the lack of it.
  *  @return BRECCIA_FAILURE */

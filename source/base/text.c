@@ -59,6 +59,25 @@ void text_add_json(Text *text, const char *words)
   text_add(text, "\"");
 }
 
+void text_add_visible(Text *text, const char *words)
+{
+  size_t left = strlen(words);
+  while (left) {
+    const unsigned char *c = (const unsigned char *)words;
+    size_t plain = 0;
+    const size_t right = text_utf8(words, left);
+    while (plain < right && c[plain] >= 0x20 && c[plain] != 0x7f && !(c[plain] == 0xc2 && c[plain + 1] < 0xa0)) ++plain;
+    text_add(text, "%.*s", (int)plain, words);
+    if (plain == left) return;
+    if (c[plain] == '\n' || c[plain] == '\t')
+      text_add(text, "\\%c", c[plain] == '\n' ? 'n' : 't');
+    else
+      text_add(text, "\\x%02x", c[plain]);
+    words += plain + 1;
+    left -= plain + 1;
+  }
+}
+
 const char *text_words(const Text *text)
 {
   return text->characters ? text->characters : "";

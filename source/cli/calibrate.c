@@ -53,7 +53,7 @@ static int calibrate_concrete(const char **values)
 {
   for (int k = AGAINST; k <= PICTURE; ++k)
     if (values[k]) {
-      fprintf(stderr, "breccia calibrate: --%s is for measured curves, and not for 'concrete'\n", options[k].name);
+      complain("breccia calibrate: --%s is for measured curves, and not for 'concrete'", options[k].name);
       return 2;
     }
   breccia_error *error = breccia_error_create();
@@ -86,12 +86,11 @@ static int run(int argc, char **argv, const Verb *verb)
   if (!strcmp(argv[first], "concrete")) return calibrate_concrete(values);
   for (int k = FC; k < COUNT; ++k)
     if (values[k]) {
-      fprintf(stderr, "breccia calibrate: --%s is for 'breccia calibrate concrete', and not for a file\n",
-              options[k].name);
+      complain("breccia calibrate: --%s is for 'breccia calibrate concrete', and not for a file", options[k].name);
       return 2;
     }
   if (values[PICTURE] && !breccia_can_draw(values[PICTURE])) {
-    fprintf(stderr, "breccia calibrate: --picture: '%s' should end in .png, .svg or .pdf\n", values[PICTURE]);
+    complain("breccia calibrate: --picture: '%s' should end in .png, .svg or .pdf", values[PICTURE]);
     return 2;
   }
   breccia_error *error = breccia_error_create();

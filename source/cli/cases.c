@@ -47,7 +47,7 @@ static int run_case(const CaseWork *work, int k, const breccia_case *one, bool r
   const bool fits = snprintf(path, sizeof path, "%s/log.txt", one->folder) < (int)sizeof path;
   FILE *log = fits && (!mkdir(one->folder, 0777) || errno == EEXIST) ? fopen(path, restart ? "a" : "w") : NULL;
   if (!log) {
-    fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(fits ? errno : ENAMETOOLONG));
+    complain("%s: cannot be written: %s", path, strerror(fits ? errno : ENAMETOOLONG));
     return BRECCIA_USER_ERROR;
   }
   breccia_error *error = breccia_error_create();
@@ -77,7 +77,7 @@ static int run_case(const CaseWork *work, int k, const breccia_case *one, bool r
   breccia_error_destroy(&error);
   const bool bad = ferror(log) != 0;
   if (fclose(log) || bad) {
-    fprintf(stderr, "%s: cannot be written%s%s\n", path, bad ? "" : ": ", bad ? "" : strerror(errno));
+    complain("%s: cannot be written%s%s", path, bad ? "" : ": ", bad ? "" : strerror(errno));
     if (!status) status = BRECCIA_FAILURE;
   }
   return status == BRECCIA_INTERRUPTED ? 130 : status;
@@ -96,7 +96,7 @@ static int begin_case(CaseWork *work, CaseJob *job, int k, bool restart)
   fflush(NULL);
   const pid_t process = fork();
   if (process < 0) {
-    fprintf(stderr, "breccia: %s: no process can be started: %s\n", one.name, strerror(errno));
+    complain("breccia: %s: no process can be started: %s", one.name, strerror(errno));
     return 1;
   }
   if (!process) {
@@ -124,7 +124,7 @@ static void end_case(CaseWork *work)
     if (process < 0 || job->process != process) continue;
     const breccia_case one = case_of(work, job->which);
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-    if (WIFSIGNALED(status)) fprintf(stderr, "%s: ended by signal %d\n", one.name, WTERMSIG(status));
+    if (WIFSIGNALED(status)) complain("%s: ended by signal %d", one.name, WTERMSIG(status));
     work->failures += code && code != 130;
     work->refused += code == BRECCIA_USER_ERROR;
     if (!work->quiet)
@@ -184,7 +184,7 @@ bool cases_interrupted(void)
 int cases_make_folder(const char *folder)
 {
   if (!mkdir(folder, 0777) || errno == EEXIST) return BRECCIA_OK;
-  fprintf(stderr, "%s: the folder cannot be made: %s\n", folder, strerror(errno));
+  complain("%s: the folder cannot be made: %s", folder, strerror(errno));
   return BRECCIA_USER_ERROR;
 }
 
@@ -196,7 +196,7 @@ int cases_run(CaseWork *work, long long jobs, long long threads)
   const int all = breccia_threads();
   if (jobs > work->count) jobs = work->count;
   work->job_count = (int)jobs;
-  work->threads = threads ? (int)(threads > 4096 ? 4096 : threads) : jobs > all ? 1 : (int)(all / jobs);
+  work->threads = threads ? (int)threads : jobs > all ? 1 : (int)(all / jobs);
   work->jobs = calloc((size_t)jobs, sizeof *work->jobs);
   if (!work->jobs) return show(NULL, stderr);
   run_all(work);

@@ -2,6 +2,7 @@
 #include "cases.h"
 #include "verbs.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,7 +55,7 @@ static int read_share(const char *words, const char *option, double standard, do
   char *end;
   *value = words ? strtod(words, &end) : standard;
   if (!words || (end != words && !*end && *value > 0 && *value < 1)) return 0;
-  fprintf(stderr, "breccia failure: --%s takes a number between 0 and 1, and not '%s'\n", option, words);
+  complain("breccia failure: --%s takes a number between 0 and 1, and not '%s'", option, words);
   return 1;
 }
 
@@ -78,10 +79,9 @@ static int read_load(Search *s, const char *words, double *from, double *to)
            (!n || !*last || (strlen(last) == n && !strncmp(end, last, n)));
   }
   if (!good) {
-    fprintf(stderr,
-            "breccia failure: --load takes KEY=FROM:TO, two numbers of one unit, like variables.load=300 N:400 N, and "
-            "not '%s'\n",
-            words);
+    complain("breccia failure: --load takes KEY=FROM:TO, two numbers of one unit, like variables.load=300 N:400 N, and "
+             "not '%s'",
+             words);
     return BRECCIA_USER_ERROR;
   }
   if (*from * *to >= 0 && fabs(*from) < fabs(*to)) return BRECCIA_OK;
@@ -135,12 +135,11 @@ static int try_loads(Search *s, const double *loads, int count, breccia_error *e
     const Trial t = s->trials[s->count++] = judge(s, work.study, k, loads[k]);
     if (t.verdict != UNKNOWN || cases_interrupted()) continue;
     if (t.done)
-      fprintf(stderr,
-              "breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
-              "end, explicit stages need damping, and 'quasi-static' time enough; its log.txt tells more\n",
-              t.name);
+      complain("breccia failure: %s: whether it has come to rest cannot be told: loads must have become steady by the "
+               "end, explicit stages need damping, and 'quasi-static' time enough; its log.txt tells more",
+               t.name);
     else
-      fprintf(stderr, "breccia failure: %s/%s/log.txt tells more\n", s->folder, t.name);
+      complain("breccia failure: %s/%s/log.txt tells more", s->folder, t.name);
     status = t.done || work.refused ? BRECCIA_USER_ERROR : BRECCIA_FAILURE;
   }
   breccia_study_destroy(&work.study);
@@ -194,7 +193,7 @@ static int write_table(const Search *s)
   if (file) print_trials(s, file, true);
   const bool bad = !file || ferror(file);
   const int closed = file ? fclose(file) : 0;
-  if (path && (bad || closed)) fprintf(stderr, "%s: cannot be written\n", path);
+  if (path && (bad || closed)) complain("%s: cannot be written", path);
   free(path);
   return bad || closed ? BRECCIA_FAILURE : BRECCIA_OK;
 }
@@ -207,8 +206,8 @@ static int search(Search *s, double from, double to, breccia_error *error)
   if (!status) find_bracket(s, &bears, &fails);
   if (!status && (s->trials[0].verdict != BEARS || s->trials[1].verdict != FAILS)) {
     const bool high = s->trials[0].verdict == BEARS;
-    fprintf(stderr, "breccia failure: the body %s under %.9g%s; give a %s\n", high ? "does not fail" : "fails already",
-            high ? to : from, s->unit, high ? "larger TO" : "smaller FROM");
+    complain("breccia failure: the body %s under %.9g%s; give a %s", high ? "does not fail" : "fails already",
+             high ? to : from, s->unit, high ? "larger TO" : "smaller FROM");
     status = BRECCIA_USER_ERROR;
   }
   while (!status && fails - bears > s->within * fails && s->count + 2 <= MOST_TRIALS) {
@@ -254,9 +253,9 @@ static int find_failure(const char *deck, const char **values, const DeckSetting
       read_share(values[REST], "rest", 0.05, &s.rest))
     return BRECCIA_USER_ERROR;
   s.rest_given = values[REST] != NULL;
-  if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &s.jobs)) return BRECCIA_USER_ERROR;
+  if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, LLONG_MAX, &s.jobs)) return BRECCIA_USER_ERROR;
   if (s.jobs > 2) s.jobs = 2; /* a round has two loads */
-  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &s.threads)) return BRECCIA_USER_ERROR;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, MOST_THREADS, &s.threads)) return BRECCIA_USER_ERROR;
   char *folder = output_folder(values[OUTPUT], deck, "-failure");
   breccia_error *error = breccia_error_create();
   s.folder = folder;

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <hdf5.h>
+#include <limits.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -26,6 +27,22 @@ int fail(breccia_error *error, int status)
   if (*words) fprintf(stderr, "%s\n", words);
   breccia_error_destroy(&error);
   return status;
+}
+
+void complain(const char *format, ...)
+{
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  const int length = vsnprintf(NULL, 0, format, arguments);
+  char *words = length < 0 ? NULL : malloc((size_t)length + 1);
+  if (words) vsnprintf(words, (size_t)length + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  char *visible = words ? breccia_visible_text(words) : NULL;
+  fprintf(stderr, "%s\n", visible ? visible : "breccia: out of memory: a message");
+  breccia_text_free(visible);
+  free(words);
 }
 
 int print_page(const char *page)
@@ -74,13 +91,16 @@ char *output_folder(const char *asked, const char *file, const char *ending)
                   bare && !*ending ? ".results" : ending);
 }
 
-int read_whole(const char *words, const char *option, long long least, long long *value)
+int read_whole(const char *words, const char *option, long long least, long long most, long long *value)
 {
   char *end;
   errno = 0;
   *value = strtoll(words, &end, 10);
-  if (*words && !*end && !errno && *value >= least) return 0;
-  fprintf(stderr, "breccia: --%s: '%s' is not a whole number of at least %lld\n", option, words, least);
+  if (*words && !*end && !errno && *value >= least && *value <= most) return 0;
+  if (most < LLONG_MAX)
+    complain("breccia: --%s: '%s' is not a whole number from %lld to %lld", option, words, least, most);
+  else
+    complain("breccia: --%s: '%s' is not a whole number of at least %lld", option, words, least);
   return 1;
 }
 
@@ -127,9 +147,9 @@ int read_options(int argc, char **argv, const Verb *verb, const char **values,
       char letter[3] = {'-', (char)optopt, 0}; /* of short options the library tells no more */
       const char *given = optopt > 0 ? letter : argv[optind - 1];
       if (code == ':')
-        fprintf(stderr, "breccia %s: %s needs a value; see 'breccia %s --help'\n", verb->name, given, verb->name);
+        complain("breccia %s: %s needs a value; see 'breccia %s --help'", verb->name, given, verb->name);
       else
-        fprintf(stderr, "breccia %s: unknown option %s; see 'breccia %s --help'\n", verb->name, given, verb->name);
+        complain("breccia %s: unknown option %s; see 'breccia %s --help'", verb->name, given, verb->name);
       return -1;
     }
     values[which] = optarg ? optarg : "yes";
@@ -141,7 +161,7 @@ int read_options(int argc, char **argv, const Verb *verb, const char **values,
 int refuse_more(int argc, char **argv, const Verb *verb, int first, int most)
 {
   if (argc - first <= most) return 0;
-  fprintf(stderr, "breccia %s: '%s' is one argument too many\n", verb->name, argv[first + most]);
+  complain("breccia %s: '%s' is one argument too many", verb->name, argv[first + most]);
   return 1;
 }
 
@@ -167,7 +187,7 @@ int act_on_deck(int argc, char **argv, const Verb *verb, int set,
   const int first = read_options(argc, argv, verb, values, settings_note, &settings);
   int status = first == -2 ? 0 : 2;
   if (first >= 0 && argc - first != 1)
-    fprintf(stderr, "breccia %s: give one deck; see 'breccia %s --help'\n", verb->name, verb->name);
+    complain("breccia %s: give one deck; see 'breccia %s --help'", verb->name, verb->name);
   else if (first >= 0)
     status = act(argv[first], values, &settings);
   free(settings.items);
@@ -204,12 +224,12 @@ static int obey(int argc, char **argv)
   }
   const char *nearest = breccia_nearest_word(word, names, count);
   if (nearest)
-    fprintf(stderr, "breccia: there is no verb '%s'; did you mean '%s'?\n", word, nearest);
+    complain("breccia: there is no verb '%s'; did you mean '%s'?", word, nearest);
   else {
     const char *ending = strrchr(word, '.');
     const bool deck = ending && (!strcmp(ending, ".yaml") || !strcmp(ending, ".yml"));
-    fprintf(stderr, "breccia: there is no verb '%s'; %s%s%s'breccia --help' lists them\n", word,
-            deck ? "a deck is run by 'breccia run " : "", deck ? word : "", deck ? "'; " : "");
+    complain("breccia: there is no verb '%s'; %s%s%s'breccia --help' lists them", word,
+             deck ? "a deck is run by 'breccia run " : "", deck ? word : "", deck ? "'; " : "");
   }
   return 2;
 }

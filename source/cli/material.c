@@ -2,6 +2,7 @@
 #include "verbs.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -56,15 +57,15 @@ static const Option options[] = {
 static int read_words(const char **values, const DeckSettings *parameters, breccia_test_words *words)
 {
   long long cycles = 0, steps = 0, elastic = 0;
-  if (values[CYCLES] && read_whole(values[CYCLES], "cycles", 0, &cycles)) return 1;
-  if (values[STEPS] && read_whole(values[STEPS], "steps", 1, &steps)) return 1;
-  if (values[ELASTIC] && read_whole(values[ELASTIC], "elastic-rows", 0, &elastic)) return 1;
+  if (values[CYCLES] && read_whole(values[CYCLES], "cycles", 0, 1000000, &cycles)) return 1;
+  if (values[STEPS] && read_whole(values[STEPS], "steps", 1, LLONG_MAX, &steps)) return 1;
+  if (values[ELASTIC] && read_whole(values[ELASTIC], "elastic-rows", 0, LLONG_MAX, &elastic)) return 1;
   *words = (breccia_test_words){.size = sizeof *words,
                                 .law = values[MODEL],
                                 .units = values[UNITS],
                                 .parameters = parameters->items,
                                 .parameter_count = parameters->count,
-                                .cycles = cycles > 1000000 ? 1000000 : (int)cycles,
+                                .cycles = (int)cycles,
                                 .path = values[STRAIN],
                                 .kind = values[TEST],
                                 .to = values[TO],
@@ -112,7 +113,7 @@ static int run_test(breccia_test *test, const char **values, breccia_error *erro
   FILE *out = stdout;
   if ((values[PICTURE] || values[AGAINST]) && !values[OUTPUT]) out = NULL; /* rows only where they are asked for */
   if (values[OUTPUT] && !(out = fopen(values[OUTPUT], "w"))) {
-    fprintf(stderr, "%s: cannot be written: %s\n", values[OUTPUT], strerror(errno));
+    complain("%s: cannot be written: %s", values[OUTPUT], strerror(errno));
     return BRECCIA_USER_ERROR;
   }
   int status = breccia_test_run(test, values[TANGENT] != NULL, error);
@@ -125,7 +126,7 @@ static int run_test(breccia_test *test, const char **values, breccia_error *erro
   const bool bad = out && out != stdout && (ferror(out) | fclose(out));
   struct stat there;
   if (bad) {
-    fprintf(stderr, "%s: cannot be written: %s\n", values[OUTPUT], strerror(errno));
+    complain("%s: cannot be written: %s", values[OUTPUT], strerror(errno));
     if (!stat(values[OUTPUT], &there) && S_ISREG(there.st_mode)) remove(values[OUTPUT]);
     if (!status) status = BRECCIA_FAILURE;
   }
@@ -145,8 +146,8 @@ static int check_output(const char **values, const char *file)
   const char *const inputs[] = {file, values[STRAIN], values[AGAINST]};
   for (size_t k = 0; k < sizeof inputs / sizeof *inputs; ++k) {
     if (!is_same_file(values[OUTPUT], inputs[k])) continue;
-    fprintf(stderr, "breccia material: --output: %s is read here and would be written over; give another name\n",
-            values[OUTPUT]);
+    complain("breccia material: --output: %s is read here and would be written over; give another name",
+             values[OUTPUT]);
     return 1;
   }
   return 0;
@@ -162,12 +163,12 @@ static int check_options(const char **values, bool file, int others)
     return 1;
   }
   if (values[PICTURE] && !breccia_can_draw(values[PICTURE])) {
-    fprintf(stderr, "breccia material: --picture: '%s' should end in .png, .svg or .pdf\n", values[PICTURE]);
+    complain("breccia material: --picture: '%s' should end in .png, .svg or .pdf", values[PICTURE]);
     return 1;
   }
   if (values[STRAIN] && (values[PICTURE] || values[AGAINST])) {
-    fprintf(stderr, "breccia material: a path of strains has no curve for --%s: give a --test, or leave it out\n",
-            values[PICTURE] ? "picture" : "against");
+    complain("breccia material: a path of strains has no curve for --%s: give a --test, or leave it out",
+             values[PICTURE] ? "picture" : "against");
     return 1;
   }
   return 0;

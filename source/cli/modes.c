@@ -13,7 +13,7 @@ static const Option options[] = {{"count", "N", "how many modes, the slowest fir
 static int find(const char *deck, const char **values, const DeckSettings *settings)
 {
   long long count = 6;
-  if (values[MODES] && read_whole(values[MODES], "count", 1, &count)) return 2;
+  if (values[MODES] && read_whole(values[MODES], "count", 1, 1000000, &count)) return 2;
   breccia_error *error = breccia_error_create();
   const breccia_options wishes = {
       .size = sizeof wishes, .settings = settings->items, .setting_count = settings->count, .loose = 1};
@@ -22,7 +22,7 @@ static int find(const char *deck, const char **values, const DeckSettings *setti
   if (status) return fail(error, status);
   if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
   char *folder = output_folder(values[OUTPUT], deck, "-modes");
-  const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = (int)(count > 1000000 ? 1000000 : count)};
+  const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = (int)count};
   status = folder ? breccia_model_modes(model, &wish, error) : BRECCIA_FAILURE;
   if (!status) status = show(breccia_model_outcome(model), stdout);
   free(folder);

@@ -58,13 +58,13 @@ static int write_new(const char *path, const void *bytes, size_t length)
     const char *reason = errno == EEXIST   ? "exists already; choose another name"
                          : errno == ENOENT ? "cannot be written: the folder does not exist; make it first"
                                            : strerror(errno);
-    fprintf(stderr, "%s: %s\n", path, reason);
+    complain("%s: %s", path, reason);
     return 2;
   }
   bool bad = fwrite(bytes, 1, length, file) != length;
   bad |= fclose(file) != 0;
   if (bad) {
-    fprintf(stderr, "%s: cannot be written: %s\n", path, strerror(errno));
+    complain("%s: cannot be written: %s", path, strerror(errno));
     remove(path);
   }
   return bad;
@@ -154,7 +154,7 @@ static const Example *find_example(const char *name)
   if (near)
     fprintf(stderr, "\n");
   else
-    fprintf(stderr, "breccia new: there is no example '%s'; 'breccia new --example' lists them\n", name);
+    complain("breccia new: there is no example '%s'; 'breccia new --example' lists them", name);
   return NULL;
 }
 

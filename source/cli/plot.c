@@ -1,6 +1,7 @@
 /* Pictures of results, after a run. */
 #include "verbs.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +62,7 @@ static int read_pair(const char *words, const char *option, double *a, double *b
 {
   char tail;
   if (sscanf(words, "%lf:%lf%c", a, b, &tail) == 2 && isfinite(*a) && isfinite(*b)) return 0;
-  fprintf(stderr, "breccia plot: --%s: '%s' should be two numbers with a colon between\n", option, words);
+  complain("breccia plot: --%s: '%s' should be two numbers with a colon between", option, words);
   return 1;
 }
 
@@ -69,16 +70,17 @@ static int read_number(const char *words, const char *option, double *value)
 {
   char tail;
   if (sscanf(words, "%lf%c", value, &tail) == 1 && isfinite(*value)) return 0;
-  fprintf(stderr, "breccia plot: --%s: '%s' is not a number\n", option, words);
+  complain("breccia plot: --%s: '%s' is not a number", option, words);
   return 1;
 }
 
-/** A number, or nothing, which leaves `value` as it is. @return what follows */
+/** A finite number, or nothing, which leaves `value` as it is. @return what follows */
 static const char *read_end(const char *at, double *value)
 {
   char *end;
   const double found = strtod(at, &end);
-  if (end > at) *value = found;
+  if (end == at || !isfinite(found)) return at;
+  *value = found;
   return end;
 }
 
@@ -91,12 +93,11 @@ static int read_box(const char *words, double low[3], double high[3])
     at = read_end(at, &low[k]);
     good = *at == ':';
     if (good) at = read_end(at + 1, &high[k]);
-    good = good && *at == (k < 2 ? ',' : 0) && !isinf(low[k]) && !isinf(high[k]);
+    good = good && *at == (k < 2 ? ',' : 0);
     if (*at) ++at;
   }
   if (good) return 0;
-  fprintf(stderr, "breccia plot: --inside: '%s' should be three ranges with commas between them, like :,0:2,:\n",
-          words);
+  complain("breccia plot: --inside: '%s' should be three ranges with commas between them, like :,0:2,:", words);
   return 1;
 }
 
@@ -118,7 +119,7 @@ static int read_state(const char **values, breccia_plot *plot)
   plot->state = !strcmp(step, "all") ? BRECCIA_STATE_ALL : BRECCIA_STATE_LAST;
   if (!strcmp(step, "all") || !strcmp(step, "last")) return 0;
   plot->state = BRECCIA_STATE_OF_STEP;
-  if (read_whole(step, "step", 0, &number)) return 1;
+  if (read_whole(step, "step", 0, LLONG_MAX, &number)) return 1;
   plot->step = number;
   return 0;
 }
@@ -141,11 +142,11 @@ static int read_plot(const char **values, breccia_plot *plot)
   plot->log_axes = values[LOG];
   plot->each_range = values[RANGE] && !strcmp(values[RANGE], "each");
   if (values[DEFORMED] && read_number(values[DEFORMED], "deformed", &plot->deformed)) return 1;
-  if (values[SIZE] && read_whole(values[SIZE], "size", 50, &size)) return 1;
+  if (values[SIZE] && read_whole(values[SIZE], "size", 50, 20000, &size)) return 1;
   plot->pixels = (double)size;
   if (values[RATE] && read_number(values[RATE], "rate", &plot->rate)) return 1;
   if (values[RATE] && !(plot->rate > 0 && plot->rate <= 120)) {
-    fprintf(stderr, "breccia plot: --rate: '%s' is not above 0 and up to 120 written steps a second\n", values[RATE]);
+    complain("breccia plot: --rate: '%s' is not above 0 and up to 120 written steps a second", values[RATE]);
     return 1;
   }
   if (values[RANGE] && !plot->each_range && read_pair(values[RANGE], "range", &plot->low, &plot->high)) return 1;
@@ -167,12 +168,11 @@ static int run(int argc, char **argv, const Verb *verb)
   breccia_plot plot;
   if (read_plot(values, &plot)) return 2;
   if (values[MOVIE] && (curve || values[STEP] || values[TIME] || values[OUTPUT])) {
-    fprintf(stderr,
-            "breccia plot: --movie shows a field at all written steps and names its file itself: leave out %s\n",
-            values[OUTPUT] ? "--output"
-            : values[STEP] ? "--step"
-            : values[TIME] ? "--time"
-                           : "--curve and --energy");
+    complain("breccia plot: --movie shows a field at all written steps and names its file itself: leave out %s",
+             values[OUTPUT] ? "--output"
+             : values[STEP] ? "--step"
+             : values[TIME] ? "--time"
+                            : "--curve and --energy");
     return 2;
   }
   breccia_error *error = breccia_error_create();

@@ -1,5 +1,6 @@
 #include "verbs.h"
 
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,8 +92,8 @@ static void tell_restart(const char *deck, const char **values, const DeckSettin
 static int run_deck(const char *deck, const char **values, const DeckSettings *settings)
 {
   long long steps = 0, threads = 0;
-  if (values[STEPS] && read_whole(values[STEPS], "steps", 1, &steps)) return 2;
-  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return 2;
+  if (values[STEPS] && read_whole(values[STEPS], "steps", 1, LLONG_MAX, &steps)) return 2;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, MOST_THREADS, &threads)) return 2;
   /* From here on: what is stopped while it is still being set up leaves a checkpoint too. */
   struct sigaction action = {.sa_handler = on_signal}, before;
   sigaction(SIGINT, &action, NULL);
@@ -102,7 +103,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
     sigaction(SIGHUP, &action, NULL);
   breccia_error *error = breccia_error_create();
   const breccia_options wishes = {.size = sizeof wishes,
-                                  .threads = (int)(threads > 4096 ? 4096 : threads),
+                                  .threads = (int)threads,
                                   .force = values[FORCE] != NULL,
                                   .trap = values[TRAP] != NULL,
                                   .settings = settings->items,

@@ -34,16 +34,16 @@ static int read_wish(const char **values, breccia_motion_wish *wish)
   for (int k = 0; k < 2; ++k)
     if (numbers[k].words &&
         (sscanf(numbers[k].words, "%lf%c", numbers[k].value, &tail) != 1 || !isfinite(*numbers[k].value))) {
-      fprintf(stderr, "breccia spectrum: --%s: '%s' is not a number\n", numbers[k].name, numbers[k].words);
+      complain("breccia spectrum: --%s: '%s' is not a number", numbers[k].name, numbers[k].words);
       return 1;
     }
   if (values[PERIODS] && (sscanf(values[PERIODS], "%lf:%lf%c", &wish->shortest, &wish->longest, &tail) != 2 ||
                           !isfinite(wish->shortest) || !isfinite(wish->longest))) {
-    fprintf(stderr, "breccia spectrum: --periods: '%s' should be two numbers with a colon between\n", values[PERIODS]);
+    complain("breccia spectrum: --periods: '%s' should be two numbers with a colon between", values[PERIODS]);
     return 1;
   }
-  if (values[NUMBER] && read_whole(values[NUMBER], "count", 1, &count)) return 1;
-  wish->periods = (int)(count > 1000000 ? 1000000 : count);
+  if (values[NUMBER] && read_whole(values[NUMBER], "count", 1, 1000000, &count)) return 1;
+  wish->periods = (int)count;
   return 0;
 }
 

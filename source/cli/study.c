@@ -1,6 +1,7 @@
 #include "cases.h"
 #include "verbs.h"
 
+#include <limits.h>
 #include <stdlib.h>
 
 enum { VARY, TOGETHER, SET, RESULT, CURVE, OUTPUT, JOBS, THREADS, AGAIN, CHECK, QUIET, COUNT };
@@ -66,8 +67,8 @@ static int run_study(CaseWork *work, const char *folder, long long jobs, long lo
 static int study_deck(const breccia_study_plan *plan, const char **values, breccia_error *error)
 {
   long long jobs = 1, threads = 0;
-  if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, &jobs)) return BRECCIA_USER_ERROR;
-  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, &threads)) return BRECCIA_USER_ERROR;
+  if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, LLONG_MAX, &jobs)) return BRECCIA_USER_ERROR;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, MOST_THREADS, &threads)) return BRECCIA_USER_ERROR;
   CaseWork work = {.deck = plan->deck, .again = values[AGAIN] != NULL, .quiet = values[QUIET] != NULL};
   int status = breccia_study_create(plan, &work.study, error);
   if (status) return status;

@@ -261,6 +261,7 @@ static int read_words(const breccia_law *law, const char *const *words, int coun
       text_free(&names);
       continue;
     }
+    if (given[which]) status = error_add(error, BRECCIA_USER_ERROR, "%s%s: is given twice", before, words[w]);
     Text reason = {0};
     if (units_read(units, dimension_find(law->parameters[which].dimension), equals + 1, &values[which], &reason))
       status = error_add(error, BRECCIA_USER_ERROR, "%s%s: %s", before, words[w], text_words(&reason));

@@ -191,9 +191,16 @@ static void build_entry(Builder *builder, struct fy_node_pair *pair, Node *item,
   item->line = item->key_line = where.line;
   item->column = item->key_column = where.column;
   *merges = key && is_merge(&where, key);
+  const bool nothing = !key || (fy_node_is_scalar(key) && !fy_node_get_scalar_token(key)); /* which stands nowhere */
   if (where.kind != NODE_SCALAR) refuse(builder, item, "a key must be words");
   if (strstr(item->key, "${")) refuse(builder, item, "a key cannot hold an expression: ${...} stands in values");
+  if (nothing) item->line = 0; /* so that a list or map finds where it stands itself */
   build(builder, pair ? fy_node_pair_value(pair) : NULL, item, depth + 1);
+  if (!nothing) return;
+  if (!item->line) item->line = where.line, item->column = where.column;
+  item->key_line = item->line;
+  item->key_column = item->column;
+  refuse(builder, item, "no key stands before this value; a key is words with a colon behind");
 }
 
 static void build(Builder *builder, struct fy_node *from, Node *node, int depth)

@@ -266,7 +266,7 @@ static int tell_at(const DeckReader *reader, const Node *node, int status, Error
   if (status == BRECCIA_USER_ERROR)
     node_error(reader->document, node, reader->error, "%s", breccia_error_text(*told));
   else if (status)
-    error_add(reader->error, status, "%s", breccia_error_text(*told));
+    error_add_all(reader->error, status, *told);
   breccia_error_destroy(told);
   return status;
 }

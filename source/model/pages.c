@@ -17,6 +17,14 @@ void breccia_text_free(char *text)
   free(text);
 }
 
+char *breccia_visible_text(const char *words)
+{
+  Text text = {0};
+  text_add(&text, "%s", ""); /* of no words a copy, too */
+  text_add_visible(&text, words);
+  return text_take(&text);
+}
+
 const breccia_law *breccia_law_at(int k)
 {
   return law_at(NULL, k);

@@ -122,7 +122,7 @@ static void draw(Run *run, const ResultView *view, const PictureSpec *spec, Outc
   const int status = spec->field ? draw_field(run, view, spec, own) : draw_curve(run, spec, &no_gnuplot, own);
   const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
   if (unwritten) outcome->status = BRECCIA_FAILURE;
-  if (status) error_add(unwritten ? outcome->error : outcome->warnings, status, "%s", breccia_error_text(own));
+  if (status) error_add_all(unwritten ? outcome->error : outcome->warnings, status, own);
   breccia_error_destroy(&own);
 }
 
@@ -135,7 +135,7 @@ static void draw_profile(Run *run, int k, const char *folder, Outcome *outcome)
   const int status = profiles_draw(model->profiles, k, folder, model->units, &run->files, &no_gnuplot, own);
   const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
   if (unwritten) outcome->status = BRECCIA_FAILURE;
-  if (status) error_add(unwritten ? outcome->error : outcome->warnings, status, "%s", breccia_error_text(own));
+  if (status) error_add_all(unwritten ? outcome->error : outcome->warnings, status, own);
   breccia_error_destroy(&own);
 }
 
@@ -148,7 +148,7 @@ static void draw_bars(Run *run, const char *folder, Outcome *outcome)
   const int status = bar_lines_draw(&model->domain, folder, model->units, &run->files, &no_gnuplot, own);
   const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
   if (unwritten) outcome->status = BRECCIA_FAILURE;
-  if (status) error_add(unwritten ? outcome->error : outcome->warnings, status, "%s", breccia_error_text(own));
+  if (status) error_add_all(unwritten ? outcome->error : outcome->warnings, status, own);
   breccia_error_destroy(&own);
 }
 

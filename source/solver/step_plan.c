@@ -201,7 +201,7 @@ static int find_period(Solver *run, Error *error)
     if (status == BRECCIA_USER_ERROR)
       node_error(run->reader->document, spec->head.node, error, "%s", breccia_error_text(reason));
     else if (status)
-      error_add(error, status, "%s", breccia_error_text(reason));
+      error_add_all(error, status, reason);
     breccia_error_destroy(&reason);
   }
   if (!status) loading_grow(run->loading, spec->ramp * s->period);

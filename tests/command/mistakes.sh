@@ -141,6 +141,22 @@ refused "a rate of none" "--rate: '0' is not above 0 and up to 120 written steps
 refused "a range that is no number" "--range: 'nan:1' should be two numbers with a colon between" plot own --field displacement --range nan:1
 refused "a view without an end" "--view: '0:inf' should be two numbers with a colon between" plot own --field displacement --view 0:inf
 
+refused "a part of a picture up to no number" "--inside: 'nan:1,:,:' should be three ranges" plot own --field displacement --inside nan:1,:,:
+refused "more threads than wait for each other" "--threads: '999999' is not a whole number from 1 to 4096" run bar.yaml --threads 999999
+refused "more modes than a body has" "--count: '2147483648' is not a whole number from 1 to 1000000" modes bar.yaml --count 2147483648
+refused "a picture that no file holds" "--size: '2147483648' is not a whole number from 50 to 20000" plot own --field displacement --size 2147483648
+
+# ---- whatever signs names hold, a message is one line that a terminal does not obey ----
+line=$(printf 'a\nb\033[31m\377')
+seen='a\nb\x1b[31m\xff'
+refused "a deck with a newline in its name" "$seen: cannot be read: No such file" run "$line"
+refused "a number with a newline" "--steps: '$seen' is not a whole number" run bar.yaml --steps "$line"
+refused "a field with a newline" "there is no field '$seen' in the result file" plot bar --field "$line"
+refused "a verb with a newline" "there is no verb '$seen'" "$line"
+refused "an option with a newline" "unknown option --$seen;" run "--$line"
+mkdir "$line"
+refused "a folder with a newline in its name" "$seen" plot "$line" --curve 'end.time : end.x'
+
 # ---- what could not be written to its end has no name ----
 words=$( (ulimit -S -f 0 && exec "$breccia" new short.yaml) 2>&1 > /dev/null)
 equal "a new deck beyond the limit: status" $? 1

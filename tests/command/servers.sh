@@ -169,6 +169,7 @@ refuse "$served, server: ['gopher://x']" "server at gopher://x: it cannot be rea
 refuse "$served" "refused.yaml:3:18: remote: give the addresses of its servers under 'server'"
 refuse "remote: jelly, server: ['unix:$PWD/one']" "there is no law 'jelly'; a command is 'LAW; KEY=VALUE; ...' with one of elastic, j2, "
 refuse "remote: j2; Young modulus=1, server: ['unix:$PWD/one']" "missing 'yield stress=...'"
+refuse "$served; bulk modulus=1, server: ['unix:$PWD/one']" "bulk modulus=1: is given twice"
 refuse "remote: elastic-1d; Young modulus=1, server: ['unix:$PWD/one']" "'elastic-1d; Young modulus=1' is a law of one strain; correspondence takes elastic,"
 refuse "opensees: nDMaterial ElasticIsotropic3D 1 1e5 0.3" "opensees: expected 'nDMaterial KIND \$tag ...'"
 refuse "opensees: 'nDMaterial X \$tag [exec rm]'" "opensees: expected 'nDMaterial KIND \$tag ...'"

@@ -285,6 +285,49 @@ static void errors_say_each_line_once_and_not_too_many(void **state)
   assert_false(error_is_full(NULL));
 }
 
+/* Names of files and keys may hold any sign: none of them begins a line or moves a terminal's cursor. The words that are expected stand in C's own signs. */
+static void signs_of_names_stay_in_their_line(void **state)
+{
+  (void)state;
+  const struct {
+    const char *given, *seen;
+  } cases[] = {
+      {"plain words, \u00e9 \u2192 \U0001f300", "plain words, \u00e9 \u2192 \U0001f300"},
+      {"", ""},
+      {"two\nlines\n", "two\\nlines\\n"},
+      {"a\ttab and a\rreturn", "a\\ttab and a\\x0dreturn"},
+      {"\033[31mred\177", "\\x1b[31mred\\x7f"},
+      {"a C1 control \xc2\x9b, a blank of its kind\u00a0y", "a C1 control \\xc2\\x9b, a blank of its kind\u00a0y"},
+      {"latin \xe9 and half a sign \xe2\x82", "latin \\xe9 and half a sign \\xe2\\x82"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char *visible = breccia_visible_text(cases[k].given);
+    assert_string_equal(visible, cases[k].seen);
+    breccia_text_free(visible);
+    if (!*cases[k].given) continue;
+    Error *error = breccia_error_create();
+    error_add(error, BRECCIA_USER_ERROR, "%s", cases[k].given);
+    assert_string_equal(breccia_error_text(error), cases[k].seen);
+    breccia_error_destroy(&error);
+  }
+}
+
+static void lines_of_another_error_are_added_one_by_one(void **state)
+{
+  (void)state;
+  Error *error = breccia_error_create(), *other = breccia_error_create();
+  error_add(error, BRECCIA_USER_ERROR, "one");
+  assert_int_equal(error_add_all(error, BRECCIA_FAILURE, other), BRECCIA_FAILURE);
+  assert_string_equal(breccia_error_text(error), "one");
+  error_add(other, BRECCIA_USER_ERROR, "two\n");
+  error_add(other, BRECCIA_USER_ERROR, "one");
+  error_add(other, BRECCIA_USER_ERROR, "three");
+  assert_int_equal(error_add_all(error, BRECCIA_USER_ERROR, other), BRECCIA_USER_ERROR);
+  assert_string_equal(breccia_error_text(error), "one\ntwo\\n\nthree");
+  assert_int_equal(error_count(error), 4);
+  breccia_error_destroy(&error);
+  breccia_error_destroy(&other);
+}
+
 static void of_endless_lines_the_ends_are_kept(void **state)
 {
   (void)state;
@@ -503,6 +546,8 @@ int main(void)
       cmocka_unit_test(checksums_are_those_of_the_standard),
       cmocka_unit_test(columns_of_tables_are_read_by_their_names),
       cmocka_unit_test(errors_say_each_line_once_and_not_too_many),
+      cmocka_unit_test(signs_of_names_stay_in_their_line),
+      cmocka_unit_test(lines_of_another_error_are_added_one_by_one),
       cmocka_unit_test(of_endless_lines_the_ends_are_kept),
       cmocka_unit_test(where_memory_was_out_nothing_else_is_said),
       cmocka_unit_test(memory_is_zeroed_aligned_and_kept_apart),

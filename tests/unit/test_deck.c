@@ -488,6 +488,9 @@ static void what_a_deck_reuses_is_that_value(void **state)
        "--set materials.n.density=2: there is no 'n'; nothing stands there"},
       {"watch: {a: {energy: yes}}\n", "watch.a.energy=no", "watch:\n  a:\n    energy: no\n"},
       {"[a, b]: 1\n", NULL, "deck:1:2: a key must be words"},
+      {"a: 1\n? \n: 2\n", NULL, "deck:3:3: no key stands before this value; a key is words with a colon behind"},
+      {"a: 1\nb:\n  : {c: 2}\n", NULL, "deck:3:6: no key stands before this value; a key is words with a colon behind"},
+      {"a: 1\n\"\": 2\n", NULL, "a: 1\n\"\": 2\n"},
       {"", NULL, "deck:1:1: the deck is empty; 'breccia new' writes one to start from"},
       {"title: a\n%TAG\n", NULL, "deck:2:1: not valid YAML for a deck: a line must not begin with %"},
       {"title: a\n---\ntitle: b\n", NULL,
@@ -563,7 +566,7 @@ static void decks_that_are_not_utf_8_are_refused_with_their_place(void **state)
   text_free(&quotes);
   char *words;
   assert_null(resolved("title: a\n", "title=\xe4", &words));
-  assert_string_equal(words, "--set title=\xe4: byte 0xe4 is no UTF-8 text");
+  assert_string_equal(words, "--set title=\\xe4: byte 0xe4 is no UTF-8 text");
   free(words);
 }
 
