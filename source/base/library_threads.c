@@ -2,7 +2,9 @@
 #include "base/library_threads.h"
 
 #include <dlfcn.h>
+#include <stdatomic.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* Neither is among what the program is linked with: they come with a library, or do not. */
 static void set(const char *function, int value)
@@ -33,4 +35,20 @@ void library_threads_allow(LibraryThreads before)
 {
   set("omp_set_max_active_levels", before.levels);
   if (before.blas > 1) set("openblas_set_num_threads", before.blas);
+}
+
+int library_memory(Error *error)
+{
+  const size_t buffer = (size_t)1 << 27; /* BUFFER_SIZE of most processors in OpenBLAS's common_x86_64.h and its like */
+  static atomic_bool found;              /* room, once: from then on the library has it */
+  if (atomic_load(&found) || !dlsym(RTLD_DEFAULT, "openblas_get_num_threads")) return BRECCIA_OK;
+  void *room = mmap(NULL, buffer, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED)
+    return error_add(error, BRECCIA_FAILURE,
+                     "out of memory: OpenBLAS, which solves equations, needs %zu MB to work in; close other programs, "
+                     "or raise the limit (ulimit -v)",
+                     buffer >> 20);
+  munmap(room, buffer);
+  atomic_store(&found, true);
+  return BRECCIA_OK;
 }

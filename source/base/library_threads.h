@@ -3,6 +3,8 @@
 #ifndef BRECCIA_BASE_LIBRARY_THREADS_H
 #define BRECCIA_BASE_LIBRARY_THREADS_H
 
+#include "base/error.h"
+
 /** What was set before. */
 typedef struct LibraryThreads {
   int levels, blas;
@@ -12,5 +14,9 @@ typedef struct LibraryThreads {
 LibraryThreads library_threads_forbid(void);
 /** As before. By the same thread. */
 void library_threads_allow(LibraryThreads before);
+
+/** Whether there is room for what OpenBLAS works in. It takes that at the first call and keeps it; where it is refused it asks for it again and
+ *  again, without an end (0.3.21, blas_memory_alloc). To be asked before anything that calls a BLAS. @return BRECCIA_FAILURE after adding a line */
+int library_memory(Error *error);
 
 #endif

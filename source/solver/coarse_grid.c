@@ -1,5 +1,6 @@
 #include "solver/coarse_grid.h"
 
+#include "base/library_threads.h"
 #include "base/team.h"
 #include "solver/coarse_element.h"
 #include <cholmod.h>
@@ -367,6 +368,7 @@ int coarse_grid_prepare(CoarseGrid *g, const Unknowns *u, const double *diagonal
   add_elements(g, 1 + stiffness_share);
   unknowns_each_row(u, add_support, g);
   int status = add_springs(g, u, mass_factor, error);
+  if (!status) status = library_memory(error);
   if (!status) status = factor(g, error);
   free(g->stiffness);
   g->stiffness = NULL;

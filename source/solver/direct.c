@@ -158,6 +158,7 @@ static int prepare(LinearSolver *s, Error *error)
     d->pattern = pattern;
   }
   if (!status) status = matrix_fill(&d->matrix, &s->unknowns, s->stiffness_share, s->mass_factor, error);
+  if (!status) status = library_memory(error);
   if (status) return status;
   hold_lone_unknowns(&d->matrix);
   if (d->numeric) umfpack_dl_free_numeric(&d->numeric);

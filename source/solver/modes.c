@@ -487,6 +487,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   if (!status) status = find_symmetry(&s, error);
   if (!status) status = linear_solver_create(&s.linear, "automatic", error);
   if (!status) status = linear_solver_prepare(&s.linear, error);
+  if (!status) status = library_memory(error);
   if (!status) {
     pthread_mutex_lock(&arpack);
     const LibraryThreads before = library_threads_forbid();
