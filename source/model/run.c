@@ -395,8 +395,10 @@ static int finish(Run *run, int status, Error *error)
   } else if (!run->unwritten && memory_refusals() == run->host->refusals) {
     /* The last good state. Of a step in which memory was refused nobody knows what was left out: the checkpoint before stays. */
     write_checkpoint(run, error);
-    if (!model->solver.unbegun || model->solver.clock.stage == 0) write_results(run, error);
-    write_histories(run, true, error);
+    if (!ledger_has_blown_up(&model->solver.ledger)) { /* else its speeds and places mean nothing any more */
+      if (!model->solver.unbegun || model->solver.clock.stage == 0) write_results(run, error);
+      write_histories(run, true, error);
+    }
   }
   if (close_files(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;
   if (run_log_close(run, run->unwritten ? NULL : error) && !status) status = BRECCIA_FAILURE;

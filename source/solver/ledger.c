@@ -61,6 +61,11 @@ static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, E
       clock->stable, clock->time_unit);
 }
 
+bool ledger_has_blown_up(const Ledger *l)
+{
+  return l->blown_up;
+}
+
 bool ledger_is_doubtful(const Ledger *l)
 {
   return l->trapped || l->unsound_steps > 0 || (l->fast_steps > 0 && l->fast_steps <= LASTING_FAST);
@@ -84,6 +89,7 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;
   if (is_too_fast(l)) {
     l->unsound_steps = LASTING;
+    l->blown_up = true;
     return tell_too_fast(l, d, clock, error);
   }
   if (l->unsound_steps < LASTING) return BRECCIA_OK;

@@ -22,6 +22,7 @@ typedef struct Ledger {
   int64_t damped;         /* there has been damping: its work is more than roundings */
   int64_t unsound_steps;  /* up to now, in each of which energy has come from nothing */
   bool trapped;           /* a floating-point trap has sprung in the last step */
+  bool blown_up;          /* particles have become faster than anything explains */
 } Ledger;
 
 /** Where the work went: external + kinetic and stored at the start + between = kinetic + stored + dissipated + fracture + friction + damping + numerical + error. */
@@ -53,6 +54,9 @@ void ledger_note_paid(Ledger *ledger);
 /** After a step, with what was paid noted: fails if energy has come from nothing for some steps: bonds gave back more than they had received, or no work explains
  *  the speeds; or if particles have become faster than anything explains (docs/theory.md 7). */
 int ledger_watch(Ledger *ledger, const Domain *domain, const Clock *clock, Error *error);
+
+/** Whether particles have become faster than anything explains, so that the state is no result. */
+bool ledger_has_blown_up(const Ledger *ledger);
 
 /** Whether the next few steps will show that the last one has gone wrong: of such a state no checkpoint is written. */
 bool ledger_is_doubtful(const Ledger *ledger);

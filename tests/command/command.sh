@@ -212,6 +212,9 @@ sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml
 "$breccia" run burst.yaml --force > out 2> errors; equal "burst: status" $? 1
 contains "burst" "$(cat errors)" "step 4 (time 0.0004 s): the computation has blown up: particle "
 contains "burst" "$(cat out)" "stopped by a failure"
+# what has blown up is no result
+"$breccia" plot burst --field displacement --step 4 > out 2> errors; equal "the state of a burst: status" $? 2
+contains "the state of a burst" "$(cat errors)" "step 4 was not written; these were: 0"
 if "$breccia" run plate.yaml --steps 20 --trap --output trapped > out 2> errors; then
   "$breccia" run plate.yaml --steps 20 --output untrapped > out 2>&1
   "$build/tests/compare_results" trapped/results.vtkhdf untrapped/results.vtkhdf > out || fail "traps change a run: $(cat out)"
