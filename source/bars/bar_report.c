@@ -58,7 +58,8 @@ double bars_stored(const Bars *b, int64_t from, int64_t to, bool hookean)
   double sum = 0;
   for (int64_t e = from; e < to; ++e) {
     if ((b->young[e] > 0) != hookean) continue;
-    const double elastic = hookean ? b->strain_held[e] : points_elastic_strain(&b->points, e, b->strain_held[e]);
+    const double strain = b->strain_held[e],
+                 elastic = hookean ? strain : points_elastic_strain(&b->points, e, strain, b->slack[e]);
     sum += b->area[e] * b->length[e] * b->stress_held[e] * elastic / 2;
   }
   return sum;
@@ -69,11 +70,14 @@ double bar_dissipated_in(const Bars *b, int64_t e)
   return b->young[e] > 0 ? 0 : b->worked[e] - bars_stored(b, e, e + 1, false);
 }
 
-/** Beyond where its law is straight: laws of steel with rounded corners leave the line from the beginning, but by little. */
-static bool has_yielded(const Bars *b, int64_t e)
+/** Beyond where its law is straight: laws of steel with rounded corners leave the line from the beginning, but by little. Roundings of a bar that is
+ *  loose again are none.
+ *  @param largest  stress of the bar so far */
+static bool has_yielded(const Bars *b, int64_t e, double largest)
 {
-  const double beyond = 1.02;
-  return material_young(points_material(&b->points, e)) * fabs(b->strain_held[e]) > beyond * fabs(b->stress_held[e]);
+  const double beyond = 1.02,
+               elastic = material_young(points_material(&b->points, e)) * fabs(b->strain_held[e] - b->slack[e]);
+  return elastic > beyond * fabs(b->stress_held[e]) && elastic > 1e-9 * largest;
 }
 
 static bool is_torn(const Bars *b, int64_t e)
@@ -89,7 +93,7 @@ void bars_note(Bars *b)
       b->lowest[n] = fmin(b->lowest[n], b->stress_held[e]);
       b->highest[n] = fmax(b->highest[n], b->stress_held[e]);
       if (b->young[e] > 0) continue;
-      if (b->yielded[e] < 0 && has_yielded(b, e)) b->yielded[e] = b->points.time;
+      if (b->yielded[e] < 0 && has_yielded(b, e, fmax(-b->lowest[n], b->highest[n]))) b->yielded[e] = b->points.time;
       if (b->torn[e] < 0 && is_torn(b, e)) b->torn[e] = b->points.time;
     }
 }

@@ -33,6 +33,7 @@ static void destroy(void *forces)
   free(b->longer);
   free(b->strain);
   free(b->stress);
+  free(b->slack);
   free(b->strain_held);
   free(b->stress_held);
   free(b->pull);
@@ -124,7 +125,7 @@ static bool make_room(Bars *b, int64_t count, Error *error)
               b->chunk && b->chunk_bar;
   double **const numbers[] = {&b->length,      &b->area,        &b->young,       &b->strain, &b->stress,
                               &b->strain_held, &b->stress_held, &b->tangent,     &b->across, &b->worked,
-                              &b->yielded,     &b->torn,        &b->line_strain, &b->longer};
+                              &b->yielded,     &b->torn,        &b->line_strain, &b->longer, &b->slack};
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
     made &= (*numbers[k] = memory_zeroed(n, sizeof(double), "bars", error)) != NULL;
   for (size_t e = 0; e < n && made; ++e) b->yielded[e] = b->torn[e] = -1;
@@ -218,6 +219,19 @@ static int make_points(Bars *b, const ForcesParts *parts, Error *error)
   return status;
 }
 
+/** Steel that begins under stress, by its law, holds energy from the beginning. */
+static void begin_under_stress(Bars *b)
+{
+  for (int n = 0; n < b->specs->count && b->has_points; ++n)
+    for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
+      if (b->young[e] > 0) continue;
+      const double stress = points_try(&b->points, e, 0, NULL);
+      b->slack[e] = -stress / material_young(points_material(&b->points, e));
+      b->stress_held[e] = b->lowest[n] = b->highest[n] = stress;
+      b->worked[e] = bars_stored(b, e, e + 1, false);
+    }
+}
+
 static int make(Bars *b, const ForcesParts *parts, Error *error)
 {
   const int bars = b->specs->count;
@@ -239,7 +253,9 @@ static int make(Bars *b, const ForcesParts *parts, Error *error)
   free(counts);
   if (!status) status = make_touching(b, error);
   if (!status) status = bar_slips_create(b, parts, error);
-  return status ? status : make_points(b, parts, error);
+  if (!status) status = make_points(b, parts, error);
+  if (!status) begin_under_stress(b);
+  return status;
 }
 
 static void *create(const void *spec, const ForcesParts *parts, Error *error)
@@ -301,9 +317,11 @@ static void describe(const void *forces, const Units *units, Text *text)
   for (int64_t e = 0; e < b->count; ++e) volume += b->area[e] * b->length[e];
   units_name(units, dimension_find("area"), unit, sizeof unit);
   text_add(text, "bars:");
-  for (int n = 0; n < b->specs->count && n < 6; ++n)
-    text_add(text, "%s %lld '%s' of %.4g %s", n ? "," : "", (long long)((const BarSpec *)b->specs->items[n])->number,
-             ((const BarSpec *)b->specs->items[n])->head.name, b->bar_area[n], unit);
+  for (int n = 0; n < b->specs->count && n < 6; ++n) {
+    const BarSpec *bar = b->specs->items[n];
+    text_add(text, "%s %lld '%s' of %.4g %s%s", n ? "," : "", (long long)bar->number, bar->head.name, b->bar_area[n],
+             unit, bar->number > 1 ? " together" : "");
+  }
   if (b->specs->count > 6) text_add(text, " and others, %lld in all", (long long)bars);
   units_name(units, dimension_find("volume"), unit, sizeof unit);
   text_add(text, "; %lld elements, %.4g %s of steel\n", (long long)b->count, volume, unit);

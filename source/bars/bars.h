@@ -73,11 +73,13 @@ typedef struct Bars {
   double *tangent, *across;          /* of a linearised step: stiffness along an element and across it */
   Points points;                     /* a row an element, of those that are not Hooke's */
   bool has_points;
+  double *
+      slack; /* strain at which the law of an element carries nothing at first: below zero in steel that begins in tension */
   int64_t *chunk; /* [chunk_count + 1] elements of one bar, at most BATCH, gone through together */
   int *chunk_bar; /* [chunk_count] */
   int64_t chunk_count;
   BarSlips *slips;          /* NULL: no bar does */
-  double *worked;           /* work on elements that have points, since the beginning */
+  double *worked;           /* work on elements that have points, with what they held at the beginning */
   double *yielded, *torn;   /* when an element did so first; below zero: it has not */
   double *lowest, *highest; /* [bars] stresses so far */
 } Bars;

@@ -111,25 +111,26 @@ double points_softness(const Points *points, int64_t row)
   return stiffest > 0 ? 1 / fmin(1, stiffest) : 1;
 }
 
-double points_elastic_strain(const Points *points, int64_t row, double strain)
+double points_elastic_strain(const Points *points, int64_t row, double strain, double from)
 {
   const Material *m = points_material(points, row);
   if (m->remote || m->history_values > MOST_TRIED_VALUES)
-    return points_try(points, row, strain, NULL) == 0 ? 0 : strain;
+    return points_try(points, row, strain, NULL) == 0 ? 0 : strain - from;
   /* Unloaded from where the strain has led: from the history before it a law that flows would only flow less. */
   double here[MOST_TRIED_VALUES], scratch[MOST_TRIED_VALUES];
   const double stress = stress_from(points, row, points_history(points, row), strain, here, NULL);
   if (stress == 0) return 0;
   /* Steel that has yielded and is pushed back carries against its strain: that gives nothing of the way to unload. */
-  const bool along = stress * strain > 0;
-  const double back = 1e-3, step = along ? back * strain : back * stress / material_young(m);
+  const double strained = strain - from;
+  const bool along = stress * strained > 0;
+  const double back = 1e-3, step = along ? back * strained : back * stress / material_young(m);
   const double drop = stress - stress_from(points, row, here, strain - step, scratch, NULL);
   const double share = drop != 0 ? back * stress / drop : 0;
-  if (along) return (share > 0 ? fmin(1, share) : 1) * strain;
+  if (along) return (share > 0 ? fmin(1, share) : 1) * strained;
   return share > 0 ? share * step / back : 0;
 }
 
 double points_elastic_share(const Points *points, int64_t row, double strain)
 {
-  return strain == 0 ? 1 : points_elastic_strain(points, row, strain) / strain;
+  return strain == 0 ? 1 : points_elastic_strain(points, row, strain, 0) / strain;
 }

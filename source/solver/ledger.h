@@ -12,7 +12,7 @@ typedef struct Ledger {
   double between;   /* kinetic energy at full steps exceeds what the works say by the sum of this (explicit.c) */
   double numerical; /* that schemes of implicit dynamics have taken out of vibrations */
   double kinetic_at_start;
-  double stored_at_start; /* of points that began under stress */
+  double stored_at_start; /* of points and of steel that began under stress */
   double paid;            /* the most that loads, motions and speeds at the start have put in so far */
   double wave;            /* fastest waves of its materials, as they are unharmed */
   double given;           /* largest speed that the start and prescribed motions have given any particle so far */

@@ -185,7 +185,7 @@ int solver_create(Solver *s, Text *warning, Error *error)
   s->clock.stages = s->stages->count;
   s->clock.stable = INFINITY;
   units_name(s->reader->units, dimension_find("time"), s->clock.time_unit, sizeof s->clock.time_unit);
-  s->ledger.stored_at_start = s->domain->initial_energy;
+  s->ledger.stored_at_start = s->domain->initial_energy + forces_energy(&s->domain->forces);
   s->records = memory_zeroed((size_t)s->clock.stages, sizeof *s->records, "stages", error);
   for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
