@@ -135,6 +135,8 @@ bool correspondence_lags(const void *formulation);
 bool correspondence_may_lag(const void *formulation);
 void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
+/** Whether control keeps its stiffness where points of a material have lost theirs. */
+bool correspondence_control_lasts(const void *formulation, const Material *material);
 
 /** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
  *  1 + (G - G^T) / 2. Written less 1.

@@ -38,6 +38,12 @@ static bool fades_in(const Correspondence *c, const Material *m)
                                          : c->fades == FADES_WITH_SOFTENING && m->softening_energy > 0;
 }
 
+bool correspondence_control_lasts(const void *formulation, const Material *material)
+{
+  const Correspondence *c = formulation;
+  return c->control != CONTROL_NONE && !material->law->linear && !fades_in(c, material);
+}
+
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
 {
   bool may = false;

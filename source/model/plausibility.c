@@ -2,6 +2,7 @@
 
 #include "failure/critical_energy.h"
 #include "failure/critical_stretch.h"
+#include "formulation/correspondence.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -233,6 +234,24 @@ static void describe_material(const breccia_model *model, int k, Text *text)
   text_add(text, "\n");
 }
 
+/** Control that keeps its stiffness where a law yields carries more and more beside it: limit loads come out too high, and nothing shows it. At rest
+ *  only, as what has faded does not come back under loads that come and go. */
+static void describe_control(const breccia_model *model, const Region *region, Text *text)
+{
+  const Domain *d = &model->domain;
+  if (strcmp(region->type->name, "correspondence") != 0) return;
+  for (int k = 0; k < d->material_count; ++k) {
+    const Material *m = &d->materials[k];
+    if (m->law->components != 6 || m->softening_energy > 0 || !region_is_made_of(d, region, m->name) ||
+        !correspondence_control_lasts(region->formulation, m))
+      continue;
+    text_add(text,
+             "  %s: may yield, and zero-energy control keeps its stiffness there: limit loads come out too high (a "
+             "footing by a third and more); for them take 'zero-energy control: {silling: ..., fades: yielding}'\n",
+             m->name);
+  }
+}
+
 /* ---- the body and its waves ---- */
 
 typedef struct Extent { /* SI */
@@ -414,15 +433,17 @@ void plausibility_describe(breccia_model *model, bool search, Text *text)
   const Extent e = extent_of(model);
   text_add(text, "in SI units:\n");
   for (int k = 0; k < model->domain.material_count; ++k) describe_material(model, k, text);
+  bool rests = false;
+  for (int64_t k = model->solver.clock.stage; k < model->solver.clock.stages; ++k)
+    rests |= solver_stage_rests(&model->solver, k);
+  for (int r = 0; rests && r < model->domain.region_count; ++r)
+    describe_control(model, &model->domain.regions[r], text);
   describe_frequencies(model, &e, search, text);
   for (int k = 0; k < model->loading.count; ++k) {
     describe_load(model, &model->loading.loads[k], &e, text);
     plausibility_describe_middle(model, &model->loading.loads[k], text);
   }
   const double time = plausibility_in_si(model, "time", solver_time_in_motion(&model->solver));
-  bool rests = false;
-  for (int64_t k = model->solver.clock.stage; k < model->solver.clock.stages; ++k)
-    rests |= solver_stage_rests(&model->solver, k);
   text_add(text, "  the run: ");
   if (rests && time == 0) {
     text_add(text, "from rest to rest, in which no time passes but that of histories");

@@ -253,6 +253,37 @@ static void points_between_particles_are_told(void **state)
   }
 }
 
+/** Control that keeps its stiffness where soil yields is told of bodies at rest, where limit loads are looked for. */
+static void control_that_outlasts_yielding_is_told(void **state)
+{
+  (void)state;
+  static const char soil[] = "model: mohr-coulomb, cohesion: 10, friction angle: 30",
+                    crack[] = "model: mazars, tensile strength: 3000, fracture energy: 0.1", rest[] = "static: {}";
+  static const struct {
+    const char *law, *control, *solver;
+    bool told;
+  } cases[] = {{soil, "", rest, true},
+               {soil, ", zero-energy control: {wan: 0.1}", rest, true},
+               {soil, ", zero-energy control: {silling: 0.2, fades: yielding}", rest, false},
+               {soil, ", zero-energy control: {none: yes}", rest, false},
+               {soil, "", "explicit: {end time: 1}", false},
+               {crack, "", rest, false},
+               {"model: elastic", "", rest, false}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {%s, density: 2, Young modulus: 3e7, Poisson ratio: 0.2}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 1, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {space: plane strain%s}\nloads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}]\n"
+        "solve: {%s}\npictures: []\n",
+        cases[k].law, cases[k].control, cases[k].solver);
+    const char *words = breccia_model_plausibility(m);
+    if ((strstr(words, "m: may yield, and zero-energy control keeps its stiffness there") != NULL) != cases[k].told)
+      fail_msg("case %zu: %s", k, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Sums over the particles of blocks that take the same space differ by roundings: 9 times 0.1^2 is less than 36 times 0.05^2. */
 static void of_equal_blocks_the_first_tells_how_waves_run(void **state)
 {
@@ -312,6 +343,7 @@ int main(void)
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
                                      cmocka_unit_test(bodies_that_lock_are_told),
                                      cmocka_unit_test(points_between_particles_are_told),
+                                     cmocka_unit_test(control_that_outlasts_yielding_is_told),
                                      cmocka_unit_test(damping_that_lets_a_body_creep_is_told),
                                      cmocka_unit_test(of_equal_blocks_the_first_tells_how_waves_run)};
   return cmocka_run_group_tests(tests, NULL, NULL);
