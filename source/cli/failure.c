@@ -232,6 +232,12 @@ static int search(Search *s, double from, double to, breccia_error *error)
       "act in the end, and kinetic energy below %g of the work\n",
       sign * bears, s->unit, sign * fails, s->unit, s->key, s->rest, s->rest);
   for (int k = 0; k < s->count; ++k)
+    if (s->trials[k].verdict == FAILS && isnan(s->trials[k].unbalanced)) {
+      printf(
+          "stopped: the run ended before its time, as where it finds no equilibrium any more (log.txt of the case)\n");
+      break;
+    }
+  for (int k = 0; k < s->count; ++k)
     if (s->trials[k].settles)
       printf("under %.9g%s it still came to rest when the run ended: a longer 'hold' of 'quasi-static' may find that "
              "it bears this load\n",

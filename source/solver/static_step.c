@@ -170,8 +170,8 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
       advice = "allow more 'iterations', or take a larger 'residual'";
     else if (domain_may_soften(s->domain) && static_may_relax(s)) {
       tried = "by Newton's method, descent by secants and dynamic relaxation; at last ";
-      advice = "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', or "
-               "'quasi-static', go on with a stage of 'explicit', or look at the loads and at the last pictures";
+      advice = "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', "
+               "go on with a stage of 'explicit', as by 'quasi-static', or look at the loads and at the last pictures";
     }
   }
   return error_add(error, BRECCIA_FAILURE,

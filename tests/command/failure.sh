@@ -20,6 +20,7 @@ bracket out | awk '{exit !($1 > 95 && $1 <= 100.001 && $2 >= 99.9 && $2 <= $1 / 
 equal "heading of the table" "$(head -1 bar-failure/failure.csv)" 'load,outcome,forces out of balance,kinetic energy,case'
 equal "loads in their order" "$(tail -n +2 bar-failure/failure.csv | cut -d' ' -f1 | sort -n | cmp - <(tail -n +2 bar-failure/failure.csv | cut -d' ' -f1) && echo yes)" yes
 grep -q '^200 kN,stopped,,,' bar-failure/failure.csv || fail "the load beyond: $(cat bar-failure/failure.csv)"
+grep -q '^stopped: the run ended before its time' out || fail "what stopped means: $(cat out)"
 # One at a time the middle is tried; what is done is not run again.
 "$breccia" failure bar.yaml --load 'variables.pull=50 kN:200 kN' --within 0.1 --jobs 1 > one 2> errors || fail "one at a time: $(cat one errors)"
 grep -q 'pull-50-kN: was done' one || fail "cases that were done: $(cat one)"
