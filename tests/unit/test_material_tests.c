@@ -1,6 +1,7 @@
 /* Tests of material points: what their curves show, and laws that give up before anything is strained. */
 #include "support.h"
 
+#include "base/tensor.h"
 #include "constitutive/element_test.h"
 
 #include <unistd.h>
@@ -123,6 +124,105 @@ static void a_test_that_stops_early_is_far_from_its_points(void **state)
   unlink("test_material_tests.csv");
 }
 
+/** A test in words, run to its end; numbers in m, kN, s. */
+static breccia_test *test_of(const char *law, const char *const *parameters, int count, breccia_test_words words)
+{
+  breccia_error *error = breccia_error_create();
+  breccia_test *test = NULL;
+  words.size = sizeof words;
+  words.law = law;
+  words.units = "m, kN, s";
+  words.parameters = parameters;
+  words.parameter_count = count;
+  if (breccia_test_make(&words, &test, error) || breccia_test_run(test, 0, error))
+    fail_msg("%s of %s: %s", words.kind, law, breccia_error_text(error));
+  breccia_error_destroy(&error);
+  return test;
+}
+
+/** @return the last number of a column: strains come first, then stresses */
+static double last_of(const breccia_test *test, bool stress, int component)
+{
+  char words[32];
+  snprintf(words, sizeof words, "%s %s", stress ? "stress" : "strain", component_names[component]);
+  const int column = 6 * stress + component;
+  assert_memory_equal(breccia_test_heading(test, column), words, strlen(words));
+  return breccia_test_column(test, column)[breccia_test_rows(test) - 1];
+}
+
+enum { ONCE, BACK, TOTAL, OPTIONS };
+
+/** Every kind of test with an elastic law, E = 10 MPa and nu = 0.25 (lambda = G = 4 MPa), under 50 kPa and strained by e: all strains and stresses at its
+ *  end, per e and beyond the consolidation; once to the strain, there and back to another one, and with strains counted from before the
+ *  consolidation. */
+static void every_kind_of_test_strains_as_it_says(void **state)
+{
+  (void)state;
+  static const char *const elastic[] = {"Young modulus=1e4", "Poisson ratio=0.25"};
+  static const struct {
+    const char *kind;
+    double strain[6], stress[6];
+  } cases[] = {{"uniaxial", {1, -0.25, -0.25}, {1e4}},
+               {"triaxial", {1, -0.25, -0.25}, {1e4}},
+               {"undrained triaxial", {1, -0.5, -0.5}, {8e3, -4e3, -4e3}},
+               {"oedometer", {1}, {1.2e4, 4e3, 4e3}},
+               {"biaxial", {1, -1.0 / 3}, {1e4 / 0.9375, 0, 0.25e4 / 0.9375}},
+               {"isotropic", {1, 1, 1}, {2e4, 2e4, 2e4}},
+               {"simple shear", {0, 0, 0, 1}, {0, 0, 0, 4e3}},
+               {"undrained shear", {0, 0, 0, 1}, {0, 0, 0, 4e3}}};
+  enum { KINDS = sizeof cases / sizeof *cases };
+  for (int k = 0; test_kind_word(k); ++k) {
+    int c = 0;
+    while (c < KINDS && strcmp(cases[c].kind, test_kind_word(k)) != 0) ++c;
+    if (c == KINDS) fail_msg("nobody tests the kind '%s'", test_kind_word(k));
+    for (int option = ONCE; option < OPTIONS; ++option) {
+      const bool confined = strcmp(cases[c].kind, "uniaxial") != 0;
+      const double e = option == BACK ? 3e-3 : -1e-2, pressure = confined ? 50 : 0;
+      const int ways = option == BACK ? 4 : 1, before = confined && option == TOTAL ? 20 : 0;
+      breccia_test *test = test_of("elastic", elastic, 2,
+                                   (breccia_test_words){.kind = cases[c].kind,
+                                                        .to = "-0.01",
+                                                        .back = option == BACK ? "0.003" : NULL,
+                                                        .confining = confined ? "50" : NULL,
+                                                        .strain_zero = option == TOTAL ? "before consolidation" : NULL,
+                                                        .cycles = option == BACK ? 2 : 0,
+                                                        .steps = 5});
+      assert_int_equal(breccia_test_rows(test), 1 + before + 5 * ways);
+      for (int n = 0; n < 6; ++n) {
+        const double consolidated = n < 3 && option == TOTAL ? -pressure / 2e4 : 0;
+        assert_near(last_of(test, false, n), consolidated + cases[c].strain[n] * e, 1e-12);
+        assert_near(last_of(test, true, n), cases[c].stress[n] * e - (n < 3 ? pressure : 0), 1e-7);
+      }
+      breccia_test_destroy(&test);
+    }
+  }
+}
+
+/** Sand that is sheared swells: where the stress on its plane is kept it rises, where its volume is kept the pressure grows. */
+static void sheared_sand_swells_or_is_pressed(void **state)
+{
+  (void)state;
+  static const char *const sand[] = {"Young modulus=1e4", "Poisson ratio=0.25", "cohesion=1", "friction angle=30",
+                                     "dilation angle=10"};
+  for (int undrained = 0; undrained < 2; ++undrained) {
+    breccia_test *test = test_of(
+        "mohr-coulomb", sand, 5,
+        (breccia_test_words){
+            .kind = undrained ? "undrained shear" : "simple shear", .to = "0.05", .confining = "50", .steps = 100});
+    assert_near(last_of(test, false, XX), 0, 1e-12);
+    assert_near(last_of(test, false, ZZ), 0, 1e-12);
+    const double risen = last_of(test, false, YY), pressed = last_of(test, true, YY);
+    if (undrained) {
+      assert_near(risen, 0, 1e-12);
+      assert_true(pressed < -60);
+    } else {
+      assert_near(pressed, -50, 1e-6);
+      assert_true(risen > 1e-3);
+    }
+    breccia_test_destroy(&test);
+  }
+}
+
 static int answer_nothing(const void *constants, const breccia_batch *batch)
 {
   (void)constants, (void)batch;
@@ -155,6 +255,8 @@ int main(void)
       cmocka_unit_test(a_path_is_drawn_along_its_widest_strain),
       cmocka_unit_test(what_cannot_be_fitted_is_said),
       cmocka_unit_test(a_test_that_stops_early_is_far_from_its_points),
+      cmocka_unit_test(every_kind_of_test_strains_as_it_says),
+      cmocka_unit_test(sheared_sand_swells_or_is_pressed),
       cmocka_unit_test(a_law_that_knows_no_unstrained_state_is_said_to),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
