@@ -6,6 +6,7 @@
 #include "base/tensor.h"
 #include "results/fields.h"
 #include "results/picture.h"
+#include <hdf5.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/breccia-XXXXXX";
@@ -88,14 +89,38 @@ static double field(const breccia_model *m, const char *name, int component)
   return value[component];
 }
 
+/** What results.xdmf points to for a field at the last write must be these numbers of particle 57. */
+static void assert_pointed_to(const char *path, const char *name, const double *expected, int components, double off)
+{
+  char file[128], words[128], set_name[128], shape[32];
+  snprintf(file, sizeof file, "%s/results.xdmf", path);
+  snprintf(words, sizeof words, "<Attribute Name=\"%s\"", name);
+  char *text = text_read_file(file, NULL), *at = text, *last = NULL;
+  while (at && (at = strstr(at, words))) last = at++;
+  if (!last) fail_msg("%s does not name '%s'", file, name);
+  snprintf(shape, sizeof shape, components > 1 ? "Dimensions=\"120 %d\"" : "Dimensions=\"120\"", components);
+  at = strstr(last, "results.vtkhdf:");
+  assert_true(strstr(last, shape) && strstr(last, shape) < at);
+  snprintf(set_name, sizeof set_name, "%.*s", (int)strcspn(strchr(at, ':') + 1, "<"), strchr(at, ':') + 1);
+  free(text);
+  snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+  const hid_t h5 = H5Fopen(file, H5F_ACC_RDONLY, H5P_DEFAULT), set = H5Dopen2(h5, set_name, H5P_DEFAULT);
+  double values[9 * 120];
+  assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+  for (int k = 0; k < components; ++k) assert_near(values[57 * components + k], expected[k], off);
+  H5Dclose(set);
+  H5Fclose(h5);
+}
+
 static void one_state_reads_alike_wherever_it_is_told(void **state)
 {
   (void)state;
   static const char *const names[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
   for (int sign = -1; sign <= 1; sign += 2) { /* pressed from all sides, and drawn */
-    breccia_model *m =
-        body("watch: {all: {stress and strain of: {all: yes}, every: 1}, ends: {displacement of: {nearest: "
-             "[0.45, 0.05, 0.55]}, every: 1}}\nresults: {every: 1}\n");
+    breccia_model *m = body(
+        "watch: {all: {stress and strain of: {all: yes}, every: 1}, ends: {displacement of: {nearest: "
+        "[0.45, 0.05, 0.55]}, every: 1}}\nresults: {every: 1, precision: double, fields: [stress, strain, deformation "
+        "gradient, octahedral shear stress, octahedral shear strain, deviator norm, mean stress, displacement]}\n");
     const double a = sign * 1e-3,
                  gradient[9] = {3 * a, 0.5 * a, -0.2 * a, 1.1 * a, 5 * a, 0.9 * a, 0.4 * a, -2.1 * a, 11 * a};
     double f[9], strain[6], stress[6], tensor[6], volume = 0;
@@ -136,6 +161,18 @@ static void one_state_reads_alike_wherever_it_is_told(void **state)
       assert_near(first_of(path, "ends", (const char *[]){"x", "y", "z"}[k], NULL), moved, off);
     }
     for (int k = 0; k < 9; ++k) assert_near(field(m, "deformation gradient", k), f[k], off);
+    /* Tensors stand in files as VTK and ParaView read them: xx yy zz xy yz xz, and row by row. */
+    assert_pointed_to(path, "stress", stress, 6, off);
+    assert_pointed_to(path, "strain", strain, 6, off);
+    assert_pointed_to(path, "deformation gradient", f, 9, off);
+    assert_pointed_to(path, "octahedral shear stress", &tau, 1, off);
+    assert_pointed_to(path, "octahedral shear strain", (const double[]){2 * octahedral(tensor)}, 1, off);
+    assert_pointed_to(path, "deviator norm", (const double[]){sqrt(3) * tau}, 1, off);
+    assert_pointed_to(path, "mean stress", &mean, 1, off);
+    const Particles *p = m->domain.particles;
+    double there[3] = {0};
+    for (int k = 0; k < 9; ++k) there[k / 3] += gradient[k] * p->position[k % 3][p->place_of[57]];
+    assert_pointed_to(path, "displacement", there, 3, off);
     assert_near(told(path, "octahedral_shear_stress"), tau, off);
     assert_near(told(path, "mean_stress_lowest"), mean, off);
     assert_near(told(path, "mean_stress_highest"), mean, off);
