@@ -124,6 +124,41 @@ static void a_test_that_stops_early_is_far_from_its_points(void **state)
   unlink("test_material_tests.csv");
 }
 
+/** What a fit says of its curve is what the test says that is run with the values found, however the search came there. */
+static void a_fit_speaks_of_the_curve_that_it_found(void **state)
+{
+  (void)state;
+  breccia_error *error = breccia_error_create();
+  breccia_test *test = NULL;
+  breccia_fit fit = {.size = sizeof fit};
+  breccia_comparison found = {.size = sizeof found};
+  FILE *file = fopen(FILE_NAME, "w");
+  assert_non_null(file);
+  fprintf(file,
+          "units: {length: m, force: kN, time: s}\n"
+          "material: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening "
+          "modulus: 500}\n"
+          "test: {kind: uniaxial, strain: 4e-3, steps: 40}\n"
+          "against: test_material_tests.csv\nfit: {yield stress: {from: 5, to: 50}, hardening modulus: {from: 10, "
+          "to: 5000}}\n");
+  fclose(file);
+  file = fopen("test_material_tests.csv", "w");
+  assert_non_null(file);
+  fprintf(file, "0,0\n0.5e-3,5.4\n1e-3,9.5\n2e-3,14\n3e-3,14.5\n3.5e-3,17\n");
+  fclose(file);
+  if (breccia_test_load(FILE_NAME, &test, error) || breccia_test_fit(test, NULL, &fit, error) ||
+      breccia_test_run(test, 0, error) || breccia_test_compare(test, NULL, &found, error))
+    fail_msg("%s", breccia_error_text(error));
+  assert_int_equal(found.points, 6);
+  assert_true(found.mean > 0.01 && found.most > 1.2 * found.mean);
+  assert_near(fit.after, found.mean, 1e-15);
+  assert_near(fit.most, found.most, 1e-15);
+  breccia_test_destroy(&test);
+  breccia_error_destroy(&error);
+  unlink(FILE_NAME);
+  unlink("test_material_tests.csv");
+}
+
 /** A test in words, run to its end; numbers in m, kN, s. */
 static breccia_test *test_of(const char *law, const char *const *parameters, int count, breccia_test_words words)
 {
@@ -255,6 +290,7 @@ int main(void)
       cmocka_unit_test(a_path_is_drawn_along_its_widest_strain),
       cmocka_unit_test(what_cannot_be_fitted_is_said),
       cmocka_unit_test(a_test_that_stops_early_is_far_from_its_points),
+      cmocka_unit_test(a_fit_speaks_of_the_curve_that_it_found),
       cmocka_unit_test(every_kind_of_test_strains_as_it_says),
       cmocka_unit_test(sheared_sand_swells_or_is_pressed),
       cmocka_unit_test(a_law_that_knows_no_unstrained_state_is_said_to),
