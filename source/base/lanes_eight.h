@@ -26,11 +26,7 @@ LANES_INLINE Lanes lanes_widen(const float *from)
 #pragma GCC diagnostic ignored "-Wsign-conversion"
 LANES_INLINE Lanes lanes_gather(const double *from, const int32_t *index)
 {
-  /* Without optimisation gcc's header makes it a macro with 0xff for a char. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsign-conversion"
   return (Lanes)_mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)index), from, 8);
-#pragma GCC diagnostic pop
 }
 #pragma GCC diagnostic pop
 
