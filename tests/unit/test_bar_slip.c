@@ -540,7 +540,8 @@ static void words_tell_bond_and_slip(void **state)
   static const struct {
     const char *keys, *words;
   } cases[] = {{"bond: {" FIB "}, bonded: [0.4, 0.5], anchored: [end]",
-                "bars: 1 'bar' of 0.0001 m2; |'bar' slips: bond of 13.7 MPa between slips of 1 mm and 2 mm, 5.48 MPa beyond 8 mm, along 100 mm of "
+                "bars: 1 'bar' of 0.0001 m2; |'bar' slips: bond of 13.7 MPa between slips of 1 mm and 2 mm, 5.48 MPa "
+                "beyond 8 mm, along 100 mm of "
                 "1.2 m, 48.5 "
                 "kN in all; anchored at its end\n"},
                {"bond: {" FIB ", splitting stress: 6 MPa}",
@@ -548,7 +549,8 @@ static void words_tell_bond_and_slip(void **state)
                 "anchored at "
                 "neither end\n"},
                {"number: 2, bond: {law: linear, stiffness: 1.4e7}, anchored: [start, end]",
-                "bars: 2 'bar' of 0.0002 m2 together; |'bar' slips: bond of 14 MPa per mm of slip, along all of it; anchored at both ends\n"}};
+                "bars: 2 'bar' of 0.0002 m2 together; |'bar' slips: bond of 14 MPa per mm of slip, along all of it; "
+                "anchored at both ends\n"}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
     breccia_model *m = led(ROD, cases[c].keys, PULL, "[0, 0], [1, 1]", 1);
     holds_words(breccia_model_overview(m), cases[c].words);

@@ -5,7 +5,8 @@
   "units: {length: m, force: kN, time: s}\n"                                                                           \
   "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"                            \
   "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [6, 4, 4]}}}}\n"                                     \
-  "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x+}, traction: [1, 0, 0], history: {ramp "  \
+  "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x+}, traction: [1, 0, 0], history: "      \
+  "{ramp "                                                                                                             \
   "to: 1}}]\n"
 
 /** Of four increments one is cut short by a state that is asked for at a time between two of them; the next begins there, as long as the others, and the number
