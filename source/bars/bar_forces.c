@@ -29,7 +29,7 @@ static void spread(const Bars *b, double (*const pull)[3], double *const force[3
 }
 
 /** Strains and directions of elements in the concrete, strains without the difference of two lengths that are nearly the same. */
-static void find_strains(Bars *b, int64_t from, int64_t to)
+static void find_strains(Bars *b, int bar, int64_t from, int64_t to)
 {
   double *const *u = b->body->particles.displacement;
   for (int64_t e = from; e < to; ++e) {
@@ -42,7 +42,8 @@ static void find_strains(Bars *b, int64_t from, int64_t to)
       square += now[k] * now[k];
     }
     const double long_now = sqrt(square);
-    b->strain[e] = b->line_strain[e] = more / (long_now + length) / length;
+    b->line_strain[e] = more / (long_now + length) / length;
+    b->strain[e] = b->line_strain[e] + b->prestrain[bar];
     for (int k = 0; k < 3; ++k) b->along[e][k] = long_now > 0 ? now[k] / long_now : rest[k] / length;
   }
 }
@@ -52,12 +53,12 @@ void bars_resist(void *forces)
   Bars *b = forces;
   TEAM_FOR (n, b->slips ? b->specs->count : 0) {
     if (!bar_slips(b, (int)n)) continue;
-    find_strains(b, b->first[n], b->first[n + 1]);
+    find_strains(b, (int)n, b->first[n], b->first[n + 1]);
     bar_find_slips(b, (int)n);
   }
   TEAM_FOR (c, b->chunk_count) {
     const int64_t from = b->chunk[c], to = b->chunk[c + 1];
-    if (!bar_slips(b, b->chunk_bar[c])) find_strains(b, from, to);
+    if (!bar_slips(b, b->chunk_bar[c])) find_strains(b, b->chunk_bar[c], from, to);
     if (b->young[from] > 0) {
       for (int64_t e = from; e < to; ++e) b->stress[e] = b->young[e] * b->strain[e];
     } else {
@@ -136,7 +137,7 @@ int64_t bars_point_count(const void *forces)
 int bars_point(const void *forces, int64_t e, Operator *point, Error *error)
 {
   const Bars *b = forces;
-  const double stretch = 1 + b->strain[e], stress = b->stress[e] / stretch,
+  const double stretch = 1 + b->line_strain[e], stress = b->stress[e] / stretch,
                tangent = (slope(b, e) - stress) / (stretch * stretch);
   double t[3], m[6];
   for (int k = 0; k < 3; ++k) t[k] = b->rest[e][k] / b->length[e];
@@ -159,9 +160,21 @@ int bars_point(const void *forces, int64_t e, Operator *point, Error *error)
 
 /* ---- what was done ---- */
 
+/** By the trapezium rule, as all works. */
+static void book_prestrains(Bars *b)
+{
+  for (int n = 0; n < b->specs->count; ++n) {
+    const double more = b->prestrain[n] - b->prestrain_held[n];
+    for (int64_t e = b->first[n]; e < b->first[n + 1] && more != 0; ++e)
+      b->given += b->area[e] * b->length[e] * (b->stress[e] + b->stress_held[e]) / 2 * more;
+    b->prestrain_held[n] = b->prestrain[n];
+  }
+}
+
 void bars_accept(void *forces)
 {
   Bars *b = forces;
+  book_prestrains(b);
   for (int64_t e = 0; e < b->count; ++e) {
     if (!(b->young[e] > 0))
       b->worked[e] +=
@@ -180,6 +193,11 @@ double bars_energy(void *forces)
   double bond = 0;
   for (int n = 0; n < b->specs->count; ++n) bond += bar_bond_stored(b, n);
   return bars_stored(b, 0, b->count, true) + bars_stored(b, 0, b->count, false) + bond;
+}
+
+double bars_given(const void *forces)
+{
+  return ((const Bars *)forces)->given;
 }
 
 double bars_dissipated(const void *forces)

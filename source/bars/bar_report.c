@@ -17,6 +17,12 @@ const char *bar_name(const Bars *b, int bar)
   return ((const BarSpec *)b->specs->items[bar])->head.name;
 }
 
+double bar_young(const Bars *b, int bar)
+{
+  const int64_t e = b->first[bar];
+  return b->young[e] > 0 ? b->young[e] : material_young(points_material(&b->points, e));
+}
+
 int bars_find(const Bars *b, const char *name)
 {
   for (int n = 0; b && n < b->specs->count; ++n)

@@ -159,7 +159,7 @@ static void evaluate(Bars *b, int n)
   }
   for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
     const int64_t k = e + n;
-    b->strain[e] = b->line_strain[e] + (s->slip[k + 1] - s->slip[k]) / b->length[e];
+    b->strain[e] = b->line_strain[e] + b->prestrain[n] + (s->slip[k + 1] - s->slip[k]) / b->length[e];
     b->stress[e] = bar_stress_at(b, e, b->strain[e], &b->tangent[e]);
     b->tangent[e] *= b->area[e] / b->length[e];
     s->residual[k] -= b->area[e] * b->stress[e];
@@ -259,7 +259,7 @@ static double misfit(const Bars *b, int n)
   const double digits = 1e-5;
   double residual = 0, force = 0;
   for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
-    const double moved = fmax(fabs(b->slips->slip[e + n]) / b->length[e], fabs(b->line_strain[e]));
+    const double moved = fmax(fabs(b->slips->slip[e + n]) / b->length[e], fabs(b->line_strain[e] + b->prestrain[n]));
     force = fmax(force, b->area[e] * fmax(fabs(b->stress[e]), digits * young(b, e) * moved));
   }
   for (int64_t k = b->first[n] + n; k <= b->first[n + 1] + n; ++k) {

@@ -37,6 +37,8 @@ static void destroy(void *forces)
   free(b->strain_held);
   free(b->stress_held);
   free(b->pull);
+  free(b->prestrain);
+  free(b->prestrain_held);
   free(b->tangent);
   free(b->across);
   free(b->chunk);
@@ -115,14 +117,16 @@ static bool make_room(Bars *b, int64_t count, Error *error)
   b->node_begin = memory_zeroed(n + bars + 1, sizeof *b->node_begin, "bars", error);
   b->lowest = memory_zeroed(bars, sizeof *b->lowest, "bars", error);
   b->highest = memory_zeroed(bars, sizeof *b->highest, "bars", error);
+  b->prestrain = memory_zeroed(bars, sizeof *b->prestrain, "bars", error);
+  b->prestrain_held = memory_zeroed(bars, sizeof *b->prestrain_held, "bars", error);
   b->rest = memory_zeroed(n, sizeof *b->rest, "bars", error);
   b->along = memory_zeroed(n, sizeof *b->along, "bars", error);
   b->pull = memory_zeroed(n, sizeof *b->pull, "bars", error);
   b->begin = memory_zeroed(n + 1, sizeof *b->begin, "bars", error);
   b->chunk = memory_zeroed(n + 1, sizeof *b->chunk, "bars", error);
   b->chunk_bar = memory_zeroed(n + 1, sizeof *b->chunk_bar, "bars", error);
-  bool made = b->node && b->node_begin && b->lowest && b->highest && b->rest && b->along && b->pull && b->begin &&
-              b->chunk && b->chunk_bar;
+  bool made = b->node && b->node_begin && b->lowest && b->highest && b->prestrain && b->prestrain_held && b->rest &&
+              b->along && b->pull && b->begin && b->chunk && b->chunk_bar;
   double **const numbers[] = {&b->length,      &b->area,        &b->young,       &b->strain, &b->stress,
                               &b->strain_held, &b->stress_held, &b->tangent,     &b->across, &b->worked,
                               &b->yielded,     &b->torn,        &b->line_strain, &b->longer, &b->slack};
@@ -303,6 +307,14 @@ static void state(void *forces, StateList *list)
   state_add(list, &row, "lowest bar stress", NULL);
   row.values = b->highest;
   state_add(list, &row, "highest bar stress", NULL);
+  row.unit = "1";
+  row.role = STATE_TRIED;
+  row.values = b->prestrain;
+  state_add(list, &row, "prestrain", NULL);
+  row.role = STATE_COMMITTED;
+  row.values = b->prestrain_held;
+  state_add(list, &row, "prestrain before", NULL);
+  state_add_number(list, "work of prestrains", "energy", STATE_COMMITTED, &b->given);
   if (b->has_points) points_state(&b->points, "bars", list);
   if (b->slips) bar_slips_state(b, list);
 }
@@ -359,6 +371,7 @@ const ForcesType bars_forces = {.name = "bars",
                                 .point_count = bars_point_count,
                                 .point = bars_point,
                                 .energy = bars_energy,
+                                .given = bars_given,
                                 .dissipated = bars_dissipated,
                                 .state = state,
                                 .describe = describe};

@@ -68,10 +68,13 @@ typedef struct Bars {
   double *line_strain;               /* of the concrete along an element, as of the last evaluation */
   double *strain, *stress;           /* the same of the bar: of one that slips its own */
   double *strain_held, *stress_held; /* as committed */
-  double (*pull)[3];                 /* of a linearised step: changes of what elements pull with */
-  double *longer;                    /* of a linearised step: changes of the lengths of elements */
-  double *tangent, *across;          /* of a linearised step: stiffness along an element and across it */
-  Points points;                     /* a row an element, of those that are not Hooke's */
+  double *prestrain,
+      *prestrain_held; /* [bars] strains by which they are shorter than their places: as loads say, and as committed */
+  double given;        /* work that prestrains have done so far */
+  double (*pull)[3];   /* of a linearised step: changes of what elements pull with */
+  double *longer;      /* of a linearised step: changes of the lengths of elements */
+  double *tangent, *across; /* of a linearised step: stiffness along an element and across it */
+  Points points;            /* a row an element, of those that are not Hooke's */
   bool has_points;
   double *
       slack; /* strain at which the law of an element carries nothing at first: below zero in steel that begins in tension */
@@ -148,6 +151,8 @@ const Bars *bars_among(const Forces *forces);
 /** @return the number of the bar of a name, or -1 */
 int bars_find(const Bars *bars, const char *name);
 const char *bar_name(const Bars *bars, int bar);
+/** Young's modulus of a bar at first. */
+double bar_young(const Bars *bars, int bar);
 void bar_node_displacement(const Bars *bars, int64_t node, double displacement[3]);
 double bar_dissipated_in(const Bars *bars, int64_t element);
 BarReport bar_report(const Bars *bars, int bar);
@@ -169,6 +174,7 @@ int bars_point(const void *forces, int64_t number, Operator *point, Error *error
 void bars_accept(void *forces);
 double bars_energy(void *forces);
 double bars_dissipated(const void *forces);
+double bars_given(const void *forces);
 const char *bars_unassembled(const void *forces);
 const char *bars_stuck(const void *forces);
 

@@ -27,6 +27,8 @@ typedef struct Particles {
   double *zero[3];           /* displacements that are shown as none; NULL: 0 */
   double *volume;            /* 0 in unused places */
   double *density;
+  double *
+      free_strain; /* alike in all directions in which bonds lie, where nothing hinders it (domain/strains.c); NULL: none */
   double *rotary;           /* rotational inertia per volume; NULL without rotations */
   double *inertia[MOTIONS]; /* per volume, of each row: density or rotary. Not owned */
   double *orientation[4];   /* unit quaternions 1, x, y, z of places with rotations in space; else NULL */
@@ -44,6 +46,12 @@ void particles_destroy(Particles *particles);
 
 /** Gives all places rotations. Their inertia is 0 yet. @param[in] dimensions  of the body */
 int particles_make_rotations(Particles *particles, int dimensions, Error *error);
+
+/** Strain at which a bond carries nothing: the mean of both ends'. */
+static inline double particles_free_strain(const Particles *p, int64_t a, int64_t b)
+{
+  return p->free_strain ? 0.5 * (p->free_strain[a] + p->free_strain[b]) : 0;
+}
 
 /** At the end of a step that came out well: rotations in space of places first .. last - 1, whole slices, become part of their orientation. */
 void particles_take_rotations(Particles *particles, int64_t first, int64_t last);

@@ -83,7 +83,8 @@ static bool was_squeezed(const Domain *d, const Moment *moment, const Bond *bond
     const double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place] - moved;
     square += y * y;
   }
-  return square < (1 - 1e-9) * bond->length * bond->length;
+  const double natural = (1 + particles_free_strain(p, place, bond->neighbour)) * bond->length;
+  return square < (1 - 1e-9) * natural * natural;
 }
 
 /** What to do with the bonds that break. */

@@ -116,6 +116,7 @@ void domain_mix_tangents(Domain *d, double elastic_weight)
 
 void domain_tell_time(Domain *d, double time, double time_step)
 {
+  domain_tell_strains(d, time);
   for (int r = 0; r < d->region_count; ++r) {
     d->regions[r].points.time = time;
     d->regions[r].points.time_step = time_step;
@@ -135,6 +136,7 @@ double domain_step_begin(const Domain *d)
 
 void domain_commit_points(Domain *d)
 {
+  domain_book_strains(d);
   for (int r = 0; r < d->region_count; ++r) {
     const Region *region = &d->regions[r];
     points_commit(&d->regions[r].points);
@@ -250,6 +252,9 @@ size_t domain_particle_bytes(const Domain *d)
       bonds += 12 * (size_t)d->regions[r].points.count;
   }
   const Particles *p = d->particles;
+  if (d->strains.given) tensors += 5;
+  for (int r = 0; r < d->region_count; ++r)
+    for (int k = 0; k < 3; ++k) bonds += d->regions[r].beside[k] ? (size_t)d->regions[r].points.count : 0;
   const size_t own = 3 + 4 * (size_t)p->motions + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);
   return places * sizeof(double) * (own + 1 + tensors) + places * sizeof(int32_t) * 2 +
          (2 * history + bonds) * sizeof(double);

@@ -7,6 +7,7 @@
 #include "failure/failure.h"
 #include "forces/forces.h"
 #include "formulation/formulation.h"
+#include "loading/load.h"
 
 typedef struct Batch { /* slices first .. last - 1, of one region and material, at most BATCH places */
   int64_t first, last;
@@ -20,7 +21,9 @@ typedef struct Region {
   const void *keys;
   void *formulation;
   Points points;
-  BondList bonds;    /* where points are on bonds; empty otherwise */
+  BondList bonds; /* where points are on bonds; empty otherwise */
+  double *beside
+      [3]; /* [rows of points] what free strains put in the place of Points.initial, where it is not shared; NULL: nothing */
   int64_t particles; /* of them */
   bool takes_both;   /* its formulation in the deck takes laws of one strain, too, if all are */
   bool is_linear;    /* no law of it dissipates or remembers */
@@ -65,6 +68,18 @@ typedef struct Torn {
   double stored;                        /* at the end of the step without them */
 } Torn;
 
+/** Strains that places would take where nothing hindered them (strains.c). */
+typedef struct Strains {
+  Loading *loading;    /* borrowed; NULL before there are loads */
+  bool any;            /* loads have strains, of particles or of bars */
+  double *given;       /* [places] as loads say them; NULL: no load has any */
+  double *held;        /* as of the last state */
+  double *tension;     /* [places] what one would take of the body by growing by 1, as of the last state */
+  double *tension_now; /* while a step is booked */
+  int64_t known;       /* whether `tension` is up to date */
+  double work;         /* that they have done so far */
+} Strains;
+
 typedef struct Domain {
   Body body;
   Particles *particles; /* the body's */
@@ -76,6 +91,8 @@ typedef struct Domain {
   double *strain[6], *stress[6];
   double *initial_strain[6]; /* [places] what points that begin under stress add to their strains; NULL: none does */
   double initial_energy;     /* that they store by it */
+  bool is_strained;          /* loads may give it free strains */
+  Strains strains;
   /** [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
   uint8_t *gave_up;
   Region *regions;
@@ -117,6 +134,7 @@ typedef struct DomainSpec {
   const PeridynamicsSpec *peridynamics;
   const FailureSpec *failure; /* or NULL */
   void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
+  bool is_strained;           /* some load is an initial strain */
 } DomainSpec;
 
 static inline Region *domain_region(const Domain *domain, int64_t place)
@@ -219,6 +237,19 @@ void domain_set_elastic_stage(Domain *domain, bool elastic);
 bool domain_may_soften(const Domain *domain);
 /** Makes the trial state of all points the committed one. By one thread. */
 void domain_commit_points(Domain *domain);
+/** Lets loads say the strains that the body begins from. Points under initial stress have begun. @param[in] loading  borrowed */
+int domain_take_loads(Domain *domain, Loading *loading, const DeckReader *reader);
+/** Strains that loads say at a time, by one thread; domain_tell_time does it. */
+void domain_tell_strains(Domain *domain, double time);
+/** Books the work of strains that have changed since, with the stresses answered last and before laws commit. By one thread. */
+void domain_book_strains(Domain *domain);
+/** Work that strains of loads have done on the body so far: what it has received beyond the work of forces and motions. */
+double domain_strain_work(const Domain *domain);
+/** Strains of a state that has come back. */
+void domain_follow_strains(Domain *domain);
+void domain_strains_state(Domain *domain, StateList *list);
+void domain_strains_destroy(Domain *domain);
+
 /** What went wrong in a material server, one line; "" if nothing did. */
 const char *domain_server_problem(const Domain *domain);
 bool domain_has_servers(const Domain *domain);

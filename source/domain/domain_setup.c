@@ -298,6 +298,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   const Space space = peridynamics_space(pd);
   d->failed_place = -1;
   d->forces_spec = spec->forces;
+  d->is_strained = spec->is_strained;
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
@@ -389,6 +390,7 @@ void domain_destroy(Domain *d)
   }
   for (int k = 0; k < 6; ++k) places_free(&d->initial_strain[k]);
   joint_destroy(&d->joint);
+  domain_strains_destroy(d);
   regions_destroy(d);
   family_destroy(&d->family);
   if (d->particles && d->counted != d->particles->volume) places_free(&d->counted);

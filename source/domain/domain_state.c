@@ -57,6 +57,7 @@ static int resume_broken(void *owner, const double *numbers, int64_t count, Erro
   CHECK(family_is_valid(&d->family));
   for (int r = 0; r < d->region_count; ++r) CHECK(points_is_valid(&d->regions[r].points));
   memset(d->look_again, 0, sizeof *d->look_again * (size_t)d->particles->slices);
+  if (d->strains.loading) loading_forget_strains(d->strains.loading); /* those of bars came back as well */
   domain_show_states(d);
   forces_find_again(&d->forces);
   return BRECCIA_OK;
@@ -91,6 +92,7 @@ void domain_state(Domain *d, StateList *list)
   static const StateCare broken = {.save = save_broken, .resume = resume_broken};
   const bool laws_in_forces = domain_laws_in_forces(d);
   particles_state(d->particles, list);
+  domain_strains_state(d, list);
   state_add_vector(list, "force", "force per volume", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
                    d->particles->internal, d->particles->places);
   particles_state_rotations(d->particles, "moment", "stress", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,

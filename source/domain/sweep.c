@@ -323,6 +323,7 @@ static void remake_forces(void *context)
 
 void domain_follow(Domain *d)
 {
+  domain_follow_strains(d);
   for (int r = 0; r < d->region_count; ++r)
     if (d->regions[r].type->commit) d->regions[r].type->commit(d->regions[r].formulation, false);
   if (domain_is_elastic(d))

@@ -121,21 +121,13 @@ static double half_energy(const Failure *failure, const Family *f, int64_t slice
       square += y[k] * y[k];
       along += eta * (bond->xi[k] + y[k]);
     }
-    const double length = sqrt(square), elongation = along / (length + bond->length); /* exact where it is small */
+    const double length = sqrt(square), /* exact where it is small */
+        elongation = along / (length + bond->length) -
+                     bond->length * particles_free_strain(f->particles, place, bond->neighbour);
     for (int k = 0; k < 3; ++k) change[k] = elongation * y[k] / length;
   }
   for (int k = 0; k < 3; ++k) sum += 0.5 * state[k] * change[k];
   return sum;
-}
-
-static bool is_longer(const Family *f, int64_t place, const Bond *bond)
-{
-  double along = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
-    along += eta * (2 * bond->xi[k] + eta);
-  }
-  return along > 0;
 }
 
 /** A bond beyond its limit is so for one of its ends by more than half of that: the other end's slice need not be a suspect. */
@@ -145,7 +137,7 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   const double influence = failure->influence->value(fmin(1, bond->length / f->horizon), bond->length);
   const double limit = failure_limit(failure, place, bond->neighbour) * bond->weight /
                        (influence * f->particles->volume[bond->neighbour]);
-  if (!(bond->weight > 0) || isinf(limit) || !is_longer(f, place, bond)) return false;
+  if (!(bond->weight > 0) || isinf(limit) || !failure_is_longer(f, place, bond)) return false;
   const double own = half_energy(failure, f, slice, slot, lane, bond);
   if (own < limit / 2 * (1 - 1e-12)) return false;
   const int64_t there = bond->neighbour / SLICE, back = family_slot(f, bond->neighbour, (int32_t)place);

@@ -56,13 +56,8 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
   const FailureRegion *own = &failure->regions[failure->region[slice]];
   const int64_t place = slice * SLICE + lane;
   const double limit = failure_limit(failure, place, bond->neighbour);
-  double along = 0, tension, shear;
-  if (isinf(limit)) return false;
-  for (int k = 0; k < 3; ++k) {
-    const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
-    along += eta * (2 * bond->xi[k] + eta);
-  }
-  if (!(along > 0)) return false;
+  double tension, shear;
+  if (isinf(limit) || !failure_is_longer(f, place, bond)) return false;
   own->type->section_stress(own->formulation, slice, slot, lane, &tension, &shear);
   return tension > limit || (!isnan(spec->shear) && shear * spec->tensile > limit * spec->shear);
 }

@@ -1,4 +1,4 @@
-/* A bond breaks when its stretch (|Y| - |xi|) / |xi| exceeds a limit (Silling 2000; docs/theory.md 2). */
+/* A bond breaks when its stretch (|Y| - |xi|) / |xi|, less its free strain, exceeds a limit (Silling 2000; docs/theory.md 2). */
 #include "failure/critical_stretch.h"
 
 #include <math.h>
@@ -70,6 +70,9 @@ LANES_INLINE Lanes reserve(const Failure *failure, const Family *f, int64_t slot
   }
   Lanes limit = lanes_set(failure->limit[failure->material[place / SLICE]]);
   for (int k = 0; !lattice && k < LANES; ++k) limit[k] = failure_limit(failure, place, index[k]);
+  if (p->free_strain)
+    limit += lanes_set(0.5) * (lanes_load(p->free_strain + place) +
+                               (lattice ? lanes_load(p->free_strain + base) : lanes_gather(p->free_strain, index)));
   Lanes left = (lanes_set(1) + limit) * lanes_root(reference) - lanes_root(square);
   LaneMask intact = lanes_mask((unsigned)f->intact[slot] >> (LANES * half) & 15u);
   return lanes_where(intact, left) + lanes_where(~intact, lanes_set(f->horizon));
@@ -92,6 +95,7 @@ static double suspect(const Failure *failure, const Family *f, int64_t slice, ui
   for (int k = 1; k < LANES; ++k) smallest = least[k] < smallest ? least[k] : smallest;
   double rounding = 1e-12 * f->horizon;
   *suspects = smallest <= rounding;
+  if (f->particles->free_strain) return 0; /* which may change without any motion */
   return smallest > rounding ? (smallest - rounding) / 2 : 0;
 }
 
@@ -105,7 +109,8 @@ static bool exceeds(const Failure *failure, const Family *f, int64_t slice, int6
     double y = bond->xi[k] + p->displacement[k][bond->neighbour] - p->displacement[k][place];
     square += y * y;
   }
-  return sqrt(square) > (1 + failure_limit(failure, place, bond->neighbour)) * bond->length;
+  const double freely = particles_free_strain(p, place, bond->neighbour);
+  return sqrt(square) > (1 + failure_limit(failure, place, bond->neighbour) + freely) * bond->length;
 }
 
 const Criterion criterion_critical_stretch = {

@@ -25,6 +25,17 @@ const Criterion *criterion_of(const FailureSpec *spec)
   return criteria[0];
 }
 
+bool failure_is_longer(const Family *f, int64_t place, const Bond *bond)
+{
+  const double natural = particles_free_strain(f->particles, place, bond->neighbour);
+  double along = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double *u = f->particles->displacement[k], eta = u[bond->neighbour] - u[place];
+    along += eta * (2 * bond->xi[k] + eta);
+  }
+  return along > natural * (2 + natural) * bond->length * bond->length;
+}
+
 static const char *criterion_word(int k)
 {
   return k < COUNT ? criteria[k]->name : NULL;

@@ -93,4 +93,7 @@ static inline double failure_limit(const Failure *failure, int64_t a, int64_t b)
   return (one < other ? one : other) * (1 + failure->beyond);
 }
 
+/** Whether a bond is longer than where nothing hinders it. */
+bool failure_is_longer(const Family *family, int64_t place, const Bond *bond);
+
 #endif

@@ -183,6 +183,14 @@ double forces_dissipated(const Forces *f)
   return sum;
 }
 
+double forces_given(const Forces *f)
+{
+  double sum = 0;
+  for (int k = 0; k < f->count; ++k)
+    if (f->type[k]->given) sum += f->type[k]->given(f->own[k]);
+  return sum;
+}
+
 double forces_friction(const Forces *f)
 {
   double sum = 0;

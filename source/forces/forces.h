@@ -75,6 +75,8 @@ typedef struct ForcesType {
   /** Energy held at the displacements held, as committed; and what was dissipated up to the last commit. */
   double (*energy)(void *forces);
   double (*dissipated)(const void *forces);
+  /** Work that loads have done on them beside that of motions, by strains that these begin from, up to the last commit. */
+  double (*given)(const void *forces);
   /** The most that they add to the largest eigenvalue of stiffness over mass. */
   double (*eigenvalue)(const void *forces);
   /** Whether memory was out. */
@@ -135,6 +137,7 @@ int64_t forces_pattern(const Forces *forces);
 void forces_commit(Forces *forces);
 double forces_energy(const Forces *forces);
 double forces_dissipated(const Forces *forces);
+double forces_given(const Forces *forces);
 /** The part of it that is friction. */
 double forces_friction(const Forces *forces);
 double forces_eigenvalue(const Forces *forces);

@@ -175,7 +175,9 @@ static void bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   int64_t rows[2];
   if (b->bonds) bond_list_rows(b->bonds, b->family, slice, slot, lane, rows);
   const double share = b->bonds ? points_elastic_share(b->points, rows[0], stretch) : 1;
-  const double stored = 0.5 * share * pull * length * (length - bond.length);
+  const double elastic = b->particles->free_strain ? bond.length * points_elastic_strain(b->points, rows[0], stretch, 0)
+                                                   : share * (length - bond.length);
+  const double stored = 0.5 * pull * length * elastic;
   *energy = (StoredEnergy){.stored = stored, .received = stored - 0.5 * pull * along};
 }
 
@@ -198,11 +200,11 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
 }
 
 /** Where bonds leave no stress across a plane, Poisson's ratio is 1/3 (docs/theory.md 2): E_zz = -(E_xx + E_yy) / 2, down to a
- *  thickness of nothing. */
-static double thickness_ratio(const double f[9])
+ *  thickness of nothing; both sides without the free strain. */
+static double thickness_ratio(const double f[9], double freely)
 {
   const double sum = (f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4]) / 2 - 1; /* E_xx + E_yy */
-  return sqrt(fmax(0, 1 - sum));
+  return sqrt(fmax(0, 1 - sum + 4 * freely));
 }
 
 static void gradient(const void *formulation, int64_t place, double f[9])
@@ -210,7 +212,8 @@ static void gradient(const void *formulation, int64_t place, double f[9])
   const BondBased *b = formulation;
   ShapeTensor shape = shape_tensor(b->family, (int32_t)place, b->body->dimensions, 0);
   shape_gradient(b->family, (int32_t)place, shape.inverse, f);
-  if (b->space == SPACE_PLANE_STRESS) f[8] = thickness_ratio(f);
+  if (b->space == SPACE_PLANE_STRESS)
+    f[8] = thickness_ratio(f, b->particles->free_strain ? b->particles->free_strain[place] : 0);
 }
 
 /** Half of the sum of force (x) y over the bonds. In plane strain each bond of the plane stands for a fan of bonds that slant through the

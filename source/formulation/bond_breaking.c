@@ -60,6 +60,10 @@ static double least_room(const BondBased *b, int64_t slice, const EnergyLimit *l
 double bond_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found)
 {
   const BondBased *b = formulation;
+  if (b->particles->free_strain) { /* which may change without any motion */
+    *found = 1;
+    return 0;
+  }
   const double rounding = 1e-12 * b->family->horizon, least = least_room(b, slice, limit);
   *found = least <= rounding;
   return least > rounding ? (least - rounding) / 2 : 0;

@@ -48,6 +48,11 @@ void correspondence_elongation(const void *formulation, int64_t slice, int64_t s
     change[k] = c->particles->displacement[k][bond.neighbour] - c->particles->displacement[k][place];
     for (int j = 0; j < 3; ++j) change[k] -= turn[SLICE * (3 * k + j)] * bond.xi[j];
   }
+  const double freely = particles_free_strain(c->particles, place, bond.neighbour);
+  for (int k = 0; k < 3 && freely != 0; ++k) {
+    change[k] -= freely * bond.xi[k];
+    for (int j = 0; j < 3; ++j) change[k] -= freely * turn[SLICE * (3 * k + j)] * bond.xi[j];
+  }
 }
 
 /** The force state of four particles, over influence, is state xi + hold eta. */
@@ -149,7 +154,7 @@ static bool any_axial_beyond(const Correspondence *c, int64_t slice, int lane, c
 double correspondence_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found)
 {
   const Correspondence *c = formulation;
-  *found = any_beyond(c, slice, limit);
+  *found = c->particles->free_strain || any_beyond(c, slice, limit); /* which may change without any motion */
   for (int lane = 0; lane < SLICE && !*found; ++lane)
     if (c->shapes.mode[slice * SLICE + lane] == SHAPE_AXIAL) *found = any_axial_beyond(c, slice, lane, limit);
   return 0;

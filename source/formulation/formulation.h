@@ -224,6 +224,10 @@ struct FormulationType {
   /** Critical stretch of bonds with which a plane crack takes a fracture energy. NULL: none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
+  /** What the free strain of a place would take of the body by growing by 1. NULL: its volume times the trace of its stress. */
+  double (*free_tension)(const void *formulation, int64_t place);
+  /** Why it takes no free strains, or NULL where it does. NULL: it does. */
+  const char *(*strain_free)(const void *formulation);
   /** How an even stress acts on marked places of the body as it begins: adds the area vectors a with which the force on a place is stress . a, all 0
    *  inside and minus a particle's share of the area along the normal of a free surface; NAN where that is not known. NULL: it is nowhere.
    *  @param[in] marked  [places] @param[in,out] area  [3][places] */

@@ -289,6 +289,7 @@ const FormulationType formulation_hybrid = {
     .stored_energy = hybrid_stored_energy,
     .bond_energy = hybrid_bond_energy,
     .elongation = hybrid_elongation,
+    .free_tension = hybrid_free_tension,
     .section_stress = hybrid_section_stress,
     .characteristic_length = hybrid_characteristic_length,
     .even_stress = hybrid_even_stress,

@@ -252,6 +252,7 @@ void hybrid_stress(const void *formulation, int64_t place, double stress[6]);
 double hybrid_characteristic_length(const BondLength *of);
 
 /** As FormulationType describes them (hybrid_breaking.c). */
+double hybrid_free_tension(const void *formulation, int64_t place);
 void hybrid_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                         StoredEnergy *energy);

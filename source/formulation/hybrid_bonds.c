@@ -159,9 +159,10 @@ void hybrid_elongation(const void *formulation, int64_t slice, int64_t slot, int
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
   bond_gradient(h, rows[0], f);
   bond_turn(h, f, turn);
+  const double natural = 1 + particles_free_strain(h->particles, slice * SLICE + lane, bond.neighbour);
   for (int k = 0; k < 3; ++k) {
     change[k] = bond.xi[k] + u[k][bond.neighbour] - u[k][slice * SLICE + lane];
-    for (int j = 0; j < 3; ++j) change[k] -= turn[3 * k + j] * bond.xi[j];
+    for (int j = 0; j < 3; ++j) change[k] -= natural * turn[3 * k + j] * bond.xi[j];
   }
 }
 

@@ -130,6 +130,23 @@ void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, in
   h->hidden[0] = h->hidden[1] = -1;
 }
 
+double hybrid_free_tension(const void *formulation, int64_t place)
+{
+  const Hybrid *h = formulation;
+  double sum = 0;
+  HybridRow at;
+  for (HybridRows rows = hybrid_rows(h, place); hybrid_rows_next(h, &rows, &at);) {
+    const double volume = hybrid_volume(h, &at);
+    double strain[6], stress[6];
+    HybridView view;
+    if (!(volume > 0)) continue;
+    if (h->hooke) hybrid_view_at(h, &at, &view);
+    hybrid_tensors(h, rows.row, &view, 0, strain, stress);
+    sum += (rows.alone ? 1 : 0.5) * volume * (stress[XX] + stress[YY] + (counts(h, ZZ) ? stress[ZZ] : 0));
+  }
+  return sum;
+}
+
 void hybrid_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy)
 {
   (void)time;

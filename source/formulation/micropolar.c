@@ -235,6 +235,12 @@ static double poisson_of(const Micropolar *m, int64_t place)
   return (3 * material->bulk - 2 * material->shear) / (2 * (3 * material->bulk + material->shear));
 }
 
+static const char *strain_free(const void *formulation)
+{
+  const Micropolar *m = formulation;
+  return m->secant ? "links of 'kinematics: thesis' take none; leave 'kinematics' out" : NULL;
+}
+
 static void gradient(const void *formulation, int64_t place, double f[9])
 {
   const Micropolar *m = formulation;
@@ -243,7 +249,8 @@ static void gradient(const void *formulation, int64_t place, double f[9])
   if (m->space != SPACE_PLANE_STRESS) return;
   const double nu = poisson_of(m, place),
                sum = (f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4]) / 2 - 1; /* E_xx + E_yy */
-  f[8] = sqrt(fmax(0, 1 - 2 * nu / (1 - nu) * sum));
+  const double freely = m->particles->free_strain ? m->particles->free_strain[place] : 0;
+  f[8] = sqrt(fmax(0, 1 - 2 * nu / (1 - nu) * (sum - 2 * freely) + 2 * freely));
 }
 
 /** The symmetric part of half the sum of force (x) y over the links. */
@@ -322,6 +329,7 @@ const FormulationType formulation_micropolar = {
     .bond_energy = bond_energy,
     .gradient = gradient,
     .stress = stress,
+    .strain_free = strain_free,
     .describe = micropolar_describe,
     .former_bonds = former_bonds,
     .bytes = bytes,

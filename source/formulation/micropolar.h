@@ -92,7 +92,7 @@ typedef struct Link {
   Bond bond;
   LinkStiffness stiffness;
   double y[3], length; /* to the other end, as deformed */
-  double stretch;
+  double stretch;      /* without the free strain */
   double force[3];     /* on this end; on the other one minus this */
   double moment[2][3]; /* on this end, on the other */
   double energy;

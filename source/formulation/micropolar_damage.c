@@ -9,7 +9,20 @@
 
 /* ---- in tension ---- */
 
-/** (|y|^2 - |xi|^2) / |xi|^2 of the links of half a lattice slot. */
+LANES_INLINE Lanes stretch_of(Lanes squares)
+{
+  return squares / (lanes_set(1) + lanes_root(lanes_set(1) + squares));
+}
+
+/** Stretch of a link without its free strain. */
+static double stretch_at(const Micropolar *m, int64_t place, const Bond *bond)
+{
+  double y[3];
+  return micropolar_stretch(m->particles->displacement, place, bond, y) -
+         particles_free_strain(m->particles, place, bond->neighbour);
+}
+
+/** (|y|^2 - |xi|^2) / |xi|^2 of the links of half a lattice slot, |xi| being longer by the free strain. */
 LANES_INLINE Lanes squares_of(const Micropolar *m, int64_t slot, int64_t place, int half)
 {
   double *const *u = m->particles->displacement;
@@ -20,12 +33,10 @@ LANES_INLINE Lanes squares_of(const Micropolar *m, int64_t slot, int64_t place, 
     const Lanes e = (lanes_load(u[k] + there) - lanes_load(u[k] + here)) * lanes_set(row->by_length);
     d += e * (lanes_set(2 * row->n[k]) + e);
   }
-  return d;
-}
-
-LANES_INLINE Lanes stretch_of(Lanes squares)
-{
-  return squares / (lanes_set(1) + lanes_root(lanes_set(1) + squares));
+  const double *free = m->particles->free_strain;
+  if (!free) return d;
+  const Lanes left = stretch_of(d) - lanes_set(0.5) * (lanes_load(free + here) + lanes_load(free + there));
+  return left * (lanes_set(2) + left);
 }
 
 /** link_damage, lane by lane. */
@@ -55,8 +66,7 @@ LANES_INLINE bool is_beyond(const Micropolar *m, int64_t slice)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
       const Bond bond = family_bond(f, slice, slot, lane);
-      double y[3];
-      const double s = micropolar_stretch(m->particles->displacement, slice * SLICE + lane, &bond, y), d = s * (2 + s);
+      const double s = stretch_at(m, slice * SLICE + lane, &bond), d = s * (2 + s);
       if (d > m->damage->longer || d < m->damage->shorter) return true;
     }
   return false;
@@ -110,8 +120,7 @@ LANES_INLINE void find_tension(const Micropolar *m, int64_t slice)
       damage->tension[1][at] = damage->tension[0][at];
       if (f->intact[slot] >> lane & 1) {
         const Bond bond = family_bond(f, slice, slot, lane);
-        double y[3];
-        const double stretch = micropolar_stretch(m->particles->displacement, place, &bond, y);
+        const double stretch = stretch_at(m, place, &bond);
         damage->tension[1][at] = fmax(damage->tension[0][at], tension_at(m, place, bond.neighbour, stretch));
       }
       damage->damaged[place] += damage->tension[1][at] > 0;
@@ -157,8 +166,7 @@ static void find_compression(const Micropolar *m, int64_t slice)
       if (!(f->intact[slot] >> lane & 1)) continue;
       const int64_t at = slot * SLICE + lane, place = first + lane;
       const Bond bond = family_bond(f, slice, slot, lane);
-      double y[3];
-      const double stretch = micropolar_stretch(m->particles->displacement, place, &bond, y),
+      const double stretch = stretch_at(m, place, &bond),
                    beside = fmax(damage->damaged[place], damage->damaged[bond.neighbour]);
       damage->compression[1][at] = damage->compression[0][at];
       if (beside > (damage->tension[1][at] > 0))

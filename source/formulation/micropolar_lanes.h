@@ -29,6 +29,13 @@ LANES_INLINE void find_left(const Micropolar *m, int64_t slot, int half, const b
   *other = (lanes_set(1) - tension) * rest;
 }
 
+/** Stretch at which links between places and those from others on carry nothing. */
+LANES_INLINE Lanes free_of(const Micropolar *m, int64_t here, int64_t there)
+{
+  const double *free = m->particles->free_strain;
+  return free ? lanes_set(0.5) * (lanes_load(free + here) + lanes_load(free + there)) : lanes_set(0);
+}
+
 /** The law by which links of a slice are weakened now; NULL: none is. */
 LANES_INLINE const breccia_link *weakened_by(const Micropolar *m, int64_t slice)
 {

@@ -156,6 +156,7 @@ Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int6
   l.stiffness = micropolar_stiffness(m, place, &l.bond);
   l.stretch = micropolar_stretch(u, place, &l.bond, l.y);
   l.length = l.bond.length * (1 + l.stretch);
+  l.stretch -= particles_free_strain(m->particles, place, l.bond.neighbour);
   if (micropolar_is_weak(m, slice))
     micropolar_weaken(m, place, l.bond.neighbour, slot * SLICE + lane, l.stretch, &l.stiffness);
   for (int k = 0; k < 3; ++k) chord[k] = l.y[k] / l.length;

@@ -10,6 +10,7 @@ LANES_INLINE Lanes angle_of(Lanes sine)
 
 /** Half a slice: what it has, and what acts on it. */
 typedef struct HalfSlice {
+  int64_t place;
   Lanes u[2], cosine, sine;
   Lanes force[2], moment;
   LanesWithin within; /* the series */
@@ -26,7 +27,7 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   const Lanes ex = (lanes_load(u[0] + there) - own->u[0]) * by_length,
               ey = (lanes_load(u[1] + there) - own->u[1]) * by_length, yx = nx + ex, yy = ny + ey;
   const Lanes d = ex * (nx + yx) + ey * (ny + yy), g = shortening_series(d), inverse = lanes_set(1) - g;
-  const Lanes stretch = d * inverse - g, mx = yx * inverse, my = yy * inverse;
+  const Lanes stretch = d * inverse - g - free_of(m, own->place, there), mx = yx * inverse, my = yy * inverse;
   const Lanes cosine = lanes_load(m->shown[0] + there), sine = lanes_load(m->shown[1] + there);
   const Lanes ax = own->cosine * nx - own->sine * ny, ay = own->sine * nx + own->cosine * ny;
   const Lanes bx = cosine * nx - sine * ny, by = sine * nx + cosine * ny;
@@ -56,7 +57,8 @@ static bool resist(const Micropolar *m, int64_t slice)
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfSlice own = {.u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
+    HalfSlice own = {.place = place,
+                     .u = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
                      .cosine = lanes_load(m->shown[0] + place),
                      .sine = lanes_load(m->shown[1] + place),
                      .moment = {0},

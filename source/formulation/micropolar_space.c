@@ -9,6 +9,7 @@
 
 /** Half a slice: what it has, and what acts on it. */
 typedef struct HalfSlice {
+  int64_t place;
   Lanes u[3], q[4], turned[3][3]; /* quaternion, and its matrix */
   Lanes force[3], moment[3];
   LanesWithin within; /* the series */
@@ -102,7 +103,8 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
     chord[k] = n[k] + e;
     d += e * (n[k] + chord[k]);
   }
-  const Lanes g = shortening_series(d), inverse = lanes_set(1) - g, stretch = d * inverse - g;
+  const Lanes g = shortening_series(d), inverse = lanes_set(1) - g,
+              stretch = d * inverse - g - free_of(m, own->place, there);
   for (int k = 0; k < 3; ++k) chord[k] *= inverse;
   Lanes cosine[2] = {lanes_set(1), lanes_set(1)};
   Lanes left[2] = {lanes_set(1), lanes_set(1)};
@@ -142,7 +144,7 @@ static bool resist(const Micropolar *m, int64_t slice)
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfSlice own = {.within = lanes_all_within()};
+    HalfSlice own = {.place = place, .within = lanes_all_within()};
     for (int k = 0; k < 3; ++k) {
       own.u[k] = lanes_load(p->displacement[k] + place);
       own.force[k] = own.moment[k] = lanes_set(0);

@@ -73,6 +73,7 @@ const FormulationType formulation_ordinary = {
     .history = ordinary_history,
     .stored_energy = ordinary_stored_energy,
     .energy_room = ordinary_energy_room,
+    .strain_free = ordinary_strain_free,
     .gradient = ordinary_gradient,
     .stress = ordinary_stress,
     .critical_stretch = ordinary_critical_stretch,

@@ -95,6 +95,18 @@ static inline Bond ordinary_bond(const Ordinary *o, int64_t slice, int64_t slot,
   return bond;
 }
 
+/** Free strain of a place along the plane or in space, with which a family is free of stress. */
+static inline double ordinary_free(const Ordinary *o, int64_t place)
+{
+  return o->particles->free_strain ? o->particles->free_strain[place] : 0;
+}
+
+/** Dilatation without that of the free strain. */
+static inline double ordinary_elastic_dilatation(const Ordinary *o, int64_t place)
+{
+  return o->dilatation[place] - o->dimensions * ordinary_free(o, place);
+}
+
 /** A bond as it is deformed. */
 typedef struct OrdinaryStretch {
   double eta[3], y[3], length, elongation;
@@ -144,6 +156,7 @@ double ordinary_lattice_shear(const Ordinary *o, int block, const double e[6]);
 extern const Section ordinary_section;
 int ordinary_check(const void *keys, const Body *body, const DeckReader *reader);
 bool ordinary_takes(const breccia_law *law);
+const char *ordinary_strain_free(const void *formulation);
 int ordinary_check_material(const Material *material, char *reason, size_t size);
 void *ordinary_create(const FormulationParts *parts, Error *error);
 void ordinary_destroy(void *formulation);

@@ -80,10 +80,11 @@ void ordinary_stored_energy(const void *formulation, int64_t place, double time,
     double grown = 0;
     for (int k = 0; k < 3; ++k)
       grown += time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]) * s.y[k] / s.length;
-    volume += bond.weight * bond.length * s.elongation;
-    const double shift = shift_of(o, slot, lane, 1), elastic = s.elongation - shift;
+    const double from_free = s.elongation - ordinary_free(o, place) * bond.length;
+    volume += bond.weight * bond.length * from_free;
+    const double shift = shift_of(o, slot, lane, 1), elastic = from_free - shift;
     square += bond.weight * (elastic * elastic + (1 / part - 1) * shift * shift);
-    flowed += bond.weight * (s.elongation - shift / part) * (shift - shift_of(o, slot, lane, 0));
+    flowed += bond.weight * (from_free - shift / part) * (shift - shift_of(o, slot, lane, 0));
     volume_moved += bond.weight * bond.length * grown;
     square_moved += bond.weight * elastic * grown;
   }
@@ -111,8 +112,9 @@ void ordinary_gradient(const void *formulation, int64_t place, double f[9])
   shape_gradient(o->family, (int32_t)place, shape.inverse, f);
   if (o->space != SPACE_PLANE_STRESS) return;
   const double sum = f[0] * f[0] + f[3] * f[3] + f[1] * f[1] + f[4] * f[4] - 2, /* 2 (E_xx + E_yy) */
-      inelastic = o->flow ? 2 * o->flow->across[1][place] : 0;
-  f[8] = sqrt(fmax(0, 1 + ordinary_across(ordinary_material(o, place)) * (sum - inelastic) - inelastic));
+      inelastic = o->flow ? 2 * o->flow->across[1][place] : 0, freely = ordinary_free(o, place);
+  f[8] = sqrt(fmax(0, 1 + ordinary_across(ordinary_material(o, place)) * (sum - inelastic - 4 * freely) - inelastic +
+                          2 * freely));
 }
 
 /** Stress of the family's own force state: sum t y (x) y / |y| V. Across the plane, in plane strain, lambda theta + 2 G p. */
@@ -132,6 +134,7 @@ void ordinary_stress(const void *formulation, int64_t place, double stress[6])
   }
   const Material *m = ordinary_material(o, place);
   if (o->space != SPACE_PLANE_STRAIN) return;
-  const double inelastic = o->flow ? o->flow->across[1][place] : 0;
-  stress[ZZ] = o->share[place] * ((m->bulk - 2 * m->shear / 3) * o->dilatation[place] + 2 * m->shear * inelastic);
+  const double inelastic = o->flow ? o->flow->across[1][place] : 0, freely = ordinary_free(o, place);
+  stress[ZZ] = o->share[place] * ((m->bulk - 2 * m->shear / 3) * ordinary_elastic_dilatation(o, place) +
+                                  2 * m->shear * inelastic - 2 * m->shear * freely);
 }

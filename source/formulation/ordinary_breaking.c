@@ -81,6 +81,10 @@ static double least_room(const Ordinary *o, int64_t slice, const EnergyLimit *li
 double ordinary_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found)
 {
   const Ordinary *o = formulation;
+  if (o->particles->free_strain) { /* which may change without any motion */
+    *found = 1;
+    return 0;
+  }
   const double margin = 1e-12 * o->family->horizon, least = least_room(o, slice, limit, found);
   return o->flow || least <= margin ? 0 : (least - margin) / 2;
 }

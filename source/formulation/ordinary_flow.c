@@ -120,7 +120,7 @@ static void yield(const Ordinary *o, int64_t place, const breccia_deviator *devi
   const double b = o->share[place] > 0 ? o->shear[place] / o->share[place] : 0;
   FlowReturn r = {.factor = 1, .across = before};
   if (!o->points->elastic_stage)
-    r = ordinary_yield(o->space, m, deviator->yield_stress, o->dilatation[place], before, b, square);
+    r = ordinary_yield(o->space, m, deviator->yield_stress, ordinary_elastic_dilatation(o, place), before, b, square);
   /* Plastic strain in the plane is (1 - f)^2 b N^2 / 2 G squared, across it and evenly in the plane 3/2 of p squared. */
   const double grown = r.across - before, kept = 1 - r.factor;
   flow->equivalent[1][place] =
@@ -147,8 +147,9 @@ static void relax(const Ordinary *o, int64_t place, const breccia_deviator *devi
                times = o->points->elastic_stage ? 0 : o->points->time_step / deviator->relaxation_time;
   const Relaxed relaxed = ordinary_relaxed(times);
   double now;
-  flow->returned[place] = ordinary_relax(o->space, ordinary_material(o, place), share, times, o->dilatation[place],
-                                         flow->across[0][place], flow->across_last[0][place], &now);
+  flow->returned[place] =
+      ordinary_relax(o->space, ordinary_material(o, place), share, times, ordinary_elastic_dilatation(o, place),
+                     flow->across[0][place], flow->across_last[0][place], &now);
   flow->across[1][place] = flow->returned[place].across;
   flow->across_last[1][place] = o->points->elastic_stage ? flow->across_last[0][place] : now; /* then history is kept */
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {

@@ -46,6 +46,15 @@ bool ordinary_takes(const breccia_law *law)
   return law->linear || law->deviator;
 }
 
+const char *ordinary_strain_free(const void *formulation)
+{
+  const Ordinary *o = formulation;
+  return o->flow && o->space == SPACE_PLANE_STRAIN ? "with laws that yield or relax in plane strain, ordinary does not "
+                                                     "know what a free strain does across the "
+                                                     "plane; take 'formulation: correspondence', or plane stress"
+                                                   : NULL;
+}
+
 int ordinary_check_material(const Material *m, char *reason, size_t size)
 {
   breccia_deviator deviator;

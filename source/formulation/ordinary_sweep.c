@@ -121,8 +121,13 @@ static int64_t dilate(const Ordinary *ordinary, const Sweep *sweep)
 static int64_t respond(const Ordinary *o, const Sweep *sweep)
 {
   const double pull = ordinary_coupling(o->space, ordinary_material(o, sweep->first * SLICE)).pull;
+  const double *free = o->particles->free_strain;
   for (int64_t place = sweep->first * SLICE; place < sweep->last * SLICE; place += LANES) {
     Lanes base = lanes_load(o->volumetric + place) * lanes_load(o->dilatation + place);
+    /* bonds and dilatation less those of the free strain, both of which are in proportion to |xi| */
+    if (free)
+      base -= (lanes_set(o->dimensions) * lanes_load(o->volumetric + place) + lanes_load(o->shear + place)) *
+              lanes_load(free + place);
     if (o->flow)
       base -= lanes_set(pull) * lanes_load(o->share + place) * lanes_load(o->inverse + place) *
               lanes_load(o->flow->across[1] + place);

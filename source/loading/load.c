@@ -160,6 +160,21 @@ const char *load_kind(const LoadSpec *spec, const char **dimension)
   return types[k]->kind ? types[k]->kind(&spec->of[k], dimension) : field->key;
 }
 
+bool load_strains_places(const LoadSpec *spec)
+{
+  return types[index_of(spec)] == &initial_strain_load;
+}
+
+int load_is_known(const Load *load, const LoadMaking *making, const char *what)
+{
+  if (!history_is_controlled(&load->history)) return BRECCIA_OK;
+  return node_error(
+      making->reader->document, load->history.value_node, making->reader->error,
+      "controlled: the factor of a load 'initial strain' or 'prestress' is not found; give '%s' a 'ramp' or "
+      "a 'table'",
+      what);
+}
+
 double load_magnitude(const LoadSpec *spec)
 {
   const int k = index_of(spec);

@@ -5,6 +5,7 @@
 #include "body/selection.h"
 #include "constitutive/material.h"
 #include "family/family.h"
+#include "forces/forces.h"
 #include "formulation/operator.h"
 #include "loading/history.h"
 
@@ -45,6 +46,14 @@ typedef struct LoadMotion {
       rate; /* what the velocity at the end of a step changes with the displacement there; 0 where none is solved for */
 } LoadMotion;
 
+/** Where loads put the strains that bodies begin from. */
+typedef struct LoadStrains {
+  double *of_places; /* [places]; NULL: no load has any */
+  int64_t places;
+  double *of_bars; /* [bars]; NULL: there are none */
+  int bar_count;
+} LoadStrains;
+
 typedef struct Load {
   const LoadType *type;
   const LoadSpec *spec;
@@ -55,6 +64,7 @@ typedef struct Load {
   int64_t first, behind;      /* acts in the stages first .. behind - 1 */
   double begin;               /* time of the run from which its history counts */
   History history;
+  double applied; /* factor at which its strains were put last; NaN: not since they were put elsewhere */
   LoadMotion motion;
   uint8_t *
       held; /* [particles] bits of the axes along which motions are prescribed in the stage under way; of types that brake */
@@ -124,6 +134,7 @@ typedef struct LoadMaking {
   const SectionList *selections;
   const Material *materials;
   const int32_t *material; /* [slices] number of each one's */
+  const Forces *forces;    /* beside those of bonds; NULL: there are none */
 } LoadMaking;
 
 struct LoadType {
@@ -138,6 +149,8 @@ struct LoadType {
   const double *(*vector)(const LoadValue *value);
   /** Adds its forces per volume to the external ones, at displacements and velocities as held, by all threads. NULL: it is no force. */
   void (*force)(const Load *load, Particles *particles, double factor);
+  /** Adds the strains that it has bodies begin from. By one thread. NULL: none. */
+  void (*strain)(const Load *load, const LoadStrains *strains, double factor);
   /** Adds its forces per volume against velocities, after those of all other loads and at the internal forces held, by all threads. `time` is
    *  since it began. NULL: there are none. */
   void (*brake)(Load *load, Particles *particles, const LoadMotion *motion, double time);
@@ -204,6 +217,16 @@ void loading_apply_controlled(const Loading *loading, Particles *particles);
 
 /** The same without what ties make of it, for those who give tied particles one displacement; by all threads. */
 void loading_apply_untied(const Loading *loading, Particles *particles, double time);
+/** Puts the strains that loads say at a time, unless they stand there already. By one thread. @return whether they are others */
+bool loading_strain(Loading *loading, const LoadStrains *strains, double time);
+/** They were put elsewhere meanwhile, and are put again the next time. */
+void loading_forget_strains(Loading *loading);
+/** Whether a load of a deck is an initial strain of particles. */
+bool load_strains_places(const LoadSpec *load);
+extern const LoadType initial_strain_load;
+/** Refuses a history whose factor a solver finds: what it says of forces does not hold of strains. */
+int load_is_known(const Load *load, const LoadMaking *making, const char *what);
+
 /** Adds changes of external forces per volume with changes v of displacements: of springs. By one thread.
  *  @param[in,out] change  [3][places] */
 void loading_change(const Loading *loading, const Particles *particles, double *const v[3], double *const change[3]);

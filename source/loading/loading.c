@@ -4,6 +4,7 @@
 #include "base/team.h"
 #include "loading/constraint.h"
 #include "loading/tie.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +42,7 @@ static int add_loads(const LoadMaking *making, const SectionList *specs, int64_t
     const LoadSpec *spec = specs->items[k];
     if (spec->name && stage > 0) end_loads(loading, spec->name, stage);
     Load *load = &loading->loads[loading->count++];
-    *load = (Load){.first = stage, .behind = INT64_MAX};
+    *load = (Load){.first = stage, .behind = INT64_MAX, .applied = NAN};
     const int before = loading->constraint_count;
     const int bad = load_create(load, spec, making);
     if (bad) status = bad;
@@ -276,6 +277,35 @@ void loading_apply(const Loading *loading, Particles *p, double time)
 {
   loading_apply_untied(loading, p, time);
   tie_groups_push(loading->ties, p);
+}
+
+/** Factor of the strains of a load, 0 where it does not act. */
+static double strain_factor(const Loading *loading, const Load *load, double time)
+{
+  return load_acts(loading, load) ? load_factor(load, time) : 0;
+}
+
+bool loading_strain(Loading *loading, const LoadStrains *strains, double time)
+{
+  bool same = true;
+  for (int l = 0; l < loading->count; ++l)
+    if (loading->loads[l].type->strain)
+      same &= loading->loads[l].applied == strain_factor(loading, &loading->loads[l], time);
+  if (same) return false;
+  if (strains->of_places) memset(strains->of_places, 0, sizeof(double) * (size_t)strains->places);
+  if (strains->of_bars) memset(strains->of_bars, 0, sizeof(double) * (size_t)strains->bar_count);
+  for (int l = 0; l < loading->count; ++l) {
+    Load *load = &loading->loads[l];
+    if (!load->type->strain) continue;
+    load->applied = strain_factor(loading, load, time);
+    if (load->applied != 0) load->type->strain(load, strains, load->applied);
+  }
+  return true;
+}
+
+void loading_forget_strains(Loading *loading)
+{
+  for (int l = 0; l < loading->count; ++l) loading->loads[l].applied = NAN;
 }
 
 void loading_change(const Loading *loading, const Particles *p, double *const v[3], double *const change[3])

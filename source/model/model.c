@@ -147,10 +147,22 @@ static int create_loading(breccia_model *model, Error *error)
                              .reader = &model->reader,
                              .selections = &spec->selections,
                              .materials = model->domain.materials,
-                             .material = model->domain.material};
+                             .material = model->domain.material,
+                             .forces = &model->domain.forces};
   const int status = loading_create(&making, &spec->loads, stages, spec->solve.count);
   free(stages);
   return status;
+}
+
+static bool has_initial_strains(const DeckSpec *spec)
+{
+  bool has = false;
+  for (int k = 0; k < spec->loads.count; ++k) has |= load_strains_places(spec->loads.items[k]);
+  for (int s = 0; s < spec->solve.count; ++s) {
+    const SolveSpec *stage = spec->solve.items[s];
+    for (int k = 0; k < stage->loads.count; ++k) has |= load_strains_places(stage->loads.items[k]);
+  }
+  return has;
 }
 
 static int build(breccia_model *model, const breccia_options *options, Error *error)
@@ -175,7 +187,8 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
                       .margins = &margins,
                       .peridynamics = spec->peridynamics,
                       .failure = spec->failure,
-                      .forces = spec->forces};
+                      .forces = spec->forces,
+                      .is_strained = has_initial_strains(spec)};
   if ((bad = domain_create(&model->domain, &model->reader, &parts))) status = bad;
   free(margins.items);
   /* What follows needs the body or the materials only: its mistakes are told together with those of the rest. */
@@ -197,6 +210,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
   if (!status)
     status =
         domain_begin_under(&model->domain, &model->loading, &model->reader, &spec->initial_stress, &spec->selections);
+  if (!status) status = domain_take_loads(&model->domain, &model->loading, &model->reader);
   if (status) return status;
   model->solver = (Solver){.domain = &model->domain,
                            .loading = &model->loading,

@@ -78,6 +78,21 @@ static void check_dashpots(breccia_model *model, const Load *load)
                      load->node->key);
 }
 
+/** Concrete shrinks by less than 1e-3; steel warms by as much in 80 K. */
+static void check_initial_strain(breccia_model *model, const Load *load)
+{
+  const double most = 0.01;
+  if (!plausibility_is_kind(load->spec, "initial strain")) return;
+  const double peak =
+      load_magnitude(load->spec) * history_peak(&load->history, model->solver.clock.end_time - load->begin);
+  if (fabs(peak) > most)
+    plausibility_say(
+        model, load->node,
+        "initial strain: %.3g of all lengths; concrete shrinks by some 5e-4, and a kelvin is 1e-5: give the "
+        "strain as a plain number, like -3e-4",
+        peak);
+}
+
 /** Bonds near particles that are moved carry most, and break there first. */
 static void check_grips(breccia_model *model)
 {
@@ -112,6 +127,7 @@ void plausibility_warn_of_loads(breccia_model *model)
     check_jump(model, &model->loading.loads[k]);
     check_shaking(model, &model->loading.loads[k]);
     check_dashpots(model, &model->loading.loads[k]);
+    check_initial_strain(model, &model->loading.loads[k]);
   }
   check_grips(model);
 }

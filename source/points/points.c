@@ -280,12 +280,13 @@ int64_t points_update(Points *points, int64_t first, int count, double *const st
   if (!points->initial[0]) return update_with_secants(points, first, count, strain, stress);
   _Alignas(64) double whole[6][BATCH];
   double *at[6];
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < points->components; ++k) {
     at[k] = whole[k];
-    for (int i = 0; i < count; ++i) whole[k][i] = strain[k][i] + points->initial[k][first + i];
+    for (int i = 0; i < count; ++i) whole[k][i] = points_whole_strain(points, first + i, k, strain[k][i]);
   }
   const int64_t bad = update_with_secants(points, first, count, at, stress);
-  for (int i = 0; i < count && points->plane_stress; ++i) strain[ZZ][i] = whole[ZZ][i] - points->initial[ZZ][first + i];
+  for (int i = 0; i < count && points->plane_stress && points->components == 6; ++i)
+    strain[ZZ][i] = whole[ZZ][i] - points->initial[ZZ][first + i];
   return bad;
 }
 

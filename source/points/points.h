@@ -38,7 +38,8 @@ typedef struct Points {
   double *strain[6], *stress[6]; /* [count] of points of six components; NULL: points_keep_tensors */
   bool shares;                   /* these arrays, with other points */
   double *stress_before[6];      /* [count] while points_put_by has room */
-  /** [count] of points that begin under stress the strain at which their law has it, beside that of displacements; NULL: none does. Borrowed */
+  /** [count] what their law is given beside the strain of displacements: the strain at which it has the stress under which they begin, less their free
+   *  strain. Of six components NULL where there is none; the first is always there if any is. Borrowed */
   double *initial[6];
   double *committed, *trial;
   size_t history_size; /* numbers in each of them */
@@ -68,6 +69,12 @@ typedef struct Points {
 static inline bool points_keep_tensors(const Points *points)
 {
   return points->strain[0] != NULL;
+}
+
+/** Component k of the strain that the law of a row is given. */
+static inline double points_whole_strain(const Points *points, int64_t row, int k, double strain)
+{
+  return points->initial[k] ? strain + points->initial[k][row] : strain;
 }
 
 /** Whether rows are places, and strain and stress are those of particles. */

@@ -29,6 +29,7 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
   const Material *m = points_material(points, row);
   const double *history = points_history(points, row);
   double scratch[MOST_TRIED_VALUES], stress = NAN;
+  strain = points_whole_strain(points, row, XX, strain);
   if (m->remote) {
     stress = point_servers_last_stress(history);
     if (tangent) *tangent = strain != 0 ? stress / strain : material_young(m);
@@ -47,7 +48,7 @@ bool points_try_stress(const Points *points, int64_t row, const double strain[6]
   double whole[6], scratch[MOST_TRIED_VALUES], *at[6], *to[6];
   if (m->remote || m->history_values > MOST_TRIED_VALUES) return false;
   for (int k = 0; k < 6; ++k) {
-    whole[k] = strain[k] + (points->initial[k] ? points->initial[k][row] : 0);
+    whole[k] = points_whole_strain(points, row, k, strain[k]);
     at[k] = &whole[k];
     to[k] = &stress[k];
   }
@@ -100,7 +101,7 @@ double points_softness(const Points *points, int64_t row)
     double product = 0;
     for (int k = 0; k < 6; ++k) {
       const double deviator = k < 3 ? before[k] - mean : before[k];
-      strain[k] = points->strain[k][row] + (points->initial[k] ? points->initial[k][row] : 0) +
+      strain[k] = points_whole_strain(points, row, k, points->strain[k][row]) +
                   step * (deviator / m->shear * (k < 3 ? 0.5 : 1) + (k < 3 ? mean / (3 * m->bulk) : 0));
     }
     if (m->history_values) memcpy(scratch, batch.committed, sizeof(double) * (size_t)m->history_values);
@@ -115,7 +116,8 @@ double points_elastic_strain(const Points *points, int64_t row, double strain, d
 {
   const Material *m = points_material(points, row);
   if (m->remote || m->history_values > MOST_TRIED_VALUES)
-    return points_try(points, row, strain, NULL) == 0 ? 0 : strain - from;
+    return points_try(points, row, strain, NULL) == 0 ? 0 : points_whole_strain(points, row, XX, strain) - from;
+  strain = points_whole_strain(points, row, XX, strain);
   /* Unloaded from where the strain has led: from the history before it a law that flows would only flow less. */
   double here[MOST_TRIED_VALUES], scratch[MOST_TRIED_VALUES];
   const double stress = stress_from(points, row, points_history(points, row), strain, here, NULL);

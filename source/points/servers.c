@@ -240,7 +240,8 @@ void points_send(Points *points, int64_t first, int count, double *const strain[
       server = now;
     }
     double *to = remote_strains(r, server);
-    for (int k = 0; to && k < components; ++k) to[components * (id - starts[server]) + k] = strain[k][i];
+    for (int k = 0; to && k < components; ++k)
+      to[components * (id - starts[server]) + k] = points_whole_strain(points, first + i, k, strain[k][i]);
     ++sent;
   }
   count_down(s, r, material, server, sent);

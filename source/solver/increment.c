@@ -123,7 +123,8 @@ void increment_begin(Increment *i)
   }
   if (i->beside[0]) {
     domain_forces_beside(i->domain, i->beside);
-    i->held = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces);
+    i->held =
+        forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) - forces_given(&i->domain->forces);
   }
   face_work_renew(&i->face_work, i->domain);
   face_work_note(&i->face_work);
@@ -166,7 +167,8 @@ double increment_sudden_work(Increment *i, double *const moved[MOTIONS])
   const Particles *p = i->domain->particles;
   if (!i->beside[0]) return 0;
   domain_forces_beside(i->domain, i->beside_now);
-  double work = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) - i->held;
+  double work = forces_energy(&i->domain->forces) + forces_dissipated(&i->domain->forces) -
+                forces_given(&i->domain->forces) - i->held;
   for (int k = 0; k < 3; ++k)
     for (int64_t place = 0; place < p->places; ++place)
       work += 0.5 * i->domain->counted[place] * (i->beside[k][place] + i->beside_now[k][place]) * moved[k][place];

@@ -71,6 +71,14 @@ bool ledger_is_doubtful(const Ledger *l)
   return l->trapped || l->unsound_steps > 0 || (l->fast_steps > 0 && l->fast_steps <= LASTING_FAST);
 }
 
+void ledger_note_strains(Ledger *l, const Domain *d)
+{
+  const double work = domain_strain_work(d), more = work - l->strain_work;
+  l->bond_work += more;
+  l->external_work += more;
+  l->strain_work = work;
+}
+
 void ledger_note_paid(Ledger *l)
 {
   l->paid = fmax(l->paid, l->kinetic_at_start + l->stored_at_start + fabs(l->external_work));
@@ -136,6 +144,7 @@ void ledger_state(Ledger *l, StateList *list)
               {"energy between steps", &l->between},
               {"numerical damping", &l->numerical},
               {"kinetic energy at the start", &l->kinetic_at_start},
+              {"work of strains", &l->strain_work},
               {"paid energy", &l->paid}};
   state_add_number(list, "largest speed given", "velocity", STATE_TRIED, &l->given);
   state_add_number(list, "speed beyond the bound", "velocity", STATE_TRIED, &l->fast_from);

@@ -13,6 +13,7 @@ typedef struct Ledger {
   double numerical; /* that schemes of implicit dynamics have taken out of vibrations */
   double kinetic_at_start;
   double stored_at_start; /* of points and of steel that began under stress */
+  double strain_work;     /* of strains of loads, as booked so far among both works */
   double paid;            /* the most that loads, motions and speeds at the start have put in so far */
   double wave;            /* fastest waves of its materials, as they are unharmed */
   double given;           /* largest speed that the start and prescribed motions have given any particle so far */
@@ -48,6 +49,8 @@ Energy ledger_energy(const Ledger *ledger, Domain *domain);
 /** Speed of the fastest waves of the materials of a body, as they are unharmed. */
 double ledger_wave_speed(const Domain *domain);
 
+/** After a step: what loads have put in by strains of the body since. */
+void ledger_note_strains(Ledger *ledger, const Domain *domain);
 /** After a step: what loads and motions have put in so far. */
 void ledger_note_paid(Ledger *ledger);
 

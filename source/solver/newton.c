@@ -132,6 +132,8 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
   const double all = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
   unknowns_gather(&n->linear.unknowns, n->force);
   const double free = unknowns_product_of_forces(&n->linear.unknowns, n->force, n->force);
+  if (d->strains.any && !n->iterations && isfinite(free))
+    n->reference = fmax(n->reference, sqrt(free)); /* of strains */
   n->exerted = fmax(n->reference, sqrt(fmax(exerted, all - free)));
   return NEWTON_CONVERGED;
 }

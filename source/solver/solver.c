@@ -266,12 +266,14 @@ int solver_begin(Solver *s, Error *error)
   s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
   const int status = s->type->begin(s, error);
   s->unbegun = status != BRECCIA_OK;
+  if (!status) domain_book_strains(s->domain);
   if (s->clock.stage == 0) {
     s->ledger.kinetic_at_start = s->ledger.kinetic;
     s->ledger.bond_work += s->ledger.stored_at_start; /* done before the run */
     s->ledger.paid = s->ledger.kinetic + s->ledger.stored_at_start;
   } else if (s->loading->speeds_set) /* a blow from outside, or a loss where particles are tied that moved apart */
     s->ledger.external_work += s->ledger.kinetic - kinetic;
+  ledger_note_strains(&s->ledger, s->domain);
   return status;
 }
 
@@ -405,6 +407,7 @@ int solver_advance(Solver *s, Text *warning, Error *error)
   foresee(s);
   s->records[s->clock.stage].last_step = (double)s->clock.step;
   s->records[s->clock.stage].end = s->clock.time;
+  ledger_note_strains(&s->ledger, s->domain);
   ledger_note_paid(&s->ledger);
   if (failed) return failed;
   s->ledger.trapped = trapped;

@@ -258,6 +258,7 @@ for name, load in (("force", "on: corner, force: V[0.2 kN, -0.1 kN], history: {t
                    ("traction of an area", "on: corner, area: 0.013 m2, traction: V[20 kPa, -7 kPa]"),
                    ("radial pressure", "on: right, radial pressure: {pressure: 20 kPa, area: 0.1 m2, centre: V[0.4 m, 0.3 m]}"),
                    ("initial velocity", "on: right, initial velocity: {translation: V[0.2 m/s, -0.1 m/s], rotation: [0, 0, ROTATED rad/s], about: V[0.8 m, 0.4 m]}"),
+                   ("initial strain", "on: right, initial strain: -0.002, history: {ramp to: 0.002 s}"),
                    ("along", "on: right, along: {direction: V[3, -1], velocity: 0.4 m/s}, history: {ramp to: 0.003 s}"),
                    ("acceleration", "on: right, acceleration: V[90 m/s2, free], history: {ramp to: 0.003 s}"),
                    ("spring", "on: right, spring: {stiffness: 300 kN/m, direction: V[1, 2]}"),

@@ -21,6 +21,11 @@ LOAD_SECTION(water_pressure, "water pressure", "of water at rest on the face tha
 LOAD_SECTION(radial_pressure, "radial pressure", "on a round surface, away from its axis or towards it")
 LOAD_SECTION(spring, "spring", "springs to the ground or to other particles")
 LOAD_SECTION(dashpots, "dashpots", "a face through which waves leave, and an earthquake may come in")
+LOAD(initial_strain, "initial strain", FIELD_NUMBER, "1",
+     "strain alike in all directions that the material takes where nothing hinders it: shrinkage below 0, warming "
+     "above; "
+     "laws are given the strain less this one")
+LOAD_SECTION(prestress, "prestress", "tension of bars by which they are shorter than their places in the body")
 LOAD(displacement, "displacement", FIELD_FREE_POINT, "length", "prescribed displacement")
 LOAD(velocity, "velocity", FIELD_FREE_POINT, "velocity", "prescribed velocity")
 LOAD(acceleration, "acceleration", FIELD_FREE_POINT, "acceleration",

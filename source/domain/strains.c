@@ -1,0 +1,231 @@
+/* Strains that a body would take where nothing hindered it, as loads say them: shrinkage, warming (docs/theory.md 7.3).
+ *
+ * Each place has one, alike in all directions. Laws of six strains are given what is left of the strain of displacements. Where formulations see
+ * bonds along the plane only, in plane strain, bonds are free of stress at a strain larger by Poisson's ratio, as what cannot go across the plane goes
+ * along it. A bond has the mean of both ends'.
+ *
+ * As a free strain changes, stresses do work on it, which is neither that of displacements nor of loads: minus the sum over places of what a stress
+ * counts for there (`tension`) times the change, by the trapezium rule. It is looked at only while free strains change. */
+#include "domain/domain.h"
+
+#include "bars/bars.h"
+#include "base/team.h"
+#include "base/tensor.h"
+#include "loading/load.h"
+#include <math.h>
+#include <string.h>
+
+static double poisson(const Material *m)
+{
+  return (3 * m->bulk - 2 * m->shear) / (2 * (3 * m->bulk + m->shear));
+}
+
+/** Strain of bonds along the plane at which they are free of stress, over the free strain. */
+static double in_plane(const Domain *d, int64_t place)
+{
+  const Region *region = domain_region(d, place);
+  const bool plane_strain = d->body.dimensions == 2 && !region->points.plane_stress;
+  if (!plane_strain) return 1;
+  return 1 + (region->type->components == 1 ? 0.25 : poisson(&d->materials[d->material[place / SLICE]]));
+}
+
+/** Rows of the points of a region: what stands beside the strain of displacements, without free strains and with them. */
+static void share_rows(Domain *d, Region *region, int64_t slice)
+{
+  const double *given = d->strains.given, *natural = d->particles->free_strain;
+  Points *points = &region->points;
+  if (points_on_particles(points)) {
+    for (int64_t i = slice * SLICE; i < (slice + 1) * SLICE; ++i)
+      for (int k = 0; k < (d->initial_strain[0] ? 3 : 1); ++k)
+        region->beside[k][i] = (d->initial_strain[k] ? d->initial_strain[k][i] : 0) - given[i];
+    return;
+  }
+  const double *of = points->components == 6 ? given : natural;
+  for (int64_t row = region->bonds.first[slice]; row < region->bonds.first[slice + 1]; ++row) {
+    int64_t slot;
+    int lane;
+    bond_list_bond(&region->bonds, &d->family, slice, row, &slot, &lane);
+    const int64_t other = family_bond(&d->family, slice, slot, lane).neighbour;
+    region->beside[0][row] = -0.5 * (of[slice * SLICE + lane] + of[other]);
+  }
+}
+
+/** What formulations and points read of free strains. */
+static void share(Domain *d)
+{
+  Particles *p = d->particles;
+  double *given = d->strains.given;
+  for (int32_t n = 0; n < p->count; ++n)
+    if (body_outside(&d->body, n)) given[p->place_of[n]] = given[p->place_of[body_original(&d->body, n)]];
+  for (int64_t i = 0; i < p->places; ++i) p->free_strain[i] = p->number[i] < 0 ? 0 : in_plane(d, i) * given[i];
+  for (int r = 0; r < d->region_count; ++r) {
+    Region *region = &d->regions[r];
+    if (!region->beside[0]) continue;
+    for (int64_t slice = 0; slice < p->slices; ++slice)
+      if (!is_foreign(region->foreign, slice * SLICE)) share_rows(d, region, slice);
+  }
+}
+
+static int make_rows(Domain *d, Region *region, Error *error)
+{
+  Points *points = &region->points;
+  if (!points->components) return BRECCIA_OK;
+  const bool under_stress = points->initial[0] != NULL;
+  for (int k = 0; k < (under_stress ? 3 : 1); ++k)
+    if (!(region->beside[k] = places_array(points->count, "free strains", error))) return BRECCIA_FAILURE;
+  for (int k = 0; k < (points->components == 6 ? 3 : 1); ++k) points->initial[k] = region->beside[under_stress ? k : 0];
+  (void)d;
+  return BRECCIA_OK;
+}
+
+static LoadStrains of_loads(const Domain *d)
+{
+  const Bars *bars = bars_among(&d->forces);
+  return (LoadStrains){.of_places = d->strains.given,
+                       .places = d->particles->places,
+                       .of_bars = bars ? bars->prestrain : NULL,
+                       .bar_count = bars ? bars->specs->count : 0};
+}
+
+int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
+{
+  Error *error = reader->error;
+  Strains *s = &d->strains;
+  s->loading = loading;
+  for (int l = 0; l < loading->count; ++l) {
+    const Load *load = &loading->loads[l];
+    s->any |= load->type->strain != NULL;
+    for (int r = 0; load->type == &initial_strain_load && r < d->region_count; ++r) {
+      const Region *region = &d->regions[r];
+      const char *reason = region->type->strain_free ? region->type->strain_free(region->formulation) : NULL;
+      if (reason) return node_error(reader->document, load->node, error, "initial strain: %s", reason);
+    }
+  }
+  if (!d->is_strained) return BRECCIA_OK;
+  double **const arrays[] = {&s->given, &s->held, &s->tension, &s->tension_now, &d->particles->free_strain};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
+    if (!(*arrays[k] = places_array(d->particles->places, "free strains", error))) return BRECCIA_FAILURE;
+  for (int r = 0; r < d->region_count; ++r)
+    if (make_rows(d, &d->regions[r], error)) return BRECCIA_FAILURE;
+  share(d);
+  s->known = 1; /* nothing is strained yet; of points that begin under stress it is found */
+  for (int r = 0; r < d->region_count; ++r) s->known &= !d->initial_strain[0];
+  return BRECCIA_OK;
+}
+
+void domain_strains_destroy(Domain *d)
+{
+  Strains *s = &d->strains;
+  double **const arrays[] = {&s->given, &s->held, &s->tension, &s->tension_now};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
+  for (int r = 0; r < d->region_count; ++r)
+    for (int k = 0; k < 3; ++k) places_free(&d->regions[r].beside[k]);
+}
+
+/* ---- work ---- */
+
+/** What the free strain of a place would take by growing by 1. */
+static double tension_at(const Domain *d, int64_t place)
+{
+  const Region *region = domain_region(d, place);
+  const FormulationType *type = region->type;
+  double stress[6], sum = 0;
+  if (!(d->counted[place] > 0)) return 0;
+  if (type->free_tension) return type->free_tension(region->formulation, place);
+  if (points_on_particles(&region->points)) {
+    for (int k = 0; k < 3; ++k) sum += region->points.stress[k][place];
+    return d->counted[place] * (type->shares ? type->shares(region->formulation)[place] : 1) * sum;
+  }
+  type->stress(region->formulation, place, stress);
+  for (int k = 0; k < d->body.dimensions; ++k) sum += stress[k];
+  return d->counted[place] * in_plane(d, place) * sum;
+}
+
+typedef struct Looked {
+  Domain *domain;
+  double *tension;
+} Looked;
+
+static void look_at_batch(void *context, int64_t b)
+{
+  const Looked *of = context;
+  for (int64_t i = of->domain->batches[b].first * SLICE; i < of->domain->batches[b].last * SLICE; ++i)
+    of->tension[i] = of->domain->particles->number[i] < 0 ? 0 : tension_at(of->domain, i);
+}
+
+void domain_tell_strains(Domain *d, double time)
+{
+  Strains *s = &d->strains;
+  if (!s->loading) return;
+  const LoadStrains strains = of_loads(d);
+  if (!loading_strain(s->loading, &strains, time) || !s->given) return;
+  Looked of = {d, s->tension};
+  for (int64_t b = 0; b < d->batch_count && !s->known; ++b) look_at_batch(&of, b); /* with stresses as they were */
+  s->known = 1;
+  share(d);
+}
+
+void domain_book_strains(Domain *d)
+{
+  Strains *s = &d->strains;
+  const size_t size = sizeof(double) * (size_t)d->particles->places;
+  if (!s->given) return;
+  if (!memcmp(s->given, s->held, size)) {
+    s->known = 0;
+    return;
+  }
+  team_each(d->batch_count, look_at_batch, &(Looked){d, s->tension_now});
+  for (int64_t b = 0; b < d->batch_count; ++b) {
+    double part = 0;
+    for (int64_t i = d->batches[b].first * SLICE; i < d->batches[b].last * SLICE; ++i)
+      part += 0.5 * (s->tension[i] + s->tension_now[i]) * (s->given[i] - s->held[i]);
+    s->work -= part;
+  }
+  memcpy(s->held, s->given, size);
+  memcpy(s->tension, s->tension_now, size);
+  s->known = 1;
+}
+
+double domain_strain_work(const Domain *d)
+{
+  return d->strains.work + forces_given(&d->forces);
+}
+
+/* ---- state ---- */
+
+void domain_follow_strains(Domain *d)
+{
+  if (d->strains.loading) loading_forget_strains(d->strains.loading);
+  if (!d->strains.given) return;
+  memcpy(d->strains.held, d->strains.given, sizeof(double) * (size_t)d->particles->places);
+  share(d);
+}
+
+static int resume(void *owner, const double *numbers, int64_t count, Error *error)
+{
+  (void)numbers, (void)count, (void)error;
+  domain_follow_strains(owner);
+  return BRECCIA_OK;
+}
+
+void domain_strains_state(Domain *d, StateList *list)
+{
+  static const StateCare care = {.resume = resume};
+  Strains *s = &d->strains;
+  if (!s->given) return;
+  StateRow row = {.unit = "energy",
+                  .kind = STATE_NUMBERS,
+                  .entity = STATE_OF_PLACE,
+                  .role = STATE_COMMITTED,
+                  .count = d->particles->places,
+                  .values = s->tension};
+  state_add(list, &row, "tension of free strains", NULL);
+  state_add_count(list, "tension is known", STATE_COMMITTED, &s->known);
+  state_add_number(list, "work on free strains", "energy", STATE_COMMITTED, &s->work);
+  row.unit = "1";
+  row.role = STATE_TRIED;
+  row.values = s->given;
+  row.care = &care;
+  row.owner = d;
+  state_add(list, &row, "free strain", NULL);
+}

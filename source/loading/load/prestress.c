@@ -1,0 +1,115 @@
+#include "bars/bars.h"
+#include "loading/load.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct PrestressSpec {
+  SectionHead head;
+  TextList bars;
+  double stress, strain;
+} PrestressSpec;
+
+static const Field prestress_fields[] = {
+    {.key = "bars", .kind = FIELD_TEXTS, .offset = offsetof(PrestressSpec, bars), .meaning = "names of bars"},
+    {.key = "stress",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(PrestressSpec, stress),
+     .dimension = "stress",
+     .standard = "",
+     .meaning =
+         "in the bar while the body around it is not strained yet, by Young's modulus at first; tension positive",
+     .group = 'A'},
+    {.key = "strain",
+     .kind = FIELD_NUMBER,
+     .offset = offsetof(PrestressSpec, strain),
+     .dimension = "1",
+     .standard = "",
+     .meaning = "instead: of the bar then",
+     .group = 'A'},
+};
+
+const Section prestress_load_section = {
+    .name = "prestress",
+    .about =
+        "Tension of bars. A bar that is shorter than its place in the body is strained by so much before the body is; "
+        "what is left of it once the body gives way follows from equilibrium.",
+    .size = sizeof(PrestressSpec),
+    FIELDS(prestress_fields)};
+
+/** What a load keeps: bars that it acts on, and their strains. */
+typedef struct Prestress {
+  const Bars *bars;
+  int count, *bar;
+  double *strain;
+} Prestress;
+
+static int create(Load *load, const LoadMaking *making)
+{
+  const PrestressSpec *spec = load->value->section;
+  const DeckReader *reader = making->reader;
+  if (load->spec->on.node)
+    return node_error(reader->document, section_node(load->spec, "on"), reader->error,
+                      "on: a prestress acts on the bars that it names; leave it out");
+  Prestress *p = load->own = memory_zeroed(1, sizeof *p, "loads", reader->error);
+  if (!p) return BRECCIA_FAILURE;
+  p->bars = making->forces ? bars_among(making->forces) : NULL;
+  p->bar = memory_zeroed((size_t)spec->bars.count, sizeof *p->bar, "loads", reader->error);
+  p->strain = memory_zeroed((size_t)spec->bars.count, sizeof *p->strain, "loads", reader->error);
+  if (!p->bar || !p->strain) return BRECCIA_FAILURE;
+  for (int n = 0; n < spec->bars.count; ++n) {
+    const int bar = bars_find(p->bars, spec->bars.items[n]);
+    if (bar < 0)
+      return node_error(reader->document, section_node(spec, "bars"), reader->error,
+                        "bars: there is no bar '%s'; expected names of those under 'bars' of the deck",
+                        spec->bars.items[n]);
+    p->bar[p->count] = bar;
+    p->strain[p->count++] = isnan(spec->stress) ? spec->strain : spec->stress / bar_young(p->bars, bar);
+  }
+  return load_is_known(load, making, "prestress");
+}
+
+static void destroy(Load *load)
+{
+  Prestress *p = load->own;
+  free(p->bar);
+  free(p->strain);
+  free(p);
+}
+
+static void strain(const Load *load, const LoadStrains *strains, double factor)
+{
+  const Prestress *p = load->own;
+  for (int n = 0; n < p->count; ++n) strains->of_bars[p->bar[n]] += factor * p->strain[n];
+}
+
+static LoadWords tell(const Load *load, const Particles *particles)
+{
+  const Prestress *p = load->own;
+  double force = 0;
+  (void)particles;
+  for (int n = 0; n < p->count; ++n)
+    force += p->strain[n] * bar_young(p->bars, p->bar[n]) * p->bars->bar_area[p->bar[n]];
+  return (LoadWords){"before the body gives way, a force in all of", force, "force", "N"};
+}
+
+static const char *kind(const LoadValue *value, const char **dimension)
+{
+  const PrestressSpec *spec = value->section;
+  *dimension = isnan(spec->stress) ? "1" : "stress";
+  return "prestress";
+}
+
+static double magnitude(const LoadValue *value)
+{
+  const PrestressSpec *spec = value->section;
+  return isnan(spec->stress) ? spec->strain : spec->stress;
+}
+
+const LoadType prestress_load = {.everywhere = true,
+                                 .create = create,
+                                 .destroy = destroy,
+                                 .strain = strain,
+                                 .tell = tell,
+                                 .kind = kind,
+                                 .magnitude = magnitude};

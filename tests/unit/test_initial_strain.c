@@ -1,0 +1,270 @@
+/* Bodies that shrink and warm, against closed forms, and against the same strains by displacements. */
+#include "support.h"
+
+#include "base/random.h"
+#include "base/tensor.h"
+
+#define UNITS "units: {length: m, force: kN, time: s}\n"
+
+typedef struct Case {
+  const char *formulation, *law;
+  double poisson[3]; /* in 3-D, plane strain, plane stress */
+} Case;
+
+#define ELASTIC "model: elastic, Poisson ratio: 0.2"
+static const Case cases[] = {
+    {"formulation: bond-based", "model: elastic-1d", {0.25, 0.25, 1.0 / 3}},
+    {"formulation: ordinary", ELASTIC, {0.2, 0.2, 0.2}},
+    {"formulation: correspondence", ELASTIC, {0.2, 0.2, 0.2}},
+    {"formulation: hybrid", ELASTIC, {0.2, 0.2, 0.2}},
+    {"formulation: micropolar", ELASTIC, {0.2, 0.2, 0.2}},
+};
+enum { CASES = sizeof cases / sizeof *cases, SPACES = 3, YOUNG = 10000 };
+static const char *const spaces[] = {"3-D", "plane strain", "plane stress"};
+
+/** A body of a case, with loads and a solver. */
+static breccia_model *body_of(const Case *c, int space, const char *loads, const char *solve)
+{
+  const bool plane = space > 0;
+  return model_of(UNITS "materials: {m: {%s, density: 2, Young modulus: 1e4}}\n"
+                        "body: {b: {material: m, lattice: %s, spacing: 0.1%s, shape: {box: {particles: [%s]}}}}\n"
+                        "peridynamics: {%s, space: %s, horizon: %s}\nloads: [%s]\nsolve: {%s}\npictures: []\n",
+                  c->law, plane ? "square" : "cubic", plane ? ", thickness: 0.5" : "", plane ? "12, 11" : "8, 7, 8",
+                  c->formulation, spaces[space],
+                  strstr(c->formulation, "micropolar") ? "1.5 spacings" : "2.015 spacings", loads, solve);
+}
+
+/** What keeps a body from moving as a whole, and from nothing else. */
+static const char *points_held(int space)
+{
+  return space ? "{on: {nearest: [0, 0]}, displacement: [0, 0]}, {on: {nearest: [9, 0]}, displacement: [free, 0]}"
+               : "{on: {nearest: [0, 0, 0]}, displacement: [0, 0, 0]}, {on: {nearest: [9, 0, 0]}, displacement: [free, "
+                 "0, 0]}, "
+                 "{on: {nearest: [0, 9, 0]}, displacement: [free, free, 0]}";
+}
+
+static const char *all_held(int space)
+{
+  return space ? "{on: {all: yes}, displacement: [0, 0]}" : "{on: {all: yes}, displacement: [0, 0, 0]}";
+}
+
+#define AT_REST "static: {increments: 1, residual: 1e-12}"
+
+/** Stress at a place, by the formulation. */
+static void stress_at(const breccia_model *m, int64_t place, double stress[6])
+{
+  double strain[6];
+  domain_look(&m->domain, place, strain, stress);
+}
+
+static double largest_stress(const breccia_model *m, int from, int to)
+{
+  double most = 0, stress[6];
+  for (int32_t n = 0; n < m->domain.particles->count; ++n) {
+    stress_at(m, m->domain.particles->place_of[n], stress);
+    for (int k = from; k < to; ++k) most = larger_of(most, fabs(stress[k]));
+  }
+  return most;
+}
+
+/** The place in the middle. */
+static int32_t middle(const breccia_model *m)
+{
+  double low[3], high[3], centre[3];
+  particles_bounds(m->domain.particles, low, high);
+  for (int k = 0; k < 3; ++k) centre[k] = (low[k] + high[k]) / 2;
+  return particles_nearest(m->domain.particles, centre);
+}
+
+static void a_free_body_takes_it_without_stress(void **state)
+{
+  (void)state;
+  const double shrinkage = -3e-4;
+  for (int n = 0; n < CASES * SPACES; ++n) {
+    const Case *c = &cases[n / SPACES];
+    const int space = n % SPACES;
+    char loads[500];
+    snprintf(loads, sizeof loads, "%s, {initial strain: -3e-4}", points_held(space));
+    breccia_model *m = body_of(c, space, loads, AT_REST);
+    step_surely(m, INT64_MAX);
+    const Particles *p = m->domain.particles;
+    const double natural = space == 1 ? (1 + c->poisson[1]) * shrinkage : shrinkage;
+    const int32_t corner = p->place_of[0];
+    for (int32_t i = 0; i < p->count; ++i)
+      for (int k = 0; k < m->domain.body.dimensions; ++k)
+        assert_near(p->displacement[k][p->place_of[i]],
+                    natural * (p->position[k][p->place_of[i]] - p->position[k][corner]),
+                    /* Green's strain of the formulations of small strains in space; of finite ones lengths are exact */
+                    2 * natural * natural + 1e-9 * fabs(natural));
+    assert_true(largest_stress(m, 0, space ? 2 : 3) < 1e-9 * YOUNG * 3e-4);
+    assert_true(largest_stress(m, 3, 6) < 1e-9 * YOUNG * 3e-4);
+    double stress[6];
+    stress_at(m, middle(m), stress);
+    /* what cannot go across the plane */
+    if (space == 1 && strstr(c->law, "Poisson") && !strstr(c->formulation, "micropolar"))
+      assert_near(stress[ZZ], -YOUNG * shrinkage, 2e-3 * YOUNG * 3e-4);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_held_body_carries_what_the_closed_form_says(void **state)
+{
+  (void)state;
+  for (int n = 0; n < CASES * SPACES; ++n) {
+    const Case *c = &cases[n / SPACES];
+    const int space = n % SPACES;
+    const double nu = c->poisson[space], warming = 2e-4;
+    char loads[300];
+    snprintf(loads, sizeof loads, "%s, {initial strain: 2e-4, history: {ramp to: 1}}", all_held(space));
+    breccia_model *m = body_of(c, space, loads, "static: {increments: 2, end time: 1}");
+    step_surely(m, INT64_MAX);
+    double stress[6];
+    stress_at(m, middle(m), stress);
+    const double wanted = -YOUNG * warming / (space == 2 ? 1 - nu : 1 - 2 * nu);
+    for (int k = 0; k < (space ? 2 : 3); ++k) assert_near(stress[k], wanted, 1e-3 * fabs(wanted));
+    /* all that is stored was put in by the strain */
+    const Energy e = solver_energy(&m->solver);
+    const double volume = sums_of(m).volume;
+    assert_near(e.external, e.stored, 1e-6 * e.stored);
+    assert_true(e.stored > 0.5 * volume * fabs(wanted) * warming);
+    assert_balanced(m, 1e-6);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void a_bar_held_at_both_ends_pulls_with_e_times_its_shrinkage(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS
+      "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"
+      "body: {b: {material: m, lattice: line, spacing: 0.1, area: 0.3, shape: {box: {particles: [20, 1]}}}}\n"
+      "peridynamics: {space: 1-D, formulation: bond-based, horizon: 1.015 spacings}\n"
+      "loads: [{name: left, on: {face: x-}, displacement: [0, 0]}, {on: {face: x+}, displacement: [0, 0]}, {initial "
+      "strain: -1e-4}]\n"
+      "solve: {static: {increments: 1}}\npictures: []\n");
+  step_surely(m, INT64_MAX);
+  double stress[6];
+  stress_at(m, middle(m), stress);
+  assert_near(stress[XX], YOUNG * 1e-4, 1e-6 * YOUNG * 1e-4);
+  assert_balanced(m, 1e-9);
+  breccia_model_destroy(&m);
+}
+
+/** Changes of forces by tangents are those by differences. */
+static void tangents_know_it(void **state)
+{
+  (void)state;
+  for (int n = 0; n < CASES * SPACES; ++n) {
+    char loads[300];
+    snprintf(loads, sizeof loads, "%s, {initial strain: 5e-2}", points_held(n % SPACES));
+    breccia_model *m = body_of(&cases[n / SPACES], n % SPACES, loads, AT_REST);
+    Domain *d = &m->domain;
+    Particles *p = d->particles;
+    double *v[MOTIONS] = {NULL}, *change[MOTIONS] = {NULL}, *force[2][MOTIONS] = {{NULL}};
+    uint64_t seed = 3;
+    domain_tell_time(d, 0, 0);
+    for (int k = 0; k < p->motions; ++k) {
+      v[k] = places_array(p->places, "test", NULL);
+      change[k] = places_array(p->places, "test", NULL);
+      for (int side = 0; side < 2; ++side) force[side][k] = places_array(p->places, "test", NULL);
+      for (int32_t i = 0; i < p->count && (k < d->body.dimensions || k >= ROTATION); ++i) {
+        p->displacement[k][p->place_of[i]] = 0.005 * (random_uniform(&seed) - 0.5);
+        v[k][p->place_of[i]] = random_uniform(&seed) - 0.5;
+      }
+    }
+    assert_int_equal(domain_linearise(d, NULL), 0);
+    domain_linear_step(d, v, change);
+    const double h = 1e-6;
+    for (int side = 0; side < 2; ++side) {
+      for (int k = 0; k < p->motions; ++k)
+        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+      domain_evaluate(d);
+      for (int k = 0; k < p->motions; ++k) memcpy(force[side][k], p->internal[k], sizeof(double) * (size_t)p->places);
+    }
+    double most = 0, off = 0;
+    for (int k = 0; k < p->motions; ++k)
+      for (int64_t i = 0; i < p->places; ++i) {
+        most = larger_of(most, fabs(change[k][i]));
+        off = larger_of(off, fabs(change[k][i] - (force[0][k][i] - force[1][k][i]) / (2 * h)));
+      }
+    assert_true(most > 0);
+    assert_near(off / most, 0, 1e-6);
+    for (int k = 0; k < p->motions; ++k) {
+      places_free(&v[k]);
+      places_free(&change[k]);
+      for (int side = 0; side < 2; ++side) places_free(&force[side][k]);
+    }
+    breccia_model_destroy(&m);
+  }
+}
+
+#define ONE_FACE                                                                                                       \
+  "{on: {face: x-, layers: 2}, displacement: [0, 0]}, {name: dry, initial strain: -1e-3, history: {ramp to: 0.05}}"
+
+static const Case *under_way;
+static const char *solver_under_way;
+
+static breccia_model *with_threads(int threads)
+{
+  breccia_model *m = body_of(under_way, 2, ONE_FACE, solver_under_way);
+  m->threads = threads;
+  return m;
+}
+
+static void bits_do_not_depend_on_threads_or_restarts(void **state)
+{
+  (void)state;
+  for (int n = 0; n < CASES; ++n) {
+    under_way = &cases[n];
+    solver_under_way = "explicit: {end time: 0.1}";
+    assert_same_bits_by_threads_and_restart(with_threads, 7, 20);
+    solver_under_way = "static: {increments: 6, end time: 0.1}";
+    assert_same_bits_by_threads_and_restart(with_threads, 2, 4);
+  }
+}
+
+static void what_cannot_be_is_refused(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *keys, *law, *load, *words;
+  } wrong[] = {
+      {"formulation: ordinary, space: plane strain", "model: j2, Poisson ratio: 0.2, yield stress: 2",
+       "initial strain: 1e-3", "initial strain: with laws that yield or relax in plane strain|correspondence"},
+      {"formulation: micropolar, kinematics: thesis, space: plane stress", ELASTIC, "initial strain: 1e-3",
+       "initial strain: links of 'kinematics: thesis' take none"},
+      {"formulation: correspondence, space: plane stress", ELASTIC, "initial strain: 1e-3, history: {controlled: yes}",
+       "controlled: the factor of a load 'initial strain' or 'prestress' is not found"},
+      {"formulation: correspondence, space: plane stress", ELASTIC, "prestress: {bars: [none], stress: 1}",
+       "bars: there is no bar 'none'"},
+      {"formulation: correspondence, space: plane stress", ELASTIC,
+       "on: {all: yes}, prestress: {bars: [none], stress: 1}", "on: a prestress acts on the bars that it names"},
+  };
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    char deck[1500];
+    snprintf(
+        deck, sizeof deck,
+        UNITS
+        "materials: {m: {%s, density: 2, Young modulus: 1e4}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.5, shape: {box: {particles: [9, 7]}}}}\n"
+        "peridynamics: {%s}\nloads: [%s, {%s}]\nsolve: {static: {increments: 1}}\npictures: []\n",
+        wrong[k].law, wrong[k].keys, points_held(2), wrong[k].load);
+    char *words = refusal_of(deck);
+    holds_words(words, wrong[k].words);
+    free(words);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_free_body_takes_it_without_stress),
+      cmocka_unit_test(a_held_body_carries_what_the_closed_form_says),
+      cmocka_unit_test(a_bar_held_at_both_ends_pulls_with_e_times_its_shrinkage),
+      cmocka_unit_test(tangents_know_it),
+      cmocka_unit_test(bits_do_not_depend_on_threads_or_restarts),
+      cmocka_unit_test(what_cannot_be_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
