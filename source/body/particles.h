@@ -29,6 +29,8 @@ typedef struct Particles {
   double *density;
   double *
       free_strain; /* alike in all directions in which bonds lie, where nothing hinders it (domain/strains.c); NULL: none */
+  const double *
+      free_growth; /* while bonds break: by how much loads let free strains grow in the step; NULL: not at all. Not owned */
   double *rotary;           /* rotational inertia per volume; NULL without rotations */
   double *inertia[MOTIONS]; /* per volume, of each row: density or rotary. Not owned */
   double *orientation[4];   /* unit quaternions 1, x, y, z of places with rotations in space; else NULL */

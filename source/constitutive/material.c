@@ -330,6 +330,11 @@ double material_young(const Material *material)
   return 9 * material->bulk * material->shear / (3 * material->bulk + material->shear);
 }
 
+double material_poisson(const Material *material)
+{
+  return (3 * material->bulk - 2 * material->shear) / (2 * (3 * material->bulk + material->shear));
+}
+
 bool material_has_tangent(const Material *m)
 {
   double none[6] = {0}, stress[6], tangent[36], *history = calloc(2 * (size_t)m->history_values + 1, sizeof *history);

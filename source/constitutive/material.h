@@ -51,8 +51,9 @@ int material_from_words(Material *material, const breccia_law *law, const char *
                         const Units *units, const char *before, Error *error);
 void material_destroy(Material *material);
 
-/** Young's modulus of the undamaged material. */
+/** Young's modulus and Poisson's ratio of the undamaged material. */
 double material_young(const Material *material);
+double material_poisson(const Material *material);
 /** Whether the law tells how stress changes with strain, asked of an unstrained point; that of a server is taken to do so, as is one that cannot be
  *  integrated there. */
 bool material_has_tangent(const Material *material);

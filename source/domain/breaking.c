@@ -189,6 +189,12 @@ static double half_work(const double a[6], const double b[6], const double from[
 
 static const double nothing[6];
 
+/** Begins the strains of a place's point where they begin for its law: what the free strain grows by in the step does not strain it. */
+static void take_growth_off(const Domain *d, int32_t place, double from[6])
+{
+  for (int k = 0; k < 3 && d->particles->free_growth; ++k) from[k] += d->particles->free_growth[place];
+}
+
 /** What places that will be torn have received so far, each place by one thread. */
 static void find_received(Domain *d)
 {
@@ -203,6 +209,7 @@ static void find_received(Domain *d)
       torn->stress[k] = points->stress[k][torn->place];
     }
     torn->elastic = points_on_particles(points) ? points_elastic_energy(points, torn->place) : 0;
+    take_growth_off(d, torn->place, energy.was);
     torn->received = energy.received + energy.control +
                      energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
     torn->share = region->type->shares(region->formulation)[torn->place];
@@ -225,6 +232,8 @@ static void find_left(Domain *d, const Region *region)
       stress[k] = points->stress[k][torn->place];
     }
     torn->control = energy.control;
+    take_growth_off(d, torn->place, energy.was);
+    take_growth_off(d, torn->place, torn->strain);
     const double density = torn->elastic + half_work(torn->stress, stress, torn->strain, strain);
     /* of points not as their laws unload, which laws in servers are not asked */
     torn->stored = points_on_particles(points) ? energy.weight * density : energy.stored;
@@ -251,7 +260,9 @@ static void carry_less(Domain *d, Torn *torn)
 
 void domain_settle(Domain *d, const Region *region)
 {
+  TEAM_SINGLE if (d->torn_count > 0) domain_halve_strains(d);
   find_left(d, region);
+  TEAM_SINGLE if (d->particles->free_growth) domain_tell_strains(d, region->points.time);
   TEAM_SINGLE
   for (int64_t n = 0; n < d->torn_count; ++n) {
     if (domain_region(d, d->torn[n].place) != region) continue;
@@ -294,6 +305,7 @@ void domain_break(Domain *d, const Moment *moment)
     d->any_suspect = memchr(d->suspects, 1, (size_t)d->particles->slices) != NULL;
     bool shared = false; /* energies of bonds */
     for (int r = 0; r < d->region_count; ++r) shared |= !d->regions[r].type->bond_energy;
+    if (d->any_suspect) domain_halve_strains(d);
     if (d->any_suspect) raise_limits(d, moment);
     if (d->any_suspect && shared) judge(d, moment, NOTE_THEM);
   }
@@ -304,6 +316,7 @@ void domain_break(Domain *d, const Moment *moment)
   {
     break_suspects(d, moment);
     d->failure.beyond = 0;
+    if (d->particles->free_growth) domain_tell_strains(d, moment->time);
     CHECK(family_is_valid(&d->family));
   }
 }

@@ -252,7 +252,7 @@ size_t domain_particle_bytes(const Domain *d)
       bonds += 12 * (size_t)d->regions[r].points.count;
   }
   const Particles *p = d->particles;
-  if (d->strains.given) tensors += 5;
+  if (d->strains.given) tensors += 6;
   for (int r = 0; r < d->region_count; ++r)
     for (int k = 0; k < 3; ++k) bonds += d->regions[r].beside[k] ? (size_t)d->regions[r].points.count : 0;
   const size_t own = 3 + 4 * (size_t)p->motions + 2 + (p->rotary ? 1 : 0) + (p->orientation[0] ? 4 : 0);

@@ -77,6 +77,7 @@ typedef struct Strains {
   double *tension;     /* [places] what one would take of the body by growing by 1, as of the last state */
   double *tension_now; /* while a step is booked */
   int64_t known;       /* whether `tension` is up to date */
+  double *growth;      /* of the step in which bonds break */
   double work;         /* that they have done so far */
 } Strains;
 
@@ -241,6 +242,9 @@ void domain_commit_points(Domain *domain);
 int domain_take_loads(Domain *domain, Loading *loading, const DeckReader *reader);
 /** Strains that loads say at a time, by one thread; domain_tell_time does it. */
 void domain_tell_strains(Domain *domain, double time);
+/** Puts strains half way between those of the last state and those told, for bonds that break in a step: they have taken half of the work that strains
+ *  do with them, as those of forces, for the trapezium rule finds them gone. By one thread; domain_tell_strains brings those of the end back. */
+void domain_halve_strains(Domain *domain);
 /** Books the work of strains that have changed since, with the stresses answered last and before laws commit. By one thread. */
 void domain_book_strains(Domain *domain);
 /** Work that strains of loads have done on the body so far: what it has received beyond the work of forces and motions. */

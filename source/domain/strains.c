@@ -15,18 +15,13 @@
 #include <math.h>
 #include <string.h>
 
-static double poisson(const Material *m)
-{
-  return (3 * m->bulk - 2 * m->shear) / (2 * (3 * m->bulk + m->shear));
-}
-
 /** Strain of bonds along the plane at which they are free of stress, over the free strain. */
 static double in_plane(const Domain *d, int64_t place)
 {
   const Region *region = domain_region(d, place);
   const bool plane_strain = d->body.dimensions == 2 && !region->points.plane_stress;
   if (!plane_strain) return 1;
-  return 1 + (region->type->components == 1 ? 0.25 : poisson(&d->materials[d->material[place / SLICE]]));
+  return 1 + (region->type->components == 1 ? 0.25 : material_poisson(&d->materials[d->material[place / SLICE]]));
 }
 
 /** Rows of the points of a region: what stands beside the strain of displacements, without free strains and with them. */
@@ -102,7 +97,7 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
     }
   }
   if (!d->is_strained) return BRECCIA_OK;
-  double **const arrays[] = {&s->given, &s->held, &s->tension, &s->tension_now, &d->particles->free_strain};
+  double **const arrays[] = {&s->given, &s->held, &s->growth, &s->tension, &s->tension_now, &d->particles->free_strain};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
     if (!(*arrays[k] = places_array(d->particles->places, "free strains", error))) return BRECCIA_FAILURE;
   for (int r = 0; r < d->region_count; ++r)
@@ -116,7 +111,7 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
 void domain_strains_destroy(Domain *d)
 {
   Strains *s = &d->strains;
-  double **const arrays[] = {&s->given, &s->held, &s->tension, &s->tension_now};
+  double **const arrays[] = {&s->given, &s->held, &s->growth, &s->tension, &s->tension_now};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
   for (int r = 0; r < d->region_count; ++r)
     for (int k = 0; k < 3; ++k) places_free(&d->regions[r].beside[k]);
@@ -128,16 +123,24 @@ void domain_strains_destroy(Domain *d)
 static double tension_at(const Domain *d, int64_t place)
 {
   const Region *region = domain_region(d, place);
-  const FormulationType *type = region->type;
-  double stress[6], sum = 0;
+  const Family *f = &d->family;
+  const Particles *p = d->particles;
+  const int64_t slice = place / SLICE;
+  double sum = 0;
   if (!(d->counted[place] > 0)) return 0;
-  if (type->free_tension) return type->free_tension(region->formulation, place);
-  if (points_on_particles(&region->points)) {
-    for (int k = 0; k < 3; ++k) sum += region->points.stress[k][place];
-    return d->counted[place] * (type->shares ? type->shares(region->formulation)[place] : 1) * sum;
+  if (region->type->free_tension) return region->type->free_tension(region->formulation, place);
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+    if (!(f->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(f, slice, slot, (int)(place % SLICE));
+    double state[3], along = 0, square = 0;
+    region->type->half_state(region->formulation, NULL, slice, slot, (int)(place % SLICE), state);
+    for (int k = 0; k < 3; ++k) {
+      const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      along += state[k] * y;
+      square += y * y;
+    }
+    if (square > 0) sum += p->volume[bond.neighbour] * along / sqrt(square) * bond.length;
   }
-  type->stress(region->formulation, place, stress);
-  for (int k = 0; k < d->body.dimensions; ++k) sum += stress[k];
   return d->counted[place] * in_plane(d, place) * sum;
 }
 
@@ -157,12 +160,27 @@ void domain_tell_strains(Domain *d, double time)
 {
   Strains *s = &d->strains;
   if (!s->loading) return;
+  d->particles->free_growth = NULL;
   const LoadStrains strains = of_loads(d);
   if (!loading_strain(s->loading, &strains, time) || !s->given) return;
   Looked of = {d, s->tension};
   for (int64_t b = 0; b < d->batch_count && !s->known; ++b) look_at_batch(&of, b); /* with stresses as they were */
   s->known = 1;
   share(d);
+}
+
+void domain_halve_strains(Domain *d)
+{
+  Strains *s = &d->strains;
+  const int64_t places = d->particles->places;
+  if (!s->given || !memcmp(s->given, s->held, sizeof(double) * (size_t)places)) return;
+  for (int64_t i = 0; i < places; ++i) {
+    s->growth[i] = s->given[i] - s->held[i];
+    s->given[i] -= s->growth[i] / 2;
+  }
+  d->particles->free_growth = s->growth;
+  share(d);
+  loading_forget_strains(s->loading);
 }
 
 void domain_book_strains(Domain *d)

@@ -69,6 +69,7 @@ const FormulationType formulation_correspondence = {
     .lags = correspondence_lags,
     .may_lag = correspondence_may_lag,
     .stored_energy = correspondence_stored_energy,
+    .free_tension = correspondence_free_tension,
     .elongation = correspondence_elongation,
     .keep_turns = correspondence_keep_turns,
     .energy_room = correspondence_energy_room,

@@ -146,6 +146,7 @@ int correspondence_keep_turns(void *formulation, Error *error);
 void correspondence_elongation(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);
 double correspondence_energy_room(const void *formulation, int64_t slice, const EnergyLimit *limit, uint8_t *found);
 
+double correspondence_free_tension(const void *formulation, int64_t place);
 void correspondence_stored_energy(const void *formulation, int64_t place, double time, StoredEnergy *energy);
 
 /** A particle without a strain pulls at its bonds as half of a bond-based spring does: pull per volume squared, and its change with the

@@ -2,6 +2,12 @@
 
 #include <math.h>
 
+/** Length at which a lone bond carries nothing. */
+static double natural_length(const Correspondence *c, int64_t place, const Bond *bond)
+{
+  return bond->length * (1 + particles_free_strain(c->particles, place, bond->neighbour));
+}
+
 void correspondence_axial_spring(const Correspondence *c, double *const u[3], int64_t place, const Bond *bond,
                                  double pull[3], double spring[6])
 {
@@ -12,8 +18,8 @@ void correspondence_axial_spring(const Correspondence *c, double *const u[3], in
     y[k] = bond->xi[k] + u[k][bond->neighbour] - u[k][place];
     square += y[k] * y[k];
   }
-  const double length = sqrt(square),
-               across = length > 0 ? stiffness * (length - bond->length) / (bond->length * length) : 0;
+  const double length = sqrt(square), natural = natural_length(c, place, bond),
+               across = length > 0 ? stiffness * (length - natural) / (bond->length * length) : 0;
   for (int k = 0; k < 3; ++k) pull[k] = across * y[k];
   for (int k = 0; k < 6; ++k) {
     const int r = symmetric_row[k], s = symmetric_column[k];
@@ -189,7 +195,8 @@ static void sum_axial_energy(const Correspondence *c, int64_t place, double time
       force += pull[k] * y; /* times |y| */
       along += pull[k] * time * (p->velocity[k][bond.neighbour] - p->velocity[k][place]);
     }
-    const double stored = square > 0 ? 0.5 * volumes * force / sqrt(square) * (sqrt(square) - bond.length) : 0;
+    const double natural = natural_length(c, place, &bond),
+                 stored = square > 0 ? 0.5 * volumes * force / sqrt(square) * (sqrt(square) - natural) : 0;
     energy->stored += stored;
     energy->received += stored - 0.5 * volumes * along;
   }
@@ -213,4 +220,31 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   energy->stored = energy->weight * points_elastic_energy(points, place) * points_softness(points, place) +
                    volume * 0.5 * held(c, place, sums.square, g, sums.now);
   energy->control = volume * 0.5 * held(c, place, sums.across, g, sums.before);
+}
+
+double correspondence_free_tension(const void *formulation, int64_t place)
+{
+  const Correspondence *c = formulation;
+  const Particles *p = c->particles;
+  const int64_t slice = place / SLICE;
+  double sum = 0;
+  if (c->shapes.mode[place] == SHAPE_FREE) return 0;
+  if (c->shapes.mode[place] != SHAPE_AXIAL) {
+    for (int k = 0; k < 3; ++k) sum += c->points->stress[k][place];
+    return p->volume[place] * shape_of_slice(&c->shapes, slice)->share[place % SLICE] * sum;
+  }
+  for (int64_t slot = c->family->first[slice]; slot < c->family->first[slice + 1]; ++slot) {
+    if (!(c->family->intact[slot] >> place % SLICE & 1)) continue;
+    const Bond bond = family_bond(c->family, slice, slot, (int)(place % SLICE));
+    double pull[3], spring[6], along = 0, square = 0;
+    correspondence_axial_spring(c, p->displacement, place, &bond, pull, spring);
+    for (int k = 0; k < 3; ++k) {
+      const double y = bond.xi[k] + p->displacement[k][bond.neighbour] - p->displacement[k][place];
+      along += pull[k] * y;
+      square += y * y;
+    }
+    if (square > 0) sum += p->volume[place] * p->volume[bond.neighbour] * along / sqrt(square) * bond.length;
+  }
+  const bool plane_strain = c->body->dimensions == 2 && !c->points->plane_stress;
+  return plane_strain ? (1 + material_poisson(points_material(c->points, place))) * sum : sum;
 }

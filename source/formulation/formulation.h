@@ -224,7 +224,8 @@ struct FormulationType {
   /** Critical stretch of bonds with which a plane crack takes a fracture energy. NULL: none follows from it. */
   double (*critical_stretch)(const BondLength *of, const Material *material, double energy);
   FormerBonds (*former_bonds)(const void *formulation);
-  /** What the free strain of a place would take of the body by growing by 1. NULL: its volume times the trace of its stress. */
+  /** What the free strain of a place would take of the body by growing by 1. NULL: the sum over its
+   *  bonds of what each carries along itself times its length. */
   double (*free_tension)(const void *formulation, int64_t place);
   /** Why it takes no free strains, or NULL where it does. NULL: it does. */
   const char *(*strain_free)(const void *formulation);

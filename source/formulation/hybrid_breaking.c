@@ -50,11 +50,19 @@ typedef struct PointInStep {
   double now[6];            /* strain at its end, by the members that it began with */
 } PointInStep;
 
+/** Begins strains of a point where they begin for its law: what the free strain grows by in the step does not strain it. */
+static void take_growth_off(const Hybrid *h, const HybridView *view, double from[6])
+{
+  const double *growth = h->particles->free_growth;
+  for (int k = 0; k < 3 && growth; ++k) from[k] += (growth[view->member[0]] + growth[view->member[1]]) / 2;
+}
+
 static PointInStep look(const Hybrid *h, int64_t row, const HybridView *view, double time)
 {
   PointInStep point;
   double g[9];
   hybrid_tensors(h, row, view, time, point.was, point.stress);
+  take_growth_off(h, view, point.was);
   hybrid_gradient(view, h->particles->displacement, g);
   hybrid_strain(h, g, point.now);
   return point;
@@ -81,6 +89,7 @@ static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double tim
           (p->displacement[k / 3][left.member[n]] - time * p->velocity[k / 3][left.member[n]]) * left.g[n][k % 3];
   hybrid_strain(h, after, strain);
   hybrid_strain(h, before, first);
+  take_growth_off(h, &view, first);
   foresee_stress(h, row, point.stress, point.was, strain, stress);
   return view.volume / 2 *
          (work(h, point.stress, point.was, point.now) + work(h, stress, first, strain) -

@@ -231,8 +231,7 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
 
 static double poisson_of(const Micropolar *m, int64_t place)
 {
-  const Material *material = &m->materials[m->material[place / SLICE]];
-  return (3 * material->bulk - 2 * material->shear) / (2 * (3 * material->bulk + material->shear));
+  return material_poisson(&m->materials[m->material[place / SLICE]]);
 }
 
 static const char *strain_free(const void *formulation)

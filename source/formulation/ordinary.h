@@ -72,7 +72,8 @@ struct Ordinary {
   double *factor;               /* [patterns] on the weights of bonds along lattices */
   OrdinaryDilating *dilating;   /* [patterns] */
   OrdinaryResisting *resisting; /* [patterns] */
-  double *inverse;              /* [places] d / m; 0 where there is no bond */
+  double *inverse;              /* [places] d / m of the family as it began; 0 where there is no bond */
+  double *left;                 /* [places] share of m that is left */
   double *volumetric, *shear;   /* [places] a / theta and b, times the share */
   double *share;                /* [places] */
   double *dilatation;           /* [places] theta */
@@ -101,10 +102,10 @@ static inline double ordinary_free(const Ordinary *o, int64_t place)
   return o->particles->free_strain ? o->particles->free_strain[place] : 0;
 }
 
-/** Dilatation without that of the free strain. */
+/** Dilatation without that which the bonds that are left have at the free strain. */
 static inline double ordinary_elastic_dilatation(const Ordinary *o, int64_t place)
 {
-  return o->dilatation[place] - o->dimensions * ordinary_free(o, place);
+  return o->dilatation[place] - o->dimensions * o->left[place] * ordinary_free(o, place);
 }
 
 /** A bond as it is deformed. */

@@ -97,21 +97,28 @@ static int create_rows(Ordinary *o, Error *error)
   return BRECCIA_OK;
 }
 
-/** What follows from the family of a place as it began. */
-static void weigh(void *context, int64_t place)
+/** m of the bonds that are left. */
+static double moment_of(const Ordinary *o, int64_t place)
 {
-  Ordinary *o = context;
   const Family *f = o->family;
   const int64_t slice = place / SLICE;
-  if (is_foreign(o->foreign, place)) return;
   double moment = 0;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     if (!(f->intact[slot] >> place % SLICE & 1)) continue;
     const Bond bond = ordinary_bond(o, slice, slot, (int)(place % SLICE));
     moment += bond.weight * bond.length * bond.length;
   }
+  return moment;
+}
+
+/** What follows from the family of a place as it began. */
+static void weigh(void *context, int64_t place)
+{
+  Ordinary *o = context;
+  if (is_foreign(o->foreign, place)) return;
+  const double moment = moment_of(o, place);
   o->inverse[place] = moment > 0 ? o->dimensions / moment : 0;
-  o->share[place] = 1;
+  o->share[place] = o->left[place] = 1;
 }
 
 /** Length of the shortest bond. */
@@ -137,6 +144,7 @@ void ordinary_renew(void *formulation, int64_t slice)
     const double by_moment = o->share[place] * o->inverse[place] / o->dimensions;
     o->volumetric[place] = volumetric * by_moment;
     o->shear[place] = shear * by_moment;
+    if (!is_foreign(o->foreign, place)) o->left[place] = moment_of(o, place) * o->inverse[place] / o->dimensions;
   }
   o->gaps[slice] = 0;
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) o->gaps[slice] |= f->intact[slot] != UINT8_MAX;
@@ -152,8 +160,8 @@ void ordinary_destroy(void *formulation)
   free(o->factor);
   free(o->dilating);
   free(o->resisting);
-  double **const arrays[] = {&o->inverse, &o->volumetric, &o->shear,  &o->share, &o->dilatation,
-                             &o->base,    &o->slope,      &o->change, &o->shown};
+  double **const arrays[] = {&o->inverse,    &o->left, &o->volumetric, &o->shear,  &o->share,
+                             &o->dilatation, &o->base, &o->slope,      &o->change, &o->shown};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
   free(o->range);
   free(o->gaps);
@@ -163,7 +171,8 @@ void ordinary_destroy(void *formulation)
 static int allocate(Ordinary *o, Error *error)
 {
   const int64_t places = o->particles->places;
-  double **const arrays[] = {&o->inverse, &o->volumetric, &o->shear, &o->share, &o->dilatation, &o->base, &o->slope};
+  double **const arrays[] = {&o->inverse, &o->left,       &o->volumetric, &o->shear,
+                             &o->share,   &o->dilatation, &o->base,       &o->slope};
   int failed = 0;
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
     failed |= !(*arrays[k] = places_array(places, "force states", error));

@@ -126,7 +126,8 @@ static int64_t respond(const Ordinary *o, const Sweep *sweep)
     Lanes base = lanes_load(o->volumetric + place) * lanes_load(o->dilatation + place);
     /* bonds and dilatation less those of the free strain, both of which are in proportion to |xi| */
     if (free)
-      base -= (lanes_set(o->dimensions) * lanes_load(o->volumetric + place) + lanes_load(o->shear + place)) *
+      base -= (lanes_set(o->dimensions) * lanes_load(o->left + place) * lanes_load(o->volumetric + place) +
+               lanes_load(o->shear + place)) *
               lanes_load(free + place);
     if (o->flow)
       base -= lanes_set(pull) * lanes_load(o->share + place) * lanes_load(o->inverse + place) *

@@ -172,13 +172,13 @@ static void check_locking(breccia_model *model, const Region *region)
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
     const MaterialSpec *spec = spec_of(model, m);
-    if (!spec || !region_is_made_of(d, region, m->name) || !(plausibility_poisson(m) > most)) continue;
+    if (!spec || !region_is_made_of(d, region, m->name) || !(material_poisson(m) > most)) continue;
     const Node *node = section_node(spec, "Poisson ratio");
     plausibility_say(model, node,
                      "material '%s': a body of Poisson ratio %.4g that bends is too stiff in 'ordinary', the more the "
                      "thinner it is (21 rows of particles deflect by 0.75 of the right way at 0.49, and by 0.65 at "
                      "0.499); take correspondence or hybrid, which come within 2 %% there",
-                     m->name, plausibility_poisson(m));
+                     m->name, material_poisson(m));
   }
 }
 

@@ -8,9 +8,6 @@
 /** A value in the deck's units as SI has it. */
 double plausibility_in_si(const breccia_model *model, const char *dimension, double value);
 
-/** Poisson's ratio of the undamaged material. */
-double plausibility_poisson(const Material *material);
-
 /** Adds a warning about a node of the deck to the model's. */
 __attribute__((format(printf, 3, 4))) void plausibility_say(breccia_model *model, const Node *node, const char *format,
                                                             ...);

@@ -34,7 +34,7 @@ static void check_held(breccia_model *model, const Margin *margin)
   if (margin->repeats || support_slides(margin) || plane_stress || d->body.dimensions < 2) return;
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
-    const double ratio = plausibility_poisson(m);
+    const double ratio = material_poisson(m);
     if (strcmp(m->name, name) || !m->law || m->law->components != 6 || !(ratio > most)) continue;
     plausibility_say(
         model, of->head.node,

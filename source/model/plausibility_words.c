@@ -8,11 +8,6 @@ double plausibility_in_si(const breccia_model *model, const char *dimension, dou
   return units_in_si(model->units, dimension_find(dimension), value);
 }
 
-double plausibility_poisson(const Material *m)
-{
-  return (3 * m->bulk - 2 * m->shear) / (2 * (3 * m->bulk + m->shear));
-}
-
 void plausibility_say(breccia_model *model, const Node *node, const char *format, ...)
 {
   Text words = {0};

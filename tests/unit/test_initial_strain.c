@@ -151,6 +151,48 @@ static void a_bar_held_at_both_ends_pulls_with_e_times_its_shrinkage(void **stat
   breccia_model_destroy(&m);
 }
 
+static const Case bent_laws[] = {
+    {"formulation: bond-based", "model: steel-bilinear, yield stress: 2, hardening ratio: 0.1", {0}},
+    {"formulation: bond-based", "model: bilinear-softening, tensile strength: 3, fracture energy: 2e-3", {0}},
+    {"formulation: ordinary", "model: j2, Poisson ratio: 0.2, yield stress: 2", {0}},
+    {"formulation: ordinary", "model: viscoelastic, Poisson ratio: 0.2, relaxing share: 0.5, relaxation time: 1", {0}},
+    {"formulation: correspondence",
+     "model: drucker-prager, Poisson ratio: 0.2, friction angle: 30 deg, cohesion: 1",
+     {0}},
+    {"formulation: hybrid", "model: drucker-prager, Poisson ratio: 0.2, friction angle: 30 deg, cohesion: 1", {0}},
+    {"formulation: micropolar",
+     "model: link-damage, Poisson ratio: 0.2, tensile stretch: 1e-4, tensile ductility: 50",
+     {0}},
+};
+
+/** A body held in a strain of -e alike in all directions is strained as one that shrinks by e and does not move. */
+static void laws_see_the_strain_without_it(void **state)
+{
+  (void)state;
+  for (size_t n = 0; n < sizeof bent_laws / sizeof *bent_laws; ++n)
+    for (int space = 0; space < 3; space += 2) {
+      const Case *c = &bent_laws[n];
+      char loads[2][400];
+      snprintf(loads[0], sizeof loads[0], "%s, {initial strain: -6e-4, history: {table: [[0, 0], [1, 1], [2, 0.3]]}}",
+               all_held(space));
+      snprintf(loads[1], sizeof loads[1],
+               "{on: {all: yes}, field: {displacement: ['6e-4*x', '6e-4*y'%s]}, history: {table: [[0, 0], [1, 1], [2, "
+               "0.3]]}}",
+               space ? "" : ", '6e-4*z'");
+      double stress[2][6], size = 0;
+      for (int way = 0; way < 2; ++way) {
+        breccia_model *m = body_of(c, space, loads[way], "static: {increments: 10, end time: 2}");
+        step_surely(m, INT64_MAX);
+        stress_at(m, middle(m), stress[way]);
+        assert_balanced(m, 0.02);
+        breccia_model_destroy(&m);
+      }
+      for (int k = 0; k < 6; ++k) size = larger_of(size, fabs(stress[1][k]));
+      assert_true(size > 0.1);
+      for (int k = 0; k < 6; ++k) assert_near(stress[0][k], stress[1][k], 5e-3 * size);
+    }
+}
+
 /** Changes of forces by tangents are those by differences. */
 static void tangents_know_it(void **state)
 {
@@ -202,6 +244,66 @@ static void tangents_know_it(void **state)
 #define ONE_FACE                                                                                                       \
   "{on: {face: x-, layers: 2}, displacement: [0, 0]}, {name: dry, initial strain: -1e-3, history: {ramp to: 0.05}}"
 
+/** One face is held, so that some of it becomes stress and some motion. */
+static void its_work_is_in_the_books_of_every_solver(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"static: {increments: 3, end time: 0.05}",
+                                        "static: {increments: 2, end time: 0.05, method: relaxation, residual: 1e-6}",
+                                        "implicit: {time step: 1 ms, end time: 0.1}", "explicit: {end time: 0.1}",
+                                        "explicit: {end time: 0.1, damping: 20}"};
+  for (int n = 0; n < CASES; ++n)
+    for (size_t s = 0; s < sizeof solvers / sizeof *solvers; ++s) {
+      breccia_model *m = body_of(&cases[n], 2, ONE_FACE, solvers[s]);
+      step_surely(m, INT64_MAX);
+      const Energy e = solver_energy(&m->solver);
+      assert_true(e.stored > 0 && e.external > 0);
+      assert_balanced(m, s < 2 ? 1e-4 : 2e-3);
+      breccia_model_destroy(&m);
+    }
+}
+
+/** It is there at once. */
+static void a_sudden_one_is_in_the_books_too(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"static: {increments: 1}", "implicit: {time step: 1 ms, end time: 0.1}",
+                                        "explicit: {end time: 0.1}"};
+  for (int n = 0; n < CASES; ++n)
+    for (size_t s = 0; s < sizeof solvers / sizeof *solvers; ++s) {
+      breccia_model *m = body_of(
+          &cases[n], 2, "{on: {face: x-, layers: 2}, displacement: [0, 0]}, {initial strain: -1e-3}", solvers[s]);
+      step_surely(m, INT64_MAX);
+      assert_true(solver_energy(&m->solver).external > 0);
+      assert_balanced(m, s < 1 ? 1e-3 : 5e-3); /* of one increment, by the trapezium rule, to a strain of 1e-3 */
+      breccia_model_destroy(&m);
+    }
+}
+
+/** A body that shrinks faster and faster, held by one face where bonds break one after the other. */
+static void its_work_is_in_the_books_where_bonds_break(void **state)
+{
+  (void)state;
+  for (int n = 0; n < CASES; ++n)
+    for (int energy = 0; energy < 2; ++energy) {
+      const Case *c = &cases[n];
+      breccia_model *m =
+          model_of(UNITS "materials: {m: {%s, density: 2, Young modulus: 1e4}}\n"
+                         "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.5, shape: {box: "
+                         "{particles: [16, 12]}}}}\n"
+                         "peridynamics: {space: plane stress, %s, horizon: %s}\nfailure: {%s, near grips: break}\n"
+                         "loads: [{on: {face: x-, layers: 2}, displacement: [0, 0]}, {initial strain: -8e-3, history: "
+                         "{table: [[0, 0], [0.1, 0.2], [0.25, 1]]}}]\n"
+                         "solve: {explicit: {end time: 0.3, safety: 0.5}}\npictures: []\n",
+                   c->law, c->formulation, strstr(c->formulation, "micropolar") ? "1.5 spacings" : "2.015 spacings",
+                   energy ? "criterion: critical bond energy, fracture energy: 2e-3" : "critical stretch: 1.5e-3");
+      step_surely(m, INT64_MAX);
+      assert_true(m->domain.broken_count > 10);
+      assert_balanced(m, 2e-3);
+      breccia_model_destroy(&m);
+    }
+}
+
 static const Case *under_way;
 static const char *solver_under_way;
 
@@ -222,6 +324,52 @@ static void bits_do_not_depend_on_threads_or_restarts(void **state)
     solver_under_way = "static: {increments: 6, end time: 0.1}";
     assert_same_bits_by_threads_and_restart(with_threads, 2, 4);
   }
+}
+
+static void it_comes_in_one_stage_and_goes_in_another(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of(
+      UNITS SOFT_SOLID
+      "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.5, shape: {box: {particles: [9, 7]}}}}\n"
+      "peridynamics: {space: plane stress, formulation: correspondence}\nloads: [%s]\n"
+      "solve:\n  - {static: {increments: 1, end time: 1}}\n"
+      "  - {static: {increments: 2, end time: 1}, loads: [{name: hot, initial strain: 1e-3, history: {ramp to: 1}}]}\n"
+      "  - {static: {increments: 1, end time: 1}, without: [hot]}\npictures: []\n",
+      points_held(2));
+  const int32_t last = m->domain.particles->place_of[m->domain.particles->count - 1];
+  const double wanted[] = {0, 0.5e-3, 1e-3, 0};
+  for (int step = 0; step < 4; ++step) {
+    step_surely(m, 1);
+    assert_near(m->domain.particles->displacement[0][last], 0.8 * wanted[step], 2e-6);
+  }
+  breccia_model_destroy(&m);
+}
+
+/** Free bodies break nowhere, however hot; held ones break where they would shrink by more than bonds bear. */
+static void bonds_break_by_the_stretch_without_it(void **state)
+{
+  (void)state;
+  static const char *const criteria[] = {"failure: {critical stretch: 1e-3}",
+                                         "failure: {criterion: critical bond energy, fracture energy: 1e-3}"};
+  for (int held = 0; held < 2; ++held)
+    for (int n = 0; n < 2 * CASES; ++n) {
+      const Case *c = &cases[n / 2];
+      const bool micropolar = strstr(c->formulation, "micropolar") != NULL;
+      breccia_model *m =
+          model_of(UNITS "materials: {m: {%s, density: 2, Young modulus: 1e4}}\n"
+                         "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.5, shape: "
+                         "{box: {particles: [12, 8]}}}}\n"
+                         "peridynamics: {space: plane stress, %s, horizon: %s}\n%s\nloads: [%s, "
+                         "{initial strain: %s, history: {ramp to: 0.2}}]\n"
+                         "solve: {%s}\npictures: []\n",
+                   c->law, c->formulation, micropolar ? "1.5 spacings" : "2.015 spacings", criteria[n % 2],
+                   held ? all_held(2) : points_held(2), held ? "-2e-3" : "5e-3",
+                   held ? "static: {increments: 4, end time: 0.2}" : "explicit: {end time: 0.3, local damping: 0.5}");
+      step_surely(m, INT64_MAX);
+      assert_true(held ? m->domain.broken_count > 100 : m->domain.broken_count == 0);
+      breccia_model_destroy(&m);
+    }
 }
 
 static void what_cannot_be_is_refused(void **state)
@@ -262,8 +410,14 @@ int main(void)
       cmocka_unit_test(a_free_body_takes_it_without_stress),
       cmocka_unit_test(a_held_body_carries_what_the_closed_form_says),
       cmocka_unit_test(a_bar_held_at_both_ends_pulls_with_e_times_its_shrinkage),
+      cmocka_unit_test(laws_see_the_strain_without_it),
       cmocka_unit_test(tangents_know_it),
+      cmocka_unit_test(its_work_is_in_the_books_of_every_solver),
+      cmocka_unit_test(a_sudden_one_is_in_the_books_too),
+      cmocka_unit_test(its_work_is_in_the_books_where_bonds_break),
       cmocka_unit_test(bits_do_not_depend_on_threads_or_restarts),
+      cmocka_unit_test(it_comes_in_one_stage_and_goes_in_another),
+      cmocka_unit_test(bonds_break_by_the_stretch_without_it),
       cmocka_unit_test(what_cannot_be_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
