@@ -293,8 +293,9 @@ static void tell_verdicts(const Solver *s, Text *t)
   }
 }
 
-/** Says whether a body that was meant to come to rest has done so. */
-static void tell_rest(const Solver *s, const Units *units, Text *t)
+/** Says whether a body that was meant to come to rest has done so.
+ *  @param failed  the run has ended by a failure, whose error says what to do */
+static void tell_rest(const Solver *s, const Units *units, bool failed, Text *t)
 {
   Balance balance;
   Rest rest;
@@ -310,9 +311,10 @@ static void tell_rest(const Solver *s, const Units *units, Text *t)
         "not at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work (at rest both "
         "are below %g): %s\n",
         rest.unbalanced, rest.kinetic, rest_limit,
-        s->type->rests ? "take a smaller 'residual' for its stages"
-                       : "run longer, with local damping, or load more slowly; what slides or falls does not come to "
-                         "rest");
+        failed           ? "the run failed on the way"
+        : s->type->rests ? "take a smaller 'residual' for its stages"
+                         : "run longer, with local damping, or load more slowly; what slides or falls does not come to "
+                           "rest");
   if (!s->loading->constraint_count || !find_balance(s, &balance)) return;
   const double *r = balance.reactions.force, *l = balance.loads.force;
   char force[64];
@@ -436,7 +438,7 @@ void run_tell_outcome(Run *run, int status)
   }
   run_tell_bars(model, t);
   tell_verdicts(s, t);
-  tell_rest(s, model->units, t);
+  tell_rest(s, model->units, status == BRECCIA_FAILURE, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;

@@ -224,6 +224,18 @@ fi
 [ -e burst/results.vtkhdf ] && [ -e burst/summary.json ] || fail "a burst leaves no results"
 contains "burst: summary" "$(cat burst/summary.json)" '"problem": "step '
 
+# so does a body that is torn at rest, without advice for bodies that are nearly there
+cat > torn.yaml <<'Y'
+materials: {rock: {model: elastic-brittle, density: 2400 kg/m3, Young modulus: 30 GPa, tensile strength: 3 MPa}}
+body: {b: {material: rock, lattice: square, spacing: 5 mm, thickness: 0.1 m, shape: {box: {particles: [24, 8]}}}}
+peridynamics: {formulation: bond-based, space: plane stress}
+failure: {near grips: hold}
+loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]}, {on: {face: x+}, traction: [9 MPa, 0], history: {ramp to: 1}}]
+solve: {static: {}}
+Y
+"$breccia" run torn.yaml > out 2> errors; equal "torn at rest: status" $? 1
+contains "torn at rest" "$(cat out)" "(at rest both are below 0.001): the run failed on the way"
+
 # a picture of a time that the run does not reach
 sed 's/at: \[6.2 ms, 6.4 ms\]/at: [6.2 ms, 64 ms]/' "$source/examples/block-with-hole/block.yaml" > late.yaml
 "$breccia" check late.yaml > out 2> errors; equal "a late picture: status" $? 0
