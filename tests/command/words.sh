@@ -259,7 +259,7 @@ told "breccia plot: --view: '3' should be two numbers with a colon between" plot
 told "breccia plot: --range: '1:2:3' should be two numbers with a colon between" plot block --range 1:2:3
 told "breccia plot: --deformed: 'nan' is not a number" plot block --deformed nan
 told "breccia plot: --time: '1 s' is not a number" plot block --time "1 s"
-told "breccia: --size: '49' is not a whole number of at least 50" plot block --size 49
+told "breccia: --size: '49' is not a whole number from 50 to 20000" plot block --size 49
 told "breccia: --step: '-1' is not a whole number of at least 0" plot block --step=-1
 told "breccia: --step: '7x' is not a whole number of at least 0" plot block --step 7x
 told "step 7 was not written; these were: 0 ... 60 (32 states); --time takes the nearest" plot block --field displacement --step 7
@@ -272,22 +272,22 @@ told "$movie --curve and --energy" plot block --movie a.mp4 --energy
 told "$movie --curve and --energy" plot block --movie a.mp4 --curve end.x:end.y
 told "breccia study: give one deck; see 'breccia study --help'" study block.yaml block.yaml
 told "breccia: --jobs: '0' is not a whole number of at least 1" study block.yaml --vary a=1,2 --jobs 0
-told "breccia: --threads: '0' is not a whole number of at least 1" study block.yaml --vary a=1,2 --threads 0
+told "breccia: --threads: '0' is not a whole number from 1 to 4096" study block.yaml --vary a=1,2 --threads 0
 told "beside/pictures/a: the folder cannot be made: Not a directory" study block.yaml --vary solve.explicit.steps=1,2 --output beside/pictures/a
 told "breccia check: give one deck; see 'breccia check --help'" check
 told "breccia check: give one deck; see 'breccia check --help'" check block.yaml block.yaml
 told "breccia modes: give one deck; see 'breccia modes --help'" modes
-told "breccia: --count: '0' is not a whole number of at least 1" modes block.yaml --count 0
+told "breccia: --count: '0' is not a whole number from 1 to 1000000" modes block.yaml --count 0
 told "breccia spectrum: give a file, or two of which the first is held over the other; see 'breccia spectrum --help'" spectrum
 told "breccia spectrum: 'c' is one argument too many" spectrum a b c
 told "breccia spectrum: --below-column: there is no second file" spectrum a --below-column x
 told "breccia spectrum: --damping: '5 %' is not a number" spectrum a --damping '5 %'
 told "breccia spectrum: --smoothing: 'much' is not a number" spectrum a --smoothing much
 told "breccia spectrum: --periods: '1' should be two numbers with a colon between" spectrum a --periods 1
-told "breccia: --count: '0' is not a whole number of at least 1" spectrum a --count 0
+told "breccia: --count: '0' is not a whole number from 1 to 1000000" spectrum a --count 0
 told "no-such.AT2: No such file or directory" spectrum no-such.AT2
 told "breccia: --steps: '0' is not a whole number of at least 1" run block.yaml --steps 0
-told "breccia: --threads: '99999999999999999999' is not a whole number of at least 1" run block.yaml --threads 99999999999999999999
+told "breccia: --threads: '99999999999999999999' is not a whole number from 1 to 4096" run block.yaml --threads 99999999999999999999
 told "breccia run: --output needs a value; see 'breccia run --help'" run --output
 curve="breccia material: a path of strains has no curve for"
 told "$curve --picture: give a --test, or leave it out" material --model elastic --strain a.csv --picture a.png
@@ -296,7 +296,8 @@ told "breccia material: --picture: 'a.gif' should end in .png, .svg or .pdf" mat
 for words in "--model elastic" "--model elastic --strain a.csv --test uniaxial" "" "a.yaml b.yaml" "a.yaml --model elastic --test uniaxial"; do
   told "breccia material: give a file TEST.yaml, or --model with --strain or --test; see 'breccia material --help'" material $words
 done
-for least in "cycles 0" "steps 1" "elastic-rows 0"; do
+told "breccia: --cycles: '-1' is not a whole number from 0 to 1000000" material --model elastic --test uniaxial --cycles -1
+for least in "steps 1" "elastic-rows 0"; do
   told "breccia: --${least% *}: '-1' is not a whole number of at least ${least#* }" material --model elastic --test uniaxial --${least% *} -1
 done
 told "breccia calibrate: give one file TEST.yaml, or 'concrete'; see 'breccia calibrate --help'" calibrate
