@@ -254,7 +254,7 @@ static void judge(Pieces *q, PiecesTaken taken, LoosePiece *loose)
     ++loose->pieces;
     if (h->inside <= loose->particles) continue;
     loose->particles = h->inside;
-    loose->whole = h->particles == q->count;
+    loose->whole = h->particles == q->particles->count;
     loose->place = h->place;
     snprintf(loose->motion, sizeof loose->motion, "%s %c", motion < 3 ? "along" : "about", "xyz"[motion % 3]);
   }
