@@ -265,7 +265,7 @@ awk -F, '{print $1 "," 1000 * $2}' points.csv > bad.csv; told ": its stresses re
 (cat points.csv; echo -0.004,-150; echo -0.003,-120) > bad.csv; told ":12: the strain turns back from -0.005 to -0.004, but the test goes once to its strain"
 (cat points.csv; echo -0.006,-240) > bad.csv; told ": 1 of 12 points lie at strains that the test does not reach (it goes from -0.005 to 0): let it go as far; its strains count from the end of the consolidation"
 # Units in the heading are obeyed, and blank lines, comments and a spreadsheet's mark are no rows.
-(printf '\xef\xbb\xbfaxial strain (%%),deviator (MPa)\r\n# of specimen 3\r\n\r\n'; awk -F, 'NR == 4 {printf "# set anew, 2 of 3\r\n\r\n"} {printf "%.6g,%.6g\r\n", 100 * $1, $2 / 1000}' points.csv) > good.csv
+(printf '\xef\xbb\xbfaxial strain (%%),deviator (MPa)\r\n# of specimen 3\r\n\r\n'; awk -F, 'NR == 4 {printf "# the second of 3 parts\r\n\r\n"} {printf "%.6g,%.6g\r\n", 100 * $1, $2 / 1000}' points.csv) > good.csv
 "$breccia" calibrate triaxial.yaml --against good.csv > out 2> errors; equal "units in the heading: status" $? 0
 [ -s errors ] && fail "units in the heading: $(cat errors)"
 contains "units in the heading: points" "$(cat out)" "11 points lie"
