@@ -309,15 +309,15 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
-LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const DamagePlasticity *c = constants;
   const Lanes zero = lanes_set(0), radius = trial_radius(t),
               most = lanes_greatest(zero, t->invariant / lanes_set(3) + lanes_set(2) * radius);
   const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
   const Lanes stress = lanes_set(3) * radius + lanes_set(c->alpha) * t->invariant + lanes_set(fmax(0, beta)) * most;
-  return (trial_history(t, IN_TENSION) <= zero) & (trial_history(t, IN_COMPRESSION) <= zero) &
-         (stress <= lanes_set((1 - c->alpha) * c->compression));
+  *found = (trial_history(t, IN_TENSION) <= zero) & (trial_history(t, IN_COMPRESSION) <= zero) &
+           (stress <= lanes_set((1 - c->alpha) * c->compression));
 }
 
 BRECCIA_CLONES

@@ -138,11 +138,11 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
-LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const DruckerPrager *c = constants;
   const Lanes radius = hardening_least(&c->hardening, trial_history(t, EQUIVALENT));
-  return (t->length + lanes_set(c->slope) * t->invariant <= radius) & (t->invariant <= lanes_set(c->cut));
+  *found = (t->length + lanes_set(c->slope) * t->invariant <= radius) & (t->invariant <= lanes_set(c->cut));
 }
 
 BRECCIA_CLONES

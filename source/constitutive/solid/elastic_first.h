@@ -25,8 +25,9 @@ LANES_INLINE Lanes trial_radius(const TrialLanes *t)
   return t->length * lanes_set(1 / sqrt(6));
 }
 
-/** @return the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it */
-typedef LaneMask (*SolidInside)(const void *constants, const TrialLanes *trial);
+/** @param[out] found  the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it. Returned through
+ *  memory: without optimisation the call is a real one, from a function for another processor, which looks for vectors elsewhere */
+typedef void (*SolidInside)(const void *constants, const TrialLanes *trial, LaneMask *found);
 
 /** `update` of a law: solid_update with the sieve before it. To be called from a function with BRECCIA_CLONES.
  *  @param[in] plastic  whether history begins with the plastic strain; otherwise all strain is elastic */
@@ -63,7 +64,11 @@ LANES_INLINE int solid_update_elastic_first(const void *constants, const breccia
                    lanes_set(2) * (trial.s[3] * trial.s[3] + trial.s[4] * trial.s[4] + trial.s[5] * trial.s[5]));
     const Lanes size = trial.length + trial.invariant;
     LaneMask done = size - size == lanes_set(0); /* finite */
-    if (!batch->elastic_stage) done &= inside(constants, &trial);
+    if (!batch->elastic_stage) {
+      LaneMask found;
+      inside(constants, &trial, &found);
+      done &= found;
+    }
     const Lanes pressure = lanes_set(e->bulk) * volume;
     const bool whole = all && (done[0] & done[1] & done[2] & done[3]);
     for (int k = 0; k < 6; ++k) {

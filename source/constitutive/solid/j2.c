@@ -91,7 +91,7 @@ static int deviator_of(const void *constants, breccia_deviator *d, char *reason,
   return 1;
 }
 
-LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const J2 *c = constants;
   Lanes length = t->length;
@@ -103,7 +103,7 @@ LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
     }
     length = lanes_root(square);
   }
-  return length <= hardening_least(&c->hardening, trial_history(t, EQUIVALENT));
+  *found = length <= hardening_least(&c->hardening, trial_history(t, EQUIVALENT));
 }
 
 BRECCIA_CLONES

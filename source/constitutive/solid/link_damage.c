@@ -158,14 +158,14 @@ static bool update_point(const void *constants, SolidPoint *p)
 }
 
 /** Points that were never damaged and whose strains, all together, are less than what damages. */
-LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const LinkLaw *c = constants;
   const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
               mean = t->invariant * lanes_set(1 / (9 * c->elastic.bulk)),
               square = deviator * deviator + lanes_set(3) * mean * mean;
-  return (trial_history(t, TENSILE) <= lanes_set(0)) & (trial_history(t, COMPRESSIVE) <= lanes_set(0)) &
-         (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
+  *found = (trial_history(t, TENSILE) <= lanes_set(0)) & (trial_history(t, COMPRESSIVE) <= lanes_set(0)) &
+           (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
 }
 
 BRECCIA_CLONES

@@ -140,13 +140,13 @@ static bool update_point(const void *constants, SolidPoint *p)
 }
 
 /** Points that were never damaged and whose strains, all together, are less than what damages. */
-LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const Mazars *c = constants;
   const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
               mean = t->invariant * lanes_set(1 / (9 * c->elastic.bulk)),
               square = deviator * deviator + lanes_set(3) * mean * mean;
-  return (trial_history(t, LARGEST) <= lanes_set(c->threshold)) & (square <= lanes_set(c->threshold * c->threshold));
+  *found = (trial_history(t, LARGEST) <= lanes_set(c->threshold)) & (square <= lanes_set(c->threshold * c->threshold));
 }
 
 BRECCIA_CLONES

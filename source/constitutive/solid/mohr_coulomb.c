@@ -186,12 +186,12 @@ static bool update_point(const void *constants, SolidPoint *p)
   return true;
 }
 
-LANES_INLINE LaneMask inside(const void *constants, const TrialLanes *t)
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const MohrCoulomb *c = constants;
   const Lanes radius = trial_radius(t), mean = t->invariant / lanes_set(3), two = lanes_set(2);
-  return (two * (radius * lanes_set(sqrt(3) + c->sine) + mean * lanes_set(c->sine)) <= lanes_set(c->limit)) &
-         (mean + two * radius <= lanes_set(c->tensile));
+  *found = (two * (radius * lanes_set(sqrt(3) + c->sine) + mean * lanes_set(c->sine)) <= lanes_set(c->limit)) &
+           (mean + two * radius <= lanes_set(c->tensile));
 }
 
 BRECCIA_CLONES
