@@ -266,6 +266,49 @@ static void bodies_in_space_stand_upright_in_pictures(void **state)
   }
 }
 
+/** The eye takes light to fall from above, and from the left: a ball that is lit from elsewhere looks like a hollow. */
+static void a_ball_is_lit_from_above_and_from_the_left(void **state)
+{
+  (void)state;
+  breccia_model *m = body("results: {every: 1}\n");
+  const Particles *p = m->domain.particles;
+  Sphere around = {.radius = 0.01};
+  for (int k = 0; k < 3; ++k) around.centre[k] = p->position[k][p->place_of[57]];
+  const Shape ball = {.sphere = &around};
+  for (int64_t n = 0; n < p->count; ++n) p->displacement[2][p->place_of[n]] = 1e-3; /* all of one colour */
+  char path[80], file[112];
+  run_into(m, "ball", path, sizeof path);
+  snprintf(file, sizeof file, "%s/results.vtkhdf", path);
+  ResultView view;
+  assert_int_equal(result_view_open(&view, file, NULL), 0);
+  const PictureOptions o = {
+      .field = "displacement", .azimuth = -60, .elevation = 25, .low = 0, .high = 2e-3, .inside = &ball};
+  PictureSurvey survey;
+  assert_int_equal(picture_survey(&view, 0, 0, true, &o, &survey, NULL), 0);
+  int wide, high;
+  unsigned char *pixels = picture_pixels(&view, 0, &o, &survey, &wide, &high, NULL);
+  assert_non_null(pixels);
+  double place[2] = {0}, lit[2] = {0}, count = 0, light = 0;
+  for (int y = 0; y < high; ++y)
+    for (int x = 0; x < wide - 110; ++x) { /* the bar of colours is at the right */
+      const unsigned char *c = pixels + 4 * (y * wide + x);
+      if (abs(c[0] - c[1]) + abs(c[1] - c[2]) < 40) continue; /* paper and words */
+      const double bright = c[0] + c[1] + c[2];
+      count += 1;
+      light += bright;
+      place[0] += x;
+      place[1] += y;
+      lit[0] += bright * x;
+      lit[1] += bright * y;
+    }
+  assert_true(count > 10000);
+  const double across = 2 * sqrt(count / acos(-1));
+  for (int k = 0; k < 2; ++k) assert_true(lit[k] / light < place[k] / count - 0.01 * across);
+  free(pixels);
+  result_view_close(&view);
+  breccia_model_destroy(&m);
+}
+
 /** What summary.json tells as the peak of a load. */
 static double told_peak(const char *path, const char *load)
 {
@@ -429,6 +472,7 @@ int main(void)
       cmocka_unit_test(results_hold_every_broken_bond_in_its_order),
       cmocka_unit_test(one_state_reads_alike_wherever_it_is_told),
       cmocka_unit_test(a_watched_load_has_the_unit_and_value_of_what_it_prescribes),
+      cmocka_unit_test(a_ball_is_lit_from_above_and_from_the_left),
       cmocka_unit_test(bodies_in_space_stand_upright_in_pictures),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
