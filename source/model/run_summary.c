@@ -333,7 +333,7 @@ static void tell_load(const breccia_model *model, const Load *load, Text *t)
   else if (load_magnitude(load->spec) != 0) { /* else a support, which has no size */
     char unit[64];
     units_name(model->units, dimension_find(dimension), unit, sizeof unit);
-    text_add(t, ", peak %.6g %s", load_peak(load, &model->solver), unit);
+    text_add(t, ", peak %.6g%s%s", load_peak(load, &model->solver), *unit ? " " : "", unit);
   }
   text_add(t, "\n");
 }
