@@ -2,6 +2,8 @@
 #include "sample_laws.h"
 #include "support.h"
 
+#include "constitutive/driver.h"
+
 static void a_law_that_gives_up_stops_the_run_or_breaks_its_particle(void **state)
 {
   (void)state;
@@ -206,6 +208,51 @@ static void a_bond_whose_law_gives_up_takes_both_its_particles_along(void **stat
   }
 }
 
+/* "wary": elastic, and gives up on more than a tenth of a per mille at once. */
+static int wary_values(const void *constants)
+{
+  (void)constants;
+  return 1;
+}
+static int wary_update(const void *constants, const breccia_batch *batch)
+{
+  (void)constants;
+  for (int i = 0; i < batch->count; ++i) {
+    if (!(fabs(batch->strain[0][i] - batch->committed[i]) < 1e-4)) return i;
+    batch->trial[i] = batch->strain[0][i];
+    batch->stress[0][i] = 1e4 * batch->strain[0][i];
+    if (batch->tangent) batch->tangent[i] = 1e4;
+  }
+  return -1;
+}
+
+/** To a stress far away the driver of a point goes in as many parts as the law asks for, from where it was; what a law never takes leaves the state of the last
+ *  part that went well. */
+static void a_step_that_a_law_refuses_is_cut(void **state)
+{
+  (void)state;
+  breccia_law wary = law_of_string;
+  wary.name = "wary";
+  wary.history_values = wary_values;
+  wary.update = wary_update;
+  Material m = {0};
+  char reason[100];
+  assert_int_equal(material_prepare(&m, &wary, NULL, reason, sizeof reason), 0);
+  Driver d;
+  assert_int_equal(driver_create(&d, &m, NULL), 0);
+  const bool by_stress[6] = {true};
+  const double there[6] = {10}, back[6] = {-4}, too_far[6] = {1e6};
+  assert_true(driver_step(&d, by_stress, there, 1e-9));
+  assert_near(d.strain[0], 1e-3, 1e-12);
+  assert_near(d.stress[0], 10, 1e-9);
+  assert_true(driver_step(&d, by_stress, back, 1e-9));
+  assert_near(d.strain[0], -4e-4, 1e-12);
+  assert_false(driver_step(&d, by_stress, too_far, 1e-9));
+  assert_near(d.strain[0], -4e-4, 1e-12);
+  driver_destroy(&d);
+  material_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -213,6 +260,7 @@ int main(void)
       cmocka_unit_test(a_law_that_gives_up_at_rest_is_named_with_its_particle),
       cmocka_unit_test(a_law_without_tangents_is_refused_where_they_are_needed),
       cmocka_unit_test(a_bond_whose_law_gives_up_takes_both_its_particles_along),
+      cmocka_unit_test(a_step_that_a_law_refuses_is_cut),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
