@@ -37,10 +37,11 @@ int folder_lock_take(FolderLock *lock, const char *folder, Error *error)
   *lock = (FolderLock){.path = text_format("%s/run.lock", folder), .descriptor = -1};
   if (!lock->path) return error_add(error, BRECCIA_FAILURE, "out of memory: lock of %s", folder);
   for (;;) {
-    /* Closed in programs that are started: what outlives us must not hold it. */
-    lock->descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    /* Closed in programs that are started: what outlives us must not hold it. A link is not followed: the file it leads to is somebody's. */
+    lock->descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (lock->descriptor < 0)
-      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", lock->path, strerror(errno));
+      return error_add(error, BRECCIA_FAILURE, "%s: cannot be written: %s", lock->path,
+                       errno == ELOOP ? "it is a link; remove it" : strerror(errno));
     int held;
     do held = flock(lock->descriptor, LOCK_EX | LOCK_NB);
     while (held && errno == EINTR);

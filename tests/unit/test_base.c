@@ -491,6 +491,21 @@ static void a_folder_has_one_holder(void **state)
   assert_string_equal(breccia_error_text(error), "no/such/run.lock: cannot be written: No such file or directory");
   folder_lock_return(&first);
   breccia_error_destroy(&error);
+  error = breccia_error_create(); /* a link leads to a file that is not ours to write over */
+  FILE *kept = fopen("test_base.kept", "w");
+  assert_non_null(kept);
+  assert_true(fputs("precious", kept) >= 0);
+  assert_int_equal(fclose(kept), 0);
+  assert_int_equal(symlink("test_base.kept", "run.lock"), 0);
+  assert_int_equal(folder_lock_take(&first, ".", error), BRECCIA_FAILURE);
+  assert_string_equal(breccia_error_text(error), "./run.lock: cannot be written: it is a link; remove it");
+  folder_lock_return(&first);
+  char *words = text_read_file("test_base.kept", NULL);
+  assert_string_equal(words, "precious");
+  free(words);
+  remove("run.lock");
+  remove("test_base.kept");
+  breccia_error_destroy(&error);
   free(signature), free(process), free(wanted);
 }
 
