@@ -222,6 +222,7 @@ static void each_material_has_its_own_limit_and_a_joint_the_smaller_one(void **s
   int32_t left = particles_nearest(p, (const double[]){0.105, 0.035, 0.025});
   int32_t right = particles_nearest(p, (const double[]){0.1125, 0.0325, 0.0225});
   assert_near(failure_limit(failure, left, right), 1e-4, 1e-18);
+  assert_near(failure_limit(failure, right, left), 1e-4, 1e-18);
   assert_near(failure_limit(failure, right, right), 2e-4, 1e-18);
   breccia_model_destroy(&model);
 }
