@@ -202,6 +202,40 @@ static void a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed(void *
   }
 }
 
+static void a_pair_of_two_materials_resists_as_the_mean_of_both(void **state)
+{
+  (void)state;
+  /* The same between blocks of 3 and 9 GPa, whichever of them stands first. */
+  for (int turned = 0; turned < 2; ++turned) {
+    breccia_model *model =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials:\n  soft: {density: 1, %s}\n"
+                 "  stiff: {density: 1, model: elastic-1d, Young modulus: 9 GPa}\n"
+                 "peridynamics: {formulation: bond-based, horizon: 0.0175}\ncontact: {}\nbody:\n"
+                 "  one: {material: %s, spacing: 0.01, shape: {box: {particles: [2, 3, 3]}}}\n"
+                 "  two: {material: %s, spacing: 0.01, shape: {box: {particles: [2, 3, 3], first particle: [0.025, "
+                 "0.005, 0.005]}}}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+                 FIBRE, turned ? "stiff" : "soft", turned ? "soft" : "stiff");
+    Domain *d = &model->domain;
+    const Particles *p = d->particles;
+    const int32_t a = particles_nearest(p, (const double[]){0.015, 0.015, 0.015}),
+                  b = particles_nearest(p, (const double[]){0.025, 0.015, 0.015});
+    assert_true(p->block[a / SLICE] != p->block[b / SLICE]);
+    assert_true(family_break(&d->family, a, b));
+    d->regions[0].type->renew(d->regions[0].formulation, a / SLICE);
+    d->regions[0].type->renew(d->regions[0].formulation, b / SLICE);
+    p->displacement[0][b] = -0.004;
+    compute_forces(model);
+    const double without = p->internal[0][a];
+    p->displacement[0][b] = 0;
+    contact_bond_broke(contact_of(d), a, b);
+    p->displacement[0][b] = -0.004;
+    compute_forces(model);
+    const double moment = (6 + 12 * sqrt(2) + 8 * sqrt(3)) * 0.01 * 1e-6, c = 5.0 / 6 * 6 * 6e6 / (moment / 2);
+    assert_near(p->internal[0][a] - without, -c * 0.4 * 1e-6, 1e-9 * c * 1e-6);
+    breccia_model_destroy(&model);
+  }
+}
+
 /** Forces of contact alone on all places [force]: those with it less those without. */
 static double *contact_forces(breccia_model *model)
 {
@@ -462,6 +496,7 @@ int main(void)
       cmocka_unit_test(without_contact_they_pass_through_each_other),
       cmocka_unit_test(particles_at_rest_and_bonds_feel_no_contact),
       cmocka_unit_test(a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed),
+      cmocka_unit_test(a_pair_of_two_materials_resists_as_the_mean_of_both),
       cmocka_unit_test(forces_are_the_derivative_of_the_energy),
       cmocka_unit_test(bodies_that_crumble_gain_nothing),
       cmocka_unit_test(bodies_of_unlike_spacing_that_meet_keep_their_momentum),

@@ -117,6 +117,29 @@ static void changes_of_forces_are_those_of_small_motions(void **state)
   }
 }
 
+static void families_of_unlike_particles_turn_as_their_volumes_weigh(void **state)
+{
+  (void)state;
+  /* The lower body is two blocks of unlike spacing, bonded: normals turn with families in which volumes differ. */
+  breccia_model *m = model_of(
+      UNITS "peridynamics: {formulation: correspondence, horizon: 0.0202}\nbody:\n"
+            "  one: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.03, 0.05, 0.03]}}}\n"
+            "  other: {material: m, spacing: 0.006, shape: {box: {from: [0.03, 0.001, 0], to: [0.06, 0.049, 0.03]}}}\n"
+            "  two: {material: m, spacing: 0.006, shape: {box: {from: [0.011, 0.008, 0.05], to: [0.047, 0.038, "
+            "0.068]}}}\ncontact: {}\nsolve: {static: {increments: 1}}\n"
+            "loads: [{on: {face: z-}, displacement: [0, 0, 0]}, {on: {face: z+}, displacement: [0, 0, 0]}]\n");
+  Domain *d = &m->domain;
+  const Particles *p = d->particles;
+  for (int near = 0; near < 2; ++near) { /* it chooses its faces before it presses */
+    for (int64_t i = 0; i < p->places; ++i)
+      if (p->block[i / SLICE] == 2) p->displacement[2][i] = near ? -0.02 - 1e-8 : -0.0199;
+    contact_search(d->forces.own[FORCES_contact]);
+    domain_evaluate(d);
+  }
+  check_changes(m, "unlike");
+  breccia_model_destroy(&m);
+}
+
 static void points_of_pairs_are_what_the_matrix_needs(void **state)
 {
   (void)state;
@@ -410,6 +433,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(changes_of_forces_are_those_of_small_motions),
+      cmocka_unit_test(families_of_unlike_particles_turn_as_their_volumes_weigh),
       cmocka_unit_test(points_of_pairs_are_what_the_matrix_needs),
       cmocka_unit_test(a_closed_cut_bears_whatever_solves_the_equations),
       cmocka_unit_test(a_block_is_pushed_over_another_with_coulombs_force),
