@@ -117,34 +117,44 @@ static void changes_of_forces_are_those_of_small_motions(void **state)
   }
 }
 
-static void families_of_unlike_particles_turn_as_their_volumes_weigh(void **state)
+/** A block on one of two, bonded, of unlike spacing: normals turn with families in which volumes differ. */
+static breccia_model *unlike_blocks(const char *space, double gap)
 {
-  (void)state;
-  /* The lower body is two blocks of unlike spacing, bonded: normals turn with families in which volumes differ. */
+  const bool plane = strcmp(space, "3-D");
+  const char *lattice = plane ? PLANE : ", lattice: cubic";
   breccia_model *m = model_of(
-      UNITS "peridynamics: {formulation: correspondence, horizon: 0.0202}\nbody:\n"
-            "  one: {material: m, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.03, 0.05, 0.03]}}}\n"
-            "  other: {material: m, spacing: 0.006, shape: {box: {from: [0.03, 0.001, 0], to: [0.06, 0.049, 0.03]}}}\n"
-            "  two: {material: m, spacing: 0.006, shape: {box: {from: [0.011, 0.008, 0.05], to: [0.047, 0.038, "
-            "0.068]}}}\ncontact: {}\nsolve: {static: {increments: 1}}\n"
-            "loads: [{on: {face: z-}, displacement: [0, 0, 0]}, {on: {face: z+}, displacement: [0, 0, 0]}]\n");
+      UNITS "peridynamics: {formulation: correspondence, space: %s, horizon: 0.0202}\nbody:\n"
+            "  one: {material: m, spacing: 0.01%s, shape: {box: {from: [0, 0%s], to: [0.03, %s0.03]}}}\n"
+            "  other: {material: m, spacing: 0.006%s, shape: {box: {from: [0.03, 0%s], to: [0.06, %s0.03]}}}\n"
+            "  two: {material: m, spacing: 0.006%s, shape: {box: {from: [0.011, %s0.05], to: [0.047, %s0.068]}}}\n"
+            "contact: {}\nsolve: {static: {increments: 1}}\n"
+            "loads: [{on: {face: %c-}, displacement: [0, 0%s]}, {on: {face: %c+}, displacement: [0, 0%s]}]\n",
+      space, lattice, plane ? "" : ", 0", plane ? "" : "0.05, ", lattice, plane ? "" : ", 0", plane ? "" : "0.048, ",
+      lattice, plane ? "" : "0.008, ", plane ? "" : "0.038, ", plane ? 'y' : 'z', plane ? "" : ", 0", plane ? 'y' : 'z',
+      plane ? "" : ", 0");
   Domain *d = &m->domain;
   const Particles *p = d->particles;
+  domain_evaluate(d);
   for (int near = 0; near < 2; ++near) { /* it chooses its faces before it presses */
     for (int64_t i = 0; i < p->places; ++i)
-      if (p->block[i / SLICE] == 2) p->displacement[2][i] = near ? -0.02 - 1e-8 : -0.0199;
+      if (p->block[i / SLICE] == 2) p->displacement[plane ? 1 : 2][i] = near ? -0.02 - gap : -0.0199;
     contact_search(d->forces.own[FORCES_contact]);
     domain_evaluate(d);
   }
+  return m;
+}
+
+static void families_of_unlike_particles_turn_as_their_volumes_weigh(void **state)
+{
+  (void)state;
+  breccia_model *m = unlike_blocks("3-D", 1e-8);
   check_changes(m, "unlike");
   breccia_model_destroy(&m);
 }
 
-static void points_of_pairs_are_what_the_matrix_needs(void **state)
+/** Compares the matrix of a body whose faces press with the changes of forces that it stands for. */
+static void check_matrix(breccia_model *m)
 {
-  (void)state;
-  const double pressed[9] = {1, 0, 0, 0, 1 - 1e-4, 0, 0, 0, 1};
-  breccia_model *m = cut_block("plane strain", "");
   Domain *d = &m->domain;
   const Particles *p = d->particles;
   LinearSolver solver = {
@@ -152,11 +162,9 @@ static void points_of_pairs_are_what_the_matrix_needs(void **state)
   Matrix matrix = {0};
   double *v[MOTIONS] = {0}, *kv[MOTIONS] = {0};
   assert_true(vectors_make(v, p, "test", NULL) && vectors_make(kv, p, "test", NULL));
-  domain_evaluate(d);
-  deform_uniformly(m, pressed);
   assert_int_equal(domain_linearise(d, NULL), 0);
   forces_linearise(&d->forces);
-  assert_true(((const Contact *)d->forces.own[0])->joint_count > 20);
+  assert_true(((const Contact *)d->forces.own[0])->joint_count >= 10);
   assert_int_equal(matrix_create(&matrix, &solver.unknowns, NULL), 0);
   assert_int_equal(matrix_fill(&matrix, &solver.unknowns, solver.stiffness_share, 0, NULL), 0);
   wave(m, 1, v);
@@ -176,6 +184,19 @@ static void points_of_pairs_are_what_the_matrix_needs(void **state)
   free(x), free(y);
   matrix_destroy(&matrix);
   vectors_free(v), vectors_free(kv);
+}
+
+static void points_of_pairs_are_what_the_matrix_needs(void **state)
+{
+  (void)state;
+  breccia_model *m = cut_block("plane strain", "");
+  domain_evaluate(&m->domain);
+  deform_uniformly(m, (const double[]){1, 0, 0, 0, 1 - 1e-4, 0, 0, 0, 1});
+  check_matrix(m);
+  breccia_model_destroy(&m);
+
+  m = unlike_blocks("plane strain", 1e-6);
+  check_matrix(m);
   breccia_model_destroy(&m);
 }
 
