@@ -254,6 +254,40 @@ static double *contact_forces(breccia_model *model)
   return force;
 }
 
+static void faces_that_meet_press_as_a_layer_of_both_bodies(void **state)
+{
+  (void)state;
+  /* Blocks of 3 and 9 GPa, particle opposite particle: the pressure is 2 E E' / (E + E') times the gap over a spacing, whichever lies below; of sums over
+   * lattices for integrals 2 %. */
+  for (int turned = 0; turned < 2; ++turned) {
+    breccia_model *model = model_of(
+        "units: {length: m, force: kN, time: s}\nmaterials:\n  soft: {density: 1, %s}\n"
+        "  stiff: {density: 1, model: elastic-1d, Young modulus: 9 GPa}\n"
+        "peridynamics: {formulation: bond-based, horizon: 0.0175}\nbody:\n"
+        "  one: {material: %s, spacing: 0.01, shape: {box: {from: [0, 0, 0], to: [0.08, 0.08, 0.03]}}}\n"
+        "  two: {material: %s, spacing: 0.01, shape: {box: {from: [0.02, 0.02, 0.05], to: [0.06, 0.06, 0.08]}}}\n"
+        "contact: {stiffness: 0.7}\nsolve: {explicit: {steps: 1, time step: 1e-9}}\n",
+        FIBRE, turned ? "stiff" : "soft", turned ? "soft" : "stiff");
+    Domain *d = &model->domain;
+    const Particles *p = d->particles;
+    const double gap = 1e-6;
+    compute_forces(model);
+    for (int near = 0; near < 2; ++near) { /* it chooses its faces before it presses */
+      for (int64_t i = 0; i < p->places; ++i)
+        if (p->block[i / SLICE]) p->displacement[2][i] = near ? -0.02 - gap : -0.0199;
+      contact_search(contact_of(d));
+      compute_forces(model);
+    }
+    double *force = contact_forces(model), sum = 0;
+    for (int64_t n = 0; n < p->count; ++n)
+      if (p->block[p->place_of[n] / SLICE]) sum += force[2 * p->places + p->place_of[n]];
+    const double pressure = 0.7 * 4.5e6 * gap / 0.01;
+    assert_near(sum / (0.04 * 0.04), pressure, 0.02 * pressure);
+    free(force);
+    breccia_model_destroy(&model);
+  }
+}
+
 /** Fails unless the forces of contact are the derivative of its energy, and no force or couple is left in all. */
 static void check_derivative(breccia_model *model, double spacing, const char *what)
 {
@@ -497,6 +531,7 @@ int main(void)
       cmocka_unit_test(particles_at_rest_and_bonds_feel_no_contact),
       cmocka_unit_test(a_pair_resists_as_its_bond_did_unless_that_broke_when_pressed),
       cmocka_unit_test(a_pair_of_two_materials_resists_as_the_mean_of_both),
+      cmocka_unit_test(faces_that_meet_press_as_a_layer_of_both_bodies),
       cmocka_unit_test(forces_are_the_derivative_of_the_energy),
       cmocka_unit_test(bodies_that_crumble_gain_nothing),
       cmocka_unit_test(bodies_of_unlike_spacing_that_meet_keep_their_momentum),

@@ -135,6 +135,44 @@ static void clay_that_was_loaded_elastically_starts_from_there(void **state)
   material_destroy(&m);
 }
 
+static void clay_that_was_loaded_elastically_forgets_what_came_before(void **state)
+{
+  (void)state;
+  /* Sheared by its law, then elastically, then by its law: as a clay that was only sheared elastically to the same stress. Of the way before nothing may be
+   * left, neither the reversal nor the distance to the surface. */
+  Material m = material_of("bounding-surface-clay", "shear modulus=60000", "bulk modulus=100000",
+                           "undrained strength=30", "hardening modulus=60000", NULL);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    Point one = point_start(&m), other = point_start(&m);
+    double strain[6] = {0}, beside[6] = {0}, stress[6], same[6];
+    for (int k = 1; k <= 10; ++k) {
+      strain[3] = 1e-4 * k;
+      point_try(&one, strain, stress, NULL, 0);
+      point_commit(&one);
+    }
+    strain[3] += 1e-5;
+    point_try(&one, strain, stress, NULL, 1);
+    point_commit(&one);
+    assert_true(stress[3] > 12 && stress[3] < 25);
+    beside[3] = stress[3] / m.shear;
+    point_try(&other, beside, same, NULL, 1);
+    point_commit(&other);
+    assert_near(same[3], stress[3], 1e-9);
+    for (int k = 1; k <= 10; ++k) {
+      strain[3] += sign * 5e-5;
+      beside[3] += sign * 5e-5;
+      point_try(&one, strain, stress, NULL, 0);
+      point_try(&other, beside, same, NULL, 0);
+      point_commit(&one);
+      point_commit(&other);
+      assert_near(stress[3], same[3], 1e-9);
+    }
+    point_stop(&one);
+    point_stop(&other);
+  }
+  material_destroy(&m);
+}
+
 static void clay_that_stands_still_is_as_stiff_as_in_its_last_step(void **state)
 {
   (void)state;
@@ -440,6 +478,7 @@ int main(void)
       cmocka_unit_test(confined_concrete_follows_its_compressive_meridian),
       cmocka_unit_test(dilation_that_is_not_given_is_what_the_manual_says),
       cmocka_unit_test(clay_that_was_loaded_elastically_starts_from_there),
+      cmocka_unit_test(clay_that_was_loaded_elastically_forgets_what_came_before),
       cmocka_unit_test(clay_that_is_held_goes_on_as_if_it_had_not_been),
       cmocka_unit_test(clay_that_stands_still_is_as_stiff_as_in_its_last_step),
       cmocka_unit_test(a_point_that_gives_up_carries_nothing_and_keeps_its_history),
