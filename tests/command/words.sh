@@ -88,10 +88,10 @@ said() { # said WORD: the number before its unit, in joules
 for word in external kinetic stored dissipated fracture; do near "rod: said of $word" "$(said $word)" "$(awk -v e="$(figures $s $word)" 'BEGIN {print e / 1000}')" 0.006; done
 case $words in *friction* | *damping* | *"at the start"*) fail "what is none is told: $words" ;; esac
 contains "rod: largest" "$(cat out)" "largest in the states written and at the end: displacement 950 µm, octahedral shear stress " # 1 mm/ms over 1 ms, less half the ramp
-for which in lowest:s highest:to; do # in pascals of what the file says in N/mm2
-  told=$(sed -n "s/^largest in the states.*mean stres*${which#*:}.* \([-0-9.e+]*\) \([kMG]*\)Pa.*/\1 \2/p" out)
-  near "rod: ${which%:*} mean stress" "$(echo "$told" | awk '{print $1 * ($2 == "k" ? 1e3 : $2 == "M" ? 1e6 : $2 == "G" ? 1e9 : 1)}')" "$(awk -v s="$(figures $s mean_stress_${which%:*})" 'BEGIN {print 1e6 * s}')" 0.006
-done
+pascals() { awk '{print $1 * ($2 == "kPa" ? 1e3 : $2 == "MPa" ? 1e6 : $2 == "GPa" ? 1e9 : 1)}'; }
+told=$(sed -n 's/^largest in the states.*mean stress \([^,]*\)$/\1/p' out) # the file's are N/mm2
+near "rod: lowest mean stress" "$(echo "${told% to *}" | pascals)" "$(awk -v s="$(figures $s mean_stress_lowest)" 'BEGIN {print 1e6 * s}')" 0.006
+near "rod: highest mean stress" "$(echo "${told#* to }" | pascals)" "$(awk -v s="$(figures $s mean_stress_highest)" 'BEGIN {print 1e6 * s}')" 0.006
 
 # ---- from rest to motion ----
 cat > staged.yaml <<'Y'
