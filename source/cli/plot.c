@@ -39,7 +39,7 @@ static const Option options[] = {
     {"range", "LOW:HIGH|each",
      "ends of the colours, in the deck's unit (alike at all times); of the x axis with --curve"},
     {"view", "AZIMUTH:ELEVATION", "where the eye is, in degrees, for bodies in space"},
-    {"inside", "X0:X1,Y0:Y1,Z0:Z1",
+    {"inside", "X0:X1,Y0:Y1[,Z0:Z1]",
      "only particles of this box, in the deck's unit, to look into a body; what is left out has no limit, as in "
      ":,0:2,:"},
     {"broken-bonds", NULL, "draw the bonds that have broken"},
@@ -84,7 +84,7 @@ static const char *read_end(const char *at, double *value)
   return end;
 }
 
-/** Ranges along x, y, z with commas between them; an end that is left out is no limit. @return 0, or 1 after saying what is wrong */
+/** Ranges along x, y, and z if one is given, with commas between them; an end that is left out is no limit. @return 0, or 1 after saying what is wrong */
 static int read_box(const char *words, double low[3], double high[3])
 {
   const char *at = words;
@@ -93,11 +93,12 @@ static int read_box(const char *words, double low[3], double high[3])
     at = read_end(at, &low[k]);
     good = *at == ':';
     if (good) at = read_end(at + 1, &high[k]);
-    good = good && *at == (k < 2 ? ',' : 0);
-    if (*at) ++at;
+    good = good && (*at == (k < 2 ? ',' : 0) || (k == 1 && !*at));
+    if (!*at) break;
+    ++at;
   }
   if (good) return 0;
-  complain("breccia plot: --inside: '%s' should be three ranges with commas between them, like :,0:2,:", words);
+  complain("breccia plot: --inside: '%s' should be two or three ranges with commas between them, like :,0:2,:", words);
   return 1;
 }
 

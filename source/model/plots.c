@@ -123,8 +123,8 @@ static int find_states(const ResultView *view, const breccia_plot *plot, int *fi
     for (int k = 0; k < view->steps; ++k)
       if (fabs(view->times[k] - plot->time) < fabs(view->times[*first] - plot->time)) *first = *last = k;
     if (!(plot->time >= 0 && plot->time <= end * (1 + 1e-6)))
-      return error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states up to the time %g only", plot->time,
-                       end);
+      return error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only",
+                       plot->time, view->times[0], end);
   }
   if (plot->state != BRECCIA_STATE_OF_STEP) return BRECCIA_OK;
   for (int k = 0; k < view->steps; ++k)

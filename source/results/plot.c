@@ -9,6 +9,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#define LARGEST 1e290  /* that gnuplot can lay out on an axis, in any unit and with room beyond */
+#define NARROWEST 1e-7 /* range, beside its ends, which are written with nine digits */
+
 /** In single quotes, between which gnuplot reads no escapes and runs no commands. */
 static void quote(Text *script, const char *words)
 {
@@ -76,15 +79,25 @@ static double larger_end(Extent e)
   return e.least <= e.most ? fmax(fabs(e.least), fabs(e.most)) : 0;
 }
 
-/** Smallest and largest number of an axis, of points whose x lies between `low` and `high` (not finite: all). */
-static Extent extent_of(const PlotLine *lines, int count, bool vertical, double low, double high)
+static bool has_range(const PlotOptions *o)
+{
+  return isfinite(o->low) && isfinite(o->high);
+}
+
+/** Whether a point has a place on both axes. */
+static bool is_drawn(const PlotOptions *o, double x, double y)
+{
+  return isfinite(x) && isfinite(y) && !(o->x.logarithmic && x <= 0) && !(o->y.logarithmic && y <= 0);
+}
+
+/** Smallest and largest number of an axis, of points that are drawn; `within`: that lie within the range that was asked for. */
+static Extent extent_of(const PlotLine *lines, int count, const PlotOptions *o, bool vertical, bool within)
 {
   Extent e = {INFINITY, -INFINITY};
-  const bool all = !isfinite(low) || !isfinite(high);
   for (int k = 0; k < count; ++k)
     for (int i = 0; i < lines[k].count; ++i) {
       const double x = lines[k].x[i], y = lines[k].y[i];
-      if (!isfinite(x) || !isfinite(y) || (!all && !(x >= low && x <= high))) continue;
+      if (!is_drawn(o, x, y) || (within && has_range(o) && !(x >= o->low && x <= o->high))) continue;
       e.least = fmin(e.least, vertical ? y : x);
       e.most = fmax(e.most, vertical ? y : x);
     }
@@ -132,24 +145,50 @@ static void add_key(Text *script, const PlotLine *lines, int count)
                            : "set key outside below center Left reverse maxcols 2 samplen 2.5\nset rmargin 4");
 }
 
-int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char *path, Error *error)
+/** Looks for what gnuplot would end with words of its own about. */
+static int check_axes(const PlotLine *lines, int count, const PlotOptions *o, const char *path, Error *error)
 {
-  static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e", "#4f9bd9", "#555555"};
-  enum { COLOURS = sizeof colours / sizeof *colours };
   for (int v = 0; v < 2; ++v)
     if ((v ? o->y : o->x).logarithmic && !has_positive(lines, count, v))
       return error_add(error, BRECCIA_USER_ERROR, "%s: its %s axis cannot be logarithmic: no value is above 0", path,
                        v ? "vertical" : "horizontal");
-  const Extent there = extent_of(lines, count, false, NAN, NAN);
-  if (!(there.least <= there.most))
-    return error_add(error, BRECCIA_USER_ERROR, "%s: not drawn: there is no point yet, or none that is a number", path);
+  if (has_range(o) && o->x.logarithmic && o->low <= 0)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: the range from %g to %g does not fit a logarithmic axis; expected one above 0", path, o->low,
+                     o->high);
+  const Extent all = extent_of(lines, count, o, false, false), within = extent_of(lines, count, o, false, true);
+  if (!(all.least <= all.most))
+    return error_add(error, BRECCIA_USER_ERROR, "%s: not drawn: there is no point yet, or none that is a number%s",
+                     path, o->x.logarithmic || o->y.logarithmic ? " above 0" : "");
+  if (!(within.least <= within.most))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: not drawn: no point lies in the range from %g to %g; points lie from %g to %g", path, o->low,
+                     o->high, all.least, all.most);
+  const Extent ends[2] = {has_range(o) ? (Extent){o->low, o->high} : all, extent_of(lines, count, o, true, true)};
+  for (int v = 0; v < 2; ++v)
+    if (!(larger_end(ends[v]) < LARGEST))
+      return error_add(error, BRECCIA_USER_ERROR,
+                       "%s: not drawn: its %s axis would go from %g to %g; expected less than %g", path,
+                       v ? "vertical" : "horizontal", ends[v].least, ends[v].most, LARGEST);
+  if (has_range(o) && !(o->high - o->low > NARROWEST * larger_end(*ends)))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s: not drawn: the range from %.12g to %.12g is too narrow; expected more than %g of its ends",
+                     path, o->low, o->high, NARROWEST);
+  return BRECCIA_OK;
+}
+
+int plot_draw(const PlotLine *lines, int count, const PlotOptions *o, const char *path, Error *error)
+{
+  static const char *const colours[] = {"#3b3f87", "#c8501e", "#21918c", "#8a2f7d", "#7a7a1e", "#4f9bd9", "#555555"};
+  enum { COLOURS = sizeof colours / sizeof *colours };
+  if (check_axes(lines, count, o, path, error)) return BRECCIA_USER_ERROR;
   const char *dot = strrchr(path, '.');
   char *part = text_format("%s.part", path);
   Text script = {0};
   if (!part) return error_add(error, BRECCIA_FAILURE, "out of memory: %s", path);
-  const bool given = isfinite(o->low) && isfinite(o->high);
-  const Extent ex = given ? (Extent){o->low, o->high} : extent_of(lines, count, false, NAN, NAN);
-  const Extent ey = extent_of(lines, count, true, o->low, o->high);
+  const bool given = has_range(o);
+  const Extent ex = given ? (Extent){o->low, o->high} : extent_of(lines, count, o, false, true);
+  const Extent ey = extent_of(lines, count, o, true, true);
   const DisplayUnit ux = display_unit(o->x.unit, larger_end(ex)), uy = display_unit(o->y.unit, larger_end(ey));
   for (int k = 0; k < count; ++k) {
     text_add(&script, "$data%d << END\n", k);

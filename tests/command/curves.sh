@@ -65,6 +65,25 @@ set xrange [0:40.8]
 set yrange [-5.45:4.45]
 plot $data0 using 1:2 with lines lw 2 dt 1 lc rgb "#3b3f87" title 'one: x' noenhanced, $data1 using 1:2 with lines lw 2 dt 1 lc rgb "#c8501e" title 'one: -y' noenhanced, $data2 using 1:2 with lines lw 2 dt 2 lc rgb "#3b3f87" title 'two: x' noenhanced, $data3 using 1:2 with lines lw 2 dt 2 lc rgb "#c8501e" title 'two: -y' noenhanced, $data4 using 1:2 with points pt 6 ps 1.3 lw 1.5 lc rgb "#000000" title 'the wall' noenhanced
 Y
+# what gnuplot would refuse with words of its own is not given to it
+refused() { # words, folder, curve, options
+  local words=$1 folder=$2 curve=$3
+  shift 3
+  rm -f script
+  "$breccia" plot "$folder" --curve "$curve" --output a.svg "$@" > out 2> errors
+  equal "$curve $*: status" $? 2
+  equal "$curve $*" "$(cat errors)" "a.svg: $words"
+  [ -e script ] && fail "$curve $*: gnuplot was asked"
+}
+mkdir far
+printf 'step,time (s),x (kN),y (kN)\n0,-1,1e308,3\n10,1,-1e308,-2\n' > far/grip.csv
+refused "not drawn: no point lies in the range from 5 to 6; points lie from 0 to 0.03" one "grip.time : grip.x" --range 5:6
+refused "not drawn: no point lies in the range from 0.031 to 0.05; points lie from 0.01 to 0.03" one "grip.time : grip.x" --range 0.031:0.05 --log xy
+refused "the range from 0 to 1 does not fit a logarithmic axis; expected one above 0" one "grip.time : grip.x" --range 0:1 --log x
+refused "not drawn: its horizontal axis would go from -1e+308 to 1e+308; expected less than 1e+290" one "grip.time : grip.x" --range=-1e308:1e308
+refused "not drawn: its vertical axis would go from -1e+308 to 1e+308; expected less than 1e+290" far "grip.time : grip.x"
+refused "not drawn: the range from 0.01 to 0.0100000000001 is too narrow; expected more than 1e-07 of its ends" one "grip.time : grip.x" --range 0.01:0.0100000000001
+refused "not drawn: there is no point yet, or none that is a number above 0" far "grip.time : grip.y" --log xy
 # rows of the same steps; the upright axis reaches over what the range shows
 script one --curve "gap.distance : grip.x" --range 0.002:0.01 --log x --output b.png <<'Y'
 $data0 << END

@@ -55,14 +55,16 @@ sed 's/^  - {field: damage}$/  - {field: displacement, inside: {box: {from: [-1,
 cmp half.png half/pictures/half.png || fail "half a body differs from the deck's picture of it"
 cmp all.png whole.png || fail "a box around all of a body leaves something out"
 cmp -s half.png whole.png && fail "half a body is drawn as all of it"
-checks=$((checks + 3))
+"$breccia" plot half --field displacement --inside :,3: --output two.png > out 2>&1 || fail "two ranges: $(cat out)"
+cmp half.png two.png || fail "a range along z that is left out is no limit"
+checks=$((checks + 4))
 refused_plot() { # options, words
   "$breccia" plot half --field displacement --inside "$1" --output no.png > out 2> errors
   equal "--inside $1: status" $? 2
   contains "--inside $1" "$(cat errors)" "$2"
   equal "--inside $1: lines" "$(wc -l < errors)" 1
 }
-for wrong in "1:2" ":,:" ":,:,:,:" "a:2,:,:" "0-1,:,:" ":,:,inf:"; do refused_plot "$wrong" "--inside: '$wrong' should be three ranges with commas between them, like :,0:2,:"; done
+for wrong in "1:2" ":," ":,:," ":,:,:,:" "a:2,:,:" "0-1,:,:" ":,:,inf:"; do refused_plot "$wrong" "--inside: '$wrong' should be two or three ranges with commas between them, like :,0:2,:"; done
 refused_plot ":,2:1,:" "inside: along y the lower end 2 is not below the upper one, 1"
 refused_plot ":,20:,:" "inside: none of the 432 particles stands in this shape"
 printf 'a,b\n0,0\n1,1\n' > measured.csv
@@ -185,7 +187,8 @@ wrong "there is no field 'colour'" bar --field colour
 wrong "choose one" bar --field stress
 wrong "none called 'q'" bar --field stress --component q
 wrong "was not written; these were: 0, 20, 40" bar --field damage --step 7
-wrong "the run wrote states up to the time" bar --field damage --time 1e9
+wrong "the run wrote states from the time 0 to " bar --field damage --time 1e9
+wrong "time -1: the run wrote states from the time 0 to " bar --field damage --time=-1
 wrong "should end in .png, .svg or .pdf" bar --output picture.gif
 wrong "there is no such file" nowhere
 wrong "has no column 'q'" bar --curve end.q:end.x
