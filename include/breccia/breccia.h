@@ -144,7 +144,7 @@ typedef struct breccia_options {
   const breccia_law *const
       *laws; /* laws of one's own, `law_count` of them, borrowed for the model's life; may be NULL */
   int law_count;
-  int threads;                 /* 0: what OMP_NUM_THREADS says, or one for each core that the process may use */
+  int threads; /* 0: what OMP_NUM_THREADS says, or one for each core that the process may use; at most 16 of them a core, or 64 */
   int force;                   /* 1: accept a time step above the stable one */
   const char *const *settings; /* "key.path=value" each, instead of what the deck says; borrowed for the model's life */
   int setting_count;

@@ -9,8 +9,6 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_THREADS = 4096 };
-
 /** Reads up to two numbers from a file. @return how many there are */
 static int read_numbers(const char *folder, const char *name, double numbers[2])
 {
@@ -107,15 +105,22 @@ bool cores_are_short(void)
   return threads_running("/proc/loadavg") > sysconf(_SC_NPROCESSORS_ONLN);
 }
 
+int threads_most(void)
+{
+  enum { SURE = 64, EACH = 16 }; /* a step of 4096 threads on two cores takes two seconds of waiting for each other */
+  const int cores = cores_available();
+  return cores > SURE / EACH ? EACH * cores : SURE;
+}
+
 int threads_by_default(Text *warning)
 {
   const char *words = getenv("OMP_NUM_THREADS");
   if (!words || !*words) return cores_available();
   char *end;
   const long wanted = strtol(words, &end, 10); /* of a list for nested teams the first counts */
-  if (end > words && (!*end || *end == ',') && wanted > 0 && wanted <= MOST_THREADS) return (int)wanted;
+  if (end > words && (!*end || *end == ',') && wanted > 0 && wanted <= threads_most()) return (int)wanted;
   const int cores = cores_available();
   text_add(warning, "warning: OMP_NUM_THREADS: '%s' is not a number of threads from 1 to %d; %d are used", words,
-           MOST_THREADS, cores);
+           threads_most(), cores);
   return cores;
 }

@@ -19,6 +19,9 @@ int threads_running(const char *path);
 /** True if they are more than the machine has cores. */
 bool cores_are_short(void);
 
+/** How many threads may be asked for: more would only wait for each other. Never fewer than 64. */
+int threads_most(void);
+
 /** What OMP_NUM_THREADS says, else one per core.
  *  @param[out] warning  gets a line where OMP_NUM_THREADS is no number of threads */
 int threads_by_default(Text *warning);

@@ -78,6 +78,19 @@ void text_add_visible(Text *text, const char *words)
   }
 }
 
+void text_add_warning(Text *warnings, const char *format, ...)
+{
+  Text words = {0};
+  va_list arguments;
+  va_start(arguments, format);
+  text_add_list(&words, format, arguments);
+  va_end(arguments);
+  text_add(warnings, "%swarning: ", warnings->length ? "\n" : "");
+  text_add_visible(warnings, text_words(&words));
+  warnings->failed |= words.failed;
+  text_free(&words);
+}
+
 const char *text_words(const Text *text)
 {
   return text->characters ? text->characters : "";

@@ -19,6 +19,9 @@ void text_add_list(Text *text, const char *format, va_list arguments);
 /** Appends `words` so that they stay in their line and leave a terminal as it is: control characters and bytes that are no UTF-8 as \n, \t, \xNN. */
 void text_add_visible(Text *text, const char *words);
 
+/** Appends a line that begins with "warning: ", whose words stay in it as by text_add_visible. */
+void text_add_warning(Text *warnings, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /** Appends `words` as a JSON string, quotes included. */
 void text_add_json(Text *text, const char *words);
 

@@ -14,7 +14,7 @@ static int check(const char *deck, const char **values, const DeckSettings *sett
   breccia_model *model;
   int status = breccia_model_load_file(deck, &wishes, &model, error);
   if (!status) {
-    if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
+    if (*breccia_model_warnings(model)) show(breccia_model_warnings(model), stderr);
     status = show(breccia_model_overview(model), stdout);
     if (!status) status = show(breccia_model_plausibility(model), stdout);
     breccia_model_destroy(&model);

@@ -54,7 +54,16 @@ int print_page(const char *page)
 
 int show(const char *words, FILE *out)
 {
-  if (words) return fprintf(out, "%s\n", words) < 0 ? BRECCIA_FAILURE : BRECCIA_OK;
+  int status = BRECCIA_OK;
+  for (const char *line = words; line && !status;) {
+    const int length = (int)strcspn(line, "\n");
+    char *plain = words_of("%.*s", length, line), *visible = plain ? breccia_visible_text(plain) : NULL;
+    status = visible && fprintf(out, "%s\n", visible) >= 0 ? BRECCIA_OK : BRECCIA_FAILURE;
+    breccia_text_free(visible);
+    free(plain);
+    line = line[length] ? line + length + 1 : NULL;
+  }
+  if (words) return status;
   fprintf(stderr, "breccia: out of memory: words about the model\n");
   return BRECCIA_FAILURE;
 }

@@ -20,7 +20,7 @@ static int find(const char *deck, const char **values, const DeckSettings *setti
   breccia_model *model;
   int status = breccia_model_load_file(deck, &wishes, &model, error);
   if (status) return fail(error, status);
-  if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
+  if (*breccia_model_warnings(model)) show(breccia_model_warnings(model), stderr);
   char *folder = output_folder(values[OUTPUT], deck, "-modes");
   const breccia_modes wish = {.size = sizeof wish, .folder = folder, .count = (int)count};
   status = folder ? breccia_model_modes(model, &wish, error) : BRECCIA_FAILURE;

@@ -113,7 +113,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   if (status) return fail(error, status);
   bool quiet = values[QUIET] != NULL, terminal = isatty(STDERR_FILENO);
   if (!quiet) {
-    if (*breccia_model_warnings(model)) fprintf(stderr, "%s\n", breccia_model_warnings(model));
+    if (*breccia_model_warnings(model)) show(breccia_model_warnings(model), stderr);
     status = show(breccia_model_overview(model), stdout);
     fflush(stdout);
   }
@@ -141,8 +141,8 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
   if (!quiet && terminal) fprintf(stderr, "\r\033[K");
   if (!quiet) {
     const char *warnings = breccia_model_warnings(model);
-    if (strlen(warnings) > told) fprintf(stderr, "%s\n", warnings + told + (warnings[told] == '\n'));
-    if (*breccia_model_outcome(model)) printf("%s\n", breccia_model_outcome(model));
+    if (strlen(warnings) > told) show(warnings + told + (warnings[told] == '\n'), stderr);
+    if (*breccia_model_outcome(model)) show(breccia_model_outcome(model), stdout);
     if (status == BRECCIA_INTERRUPTED) tell_restart(deck, values, settings);
   }
   breccia_model_destroy(&model);

@@ -63,7 +63,7 @@ void print_verb_help(const Verb *verb, FILE *out);
 /** Prints an error's lines and returns the status. */
 int fail(breccia_error *error, int status);
 
-/** Prints what the library tells, and a line end. @return a status: NULL is what it tells when memory is out */
+/** Prints what the library tells, and a line end; names in it leave the terminal alone. @return a status: NULL is what it tells when memory is out */
 int show(const char *words, FILE *out);
 
 /** Prints a page as it is. @return a status: NULL is what the library gives when memory is out */

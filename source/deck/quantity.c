@@ -5,11 +5,14 @@
 #include "base/memory.h"
 #include "deck/units.h"
 #include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 static const Dimension dimensions[] = {
     {"1", 0, 0, 0, ""},
@@ -145,6 +148,18 @@ static ut_unit *unit_of(const Units *units, const Dimension *dimension)
   return product;
 }
 
+/** @return why no files can be opened at this moment, whichever they are: as many as UDUNITS-2 reads at once; 0 if they can */
+static int why_unopened(void)
+{
+  enum { AT_ONCE = 2 };
+  int files[AT_ONCE], number = 0;
+  for (int k = 0; k < AT_ONCE; ++k)
+    if ((files[k] = open("/", O_RDONLY | O_CLOEXEC)) < 0) number = errno;
+  for (int k = 0; k < AT_ONCE; ++k)
+    if (files[k] >= 0) close(files[k]);
+  return number;
+}
+
 Units *units_create(const char *length, const char *force, const char *time, Error *error)
 {
   Units *units = memory_plain(1, sizeof *units);
@@ -155,7 +170,9 @@ Units *units_create(const char *length, const char *force, const char *time, Err
   ut_set_error_message_handler(ut_ignore);
   units->system = ut_read_xml(NULL);
   if (!units->system) {
-    error_add(error, BRECCIA_FAILURE, "the unit database of UDUNITS-2 was not found: install libudunits2-data");
+    const int number = why_unopened();
+    error_add(error, BRECCIA_FAILURE, "the unit database of UDUNITS-2 %s%s",
+              number ? "cannot be read: " : "was not found: install libudunits2-data", number ? strerror(number) : "");
     units_destroy(&units);
     return NULL;
   }

@@ -51,8 +51,8 @@ static void warn_of_late_picture(breccia_model *model, const PictureSpec *pictur
   const Node *node = section_node(picture, "at");
   char words[WHERE_SIZE];
   node_where(model->document, node, words, sizeof words);
-  text_add(&model->warnings, "%swarning: %s: the run ends at %g, before the picture at %g, which is not made",
-           model->warnings.length ? "\n" : "", words, end, time);
+  text_add_warning(&model->warnings, "%s: the run ends at %g, before the picture at %g, which is not made", words, end,
+                   time);
 }
 
 /** True for a file of `breccia material`: one material, a test or stages, no body. */
@@ -257,6 +257,11 @@ static int load(breccia_model *model, const char *deck, const char *name, const 
   Entry entry;
   model->threads = options->threads > 0 ? options->threads : threads_by_default(&ignored);
   int status = take_laws(model, options, error);
+  if (options->threads > threads_most())
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "threads: %d would only wait for each other, as this process may use %d core%s; expected %d at "
+                       "most: ask for one a core, or for none",
+                       options->threads, cores_available(), cores_available() == 1 ? "" : "s", threads_most());
   if (options->trap && !trap_is_possible())
     status = error_add(error, BRECCIA_USER_ERROR,
                        "floating-point traps: there are none here; expected Linux on x86-64 with the GNU C library");

@@ -17,7 +17,7 @@ void plausibility_say(breccia_model *model, const Node *node, const char *format
   va_end(arguments);
   char where[WHERE_SIZE];
   node_where(model->document, node, where, sizeof where);
-  text_add(&model->warnings, "%swarning: %s: %s", model->warnings.length ? "\n" : "", where, text_words(&words));
+  text_add_warning(&model->warnings, "%s: %s", where, text_words(&words));
   text_free(&words);
 }
 

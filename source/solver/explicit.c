@@ -279,8 +279,9 @@ static int look_for_rest(Solver *run, Text *warning, Error *error)
     run->records[clock->stage].came_to_rest = 1;
   } else if (last) {
     char name[64];
-    text_add(warning, "%swarning: stage '%s' ended at its %s, not at rest: ", warning->length ? "\n" : "",
-             solver_stage_name(run, clock->stage, name, sizeof name), s->spec->steps >= 0 ? "last step" : "end time");
+    text_add_warning(
+        warning, "stage '%s' ended at its %s, not at rest: ", solver_stage_name(run, clock->stage, name, sizeof name),
+        s->spec->steps >= 0 ? "last step" : "end time");
     if (rest.meant)
       text_add(warning,
                "forces out of balance are %.2g of those that act, kinetic energy %.2g of the work; give it more time, "

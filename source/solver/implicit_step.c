@@ -318,13 +318,12 @@ static int give_up(Implicit *s, double next, int64_t cuts)
 static void tell_coarse(Implicit *s, double found, Text *warning)
 {
   if (!s->coarse)
-    text_add(
+    text_add_warning(
         warning,
-        "%swarning: implicit: from time %.6g %s on steps cut to the 'smallest time step' (%.3g %s) err by %.2g of the "
+        "implicit: from time %.6g %s on steps cut to the 'smallest time step' (%.3g %s) err by %.2g of the "
         "largest displacements, more than the 'local error' of %g; make it smaller, or go on with a stage of "
         "'explicit'",
-        warning->length ? "\n" : "", s->clock->time, s->clock->time_unit, s->length, s->clock->time_unit, found,
-        s->spec->local_error);
+        s->clock->time, s->clock->time_unit, s->length, s->clock->time_unit, found, s->spec->local_error);
   s->coarse = true;
 }
 

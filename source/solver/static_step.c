@@ -196,21 +196,21 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
   const Static *s = run->own;
   char words[320], name[64];
   Clock *clock = &run->clock;
-  text_add(warning, "%swarning: static: no equilibrium beyond time %g %s: %s; stage '%s' goes on from there",
-           warning->length ? "\n" : "", clock->time, clock->time_unit,
-           settled ? describe_failure(s, outcome, words, sizeof words) : "the control of zero-energy modes fades",
-           solver_stage_name(run, clock->stage + 1, name, sizeof name));
+  text_add_warning(warning, "static: no equilibrium beyond time %g %s: %s; stage '%s' goes on from there", clock->time,
+                   clock->time_unit,
+                   settled ? describe_failure(s, outcome, words, sizeof words)
+                           : "the control of zero-energy modes fades",
+                   solver_stage_name(run, clock->stage + 1, name, sizeof name));
   end_now(clock);
 }
 
 /** At the end of the stage: what is said to be followed was jumped over. */
 static void tell_jumps(const Static *s, Text *warning)
 {
-  text_add(warning,
-           "%swarning: static: in %lld of %lld increments the body gave way: Newton's method found no equilibrium "
-           "near, and ",
-           warning->length ? "\n" : "", (long long)(s->descended + s->relaxed),
-           (long long)(s->clock->step - s->clock->stage_step));
+  text_add_warning(warning,
+                   "static: in %lld of %lld increments the body gave way: Newton's method found no equilibrium "
+                   "near, and ",
+                   (long long)(s->descended + s->relaxed), (long long)(s->clock->step - s->clock->stage_step));
   if (s->descended) text_add(warning, "descent by secants%s", s->relaxed ? "" : " the state of rest at their ends");
   if (s->descended && s->relaxed) text_add(warning, " (in %lld) or ", (long long)s->descended);
   if (s->relaxed) text_add(warning, "dynamic relaxation the state of rest at their ends");

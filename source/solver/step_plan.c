@@ -100,12 +100,11 @@ int explicit_follow(Solver *run, Text *warning, Error *error)
     if (status) return status;
     if (is_too_long(s, s->clock->time_step)) {
       if (!isnan(s->spec->time_step))
-        text_add(
-            warning,
-            "%swarning: step %lld: broken bonds have lowered the stable step to %.4g %s; the time step of %g %s is "
-            "divided from here on",
-            warning->length ? "\n" : "", (long long)s->clock->step, s->clock->stable, s->clock->time_unit, s->fixed,
-            s->clock->time_unit);
+        text_add_warning(warning,
+                         "step %lld: broken bonds have lowered the stable step to %.4g %s; the time step of %g %s is "
+                         "divided from here on",
+                         (long long)s->clock->step, s->clock->stable, s->clock->time_unit, s->fixed,
+                         s->clock->time_unit);
       plan_steps(s, run);
     }
   }

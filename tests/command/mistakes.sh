@@ -51,6 +51,28 @@ refused "rows over a path" "path.csv is read here" material "${law[@]}" --strain
 refused "rows over a test" "test.yaml is read here" material test.yaml --output test.yaml
 for file in measured.csv path.csv test.yaml; do cmp -s $file own/$file || fail "$file was written over"; done
 
+# ---- files that cannot be opened, as there are too many ----
+number=3 # at least as many as it takes to begin
+until (ulimit -n $number && exec "$breccia" --version) > out 2>&1 || [ $number -gt 30 ]; do number=$((number + 1)); done
+for number in $number $((number + 1)); do
+  (ulimit -n $number && exec "$breccia" run bar.yaml --quiet --output few) 2> errors
+  equal "$number files at once: status" $? 1
+  contains "$number files at once" "$(cat errors)" "Too many open files"
+  equal "$number files at once: lines" "$(wc -l < errors)" 1
+done
+
+# ---- warnings and what is told of a run stay in their lines and leave the terminal alone ----
+printf 'title: "Ba\\e[31mr"\nmaterials: {"m\\e[32m": {model: elastic, Young modulus: 1 GPa, Poisson ratio: 0.2, density: 2}}\n' > signs.yaml
+sed '1,2d; s/material: m/material: "m\\e[32m"/; s/{on: {face: x+/{name: "k\\n\\e[34m", on: {face: x+/; s/1 mm/100000 m/; s/time step: 2e-5, //' bar.yaml >> signs.yaml
+signs=$(printf 's\033[36mq.yaml')
+cp signs.yaml "$signs"
+for verb in check run; do
+  "$breccia" $verb "$signs" > out 2> errors
+  contains "signs in names, $verb" "$(cat errors)" 'warning: s\x1b[36mq.yaml:2:'
+  contains "signs in names, $verb: title" "$(cat out)" 'Ba\x1b[31mr'
+  equal "signs in names, $verb: raw ones" "$(cat out errors | tr -d -c '\001-\011\013-\037')" ""
+done
+
 # ---- names that become one name of a file ----
 for names in 'a b,a-b' 'ä,ö'; do
   sed "s/^watch:.*/watch: {${names%,*}: {energy: yes}, ${names#*,}: {energy: yes}}/" bar.yaml > names.yaml
@@ -141,7 +163,8 @@ refused "a rate of none" "--rate: '0' is not above 0 and up to 120 written steps
 refused "a range that is no number" "--range: 'nan:1' should be two numbers with a colon between" plot own --field displacement --range nan:1
 refused "a view without an end" "--view: '0:inf' should be two numbers with a colon between" plot own --field displacement --view 0:inf
 
-refused "a part of a picture up to no number" "--inside: 'nan:1,:,:' should be three ranges" plot own --field displacement --inside nan:1,:,:
+refused "a part of a picture up to no number" "--inside: 'nan:1,:,:' should be two or three ranges" plot own --field displacement --inside nan:1,:,:
+refused "threads that wait for each other" "threads: 4096 would only wait for each other, as this process may use" run bar.yaml --threads 4096
 refused "more threads than wait for each other" "--threads: '999999' is not a whole number from 1 to 4096" run bar.yaml --threads 999999
 refused "more modes than a body has" "--count: '2147483648' is not a whole number from 1 to 1000000" modes bar.yaml --count 2147483648
 refused "a picture that no file holds" "--size: '2147483648' is not a whole number from 50 to 20000" plot own --field displacement --size 2147483648
