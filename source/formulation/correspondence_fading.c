@@ -117,7 +117,8 @@ LANES_INLINE Lanes stiffness_left(const Correspondence *c, const Material *m, co
   }
   const Lanes elastic = lanes_set(m->bulk) * volume * volume + lanes_set(m->shear) * deviators;
   const LaneMask lost = work < lanes_set(1 - roundings) * elastic;
-  return lanes_choose(lost, lanes_greatest(lanes_set(0), work / elastic), lanes_set(1));
+  const Lanes share = work / lanes_choose(lost, elastic, lanes_set(1)); /* a point without strain has 0 of 0 */
+  return lanes_choose(lost, lanes_greatest(lanes_set(0), share), lanes_set(1));
 }
 
 /** What the control of four places would store per volume if nothing of it had faded. @param[in] g  [9][BATCH] G */

@@ -347,7 +347,7 @@ int implicit_advance(Solver *run, Text *warning, Error *error)
     const double change = wanted_change(s, found);
     /* What is left of forces when equilibrium is taken for found makes accelerations err too, by a share of displacements that shorter steps do not
      * lessen: third order, and even the second of loads that jump, would be far below the root. */
-    const bool helps = s->length < tried && found <= erred * sqrt(s->length / tried);
+    const bool helps = isfinite(erred) && s->length < tried && found <= erred * sqrt(s->length / tried);
     if (outcome == NEWTON_CONVERGED && (change >= 0.9 || s->length <= shortest || (isfinite(erred) && !helps))) {
       if (change < 0.9) {
         text_add(&run->log, "    kept: it errs by %.2g of the largest displacements\n", found);
