@@ -189,6 +189,8 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
            !status && solver_is_done(s) ? "true" : "false");
   add_origin(model, &t);
   if (run->step_failed) text_add(&t, "  \"failed_step\": %.0f,\n", (double)(s->clock.step + 1));
+  const bool blown_up = ledger_has_blown_up(&s->ledger); /* then energies and forces mean nothing any more */
+  if (blown_up) text_add(&t, "  \"blown_up\": true,\n");
   if (problem && *problem) {
     text_add(&t, "  \"problem\": ");
     text_add_json(&t, problem);
@@ -222,12 +224,14 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
                   {"between", e.between},       {"imbalance", e.imbalance}};
   for (int k = 0; k < (int)(sizeof energies / sizeof *energies); ++k) {
     if (k) text_add(&t, ", ");
-    add_number(&t, energies[k].key, energies[k].value);
+    add_number(&t, energies[k].key, blown_up ? NAN : energies[k].value);
   }
   text_add(&t, "},\n");
   run_add_bars(model, &t);
-  add_balance(s, &t);
-  add_rest(s, &t);
+  if (!blown_up) {
+    add_balance(s, &t);
+    add_rest(s, &t);
+  }
   text_add(&t, "  \"peaks\": {");
   const Peaks *p = &model->peaks;
   const struct {
@@ -412,16 +416,18 @@ void run_tell_outcome(Run *run, int status)
                   {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
                   {" - stored at the start ", s->ledger.stored_at_start, s->ledger.stored_at_start > 0},
                   {" - short waves between steps ", e.between, fabs(e.between) > 1e-3 * s->ledger.paid}};
-  for (size_t k = 0; k < sizeof energies / sizeof *energies; ++k) {
+  const bool blown_up = ledger_has_blown_up(&s->ledger);
+  if (blown_up) text_add(t, "energies, places and forces mean nothing after the computation has blown up\n");
+  for (size_t k = 0; k < sizeof energies / sizeof *energies && !blown_up; ++k) {
     if (!energies[k].told) continue;
     text_add(t, "%s", energies[k].words);
     quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
   }
-  text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
-  if (d->body.margin_of && d->counted == d->particles->volume)
+  if (!blown_up) text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
+  if (!blown_up && d->body.margin_of && d->counted == d->particles->volume)
     text_add(t,
              "these energies count the layers outside supports as well, because hybrid bonds are beside 'held: all'\n");
-  tell_inverted(d, length, t);
+  if (!blown_up) tell_inverted(d, length, t);
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);
   if (peaks->mean_low <= peaks->mean_high) { /* a state was written */
@@ -438,7 +444,7 @@ void run_tell_outcome(Run *run, int status)
   }
   run_tell_bars(model, t);
   tell_verdicts(s, t);
-  tell_rest(s, model->units, status == BRECCIA_FAILURE, t);
+  if (!blown_up) tell_rest(s, model->units, status == BRECCIA_FAILURE, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;

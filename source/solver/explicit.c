@@ -130,7 +130,7 @@ static int create(Solver *run, Error *error)
   /* Nothing leads out of a plane, or off a line: loads that would are refused. */
   for (int k = 0; k < d->particles->motions; ++k)
     if (k < d->body.dimensions || k >= ROTATION) s->rows[s->row_count++] = k;
-  run->ledger.wave = ledger_wave_speed(d);
+  ledger_begin(&run->ledger, d);
   int failed = 0;
   for (int k = 0; k < d->particles->motions; ++k)
     failed |= !(s->acceleration[k] = places_array(d->particles->places, "accelerations", error));

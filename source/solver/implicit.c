@@ -172,7 +172,7 @@ static int create(Solver *run, Error *error)
   s->newton.spec = &s->spec->newton;
   s->beside = implicit_forces(s);
   s->newton.beside = &s->beside;
-  run->ledger.wave = ledger_wave_speed(run->domain);
+  ledger_begin(&run->ledger, run->domain);
   const Particles *p = run->domain->particles;
   const bool made = vectors_make(s->acceleration, p, "accelerations", error) &&
                     vectors_make(s->drag, p, "damping", error) && vectors_make(s->velocity, p, "velocities", error) &&

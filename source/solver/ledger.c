@@ -1,11 +1,12 @@
 #include "solver/ledger.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Steps: when a load sets in, all energies are next to nothing. */
 enum { LASTING = 3, LASTING_FAST = 10 };
 /* Times the speed that can be explained. Fragments leave a blow at up to twice its speed, and waves add up where they meet. */
-static const double most_of_speed = 10;
+static const double most_of_speed = 10, beyond_all = 1000;
 
 double ledger_wave_speed(const Domain *d)
 {
@@ -17,15 +18,24 @@ double ledger_wave_speed(const Domain *d)
   return fastest;
 }
 
-static int64_t fastest_place(const Particles *p)
+void ledger_begin(Ledger *l, const Domain *d)
+{
+  const Particles *p = d->particles;
+  l->wave = ledger_wave_speed(d);
+  l->mass = 0;
+  for (int64_t n = 0; n < p->count; ++n) l->mass += p->density[p->place_of[n]] * p->volume[p->place_of[n]];
+}
+
+/** The place that moves the fastest in any of some rows of motion. @param[out] most  how fast */
+static int64_t fastest_place(const Particles *p, int row, int rows, double *most)
 {
   int64_t place = 0;
-  double most = -1;
+  *most = -1;
   for (int64_t n = 0; n < p->count; ++n) {
     const int32_t i = p->place_of[n];
-    for (int k = 0; k < 3; ++k) {
-      if (fabs(p->velocity[k][i]) <= most) continue;
-      most = fabs(p->velocity[k][i]);
+    for (int k = row; k < rows; ++k) {
+      if (fabs(p->velocity[k][i]) <= *most) continue;
+      *most = fabs(p->velocity[k][i]);
       place = i;
     }
   }
@@ -42,23 +52,40 @@ static bool is_too_fast(Ledger *l)
     return false;
   }
   if (l->fast_steps++ % LASTING_FAST == 0) l->fast_from = l->fastest;
-  return l->fastest > 2 * l->fast_from || l->fastest > 100 * most_of_speed * explained;
+  return l->fastest > 2 * l->fast_from || l->fastest > beyond_all * explained;
+}
+
+/** Whether there is more kinetic energy than if every component of every velocity were beyond all bounds: rotations have blown up, or the end of the step. */
+static bool holds_too_much(const Ledger *l)
+{
+  return !(l->kinetic <= 1.5 * l->mass * pow(beyond_all * (l->wave + l->given), 2));
 }
 
 static int tell_too_fast(const Ledger *l, const Domain *d, const Clock *clock, Error *error)
 {
   const Particles *p = d->particles;
-  const int64_t i = fastest_place(p);
+  double speed, turning;
+  int64_t i = fastest_place(p, 0, ROTATION, &speed);
+  char place[120], what[240];
+  if (l->fast_steps > 0) speed = l->fastest; /* in the middle of the step */
+  const bool moves = speed > most_of_speed * (l->wave + l->given) || p->motions <= ROTATION;
+  if (!moves) i = fastest_place(p, ROTATION, p->motions, &turning);
+  snprintf(place, sizeof place, "particle %d at [%g, %g, %g]", p->number[i], p->position[0][i], p->position[1][i],
+           p->position[2][i]);
+  if (moves)
+    snprintf(what, sizeof what, "%s moves at %.3g", place, speed);
+  else
+    snprintf(what, sizeof what, "%s turns at %.3g, so that kinetic energy is as if all mass moved at %.3g", place,
+             turning, sqrt(2 * l->kinetic / l->mass));
   return error_add(
       error, BRECCIA_FAILURE,
-      "step %lld (time %g %s): the computation has blown up: particle %d at [%g, %g, %g] moves at %.3g, more than %g "
+      "step %lld (time %g %s): the computation has blown up: %s, more than %g "
       "times the waves of the materials (%.4g) and the speeds at the start and prescribed (%.4g) together; the time "
       "step of %.4g %s (stable step %.4g %s) is too long for what happens, or bonds that break or close give more than "
       "they "
       "got: choose a smaller 'safety' or 'time step', more zero-energy control, or leave contact out",
-      (long long)clock->step, clock->time, clock->time_unit, p->number[i], p->position[0][i], p->position[1][i],
-      p->position[2][i], l->fastest, most_of_speed, l->wave, l->given, clock->time_step, clock->time_unit,
-      clock->stable, clock->time_unit);
+      (long long)clock->step, clock->time, clock->time_unit, what, most_of_speed, l->wave, l->given, clock->time_step,
+      clock->time_unit, clock->stable, clock->time_unit);
 }
 
 bool ledger_has_blown_up(const Ledger *l)
@@ -95,7 +122,7 @@ int ledger_watch(Ledger *l, const Domain *d, const Clock *clock, Error *error)
   const bool sound = isfinite(l->paid) && internal - lost >= -most_given * l->paid &&
                      fracture >= -most_given * l->paid && l->between <= most_unexplained * l->paid;
   l->unsound_steps = sound ? 0 : l->unsound_steps + 1;
-  if (is_too_fast(l)) {
+  if (is_too_fast(l) || holds_too_much(l)) {
     l->unsound_steps = LASTING;
     l->blown_up = true;
     return tell_too_fast(l, d, clock, error);

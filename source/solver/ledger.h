@@ -16,6 +16,7 @@ typedef struct Ledger {
   double strain_work;     /* of strains of loads, as booked so far among both works */
   double paid;            /* the most that loads, motions and speeds at the start have put in so far */
   double wave;            /* fastest waves of its materials, as they are unharmed */
+  double mass;            /* of all particles */
   double given;           /* largest speed that the start and prescribed motions have given any particle so far */
   double fastest;         /* largest component of any velocity in the middle of the last step */
   double fast_from;       /* that some steps ago, where it is beyond its bound */
@@ -45,6 +46,9 @@ typedef struct Energy {
 } Energy;
 
 Energy ledger_energy(const Ledger *ledger, Domain *domain);
+
+/** Before the first step: what speeds are measured by. */
+void ledger_begin(Ledger *ledger, const Domain *domain);
 
 /** Speed of the fastest waves of the materials of a body, as they are unharmed. */
 double ledger_wave_speed(const Domain *domain);

@@ -210,11 +210,12 @@ contains "a body in millimetres" "$("$breccia" check small.yaml 2>&1)" "body: 10
 sed '/^failure/d; s/end time: 2.0e-3 s/time step: 1e-4, steps: 5000/' plate.yaml > burst.yaml
 "$breccia" run burst.yaml > out 2> errors; equal "unstable step: status" $? 2
 "$breccia" run burst.yaml --force > out 2> errors; equal "burst: status" $? 1
-contains "burst" "$(cat errors)" "step 4 (time 0.0004 s): the computation has blown up: particle "
+contains "burst" "$(cat errors)" "step 3 (time 0.0003 s): the computation has blown up: particle "
 contains "burst" "$(cat out)" "stopped by a failure"
+contains "burst: energies" "$(cat out)" "energies, places and forces mean nothing after the computation has blown up"
 # what has blown up is no result
-"$breccia" plot burst --field displacement --step 4 > out 2> errors; equal "the state of a burst: status" $? 2
-contains "the state of a burst" "$(cat errors)" "step 4 was not written; these were: 0"
+"$breccia" plot burst --field displacement --step 3 > out 2> errors; equal "the state of a burst: status" $? 2
+contains "the state of a burst" "$(cat errors)" "step 3 was not written; these were: 0"
 if "$breccia" run plate.yaml --steps 20 --trap --output trapped > out 2> errors; then
   "$breccia" run plate.yaml --steps 20 --output untrapped > out 2>&1
   "$build/tests/compare_results" trapped/results.vtkhdf untrapped/results.vtkhdf > out || fail "traps change a run: $(cat out)"
@@ -222,6 +223,8 @@ else
   contains "traps" "$(cat errors)" "floating-point traps: there are none here; expected Linux on x86-64"
 fi
 [ -e burst/results.vtkhdf ] && [ -e burst/summary.json ] || fail "a burst leaves no results"
+contains "burst: summary" "$(cat burst/summary.json)" '"blown_up": true,'
+contains "burst: energies of the summary" "$(cat burst/summary.json)" '"energy": {"kinetic": null, '
 contains "burst: summary" "$(cat burst/summary.json)" '"problem": "step '
 
 # so does a body that is torn at rest, without advice for bodies that are nearly there

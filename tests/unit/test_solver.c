@@ -388,6 +388,36 @@ static void a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed
   breccia_error_destroy(&error);
 }
 
+/** Rotations are no speeds: one that is beyond all bounds shows in the energy alone. The first holds less than all mass at a thousand times the
+ *  waves, the second a thousand times more. */
+static void a_rotation_that_blows_up_stops_a_run_too(void **state)
+{
+  (void)state;
+  static const double turning[] = {3e6, 1e9};
+  for (int k = 0; k < 2; ++k) {
+    breccia_error *error = breccia_error_create();
+    breccia_model *m;
+    const char *deck = SOFT_SOLID
+        "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 1, shape: {box: {particles: [24, 10]}}}}\n"
+        "peridynamics: {formulation: micropolar, space: plane strain}\n"
+        "solve: {explicit: {time step: 1e-13, steps: 1000}}\n";
+    assert_int_equal(breccia_model_load_string(deck, "deck", NULL, &m, error), 0);
+    const Particles *p = m->domain.particles;
+    const int32_t i = p->place_of[31];
+    assert_true(p->motions > ROTATION);
+    p->velocity[p->motions - 1][i] = turning[k];
+    assert_int_equal(breccia_model_step(m, 1, error), k ? BRECCIA_FAILURE : BRECCIA_OK);
+    assert_int_equal(ledger_has_blown_up(&m->solver.ledger), k);
+    if (k)
+      holds_words(
+          breccia_error_text(error),
+          "step 1 (|: the computation has blown up: particle 31 at [|] turns at 1e+09, so that kinetic energy is as if "
+          "all mass moved at |, more than 10 times the waves of the materials (77.46) ");
+    breccia_model_destroy(&m);
+    breccia_error_destroy(&error);
+  }
+}
+
 /** Fast for its material is no mistake: a shot, a body that is pulled away, and one that falls for long. */
 static void speeds_that_the_deck_gives_stop_nothing(void **state)
 {
@@ -526,6 +556,7 @@ int main(void)
       cmocka_unit_test(prescribed_particles_go_where_they_are_told),
       cmocka_unit_test(energy_from_nothing_stops_the_run),
       cmocka_unit_test(a_run_that_blows_up_stops_within_ten_steps_of_the_first_absurd_speed),
+      cmocka_unit_test(a_rotation_that_blows_up_stops_a_run_too),
       cmocka_unit_test(speeds_that_the_deck_gives_stop_nothing),
       cmocka_unit_test(a_load_that_sets_in_late_stops_nothing),
       cmocka_unit_test(a_force_that_is_no_number_is_reported_with_place_step_and_cause),
