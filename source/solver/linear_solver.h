@@ -13,6 +13,7 @@ typedef struct LinearRecord {
   double residual;    /* what is left of the right-hand side, over all of it */
   bool indefinite;    /* K has a direction against which the body does not resist */
   bool unsuited;      /* the way does not solve with such a K, and another has to be taken */
+  bool stopped;       /* after as many products as are allowed, with no answer */
 } LinearRecord;
 
 /** What a way to solve takes, about. */
@@ -48,6 +49,7 @@ struct LinearSolver {
    * share. */
   double stiffness_share, mass_factor;
   const ElasticStep *elastic; /* K is this stiffness; NULL: that at which the domain was linearised */
+  int64_t allowed;            /* products of one solution; 0: as many as it takes */
   bool is_free;               /* the deck does not say which */
   const LinearType *first;    /* the way that was taken at the beginning */
   int64_t given_up, left;     /* ways that did not suit: by the state, which may come back, and those left so far */

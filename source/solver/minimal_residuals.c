@@ -127,6 +127,8 @@ static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTI
   for (double length = first, before = INFINITY; first > 0;) {
     record->residual = length / first;
     if (length <= tolerance * first || !(length <= little * before) || record->iterations >= MOST_PRODUCTS) break;
+    record->stopped = s->allowed && record->iterations >= s->allowed;
+    if (record->stopped) break;
     before = length;
     if (go_round(s, length, 0.9 * tolerance * first, v, record, error)) return BRECCIA_FAILURE;
     vectors_combine(s->domain, 0, g->scaled, 1, v);

@@ -331,40 +331,6 @@ static double foresee_work(const Newton *n)
   return more > 0 && !n->indefinite ? now + 0.5 * more : 0;
 }
 
-/** How an increment comes on. */
-typedef struct Pace {
-  double least;    /* forces out of balance so far */
-  int64_t since;   /* iterations that have not halved them */
-  bool by_secants; /* of bonds that soften */
-  double enough;   /* with these forces out of balance tangents are tried again */
-} Pace;
-
-/** Where bonds soften and unload in turn corrections by tangents go round in circles, or to a state that the body does not stay in. Secants, which are
- *  nearly the same in both, lead to one in which it does, if slowly; near to it tangents are tried again.
- *  @return whether the slopes to be taken are others from now on */
-static bool choose_slopes(Newton *n, Pace *pace, double force)
-{
-  enum { PATIENCE = 4 };
-  const double near = 1e-3;
-  const bool were = pace->by_secants;
-  if (!were) {
-    const bool halved = force < 0.5 * pace->least;
-    pace->since = halved ? 0 : pace->since + 1;
-    if (halved) pace->least = force;
-    const bool again = pace->enough > 0; /* they were tried near to it: one step must do better */
-    if (pace->since >= (again ? 1 : PATIENCE) && domain_take_secants(n->domain, SECANTS_OF_BONDS)) {
-      pace->by_secants = true;
-      pace->enough = near * fmin(force, again ? pace->enough : force);
-    }
-  } else if (force < pace->enough) {
-    domain_take_secants(n->domain, SECANTS_OF_NONE);
-    pace->by_secants = false;
-    pace->least = force;
-    pace->since = 0;
-  }
-  return were != pace->by_secants;
-}
-
 enum { LONGER = 10 }; /* secants come on by a fifth of what is left in an iteration */
 
 int64_t newton_most_iterations(const Newton *n)
@@ -430,8 +396,9 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     LinearRecord linear = {0};
     const double accuracy = n->exerted > 0 ? newton_wanted_accuracy(n, force, before) : n->spec->residual / 10;
     double start;
+    n->linear.allowed = pace_allowed_products(&pace, n);
     if (find_change(n, force, accuracy, &linear, &start, error)) return NEWTON_FAILED;
-    if (linear.unsuited && !linear.indefinite && !n->linear.is_free) {
+    if (linear.unsuited && !linear.stopped && !linear.indefinite && !n->linear.is_free) {
       if (is_cut(n)) return NEWTON_SINGULAR;
       const bool minimal = !strcmp(linear_solver_name(&n->linear), "minimal residuals");
       error_add(error, BRECCIA_FAILURE,
@@ -442,7 +409,9 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
       return NEWTON_FAILED;
     }
     n->products += linear.iterations;
+    if (n->iterations == 1) pace.products = linear.iterations;
     n->indefinite |= linear.indefinite;
+    if (linear.stopped) return NEWTON_LEFT;
     if (!isfinite(start)) return NEWTON_SINGULAR;
     unknowns_spread(&n->linear.unknowns, n->iterations == 1 ? time : NAN, n->change);
     if (n->control && (outcome = newton_follow_control(n, accuracy, &start, error)) != NEWTON_CONVERGED) return outcome;
@@ -466,7 +435,12 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
     if (is_astray(n, energy)) return NEWTON_ASTRAY;
-    if (choose_slopes(n, &pace, force) && domain_linearise(n->domain, error)) return NEWTON_FAILED;
+    const bool others = pace_choose_slopes(&pace, n, force);
+    if (pace_leaves(&pace, n)) {
+      ++n->iterations; /* this one is over */
+      return NEWTON_LEFT;
+    }
+    if (others && domain_linearise(n->domain, error)) return NEWTON_FAILED;
     if (keeps_factors(n) && force > enough * before) n->follows = 1;
   }
   return NEWTON_SLOW;
@@ -475,6 +449,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
 NewtonOutcome newton_solve(Newton *n, double time, Error *error)
 {
   const NewtonOutcome outcome = solve(n, time, error);
+  n->linear.allowed = 0;
   domain_take_secants(n->domain, SECANTS_OF_NONE);
   if (!n->beside) domain_mix_tangents(n->domain, 0);
   return outcome == NEWTON_CONVERGED && newton_has_gone_far(n) ? NEWTON_FAR : outcome;
@@ -491,6 +466,10 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
     snprintf(words, size, "%lld iterations left %.2g of the forces out of balance%s%s", (long long)n->iterations - 1,
              n->unbalanced, n->indefinite ? ", and the body does not resist some motion any more" : "",
              n->indefinite ? parts : "");
+    break;
+  case NEWTON_LEFT:
+    snprintf(words, size, "it hardly comes on: %lld iterations left %.2g of the forces out of balance",
+             (long long)n->iterations - 1, n->unbalanced);
     break;
   case NEWTON_LAW: {
     const int64_t i = d->failed_place;

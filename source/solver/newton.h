@@ -52,6 +52,7 @@ typedef struct NewtonSpec {
 typedef enum NewtonOutcome {
   NEWTON_CONVERGED,
   NEWTON_SLOW,     /* too many iterations */
+  NEWTON_LEFT,     /* it hardly comes on, and other ways to rest are at hand */
   NEWTON_DIVERGED, /* forces that are no numbers, or grow beyond all bounds */
   NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
   NEWTON_SINGULAR, /* the linearised equations have no solution */
@@ -78,6 +79,8 @@ typedef struct Newton {
   const Loading *loading;
   const NewtonSpec *spec;
   const NewtonForces *beside; /* NULL: none, as at rest */
+  bool
+      has_others; /* other ways to rest are at hand, to which an increment is left where Newton's method hardly comes on */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
   Control *control;        /* NULL: all factors of loads are given */

@@ -34,4 +34,24 @@ bool newton_has_converged(const Newton *newton, double force, double correction,
 /** Whether displacements are beyond all reason: factors of a stiffness that is singular but for rounding give such ones, in balance. */
 bool newton_is_carried_away(const Particles *particles);
 
+/** How an increment comes on (newton_pace.c). */
+typedef struct Pace {
+  double least;     /* forces out of balance so far */
+  int64_t since;    /* iterations by tangents that have not halved them */
+  bool by_secants;  /* of bonds that soften */
+  double enough;    /* with these forces out of balance tangents are tried again; 0: secants were never taken */
+  int64_t products; /* that the equations of the first iteration have taken */
+} Pace;
+
+/** Where bonds soften and unload in turn corrections by tangents go round in circles, or to a state that the body does not stay in. Secants, which are
+ *  nearly the same in both, lead to one in which it does, if slowly; near to it tangents are tried again.
+ *  @return whether the slopes to be taken are others from now on */
+bool pace_choose_slopes(Pace *pace, const Newton *newton, double force);
+
+/** Products that the equations of the next iteration are allowed; 0: as many as they take. */
+int64_t pace_allowed_products(const Pace *pace, const Newton *newton);
+
+/** Whether an increment that has not converged yet is left to other ways. */
+bool pace_leaves(const Pace *pace, const Newton *newton);
+
 #endif

@@ -44,7 +44,7 @@ typedef struct StageRecord {
   double unbalanced, kinetic;               /* by which it was judged (solver/rest.h) */
   double midway; /* unbalanced, where the time in which it was to come to rest was half over; 0: not looked at */
   double descended,
-      relaxed; /* increments in which the body gave way, and whose ends descent by secants, and dynamic relaxation found */
+      relaxed; /* increments in which Newton's method did not come to rest, and whose ends descent by secants, and dynamic relaxation found */
 } StageRecord;
 enum { STAGE_NUMBERS = sizeof(StageRecord) / sizeof(double) };
 

@@ -132,7 +132,10 @@ static void tell_refused(const Static *s, NewtonOutcome outcome, bool settled)
              "    given back: the control of zero-energy modes as it is leaves %.2g of the forces out of balance\n",
              s->lag);
   else
-    text_add(s->newton.log, "    %s: %s\n", outcome == NEWTON_COARSE ? "cut" : "no equilibrium",
+    text_add(s->newton.log, "    %s: %s\n",
+             outcome == NEWTON_COARSE ? "cut"
+             : outcome == NEWTON_LEFT ? "left to other ways"
+                                      : "no equilibrium",
              newton_describe(&s->newton, outcome, words, sizeof words));
 }
 
@@ -208,8 +211,8 @@ static void hand_over(Solver *run, NewtonOutcome outcome, bool settled, Text *wa
 static void tell_jumps(const Static *s, Text *warning)
 {
   text_add_warning(warning,
-                   "static: in %lld of %lld increments the body gave way: Newton's method found no equilibrium "
-                   "near, and ",
+                   "static: in %lld of %lld increments the body gave way: Newton's method hardly came on, or found no "
+                   "equilibrium near, and ",
                    (long long)(s->descended + s->relaxed), (long long)(s->clock->step - s->clock->stage_step));
   if (s->descended) text_add(warning, "descent by secants%s", s->relaxed ? "" : " the state of rest at their ends");
   if (s->descended && s->relaxed) text_add(warning, " (in %lld) or ", (long long)s->descended);
@@ -217,12 +220,12 @@ static void tell_jumps(const Static *s, Text *warning)
   text_add(warning, "; what is between is not followed");
 }
 
-/** Whether Newton's method is not asked alone any more, after it has failed: there is no equilibrium near, or only by secants that hardly come on.
+/** Whether Newton's method is not asked alone any more, after it has failed: it hardly comes on, or there is no equilibrium near.
  *  @param[in] length  of the increment */
-static bool is_stuck(const Static *s, double length)
+static bool is_stuck(const Static *s, NewtonOutcome outcome, double length)
 {
   const double least = 1.0 / 16; /* of an increment as asked for */
-  return s->newton.iterations > s->spec->newton.iterations + 1 ||
+  return outcome == NEWTON_LEFT || s->newton.iterations > s->spec->newton.iterations + 1 ||
          length / 2 < fmax(least, s->spec->smallest) * static_whole_increment(s->spec);
 }
 
@@ -235,18 +238,23 @@ static bool came_to_equilibrium(NewtonOutcome outcome)
  *  @param[in,out] may_relax  until that was tried in vain; @param[out] way  what found equilibrium */
 static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *way, Error *error)
 {
+  const bool others = domain_may_soften(s->domain) && static_may_relax(s);
+  /* Where bonds soften relaxation takes a fifth of the time of secants; where points do, it may not come to rest. */
+  const bool bonds = domain_take_secants(s->domain, SECANTS_OF_NONE);
+  s->newton.has_others = others && bonds && *may_relax;
   NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
-  if (outcome == NEWTON_FAILED || came_to_equilibrium(outcome) || !is_stuck(s, end - s->clock->time) ||
-      !domain_may_soften(s->domain) || !static_may_relax(s))
+  s->newton.has_others = false;
+  if (outcome == NEWTON_FAILED || came_to_equilibrium(outcome) || !others ||
+      !is_stuck(s, outcome, end - s->clock->time))
     return outcome;
-  tell_refused(s, outcome, true);
-  outcome = static_try(s, end, (Try){.by = BY_SECANTS}, error);
-  if (outcome == NEWTON_CONVERGED) *way = BY_SECANTS;
-  if (outcome == NEWTON_FAILED || came_to_equilibrium(outcome) || !*may_relax) return outcome;
-  tell_refused(s, outcome, true);
-  outcome = static_try(s, end, (Try){.by = BY_RELAXATION}, error);
-  if (outcome == NEWTON_CONVERGED) *way = BY_RELAXATION;
-  *may_relax = came_to_equilibrium(outcome);
+  const TryBy ways[] = {bonds ? BY_RELAXATION : BY_SECANTS, bonds ? BY_SECANTS : BY_RELAXATION};
+  for (int k = 0; k < 2 && outcome != NEWTON_FAILED && !came_to_equilibrium(outcome); ++k) {
+    if (ways[k] == BY_RELAXATION && !*may_relax) continue;
+    tell_refused(s, outcome, true);
+    outcome = static_try(s, end, (Try){.by = ways[k]}, error);
+    if (outcome == NEWTON_CONVERGED) *way = ways[k];
+    if (ways[k] == BY_RELAXATION) *may_relax = came_to_equilibrium(outcome);
+  }
   return outcome;
 }
 
