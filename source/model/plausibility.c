@@ -25,11 +25,27 @@ static double parameter(const breccia_model *model, const Material *material, co
   return NAN;
 }
 
-/** Of pressure waves, in m/s: sqrt(M / rho) with M = K + 4 G / 3; along bars sqrt(E / rho). */
+/** The region of the first particle that is of a material; NULL: none is, as with that of reinforcing bars. */
+static const Region *region_made_of(const Domain *d, const Material *m)
+{
+  for (int r = 0; r < d->region_count; ++r)
+    if (region_is_made_of(d, &d->regions[r], m->name)) return &d->regions[r];
+  return NULL;
+}
+
+/** Of pressure waves, in m/s: sqrt(M / rho) with M = K + 4 G / 3; in plane stress M = E / (1 - nu^2), with the 1/3 that bonds show there; along bars,
+ *  reinforcing ones too, M = E. */
 static double wave_speed(const breccia_model *model, const Material *m)
 {
-  const bool bar = model->domain.body.dimensions == 1;
-  const double modulus = bar ? material_young(m) : m->bulk + 4 * m->shear / 3;
+  const Domain *d = &model->domain;
+  const Region *region = region_made_of(d, m);
+  double modulus = m->bulk + 4 * m->shear / 3;
+  if (d->body.dimensions == 1 || !region) {
+    modulus = material_young(m);
+  } else if (peridynamics_space(model->spec->peridynamics) == SPACE_PLANE_STRESS) {
+    const double ratio = strcmp(region->type->name, "bond-based") != 0 ? material_poisson(m) : 1.0 / 3;
+    modulus = material_young(m) / (1 - ratio * ratio);
+  }
   return sqrt(plausibility_in_si(model, "stress", modulus) / plausibility_in_si(model, "density", m->density));
 }
 
