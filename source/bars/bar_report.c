@@ -17,6 +17,16 @@ const char *bar_name(const Bars *b, int bar)
   return ((const BarSpec *)b->specs->items[bar])->head.name;
 }
 
+const char *deck_bar_name(const Bars *b, int deck_bar)
+{
+  return ((const BarSpec *)b->lines.deck->items[deck_bar])->head.name;
+}
+
+int deck_bar_lines(const Bars *b, int deck_bar)
+{
+  return b->lines.first[deck_bar + 1] - b->lines.first[deck_bar];
+}
+
 double bar_young(const Bars *b, int bar)
 {
   const int64_t e = b->first[bar];
@@ -25,13 +35,27 @@ double bar_young(const Bars *b, int bar)
 
 int bars_find(const Bars *b, const char *name)
 {
-  for (int n = 0; b && n < b->specs->count; ++n)
-    if (!strcmp(bar_name(b, n), name)) return n;
+  for (int n = 0; b && n < b->lines.deck->count; ++n)
+    if (!strcmp(deck_bar_name(b, n), name)) return n;
   return -1;
 }
 
-void bar_middle(const Bars *b, int bar, int64_t e, double middle[3])
+int bar_of(const Bars *b, int64_t e)
 {
+  int low = 0, high = b->specs->count;
+  while (high - low > 1) {
+    const int middle = low + (high - low) / 2;
+    if (b->first[middle] <= e)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+void bar_middle(const Bars *b, int64_t e, double middle[3])
+{
+  const int bar = bar_of(b, e);
   for (int k = 0; k < 3; ++k) middle[k] = (b->node[e + bar][k] + b->node[e + bar + 1][k]) / 2;
 }
 
@@ -44,13 +68,14 @@ void bar_node_displacement(const Bars *b, int64_t node, double u[3])
   }
 }
 
-int64_t bar_nearest(const Bars *b, int bar, const double point[3])
+int64_t bar_nearest(const Bars *b, int deck_bar, const double point[3])
 {
-  int64_t nearest = b->first[bar];
+  const int64_t from = b->first[b->lines.first[deck_bar]], to = b->first[b->lines.first[deck_bar + 1]];
+  int64_t nearest = from;
   double least = INFINITY;
-  for (int64_t e = b->first[bar]; e < b->first[bar + 1]; ++e) {
+  for (int64_t e = from; e < to; ++e) {
     double middle[3], square = 0;
-    bar_middle(b, bar, e, middle);
+    bar_middle(b, e, middle);
     for (int k = 0; k < 3; ++k) square += (middle[k] - point[k]) * (middle[k] - point[k]);
     if (!(square < least)) continue;
     least = square;
@@ -110,15 +135,16 @@ static void note_first(const double *when, int64_t e, int64_t *first)
   if (when[e] >= 0 && (*first < 0 || when[e] < when[*first])) *first = e;
 }
 
-BarReport bar_report(const Bars *b, int bar)
+BarReport bar_report(const Bars *b, int deck_bar)
 {
-  const int64_t from = b->first[bar], to = b->first[bar + 1];
+  const int first = b->lines.first[deck_bar], behind = b->lines.first[deck_bar + 1];
+  const int64_t from = b->first[first], to = b->first[behind];
   BarReport r = {.least_strain = INFINITY,
                  .largest_strain = -INFINITY,
                  .least_stress = INFINITY,
                  .largest_stress = -INFINITY,
-                 .lowest_stress = b->lowest[bar],
-                 .highest_stress = b->highest[bar],
+                 .lowest_stress = b->lowest[first],
+                 .highest_stress = b->highest[first],
                  .first_yielded = -1,
                  .first_torn = -1};
   double length = 0;
@@ -137,11 +163,15 @@ BarReport bar_report(const Bars *b, int bar)
   const double of_points = b->has_points ? bars_stored(b, from, to, false) : 0;
   r.stored = bars_stored(b, from, to, true) + of_points;
   r.dissipated -= of_points;
-  r.stored += bar_bond_stored(b, bar);
-  r.dissipated += bar_bond_dissipated(b, bar);
-  for (int64_t k = from + bar; k <= to + bar && bar_slips(b, bar); ++k) {
-    r.least_slip = fmin(r.least_slip, b->slips->slip_held[k]);
-    r.largest_slip = fmax(r.largest_slip, b->slips->slip_held[k]);
+  for (int n = first; n < behind; ++n) {
+    r.lowest_stress = fmin(r.lowest_stress, b->lowest[n]);
+    r.highest_stress = fmax(r.highest_stress, b->highest[n]);
+    r.stored += bar_bond_stored(b, n);
+    r.dissipated += bar_bond_dissipated(b, n);
+    for (int64_t k = b->first[n] + n; k <= b->first[n + 1] + n && bar_slips(b, n); ++k) {
+      r.least_slip = fmin(r.least_slip, b->slips->slip_held[k]);
+      r.largest_slip = fmax(r.largest_slip, b->slips->slip_held[k]);
+    }
   }
   r.yielded /= length;
   r.torn /= length;

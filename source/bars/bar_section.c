@@ -38,6 +38,7 @@ static void check_bar(const DeckReader *reader, void *section)
       node_error(reader->document, node, reader->error, "points: points %d and %d are the same; leave one out", n,
                  n + 1);
   check_slip(reader, bar);
+  bar_check_repeat(reader, bar);
 }
 
 static const Field bar_fields[] = {
@@ -97,6 +98,13 @@ static const Field bar_fields[] = {
      .offset = offsetof(BarSpec, anchored),
      .standard = "",
      .meaning = "ends of a bar that slips which do not, by a hook or a plate: of 'start' and 'end'"},
+    {.key = "repeat",
+     .kind = FIELD_ONE_OR_SECTIONS,
+     .offset = offsetof(BarSpec, repeat),
+     .standard = "",
+     .section = &repeat_section,
+     .meaning = "lines like this one at a pitch, as of stirrups and meshes; loads and histories that name the bar are "
+                "about all of them, and with 'at' about the nearest. One line when absent"},
 };
 
 const Section bars_section = {
@@ -174,7 +182,8 @@ int64_t bar_snap(const Body *body, double *nodes, int64_t count)
   return kept;
 }
 
-static int check_line(const BarSpec *bar, const ForcesParts *parts)
+/** @param[in] key  to which what is wrong is due */
+static int check_line(const BarSpec *bar, const ForcesParts *parts, const char *key)
 {
   const Body *body = parts->body;
   double *nodes;
@@ -183,20 +192,28 @@ static int check_line(const BarSpec *bar, const ForcesParts *parts)
   for (int64_t n = 0; n < count && !status; ++n) {
     const double *x = nodes + 3 * n, away = distance(body, body_nearest(body, x), x) / spacing_at(body, x);
     if (body->dimensions < 3 && fabs(x[2] - body->particles.position[2][body_nearest(body, x)]) > 0)
-      status = node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
-                          "points: bar '%s' has z = %g, and the body lies in the plane z = 0; give x and y only",
+      status = node_error(parts->reader->document, section_node(bar, key), parts->reader->error,
+                          "%s: bar '%s' has z = %g, and the body lies in the plane z = 0; give x and y only", key,
                           bar->head.name, x[2]);
     else if (away > farthest(body))
-      status =
-          node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
-                     "points: bar '%s' is outside the body at [%g, %g, %g], %.3g spacings from the nearest particle; "
-                     "keep its line within the body",
-                     bar->head.name, x[0], x[1], x[2], away);
+      status = node_error(parts->reader->document, section_node(bar, key), parts->reader->error,
+                          "%s: bar '%s' is outside the body at [%g, %g, %g], %.3g spacings from the nearest particle; "
+                          "keep its line within the body",
+                          key, bar->head.name, x[0], x[1], x[2], away);
   }
   if (!status && bar->snap && bar_snap(body, nodes, count) < 2)
     status = node_error(parts->reader->document, section_node(bar, "snap"), parts->reader->error,
                         "snap: all of bar '%s' comes to one particle; leave 'snap' out", bar->head.name);
   if (count >= 0) free(nodes);
+  return status;
+}
+
+/** All lines of a bar of the deck, up to the first that is wrong. */
+static int check_lines(const BarLines *lines, int deck_bar, const ForcesParts *parts)
+{
+  int status = BRECCIA_OK;
+  for (int n = lines->first[deck_bar]; n < lines->first[deck_bar + 1] && !status; ++n)
+    status = check_line(lines->specs.items[n], parts, n > lines->first[deck_bar] ? "repeat" : "points");
   return status;
 }
 
@@ -218,11 +235,13 @@ bool bars_use(const void *spec, const char *material)
 int bars_check(const void *spec, const ForcesParts *parts)
 {
   const SectionList *list = spec;
+  BarLines lines;
   int status = BRECCIA_OK;
+  if (!bar_lines_create(&lines, list)) return error_add(parts->reader->error, BRECCIA_FAILURE, "out of memory: bars");
   for (int n = 0; n < list->count; ++n) {
     const BarSpec *bar = list->items[n];
     const Material *m = bar_material(bar, parts);
-    int bad = check_line(bar, parts);
+    int bad = check_lines(&lines, n, parts);
     if (m && m->remote)
       bad =
           node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
@@ -235,5 +254,6 @@ int bars_check(const void *spec, const ForcesParts *parts)
                        bar->material, m->law_name);
     if (bad) status = bad;
   }
+  bar_lines_destroy(&lines);
   return status;
 }

@@ -11,6 +11,7 @@ static void destroy(void *forces)
   Bars *b = forces;
   if (b->has_points) points_destroy(&b->points);
   bar_slips_destroy(b);
+  bar_lines_destroy(&b->lines);
   free(b->first);
   free(b->bar_area);
   free(b->node);
@@ -266,9 +267,14 @@ static void *create(const void *spec, const ForcesParts *parts, Error *error)
 {
   Bars *b = memory_zeroed(1, sizeof *b, "bars", error);
   if (!b) return NULL;
-  b->specs = spec;
   b->body = parts->body;
   b->materials = parts->materials;
+  if (!bar_lines_create(&b->lines, spec)) {
+    error_add(error, BRECCIA_FAILURE, "out of memory: bars");
+    free(b);
+    return NULL;
+  }
+  b->specs = &b->lines.specs;
   if (!make(b, parts, error)) return b;
   destroy(b);
   return NULL;
@@ -329,18 +335,23 @@ static void describe(const void *forces, const Units *units, Text *text)
   for (int64_t e = 0; e < b->count; ++e) volume += b->area[e] * b->length[e];
   units_name(units, dimension_find("area"), unit, sizeof unit);
   text_add(text, "bars:");
-  for (int n = 0; n < b->specs->count && n < 6; ++n) {
-    const BarSpec *bar = b->specs->items[n];
-    text_add(text, "%s %lld '%s' of %.4g %s%s", n ? "," : "", (long long)bar->number, bar->head.name, b->bar_area[n],
+  const int of_deck = b->lines.deck->count;
+  for (int n = 0; n < of_deck && n < 6; ++n) {
+    const BarSpec *bar = b->lines.deck->items[n];
+    const int lines = deck_bar_lines(b, n);
+    text_add(text, "%s ", n ? "," : "");
+    if (lines > 1) text_add(text, "%d times ", lines);
+    text_add(text, "%lld '%s' of %.4g %s%s", (long long)bar->number, bar->head.name, b->bar_area[b->lines.first[n]],
              unit, bar->number > 1 ? " together" : "");
   }
-  if (b->specs->count > 6) text_add(text, " and others, %lld in all", (long long)bars);
+  if (of_deck > 6) text_add(text, " and others, %lld in all", (long long)bars);
   units_name(units, dimension_find("volume"), unit, sizeof unit);
   text_add(text, "; %lld elements, %.4g %s of steel\n", (long long)b->count, volume, unit);
   int told = 0;
-  for (int n = 0; n < b->specs->count && told < 6; ++n) {
-    if (!bar_slips(b, n)) continue;
-    bar_slips_describe(b, n, units, text);
+  for (int n = 0; n < of_deck && told < 6; ++n) {
+    const int line = b->lines.first[n];
+    if (!bar_slips(b, line)) continue;
+    bar_slips_describe(b, line, units, text);
     ++told;
   }
 }

@@ -6,6 +6,7 @@
 #ifndef BRECCIA_BARS_BARS_H
 #define BRECCIA_BARS_BARS_H
 
+#include "bars/bar_repeat.h"
 #include "bars/bond_law.h"
 #include "family/cells.h"
 #include "forces/forces.h"
@@ -17,9 +18,10 @@ typedef struct BarSpec {
   int64_t number;
   const char *material;
   bool snap;
-  BondSpec *bond;    /* NULL: perfect */
-  NumberList bonded; /* from where to where along the bar */
-  TextList anchored; /* ends that do not slip */
+  BondSpec *bond;     /* NULL: perfect */
+  NumberList bonded;  /* from where to where along the bar */
+  TextList anchored;  /* ends that do not slip */
+  SectionList repeat; /* RepeatSpec: lines beside the first */
 } BarSpec;
 
 /** What bars that slip have at their nodes: how far each is ahead of the concrete along its bar. Rows of nodes as in Bars. */
@@ -45,8 +47,10 @@ typedef struct BarWeights {
 } BarWeights;
 
 typedef struct Bars {
-  const SectionList *specs; /* borrowed, as the body and the materials */
-  const Body *body;
+  BarLines
+      lines; /* what a 'bar' is here and in what follows; bars of the deck, which may be several of them, are said to be that */
+  const SectionList *specs; /* those of `lines` */
+  const Body *body;         /* borrowed, as the materials */
   const Material *materials;
   int64_t *first;   /* [bars + 1] elements of a bar */
   double *bar_area; /* [bars] of all its parallel bars together */
@@ -87,7 +91,7 @@ typedef struct Bars {
   double *lowest, *highest; /* [bars] stresses so far */
 } Bars;
 
-/** What a bar is like, and what it has gone through. */
+/** What a bar of the deck is like, and what it has gone through, on all of its lines. */
 typedef struct BarReport {
   double least_strain, largest_strain, least_stress, largest_stress; /* of its elements, as committed */
   double lowest_stress, highest_stress;                              /* so far */
@@ -108,6 +112,10 @@ int64_t bar_nodes(const BarSpec *bar, const Body *body, double **nodes);
 int64_t bar_snap(const Body *body, double *nodes, int64_t count);
 /** The material of a bar, or NULL. */
 const Material *bar_material(const BarSpec *bar, const ForcesParts *parts);
+/* bar_repeat.c */
+/** Adds what is wrong with the repetitions of a bar together. */
+void bar_check_repeat(const DeckReader *reader, const BarSpec *bar);
+
 /* bar_section.c: as ForcesType says. */
 bool bars_use(const void *spec, const char *material);
 int bars_check(const void *spec, const ForcesParts *parts);
@@ -118,7 +126,9 @@ bool bar_weigh(BarWeights *weights, const Body *body, const Cells *cells, const 
 bool bar_weights_add(BarWeights *weights, int32_t place, double weight);
 
 /** Middle of an element, before it moves. */
-void bar_middle(const Bars *bars, int bar, int64_t element, double middle[3]);
+void bar_middle(const Bars *bars, int64_t element, double middle[3]);
+/** The bar that an element belongs to. */
+int bar_of(const Bars *bars, int64_t element);
 
 /* bar_slip.c: bars that slip. */
 
@@ -148,16 +158,19 @@ double bar_bond_stress_in(const Bars *bars, int bar, int64_t element);
 
 /** The bars of a body, or NULL. */
 const Bars *bars_among(const Forces *forces);
-/** @return the number of the bar of a name, or -1 */
+/** @return the number among those of the deck of the bar of a name, or -1 */
 int bars_find(const Bars *bars, const char *name);
 const char *bar_name(const Bars *bars, int bar);
+/** Name and lines of a bar of the deck. */
+const char *deck_bar_name(const Bars *bars, int deck_bar);
+int deck_bar_lines(const Bars *bars, int deck_bar);
 /** Young's modulus of a bar at first. */
 double bar_young(const Bars *bars, int bar);
 void bar_node_displacement(const Bars *bars, int64_t node, double displacement[3]);
 double bar_dissipated_in(const Bars *bars, int64_t element);
-BarReport bar_report(const Bars *bars, int bar);
-/** The element whose middle is nearest to a point. */
-int64_t bar_nearest(const Bars *bars, int bar, const double point[3]);
+BarReport bar_report(const Bars *bars, int deck_bar);
+/** The element of a bar of the deck whose middle is nearest to a point. */
+int64_t bar_nearest(const Bars *bars, int deck_bar, const double point[3]);
 /** Energy that elements would give back: of one bar; of Hooke's law, or of those that have points. */
 double bars_stored(const Bars *bars, int64_t from, int64_t to, bool hookean);
 /** When a step has come out well: notes what has yielded or is torn since. */

@@ -40,8 +40,9 @@ static bool is_outermost(const Domain *d, int32_t place)
 static void check_faces(breccia_model *model, const Bars *b, int n)
 {
   if (!model->domain.body.margin_of) return;
-  const BarSpec *bar = b->specs->items[n];
-  for (int64_t k = b->begin[b->first[n]]; k < b->begin[b->first[n + 1]]; ++k) {
+  const BarSpec *bar = b->lines.deck->items[n];
+  const int64_t from = b->first[b->lines.first[n]], to = b->first[b->lines.first[n + 1]];
+  for (int64_t k = b->begin[from]; k < b->begin[to]; ++k) {
     if (!is_outermost(&model->domain, b->joined.place[k])) continue;
     plausibility_say(
         model, section_node(bar, "points"),
@@ -85,8 +86,8 @@ void plausibility_warn_of_bars(breccia_model *model)
   const Bars *b = bars_among(&model->domain.forces);
   if (!b) return;
   check_amount(model, b);
-  for (int n = 0; n < b->specs->count; ++n) {
+  for (int n = 0; n < b->lines.deck->count; ++n) {
     check_faces(model, b, n);
-    check_bond(model, ((const BarSpec *)b->specs->items[n])->bond);
+    check_bond(model, ((const BarSpec *)b->lines.deck->items[n])->bond);
   }
 }

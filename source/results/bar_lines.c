@@ -49,7 +49,7 @@ static void add_table(const Bars *b, const Units *units, Text *t)
     double along = 0;
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
       double x[3];
-      bar_middle(b, n, e, x);
+      bar_middle(b, e, x);
       add_quoted(t, bar_name(b, n));
       text_add(t, ",%.10g,%.10g,%.10g,%.10g,%.17g,%.17g,%.17g,%.10g", along + b->length[e] / 2, x[0], x[1], x[2],
                b->strain_held[e], b->stress_held[e], b->area[e] * b->stress_held[e], bar_dissipated_in(b, e));
@@ -159,8 +159,9 @@ int bar_lines_write(const Domain *domain, const char *folder, const Units *units
 
 static double most_in(const Bars *b, int bar)
 {
-  const BarReport r = bar_report(b, bar);
-  return fmax(fabs(r.least_stress), fabs(r.largest_stress));
+  double most = 0;
+  for (int64_t e = b->first[bar]; e < b->first[bar + 1]; ++e) most = fmax(most, fabs(b->stress_held[e]));
+  return most;
 }
 
 int bar_lines_draw(const Domain *domain, const char *folder, const Units *units, Text *files, bool *no_gnuplot,

@@ -287,8 +287,8 @@ static void slipping_element_row(const Watch *w, const Solver *s, double *values
 {
   const Bars *b = bars_among(&s->domain->forces);
   element_row(w, s, values);
-  values[3] = bar_slip_in(b, w->bar, w->element);
-  values[4] = bar_bond_stress_in(b, w->bar, w->element);
+  values[3] = bar_slip_in(b, bar_of(b, w->element), w->element);
+  values[4] = bar_bond_stress_in(b, bar_of(b, w->element), w->element);
 }
 
 static const Kind
@@ -406,7 +406,7 @@ static int resolve(Watch *w, const Domain *domain, const Loading *loading, const
   if (spec->bar) {
     const Bars *b = bars_among(&domain->forces);
     if ((w->bar = bars_find(b, spec->bar)) < 0) return BRECCIA_USER_ERROR; /* said when the deck was read */
-    if (bar_slips(b, w->bar))
+    if (bar_slips(b, b->lines.first[w->bar]))
       w->kind = isnan(spec->at[0]) ? &slipping_bar_kind : &slipping_element_kind;
     else
       w->kind = isnan(spec->at[0]) ? &bar_kind : &element_kind;

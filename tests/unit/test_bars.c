@@ -407,7 +407,7 @@ static void bars_tell_when_they_yield_and_tear(void **state)
   free(path);
   const double point[3] = {0.61, 0, 0};
   double middle[3];
-  bar_middle(b, 0, bar_nearest(b, 0, point), middle);
+  bar_middle(b, bar_nearest(b, 0, point), middle);
   assert_true(fabs(middle[0] - 0.61) < 0.06);
   breccia_model_destroy(&m);
 }

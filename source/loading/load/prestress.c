@@ -37,12 +37,18 @@ const Section prestress_load_section = {
     .size = sizeof(PrestressSpec),
     FIELDS(prestress_fields)};
 
-/** What a load keeps: bars that it acts on, and their strains. */
+/** What a load keeps: bars of the deck that it acts on, and their strains. */
 typedef struct Prestress {
   const Bars *bars;
   int count, *bar;
   double *strain;
 } Prestress;
+
+/** Young's modulus of a bar of the deck. */
+static double young(const Bars *bars, int deck_bar)
+{
+  return bar_young(bars, bars->lines.first[deck_bar]);
+}
 
 static int create(Load *load, const LoadMaking *making)
 {
@@ -64,7 +70,7 @@ static int create(Load *load, const LoadMaking *making)
                         "bars: there is no bar '%s'; expected names of those under 'bars' of the deck",
                         spec->bars.items[n]);
     p->bar[p->count] = bar;
-    p->strain[p->count++] = isnan(spec->stress) ? spec->strain : spec->stress / bar_young(p->bars, bar);
+    p->strain[p->count++] = isnan(spec->stress) ? spec->strain : spec->stress / young(p->bars, bar);
   }
   return load_is_known(load, making, "prestress");
 }
@@ -80,7 +86,10 @@ static void destroy(Load *load)
 static void strain(const Load *load, const LoadStrains *strains, double factor)
 {
   const Prestress *p = load->own;
-  for (int n = 0; n < p->count; ++n) strains->of_bars[p->bar[n]] += factor * p->strain[n];
+  const BarLines *lines = &p->bars->lines;
+  for (int n = 0; n < p->count; ++n)
+    for (int line = lines->first[p->bar[n]]; line < lines->first[p->bar[n] + 1]; ++line)
+      strains->of_bars[line] += factor * p->strain[n];
 }
 
 static LoadWords tell(const Load *load, const Particles *particles)
@@ -89,7 +98,8 @@ static LoadWords tell(const Load *load, const Particles *particles)
   double force = 0;
   (void)particles;
   for (int n = 0; n < p->count; ++n)
-    force += p->strain[n] * bar_young(p->bars, p->bar[n]) * p->bars->bar_area[p->bar[n]];
+    force += p->strain[n] * young(p->bars, p->bar[n]) * p->bars->bar_area[p->bars->lines.first[p->bar[n]]] *
+             deck_bar_lines(p->bars, p->bar[n]);
   return (LoadWords){"before the body gives way, a force in all of", force, "force", "N"};
 }
 
