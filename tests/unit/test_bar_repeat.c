@@ -29,11 +29,14 @@ static void lines_stand_at_the_pitch(void **state)
   static const struct {
     const char *repeat;
     int lines;
-    double at[6];
+    double at[12];
   } cases[] = {
       {"along: [2, 0, 0], pitch: 150 mm, number: 4", 4, {0, 0.15, 0.3, 0.45}},
       {"along: [1, 0, 0], pitch: 0.2, over: 1", 6, {0, 0.2, 0.4, 0.6, 0.8, 1}},
-      {"along: [1, 0, 0], pitch: 0.1, over: 0.3", 4, {0, 0.1, 0.2, 0.3}}, /* 0.3 / 0.1 is a little less than 3 */
+      {"along: [1, 0, 0], pitch: 0.1, over: 0.3", 4, {0, 0.1, 0.2, 0.3}},
+      /* 0.3 / 0.1 is a little less than 3, and 1.1 / 0.1 a little more than 11 */
+      {"along: [1, 0, 0], pitch: 0.1, over: 0.3, last gap: open", 4, {0, 0.1, 0.2, 0.3}},
+      {"along: [1, 0, 0], pitch: 0.1, over: 1.1", 12, {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1}},
       {"along: [1, 0, 0], pitch: 0.3, over: 1", 5, {0, 0.3, 0.6, 0.9, 1}},
       {"along: [1, 0, 0], pitch: 0.3, over: 1, last gap: short", 5, {0, 0.3, 0.6, 0.9, 1}},
       {"along: [1, 0, 0], pitch: 0.3, over: 1, last gap: even", 5, {0, 0.25, 0.5, 0.75, 1}},
