@@ -56,9 +56,11 @@ int show(const char *words, FILE *out)
 {
   int status = BRECCIA_OK;
   for (const char *line = words; line && !status;) {
-    const int length = (int)strcspn(line, "\n");
-    char *plain = words_of("%.*s", length, line), *visible = plain ? breccia_visible_text(plain) : NULL;
-    status = visible && fprintf(out, "%s\n", visible) >= 0 ? BRECCIA_OK : BRECCIA_FAILURE;
+    const size_t length = strcspn(line, "\n");
+    char *plain = strndup(line, length), *visible = plain ? breccia_visible_text(plain) : NULL;
+    /* where memory is out they are shown as they are */
+    if (fprintf(out, "%.*s\n", visible ? (int)strlen(visible) : (int)length, visible ? visible : line) < 0)
+      status = BRECCIA_FAILURE;
     breccia_text_free(visible);
     free(plain);
     line = line[length] ? line + length + 1 : NULL;

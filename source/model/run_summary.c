@@ -401,7 +401,7 @@ void run_tell_outcome(Run *run, int status)
         (long long)d->family.bonds / 2);
   else if (d->failure.criterion)
     text_add(t, "no bond broke\n");
-  /* Of bodies at rest: what forces within the tolerance of equilibrium do may be below zero. */
+  /* Of bodies at rest: what forces within the tolerance of equilibrium do is of either sign. */
   const double rounding = 1e-6 * s->ledger.paid;
   const struct {
     const char *words;
@@ -413,7 +413,7 @@ void run_tell_outcome(Run *run, int status)
                   {" + dissipated ", e.dissipated, true},
                   {" + fracture ", e.fracture, true},
                   {" + friction ", e.friction, e.friction != 0},
-                  {" + damping ", e.damping, e.damping > 0 || e.damping < -rounding},
+                  {" + damping ", e.damping, fabs(e.damping) > rounding},
                   {" + numerical damping ", e.numerical, fabs(e.numerical) > 1e-9 * s->ledger.paid},
                   {" - kinetic at the start ", s->ledger.kinetic_at_start, s->ledger.kinetic_at_start > 0},
                   {" - stored at the start ", s->ledger.stored_at_start, s->ledger.stored_at_start > 0},
