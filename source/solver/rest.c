@@ -36,7 +36,7 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
   if (!rest->meant) return BRECCIA_OK;
   const Particles *p = s->domain->particles;
   const Unknowns unknowns = unknowns_of(s->domain, s->loading);
-  double *free_force[MOTIONS] = {0}, unbalanced = 0, acting = 0;
+  double *free_force[MOTIONS] = {0}, unbalanced = 0, acting = 0, squares = 0, held_squares = 0, external_squares = 0;
   const bool failed = !vectors_make(free_force, p, "forces out of balance", error);
   for (int k = 0; k < p->motions && !failed; ++k) {
     for (int64_t i = 0; i < p->places; ++i) free_force[k][i] = (p->internal[k][i] + p->external[k][i]) * p->volume[i];
@@ -48,6 +48,7 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
       const double along = constraint_along(c, free_force, i);
       constraint_add(c, free_force, i, -along);
       acting += fabs(along) / unknowns_length(&unknowns, c->row);
+      held_squares += pow(along / unknowns_length(&unknowns, c->row), 2);
     }
   }
   if (!failed && s->type->rests) { /* what ties exert is not among the forces then */
@@ -63,9 +64,15 @@ int rest_find(const Solver *s, Rest *rest, Error *error)
     }
     unbalanced += sqrt(square);
     acting += p->volume[i] * sqrt(external);
+    squares += square;
+    external_squares += p->volume[i] * p->volume[i] * external;
   }
   vectors_free(free_force);
   if (failed) return BRECCIA_FAILURE;
+  if (s->type->rests) { /* the measure by which it has converged */
+    unbalanced = sqrt(squares);
+    acting = sqrt(fmax(held_squares, external_squares));
+  }
   if (s->type->exerted) acting = fmax(acting, s->type->exerted(s)); /* nothing acts on what was unloaded, or is torn */
   rest->unbalanced = acting > 0 ? unbalanced / acting : 0;
   rest->kinetic =

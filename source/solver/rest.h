@@ -5,10 +5,11 @@
 #include "solver/solver.h"
 
 typedef struct Rest {
-  bool meant;        /* there is damping, and no load or motion changes any more */
-  bool reached;      /* both shares are below `rest_limit` */
-  double unbalanced; /* forces that nothing balances, over those that act */
-  double kinetic;    /* kinetic energy, over the most that loads and motions have put in */
+  bool meant;   /* there is damping, and no load or motion changes any more */
+  bool reached; /* both shares are below `rest_limit` */
+  double
+      unbalanced; /* forces that nothing balances, over those that act: sums of both; at rest the roots of squares by which that converges */
+  double kinetic; /* kinetic energy, over the most that loads and motions have put in */
 } Rest;
 
 /** Share below which a body is at rest: a thousandth, as users of explicit codes in soil mechanics ask for. */

@@ -214,6 +214,23 @@ checks=$((checks + 1))
 awk -v left="$(figures $s left)" 'BEGIN {exit !(left != "" && left < 1e-6)}' || fail "at rest: left is $(figures $s left)"
 grep -q '"stable_time_step"\|"stages"' $s && fail "a body at rest has a stable step, or one stage is listed: $(cat $s)"
 
+# What converged by its measure is at rest by the same: a residual of 9e-4 is below 1e-3, where the sum of forces is 8e-3.
+cat > long.yaml <<'Y'
+title: Long
+units: {length: m, force: kN, time: s}
+materials: {m: {model: elastic, density: 2, Young modulus: 1e6, Poisson ratio: 0.25}}
+body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.1, shape: {box: {particles: [120, 8]}}}}
+peridynamics: {space: plane strain}
+loads: [{on: {nearest: [0, 0]}, displacement: [0, 0]}, {on: {nearest: [12, 0]}, displacement: [free, 0]},
+        {on: {nearest: [6, 0.8]}, displacement: [free, -0.01]}]
+solve: {static: {increments: 1, method: relaxation, residual: 9e-4}}
+pictures: []
+Y
+"$breccia" run long.yaml > out 2> errors || fail "long: $(cat errors)"
+near "at rest: measure" "$(figures long/summary.json unbalanced)" \
+  "$(sed -n 's/.*residual \([^,]*\), damping.*/\1/p' long/solution.txt | tail -1)" 0.01
+grep -q '^at rest: ' out || fail "converged, but not at rest: $(cat out)"
+
 # ---- increments whose ends descent by secants found ----
 cat > cracks.yaml <<'Y'
 title: A cantilever that cracks
