@@ -137,6 +137,8 @@ void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 /** Whether control keeps its stiffness where points of a material have lost theirs. */
 bool correspondence_control_lasts(const void *formulation, const Material *material);
+/** Energy that such a control stores at a place whose point has less than 0.7 of its stiffness left, as a secant; else 0. */
+double correspondence_held_by_yielded(const void *formulation, int64_t place);
 
 /** How families have turned, from F = 1 + G: (F + F^-T) / 2, which for F = R U is R but for the square of the stretches; of small strains
  *  1 + (G - G^T) / 2. Written less 1.

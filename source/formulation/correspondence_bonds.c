@@ -217,8 +217,9 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   strain_of(c, place, sums.now, g, energy->strain);
   strain_of(c, place, sums.before, g_before, energy->was);
   energy->weight = volume * shape_of_slice(&c->shapes, slice)->share[place % SLICE];
-  energy->stored = energy->weight * points_elastic_energy(points, place) * points_softness(points, place) +
-                   volume * 0.5 * held(c, place, sums.square, g, sums.now);
+  energy->held = volume * 0.5 * held(c, place, sums.square, g, sums.now);
+  energy->stored =
+      energy->weight * points_elastic_energy(points, place) * points_softness(points, place) + energy->held;
   energy->control = volume * 0.5 * held(c, place, sums.across, g, sums.before);
 }
 

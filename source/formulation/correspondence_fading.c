@@ -44,6 +44,26 @@ bool correspondence_control_lasts(const void *formulation, const Material *mater
   return c->control != CONTROL_NONE && !material->law->linear && !fades_in(c, material);
 }
 
+double correspondence_held_by_yielded(const void *formulation, int64_t place)
+{
+  const Correspondence *c = formulation;
+  const Points *points = c->points;
+  const Material *m = points_material(points, place);
+  const double yielded = 0.7; /* of the stiffness is left, at most */
+  double work = 0, deviators = 0, strain[6];
+  if (!correspondence_control_lasts(c, m)) return 0;
+  for (int k = 0; k < 6; ++k) {
+    strain[k] = points->strain[k][place] + (points->initial[k] ? points->initial[k][place] : 0);
+    work += points->stress[k][place] * strain[k];
+  }
+  const double volume = strain[XX] + strain[YY] + strain[ZZ];
+  for (int k = 0; k < 3; ++k) deviators += 2 * pow(strain[k] - volume / 3, 2) + strain[k + 3] * strain[k + 3];
+  if (!(work < yielded * (m->bulk * volume * volume + m->shear * deviators))) return 0;
+  StoredEnergy energy;
+  correspondence_stored_energy(c, place, 0, &energy);
+  return energy.held;
+}
+
 bool correspondence_may_fade(const Correspondence *c, const FormulationParts *parts)
 {
   bool may = false;

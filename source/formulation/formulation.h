@@ -76,6 +76,7 @@ typedef struct BondLength {
  *  did along the last step: what works summed by the trapezium rule have put in, if these forces end with the step. */
 typedef struct StoredEnergy {
   double stored;            /* what unloading would give back, in all */
+  double held;              /* of that, by the control of zero-energy modes */
   double received, control; /* by bonds that act as springs; by the control of zero-energy modes */
   double weight; /* volume for which the law of a point stands, by the share of its stress that is carried; 0: none */
   double strain[6], was[6]; /* of that point at the end and at the beginning of the last step, with the present bonds */

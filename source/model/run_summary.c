@@ -1,4 +1,5 @@
 /* What a run did: summary.json, and the same in words. */
+#include "formulation/correspondence.h"
 #include "model/run.h"
 
 #include "results/checkpoint.h"
@@ -367,6 +368,26 @@ static void tell_inverted(const Domain *d, const char *length, Text *t)
              p->position[2][first], length);
 }
 
+/** What control of zero-energy modes holds where a law has yielded: it keeps its stiffness there, and carries more and more beside what flows. */
+static void tell_control(const Domain *d, double stored, Text *t)
+{
+  const Particles *p = d->particles;
+  const double much = 0.05;
+  double held = 0;
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    const Region *region = domain_region(d, i);
+    if (!strcmp(region->type->name, "correspondence") && d->counted[i] > 0)
+      held += correspondence_held_by_yielded(region->formulation, i);
+  }
+  if (held > much * stored)
+    text_add(t,
+             "warning: where laws have yielded, control of zero-energy modes holds %.2g %% of the stored energy: it "
+             "carries load beside them, and limit loads come out too high; take 'zero-energy control: {silling: ..., "
+             "fades: yielding}', or 'formulation: ordinary'\n",
+             100 * held / stored);
+}
+
 void run_tell_outcome(Run *run, int status)
 {
   breccia_model *model = run->model;
@@ -444,6 +465,7 @@ void run_tell_outcome(Run *run, int status)
     if (d->failure.criterion || peaks->damage > 0) text_add(t, ", damage %.3g", peaks->damage);
     text_add(t, "\n");
   }
+  if (!blown_up) tell_control(d, e.stored, t);
   run_tell_bars(model, t);
   tell_verdicts(s, t);
   if (!blown_up) tell_rest(s, model->units, status == BRECCIA_FAILURE, t);

@@ -237,7 +237,8 @@ static void laws_that_did_not_yield_break_as_elastic_ones(void **state)
 
 /** What a body falls apart from: it is strained and moves on for a last short step, in which all its bonds break. */
 typedef struct Apart {
-  double stored, half, booked; /* before that step; half of the power of its forces times the step; as fracture energy */
+  double stored, half,
+      booked; /* before that step; half of the power of its forces times the step; as fracture energy */
 } Apart;
 
 static Apart fall_apart(breccia_model *m)
@@ -316,8 +317,8 @@ static void what_falls_apart_had_received_what_it_held_and_half_a_step(void **st
         plane ? " thickness: 0.3," : "", plane ? "[7, 5]" : "[6, 4, 5]", cases[c].keys, cases[c].space,
         cases[c].failure);
     const Apart a = fall_apart(m);
-    print_message("%s, %s, %s: stored %g, half a step %g\n", cases[c].keys, cases[c].space, cases[c].failure,
-                  a.stored, a.half);
+    print_message("%s, %s, %s: stored %g, half a step %g\n", cases[c].keys, cases[c].space, cases[c].failure, a.stored,
+                  a.half);
     assert_true(a.half > 1e-3 * a.stored);
     assert_near(a.booked, a.stored + a.half, 5e-3 * a.half); /* of the work of the step, which is twice that */
     breccia_model_destroy(&m);

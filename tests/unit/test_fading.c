@@ -255,12 +255,13 @@ static void at_rest_no_bond_is_left_beyond_its_limit(void **state)
   breccia_model_destroy(&m);
 }
 
-/** A rough strip footing of 2 m on clay of 1 kPa, ten particles wide; Prandtl: 5.14. @return what it carries per width at the end, and one increment before */
-static double pushed_footing(const char *fades, double *before)
+/** A rough strip footing of 2 m on clay, ten particles wide; Prandtl: 5.14. @param[out] before  what it carries one increment before
+ *  its end @param[out] held  of the stored energy, by control where clay has yielded @return what it carries per width at the end */
+static double pushed_footing(const char *fades, double strength, double *before, double *held)
 {
   breccia_model *m = model_of(
       "units: {length: m, force: kN, time: s}\n"
-      "materials: {m: {model: j2, density: 2, Young modulus: 1000, Poisson ratio: 0.45, yield stress: 1.7320508}}\n"
+      "materials: {m: {model: j2, density: 2, Young modulus: 1000, Poisson ratio: 0.45, yield stress: %g}}\n"
       "body: {b: {material: m, lattice: square, spacing: 0.2, thickness: 1, shape: {box: {from: [0, 0], to: [4, "
       "2]}}}}\n"
       "peridynamics: {space: plane strain, zero-energy control: {silling: 0.2%s}}\n"
@@ -272,7 +273,7 @@ static double pushed_footing(const char *fades, double *before)
       "{ramp "
       "to: 1}}\n"
       "solve: {static: {increments: 8}}\n",
-      fades);
+      strength * sqrt(3), fades);
   const Particles *p = m->domain.particles;
   const Load *foot = &m->loading.loads[3];
   double carried = 0;
@@ -283,6 +284,9 @@ static double pushed_footing(const char *fades, double *before)
     for (int64_t n = 0; n < foot->selection.count; ++n)
       carried += p->internal[1][foot->selection.places[n]] * p->volume[foot->selection.places[n]];
   }
+  *held = 0;
+  for (int32_t n = 0; n < p->count; ++n) *held += correspondence_held_by_yielded(formulation_of(m), p->place_of[n]);
+  *held /= domain_stored_energy(&m->domain);
   breccia_model_destroy(&m);
   return carried;
 }
@@ -291,10 +295,14 @@ static double pushed_footing(const char *fades, double *before)
 static void control_that_fades_with_yielding_leaves_a_limit_load(void **state)
 {
   (void)state;
-  double before, kept_before;
-  const double limit = pushed_footing(", fades: yielding", &before), kept = pushed_footing("", &kept_before);
-  print_message("footing: %.2f, %.3f more in the last increment; kept: %.2f, %.3f\n", limit, limit / before - 1, kept,
-                kept / kept_before - 1);
+  double before, kept_before, held, kept_held, elastic, elastic_held;
+  const double limit = pushed_footing(", fades: yielding", 1, &before, &held),
+               kept = pushed_footing("", 1, &kept_before, &kept_held);
+  print_message("footing: %.2f, %.3f more in the last increment; kept: %.2f, %.3f, by control %.3f of the energy\n",
+                limit, limit / before - 1, kept, kept / kept_before - 1, kept_held);
+  assert_true(held == 0 && kept_held > 0.2 && kept_held < 1);
+  pushed_footing("", 100, &elastic, &elastic_held); /* nothing has yielded, whatever control holds at the edge */
+  assert_true(elastic_held == 0);
   assert_true(limit / before < 1.005);
   assert_true(limit > 5.14 &&
               limit < 1.6 * 5.14 * 1.1); /* of ten particles, which clay feels as eleven and a horizon */

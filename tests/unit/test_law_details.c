@@ -154,7 +154,8 @@ static void clay_that_was_loaded_elastically_forgets_what_came_before(void **sta
     point_try(&one, strain, stress, NULL, 1);
     point_commit(&one);
     assert_true(stress[3] > 12 && stress[3] < 25);
-    assert_true(one.committed[18] > 1e9); /* the distance that results tell (test_laws): the stress stands at its reversal */
+    assert_true(one.committed[18] >
+                1e9); /* the distance that results tell (test_laws): the stress stands at its reversal */
     beside[3] = stress[3] / m.shear;
     point_try(&other, beside, same, NULL, 1);
     point_commit(&other);
