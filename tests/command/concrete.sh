@@ -36,16 +36,17 @@ near "27.6 MPa: the same f_t" "$(sed -n 's/^#   f_t *\([0-9.]*\) MPa.*/\1/p' out
 # ---- strengths of the other kind, and a fracture energy of CEB-FIP 1990: 16 mm, 30 MPa: 30.006 N/m 3^0.7 ----
 concrete --ft 251.3psi --unverified; equal "by f_t: status" $? 0
 near "by f_t: E" "$(parameter "Young modulus")" 3.605e6 1e-3
-concrete --fc 30MPa --aggregate 16mm; equal "aggregate: status" $? 0
+once= # under the sanitizers plates have run once
+[ -z "${BRECCIA_SANITIZED:-}" ] || once=--unverified
+concrete --fc 30MPa --aggregate 16mm $once; equal "aggregate: status" $? 0
 near "aggregate: G_F" "$(parameter "fracture energy")" 64.74 1e-3
 contains "aggregate: spacing" "$(cat out)" "{lattice: hexagonal, spacing: 16 mm}"
 case $(cat out) in *ductility:\ 2*tensile\ ductility*) fail "aggregate: both a ductility and a fracture energy" ;; esac
+# Under the sanitizers that is enough: plates have run in what was verified.
+[ -z "${BRECCIA_SANITIZED:-}" ] || { finish; exit; }
 read -r low high <<< "$(bears tension)"
 near "aggregate: what plates bear in tension" "$high" 1.005 0.01
 near "aggregate: what plates bear in tension" "$low" 0.995 0.01
-
-# Under the sanitizers that is enough: plates have run in what was verified.
-[ -z "${BRECCIA_SANITIZED:-}" ] || { finish; exit; }
 
 # ---- the block runs as it is printed: under 0.9 of what plates bear one is steady, under 1.1 it fails ----
 cp out concrete.yaml

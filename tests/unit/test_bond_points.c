@@ -131,6 +131,7 @@ static void parting_a_body_spends_its_fracture_energy(void **state)
                 {"space: plane stress", "lattice: square, thickness: 0.1, shape: {box: {particles: [8, 20]}}", 0.853}};
   for (int law = 0; law < 2; ++law)
     for (int s = 0; s < 2; ++s) {
+      if (under_sanitizers() && law == s) continue;
       breccia_model *model = model_of(
           "units: {length: m, force: kN, time: s}\nmaterials: {a: {%s}}\nperidynamics: {formulation: bond-based, "
           "calibration: continuum, horizon: 0.00314159265358979, %s}\nbody: {b: {material: a, spacing: 0.001, "
@@ -186,7 +187,7 @@ static void a_pulled_bar_softens_alike_for_any_number_of_threads_and_keeps_its_e
 {
   (void)state;
   double *reference = NULL;
-  for (int threads = 1; threads <= 3; threads += under_sanitizers() ? 2 : 1) {
+  for (int threads = under_sanitizers() ? 3 : 1; threads <= 3; ++threads) {
     breccia_model *model = bar(threads);
     breccia_error *error = breccia_error_create();
     breccia_model_step(model, 700, error);

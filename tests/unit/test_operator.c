@@ -442,7 +442,7 @@ static int check_formulation(const FormulationType *type)
       for (int number = 0; number < s->bodies; ++number) {
         char name[256];
         if (type->takes && !type->takes(law_find(NULL, laws[n].name))) continue;
-        if (asked++ % (under_sanitizers() ? 7 : 1)) continue;
+        if (asked++ % (under_sanitizers() ? 13 : 1)) continue;
         breccia_model *model = body(type->name, &laws[n], s, number);
         snprintf(name, sizeof name, "%s of %s, %s, %s, body %d", laws[n].name, type->name, s->space, s->words, number);
         check_model(model, &laws[n], 0, name);
@@ -467,7 +467,7 @@ static void bodies_of_several_formulations_are_the_sum_of_all_their_points(void 
 {
   (void)state;
   char name[256];
-  for (size_t k = 0; k < 2 * sizeof couples / sizeof *couples; k += under_sanitizers() ? 5 : 1) {
+  for (size_t k = 0; k < 2 * sizeof couples / sizeof *couples; k += under_sanitizers() ? 7 : 1) {
     const Couple *c = &couples[k / 2];
     const Law *first = c->of[0].law, *second = c->of[1].law;
     const Law both = {.elastic = first->elastic && second->elastic,

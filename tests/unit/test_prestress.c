@@ -57,7 +57,7 @@ static void a_bar_in_the_middle_presses_the_transformed_section(void **state)
                                       "{prestress: {bars: [tendon], strain: 5e-3}, history: {ramp to: 1}}"};
   static const char *const steels[] = {
       ROD, "rod: {model: steel-bilinear, density: 7, Young modulus: 2e5, yield stress: 5000, hardening ratio: 0.01}"};
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 4; n += under_sanitizers() ? 3 : 1) {
     breccia_model *m =
         beam(steels[n / 2], 0.2, "", loads[n % 2], "{static: {increments: 2, end time: 1, residual: 1e-9}}", 1);
     step_surely(m, INT64_MAX);
@@ -150,6 +150,7 @@ static void its_work_is_in_the_books_of_every_solver(void **state)
   char steel[200];
   snprintf(steel, sizeof steel, STEEL, 800.0);
   for (size_t n = 0; n < 6; ++n) {
+    if (under_sanitizers() && n % 2 != n / 2 % 2) continue; /* each solver, and both bars */
     char solve[100];
     snprintf(solve, sizeof solve, "{%s}", solvers[n / 2]);
     breccia_model *m = beam(steel, 0.06, bars[n % 2],
