@@ -23,9 +23,10 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   const LinkRow *row = &m->rows[f->pattern[slot]];
   const int64_t there = f->base[slot] + LANES * half;
   const Lanes nx = lanes_set(row->n[0]), ny = lanes_set(row->n[1]), by_length = lanes_set(row->by_length);
-  /* all over the reference length */
-  const Lanes ex = (lanes_load(u[0] + there) - own->u[0]) * by_length,
-              ey = (lanes_load(u[1] + there) - own->u[1]) * by_length, yx = nx + ex, yy = ny + ey;
+  /* all over the reference length; the ends of broken links may be so far apart that the series would be none */
+  const Lanes ex = lanes_intact(f->intact[slot], half, lanes_load(u[0] + there) - own->u[0]) * by_length,
+              ey = lanes_intact(f->intact[slot], half, lanes_load(u[1] + there) - own->u[1]) * by_length, yx = nx + ex,
+              yy = ny + ey;
   const Lanes d = ex * (nx + yx) + ey * (ny + yy), g = shortening_series(d), inverse = lanes_set(1) - g;
   const Lanes stretch = d * inverse - g - free_of(m, own->place, there), mx = yx * inverse, my = yy * inverse;
   const Lanes cosine = lanes_load(m->shown[0] + there), sine = lanes_load(m->shown[1] + there);

@@ -96,10 +96,11 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   const int64_t there = f->base[slot] + LANES * half;
   const unsigned intact = f->intact[slot];
   const Lanes by_length = lanes_set(row->by_length);
-  Lanes n[3], chord[3], d = lanes_set(0); /* lengths over that of the link */
+  Lanes n[3], chord[3],
+      d = lanes_set(0); /* lengths over that of the link; those of broken ones may be beyond the series */
   for (int k = 0; k < 3; ++k) {
     n[k] = lanes_set(row->n[k]);
-    const Lanes e = (lanes_load(u[k] + there) - own->u[k]) * by_length;
+    const Lanes e = lanes_intact(intact, half, lanes_load(u[k] + there) - own->u[k]) * by_length;
     chord[k] = n[k] + e;
     d += e * (n[k] + chord[k]);
   }

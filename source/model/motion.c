@@ -52,12 +52,15 @@ static int convert(Record *record, const breccia_motion_file *file, const char *
   char unit[RECORD_LABEL] = "";
   const char *open = strrchr(label, '(');
   if (open && strchr(open, ')')) snprintf(unit, sizeof unit, "%.*s", (int)strcspn(open + 1, ")"), open + 1);
+  bool velocity;
+  if (file->unit && isnan(size_of_unit(file->unit, units, &velocity)))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "'%s', which was given, is no unit of an acceleration (g, m/s2) or a velocity (m/s)", file->unit);
   if (!*unit) snprintf(unit, sizeof unit, "%s", file->unit ? file->unit : "");
   if (!*unit)
     return error_add(error, BRECCIA_USER_ERROR,
                      "%s: does not say in which unit its values are; give it: g, m/s2, or m/s of velocities",
                      file->path);
-  bool velocity;
   const double size = size_of_unit(unit, units, &velocity);
   if (isnan(size))
     return error_add(error, BRECCIA_USER_ERROR,
@@ -313,10 +316,16 @@ static int take_wish(breccia_motion_wish *wish, const breccia_motion_wish *given
   return BRECCIA_OK;
 }
 
+#define SHORTEST_MOTION 1e-9
+
 /** Where what oscillators do would take too long: they are looked at so many times a period. */
 static int check_length(const breccia_motion *motion, const breccia_motion_wish *wish, Error *error)
 {
   const double whole = motion->rows[2 * motion->count - 2] - motion->rows[0];
+  if (!(whole > SHORTEST_MOTION))
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "%s is over after %g s; expected more than %g s: in which unit are its times?", motion->name,
+                     whole, SHORTEST_MOTION);
   if (whole / wish->shortest < 1e7) return BRECCIA_OK;
   return error_add(error, BRECCIA_USER_ERROR,
                    "periods: the shortest, %g s, goes more than 1e7 times into the %g s of %s; choose a longer one",

@@ -347,6 +347,26 @@ static void wrong_files_and_wishes_are_refused(void **state)
     if (!strstr(breccia_error_text(error), files[k].words)) fail_msg("%s", breccia_error_text(error));
     breccia_error_destroy(&error);
   }
+  static const char *const units[] = {"kN", "m", "g2"}; /* even where the file says one */
+  for (size_t k = 0; k < sizeof units / sizeof *units; ++k) {
+    breccia_error *error = breccia_error_create();
+    breccia_motion *m = NULL;
+    const breccia_motion_file file = {.size = sizeof file, .path = w.path, .column = "x", .unit = units[k]};
+    assert_int_equal(breccia_motion_load(&file, &m, error), BRECCIA_USER_ERROR);
+    if (!strstr(breccia_error_text(error),
+                "', which was given, is no unit of an acceleration (g, m/s2) or a velocity (m/s)"))
+      fail_msg("%s", breccia_error_text(error));
+    breccia_error_destroy(&error);
+  }
+  const Written brief = write_motion("time (s),y (m/s2)\n", steady, 1e-30, 11);
+  breccia_motion *short_one = load(&brief, "y", NULL);
+  breccia_error *why = breccia_error_create();
+  assert_int_equal(breccia_motion_analyse(short_one, NULL, NULL, why), BRECCIA_USER_ERROR);
+  if (!strstr(breccia_error_text(why), "s; expected more than 1e-09 s: in which unit are its times?"))
+    fail_msg("%s", breccia_error_text(why));
+  breccia_error_destroy(&why);
+  breccia_motion_destroy(&short_one);
+  unlink(brief.path);
   breccia_motion *m = load(&plain, NULL, "g");
   const struct {
     breccia_motion_wish wish;
