@@ -251,8 +251,10 @@ stop_at() { # stop_at DECK STEP ...: stopped there (under sanitizers only at the
     checks=$((checks + 1))
   done
 }
-stop_at strip 2 4
-grep -q "the body does not resist some motion" whole-strip/solution.txt || fail "strip: no equations are hard to solve, the test is too tame"
+if [ -z "${BRECCIA_SANITIZED:-}" ]; then # a fifth of the time there, and solvers are stopped in stages as well
+  stop_at strip 2 4
+  grep -q "the body does not resist some motion" whole-strip/solution.txt || fail "strip: no equations are hard to solve, the test is too tame"
+fi
 stop_at stages 4 8 16 31 44
 [ "$(json whole-stages/summary.json broken_bonds)" -gt 0 ] || fail "stages: no bond breaks, the test is too tame"
 cmp -s whole-stages/profiles/strip.csv stopped-stages/profiles/strip.csv || fail "stages: a profile differs"
