@@ -107,7 +107,7 @@ static void free_bodies_keep_their_energy(void **state)
             {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: ordinary"},
             {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: correspondence"},
             {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: hybrid"}};
-  const int steps = under_sanitizers() ? 2000 : 20000;
+  const int steps = under_sanitizers() ? 1000 : 20000;
   const double mass = 2 * (2 * 5 * 0.01 * 0.3), whole = 0.5 * mass * 0.25; /* of what moves at the start */
   for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
     breccia_model *m = model_of(

@@ -97,7 +97,7 @@ static void soil_is_amplified_by_two_point_damping(void **state)
   const double ratio = 0.05, from = 2.5, to = 12.5, alpha = 4 * pi * ratio * from * to / (from + to),
                b = ratio / (pi * (from + to));
   const double frequencies[] = {2.5, 5, 7.5, 12.5};
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 4; n += under_sanitizers() ? 3 : 1) {
     const double f = frequencies[n], omega = 2 * pi * f;
     breccia_model *m =
         model_of(BAR "loads:\n  - {on: {face: x-}, support: {held: all}}\n"
