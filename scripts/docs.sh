@@ -2,6 +2,7 @@
 # The pages that the program makes itself, and the pictures of its models.
 set -eu
 breccia=build/release/breccia
+[ -x $breccia ] || { echo "$breccia is not there, and pages would be emptied: use 'make docs', which builds it" >&2; exit 1; }
 $breccia schema --markdown > docs/deck.md
 $breccia models --markdown > docs/models.md
 sh scripts/command_page.sh $breccia > docs/command.md
