@@ -57,6 +57,12 @@ static double gaps(const RepeatSpec *r)
   return fabs(found - whole) < 1e-9 * fmax(1, whole) ? whole : found;
 }
 
+/** Of a length, however many. */
+static double lines(const RepeatSpec *r)
+{
+  return 1 + (strcmp(r->last_gap, "open") == 0 ? floor(gaps(r)) : ceil(gaps(r)));
+}
+
 static void check_repeat(const DeckReader *reader, void *section)
 {
   const RepeatSpec *r = section;
@@ -69,14 +75,12 @@ static void check_repeat(const DeckReader *reader, void *section)
                  "last gap: says how lines fill a length; with 'number' leave it out");
     return;
   }
-  if (!(r->pitch > 0)) return; /* told already */
-  const double count = gaps(r);
-  if (count < 1 && strcmp(r->last_gap, "open") == 0)
+  if (gaps(r) < 1 && strcmp(r->last_gap, "open") == 0)
     node_error(reader->document, section_node(r, "over"), reader->error,
                "over: shorter than one pitch, so that there is only the first line; leave 'repeat' out");
-  if (count > MOST - 1)
+  if (lines(r) > MOST)
     node_error(reader->document, section_node(r, "pitch"), reader->error,
-               "pitch: makes %.3g lines, and a bar may have %d; look at the units", count, MOST);
+               "pitch: makes %.6g lines, and a bar may have %d; look at the units", lines(r), MOST);
 }
 
 const Section repeat_section = {
@@ -89,8 +93,7 @@ const Section repeat_section = {
 
 int64_t repeat_lines(const RepeatSpec *r)
 {
-  if (isnan(r->over)) return r->number;
-  return 1 + (int64_t)(strcmp(r->last_gap, "open") == 0 ? floor(gaps(r)) : ceil(gaps(r)));
+  return isnan(r->over) ? r->number : (int64_t)lines(r);
 }
 
 double repeat_offset(const RepeatSpec *r, int64_t line)
@@ -111,8 +114,6 @@ static double lines_of(const BarSpec *bar)
 
 void bar_check_repeat(const DeckReader *reader, const BarSpec *bar)
 {
-  for (int k = 0; k < bar->repeat.count; ++k)
-    if (!bar->repeat.items[k]) return; /* told already */
   if (bar->repeat.count > 2)
     node_error(reader->document, section_node(bar, "repeat"), reader->error,
                "repeat: one or two directions, and here are %d", bar->repeat.count);

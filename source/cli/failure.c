@@ -261,7 +261,7 @@ static int find_failure(const char *deck, const char **values, const DeckSetting
   s.rest_given = values[REST] != NULL;
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, LLONG_MAX, &s.jobs)) return BRECCIA_USER_ERROR;
   if (s.jobs > 2) s.jobs = 2; /* a round has two loads */
-  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, MOST_THREADS, &s.threads)) return BRECCIA_USER_ERROR;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, INT_MAX, &s.threads)) return BRECCIA_USER_ERROR;
   char *folder = output_folder(values[OUTPUT], deck, "-failure");
   breccia_error *error = breccia_error_create();
   s.folder = folder;

@@ -93,7 +93,7 @@ static int run_deck(const char *deck, const char **values, const DeckSettings *s
 {
   long long steps = 0, threads = 0;
   if (values[STEPS] && read_whole(values[STEPS], "steps", 1, LLONG_MAX, &steps)) return 2;
-  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, MOST_THREADS, &threads)) return 2;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, INT_MAX, &threads)) return 2;
   /* From here on: what is stopped while it is still being set up leaves a checkpoint too. */
   struct sigaction action = {.sa_handler = on_signal}, before;
   sigaction(SIGINT, &action, NULL);

@@ -68,7 +68,7 @@ static int study_deck(const breccia_study_plan *plan, const char **values, brecc
 {
   long long jobs = 1, threads = 0;
   if (values[JOBS] && read_whole(values[JOBS], "jobs", 1, LLONG_MAX, &jobs)) return BRECCIA_USER_ERROR;
-  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, MOST_THREADS, &threads)) return BRECCIA_USER_ERROR;
+  if (values[THREADS] && read_whole(values[THREADS], "threads", 1, INT_MAX, &threads)) return BRECCIA_USER_ERROR;
   CaseWork work = {.deck = plan->deck, .again = values[AGAIN] != NULL, .quiet = values[QUIET] != NULL};
   int status = breccia_study_create(plan, &work.study, error);
   if (status) return status;

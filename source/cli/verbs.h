@@ -82,8 +82,6 @@ char *output_folder(const char *asked, const char *file, const char *ending);
 /** Says in one line on standard error what is wrong, whatever signs the words hold. The format has no newline at its end. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-enum { MOST_THREADS = 4096 }; /* more would only wait for each other */
-
 /** Reads a whole number from `least` to `most` (LLONG_MAX: without an end); says what is wrong. */
 int read_whole(const char *words, const char *option, long long least, long long most, long long *value);
 

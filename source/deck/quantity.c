@@ -171,8 +171,10 @@ Units *units_create(const char *length, const char *force, const char *time, Err
   units->system = ut_read_xml(NULL);
   if (!units->system) {
     const int number = why_unopened();
-    error_add(error, BRECCIA_FAILURE, "the unit database of UDUNITS-2 %s%s",
-              number ? "cannot be read: " : "was not found: install libudunits2-data", number ? strerror(number) : "");
+    const bool full = number == EMFILE || number == ENFILE;
+    error_add(error, BRECCIA_FAILURE, "the unit database of UDUNITS-2 %s%s%s",
+              number ? "cannot be read: " : "was not found: install libudunits2-data", number ? strerror(number) : "",
+              full ? "; close some, or allow more (ulimit -n)" : "");
     units_destroy(&units);
     return NULL;
   }

@@ -100,6 +100,15 @@ bool domain_may_soften(const Domain *d)
   return may && !domain_in_elastic_stage(d);
 }
 
+bool domain_bonds_may_soften(const Domain *d)
+{
+  bool may = false;
+  for (int r = 0; r < d->region_count; ++r)
+    for (int k = 0; k < d->material_count && d->regions[r].points.components == 1; ++k)
+      may |= d->materials[k].softening_energy > 0 && region_is_made_of(d, &d->regions[r], d->materials[k].name);
+  return may && !domain_in_elastic_stage(d);
+}
+
 void domain_set_elastic_stage(Domain *d, bool elastic)
 {
   for (int r = 0; r < d->region_count; ++r) d->regions[r].points.elastic_stage = elastic;

@@ -236,6 +236,8 @@ bool domain_in_elastic_stage(const Domain *domain);
 void domain_set_elastic_stage(Domain *domain, bool elastic);
 /** Whether some law says that it may soften, and is not elastic in this stage. */
 bool domain_may_soften(const Domain *domain);
+/** The same of laws of bonds, not of points. */
+bool domain_bonds_may_soften(const Domain *domain);
 /** Makes the trial state of all points the committed one. By one thread. */
 void domain_commit_points(Domain *domain);
 /** Lets loads say the strains that the body begins from. Points under initial stress have begun. @param[in] loading  borrowed */

@@ -122,9 +122,10 @@ static int find_states(const ResultView *view, const breccia_plot *plot, int *fi
     const double end = view->times[view->steps - 1];
     for (int k = 0; k < view->steps; ++k)
       if (fabs(view->times[k] - plot->time) < fabs(view->times[*first] - plot->time)) *first = *last = k;
-    if (!(plot->time >= 0 && plot->time <= end * (1 + 1e-6)))
+    const double begin = view->times[0], rounding = 1e-6 * fabs(end);
+    if (!(plot->time >= begin - rounding && plot->time <= end + rounding))
       return error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only",
-                       plot->time, view->times[0], end);
+                       plot->time, begin, end);
   }
   if (plot->state != BRECCIA_STATE_OF_STEP) return BRECCIA_OK;
   for (int k = 0; k < view->steps; ++k)

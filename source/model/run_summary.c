@@ -228,8 +228,8 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
     add_number(&t, energies[k].key, blown_up ? NAN : energies[k].value);
   }
   text_add(&t, "},\n");
-  run_add_bars(model, &t);
   if (!blown_up) {
+    run_add_bars(model, &t);
     add_balance(s, &t);
     add_rest(s, &t);
   }
@@ -384,7 +384,7 @@ static void tell_control(const Domain *d, double stored, Text *t)
     text_add(t,
              "warning: where laws have yielded, control of zero-energy modes holds %.2g %% of the stored energy: it "
              "carries load beside them, and limit loads come out too high; take 'zero-energy control: {silling: ..., "
-             "fades: yielding}', or 'formulation: ordinary'\n",
+             "fades: yielding}'\n",
              100 * held / stored);
 }
 
@@ -466,7 +466,7 @@ void run_tell_outcome(Run *run, int status)
     text_add(t, "\n");
   }
   if (!blown_up) tell_control(d, e.stored, t);
-  run_tell_bars(model, t);
+  if (!blown_up) run_tell_bars(model, t);
   tell_verdicts(s, t);
   if (!blown_up) tell_rest(s, model->units, status == BRECCIA_FAILURE, t);
   for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);

@@ -61,6 +61,8 @@ static int solve(LinearSolver *s, double *const f[MOTIONS], double *const v[MOTI
   vectors_combine(d, 0, g->rest, 1, f);
   record->unsuited = !g->preconditioner.is_symmetric;
   while (!record->unsuited && record->iterations < MOST_ITERATIONS && rest > tolerance * tolerance * first) {
+    record->stopped = s->allowed && record->iterations >= s->allowed;
+    if (record->stopped) break;
     preconditioner_apply(&g->preconditioner, s, g->rest, g->product);
     const double next = unknowns_work(u, g->rest, g->product);
     vectors_combine(d, record->iterations ? next / slope : 0, g->direction, 1, g->product);

@@ -240,7 +240,7 @@ static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *wa
 {
   const bool others = domain_may_soften(s->domain) && static_may_relax(s);
   /* Where bonds soften relaxation takes a fifth of the time of secants; where points do, it may not come to rest. */
-  const bool bonds = domain_take_secants(s->domain, SECANTS_OF_NONE);
+  const bool bonds = domain_bonds_may_soften(s->domain);
   s->newton.has_others = others && bonds && *may_relax;
   NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
   s->newton.has_others = false;

@@ -30,7 +30,7 @@ Y
 
 "$breccia" check "$work/good.yaml" > "$work/out" 2>&1 || fail "the good deck is refused: $(cat "$work/out")"
 
-# refuse EDIT PLACE WORDS (under the sanitizers every third; they see all kinds of decks in the fuzzer too): the good deck after a sed edit is refused at line:column with these words
+# refuse EDIT PLACE WORDS (under the sanitizers every fifth; they see all kinds of decks in the fuzzer too): the good deck after a sed edit is refused at line:column with these words
 refuse() {
   left_out 5 && return
   sed "$1" "$work/good.yaml" > "$work/deck.yaml"

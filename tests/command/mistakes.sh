@@ -54,6 +54,8 @@ for file in measured.csv path.csv test.yaml; do cmp -s $file own/$file || fail "
 # ---- files that cannot be opened, as there are too many ----
 number=3 # at least as many as it takes to begin
 until (ulimit -n $number && exec "$breccia" --version) > out 2>&1 || [ $number -gt 30 ]; do number=$((number + 1)); done
+(ulimit -n $number && exec "$breccia" run bar.yaml --quiet --output few) 2> errors
+contains "units where files are too many" "$(cat errors)" "Too many open files; close some, or allow more (ulimit -n)"
 for number in $number $((number + 1)); do
   (ulimit -n $number && exec "$breccia" run bar.yaml --quiet --output few) 2> errors
   equal "$number files at once: status" $? 1
@@ -164,8 +166,8 @@ refused "a range that is no number" "--range: 'nan:1' should be two numbers with
 refused "a view without an end" "--view: '0:inf' should be two numbers with a colon between" plot own --field displacement --view 0:inf
 
 refused "a part of a picture up to no number" "--inside: 'nan:1,:,:' should be two or three ranges" plot own --field displacement --inside nan:1,:,:
-refused "threads that wait for each other" "threads: 4096 would only wait for each other, as this process may use" run bar.yaml --threads 4096
-refused "more threads than wait for each other" "--threads: '999999' is not a whole number from 1 to 4096" run bar.yaml --threads 999999
+refused "threads that wait for each other" "threads: 1000000 would only wait for each other, as this process may use" run bar.yaml --threads 1000000
+refused "more threads than can be counted" "--threads: '2147483648' is not a whole number from 1 to 2147483647" run bar.yaml --threads 2147483648
 refused "more modes than a body has" "--count: '2147483648' is not a whole number from 1 to 1000000" modes bar.yaml --count 2147483648
 refused "a picture that no file holds" "--size: '2147483648' is not a whole number from 50 to 20000" plot own --field displacement --size 2147483648
 
