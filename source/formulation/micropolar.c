@@ -149,17 +149,16 @@ static int64_t find_damage(void *formulation, const Sweep *sweep)
 static int64_t resist(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
-  const Particles *p = m->particles;
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     if (sweep->at) {
       micropolar_resist_changes(m, sweep->at, slice);
       continue;
     }
     if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
-    const bool swept = !m->secant && m->sweeps->resist(m, slice);
-    if (!swept)
-      for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
-    micropolar_add_links(m, slice, swept);
+    if (m->secant)
+      micropolar_resist_one_by_one(m, slice);
+    else
+      m->sweeps->resist(m, slice);
   }
   return -1;
 }

@@ -1,5 +1,5 @@
 /* What the parts of micropolar peridynamics share: the table entry (micropolar.c), constants of links (micropolar_constants.c), links one by one
- * (micropolar_link.c), their changes (micropolar_linear.c), sweeps over links of lattices in the plane (micropolar_plane.c) and in space
+ * (micropolar_link.c), their changes (micropolar_linear.c), sweeps over links in the plane (micropolar_plane.c) and in space
  * (micropolar_space.c), and damage of links (micropolar_damage.c, by what laws say micropolar_damage_laws.c). */
 #ifndef BRECCIA_FORMULATION_MICROPOLAR_H
 #define BRECCIA_FORMULATION_MICROPOLAR_H
@@ -34,6 +34,8 @@ typedef struct LinkRow {
   double twist;       /* twist w / L */
 } LinkRow;
 
+enum { GROWN_IN_TENSION = 1, GROWN_IN_COMPRESSION = 2 };
+
 /** Damage of links, and by which laws. Both ends of a link keep its damage, found from the same numbers. */
 typedef struct LinkDamage {
   breccia_link *laws;                  /* [blocks] whose tension_end is found */
@@ -41,15 +43,15 @@ typedef struct LinkDamage {
   double *tension[2], *compression[2]; /* [slots * SLICE] committed, and as tried */
   double *damaged;                     /* [places] links with damage in tension, as tried */
   uint8_t *touched;                    /* [slices] some link has been beyond its bounds */
+  uint8_t *grown;                      /* [slices] in which of the two what was tried is more than what is committed */
 } LinkDamage;
 
 typedef struct Micropolar Micropolar;
 
-/** What sweeps over links of lattices do, for each kind of vectors. */
+/** What sweeps over links do, for each kind of vectors. */
 typedef struct MicropolarSweeps {
-  /** Forces and moments on a slice of links of lattices, by series for small strains.
-   *  @return false if some link is beyond them: what was written is of no use then */
-  bool (*resist)(const Micropolar *m, int64_t slice);
+  /** Forces and moments on a slice, by series where stretches and rotations of all of its links are small. */
+  void (*resist)(const Micropolar *m, int64_t slice);
   /** What slices first .. last - 1 show at rotations among these displacements. */
   void (*show)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
 } MicropolarSweeps;
@@ -148,8 +150,8 @@ double micropolar_stretch(double *const *u, int64_t place, const Bond *bond, dou
 /** A link at displacements and rotations `at`; NULL: at those held. */
 Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane);
 
-/** Forces and moments of all links of a slice, or of its stored slots only, added to what stands there. */
-void micropolar_add_links(const Micropolar *m, int64_t slice, bool stored_only);
+/** Forces and moments of a slice, link by link. */
+void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice);
 
 /* ---- damage ---- */
 

@@ -1,48 +1,49 @@
 /* Damage of links (Tuniki 2012, 3.4; docs/theory.md 6.5), in two passes, so that it depends on no order: first that in tension of all links, and how many of them
  * each particle has; then that in compression, of links beside which another link of either end is damaged in tension. */
 #include "constitutive/link_damage.h"
-#include "formulation/micropolar.h"
+#include "formulation/micropolar_lanes.h"
 
 #include "base/team.h"
 #include <math.h>
 #include <string.h>
-
-/* ---- in tension ---- */
 
 LANES_INLINE Lanes stretch_of(Lanes squares)
 {
   return squares / (lanes_set(1) + lanes_root(lanes_set(1) + squares));
 }
 
-/** Stretch of a link without its free strain. */
-static double stretch_at(const Micropolar *m, int64_t place, const Bond *bond)
+LANES_INLINE bool any_of(LaneMask mask)
 {
-  double y[3];
-  return micropolar_stretch(m->particles->displacement, place, bond, y) -
-         particles_free_strain(m->particles, place, bond->neighbour);
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-/** (|y|^2 - |xi|^2) / |xi|^2 of the links of half a lattice slot, |xi| being longer by the free strain. */
-LANES_INLINE Lanes squares_of(const Micropolar *m, int64_t slot, int64_t place, int half)
+/** Links of half a slot, whichever. @param[in] u  of this end */
+LANES_INLINE LinkLanes links_of(const Micropolar *m, int64_t slice, int64_t slot, int half, const Lanes u[3])
 {
-  double *const *u = m->particles->displacement;
-  const LinkRow *row = &m->rows[m->family->pattern[slot]];
-  const int64_t here = place + LANES * half, there = m->family->base[slot] + LANES * half;
+  if (slot < m->family->stored[slice]) return lattice_links(m, slot, half, 3, u);
+  return stored_links(m, slice * SLICE + LANES * half, slot, half, 3, u);
+}
+
+/** (|y|^2 - |xi|^2) / |xi|^2, |xi| being longer by the free strain. */
+LANES_INLINE Lanes squares_of(const Micropolar *m, int64_t place, const LinkLanes *l)
+{
   Lanes d = lanes_set(0);
-  for (int k = 0; k < 3; ++k) {
-    const Lanes e = (lanes_load(u[k] + there) - lanes_load(u[k] + here)) * lanes_set(row->by_length);
-    d += e * (lanes_set(2 * row->n[k]) + e);
-  }
-  const double *free = m->particles->free_strain;
-  if (!free) return d;
-  const Lanes left = stretch_of(d) - lanes_set(0.5) * (lanes_load(free + here) + lanes_load(free + there));
+  for (int k = 0; k < 3; ++k) d += l->e[k] * (l->n[k] + l->n[k] + l->e[k]);
+  if (!m->particles->free_strain) return d;
+  const Lanes left = stretch_of(d) - free_of(m, place, l);
   return left * (lanes_set(2) + left);
+}
+
+LANES_INLINE void load_displacements(const Micropolar *m, int64_t place, Lanes u[3])
+{
+  for (int k = 0; k < 3; ++k) u[k] = lanes_load(m->particles->displacement[k] + place);
 }
 
 /** link_damage, lane by lane. */
 LANES_INLINE Lanes damage_of(Lanes stretch, double begin, double end, bool linear_force)
 {
   const LaneMask beyond = (LaneMask)(stretch > lanes_set(begin));
+  if (!isfinite(begin)) return lanes_set(0);
   const Lanes x = lanes_choose(beyond, stretch, lanes_set(begin));
   /* gcc 12 takes a division under a condition of one number to be one of the first lane only: both forms are made of one formula */
   const Lanes share = (x - lanes_set(begin)) * lanes_set(1 / (end - begin)) *
@@ -50,81 +51,89 @@ LANES_INLINE Lanes damage_of(Lanes stretch, double begin, double end, bool linea
   return lanes_where(beyond, lanes_choose((LaneMask)(x >= lanes_set(end)), lanes_set(1), share));
 }
 
+/** The larger damage of what both ends' blocks say of a stretch. */
+static double larger_damage(const Micropolar *m, int64_t place, int64_t other, double stretch, bool tension)
+{
+  double most = 0;
+  for (int end = 0; end < 2; ++end) {
+    const breccia_link *l = &m->damage->laws[m->particles->block[(end ? other : place) / SLICE]];
+    most = fmax(most, tension ? link_damage(stretch, l->tension_begin, l->tension_end, l->linear_force)
+                              : link_damage(-stretch, l->compression_begin, l->compression_end, false));
+  }
+  return most;
+}
+
+/** Damage in tension or compression at present stretches. */
+LANES_INLINE Lanes damage_now(const Micropolar *m, int64_t place, const LinkLanes *l, bool tension)
+{
+  const breccia_link *law = &m->damage->laws[m->particles->block[place / SLICE]];
+  const Lanes d = squares_of(m, place, l);
+  const LaneMask beyond =
+      tension ? (LaneMask)(d > lanes_set(m->damage->longer)) : (LaneMask)(d < lanes_set(m->damage->shorter));
+  if (!any_of(beyond)) return lanes_set(0); /* spares roots and quotients where nothing new is damaged */
+  const Lanes stretch = stretch_of(d);
+  Lanes now = tension ? damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force)
+                      : damage_of(-stretch, law->compression_begin, law->compression_end, false);
+  for (int k = 0; k < LANES && joins_blocks(m, place, l); ++k) /* both ends by the same formula */
+    now[k] = larger_damage(m, place + k, l->neighbours[k], stretch[k], tension);
+  return now;
+}
+
+/** Writes what damage has become, where it has grown or what stands there is of an earlier trial.
+ *  @param[in] now  where it counts @return whether it is more than what is committed */
+LANES_INLINE bool grow(double *const damage[2], int64_t at, LaneMask counts, Lanes now, bool stale, Lanes *most)
+{
+  const Lanes before = lanes_load(damage[0] + at);
+  const LaneMask more = (LaneMask)(now > before) & counts;
+  const bool grows = any_of(more);
+  *most = lanes_choose(more, now, before);
+  if (grows || stale) lanes_store(damage[1] + at, *most);
+  return grows;
+}
+
+/* ---- in tension ---- */
+
 /** Whether a link of a slice is beyond the bounds within which none is damaged. */
 LANES_INLINE bool is_beyond(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   const Lanes longer = lanes_set(m->damage->longer), shorter = lanes_set(m->damage->shorter);
   LaneMask beyond = {0};
-  for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-    for (int half = 0; half < SLICE / LANES; ++half) {
-      const Lanes d = squares_of(m, slot, slice * SLICE, half);
-      beyond |= ((LaneMask)(d > longer) | (LaneMask)(d < shorter)) & lanes_half(f->intact[slot], half);
+  for (int half = 0; half < SLICE / LANES; ++half) {
+    const int64_t place = slice * SLICE + LANES * half;
+    Lanes u[3];
+    load_displacements(m, place, u);
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = links_of(m, slice, slot, half, u);
+      const Lanes d = squares_of(m, place, &l);
+      beyond |= ((LaneMask)(d > longer) | (LaneMask)(d < shorter)) & lanes_half(l.intact, half);
     }
-  if (beyond[0] | beyond[1] | beyond[2] | beyond[3]) return true;
-  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane) {
-      if (!(f->intact[slot] >> lane & 1)) continue;
-      const Bond bond = family_bond(f, slice, slot, lane);
-      const double s = stretch_at(m, slice * SLICE + lane, &bond), d = s * (2 + s);
-      if (d > m->damage->longer || d < m->damage->shorter) return true;
-    }
-  return false;
-}
-
-/** The larger damage of what both ends' blocks say of a stretch. */
-static double tension_at(const Micropolar *m, int64_t place, int64_t other, double stretch)
-{
-  double most = 0;
-  for (int end = 0; end < 2; ++end) {
-    const breccia_link *l = &m->damage->laws[m->particles->block[(end ? other : place) / SLICE]];
-    most = fmax(most, link_damage(stretch, l->tension_begin, l->tension_end, l->linear_force));
   }
-  return most;
-}
-
-static double compression_at(const Micropolar *m, int64_t place, int64_t other, double stretch)
-{
-  double most = 0;
-  for (int end = 0; end < 2; ++end) {
-    const breccia_link *l = &m->damage->laws[m->particles->block[(end ? other : place) / SLICE]];
-    most = fmax(most, link_damage(-stretch, l->compression_begin, l->compression_end, false));
-  }
-  return most;
+  return any_of(beyond);
 }
 
 LANES_INLINE void find_tension(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
   LinkDamage *damage = m->damage;
-  const int64_t first = slice * SLICE;
   if (!damage->touched[slice] && !is_beyond(m, slice)) return;
   damage->touched[slice] = 1;
-  const breccia_link *law = &damage->laws[m->particles->block[slice]];
+  const bool stale = damage->grown[slice] & GROWN_IN_TENSION;
+  bool grown = false;
   for (int half = 0; half < SLICE / LANES; ++half) {
-    Lanes count = lanes_set(0);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice] && isfinite(law->tension_begin); ++slot) {
-      const int64_t at = slot * SLICE + LANES * half;
-      const LaneMask intact = lanes_half(f->intact[slot], half);
-      const Lanes before = lanes_load(damage->tension[0] + at), stretch = stretch_of(squares_of(m, slot, first, half)),
-                  now = damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force);
-      const Lanes most = lanes_choose(intact, lanes_greatest(before, now), before);
-      lanes_store(damage->tension[1] + at, most);
+    const int64_t place = slice * SLICE + LANES * half;
+    Lanes count = lanes_set(0), u[3];
+    load_displacements(m, place, u);
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = links_of(m, slice, slot, half, u);
+      Lanes most;
+      grown |= grow(damage->tension, slot * SLICE + LANES * half, lanes_half(l.intact, half),
+                    damage_now(m, place, &l, true), stale, &most);
       count += lanes_where((LaneMask)(most > lanes_set(0)), lanes_set(1)); /* also of links that broke with it */
     }
-    lanes_store(damage->damaged + first + LANES * half, count);
+    lanes_store(damage->damaged + place, count);
   }
-  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane) {
-      const int64_t at = slot * SLICE + lane, place = first + lane;
-      damage->tension[1][at] = damage->tension[0][at];
-      if (f->intact[slot] >> lane & 1) {
-        const Bond bond = family_bond(f, slice, slot, lane);
-        const double stretch = stretch_at(m, place, &bond);
-        damage->tension[1][at] = fmax(damage->tension[0][at], tension_at(m, place, bond.neighbour, stretch));
-      }
-      damage->damaged[place] += damage->tension[1][at] > 0;
-    }
+  damage->grown[slice] = (uint8_t)((damage->grown[slice] & ~GROWN_IN_TENSION) | (grown ? GROWN_IN_TENSION : 0));
 }
 
 BRECCIA_CLONES
@@ -145,34 +154,26 @@ BRECCIA_CLONES
 static void find_compression(const Micropolar *m, int64_t slice)
 {
   const Family *f = m->family;
-  const LinkDamage *damage = m->damage;
-  const int64_t first = slice * SLICE;
-  const breccia_link *law = &damage->laws[m->particles->block[slice]];
+  LinkDamage *damage = m->damage;
+  const bool stale = damage->grown[slice] & GROWN_IN_COMPRESSION;
+  bool grown = false;
   for (int half = 0; half < SLICE / LANES; ++half) {
-    const Lanes own = lanes_load(damage->damaged + first + LANES * half);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice] && isfinite(law->compression_begin); ++slot) {
-      const int64_t at = slot * SLICE + LANES * half, there = f->base[slot] + LANES * half;
-      const Lanes itself = lanes_where((LaneMask)(lanes_load(damage->tension[1] + at) > lanes_set(0)), lanes_set(1));
-      const LaneMask beside = (LaneMask)(lanes_greatest(own, lanes_load(damage->damaged + there)) > itself) &
-                              lanes_half(f->intact[slot], half);
-      const Lanes before = lanes_load(damage->compression[0] + at),
-                  stretch = stretch_of(squares_of(m, slot, first, half)),
-                  now = damage_of(-stretch, law->compression_begin, law->compression_end, false);
-      lanes_store(damage->compression[1] + at, lanes_choose(beside, lanes_greatest(before, now), before));
+    const int64_t place = slice * SLICE + LANES * half;
+    const Lanes own = lanes_load(damage->damaged + place);
+    Lanes u[3];
+    load_displacements(m, place, u);
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      const int64_t at = slot * SLICE + LANES * half;
+      const LinkLanes l = links_of(m, slice, slot, half, u);
+      /* what is torn just now is pulled, so that it does not matter here */
+      const Lanes itself = lanes_where((LaneMask)(lanes_load(damage->tension[0] + at) > lanes_set(0)), lanes_set(1));
+      const LaneMask beside =
+          (LaneMask)(lanes_greatest(own, of_others(&l, damage->damaged)) > itself) & lanes_half(l.intact, half);
+      Lanes most;
+      grown |= grow(damage->compression, at, beside, damage_now(m, place, &l, false), stale, &most);
     }
   }
-  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int lane = 0; lane < SLICE; ++lane) {
-      if (!(f->intact[slot] >> lane & 1)) continue;
-      const int64_t at = slot * SLICE + lane, place = first + lane;
-      const Bond bond = family_bond(f, slice, slot, lane);
-      const double stretch = stretch_at(m, place, &bond),
-                   beside = fmax(damage->damaged[place], damage->damaged[bond.neighbour]);
-      damage->compression[1][at] = damage->compression[0][at];
-      if (beside > (damage->tension[1][at] > 0))
-        damage->compression[1][at] =
-            fmax(damage->compression[0][at], compression_at(m, place, bond.neighbour, stretch));
-    }
+  damage->grown[slice] = (uint8_t)((damage->grown[slice] & ~GROWN_IN_COMPRESSION) | (grown ? GROWN_IN_COMPRESSION : 0));
 }
 
 void micropolar_find_compression(const Micropolar *m, int64_t slice)
@@ -186,7 +187,9 @@ void micropolar_weaken(const Micropolar *m, int64_t place, int64_t other, int64_
                        LinkStiffness *stiffness)
 {
   const LinkDamage *damage = m->damage;
-  const double tension = damage->tension[1][at], rest = 1 - damage->compression[1][at];
+  const uint8_t grown = damage->grown[place / SLICE];
+  const double tension = damage->tension[grown & GROWN_IN_TENSION ? 1 : 0][at],
+               rest = 1 - damage->compression[grown & GROWN_IN_COMPRESSION ? 1 : 0][at];
   double recovery = 1;
   for (int end = 0; end < 2; ++end)
     recovery = fmin(recovery, damage->laws[m->particles->block[(end ? other : place) / SLICE]].recovery);
@@ -206,11 +209,12 @@ static void copy_slice(void *context, int64_t slice)
 {
   const Commit *c = context;
   const LinkDamage *damage = c->micropolar->damage;
-  if (!damage->touched[slice]) return;
+  if (!damage->grown[slice]) return;
   const int64_t *slots = c->micropolar->family->first + slice, first = slots[0] * SLICE;
   const size_t bytes = sizeof(double) * (size_t)(slots[1] - slots[0]) * SLICE;
   memcpy(damage->tension[c->to] + first, damage->tension[c->from] + first, bytes);
   memcpy(damage->compression[c->to] + first, damage->compression[c->from] + first, bytes);
+  damage->grown[slice] = 0;
 }
 
 void micropolar_commit(void *formulation, bool well)
@@ -229,6 +233,8 @@ static int take_up(void *owner, const double *numbers, int64_t count, Error *err
   for (int64_t slice = 0; slice < m->particles->slices; ++slice)
     for (int64_t at = f->first[slice] * SLICE; at < f->first[slice + 1] * SLICE; ++at)
       if (m->damage->tension[0][at] > 0 || m->damage->compression[0][at] > 0) m->damage->touched[slice] = 1;
+  for (int64_t slice = 0; slice < m->particles->slices; ++slice) /* what was tried goes */
+    m->damage->grown[slice] = m->damage->touched[slice] ? GROWN_IN_TENSION | GROWN_IN_COMPRESSION : 0;
   micropolar_commit(owner, false);
   return BRECCIA_OK;
 }

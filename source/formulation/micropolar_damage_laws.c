@@ -104,6 +104,7 @@ int micropolar_damage_create(Micropolar *m, Error *error)
   int failed =
       !(damage->laws = memory_zeroed((size_t)m->body->block_count, sizeof *damage->laws, "damage of links", error));
   failed |= !(damage->touched = memory_zeroed((size_t)m->particles->slices, 1, "damage of links", error));
+  failed |= !(damage->grown = memory_zeroed((size_t)m->particles->slices, 1, "damage of links", error));
   failed |= !(damage->damaged = places_array(m->particles->places, "damage of links", error));
   for (int k = 0; k < 2; ++k) {
     failed |= !(damage->tension[k] = memory_zeroed(links, sizeof(double), "damage of links", error));
@@ -122,6 +123,7 @@ void micropolar_damage_destroy(Micropolar *m)
   }
   places_free(&damage->damaged);
   free(damage->touched);
+  free(damage->grown);
   free(damage->laws);
   free(damage);
 }

@@ -17,23 +17,178 @@ LANES_INLINE Lanes angle_excess(Lanes square)
   return square * sum;
 }
 
-/** What is left of a link's axial stiffness, and of the others. */
-LANES_INLINE void find_left(const Micropolar *m, int64_t slot, int half, const breccia_link *law, Lanes stretch,
-                            Lanes *axial, Lanes *other)
+/** (1 - t cot t) / sin^2 t, of sin^2 t, for small t. */
+LANES_INLINE Lanes bend_series(Lanes square)
 {
-  const int64_t at = slot * SLICE + LANES * half;
-  const Lanes tension = lanes_load(m->damage->tension[1] + at),
-              rest = lanes_set(1) - lanes_load(m->damage->compression[1] + at);
-  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), lanes_set(1 - law->recovery), lanes_set(1));
-  *axial = (lanes_set(1) - tension * closed) * rest;
-  *other = (lanes_set(1) - tension) * rest;
+  Lanes sum = lanes_set(16.0 / 315) * square + lanes_set(8.0 / 105);
+  sum = sum * square + lanes_set(2.0 / 15);
+  return sum * square + lanes_set(1.0 / 3);
 }
 
-/** Stretch at which links between places and those from others on carry nothing. */
-LANES_INLINE Lanes free_of(const Micropolar *m, int64_t here, int64_t there)
+/** Angle from 0 to pi of a sine and cosine, by the series of the arc tangent of a sixteenth part of a turn at most. */
+LANES_INLINE Lanes angle_between(Lanes sine, Lanes cosine)
+{
+  enum { TERMS = 11 };
+  const LaneMask obtuse = (LaneMask)(cosine < lanes_set(0));
+  const Lanes one = lanes_set(1);
+  Lanes tangent = sine / (one + lanes_absolute(cosine)); /* of half the angle */
+  for (int halved = 0; halved < 2; ++halved) tangent /= one + lanes_root(one + tangent * tangent);
+  const Lanes square = tangent * tangent;
+  Lanes sum = lanes_set(1.0 / (2 * TERMS - 1));
+  for (int n = TERMS - 2; n >= 0; --n) sum = lanes_set(1.0 / (2 * n + 1)) - square * sum;
+  const Lanes angle = lanes_set(8) * tangent * sum;
+  return lanes_choose(obtuse, lanes_set(3.14159265358979323846) - angle, angle);
+}
+
+/** An end rotation t: t / sin t, and (1 - t cot t) / sin^2 t. */
+typedef struct EndLanes {
+  Lanes factor, bend;
+} EndLanes;
+
+/** @param[in] square  of the sine @param[in] any  of any angle, or within the series */
+LANES_INLINE EndLanes end_rotation(Lanes square, Lanes cosine, bool any)
+{
+  const Lanes one = lanes_set(1), zero = lanes_set(0);
+  if (!any) return (EndLanes){one + angle_excess(square), bend_series(square)};
+  const LaneMask turned = (LaneMask)(square > zero),
+                 small = (LaneMask)(square < lanes_set(1e-3)) & ~(LaneMask)(cosine < zero);
+  const Lanes sine = lanes_root(square),
+              factor = lanes_choose(turned, angle_between(sine, cosine) / lanes_choose(turned, sine, one), one);
+  const Lanes bend = (one - factor * cosine) / lanes_choose(turned, square, one);
+  return (EndLanes){factor, lanes_choose(small, bend_series(square), bend)};
+}
+
+/** Links of half a slot. */
+typedef struct LinkLanes {
+  int64_t slot, there;       /* the first place of their other ends, where these stand side by side */
+  const int32_t *neighbours; /* NULL, or where they do not */
+  int half;
+  unsigned intact;
+  Lanes n[3], by_length; /* reference vector over its length, and 1 over that */
+  Lanes e[3]; /* displacement of the other end less that of this one, over the length; 0 where the link is broken */
+} LinkLanes;
+
+/** As in LinkRow; 0 where a link is broken. */
+typedef struct StiffnessLanes {
+  Lanes axial, bending, twist;
+} StiffnessLanes;
+
+/** Numbers of the other ends. */
+LANES_INLINE Lanes of_others(const LinkLanes *link, const double *from)
+{
+  return link->neighbours ? lanes_gather(from, link->neighbours) : lanes_load(from + link->there);
+}
+
+/** @param[in] u  of this end */
+LANES_INLINE LinkLanes lattice_links(const Micropolar *m, int64_t slot, int half, int dimensions, const Lanes *u)
+{
+  const Family *f = m->family;
+  const LinkRow *row = &m->rows[f->pattern[slot]];
+  LinkLanes l = {.slot = slot,
+                 .half = half,
+                 .there = f->base[slot] + LANES * half,
+                 .intact = f->intact[slot],
+                 .by_length = lanes_set(row->by_length)};
+  for (int k = 0; k < dimensions; ++k) {
+    l.n[k] = lanes_set(row->n[k]);
+    /* the ends of broken links may be so far apart that the series would be none */
+    l.e[k] = lanes_intact(l.intact, half, of_others(&l, m->particles->displacement[k]) - u[k]) * l.by_length;
+  }
+  return l;
+}
+
+LANES_INLINE StiffnessLanes lattice_stiffness(const Micropolar *m, const LinkLanes *l)
+{
+  const LinkRow *row = &m->rows[m->family->pattern[l->slot]];
+  return (StiffnessLanes){lanes_intact(l->intact, l->half, lanes_set(row->axial)),
+                          lanes_intact(l->intact, l->half, lanes_set(row->bending)),
+                          lanes_intact(l->intact, l->half, lanes_set(row->twist))};
+}
+
+/** @param[in] place  of the first lane of the half slice */
+LANES_INLINE LinkLanes stored_links(const Micropolar *m, int64_t place, int64_t slot, int half, int dimensions,
+                                    const Lanes *u)
+{
+  const Family *f = m->family;
+  const Particles *p = m->particles;
+  LinkLanes l = {.slot = slot,
+                 .half = half,
+                 .neighbours = f->neighbour + (int64_t)f->base[slot] * SLICE + LANES * half,
+                 .intact = f->intact[slot]};
+  const LaneMask intact = lanes_half(l.intact, half);
+  Lanes square = lanes_set(0);
+  for (int k = 0; k < dimensions; ++k) {
+    l.n[k] = lanes_where(intact, of_others(&l, p->position[k]) - lanes_load(p->position[k] + place));
+    square += l.n[k] * l.n[k];
+    l.e[k] = lanes_where(intact, of_others(&l, p->displacement[k]) - u[k]);
+  }
+  l.by_length = lanes_set(1) / lanes_choose(intact, lanes_root(square), lanes_set(1));
+  for (int k = 0; k < dimensions; ++k) {
+    l.n[k] *= l.by_length;
+    l.e[k] *= l.by_length;
+  }
+  return l;
+}
+
+LANES_INLINE StiffnessLanes stored_stiffness(const Micropolar *m, int64_t place, const LinkLanes *l)
+{
+  const Family *f = m->family;
+  Lanes weight = of_others(l, m->particles->volume);
+  if (f->scale) weight *= lanes_load(f->scale + (int64_t)f->base[l->slot] * SLICE + LANES * l->half);
+  weight = lanes_intact(l->intact, l->half, weight);
+  const LinkStiffness *any = &m->constants[0].any;
+  StiffnessLanes s = {lanes_set(any->axial), lanes_set(any->bending), lanes_set(any->twist)};
+  for (int k = 0; k < LANES && (m->body->block_count > 1 || m->constants[0].lengths); ++k) {
+    const Bond bond = {.neighbour = l->neighbours[k], .length = 1 / l->by_length[k]};
+    const LinkStiffness stiffness = micropolar_stiffness(m, place + k, &bond);
+    s.axial[k] = stiffness.axial;
+    s.bending[k] = stiffness.bending;
+    s.twist[k] = stiffness.twist;
+  }
+  const Lanes over_length = weight * l->by_length;
+  return (StiffnessLanes){s.axial * weight, s.bending * over_length, s.twist * over_length};
+}
+
+/** Some other end is of another block than this one. */
+LANES_INLINE bool joins_blocks(const Micropolar *m, int64_t place, const LinkLanes *l)
+{
+  const int32_t *block = m->particles->block;
+  bool joins = false;
+  for (int k = 0; k < LANES && l->neighbours && m->body->block_count > 1; ++k)
+    joins |= block[l->neighbours[k] / SLICE] != block[place / SLICE];
+  return joins;
+}
+
+/** Stretch at which links carry nothing. */
+LANES_INLINE Lanes free_of(const Micropolar *m, int64_t place, const LinkLanes *l)
 {
   const double *free = m->particles->free_strain;
-  return free ? lanes_set(0.5) * (lanes_load(free + here) + lanes_load(free + there)) : lanes_set(0);
+  return free ? lanes_set(0.5) * (lanes_load(free + place) + of_others(l, free)) : lanes_set(0);
+}
+
+/** What damage of a link that is open leaves of it when it closes again, of both ends' laws. */
+LANES_INLINE Lanes recovery_of(const Micropolar *m, const breccia_link *law, int64_t place, const LinkLanes *l)
+{
+  Lanes recovery = lanes_set(law->recovery);
+  for (int k = 0; k < LANES && joins_blocks(m, place, l); ++k) {
+    const double other = m->damage->laws[m->particles->block[l->neighbours[k] / SLICE]].recovery;
+    recovery[k] = law->recovery < other ? law->recovery : other;
+  }
+  return recovery;
+}
+
+/** What is left of a link's axial stiffness, and of the others. */
+LANES_INLINE void find_left(const Micropolar *m, const breccia_link *law, int64_t place, const LinkLanes *l,
+                            Lanes stretch, Lanes *axial, Lanes *other)
+{
+  const int64_t at = l->slot * SLICE + LANES * l->half;
+  const LinkDamage *damage = m->damage;
+  const uint8_t grown = damage->grown[place / SLICE];
+  const Lanes tension = lanes_load(damage->tension[grown & GROWN_IN_TENSION ? 1 : 0] + at), one = lanes_set(1),
+              rest = one - lanes_load(damage->compression[grown & GROWN_IN_COMPRESSION ? 1 : 0] + at);
+  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), one - recovery_of(m, law, place, l), one);
+  *axial = (one - tension * closed) * rest;
+  *other = (one - tension) * rest;
 }
 
 /** The law by which links of a slice are weakened now; NULL: none is. */
@@ -42,13 +197,13 @@ LANES_INLINE const breccia_link *weakened_by(const Micropolar *m, int64_t slice)
   return micropolar_is_weak(m, slice) ? &m->damage->laws[m->particles->block[slice]] : NULL;
 }
 
-/** Whether the series of intact links of half a slot hold too: of their lengths, by d, and of both end rotations, by their cosines. */
-LANES_INLINE LanesWithin links_within(LanesWithin so_far, unsigned bits, int half, Lanes d, Lanes cosine, Lanes other)
+/** Whether the series of intact links hold too: of their lengths, by d, and of both end rotations, by their cosines. */
+LANES_INLINE LanesWithin links_within(LanesWithin so_far, const LinkLanes *l, Lanes d, Lanes cosine, Lanes other)
 {
   const Lanes limit = lanes_set(largest_cosine_loss), one = lanes_set(1);
-  so_far = lanes_within_where(so_far, bits, half, d, lanes_set(range_limit[RANGE_SERIES]));
-  so_far = lanes_within_where(so_far, bits, half, one - cosine, limit);
-  return lanes_within_where(so_far, bits, half, one - other, limit);
+  so_far = lanes_within_where(so_far, l->intact, l->half, d, lanes_set(range_limit[RANGE_SERIES]));
+  so_far = lanes_within_where(so_far, l->intact, l->half, one - cosine, limit);
+  return lanes_within_where(so_far, l->intact, l->half, one - other, limit);
 }
 
 #endif

@@ -167,11 +167,12 @@ Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int6
   return l;
 }
 
-void micropolar_add_links(const Micropolar *m, int64_t slice, bool stored_only)
+void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice)
 {
   const Particles *p = m->particles;
   const Family *f = m->family;
-  for (int64_t slot = stored_only ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
+  for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
+  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
       const Link l = micropolar_link(m, NULL, slice, slot, lane);

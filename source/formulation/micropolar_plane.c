@@ -2,12 +2,6 @@
  * an end rotation is the cross product of the chord with where the section points, and the angle a series of it. */
 #include "formulation/micropolar_lanes.h"
 
-/** Arc sine. */
-LANES_INLINE Lanes angle_of(Lanes sine)
-{
-  return sine + sine * angle_excess(sine * sine);
-}
-
 /** Half a slice: what it has, and what acts on it. */
 typedef struct HalfSlice {
   int64_t place;
@@ -16,34 +10,29 @@ typedef struct HalfSlice {
   LanesWithin within; /* the series */
 } HalfSlice;
 
-LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const breccia_link *weak, HalfSlice *own)
+LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness, const breccia_link *weak,
+                           bool any, HalfSlice *own)
 {
-  const Family *f = m->family;
-  double *const *u = m->particles->displacement;
-  const LinkRow *row = &m->rows[f->pattern[slot]];
-  const int64_t there = f->base[slot] + LANES * half;
-  const Lanes nx = lanes_set(row->n[0]), ny = lanes_set(row->n[1]), by_length = lanes_set(row->by_length);
-  /* all over the reference length; the ends of broken links may be so far apart that the series would be none */
-  const Lanes ex = lanes_intact(f->intact[slot], half, lanes_load(u[0] + there) - own->u[0]) * by_length,
-              ey = lanes_intact(f->intact[slot], half, lanes_load(u[1] + there) - own->u[1]) * by_length, yx = nx + ex,
-              yy = ny + ey;
-  const Lanes d = ex * (nx + yx) + ey * (ny + yy), g = shortening_series(d), inverse = lanes_set(1) - g;
-  const Lanes stretch = d * inverse - g - free_of(m, own->place, there), mx = yx * inverse, my = yy * inverse;
-  const Lanes cosine = lanes_load(m->shown[0] + there), sine = lanes_load(m->shown[1] + there);
+  const Lanes nx = l->n[0], ny = l->n[1], ex = l->e[0], ey = l->e[1], yx = nx + ex, yy = ny + ey;
+  const Lanes d = ex * (nx + yx) + ey * (ny + yy), g = shortening(d, any ? RANGE_ANY : RANGE_SERIES),
+              inverse = lanes_set(1) - g;
+  const Lanes stretch = d * inverse - g - free_of(m, own->place, l), mx = yx * inverse, my = yy * inverse;
+  const Lanes cosine = of_others(l, m->shown[0]), sine = of_others(l, m->shown[1]);
   const Lanes ax = own->cosine * nx - own->sine * ny, ay = own->sine * nx + own->cosine * ny;
   const Lanes bx = cosine * nx - sine * ny, by = sine * nx + cosine * ny;
-  const Lanes here = mx * ay - my * ax, other = mx * by - my * bx;
-  const Lanes a = angle_of(here), b = angle_of(other), sum = a + b;
-  Lanes axial = lanes_intact(f->intact[slot], half, lanes_set(row->axial)),
-        bending = lanes_intact(f->intact[slot], half, lanes_set(row->bending));
+  const Lanes here = mx * ay - my * ax, other = mx * by - my * bx, along = mx * ax + my * ay,
+              along_other = mx * bx + my * by;
+  const Lanes a = here * end_rotation(here * here, along, any).factor,
+              b = other * end_rotation(other * other, along_other, any).factor, sum = a + b;
+  Lanes axial = stiffness.axial, bending = stiffness.bending;
   if (weak) {
     Lanes left[2];
-    find_left(m, slot, half, weak, stretch, &left[0], &left[1]);
+    find_left(m, weak, own->place, l, stretch, &left[0], &left[1]);
     axial *= left[0];
     bending *= left[1];
   }
-  const Lanes pull = axial * stretch, shear = lanes_set(6) * bending * by_length * inverse * sum;
-  own->within = links_within(own->within, f->intact[slot], half, d, mx * ax + my * ay, mx * bx + my * by);
+  const Lanes pull = axial * stretch, shear = lanes_set(6) * bending * l->by_length * inverse * sum;
+  if (!any) own->within = links_within(own->within, l, d, along, along_other);
   own->force[0] += pull * mx;
   own->force[0] += shear * my;
   own->force[1] += pull * my;
@@ -51,7 +40,8 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
   own->moment -= bending * (sum + sum + (a + a));
 }
 
-static bool resist(const Micropolar *m, int64_t slice)
+/** @param[in] any  of any stretches and rotations, or within the series @return whether they were within them */
+LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
@@ -65,14 +55,26 @@ static bool resist(const Micropolar *m, int64_t slice)
                      .moment = {0},
                      .within = lanes_all_within()};
     own.force[0] = own.force[1] = lanes_set(0);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, weak, &own);
-    if (!lanes_are_within(own.within)) return false;
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+      const LinkLanes l = lattice_links(m, slot, half, 2, own.u);
+      add_link(m, &l, lattice_stiffness(m, &l), weak, any, &own);
+    }
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = stored_links(m, place, slot, half, 2, own.u);
+      add_link(m, &l, stored_stiffness(m, place, &l), weak, any, &own);
+    }
+    if (!any && !lanes_are_within(own.within)) return false;
     lanes_store(p->internal[0] + place, own.force[0]);
     lanes_store(p->internal[1] + place, own.force[1]);
     lanes_store(p->internal[2] + place, lanes_set(0));
     lanes_store(p->internal[ROTATION] + place, own.moment);
   }
   return true;
+}
+
+static void resist(const Micropolar *m, int64_t slice)
+{
+  if (!sweep(m, slice, false)) sweep(m, slice, true);
 }
 
 static void show(const Micropolar *m, double *const *at, int64_t first, int64_t last)

@@ -27,14 +27,6 @@ LANES_INLINE void turn_lanes(const Lanes q[4], const Lanes n[3], Lanes a[3])
   }
 }
 
-/** (1 - t cot t) / sin^2 t, of sin^2 t. */
-LANES_INLINE Lanes bend_of(Lanes square)
-{
-  Lanes sum = lanes_set(16.0 / 315) * square + lanes_set(8.0 / 105);
-  sum = sum * square + lanes_set(2.0 / 15);
-  return sum * square + lanes_set(1.0 / 3);
-}
-
 /** Quaternion of the rotation from this end to the other, by the shorter way. */
 LANES_INLINE void twist_of(const Lanes a[4], const Lanes b[4], Lanes r[4])
 {
@@ -51,7 +43,7 @@ typedef struct Spins {
 } Spins;
 
 LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes n[3], const Lanes chord[3],
-                            const LinkRow *row, Lanes bending, Lanes twist, Lanes cosine[2])
+                            Lanes bending, Lanes twist, bool twists, bool any, Lanes cosine[2])
 {
   Lanes a[3], c[3], b[3], d[3]; /* where the sections of this end and the other point, and the chord x these */
   Spins s;
@@ -62,7 +54,8 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   const Lanes bb = dot_lanes(b, b), dd = dot_lanes(d, d), bd = dot_lanes(b, d), one = lanes_set(1);
   cosine[0] = dot_lanes(chord, a);
   cosine[1] = dot_lanes(chord, c);
-  const Lanes f = one + angle_excess(bb), g = one + angle_excess(dd), bend = bend_of(bb), other = bend_of(dd);
+  const EndLanes ends[2] = {end_rotation(bb, cosine[0], any), end_rotation(dd, cosine[1], any)};
+  const Lanes f = ends[0].factor, g = ends[1].factor, bend = ends[0].bend, other = ends[1].bend;
   const Lanes twice = bending + bending, by_f = twice * f, by_g = twice * g;
   /* this end by b and d, then the other by d and b */
   const Lanes bs = by_f + by_f + bend * by_g * bd, ds = by_g * (one - bend * bb);
@@ -72,7 +65,7 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
     s.both[k] = (bs + bo) * b[k] + (ds + db) * d[k];
   }
   Lanes along = by_f * g * dot_lanes(a, d);
-  if (row->twist > 0) {
+  if (twists) {
     Lanes r[4], across[3];
     twist_of(own->q, q, r);
     const Lanes psi = dot_lanes(chord, r + 1), torque = twist * (psi + psi);
@@ -88,36 +81,29 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   return s;
 }
 
-LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const breccia_link *weak, HalfSlice *own)
+/** @param[in] bends, twists  whether some of the links do */
+LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness, const breccia_link *weak,
+                           bool bends, bool twists, bool any, HalfSlice *own)
 {
-  const Family *f = m->family;
-  double *const *u = m->particles->displacement;
-  const LinkRow *row = &m->rows[f->pattern[slot]];
-  const int64_t there = f->base[slot] + LANES * half;
-  const unsigned intact = f->intact[slot];
-  const Lanes by_length = lanes_set(row->by_length);
-  Lanes n[3], chord[3],
-      d = lanes_set(0); /* lengths over that of the link; those of broken ones may be beyond the series */
+  Lanes chord[3], d = lanes_set(0);
   for (int k = 0; k < 3; ++k) {
-    n[k] = lanes_set(row->n[k]);
-    const Lanes e = lanes_intact(intact, half, lanes_load(u[k] + there) - own->u[k]) * by_length;
-    chord[k] = n[k] + e;
-    d += e * (n[k] + chord[k]);
+    chord[k] = l->n[k] + l->e[k];
+    d += l->e[k] * (l->n[k] + chord[k]);
   }
-  const Lanes g = shortening_series(d), inverse = lanes_set(1) - g,
-              stretch = d * inverse - g - free_of(m, own->place, there);
+  const Lanes g = shortening(d, any ? RANGE_ANY : RANGE_SERIES), inverse = lanes_set(1) - g,
+              stretch = d * inverse - g - free_of(m, own->place, l);
   for (int k = 0; k < 3; ++k) chord[k] *= inverse;
   Lanes cosine[2] = {lanes_set(1), lanes_set(1)};
   Lanes left[2] = {lanes_set(1), lanes_set(1)};
-  if (weak) find_left(m, slot, half, weak, stretch, &left[0], &left[1]);
-  const Lanes pull = lanes_intact(intact, half, lanes_set(row->axial)) * left[0] * stretch;
+  if (weak) find_left(m, weak, own->place, l, stretch, &left[0], &left[1]);
+  const Lanes pull = stiffness.axial * left[0] * stretch;
   for (int k = 0; k < 3; ++k) own->force[k] += pull * chord[k];
-  if (row->bending > 0) {
-    const Lanes q[4] = {lanes_load(m->shown[0] + there), lanes_load(m->shown[1] + there),
-                        lanes_load(m->shown[2] + there), lanes_load(m->shown[3] + there)};
-    const Spins s = spins_of(own, q, n, chord, row, lanes_intact(intact, half, lanes_set(row->bending)) * left[1],
-                             lanes_intact(intact, half, lanes_set(row->twist)) * left[1], cosine);
-    const Lanes by_present = by_length * inverse;
+  if (bends) {
+    const Lanes q[4] = {of_others(l, m->shown[0]), of_others(l, m->shown[1]), of_others(l, m->shown[2]),
+                        of_others(l, m->shown[3])};
+    const Spins s =
+        spins_of(own, q, l->n, chord, stiffness.bending * left[1], stiffness.twist * left[1], twists, any, cosine);
+    const Lanes by_present = l->by_length * inverse;
     Lanes across[3];
     cross_lanes(chord, s.both, across);
     for (int k = 0; k < 3; ++k) {
@@ -125,7 +111,7 @@ LANES_INLINE void add_link(const Micropolar *m, int64_t slot, int half, const br
       own->moment[k] -= s.own[k];
     }
   }
-  own->within = links_within(own->within, intact, half, d, cosine[0], cosine[1]);
+  if (!any) own->within = links_within(own->within, l, d, cosine[0], cosine[1]);
 }
 
 /** The matrix of the own quaternion, as every link of the half slice turns its direction by it. */
@@ -138,7 +124,8 @@ LANES_INLINE void find_matrix(HalfSlice *own)
   }
 }
 
-static bool resist(const Micropolar *m, int64_t slice)
+/** @param[in] any  of any stretches and rotations, or within the series @return whether they were within them */
+LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
@@ -152,14 +139,27 @@ static bool resist(const Micropolar *m, int64_t slice)
     }
     for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
     find_matrix(&own);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) add_link(m, slot, half, weak, &own);
-    if (!lanes_are_within(own.within)) return false;
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+      const LinkRow *row = &m->rows[f->pattern[slot]];
+      const LinkLanes l = lattice_links(m, slot, half, 3, own.u);
+      add_link(m, &l, lattice_stiffness(m, &l), weak, row->bending > 0, row->twist > 0, any, &own);
+    }
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = stored_links(m, place, slot, half, 3, own.u);
+      add_link(m, &l, stored_stiffness(m, place, &l), weak, true, true, any, &own);
+    }
+    if (!any && !lanes_are_within(own.within)) return false;
     for (int k = 0; k < 3; ++k) {
       lanes_store(p->internal[k] + place, own.force[k]);
       lanes_store(p->internal[ROTATION + k] + place, own.moment[k]);
     }
   }
   return true;
+}
+
+static void resist(const Micropolar *m, int64_t slice)
+{
+  if (!sweep(m, slice, false)) sweep(m, slice, true);
 }
 
 static void show(const Micropolar *m, double *const *at, int64_t first, int64_t last)

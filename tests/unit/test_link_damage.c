@@ -23,6 +23,38 @@ static breccia_model *block(const char *law, const char *lattice, const char *pa
   return model;
 }
 
+/* Bodies of links; those of two blocks have two laws. */
+static const char plane_cloud[] =
+    "b: {material: m, lattice: square, spacing: 0.1, thickness: 0.3, file: test_plane_links.csv}";
+static const char space_cloud[] = "b: {material: m, spacing: 0.1, file: test_space_links.csv}";
+static const char plane_blocks[] =
+    "b: {material: m, lattice: hexagonal, spacing: 0.1, thickness: 0.3, shape: {box: {particles: [19, 9]}}}\n"
+    "  c: {material: n, lattice: square, spacing: 0.09, thickness: 0.3, shape: {box: "
+    "{from: [2.02, 0.03], to: [2.83, 0.75]}}}";
+static const char space_blocks[] =
+    "b: {material: m, lattice: face-centred cubic, spacing: 0.1, shape: {box: {particles: [9, 6, 5]}}}\n"
+    "  c: {material: n, lattice: cubic, spacing: 0.09, shape: {box: {from: [0.72, 0.03, 0.03], to: [1.08, "
+    "0.39, 0.39]}}}";
+#define OF(lattice, particles) "b: {material: m, lattice: " lattice ", spacing: 0.1, " particles "}"
+#define PLATE "thickness: 0.3, shape: {box: {particles: [19, 9]}}"
+#define CUBE "shape: {box: {particles: [11, 6, 5]}}"
+
+/** One of them. */
+static breccia_model *links_of(const char *body, const char *space, const char *loads)
+{
+  breccia_model *model = model_of(
+      UNITS "materials:\n"
+            "  m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, tensile stretch: 1e-4, "
+            "compressive stretch: 2e-4, stiffness recovery: 0.4}\n"
+            "  n: {model: link-damage, density: 2, Young modulus: 3e7, Poisson ratio: 0.2, tensile stretch: 2e-4, "
+            "compressive stretch: 1e-4, stiffness recovery: 0.7}\n"
+            "body:\n  %s\nperidynamics: {formulation: micropolar, space: %s, horizon: 1.8 spacings}\n%s"
+            "solve: {explicit: {steps: 1}}\n",
+      body, space, loads);
+  model->threads = 1;
+  return model;
+}
+
 /** Displacements and rotations at random. */
 static void disturb(const breccia_model *model, double size, uint64_t seed)
 {
@@ -41,10 +73,14 @@ static void damaged_bodies_keep_their_momenta(void **state)
     const char *lattice, *particles, *space;
   } cases[] = {{"hexagonal", "[19, 9]", "plane stress"},
                {"square", "[19, 9]", "plane strain"},
-               {"face-centred cubic", "[9, 5, 5]", "3-D"}};
+               {"face-centred cubic", "[9, 5, 5]", "3-D"},
+               {plane_blocks, NULL, "plane stress"},
+               {space_blocks, NULL, "3-D"}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
-    breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, fracture energy: 0.05",
-                                 cases[c].lattice, cases[c].particles, cases[c].space);
+    breccia_model *model = cases[c].particles
+                               ? block("tensile stretch: 1e-4, compressive stretch: 2e-4, fracture energy: 0.05",
+                                       cases[c].lattice, cases[c].particles, cases[c].space)
+                               : links_of(cases[c].lattice, cases[c].space, "");
     const Particles *p = model->domain.particles;
     const Micropolar *m = formulation_of(model);
     for (uint64_t seed = 1; seed < 4; ++seed) {
@@ -77,58 +113,97 @@ static void damaged_bodies_keep_their_momenta(void **state)
   }
 }
 
-/** Sweeps over lattice slots find what the links do one by one, whatever share of its stiffness a closed one has back; also where end rotations are as large as
- *  their series allow. */
+/** Tensile damage of a link as tried. */
+static double tension_of(const Micropolar *m, int64_t slice, int64_t slot, int lane)
+{
+  return m->damage->tension[m->damage->grown[slice] & GROWN_IN_TENSION ? 1 : 0][slot * SLICE + lane];
+}
+
+/** Particles that stand in no lattice. */
+static void write_cloud(const char *name, const int n[3], double spacing)
+{
+  FILE *file = fopen(name, "w");
+  uint64_t seed = 4;
+  fprintf(file, "x,y,z,volume\n");
+  for (int i = 0; i < n[0] * n[1] * n[2]; ++i) {
+    const int at[3] = {i % n[0], i / n[0] % n[1], i / n[0] / n[1]};
+    for (int k = 0; k < 3; ++k)
+      fprintf(file, "%.17g,", spacing * (at[k] + (n[k] > 1 ? 0.3 * (random_uniform(&seed) - 0.5) : 0)));
+    fprintf(file, "%.17g\n", spacing * spacing * (n[2] > 1 ? spacing : 0.3) * (0.9 + 0.2 * random_uniform(&seed)));
+  }
+  fclose(file);
+}
+
+/** Sweeps find what links do one by one, whatever share of its stiffness a closed one has back: where end rotations are as large as their series allow, where
+ *  they are larger, up to half a turn, and between particles that stand in no lattice, or in two of other laws. */
 static void sweeps_are_sums_of_damaged_links(void **state)
 {
   (void)state;
   const struct {
-    const char *lattice, *particles, *space;
+    const char *body, *space;
     double turn;
-  } cases[] = {{"hexagonal", "[19, 9]", "plane stress", 5e-4},
-               {"square", "[19, 9]", "plane strain", 0.02},
-               {"face-centred cubic", "[11, 6, 5]", "3-D", 5e-4},
-               {"face-centred cubic", "[11, 6, 5]", "3-D", 0.016},
-               {"cubic", "[11, 6, 5]", "3-D", 0.016},
-               {"face-centred cubic", "[11, 6, 5]", "3-D", 0.15}}; /* beyond the series */
-  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
-    breccia_model *model = block("tensile stretch: 1e-4, compressive stretch: 2e-4, stiffness recovery: 0.4",
-                                 cases[c].lattice, cases[c].particles, cases[c].space);
-    const Particles *p = model->domain.particles;
-    const Micropolar *m = formulation_of(model);
-    const bool space = p->motions == 6;
-    disturb(model, 1e-3, 5);
-    compute_forces(model);
-    domain_commit_points(&model->domain);
-    disturb(model, 5e-4, 6); /* some that were torn have closed */
-    for (int64_t i = 0; i < p->places; ++i)
-      for (int k = ROTATION; k < p->motions; ++k) p->displacement[k][i] *= cases[c].turn / 5e-4;
-    for (int64_t n = 0; n < p->count && space; n += 3) /* the same rotation, told otherwise */
-      for (int k = 0; k < 4; ++k) p->orientation[k][p->place_of[n]] *= -1;
-    compute_forces(model);
-    double most[2] = {0}, *swept = calloc((size_t)(p->motions * p->places), sizeof(double));
-    int closed = 0, whole = 0;
-    for (int k = 0; k < p->motions; ++k) {
-      memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
-      for (int64_t i = 0; i < p->places; ++i) most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
-    }
-    for (int64_t slice = 0; slice < p->slices; ++slice) whole += m->sweeps->resist(m, slice);
-    assert_true(cases[c].turn > 0.1 ? whole < p->slices / 10 : whole == p->slices); /* the others go link by link */
-    for (int k = 0; k < p->motions; ++k) memset(p->internal[k], 0, sizeof(double) * (size_t)p->places);
-    for (int64_t slice = 0; slice < p->slices; ++slice) {
-      micropolar_add_links(m, slice, false);
-      for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
-        for (int lane = 0; lane < SLICE; ++lane)
-          if (m->family->intact[slot] >> lane & 1 && m->damage->tension[1][slot * SLICE + lane] > 0)
-            closed += micropolar_link(m, NULL, slice, slot, lane).stretch < 0;
-    }
-    assert_true(closed > 10);
-    for (int k = 0; k < p->motions; ++k)
+  } cases[] = {{OF("hexagonal", PLATE), "plane stress", 5e-4},
+               {OF("square", PLATE), "plane strain", 0.02},
+               {plane_cloud, "plane stress", 0.02},
+               {plane_blocks, "plane stress", 0.02},
+               {OF("face-centred cubic", CUBE), "3-D", 5e-4},
+               {OF("face-centred cubic", CUBE), "3-D", 0.016},
+               {OF("cubic", CUBE), "3-D", 0.016},
+               {space_cloud, "3-D", 0.016},
+               {space_blocks, "3-D", 0.016},
+               {OF("hexagonal", PLATE), "plane stress", 0.15}, /* from here on beyond the series */
+               {OF("hexagonal", PLATE), "plane stress", 1.4},
+               {plane_cloud, "plane strain", 1.4},
+               {plane_blocks, "plane stress", 1.4},
+               {OF("face-centred cubic", CUBE), "3-D", 0.15},
+               {OF("face-centred cubic", CUBE), "3-D", 1.4},
+               {space_cloud, "3-D", 1.4},
+               {space_blocks, "3-D", 1.4}};
+  write_cloud("test_plane_links.csv", (const int[]){17, 9, 1}, 0.1);
+  write_cloud("test_space_links.csv", (const int[]){9, 6, 5}, 0.1);
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c)
+    for (int shrunk = 0; shrunk < 2; ++shrunk) {
+      breccia_model *model = links_of(
+          cases[c].body, cases[c].space,
+          shrunk ? "loads: [{on: {inside: {box: {from: [-9, -9, -9], to: [0.7, 9, 9]}}}, initial strain: -1e-4}]\n"
+                 : "");
+      const Particles *p = model->domain.particles;
+      const Micropolar *m = formulation_of(model);
+      const bool space = p->motions == 6;
+      uint64_t seed = 7;
+      for (int64_t i = 0; i < p->places && shrunk; ++i) p->free_strain[i] = -2e-4 * random_uniform(&seed);
+      disturb(model, 1e-3, 5);
+      compute_forces(model);
+      domain_commit_points(&model->domain);
+      disturb(model, 5e-4, 6); /* some that were torn have closed */
       for (int64_t i = 0; i < p->places; ++i)
-        assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-11);
-    free(swept);
-    breccia_model_destroy(&model);
-  }
+        for (int k = ROTATION; k < p->motions; ++k) p->displacement[k][i] *= cases[c].turn / 5e-4;
+      for (int64_t n = 0; n < p->count && space; n += 3) /* the same rotation, told otherwise */
+        for (int k = 0; k < 4; ++k) p->orientation[k][p->place_of[n]] *= -1;
+      compute_forces(model);
+      double most[2] = {0}, *swept = calloc((size_t)(p->motions * p->places), sizeof(double));
+      int closed = 0;
+      for (int k = 0; k < p->motions; ++k) {
+        memcpy(swept + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
+        for (int64_t i = 0; i < p->places; ++i)
+          most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
+      }
+      for (int64_t slice = 0; slice < p->slices; ++slice) {
+        micropolar_resist_one_by_one(m, slice);
+        for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
+          for (int lane = 0; lane < SLICE; ++lane)
+            if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0)
+              closed += micropolar_link(m, NULL, slice, slot, lane).stretch < 0;
+      }
+      assert_true(closed > 10);
+      for (int k = 0; k < p->motions; ++k)
+        for (int64_t i = 0; i < p->places; ++i)
+          assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-11);
+      free(swept);
+      breccia_model_destroy(&model);
+    }
+  remove("test_plane_links.csv");
+  remove("test_space_links.csv");
 }
 
 /* ---- one link ---- */
@@ -313,6 +388,38 @@ static void damage_stays_only_where_steps_come_out_well(void **state)
   assert_near(pull(model, 1, 0.9e-4) / (ea * 1e-4), 0.9, 1e-9);
   assert_near(micropolar_history(m, p->place_of[0], 0), 0, 0);
   breccia_model_destroy(&model);
+}
+
+/** What was tried leaves nothing behind: not for the next trial, nor where a state is put in place from outside. */
+static void what_was_tried_leaves_nothing_behind(void **state)
+{
+  (void)state;
+  enum { FRESH, TRIED, PUT_BACK, WAYS };
+  breccia_model *models[WAYS];
+  for (int way = 0; way < WAYS; ++way) {
+    breccia_model *model = models[way] =
+        block("tensile stretch: 1e-4, compressive stretch: 1e-4", "hexagonal", "[5, 5]", "plane stress");
+    StateList list = {0};
+    StateCopy copy;
+    breccia_error *error = breccia_error_create();
+    micropolar_state(model->domain.regions[0].formulation, NULL, &list);
+    assert_int_equal(state_copy(&copy, &list, error), 0);
+    if (way != FRESH) {
+      disturb(model, 1e-3, 3);
+      compute_forces(model);
+    }
+    if (way == PUT_BACK) assert_int_equal(state_return(&copy, &list, error), 0);
+    disturb(model, 1.2e-4, 4); /* damages some links of a slice and not others */
+    compute_forces(model);
+    state_copy_destroy(&copy);
+    state_list_destroy(&list);
+    breccia_error_destroy(&error);
+  }
+  for (int way = 1; way < WAYS; ++way)
+    for (int k = 0; k < 2; ++k)
+      assert_memory_equal(models[0]->domain.particles->internal[k], models[way]->domain.particles->internal[k],
+                          sizeof(double) * (size_t)models[0]->domain.particles->places);
+  for (int way = 0; way < WAYS; ++way) breccia_model_destroy(&models[way]);
 }
 
 /* ---- cracks ---- */
@@ -502,6 +609,7 @@ int main(void)
       cmocka_unit_test(links_crush_beside_broken_ones),
       cmocka_unit_test(broken_links_are_damaged_no_further),
       cmocka_unit_test(damage_stays_only_where_steps_come_out_well),
+      cmocka_unit_test(what_was_tried_leaves_nothing_behind),
       cmocka_unit_test(cracks_take_the_fracture_energy_at_any_spacing),
       cmocka_unit_test(families_of_scattered_particles_are_taken_as_whole),
       cmocka_unit_test(spacings_that_snap_back_are_refused),
