@@ -104,6 +104,7 @@ static void *create(const FormulationParts *parts, Error *error)
                     .materials = parts->materials,
                     .material = parts->material,
                     .points = parts->points,
+                    .foreign = parts->foreign,
                     .space = parts->space,
                     .influence = parts->influence,
                     .secant = !strcmp(spec->kinematics, "thesis"),
@@ -115,8 +116,13 @@ static void *create(const FormulationParts *parts, Error *error)
   int failed = !m->constants || !m->rows;
   for (int k = 0; k < (parts->space == SPACE_3D ? 4 : 2); ++k)
     failed |= !(m->shown[k] = places_array(m->particles->places, "rotations", error));
-  for (int block = 0; block < blocks && !failed; ++block) failed = micropolar_find_constants(m, block, error);
-  for (int block = 0; block < blocks && !failed; ++block) fill_rows(m, block);
+  if (!failed && m->secant && m->foreign)
+    failed = error_add(error, BRECCIA_USER_ERROR,
+                       "kinematics: links of 'thesis' cannot stand beside other formulations; leave 'kinematics' out");
+  for (int block = 0; block < blocks && !failed; ++block)
+    if (!block_is_foreign(m->foreign, m->particles, block)) failed = micropolar_find_constants(m, block, error);
+  for (int block = 0; block < blocks && !failed; ++block)
+    if (!block_is_foreign(m->foreign, m->particles, block)) fill_rows(m, block);
   if (!failed) failed = micropolar_damage_create(m, error);
   if (!failed) return m;
   destroy(m);
@@ -155,10 +161,8 @@ static int64_t resist(void *formulation, const Sweep *sweep)
       continue;
     }
     if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
-    if (m->secant)
-      micropolar_resist_one_by_one(m, slice);
-    else
-      m->sweeps->resist(m, slice);
+    if (!m->secant) m->sweeps->resist(m, slice);
+    if (m->secant || m->foreign) micropolar_resist_one_by_one(m, slice, !m->secant);
   }
   return -1;
 }
@@ -172,7 +176,12 @@ static int linearise(void *formulation, Error *error)
 
 /* ---- single bonds and places ---- */
 
-/** Both ends give a bond half of its force. */
+/** Share of a link that its own end gives: foreign ends give the other half by their own formulation. */
+static double own_share(const Link *link)
+{
+  return link->alone ? 1 : 0.5;
+}
+
 static void half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                        double state[3])
 {
@@ -185,7 +194,8 @@ static void half_state(const void *formulation, double *const *at, int64_t slice
     change = micropolar_change(m, at, slice * SLICE + lane, &l, &motion);
     force = change.force;
   }
-  for (int k = 0; k < 3; ++k) state[k] = force[k] * l.bond.weight / m->particles->volume[l.bond.neighbour] / 2;
+  for (int k = 0; k < 3; ++k)
+    state[k] = own_share(&l) * force[k] * l.bond.weight / m->particles->volume[l.bond.neighbour];
 }
 
 static void bond_energy(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
@@ -223,8 +233,9 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
     if (!(f->intact[slot] >> lane & 1)) continue;
     StoredEnergy bond;
     bond_energy(formulation, slice, slot, lane, time, &bond);
-    energy->stored += bond.stored / 2;
-    energy->received += bond.received / 2;
+    const double share = is_foreign(m->foreign, family_bond(f, slice, slot, lane).neighbour) ? 1 : 0.5;
+    energy->stored += share * bond.stored;
+    energy->received += share * bond.received;
   }
 }
 
@@ -302,6 +313,7 @@ const FormulationType formulation_micropolar = {
     .components = 6,
     .horizon = 1.5,
     .keeps_no_points = true,
+    .joins = true,
     .takes = takes,
     .section = &micropolar_section,
     .check = check,

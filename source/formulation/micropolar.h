@@ -65,6 +65,7 @@ struct Micropolar {
   const Material *materials;
   const int32_t *material; /* [slices] */
   const Points *points;
+  const uint8_t *foreign; /* [slices], or NULL; links to such places have half of the stiffness of their own end */
   Space space;
   const Influence *influence;
   bool secant;              /* links of the thesis, which turn without a corotated frame */
@@ -89,9 +90,11 @@ void micropolar_describe(const void *formulation, const Units *units, Text *text
 
 /* ---- links one by one ---- */
 
-/** A link as one end sees it; forces, moments and energy per volume of this end and weight of the bond. */
+/** A link as one end sees it; forces, moments and energy per volume of this end and weight of the bond. Ends in places of other formulations have no rotations:
+ *  they turn with the end that has, which is exact where strains are even, and take no moments. */
 typedef struct Link {
   Bond bond;
+  bool alone;
   LinkStiffness stiffness;
   double y[3], length; /* to the other end, as deformed */
   double stretch;      /* without the free strain */
@@ -150,8 +153,8 @@ double micropolar_stretch(double *const *u, int64_t place, const Bond *bond, dou
 /** A link at displacements and rotations `at`; NULL: at those held. */
 Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int lane);
 
-/** Forces and moments of a slice, link by link. */
-void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice);
+/** Forces and moments of a slice, link by link, or only of its links to places of other formulations, added to what stands there. */
+void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice, bool only_foreign);
 
 /* ---- damage ---- */
 

@@ -332,6 +332,7 @@ void micropolar_describe(const void *formulation, const Units *units, Text *text
   units_name(units, dimension_find("force"), force, sizeof force);
   units_name(units, &stiffness_in_bending, bending, sizeof bending);
   for (int block = 0; block < m->body->block_count; ++block) {
+    if (block_is_foreign(m->foreign, m->particles, block)) continue;
     const LinkConstants *constants = &m->constants[block];
     const char *name = m->body->blocks[block]->head.name;
     const double volume = m->body->lattices[block].volume;

@@ -80,7 +80,7 @@ static int find_laws(Micropolar *m, Error *error)
                            .compression_begin = INFINITY,
                            .compression_end = INFINITY,
                            .recovery = 1};
-    if (!material->law->link) continue;
+    if (block_is_foreign(m->foreign, m->particles, block) || !material->law->link) continue;
     if (material->law->link(material->constants, link, reason, sizeof reason))
       return error_add(error, BRECCIA_USER_ERROR, "material '%s': micropolar: %s", material->name, reason);
     if (micropolar_find_damage_law(m, block, link, error)) return BRECCIA_USER_ERROR;

@@ -105,16 +105,26 @@ LANES_INLINE StiffnessLanes lattice_stiffness(const Micropolar *m, const LinkLan
                           lanes_intact(l->intact, l->half, lanes_set(row->twist))};
 }
 
-/** @param[in] place  of the first lane of the half slice */
-LANES_INLINE LinkLanes stored_links(const Micropolar *m, int64_t place, int64_t slot, int half, int dimensions,
-                                    const Lanes *u)
+/** Intact bits of a stored slot without its links to places of other formulations, which go one by one. */
+LANES_INLINE unsigned own_bits(const Micropolar *m, int64_t slot)
+{
+  const int32_t *neighbours = m->family->neighbour + (int64_t)m->family->base[slot] * SLICE;
+  unsigned bits = m->family->intact[slot];
+  for (int lane = 0; lane < SLICE && m->foreign; ++lane)
+    if (bits >> lane & 1u && m->foreign[neighbours[lane] / SLICE]) bits &= ~(1u << lane);
+  return bits;
+}
+
+/** @param[in] place  of the first lane of the half slice @param[in] wanted  bits of links */
+LANES_INLINE LinkLanes stored_links(const Micropolar *m, int64_t place, int64_t slot, int half, unsigned wanted,
+                                    int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
   LinkLanes l = {.slot = slot,
                  .half = half,
                  .neighbours = f->neighbour + (int64_t)f->base[slot] * SLICE + LANES * half,
-                 .intact = f->intact[slot]};
+                 .intact = wanted};
   const LaneMask intact = lanes_half(l.intact, half);
   Lanes square = lanes_set(0);
   for (int k = 0; k < dimensions; ++k) {

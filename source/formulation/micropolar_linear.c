@@ -144,15 +144,16 @@ LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t pla
                              micropolar_end(m, at, l->bond.neighbour, n, chord)};
     const EndChange changes[2] = {change_end(&ends[0], chord, chord_change, motion->spin[0]),
                                   change_end(&ends[1], chord, chord_change, motion->spin[1])};
-    for (int e = 0; e < 2; ++e) {
+    for (int e = 0; e < (l->alone ? 1 : 2); ++e) {
+      const double own = l->alone ? 12 : 4, other = l->alone ? 0 : 2;
       double moment[3], moment_change[3];
       for (int k = 0; k < 3; ++k) {
-        moment[k] = bending * (4 * ends[e].rotation[k] + 2 * ends[1 - e].rotation[k]);
-        moment_change[k] = bending * (4 * changes[e].rotation[k] + 2 * changes[1 - e].rotation[k]);
+        moment[k] = bending * (own * ends[e].rotation[k] + other * ends[1 - e].rotation[k]);
+        moment_change[k] = bending * (own * changes[e].rotation[k] + other * changes[1 - e].rotation[k]);
       }
       add_end(&ends[e], &changes[e], chord, chord_change, moment, moment_change, by_chord, by_spin[e]);
     }
-    if (l->stiffness.twist > 0)
+    if (l->stiffness.twist > 0 && !l->alone)
       add_twist(ends, chord, chord_change, motion, l->stiffness.twist / length, by_chord, by_spin);
   }
   const double along = vector_dot(chord, by_chord[0]),
@@ -201,7 +202,7 @@ static double row_of(const double force[3], const double moment[2][3], int end, 
   return moment[end][motions == 4 ? 2 : k - ROTATION];
 }
 
-/** Numbered by slot and lane; a link has one point, of its end with the lower place. */
+/** Numbered by slot and lane; a link has one point, of its end with the lower place, or of its only end here. */
 int micropolar_point(const void *formulation, int64_t number, Operator *point, Error *error)
 {
   const Micropolar *m = formulation;
@@ -210,10 +211,10 @@ int micropolar_point(const void *formulation, int64_t number, Operator *point, E
   const int lane = (int)(number % SLICE), motions = p->motions;
   const int64_t place = slice * SLICE + lane;
   operator_clear(point);
-  if (!(m->family->intact[slot] >> lane & 1)) return BRECCIA_OK;
+  if (!(m->family->intact[slot] >> lane & 1) || is_foreign(m->foreign, place)) return BRECCIA_OK;
   const Link l = micropolar_link(m, NULL, slice, slot, lane);
   const double weight = l.bond.weight * p->volume[place];
-  if (l.bond.neighbour < place) return BRECCIA_OK;
+  if (l.bond.neighbour < place && !l.alone) return BRECCIA_OK;
   if (!operator_add(point, place, error) || !operator_add(point, l.bond.neighbour, error)) return BRECCIA_FAILURE;
   point->motions = motions;
   for (int row = 0; row < 2 * motions; ++row)

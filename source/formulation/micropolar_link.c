@@ -96,14 +96,17 @@ static void resist(const Micropolar *m, double *const *u, int64_t place, const d
   l->energy = l->stiffness.axial * length * l->stretch * l->stretch / 2;
   if (l->stiffness.bending > 0) {
     const LinkEnd ends[2] = {micropolar_end(m, u, place, n, chord), micropolar_end(m, u, l->bond.neighbour, n, chord)};
-    const double *a = ends[0].rotation, *b = ends[1].rotation;
+    const double *a = ends[0].rotation, *b = ends[!l->alone].rotation;
     l->energy += 2 * bending * (vector_dot(a, a) + vector_dot(a, b) + vector_dot(b, b));
-    for (int e = 0; e < 2; ++e) {
+    for (int e = 0; e < (l->alone ? 1 : 2); ++e) {
       double by_rotation[3];
-      for (int k = 0; k < 3; ++k) by_rotation[k] = bending * (4 * ends[e].rotation[k] + 2 * ends[1 - e].rotation[k]);
+      for (int k = 0; k < 3; ++k)
+        by_rotation[k] =
+            l->alone ? bending * 12 * a[k] : bending * (4 * ends[e].rotation[k] + 2 * ends[1 - e].rotation[k]);
       add_end(&ends[e], chord, by_rotation, by_chord, by_spin[e]);
     }
-    if (l->stiffness.twist > 0) add_twist(ends, chord, l->stiffness.twist / length, &l->energy, by_chord, by_spin);
+    if (l->stiffness.twist > 0 && !l->alone)
+      add_twist(ends, chord, l->stiffness.twist / length, &l->energy, by_chord, by_spin);
   }
   const double along = vector_dot(chord, by_chord);
   for (int k = 0; k < 3; ++k) {
@@ -153,6 +156,7 @@ Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int6
   const int64_t place = slice * SLICE + lane;
   Link l = {.bond = family_bond(m->family, slice, slot, lane)};
   double chord[3];
+  l.alone = is_foreign(m->foreign, l.bond.neighbour);
   l.stiffness = micropolar_stiffness(m, place, &l.bond);
   l.stretch = micropolar_stretch(u, place, &l.bond, l.y);
   l.length = l.bond.length * (1 + l.stretch);
@@ -167,14 +171,16 @@ Link micropolar_link(const Micropolar *m, double *const *at, int64_t slice, int6
   return l;
 }
 
-void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice)
+void micropolar_resist_one_by_one(const Micropolar *m, int64_t slice, bool only_foreign)
 {
   const Particles *p = m->particles;
   const Family *f = m->family;
-  for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
-  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+  for (int k = 0; k < p->motions && !only_foreign; ++k)
+    memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
+  for (int64_t slot = only_foreign ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
+      if (only_foreign && !is_foreign(m->foreign, family_bond(f, slice, slot, lane).neighbour)) continue;
       const Link l = micropolar_link(m, NULL, slice, slot, lane);
       const int64_t place = slice * SLICE + lane;
       for (int k = 0; k < 3; ++k) p->internal[k][place] += l.bond.weight * l.force[k];

@@ -145,7 +145,7 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
       add_link(m, &l, lattice_stiffness(m, &l), weak, row->bending > 0, row->twist > 0, any, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, place, slot, half, 3, own.u);
+      const LinkLanes l = stored_links(m, place, slot, half, own_bits(m, slot), 3, own.u);
       add_link(m, &l, stored_stiffness(m, place, &l), weak, true, true, any, &own);
     }
     if (!any && !lanes_are_within(own.within)) return false;

@@ -189,7 +189,7 @@ static void sweeps_are_sums_of_damaged_links(void **state)
           most[k >= ROTATION] = fmax(most[k >= ROTATION], fabs(p->internal[k][i]));
       }
       for (int64_t slice = 0; slice < p->slices; ++slice) {
-        micropolar_resist_one_by_one(m, slice);
+        micropolar_resist_one_by_one(m, slice, false);
         for (int64_t slot = m->family->first[slice]; slot < m->family->first[slice + 1]; ++slot)
           for (int lane = 0; lane < SLICE; ++lane)
             if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0)

@@ -176,6 +176,11 @@ static const Couple couples[] = {
     {"plane strain", "", {{"hybrid, form: pairwise", &solid[1]}, {"correspondence", &solid[0]}}},
     {"plane stress", "", {{"hybrid", &solid[1]}, {"bond-based", &fibre[0]}}},
     {"plane stress", "", {{"hybrid", &solid[0]}, {"hybrid", &solid[4]}}},
+    {"3-D", "", {{"micropolar", &solid[0]}, {"correspondence", &solid[1]}}},
+    {"3-D", "influence: conical,", {{"hybrid", &solid[0]}, {"micropolar, torsion: 0.5", &solid[0]}}},
+    {"plane strain", "", {{"ordinary", &solid[0]}, {"micropolar", &solid[0]}}},
+    {"plane stress", "", {{"micropolar", &solid[0]}, {"bond-based", &fibre[0]}}},
+    {"plane stress", "", {{"micropolar", &solid[0]}, {"micropolar", &solid[0]}}},
 };
 
 static breccia_model *coupled_body(const Couple *c)

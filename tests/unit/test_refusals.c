@@ -138,11 +138,21 @@ static const struct Case {
     {{.horizon = "peridynamics: {formulation: micropolar, kinematics: thesis}"},
      3,
      "kinematics: thesis is of plane bodies; leave it out"},
-    {{.horizon = "peridynamics: {formulation: micropolar, regions: {r: {blocks: [b], formulation: micropolar}}}",
+    {{.horizon = "peridynamics: {formulation: correspondence, regions: {r: {blocks: [b], formulation: micropolar}}}",
       .body = "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}, c: {material: m, spacing: "
-              "0.1, shape: {box: {from: [0.4, 0, 0], to: [0.8, 0.4, 0.4]}}}}"},
+              "0.1, shape: {box: {from: [0.4, 0, 0], to: [0.8, 0.4, 0.4]}}}}",
+      .loads = "loads: [{on: {face: x+}, rotation: [0, 0, 1]}]"},
+     4,
+     "has no rotation, as its formulation has none; select particles of `formulation: micropolar` only"},
+    {{.horizon = "peridynamics: {formulation: correspondence, space: plane stress, regions: {r: {blocks: [b], "
+                 "formulation: micropolar, kinematics: thesis}}}",
+      .body =
+          "body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [4, 4]}}}, "
+          "c: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0.4, 0], to: [0.8, "
+          "0.4]}}}}",
+      .loads = "loads: []"},
      3,
-     "formulation: micropolar cannot stand beside others in one body; leave 'regions' out"},
+     "kinematics: links of 'thesis' cannot stand beside other formulations; leave 'kinematics' out"},
     {{.more = "failure: {criterion: critical bond stress, bond tensile strength: 1}"},
      6,
      "criterion: bonds of correspondence have no stress on a section"},

@@ -68,6 +68,16 @@ int load_rotations(const Load *load, const LoadMaking *making, int axis[3])
       return node_error(making->reader->document, load->node, making->reader->error,
                         "%s: the body is plane and turns about z only: [0, 0, value]", load->node->key),
              -1;
+  for (int64_t n = 0; n < load->selection.count && making->still; ++n) {
+    const int32_t i = load->selection.places[n];
+    if (making->still[i / SLICE])
+      return node_error(
+                 making->reader->document, load->node, making->reader->error,
+                 "%s: particle %d at [%g, %g, %g] has no rotation, as its formulation has none; select particles "
+                 "of `formulation: micropolar` only",
+                 load->node->key, p->number[i], p->position[0][i], p->position[1][i], p->position[2][i]),
+             -1;
+  }
   return load_turning(p, axis);
 }
 
