@@ -10,6 +10,7 @@ from reporting import LINE, STYLES, between, breccia, chart, table, work
 SPAN, OVERHANG, WIDTH, HEIGHT, DEPTH, ARM = 4.0, 0.21, 0.2, 0.4, 0.3, 1.5  # m
 STEEL, CONCRETE, STRAND, TENSION, SHRINKAGE = 3 * 93e-6, 35e3, 195e3, 1100.0, 3e-4
 TENSILE, COMPRESSIVE, YIELD, HARDENING = 3.5, 48.0, 1640.0, 0.04  # MPa
+SPACING, HORIZON = 0.02, 3.015  # m, spacings
 WEIGHT = 2.4e-3 * 9.81 * WIDTH * HEIGHT  # MN/m
 
 
@@ -58,11 +59,21 @@ slip = columns(loaded, "strands", "least slip", "largest slip")
 slip = [1e3 * max(-a, b) for a, b in zip(*slip)]
 
 
+half_family = [(i, j) for i in range(-3, 4) for j in range(4) if 0 < i * i + j * j <= HORIZON**2]  # of a particle at a face
+# Its strain is that of the squares of distances along the face, whose middle lies deeper than the particle.
+INSIDE = SPACING * (0.5 + sum(i * i * j for i, j in half_family) / sum(i * i for i, _ in half_family))
+
+
+def outermost(low, high):
+    """Strains of the outermost fibres, from those of the families of particles beside them: bottom, top."""
+    slope = (high - low) / (HEIGHT - 2 * INSIDE)
+    return low - INSIDE * slope, high + INSIDE * slope
+
+
 def stresses(when, free):
-    """Of the outermost fibres, from strains half a spacing inside them: bottom, top [MPa]."""
-    low, high = at(time, bottom, when) + free, at(time, top, when) + free
-    slope = (high - low) / (HEIGHT - 0.02)
-    return CONCRETE * (low - 0.01 * slope), CONCRETE * (high + 0.01 * slope)
+    """Of the outermost fibres: bottom, top [MPa]."""
+    low, high = outermost(at(time, bottom, when) + free, at(time, top, when) + free)
+    return CONCRETE * low, CONCRETE * high
 
 
 # ---- by hand ----
@@ -92,8 +103,9 @@ nominal, nominal_stress = section.nominal_moment(COMPRESSIVE, beside, YIELD, HAR
 begins = min(range(len(time)), key=lambda n: abs(time[n] - 2))
 slopes = [(jack[n + 1] - jack[n]) / (rises[n] - rises[n + 1]) for n in range(begins, len(jack) - 1)]
 first = begins + next(n for n, slope in enumerate(slopes) if slope < 0.5 * slopes[1])
-opens = next(n for n in range(begins, len(time)) if bottom[n] + SHRINKAGE - 0.01 * (top[n] - bottom[n]) / (HEIGHT - 0.02) > 0)
-share = (0 - bottom[opens - 1] - SHRINKAGE) / (bottom[opens] - bottom[opens - 1])
+lowest = [outermost(b + SHRINKAGE, t + SHRINKAGE)[0] for b, t in zip(bottom, top)]
+opens = next(n for n in range(begins, len(time)) if lowest[n] > 0)
+share = -lowest[opens - 1] / (lowest[opens] - lowest[opens - 1])
 opened = jack[opens - 1] + share * (jack[opens] - jack[opens - 1])
 most = max(range(len(jack)), key=lambda n: jack[n])
 strain = peak[most] / STRAND if peak[most] < YIELD else YIELD / STRAND + (peak[most] - YIELD) / (HARDENING * STRAND)
