@@ -18,4 +18,7 @@ for name in plane space; do
   $breccia run "scripts/lattices-$name.yaml" --output "$made/$name" > /dev/null
   cp "$made/$name/pictures/$name.png" docs/lattices/
 done
+mkdir -p docs/bars
+$breccia run scripts/bars.yaml --output "$made/bars" > /dev/null
+cp "$made"/bars/pictures/*.png docs/bars/
 rm -r "$made"

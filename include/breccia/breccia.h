@@ -299,6 +299,12 @@ typedef struct breccia_plot {
   const char *overlay, *log_axes; /* CSV file whose first two columns are drawn as points; "x", "y" or "xy" */
   /* of fields */
   double low_corner[3], high_corner[3]; /* of a box: only particles that stand in it before they move; NaN: no limit */
+  /* of reinforcing bars */
+  const char *
+      bars; /* "stress", "strain", "force", "dissipated", "slip", "bond stress": bars in these colours over the pale body, in place of a
+                     * field; NULL: the field */
+  const double *times; /* [time_count] of curves over their length, up to 6; the states nearest to them are taken */
+  int time_count;      /* 0: `state` */
 } breccia_plot;
 
 /** Fills in what a picture is like if nobody asks for something else: the last state, undistorted colours, no scale of displacements but 1. */
@@ -310,6 +316,8 @@ BRECCIA_API int breccia_plot_movie(const char *result, const breccia_plot *plot,
 /** Columns of histories against each other; several folders give a line each. */
 BRECCIA_API int breccia_plot_curve(const char *const *folders, int count, const breccia_plot *plot,
                                    breccia_error *error);
+/** What `bars` names over the length of reinforcing bars. @param[in] result  a folder of results, or a file of them */
+BRECCIA_API int breccia_plot_over_length(const char *result, const breccia_plot *plot, breccia_error *error);
 /** @return 1 if pictures can be drawn to files with this ending */
 BRECCIA_API int breccia_can_draw(const char *path);
 

@@ -9,6 +9,8 @@
 enum {
   FIELD,
   COMPONENT,
+  BARS,
+  OVER_LENGTH,
   STEP,
   TIME,
   DEFORMED,
@@ -33,11 +35,16 @@ enum {
 static const Option options[] = {
     {"field", "NAME", "what the particles are coloured by (octahedral shear stress)"},
     {"component", "NAME", "of a vector or tensor, like x or xy"},
+    {"bars", "COLUMN",
+     "instead: reinforcing bars over the pale body, coloured by strain, stress, force, dissipated, slip or bond "
+     "stress"},
+    {"over-length", NULL, "with --bars: curves of it over the length of bars, of many those with the largest values"},
     {"step", "N|last|all", "which written step (last)"},
-    {"time", "T", "the written step nearest to this time, in the deck's unit"},
+    {"time", "T[,T...]",
+     "the written step nearest to this time, in the deck's unit; with --over-length up to six times"},
     {"deformed", "SCALE", "scale of the displacements drawn (1; 0 draws the reference shape)"},
     {"range", "LOW:HIGH|each",
-     "ends of the colours, in the deck's unit (alike at all times); of the x axis with --curve"},
+     "ends of the colours, in the deck's unit (alike at all times); of the x axis with --curve and --over-length"},
     {"view", "AZIMUTH:ELEVATION", "where the eye is, in degrees, for bodies in space"},
     {"inside", "X0:X1,Y0:Y1[,Z0:Z1]",
      "only particles of this box, in the deck's unit, to look into a body; what is left out has no limit, as in "
@@ -50,7 +57,7 @@ static const Option options[] = {
      "instead: columns of histories, like 'opening.distance:pull.value'; more Y behind commas; -Y turns the sign"},
     {"energy", NULL, "instead: all energies over time"},
     {"overlay", "FILE.csv", "with --curve: two columns drawn as points"},
-    {"log", "x|y|xy", "with --curve: logarithmic axes"},
+    {"log", "x|y|xy", "with --curve and --over-length: logarithmic axes"},
     {"title", "WORDS", "over the picture (the deck's title)"},
     {"x-label", "WORDS", "at the horizontal axis"},
     {"y-label", "WORDS", "at the vertical axis"},
@@ -108,11 +115,31 @@ static void tell(void *context, const char *path)
   printf("%s\n", path);
 }
 
+enum { MOST_TIMES = 64 }; /* that are read; how many can be drawn, others say */
+
+/** Times with commas between them. @return 0, or 1 after saying what is wrong */
+static int read_times(const char *words, double *times, int *count)
+{
+  char *end;
+  for (*count = 0; *count < MOST_TIMES; words = end + 1) {
+    times[(*count)++] = strtod(words, &end);
+    if (end == words || !isfinite(times[*count - 1]) || (*end && *end != ',')) break;
+    if (!*end) return 0;
+  }
+  complain("breccia plot: --time: '%s' should be up to %d numbers with commas between them", words, MOST_TIMES);
+  return 1;
+}
+
 /** Which written states are asked for. */
 static int read_state(const char **values, breccia_plot *plot)
 {
+  static double times[MOST_TIMES];
   const char *step = values[STEP] ? values[STEP] : "last";
   long long number;
+  if (values[TIME] && values[OVER_LENGTH]) {
+    plot->times = times;
+    return read_times(values[TIME], times, &plot->time_count);
+  }
   if (values[TIME]) {
     plot->state = BRECCIA_STATE_NEAR_TIME;
     return read_number(values[TIME], "time", &plot->time);
@@ -132,6 +159,7 @@ static int read_plot(const char **values, breccia_plot *plot)
   breccia_plot_begin(plot, sizeof *plot);
   if (values[FIELD]) plot->field = values[FIELD];
   plot->component = values[COMPONENT];
+  plot->bars = values[BARS];
   plot->title = values[TITLE];
   plot->x_label = values[X_LABEL];
   plot->y_label = values[Y_LABEL];
@@ -168,6 +196,19 @@ static int run(int argc, char **argv, const Verb *verb)
   }
   breccia_plot plot;
   if (read_plot(values, &plot)) return 2;
+  if (values[BARS] && (values[FIELD] || values[COMPONENT] || curve)) {
+    complain("breccia plot: --bars shows bars in place of the particles: leave out %s", values[FIELD] ? "--field"
+                                                                                        : values[COMPONENT]
+                                                                                            ? "--component"
+                                                                                            : "--curve and --energy");
+    return 2;
+  }
+  if (values[OVER_LENGTH] && (!values[BARS] || values[MOVIE] || values[INSIDE])) {
+    complain("breccia plot: --over-length %s", !values[BARS]   ? "needs --bars COLUMN, like --bars stress"
+                                               : values[MOVIE] ? "shows some times as curves: leave out --movie"
+                                                               : "shows whole bars: leave out --inside");
+    return 2;
+  }
   if (values[MOVIE] && (curve || values[STEP] || values[TIME] || values[OUTPUT])) {
     complain("breccia plot: --movie shows a field at all written steps and names its file itself: leave out %s",
              values[OUTPUT] ? "--output"
@@ -177,15 +218,16 @@ static int run(int argc, char **argv, const Verb *verb)
     return 2;
   }
   breccia_error *error = breccia_error_create();
-  const int status = curve           ? breccia_plot_curve((const char *const *)argv + first, argc - first, &plot, error)
-                     : values[MOVIE] ? breccia_plot_movie(argv[first], &plot, error)
-                                     : breccia_plot_field(argv[first], &plot, error);
+  const int status = curve ? breccia_plot_curve((const char *const *)argv + first, argc - first, &plot, error)
+                     : values[OVER_LENGTH] ? breccia_plot_over_length(argv[first], &plot, error)
+                     : values[MOVIE]       ? breccia_plot_movie(argv[first], &plot, error)
+                                           : breccia_plot_field(argv[first], &plot, error);
   return fail(error, status);
 }
 
 const Verb verb_plot = {.name = "plot",
                         .arguments = "RESULT ... [options]",
-                        .about = "draw fields and curves from results",
+                        .about = "draw fields, bars and curves from results",
                         .options = options,
                         .more =
                             "RESULT is a result folder or its results.vtkhdf; several give a line each with --curve.\n"

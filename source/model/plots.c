@@ -1,6 +1,7 @@
 /* Pictures of results, after a run. */
 #include "model/host.h"
 #include "model/sized.h"
+#include "results/bar_curve.h"
 #include "results/curve.h"
 #include "results/movie.h"
 #include "results/picture.h"
@@ -100,6 +101,7 @@ static PictureOptions field_options(const breccia_plot *plot, const Part *part)
 {
   return (PictureOptions){.field = plot->field,
                           .component = plot->component,
+                          .bars = plot->bars,
                           .title = plot->title,
                           .x_label = plot->x_label,
                           .y_label = plot->y_label,
@@ -113,20 +115,26 @@ static PictureOptions field_options(const breccia_plot *plot, const Part *part)
                           .size = plot->pixels};
 }
 
+/** The written state nearest to a time, or -1 after saying that the run did not come there. */
+static int nearest_state(const ResultView *view, double time, Error *error)
+{
+  const double begin = view->times[0], end = view->times[view->steps - 1], rounding = 1e-6 * fabs(end);
+  int nearest = view->steps - 1;
+  for (int k = 0; k < view->steps; ++k)
+    if (fabs(view->times[k] - time) < fabs(view->times[nearest] - time)) nearest = k;
+  if (time >= begin - rounding && time <= end + rounding) return nearest;
+  error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only", time,
+            begin, end);
+  return -1;
+}
+
 /** Which of the written states are asked for. */
 static int find_states(const ResultView *view, const breccia_plot *plot, int *first, int *last, Error *error)
 {
   *first = *last = view->steps - 1;
   if (plot->state == BRECCIA_STATE_ALL) *first = 0;
-  if (plot->state == BRECCIA_STATE_NEAR_TIME) {
-    const double end = view->times[view->steps - 1];
-    for (int k = 0; k < view->steps; ++k)
-      if (fabs(view->times[k] - plot->time) < fabs(view->times[*first] - plot->time)) *first = *last = k;
-    const double begin = view->times[0], rounding = 1e-6 * fabs(end);
-    if (!(plot->time >= begin - rounding && plot->time <= end + rounding))
-      return error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only",
-                       plot->time, begin, end);
-  }
+  if (plot->state == BRECCIA_STATE_NEAR_TIME && (*first = *last = nearest_state(view, plot->time, error)) < 0)
+    return BRECCIA_USER_ERROR;
   if (plot->state != BRECCIA_STATE_OF_STEP) return BRECCIA_OK;
   for (int k = 0; k < view->steps; ++k)
     if (view->step_numbers[k] == plot->step) {
@@ -155,7 +163,8 @@ static char *state_path(const ResultView *view, int k, bool many, const breccia_
     return text_format("%.*s-%06lld%s", (int)(dot - plot->path), plot->path, (long long)view->step_numbers[k], dot);
   }
   char name[256];
-  picture_name(view, k, plot->field, plot->component, true, name, sizeof name);
+  picture_name(view, k, plot->bars ? "bars" : plot->field, plot->bars ? plot->bars : plot->component, true, name,
+               sizeof name);
   return in_pictures(result, name);
 }
 
@@ -175,8 +184,45 @@ static int draw_states(const ResultView *view, const char *result, const breccia
   return status;
 }
 
-/** Draws states of a result, or a movie of all. */
-static int draw_fields(const char *result, const breccia_plot *plot, bool movie, Error *error)
+/** Where a curve over the length of bars goes. To be freed. */
+static char *over_length_path(const breccia_plot *plot, const char *result)
+{
+  char words[128], name[160];
+  snprintf(words, sizeof words, "bar %.100s", plot->bars);
+  text_file_name(words, name, sizeof name);
+  return plot->path ? text_format("%s", plot->path) : in_pictures(result, name);
+}
+
+static int draw_over_length(const ResultView *view, const char *result, const breccia_plot *plot, Error *error)
+{
+  int steps[BAR_CURVE_TIMES] = {0}, count = plot->time_count, first = 0, last = 0;
+  int status = count ? BRECCIA_OK : find_states(view, plot, &first, &last, error);
+  if (!count) count = last - first + 1;
+  for (int k = 0; k < count && k < BAR_CURVE_TIMES && !status; ++k) {
+    steps[k] = plot->time_count ? nearest_state(view, plot->times[k], error) : first + k;
+    if (steps[k] < 0) status = BRECCIA_USER_ERROR;
+  }
+  const BarCurveOptions o = {.column = plot->bars,
+                             .title = plot->title,
+                             .x_label = plot->x_label,
+                             .y_label = plot->y_label,
+                             .log_axes = plot->log_axes,
+                             .steps = steps,
+                             .count = count,
+                             .low = plot->low,
+                             .high = plot->high};
+  char *path = status ? NULL : over_length_path(plot, result);
+  if (!status)
+    status = path ? bar_curve_draw(view, &o, path, error) : error_add(error, BRECCIA_FAILURE, "out of memory: picture");
+  if (!status) tell(plot, path);
+  free(path);
+  return status;
+}
+
+typedef enum Kind { STATES, MOVIE, OVER_LENGTH } Kind;
+
+/** Draws states of a result, a movie of all, or curves over the length of bars. */
+static int draw_results(const char *result, const breccia_plot *plot, Kind kind, Error *error)
 {
   ResultView view;
   char *path = result_path(result);
@@ -188,9 +234,10 @@ static int draw_fields(const char *result, const breccia_plot *plot, bool movie,
     Part part;
     find_part(plot, &part);
     const PictureOptions o = field_options(plot, &part);
-    status = movie ? movie_make(&view, &o, plot->each_range != 0, plot->rate, plot->path, error)
-                   : draw_states(&view, path, plot, &o, error);
-    if (!status && movie) tell(plot, plot->path);
+    status = kind == MOVIE    ? movie_make(&view, &o, plot->each_range != 0, plot->rate, plot->path, error)
+             : kind == STATES ? draw_states(&view, path, plot, &o, error)
+                              : draw_over_length(&view, path, plot, error);
+    if (!status && kind == MOVIE) tell(plot, plot->path);
     result_view_close(&view);
   }
   free(path);
@@ -203,7 +250,7 @@ int breccia_plot_field(const char *result, const breccia_plot *given, breccia_er
   breccia_plot plot;
   int status = take_plot(&plot, given, error);
   if (!status) status = check_ending(plot.path, error);
-  if (!status) status = draw_fields(result, &plot, false, error);
+  if (!status) status = draw_results(result, &plot, STATES, error);
   return host_leave(&host, status, error);
 }
 
@@ -213,7 +260,20 @@ int breccia_plot_movie(const char *result, const breccia_plot *given, breccia_er
   breccia_plot plot;
   int status = take_plot(&plot, given, error);
   if (!status && !plot.path) status = error_add(error, BRECCIA_USER_ERROR, "a movie needs the path of an .mp4 file");
-  if (!status) status = draw_fields(result, &plot, true, error);
+  if (!status) status = draw_results(result, &plot, MOVIE, error);
+  return host_leave(&host, status, error);
+}
+
+int breccia_plot_over_length(const char *result, const breccia_plot *given, breccia_error *error)
+{
+  const Host host = host_enter();
+  breccia_plot plot;
+  int status = take_plot(&plot, given, error);
+  if (!status) status = check_ending(plot.path, error);
+  if (!status && !plot.bars)
+    status =
+        error_add(error, BRECCIA_USER_ERROR, "a curve over the length of bars needs a column of theirs, like stress");
+  if (!status) status = draw_results(result, &plot, OVER_LENGTH, error);
   return host_leave(&host, status, error);
 }
 

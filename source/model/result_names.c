@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "deck/spelling.h"
+#include "results/bar_columns.h"
 #include "results/curve_names.h"
 #include "results/fields.h"
 #include "results/result_file.h"
@@ -51,6 +52,31 @@ static int check_component(const breccia_model *model, const PictureSpec *pictur
       picture->component ? "component: %s has no '%s'; %s" : "field: %s is drawn by 'component'%s; %s", picture->field,
       picture->component ? picture->component : "",
       count ? text_words(&advice) : "it is one number, leave 'component' out");
+  text_free(&advice);
+  return status;
+}
+
+/** What bars are coloured by is a column of theirs, and the deck has such bars. */
+static int check_bars(const breccia_model *model, const PictureSpec *picture)
+{
+  const Bars *b = bars_among(&model->domain.forces);
+  const BarColumn *column = bar_column_find(picture->bars);
+  const Node *node = section_node(picture, "bars");
+  Error *error = model->reader.error;
+  if (!b)
+    return node_error(model->document, node, error, "bars: there are none to draw: the deck has no section 'bars'");
+  if (column && bar_column_is_there(column, b)) return BRECCIA_OK;
+  if (column)
+    return node_error(model->document, node, error, "bars: '%s' is of bars with a 'bond', and none has one",
+                      picture->bars);
+  const char *words[16];
+  int count = 0;
+  for (; count < 16 && bar_column_at(count) && bar_column_is_there(bar_column_at(count), b); ++count)
+    words[count] = bar_column_at(count)->name;
+  Text advice = {0};
+  spelling_advice(&advice, picture->bars, words, count, "they are coloured by");
+  const int status =
+      node_error(model->document, node, error, "bars: they have no '%s'; %s", picture->bars, text_words(&advice));
   text_free(&advice);
   return status;
 }
@@ -110,6 +136,7 @@ int model_check_results(breccia_model *model)
   for (int k = 0; k < spec->pictures.count; ++k) {
     const PictureSpec *picture = spec->pictures.items[k];
     if (picture->curve && check_curve(model, picture)) status = BRECCIA_USER_ERROR;
+    if (picture->bars && check_bars(model, picture)) status = BRECCIA_USER_ERROR;
     if (!picture->field) continue;
     TextList one = {(const char *[]){picture->field}, 1};
     int bad = check_names(model, &model->domain, &one, section_node(picture, "field"));

@@ -1,8 +1,9 @@
 /* The pictures of a run. */
 #include "model/run.h"
 
+#include "bars/bars.h"
 #include "base/folder.h"
-#include "results/bar_lines.h"
+#include "results/bar_curve.h"
 #include "results/curve.h"
 #include "results/result_view.h"
 #include <math.h>
@@ -47,6 +48,7 @@ static PictureOptions picture_options(const PictureSpec *spec)
 {
   return (PictureOptions){.field = spec->field,
                           .component = spec->component,
+                          .bars = spec->bars,
                           .title = spec->title,
                           .x_label = spec->x_label,
                           .y_label = spec->y_label,
@@ -59,7 +61,7 @@ static PictureOptions picture_options(const PictureSpec *spec)
                           .broken_bonds = spec->broken_bonds};
 }
 
-/** One field at the times of its entry, or at the last one written. */
+/** One field, or bars, at the times of its entry, or at the last one written. */
 static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec, Error *error)
 {
   const PictureOptions o = picture_options(spec);
@@ -70,7 +72,8 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
     if (time > run->model->solver.clock.time * (1 + 1e-9)) continue; /* the run did not come so far */
     const int step = nearest_write(view, time);
     char name[160];
-    picture_name(view, step, spec->field, spec->component, spec->times.count > 0, name, sizeof name);
+    picture_name(view, step, spec->bars ? "bars" : spec->field, spec->bars ? spec->bars : spec->component,
+                 spec->times.count > 0, name, sizeof name);
     char *path = picture_path(run, spec->times.count > 1 ? NULL : spec->name, name);
     if (spec->name && spec->times.count > 1) { /* the times tell its pictures apart */
       char whole[256];
@@ -82,6 +85,34 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
     if (!status) note_file(run, path);
     free(path);
   }
+  return status;
+}
+
+/** A column of bars over their length, at the times of its entry that the run came to, or at the last one written. */
+static int draw_over_length(Run *run, const ResultView *view, const PictureSpec *spec, bool *no_gnuplot, Error *error)
+{
+  int steps[BAR_CURVE_TIMES], count = 0;
+  const double reached = run->model->solver.clock.time * (1 + 1e-9);
+  for (int t = 0; t < spec->times.count && t < BAR_CURVE_TIMES; ++t)
+    if (spec->times.values[t] <= reached) steps[count++] = nearest_write(view, spec->times.values[t]);
+  if (spec->times.count && !count) return BRECCIA_OK;
+  if (!count) steps[count++] = view->steps - 1;
+  char words[128];
+  snprintf(words, sizeof words, "bar %.100s", spec->bars);
+  char *path = picture_path(run, spec->name, words);
+  const BarCurveOptions o = {.column = spec->bars,
+                             .title = spec->title,
+                             .x_label = spec->x_label,
+                             .y_label = spec->y_label,
+                             .log_axes = spec->log_axes,
+                             .steps = steps,
+                             .count = count,
+                             .low = spec->range[0],
+                             .high = spec->range[1],
+                             .no_gnuplot = no_gnuplot};
+  const int status = path ? bar_curve_draw(view, &o, path, error) : BRECCIA_FAILURE;
+  if (!status) note_file(run, path);
+  free(path);
   return status;
 }
 
@@ -119,7 +150,9 @@ static void draw(Run *run, const ResultView *view, const PictureSpec *spec, Outc
 {
   Error *own = breccia_error_create();
   bool no_gnuplot = false;
-  const int status = spec->field ? draw_field(run, view, spec, own) : draw_curve(run, spec, &no_gnuplot, own);
+  const int status = spec->over_length           ? draw_over_length(run, view, spec, &no_gnuplot, own)
+                     : spec->field || spec->bars ? draw_field(run, view, spec, own)
+                                                 : draw_curve(run, spec, &no_gnuplot, own);
   const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
   if (unwritten) outcome->status = BRECCIA_FAILURE;
   if (status) error_add_all(unwritten ? outcome->error : outcome->warnings, status, own);
@@ -139,19 +172,6 @@ static void draw_profile(Run *run, int k, const char *folder, Outcome *outcome)
   breccia_error_destroy(&own);
 }
 
-/** Stresses over the length of bars, among the usual pictures. */
-static void draw_bars(Run *run, const char *folder, Outcome *outcome)
-{
-  const breccia_model *model = run->model;
-  Error *own = breccia_error_create();
-  bool no_gnuplot = false;
-  const int status = bar_lines_draw(&model->domain, folder, model->units, &run->files, &no_gnuplot, own);
-  const bool unwritten = status == BRECCIA_FAILURE && !no_gnuplot;
-  if (unwritten) outcome->status = BRECCIA_FAILURE;
-  if (status) error_add_all(unwritten ? outcome->error : outcome->warnings, status, own);
-  breccia_error_destroy(&own);
-}
-
 static void draw_all(Run *run, const ResultView *view, Outcome *outcome)
 {
   static const char *const usual[] = {"displacement", "octahedral shear stress", "damage"};
@@ -163,6 +183,9 @@ static void draw_all(Run *run, const ResultView *view, Outcome *outcome)
         .field = usual[k], .deformed = 1, .view = {NAN, NAN, NAN}, .range = {NAN, NAN, NAN}, .same_range = true};
     if (written) draw(run, view, &spec, outcome);
   }
+  const PictureSpec stress = {.bars = "stress", .over_length = true, .range = {NAN, NAN, NAN}};
+  if (deck_usual_pictures(run->model->spec) && bars_among(&run->model->domain.forces))
+    draw(run, view, &stress, outcome);
   for (int k = 0; k < own->count; ++k) draw(run, view, own->items[k], outcome);
 }
 
@@ -180,7 +203,6 @@ int run_draw_pictures(Run *run, Error *error)
     outcome.status = BRECCIA_FAILURE;
   else {
     if (view.steps) draw_all(run, &view, &outcome);
-    if (deck_usual_pictures(model->spec)) draw_bars(run, folder, &outcome);
     for (int k = 0; k < profiles_count(model->profiles); ++k) draw_profile(run, k, folder, &outcome);
     result_view_close(&view);
   }

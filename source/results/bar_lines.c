@@ -1,27 +1,27 @@
 #include "results/bar_lines.h"
 
-#include "bars/bars.h"
 #include "base/folder.h"
-#include "base/memory.h"
 #include "base/whole_file.h"
-#include "results/plot.h"
-#include <math.h>
-#include <stdio.h>
+#include "results/bar_columns.h"
 #include <stdlib.h>
-#include <string.h>
 
-static void add_heading(const Units *units, bool slips, Text *t)
+static void add_head(const Units *units, const char *name, const char *dimension, Text *t)
 {
-  static const char *const columns[][2] = {{"along", "length"},    {"x", "length"},          {"y", "length"},
-                                           {"z", "length"},        {"strain", "1"},          {"stress", "stress"},
-                                           {"force", "force"},     {"dissipated", "energy"}, {"yielded since", "time"},
-                                           {"torn since", "time"}, {"slip", "length"},       {"bond stress", "stress"}};
-  const size_t count = sizeof columns / sizeof *columns;
+  char unit[64];
+  units_name(units, dimension_find(dimension), unit, sizeof unit);
+  text_add(t, *unit ? ",%s (%s)" : ",%s", name, unit);
+}
+
+static void add_heading(const Bars *b, const Units *units, Text *t)
+{
+  static const char *const places[] = {"along", "x", "y", "z"}, *const events[] = {"yielded since", "torn since"};
+  const BarColumn *c;
   text_add(t, "bar");
-  for (size_t c = 0; c < (slips ? count : count - 2); ++c) {
-    char unit[64];
-    units_name(units, dimension_find(columns[c][1]), unit, sizeof unit);
-    text_add(t, *unit ? ",%s (%s)" : ",%s", columns[c][0], unit);
+  for (int k = 0; k < 4; ++k) add_head(units, places[k], "length", t);
+  for (int slip = 0; slip < 2; ++slip) {
+    for (int k = 0; (c = bar_column_at(k)); ++k)
+      if (c->of_slip == slip && bar_column_is_there(c, b)) add_head(units, c->name, c->dimension, t);
+    for (int k = 0; k < 2 && !slip; ++k) add_head(units, events[k], "time", t);
   }
   text_add(t, "\n");
 }
@@ -42,21 +42,30 @@ static void add_time(Text *t, double when)
     text_add(t, ",%.10g", when);
 }
 
+static void add_row(const Bars *b, int n, int64_t e, Text *t)
+{
+  const BarColumn *c;
+  for (int slip = 0; slip < 2; ++slip) {
+    for (int k = 0; (c = bar_column_at(k)); ++k)
+      if (c->of_slip == slip && bar_column_is_there(c, b)) text_add(t, ",%.17g", c->value(b, n, e));
+    if (slip) continue;
+    add_time(t, b->yielded[e]);
+    add_time(t, b->torn[e]);
+  }
+  text_add(t, "\n");
+}
+
 static void add_table(const Bars *b, const Units *units, Text *t)
 {
-  add_heading(units, b->slips != NULL, t);
+  add_heading(b, units, t);
   for (int n = 0; n < b->specs->count; ++n) {
     double along = 0;
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
       double x[3];
       bar_middle(b, e, x);
       add_quoted(t, bar_name(b, n));
-      text_add(t, ",%.10g,%.10g,%.10g,%.10g,%.17g,%.17g,%.17g,%.10g", along + b->length[e] / 2, x[0], x[1], x[2],
-               b->strain_held[e], b->stress_held[e], b->area[e] * b->stress_held[e], bar_dissipated_in(b, e));
-      add_time(t, b->yielded[e]);
-      add_time(t, b->torn[e]);
-      if (b->slips) text_add(t, ",%.17g,%.17g", bar_slip_in(b, n, e), bar_bond_stress_in(b, n, e));
-      text_add(t, "\n");
+      text_add(t, ",%.10g,%.10g,%.10g,%.10g", along + b->length[e] / 2, x[0], x[1], x[2]);
+      add_row(b, n, e, t);
       along += b->length[e];
     }
   }
@@ -152,59 +161,5 @@ int bar_lines_write(const Domain *domain, const char *folder, const Units *units
     status = write_one(inside, "bars.vtp", &words, files, error);
   }
   free(inside);
-  return status;
-}
-
-/* ---- a picture ---- */
-
-static double most_in(const Bars *b, int bar)
-{
-  double most = 0;
-  for (int64_t e = b->first[bar]; e < b->first[bar + 1]; ++e) most = fmax(most, fabs(b->stress_held[e]));
-  return most;
-}
-
-int bar_lines_draw(const Domain *domain, const char *folder, const Units *units, Text *files, bool *no_gnuplot,
-                   Error *error)
-{
-  enum { MOST = 6 };
-  const Bars *b = bars_among(&domain->forces);
-  if (!b) return BRECCIA_OK;
-  const int bars = b->specs->count;
-  char stress[64], length[64], *path = text_format("%s/bar-stress.png", folder);
-  double *along = memory_zeroed((size_t)b->count, sizeof *along, "bars", error);
-  bool *taken = memory_zeroed((size_t)bars, sizeof *taken, "bars", error);
-  int count = 0, status = path && along && taken ? BRECCIA_OK : BRECCIA_FAILURE;
-  PlotLine lines[MOST];
-  for (; !status && count < bars && count < MOST; ++count) {
-    int next = -1;
-    for (int n = 0; n < bars; ++n)
-      if (!taken[n] && (next < 0 || most_in(b, n) > most_in(b, next))) next = n;
-    taken[next] = true;
-    const int64_t from = b->first[next];
-    double before = 0;
-    for (int64_t e = from; e < b->first[next + 1]; before += b->length[e++]) along[e] = before + b->length[e] / 2;
-    lines[count] = (PlotLine){.title = bar_name(b, next),
-                              .x = along + from,
-                              .y = b->stress_held + from,
-                              .count = (int)(b->first[next + 1] - from),
-                              .colour = count};
-  }
-  units_name(units, dimension_find("stress"), stress, sizeof stress);
-  units_name(units, dimension_find("length"), length, sizeof length);
-  char title[96] = "Stress along bars";
-  if (count == 1) snprintf(title, sizeof title, "Stress along bar '%.60s'", lines[0].title);
-  if (count < bars) snprintf(title, sizeof title, "Stress along bars: %d of %d, those with the largest", count, bars);
-  const PlotOptions options = {.title = title,
-                               .x = {.words = "along the bar", .unit = length},
-                               .y = {.words = "stress", .unit = stress},
-                               .low = NAN,
-                               .high = NAN,
-                               .no_gnuplot = no_gnuplot};
-  if (!status) status = plot_draw(lines, count, &options, path, error);
-  if (!status) text_add(files, "  %s\n", path);
-  free(path);
-  free(along);
-  free(taken);
   return status;
 }

@@ -1,4 +1,4 @@
-/* Reinforcing bars at the end of a run: a table and lines for ParaView in the folder 'bars', and a picture of stresses over length. */
+/* Reinforcing bars at the end of a run: a table and lines for ParaView in the folder 'bars'. */
 #ifndef BRECCIA_RESULTS_BAR_LINES_H
 #define BRECCIA_RESULTS_BAR_LINES_H
 
@@ -7,12 +7,5 @@
 /** Writes <folder>/bars/bars.csv, a row an element, and bars.vtp, its lines. Nothing where the body has no bars.
  *  @param[in,out] files  gets a line with the path of each */
 int bar_lines_write(const Domain *domain, const char *folder, const Units *units, Text *files, Error *error);
-
-/** Draws the stress of bars over their length, of those with the largest ones where there are many.
- *  @param[in] folder  of pictures
- *  @param[in,out] files  gets a line with the path
- *  @param[out] no_gnuplot  as in PlotOptions */
-int bar_lines_draw(const Domain *domain, const char *folder, const Units *units, Text *files, bool *no_gnuplot,
-                   Error *error);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "deck/quantity.h"
+#include "results/bar_columns.h"
 #include "results/colours.h"
 #include "results/fields.h"
 #include "results/scene.h"
@@ -88,8 +89,8 @@ static int component_index(const char *component, int components)
 }
 
 /** The number of each particle that colours stand for. */
-static int take_values(const ResultView *view, int step, const PictureOptions *o, double *values, char *unit,
-                       Error *error)
+static int take_field(const ResultView *view, int step, const PictureOptions *o, double *values, char *unit,
+                      Error *error)
 {
   int components, chosen = 0;
   double *all = result_view_read(view, o->field, step, &components, unit, error);
@@ -111,6 +112,27 @@ static int take_values(const ResultView *view, int step, const PictureOptions *o
   }
   free(all);
   return BRECCIA_OK;
+}
+
+static int take_values(Scene *scene, const ResultView *view, int step, const PictureOptions *o, char *unit,
+                       Error *error)
+{
+  return o->bars ? scene_bars_read(scene, view, step, o, unit, error)
+                 : take_field(view, step, o, scene->value, unit, error);
+}
+
+/** Takes the values that are shown into a range. */
+static void survey_values(const Scene *scene, PictureSurvey *s)
+{
+  if (scene->bars.view.lines) {
+    scene_bars_survey(scene, s);
+    return;
+  }
+  for (int64_t n = 0; n < scene->count; ++n)
+    if (!scene->hidden[n] && isfinite(scene->value[n])) {
+      s->least = fmin(s->least, scene->value[n]);
+      s->most = fmax(s->most, scene->value[n]);
+    }
 }
 
 void scene_colour(const Scene *scene, double value, double rgb[3])
@@ -194,6 +216,8 @@ static int place_particles(Scene *scene, const ResultView *view, int step, const
   const double x0 = scene->x0 - room, x1 = scene->x1 + room, y0 = scene->y0 - room, y1 = scene->y1 + room;
   if (u) project(scene, view, u, o->deformed);
   free(u);
+  const int status = scene_bars_place(scene, view, step, moved ? o->deformed : 0, error);
+  if (status) return status;
   scene->x0 = fmax(scene->x0, x0);
   scene->x1 = fmin(scene->x1, x1);
   scene->y0 = fmax(scene->y0, y0);
@@ -230,11 +254,13 @@ static int scene_create(Scene *scene, const ResultView *view, const PictureOptio
   if (!(scene->hidden = memory_zeroed((size_t)(scene->count + 1), sizeof(bool), "picture", error)))
     return BRECCIA_FAILURE;
   look(scene, view, o);
-  return hide(scene, view, o, error);
+  const int status = hide(scene, view, o, error);
+  return status ? status : scene_bars_create(scene, view, o, error);
 }
 
 static void scene_destroy(Scene *scene)
 {
+  scene_bars_destroy(scene);
   free(scene->hidden);
   free(scene->x);
   free(scene->y);
@@ -250,12 +276,8 @@ int picture_survey(const ResultView *view, int first, int last, bool framing, co
   char unit[64];
   int status = scene_create(&scene, view, o, error);
   for (int k = first; k <= last && !status; ++k) {
-    status = take_values(view, k, o, scene.value, unit, error);
-    for (int64_t n = 0; n < scene.count && !status; ++n)
-      if (!scene.hidden[n] && isfinite(scene.value[n])) {
-        s->least = fmin(s->least, scene.value[n]);
-        s->most = fmax(s->most, scene.value[n]);
-      }
+    status = take_values(&scene, view, k, o, unit, error);
+    if (!status) survey_values(&scene, s);
     if (status || !framing) continue;
     status = place_particles(&scene, view, k, o, error);
     s->x0 = fmin(s->x0, scene.x0); /* the first time the other is no number, which fmin passes over */
@@ -271,7 +293,7 @@ static int scene_fill(Scene *scene, const ResultView *view, int step, const Pict
                       Error *error)
 {
   char unit[64] = "", words[128];
-  int status = take_values(view, step, o, scene->value, unit, error);
+  int status = take_values(scene, view, step, o, unit, error);
   if (!status) status = place_particles(scene, view, step, o, error);
   if (status) return status;
   if (!isnan(s->x0)) {
@@ -282,15 +304,20 @@ static int scene_fill(Scene *scene, const ResultView *view, int step, const Pict
   }
   for (int64_t n = 0; n < scene->count; ++n) {
     if (scene->hidden[n]) continue;
-    scene->missing += !isfinite(scene->value[n]);
+    scene->missing += !o->bars && !isfinite(scene->value[n]);
     scene->outside +=
         !(scene->x[n] >= scene->x0 && scene->x[n] <= scene->x1 && scene->y[n] >= scene->y0 && scene->y[n] <= scene->y1);
   }
-  const OutputField *field = output_field_find(o->field);
-  scene->range = scale_colours(s->least, s->most, o->component || (field && field->has_sign), o->low, o->high);
+  const OutputField *field = o->bars ? NULL : output_field_find(o->field);
+  const BarColumn *column = o->bars ? bar_column_find(o->bars) : NULL;
+  const bool has_sign = column ? column->has_sign : o->component || (field && field->has_sign);
+  scene->range = scale_colours(s->least, s->most, has_sign, o->low, o->high);
   scene->unit = display_unit(unit, fmax(fabs(scene->range.low), fabs(scene->range.high)));
   scene->length = display_unit(view->length_unit, fmax(scene->x1 - scene->x0, scene->y1 - scene->y0));
-  snprintf(words, sizeof words, "%s%s%s", o->field, o->component ? " " : "", o->component ? o->component : "");
+  if (o->bars)
+    snprintf(words, sizeof words, "%s of bars", o->bars);
+  else
+    snprintf(words, sizeof words, "%s%s%s", o->field, o->component ? " " : "", o->component ? o->component : "");
   display_heading(words, scene->unit.name, scene->heading, sizeof scene->heading);
   return BRECCIA_OK;
 }

@@ -8,17 +8,18 @@
 
 typedef struct PictureSpec {
   SectionHead head;
-  const char *field, *component, *curve, *title, *x_label, *y_label, *name, *log_axes;
+  const char *field, *component, *curve, *bars, *title, *x_label, *y_label, *name, *log_axes;
   NumberList times;
   double deformed, view[3], range[3]; /* view: azimuth and elevation; range: lowest and highest value */
   Shape *inside;                      /* or NULL: the whole body */
-  bool broken_bonds, same_range, energy;
+  bool broken_bonds, same_range, energy, over_length;
 } PictureSpec;
 
 extern const Section picture_section;
 
 typedef struct PictureOptions {
-  const char *field, *component;         /* component NULL: the only one, or the length of a vector */
+  const char *field, *component; /* component NULL: the only one, or the length of a vector */
+  const char *bars;              /* a column of theirs instead (bar_columns.h), over a pale body; NULL: a field */
   const char *title, *x_label, *y_label; /* NULL: the deck's title; the coordinates */
   double deformed;                       /* scale of displacements */
   double azimuth, elevation;             /* degrees; NaN: chosen from the body's shape */

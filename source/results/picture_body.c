@@ -1,10 +1,19 @@
-/* The particles of a picture. */
+/* The body of a picture. */
 #include "base/memory.h"
 #include "results/scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static void colour_particle(const Scene *s, int64_t n, double rgb[3])
+{
+  if (s->bars.view.lines) {
+    rgb[0] = rgb[1] = 0.88;
+    rgb[2] = 0.9;
+  } else
+    scene_colour(s, s->value[n], rgb);
+}
 
 static bool scene_shows(const Scene *s, int64_t n)
 {
@@ -147,7 +156,7 @@ static int draw_flat(cairo_t *cr, const Page *page, const Scene *scene, const Re
     const int64_t n = order[k].particle;
     if (!scene_shows(scene, n)) continue;
     double rgb[3];
-    scene_colour(scene, scene->value[n], rgb);
+    colour_particle(scene, n, rgb);
     cairo_set_source_rgb(cr, rgb[0], rgb[1], rgb[2]);
     const double x = page->left + (scene->x[n] - scene->x0) * page->scale;
     const double y = page->top + page->high - (scene->y[n] - scene->y0) * page->scale;
@@ -189,7 +198,7 @@ static int draw_spheres(cairo_t *cr, const Page *page, const Scene *scene, const
     const double shades = radius > 30 ? 64 : 8; /* pictures with many shades of small spheres are large files */
     double cx = (scene->x[n] - scene->x0) * scale, cy = (scene->y1 - scene->y[n]) * scale;
     if (!scene_shows(scene, n)) continue;
-    scene_colour(scene, scene->value[n], rgb);
+    colour_particle(scene, n, rgb);
     int x0 = (int)fmax(0, floor(cx - radius)), x1 = (int)fmin(wide - 1, ceil(cx + radius));
     int y0 = (int)fmax(0, floor(cy - radius)), y1 = (int)fmin(high - 1, ceil(cy + radius));
     for (int y = y0; y <= y1; ++y)
@@ -247,6 +256,7 @@ int body_draw(cairo_t *cr, const Page *page, const Scene *scene, const ResultVie
   cairo_clip(cr);
   int bad = scene->flat ? draw_flat(cr, page, scene, view, o->deformed != 0) : draw_spheres(cr, page, scene, view);
   if (o->broken_bonds) draw_broken(cr, page, scene, view, step);
+  if (scene->bars.view.lines && scene_bars_draw(cr, page, scene)) bad = 1;
   cairo_restore(cr);
   return bad;
 }

@@ -103,6 +103,8 @@ static void write_heads(Page *page, const Scene *scene, const ResultView *view, 
     text_add(&notes, "reference shape");
   else if (o->deformed != 1)
     text_add(&notes, "displacements ×%g", o->deformed);
+  if (scene->bars.view.lines && !scene->flat)
+    text_add(&notes, "%sbars are seen through the body", notes.length ? ", " : "");
   int64_t broken = 0;
   if (o->broken_bonds) free(result_view_broken(view, step, &broken));
   if (broken) text_add(&notes, "%sbroken bonds in red, except across open cracks", notes.length ? ", " : "");

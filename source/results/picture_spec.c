@@ -1,4 +1,5 @@
 /* What a deck says of a picture. */
+#include "results/bar_curve.h"
 #include "results/picture.h"
 
 #include <stddef.h>
@@ -29,6 +30,19 @@ static const Field picture_fields[] = {
      .standard = "",
      .meaning = "all energies over time; needs a watch with 'energy: yes'",
      .group = 'A'},
+    {.key = "bars",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(PictureSpec, bars),
+     .standard = "",
+     .meaning = "reinforcing bars as lines over the pale body, coloured by their strain, stress, force, dissipated "
+                "energy, slip or bond stress",
+     .group = 'A'},
+    {.key = "over length",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(PictureSpec, over_length),
+     .standard = "no",
+     .meaning = "with 'bars': curves over the length of bars instead, at up to six times; of many bars those with the "
+                "largest values"},
     {.key = "component",
      .kind = FIELD_TEXT,
      .offset = offsetof(PictureSpec, component),
@@ -115,7 +129,18 @@ static void check_picture(const DeckReader *reader, void *section)
   if (p->range[0] >= p->range[1])
     node_error(reader->document, section_node(p, "range"), reader->error,
                "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
-  if (p->inside && !p->field)
+  const bool of_body = p->field || (p->bars && !p->over_length);
+  if (p->over_length && !p->bars)
+    node_error(reader->document, section_node(p, "over length"), reader->error,
+               "over length: is for pictures of 'bars'; leave it out");
+  if (p->component && p->bars)
+    node_error(reader->document, section_node(p, "component"), reader->error,
+               "component: what bars are coloured by is one number; leave it out");
+  if (p->over_length && p->times.count > BAR_CURVE_TIMES)
+    node_error(reader->document, section_node(p, "at"), reader->error,
+               "at: curves over the length of bars are drawn at up to %d times, and these are %d", BAR_CURVE_TIMES,
+               p->times.count);
+  if (p->inside && !of_body)
     node_error(reader->document, section_node(p, "inside"), reader->error,
                "inside: a curve has no particles; leave it out");
   else if (p->inside && shape_counts_particles(p->inside))

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/whole_file.h"
+#include "results/bar_states.h"
 #include "results/dataset.h"
 #include "results/hdf5_file.h"
 #include "results/journal.h"
@@ -267,6 +268,7 @@ int result_file_create(ResultFile **out, const char *folder, const Domain *d, co
       bad |= dataset_write(own, "Frequencies", H5T_NATIVE_DOUBLE, 1, 0, (hsize_t)names->frequency_count,
                            names->frequencies);
     }
+    if (!names->frequencies) bad |= bar_states_create(own, d, units, names->single); /* modes strain nothing */
     hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     bad |= states < 0 || H5Gclose(states) < 0;
     bad |= H5Gclose(own) < 0;
@@ -383,6 +385,7 @@ static int append(ResultFile *file, Hdf5File *h5, const Domain *d)
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad = bad ||
         dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, (hsize_t)fresh, rows);
+  bad = bad || bar_states_write(own, d, file->writes - 1);
   bad = bad || create_state(h5->id, file, file->writes - 1);
   bad = bad || H5Fflush(h5->id, H5F_SCOPE_GLOBAL) < 0 || write_steps(root, file, file->writes - 1);
   if (own >= 0 && H5Gclose(own) < 0) bad = 1;
@@ -400,7 +403,7 @@ double result_file_state_bytes(const Domain *d, const ResultNames *names)
     const OutputField *field = output_field_find(names->fields[k]);
     numbers += field ? field->components : 1;
   }
-  return (double)d->particles->count * numbers * (names->single ? 4 : 8);
+  return ((double)d->particles->count * numbers + (double)bar_states_numbers(d)) * (names->single ? 4 : 8);
 }
 
 /** Moves the copy into place, and lists its states for older readers, which takes as long as copying where states are small. */
@@ -451,7 +454,7 @@ int result_file_show(ResultFile *file, Error *error)
 }
 
 /** Cuts what the file that is open holds to the states and broken bonds of `file`. */
-static int cut(ResultFile *file, Hdf5File *h5)
+static int cut(ResultFile *file, Hdf5File *h5, const Domain *d)
 {
   hid_t root = H5Gopen2(h5->id, "VTKHDF", H5P_DEFAULT), data = H5Gopen2(root, "PointData", H5P_DEFAULT);
   int bad = 0;
@@ -460,6 +463,7 @@ static int cut(ResultFile *file, Hdf5File *h5)
                          (hsize_t)(file->writes * file->particles), 0, NULL);
   hid_t own = H5Gopen2(h5->id, "Breccia", H5P_DEFAULT);
   bad |= dataset_write(own, "BrokenBonds", H5T_NATIVE_INT64, 3, (hsize_t)file->broken_written, 0, NULL);
+  bad |= bar_states_cut(own, d, file->writes);
   if (H5Lexists(own, "States", H5P_DEFAULT) > 0) bad |= H5Ldelete(own, "States", H5P_DEFAULT) < 0;
   hid_t states = H5Gcreate2(own, "States", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   for (int64_t k = 0; k < file->writes && !bad; ++k) bad = create_state(h5->id, file, k);
@@ -507,7 +511,7 @@ int result_file_resume(ResultFile **out, const char *folder, const Domain *d, co
   const int cause = whole_file_copy(file->path, file->part);
   if (cause) return give_up(file, strerror(cause), error);
   Hdf5File h5;
-  int bad = hdf5_file_extend(&h5, file->part) || cut(file, &h5);
+  int bad = hdf5_file_extend(&h5, file->part) || cut(file, &h5, d);
   bad |= hdf5_file_close(&h5);
   if (bad) return give_up(file, hdf5_file_reason(&h5), error);
   status = put_in_place(file, error);

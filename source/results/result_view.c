@@ -41,8 +41,8 @@ int result_view_lost(const ResultView *view)
   return view->file.error ? BRECCIA_FAILURE : BRECCIA_USER_ERROR;
 }
 
-/** All numbers of a dataset, to be freed; NULL with a message. @param[out] rows  how many it has; may be NULL */
-static void *read_all(const ResultView *view, const char *name, hid_t type, size_t size, int64_t *rows, Error *error)
+void *result_view_numbers(const ResultView *view, const char *name, hid_t type, size_t size, int64_t *rows,
+                          Error *error)
 {
   hsize_t extent[2] = {0, 1};
   hid_t set = H5Dopen2(view->file.id, name, H5P_DEFAULT);
@@ -76,7 +76,7 @@ static int read_lattices(ResultView *view, Error *error)
     view->lattice_numbers = memory_plain((size_t)view->particles + 1, 1);
     return view->lattice_numbers ? BRECCIA_OK : error_add(error, BRECCIA_FAILURE, "out of memory: Breccia/Lattice");
   }
-  view->lattice_numbers = read_all(view, "Breccia/Lattice", H5T_NATIVE_UINT8, 1, NULL, error);
+  view->lattice_numbers = result_view_numbers(view, "Breccia/Lattice", H5T_NATIVE_UINT8, 1, NULL, error);
   if (!view->lattice_numbers) return result_view_lost(view);
   char names[512];
   hid_t set = H5Dopen2(view->file.id, "Breccia/Lattice", H5P_DEFAULT);
@@ -125,7 +125,7 @@ static void keep_rows(const ResultView *view, double *values, int components)
 static int leave_outside(ResultView *view, Error *error)
 {
   if (H5Lexists(view->file.id, "Breccia/Outside", H5P_DEFAULT) <= 0) return BRECCIA_OK;
-  uint8_t *outside = read_all(view, "Breccia/Outside", H5T_NATIVE_UINT8, 1, NULL, error);
+  uint8_t *outside = result_view_numbers(view, "Breccia/Outside", H5T_NATIVE_UINT8, 1, NULL, error);
   if (!outside) return result_view_lost(view);
   int64_t *number = memory_plain((size_t)view->rows + 1, sizeof(int64_t)); /* among the body's particles; -1: outside */
   view->row_of = memory_plain((size_t)view->rows + 1, sizeof(int64_t));
@@ -157,22 +157,24 @@ static int leave_outside(ResultView *view, Error *error)
 static int read_numbers(ResultView *view, Error *error)
 {
   int64_t steps = 0;
-  view->positions = read_all(view, "VTKHDF/Points", H5T_NATIVE_DOUBLE, sizeof(double), &view->rows, error);
+  view->positions = result_view_numbers(view, "VTKHDF/Points", H5T_NATIVE_DOUBLE, sizeof(double), &view->rows, error);
   if (!view->positions) return result_view_lost(view);
   view->particles = view->rows;
-  view->times = read_all(view, "VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps, error);
+  view->times = result_view_numbers(view, "VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, sizeof(double), &steps, error);
   if (!view->times) return result_view_lost(view);
   view->steps = (int)steps;
-  view->step_numbers = read_all(view, "VTKHDF/Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL, error);
+  view->step_numbers =
+      result_view_numbers(view, "VTKHDF/Steps/StepNumbers", H5T_NATIVE_INT64, sizeof(int64_t), NULL, error);
   if (!view->step_numbers) return result_view_lost(view);
-  view->spacings = read_all(view, "Breccia/Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL, error);
+  view->spacings = result_view_numbers(view, "Breccia/Spacing", H5T_NATIVE_DOUBLE, sizeof(double), NULL, error);
   if (!view->spacings) return result_view_lost(view);
   for (int64_t n = 0; n < view->particles; ++n) view->spacing = fmax(view->spacing, view->spacings[n]);
-  view->broken = read_all(view, "Breccia/BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &view->broken_count, error);
+  view->broken =
+      result_view_numbers(view, "Breccia/BrokenBonds", H5T_NATIVE_INT64, sizeof(int64_t), &view->broken_count, error);
   if (!view->broken) return result_view_lost(view);
   if (H5Lexists(view->file.id, "Breccia/Frequencies", H5P_DEFAULT) > 0) {
-    view->frequencies =
-        read_all(view, "Breccia/Frequencies", H5T_NATIVE_DOUBLE, sizeof(double), &view->frequency_count, error);
+    view->frequencies = result_view_numbers(view, "Breccia/Frequencies", H5T_NATIVE_DOUBLE, sizeof(double),
+                                            &view->frequency_count, error);
     if (!view->frequencies) return result_view_lost(view);
   }
   const int status = read_lattices(view, error);
@@ -268,9 +270,55 @@ bool result_view_has(const ResultView *view, const char *field)
   return *field && !strchr(field, '/') && H5Lexists(view->file.id, path, H5P_DEFAULT) != 0;
 }
 
+double *result_view_state(const ResultView *view, const char *name, int step, int64_t rows, int components, char *unit,
+                          Error *error)
+{
+  const hid_t set = H5Dopen2(view->file.id, name, H5P_DEFAULT);
+  if (set < 0) {
+    result_view_say_damaged(view, name, error);
+    return NULL;
+  }
+  hsize_t size[2] = {0, 1};
+  const hid_t space = H5Dget_space(set);
+  const int rank = H5Sget_simple_extent_dims(space, size, NULL);
+  const hsize_t start[2] = {(hsize_t)step * (hsize_t)rows, 0}, count[2] = {(hsize_t)rows, size[1]};
+  double *values = memory_plain((size_t)rows * (size_t)components, sizeof(double));
+  const hid_t memory = H5Screate_simple(rank, count, NULL);
+  int bad = !values || (rank > 1 ? size[1] : 1) != (hsize_t)components || start[0] + count[0] > size[0] ||
+            H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
+            H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) < 0;
+  if (unit) attribute_read_text(set, "unit", unit, 64);
+  bad |= view->file.error;
+  H5Sclose(memory);
+  H5Sclose(space);
+  H5Dclose(set);
+  if (!bad) return values;
+  char what[320];
+  snprintf(what, sizeof what, "%s at step %lld", name, (long long)view->step_numbers[step]);
+  if (values)
+    result_view_say_damaged(view, what, error);
+  else
+    error_add(error, BRECCIA_FAILURE, "out of memory: %s", what);
+  free(values);
+  return NULL;
+}
+
+/** Numbers of a field that each particle has; 0 where that cannot be read. */
+static int count_components(const ResultView *view, const char *path)
+{
+  const hid_t set = H5Dopen2(view->file.id, path, H5P_DEFAULT);
+  if (set < 0) return 0;
+  hsize_t size[2] = {0, 1};
+  const hid_t space = H5Dget_space(set);
+  const int rank = H5Sget_simple_extent_dims(space, size, NULL);
+  H5Sclose(space);
+  H5Dclose(set);
+  return rank > 1 ? (int)size[1] : 1;
+}
+
 double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit, Error *error)
 {
-  char path[256], what[320];
+  char path[256];
   snprintf(path, sizeof path, "VTKHDF/PointData/%s", field);
   if (!result_view_has(view, field)) {
     Text names = {0};
@@ -280,37 +328,10 @@ double *result_view_read(const ResultView *view, const char *field, int step, in
     text_free(&names);
     return NULL;
   }
-  hid_t set = H5Dopen2(view->file.id, path, H5P_DEFAULT);
-  if (set < 0) {
-    result_view_say_damaged(view, path, error);
-    return NULL;
-  }
-  hsize_t size[2] = {0, 1};
-  hid_t space = H5Dget_space(set);
-  int rank = H5Sget_simple_extent_dims(space, size, NULL);
-  *components = rank > 1 ? (int)size[1] : 1;
-  hsize_t start[2] = {(hsize_t)step * (hsize_t)view->rows, 0}, count[2] = {(hsize_t)view->rows, size[1]};
-  double *values = memory_plain((size_t)view->rows * (size_t)*components, sizeof(double));
-  hid_t memory = H5Screate_simple(rank, count, NULL);
-  int bad = !values || start[0] + count[0] > size[0] ||
-            H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
-            H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) < 0;
-  if (unit) attribute_read_text(set, "unit", unit, 64);
-  bad |= view->file.error;
-  H5Sclose(memory);
-  H5Sclose(space);
-  H5Dclose(set);
-  if (!bad) {
-    keep_rows(view, values, *components);
-    return values;
-  }
-  snprintf(what, sizeof what, "%s at step %lld", path, (long long)view->step_numbers[step]);
-  if (values)
-    result_view_say_damaged(view, what, error);
-  else
-    error_add(error, BRECCIA_FAILURE, "out of memory: %s", what);
-  free(values);
-  return NULL;
+  *components = count_components(view, path);
+  double *values = result_view_state(view, path, step, view->rows, *components, unit, error);
+  if (values) keep_rows(view, values, *components);
+  return values;
 }
 
 int64_t *result_view_broken(const ResultView *view, int step, int64_t *count)

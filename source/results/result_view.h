@@ -51,6 +51,13 @@ bool result_view_has(const ResultView *view, const char *field);
  *  @param[out] unit  64 bytes */
 double *result_view_read(const ResultView *view, const char *field, int step, int *components, char *unit,
                          Error *error);
+/** All numbers of a dataset, to be freed; NULL after a line as above. @param[out] rows  how many it has; may be NULL */
+void *result_view_numbers(const ResultView *view, const char *name, hid_t type, size_t size, int64_t *rows,
+                          Error *error);
+/** Numbers of one step in a dataset that has `rows` of them at each step: [rows][components], to be freed; NULL after a line as above.
+ *  @param[out] unit  64 bytes, or NULL */
+double *result_view_state(const ResultView *view, const char *name, int step, int64_t rows, int components, char *unit,
+                          Error *error);
 /** Pairs of numbers of the bonds broken up to a step: [count][2], to be freed; NULL: out of memory. */
 int64_t *result_view_broken(const ResultView *view, int step, int64_t *count);
 

@@ -175,6 +175,64 @@ sed 's/model: elastic.*Poisson ratio: 0.2/model: multi-yield-j2, density: 1, she
      s/damage]/damage, active surface]/; s/, ledger: {energy: yes}//; /energy: yes/d' bar.yaml > clay.yaml
 "$breccia" run clay.yaml > out 2>&1 || fail "clay: $(cat out)"
 "$breccia" plot clay --field "active surface" --output surface.png > out 2>&1 || fail "active surface: $(cat out)"
+# reinforcing bars: over the body, over their length, of the run and afterwards
+cat > steel.yaml <<'Y'
+title: Steel
+units: {length: m, force: kN, time: s}
+materials:
+  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}
+  steel: {model: steel-bilinear, density: 7.85, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01}
+body: {b: {material: soft, lattice: square, spacing: 0.05, thickness: 0.1, shape: {box: {from: [0, 0], to: [2, 0.6]}}}}
+bars:
+  along: {points: [[0.2, 0.2], [1.8, 0.2]], diameter: 0.01, material: steel, bond: {law: linear, stiffness: 1.4e7}}
+  across: {points: [[0.5, 0.1], [0.5, 0.5]], area: 2e-4, material: steel, repeat: {along: [1, 0], pitch: 0.2, number: 7}}
+peridynamics: {formulation: bond-based, space: plane stress}
+loads: [{on: {all: yes}, field: {displacement: ['0.001*x', '-0.0005*y']}, history: {ramp to: 1}}]
+solve: {static: {increments: 4, end time: 1}}
+results: {number: 2}
+pictures:
+  - {bars: stress, deformed: 50}
+  - {bars: slip, at: [0.5], name: slips}
+  - {bars: stress, over length: yes, at: [0.5, 1]}
+Y
+"$breccia" run steel.yaml > out 2>&1 || fail "steel: $(cat out)"
+equal "pictures of bars" "$(ls steel/pictures | tr '\n' ' ')" "bar-stress.png bars-stress.png slips.png "
+"$breccia" plot steel --bars stress --deformed 50 --output again.png > out 2>&1 || fail "bars: $(cat out)"
+cmp again.png steel/pictures/bars-stress.png || fail "a picture of bars of the run differs from the same one drawn afterwards"
+"$breccia" plot steel --bars slip --time 0.5 --output again.png > out 2>&1 || fail "slip: $(cat out)"
+cmp again.png steel/pictures/slips.png || fail "a picture of slips of the run differs from the same one drawn afterwards"
+"$breccia" plot steel --bars stress --over-length --time 0.5,1 --output again.png > out 2>&1 || fail "over length: $(cat out)"
+cmp again.png steel/pictures/bar-stress.png || fail "curves over the length of bars of the run differ from the same ones drawn afterwards"
+checks=$((checks + 3))
+for file in bars.png bars.svg bars.pdf; do
+  "$breccia" plot steel --bars "bond stress" --output $file > out 2>&1 || fail "$file: $(cat out)"
+  [ "$(wc -c < $file)" -gt 2000 ] || fail "$file is too small to be a picture"
+  checks=$((checks + 1))
+done
+"$breccia" plot steel --bars strain --step all > out 2>&1 || fail "strain: $(cat out)"
+equal "names of plots of bars" "$(tr '\n' ' ' < out)" "steel/pictures/bars-strain-0s.png steel/pictures/bars-strain-0.5s.png steel/pictures/bars-strain-1s.png "
+"$breccia" plot steel --bars stress --over-length --output long.svg > out 2>&1 || fail "over length: $(cat out)"
+for word in "Stress along bars at 1 s: 6 of 8, those with the largest" ">along<" "[MPa]" "Along the bar [m]"; do contains "over length" "$(cat long.svg)" "$word"; done
+"$breccia" plot steel --bars slip --over-length --time 0,0.5,1 --output slip.svg > out 2>&1 || fail "slips: $(cat out)"
+for word in "Slip along bar 'along'" ">0.5 s<" ">1 s<" "Slip [µm]"; do contains "slips over length" "$(cat slip.svg)" "$word"; done
+sed 's/^pictures:/pictures: []/; /^  - {bars/d' steel.yaml > none.yaml
+sed '/^pictures/d' none.yaml > usual.yaml
+"$breccia" run usual.yaml --output steels > out 2>&1 || fail "usual pictures of bars: $(cat out)"
+equal "the usual pictures of bars" "$(ls steels/pictures | tr '\n' ' ')" "bar-stress.png damage.png displacement.png octahedral-shear-stress.png "
+refused_bars() { # refused_bars WORDS PICTURE [EDIT]: a deck with this picture
+  sed "s/^pictures: \[\]/pictures: [$2]/; ${3:-}" none.yaml > refused.yaml
+  "$breccia" check refused.yaml > out 2> errors
+  equal "$2: status" $? 2
+  contains "$2" "$(cat errors)" "$1"
+  equal "$2: lines: $(cat errors)" "$(wc -l < errors)" 1
+}
+refused_bars "bars: they have no 'stresses'; did you mean 'stress'?" "{bars: stresses}"
+refused_bars "bars: 'slip' is of bars with a 'bond', and none has one" "{bars: slip}" "s/, bond: {[^}]*}//"
+refused_bars "bars: there are none to draw: the deck has no section 'bars'" "{bars: stress}" "/^bars:/d; /^  along:/d; /^  across:/d; /^  steel:/d"
+refused_bars "over length: is for pictures of 'bars'; leave it out" "{field: damage, over length: yes}"
+refused_bars "component: what bars are coloured by is one number; leave it out" "{bars: stress, component: xx}"
+refused_bars "inside: a curve has no particles; leave it out" "{bars: stress, over length: yes, inside: {box: {from: [0, 0], to: [1, 1]}}}"
+refused_bars "at: curves over the length of bars are drawn at up to 6 times, and these are 7" "{bars: stress, over length: yes, at: [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}"
 wrong() { # wrong WORDS ARGUMENTS ...
   words=$1
   shift
@@ -200,6 +258,16 @@ wrong "is not below the highest" bar --range 3:3
 wrong "should be x, y or xy" bar --curve end.x:end.y --log z
 wrong "leave out --step" bar --movie bar.mp4 --step 0
 wrong "movies end in .mp4" bar --field damage --movie bar.avi
+wrong "the result file holds no bars: the deck has none ('bars')" bar --bars stress
+wrong "bars have no 'colour' in the result file; it holds strain, stress, force, dissipated, slip, bond stress of them" steel --bars colour
+wrong "leave out --field" steel --bars stress --field damage
+wrong "--over-length needs --bars COLUMN" steel --over-length
+wrong "leave out --movie" steel --bars stress --over-length --movie a.mp4
+wrong "leave out --inside" steel --bars stress --over-length --inside 0:1,:
+wrong "should be up to 64 numbers with commas between them" steel --bars stress --over-length --time 0,,1
+wrong "the run wrote states from the time 0 to 1 only" steel --bars stress --over-length --time 0,2
+wrong "are drawn at up to 6 times, and these are 7" steel --bars stress --over-length --time 0,0,0,0,0,0,0
+wrong "inside: no bar stands in this shape" steel --bars stress --inside 0:0.1,:
 wrong "cannot share an axis" bar --curve "end.time : end.x, pull.value"
 wrong "no history of energies" clay --energy
 finish

@@ -1,6 +1,7 @@
 /* Result files: what is read back is what was written, or is refused. */
 #include "support.h"
 
+#include "results/bar_view.h"
 #include "results/picture.h"
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -12,7 +13,10 @@ static char folder[] = "/tmp/breccia-results-XXXXXX", path[64], whole[64];
 static void write_results(void)
 {
   breccia_model *model = model_of(
-      "title: A bar is torn\nunits: {length: m, force: kN, time: s}\n" SOFT_SOLID "body:\n"
+      "title: A bar is torn\nunits: {length: m, force: kN, time: s}\n"
+      "materials:\n  m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}\n"
+      "  steel: {model: steel-bilinear, density: 7, Young modulus: 1e4, yield stress: 10, hardening ratio: 0.01}\n"
+      "bars: {bar: {points: [[1, 1, 1], [10, 1, 1]], area: 0.01, material: steel}}\nbody:\n"
       "  a: {material: m, spacing: 1, shape: {box: {particles: [12, 4, 3]}}}\n"
       "  b: {material: m, lattice: face-centred cubic, spacing: 1, shape: {box: {particles: [4, 4, 4], first particle: "
       "[20, 0, 0]}}}\n"
@@ -65,6 +69,29 @@ static int add_fields(const ResultView *view, Text *all, Error *error)
   return BRECCIA_OK;
 }
 
+static int add_bars(const ResultView *view, Text *all, Error *error)
+{
+  static const char *const columns[] = {"strain", "stress", "force", "dissipated"};
+  BarView bars;
+  int status = bar_view_open(&bars, view, error);
+  if (status) return status;
+  text_add(all, "bar %s\n", bars.name[0]);
+  add_bits(all, "nodes", bars.points, 3 * sizeof(double) * (size_t)bars.nodes);
+  for (int k = 0; k < 5 * view->steps && !status; ++k) {
+    char unit[64] = "displacement";
+    const int step = k / 5;
+    double *values = k % 5 ? bar_view_read(&bars, view, columns[k % 5 - 1], step, unit, error)
+                           : bar_view_displacements(&bars, view, step, error);
+    if (values)
+      add_bits(all, unit, values, sizeof(double) * (size_t)(k % 5 ? bars.elements : 3 * bars.nodes));
+    else
+      status = result_view_lost(view);
+    free(values);
+  }
+  bar_view_close(&bars);
+  return status;
+}
+
 /** All that can be read from the file, in words. @param[out] words  of a refusal, 512 bytes @return status */
 static int read_everything(Text *all, char *words)
 {
@@ -86,6 +113,7 @@ static int read_everything(Text *all, char *words)
       free(pairs);
     }
     status = add_fields(&view, all, error);
+    if (!status) status = add_bars(&view, all, error);
     result_view_close(&view);
   }
   assert_int_equal(error_count(error), status != 0);
@@ -122,13 +150,16 @@ static int begin(void **state)
 static int end(void **state)
 {
   (void)state;
-  static const char *const files[] = {"results.vtkhdf", "results.xdmf", "checkpoint.h5", "summary.json", "deck.yaml"};
+  static const char *const files[] = {"results.vtkhdf", "results.xdmf",  "checkpoint.h5", "summary.json",
+                                      "deck.yaml",      "bars/bars.csv", "bars/bars.vtp"};
   for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
     char name[96];
     snprintf(name, sizeof name, "%s/%s", folder, files[k]);
     unlink(name);
   }
-  return rmdir(folder); /* nothing else is left there */
+  char bars[96];
+  snprintf(bars, sizeof bars, "%s/bars", folder);
+  return rmdir(bars) || rmdir(folder); /* nothing else is left there */
 }
 
 /** Flips a bit, or flips it back. */
