@@ -84,13 +84,21 @@ int64_t bar_nearest(const Bars *b, int deck_bar, const double point[3])
   return nearest;
 }
 
+/** Strain that an element whose law is not Hooke's would give back. One that has not moved holds all of the stress that it began with: laws with
+ *  rounded corners leave that stress by a jump, which is no flow. */
+static double elastic_strain(const Bars *b, int64_t e)
+{
+  const double begun = -b->stress_held[e] / material_young(points_material(&b->points, e));
+  if (b->strain_held[e] == 0 && b->slack[e] == begun) return -begun;
+  return points_elastic_strain(&b->points, e, b->strain_held[e], b->slack[e]);
+}
+
 double bars_stored(const Bars *b, int64_t from, int64_t to, bool hookean)
 {
   double sum = 0;
   for (int64_t e = from; e < to; ++e) {
     if ((b->young[e] > 0) != hookean) continue;
-    const double strain = b->strain_held[e],
-                 elastic = hookean ? strain : points_elastic_strain(&b->points, e, strain, b->slack[e]);
+    const double elastic = hookean ? b->strain_held[e] : elastic_strain(b, e);
     sum += b->area[e] * b->length[e] * b->stress_held[e] * elastic / 2;
   }
   return sum;
