@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PROBES = 12, MOST_PREDICTING = 60, TOLD_EVERY = 50 };
+enum { PROBES = 12, MOST_PREDICTING = 60, MOST_RENEWING = 150, LOOKED_AT_EVERY = 50, SLOW = 200 };
 /* Highest eigenvalue of K over M in steps of 1: 4 is the limit. */
 static const double highest = 4 / 1.1;
 
@@ -46,7 +46,7 @@ static double answer_elastically(Relaxation *r, Newton *n, double *const f[MOTIO
 {
   const Unknowns *u = &n->linear.unknowns;
   const Domain *d = n->domain;
-  double alpha[MOST_PREDICTING], beta[MOST_PREDICTING] = {0}, slope = 0, share = 1;
+  double alpha[MOST_RENEWING], beta[MOST_RENEWING] = {0}, slope = 0, share = 1;
   const double first = unknowns_product_of_forces(u, f, f);
   int k = 0;
   for (; k < most && unknowns_product_of_forces(u, f, f) > tolerance * tolerance * first; ++k) {
@@ -104,8 +104,10 @@ static void move(Newton *n, double *const v[MOTIONS])
   vectors_combine(n->domain, 1, n->moved, 1, v);
 }
 
-/** Moves all particles as an elastic body would answer to loads and motions. */
-static int predict(Relaxation *r, Newton *n, double time, bool moves, Error *error)
+/** Moves all particles as an elastic body would answer to loads and motions; `change` is how. The momentum is lost.
+ *  @param[in] most   products
+ *  @param[out] work  of the forces out of balance, as they were before, on this way */
+static int predict(Relaxation *r, Newton *n, double time, bool moves, int most, double *work, Error *error)
 {
   const Unknowns *u = &n->linear.unknowns;
   elastic_step_prepare(&r->elastic, n->domain);
@@ -116,9 +118,12 @@ static int predict(Relaxation *r, Newton *n, double time, bool moves, Error *err
   if (moves) add_motions(r, n);
   vectors_clear(n->change, n->domain->particles);
   const double before = unknowns_product_of_forces(u, n->force, n->force);
-  answer_elastically(r, n, n->force, n->change, MOST_PREDICTING, 1e-2);
+  vectors_combine(n->domain, 0, r->momentum, 1, n->force);
+  answer_elastically(r, n, n->force, n->change, most, 1e-2);
   /* Where elastic stiffness is not symmetric, gradients may raise what is left. */
   if (!(unknowns_product_of_forces(u, n->force, n->force) <= before)) vectors_clear(n->change, n->domain->particles);
+  *work = unknowns_work(u, r->momentum, n->change);
+  vectors_clear(r->momentum, n->domain->particles);
   unknowns_spread(u, time, n->change);
   move(n, n->change);
   if (n->log) text_add(n->log, "    elastic prediction: %lld evaluations\n", (long long)n->products);
@@ -157,6 +162,63 @@ static double find_unbalanced(const Newton *n)
   return n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
 }
 
+/** Moves all particles as an elastic body would answer to what is still out of balance, with a mass for the bonds that are left; back, if forces do half
+ *  as much work on the way that is found then, or more. Forces may grow on a long way, across which they are not linear: those are of stiff motions, which
+ *  come to rest at once. @param[out] helped */
+static NewtonOutcome renew(Relaxation *r, Newton *n, double time, bool *helped, Error *error)
+{
+  double before;
+  r->prepared = NAN;
+  if (predict(r, n, time, false, MOST_RENEWING, &before, error)) return NEWTON_FAILED;
+  NewtonOutcome outcome = newton_find_forces(n, time, error);
+  if (outcome == NEWTON_FAILED) return outcome;
+  const double after = outcome == NEWTON_CONVERGED ? unknowns_work(&n->linear.unknowns, n->force, n->change) : INFINITY;
+  *helped = fabs(after) < 0.5 * before;
+  if (!*helped) {
+    vectors_combine(n->domain, -1, n->change, 0, n->change);
+    move(n, n->change);
+    outcome = newton_find_forces(n, time, error);
+    if (n->log) text_add(n->log, "    given back: it is not what the body answers\n");
+  }
+  return outcome;
+}
+
+/** How a motion comes to rest. */
+typedef struct Pace {
+  int64_t look, looked,
+      patience; /* iterations: at which it is looked at, was last, and for how many it is left alone after help that was none */
+  double last; /* out of balance when it was looked at */
+} Pace;
+
+/** Iterations that are left at the pace since it was looked at last. */
+static double iterations_left(const Pace *pace, const Newton *n)
+{
+  const double fall = log(pace->last / n->unbalanced) / (double)(n->iterations - pace->looked);
+  return fall > 0 ? log(n->unbalanced / n->spec->residual) / fall : INFINITY;
+}
+
+/** Where parts of the body hang on few bonds, motions are slow for which the mass is far too large. What softens answers so unlike an elastic body that
+ *  hardly anything would come of it.
+ *  @param[in,out] damping  of the next step */
+static NewtonOutcome keep_pace(Relaxation *r, Newton *n, Pace *pace, double time, double *damping, Error *error)
+{
+  pace->look = n->iterations + LOOKED_AT_EVERY;
+  if (isfinite(pace->last) && !domain_may_soften(n->domain) && iterations_left(pace, n) > SLOW) {
+    bool helped;
+    const NewtonOutcome outcome = renew(r, n, time, &helped, error);
+    if (outcome != NEWTON_CONVERGED) return outcome;
+    n->unbalanced = find_unbalanced(n);
+    *damping = 0;
+    if (!helped) {
+      pace->look += pace->patience;
+      pace->patience *= 2;
+    }
+  }
+  pace->last = n->unbalanced;
+  pace->looked = n->iterations;
+  return NEWTON_CONVERGED;
+}
+
 NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t most, Error *error)
 {
   const Unknowns *u = &n->linear.unknowns;
@@ -170,20 +232,25 @@ NewtonOutcome relaxation_solve(Relaxation *r, Newton *n, double time, int64_t mo
   const bool moves = unknowns_product_of_motions(u, n->change, n->change) > 0;
   n->unbalanced_before = n->unbalanced = find_unbalanced(n);
   if (moves || n->unbalanced > n->spec->residual) {
-    if (predict(r, n, time, moves, error)) return NEWTON_FAILED;
+    double work;
+    if (predict(r, n, time, moves, MOST_PREDICTING, &work, error)) return NEWTON_FAILED;
     if ((outcome = newton_find_forces(n, time, error)) != NEWTON_CONVERGED) return outcome;
     n->unbalanced = find_unbalanced(n);
   }
   double damping = 0;
+  Pace pace = {.look = LOOKED_AT_EVERY, .patience = LOOKED_AT_EVERY, .last = INFINITY};
   vectors_clear(r->momentum, n->domain->particles);
   while (n->unbalanced > n->spec->residual) {
     if (++n->iterations > most) return NEWTON_SLOW;
     if ((outcome = take_step(r, n, time, &damping, error)) != NEWTON_CONVERGED) return outcome;
     n->unbalanced = find_unbalanced(n);
     if (!isfinite(n->unbalanced) && n->exerted > 0) return NEWTON_DIVERGED;
-    if (n->log && (n->iterations % TOLD_EVERY == 0 || n->unbalanced <= n->spec->residual))
+    if (n->log && (n->iterations % LOOKED_AT_EVERY == 0 || n->unbalanced <= n->spec->residual))
       text_add(n->log, "    iteration %lld: residual %.2e, damping %.2g\n", (long long)n->iterations, n->unbalanced,
                damping);
+    if (n->iterations == pace.look && n->unbalanced > n->spec->residual &&
+        (outcome = keep_pace(r, n, &pace, time, &damping, error)) != NEWTON_CONVERGED)
+      return outcome;
   }
   n->reference = n->exerted;
   return newton_has_gone_far(n) ? NEWTON_FAR : NEWTON_CONVERGED;

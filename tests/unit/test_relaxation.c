@@ -6,6 +6,16 @@
 #define PLATE                                                                                                          \
   "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [24, 10]}}}}\n"
 
+/* Its end may turn about a ligament of few bonds: motions ten thousand times slower than the others. */
+#define HANGING                                                                                                        \
+  "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n" PLATE                      \
+  "peridynamics: {formulation: ordinary, space: plane strain, horizon: 2.015 spacings}\n"                              \
+  "cracks: [{cut: {line: [[1.2, -1], [1.2, 0.4]]}}]\n"                                                                 \
+  "failure: {fracture energy: 0.05, near grips: hold}\n"                                                               \
+  "loads: [{on: {face: x-, layers: 3}, displacement: [0, free]},"                                                      \
+  " {on: {face: x+, layers: 3}, displacement: [0.012, free], history: {ramp to: 1}},"                                  \
+  " {on: {nearest: [0.05, 0.05]}, displacement: [free, 0]}, {on: {nearest: [2.35, 0.05]}, displacement: [free, 0]}]\n"
+
 /** Bodies that yield, soften or break, and elastic ones, held and loaded in different ways. */
 static const struct Case {
   const char *name, *deck;
@@ -57,6 +67,7 @@ static const struct Case {
      "loads: [{on: {face: x-, layers: 3}, displacement: [0, 0]},"
      " {on: {face: x+, layers: 3}, displacement: [0.012, 0], history: {ramp to: 1}}]\n",
      4, true},
+    {"a notched plate of ordinary peridynamics that comes to hang on few bonds", HANGING, 8, true},
 };
 
 static breccia_model *rested(const struct Case *c, const char *method)
@@ -187,6 +198,17 @@ static void beyond_its_strength_a_bar_stays_as_it_was(void **state)
   breccia_model_destroy(&model);
 }
 
+static void who_comes_to_rest_slowly_is_told_to_allow_more(void **state)
+{
+  (void)state;
+  breccia_model *model =
+      model_of(UNITS HANGING "solve: {static: {increments: 8, method: relaxation, relaxation iterations: 100}}\n");
+  step_must_fail(model, "broken bonds the body finds no equilibrium any more at time |: 100 iterations left |; it has "
+                        "failed at this load, or hangs on few bonds and comes to rest slowly: allow more 'relaxation "
+                        "iterations', go on with a stage of 'explicit', or prescribe displacements instead of forces");
+  breccia_model_destroy(&model);
+}
+
 /** A body that may soften, and whose step has no equilibrium by Newton's method nor by the relaxation that follows it, is told of both ways out. */
 static void who_cannot_carry_a_load_is_told_the_ways_out(void **state)
 {
@@ -239,6 +261,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(it_finds_the_rest_that_newton_finds),
       cmocka_unit_test(an_unloaded_body_is_at_rest_again),
+      cmocka_unit_test(who_comes_to_rest_slowly_is_told_to_allow_more),
       cmocka_unit_test(who_cannot_carry_a_load_is_told_the_ways_out),
       cmocka_unit_test(it_goes_on_where_a_bar_gives_way),
       cmocka_unit_test(it_needs_few_steps_for_any_size),
