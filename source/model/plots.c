@@ -123,8 +123,7 @@ static int nearest_state(const ResultView *view, double time, Error *error)
   for (int k = 0; k < view->steps; ++k)
     if (fabs(view->times[k] - time) < fabs(view->times[nearest] - time)) nearest = k;
   if (time >= begin - rounding && time <= end + rounding) return nearest;
-  error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only", time,
-            begin, end);
+  error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only", time, begin, end);
   return -1;
 }
 

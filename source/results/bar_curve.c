@@ -101,7 +101,8 @@ static void find_title(const Curves *c, const ResultView *view, const BarCurveOp
   if (c->bar_count == 1)
     snprintf(title, size, "%s along bar '%.60s'%s", heading, c->bars.name[c->chosen[0]], at);
   else if (c->bar_count < c->bars.lines)
-    snprintf(title, size, "%s along bars%s: %d of %d, those with the largest", heading, at, c->bar_count, c->bars.lines);
+    snprintf(title, size, "%s along bars%s: %d of %d, those with the largest", heading, at, c->bar_count,
+             c->bars.lines);
   else
     snprintf(title, size, "%s along bars%s", heading, at);
 }
@@ -127,7 +128,10 @@ int bar_curve_draw(const ResultView *view, const BarCurveOptions *o, const char 
     find_title(c, view, o, title, sizeof title);
     const PlotOptions options = {
         .title = o->title ? o->title : title,
-        .x = {.words = "along the bar", .unit = view->length_unit, .label = o->x_label, .logarithmic = is_logarithmic(o, 'x')},
+        .x = {.words = "along the bar",
+              .unit = view->length_unit,
+              .label = o->x_label,
+              .logarithmic = is_logarithmic(o, 'x')},
         .y = {.words = o->column, .unit = c->unit, .label = o->y_label, .logarithmic = is_logarithmic(o, 'y')},
         .low = o->low,
         .high = o->high,

@@ -72,8 +72,8 @@ int bar_states_write(hid_t breccia, const Domain *d, int64_t state)
   double *values = memory_plain(3 * (size_t)nodes, sizeof(double));
   int bad = group < 0 || !values;
   for (int64_t k = 0; !bad && k < nodes; ++k) bar_node_displacement(b, k, values + 3 * k);
-  bad = bad || dataset_write(group, "displacement", H5T_NATIVE_DOUBLE, 3, (hsize_t)(state * nodes), (hsize_t)nodes,
-                             values);
+  bad = bad ||
+        dataset_write(group, "displacement", H5T_NATIVE_DOUBLE, 3, (hsize_t)(state * nodes), (hsize_t)nodes, values);
   const BarColumn *c;
   for (int k = 0; !bad && (c = bar_column_at(k)); ++k) {
     if (!bar_column_is_there(c, b)) continue;
@@ -91,8 +91,8 @@ int bar_states_cut(hid_t breccia, const Domain *d, int64_t states)
   if (!b || H5Lexists(breccia, "Bars", H5P_DEFAULT) <= 0) return 0;
   const hid_t group = H5Gopen2(breccia, "Bars", H5P_DEFAULT);
   const BarColumn *c;
-  int bad = group < 0 ||
-            dataset_write(group, "displacement", H5T_NATIVE_DOUBLE, 3, (hsize_t)(states * nodes_of(b)), 0, NULL);
+  int bad =
+      group < 0 || dataset_write(group, "displacement", H5T_NATIVE_DOUBLE, 3, (hsize_t)(states * nodes_of(b)), 0, NULL);
   for (int k = 0; !bad && (c = bar_column_at(k)); ++k)
     if (bar_column_is_there(c, b))
       bad = dataset_write(group, c->name, H5T_NATIVE_DOUBLE, 1, (hsize_t)(states * b->count), 0, NULL);

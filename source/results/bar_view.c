@@ -78,8 +78,7 @@ double *bar_view_read(const BarView *b, const ResultView *view, const char *colu
   if (!bar_column_find(column) || !has(view, column)) {
     Text names = {0};
     for (int k = 0; bar_column_at(k); ++k)
-      if (has(view, bar_column_at(k)->name))
-        text_add(&names, "%s%s", names.length ? ", " : "", bar_column_at(k)->name);
+      if (has(view, bar_column_at(k)->name)) text_add(&names, "%s%s", names.length ? ", " : "", bar_column_at(k)->name);
     error_add(error, BRECCIA_USER_ERROR, "bars have no '%s' in the result file; it holds %s of them", column,
               names.length ? text_words(&names) : "nothing");
     text_free(&names);
@@ -101,8 +100,8 @@ double *bar_view_along(const BarView *b, Error *error)
   for (int n = 0; along && n < b->lines; ++n) {
     double before = 0;
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
-      const double *p = b->points + 3 * (e + n), length = sqrt(pow(p[3] - p[0], 2) + pow(p[4] - p[1], 2) +
-                                                               pow(p[5] - p[2], 2));
+      const double *p = b->points + 3 * (e + n),
+                   length = sqrt(pow(p[3] - p[0], 2) + pow(p[4] - p[1], 2) + pow(p[5] - p[2], 2));
       along[e] = before + length / 2;
       before += length;
     }

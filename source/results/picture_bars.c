@@ -18,7 +18,8 @@ static int hide(SceneBars *bars, const ResultView *view, const PictureOptions *o
   for (int n = 0; n < b->lines; ++n)
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
       const double *p = b->points + 3 * (e + n), middle[3] = {(p[0] + p[3]) / 2, (p[1] + p[4]) / 2, (p[2] + p[5]) / 2};
-      bars->hidden[e] = o->inside && !shape_contains(o->inside, NULL, view->plane ? 2 : 3, middle, 1e-6 * view->spacing);
+      bars->hidden[e] =
+          o->inside && !shape_contains(o->inside, NULL, view->plane ? 2 : 3, middle, 1e-6 * view->spacing);
       shown += !bars->hidden[e];
     }
   if (shown) return BRECCIA_OK;
@@ -116,9 +117,8 @@ static void draw_line(cairo_t *cr, const Page *page, const Scene *scene, int64_t
 {
   for (int end = 0; end < 2; ++end) {
     const double x = page->left + (scene->bars.x[node + end] - scene->x0) * page->scale;
-    const double y = page->thick > 0
-                         ? page->top + page->thick / 2
-                         : page->top + page->high - (scene->bars.y[node + end] - scene->y0) * page->scale;
+    const double y = page->thick > 0 ? page->top + page->thick / 2
+                                     : page->top + page->high - (scene->bars.y[node + end] - scene->y0) * page->scale;
     if (end)
       cairo_line_to(cr, x, y);
     else

@@ -21,10 +21,13 @@ static breccia_model *stretched(void)
       "materials:\n"
       "  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n"
       "  steel: {model: steel-bilinear, density: 7.85, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01}\n"
-      "body: {b: {material: soft, lattice: square, spacing: 0.05, thickness: 0.1, shape: {box: {from: [0, 0], to: [2, 0.6]}}}}\n"
+      "body: {b: {material: soft, lattice: square, spacing: 0.05, thickness: 0.1, shape: {box: {from: [0, 0], to: [2, "
+      "0.6]}}}}\n"
       "bars:\n"
-      "  along: {points: [[0.2, 0.2], [1.8, 0.2]], diameter: 0.01, material: steel, bond: {law: linear, stiffness: 1.4e7}}\n"
-      "  across: {points: [[0.5, 0.1], [0.5, 0.5]], area: 2e-4, material: steel, repeat: {along: [1, 0], pitch: 0.5, number: 2}}\n"
+      "  along: {points: [[0.2, 0.2], [1.8, 0.2]], diameter: 0.01, material: steel, bond: {law: linear, stiffness: "
+      "1.4e7}}\n"
+      "  across: {points: [[0.5, 0.1], [0.5, 0.5]], area: 2e-4, material: steel, repeat: {along: [1, 0], pitch: 0.5, "
+      "number: 2}}\n"
       "peridynamics: {formulation: bond-based, space: plane stress}\n"
       "loads: [{on: {all: yes}, field: {displacement: ['%g*x', '-%g*y']}, history: {ramp to: 1}}]\n"
       "solve: {static: {increments: %d, end time: 1}}\nresults: {number: 4, precision: double}\npictures: []\n",
@@ -255,7 +258,8 @@ static void bars_move_with_the_body_and_stay_in_the_picture(void **state)
           if (scene.bars.hidden[e]) continue;
           ++shown;
           for (int64_t k = e + n; k <= e + n + 1; ++k) {
-            const double x = b->points[3 * k] * (1 + factor * STRETCH), y = b->points[3 * k + 1] * (1 - factor * STRETCH);
+            const double x = b->points[3 * k] * (1 + factor * STRETCH),
+                         y = b->points[3 * k + 1] * (1 - factor * STRETCH);
             assert_near(scene.bars.x[k], x, 1e-9);
             assert_near(scene.bars.y[k], y, 1e-9);
             assert_true(x > survey.x0 && x < survey.x1 && y > survey.y0 && y < survey.y1);
@@ -287,8 +291,7 @@ static void bars_are_drawn_in_their_colours_over_a_pale_body(void **state)
   (void)state;
   ResultView view;
   open_view(&view, "whole");
-  PictureOptions o = {
-      .bars = "stress", .deformed = 1, .azimuth = NAN, .elevation = NAN, .low = -1e5, .high = 1e5};
+  PictureOptions o = {.bars = "stress", .deformed = 1, .azimuth = NAN, .elevation = NAN, .low = -1e5, .high = 1e5};
   int wide, high, red, blue;
   unsigned char *pixels = picture_pixels(&view, view.steps - 1, &o, NULL, &wide, &high, NULL);
   assert_non_null(pixels);
@@ -296,8 +299,9 @@ static void bars_are_drawn_in_their_colours_over_a_pale_body(void **state)
   free(pixels);
   const double scale = 640 / 2.0, width = 3; /* pixels a metre; of a line */
   assert_near(red, 1.6 * scale * width, 0.15 * 1.6 * scale * width);
-  assert_near(blue, 2 * 0.4 * scale * width, 0.3 * 2 * 0.4 * scale * width); /* edges of upright lines fall between pixels */
-  o.low = 1e5; /* colours of a scale that has no grey */
+  assert_near(blue, 2 * 0.4 * scale * width,
+              0.3 * 2 * 0.4 * scale * width); /* edges of upright lines fall between pixels */
+  o.low = 1e5;                                /* colours of a scale that has no grey */
   o.high = 2e5;
   pixels = picture_pixels(&view, view.steps - 1, &o, NULL, &wide, &high, NULL);
   assert_non_null(pixels);
