@@ -197,7 +197,7 @@ static double iterations_left(const Pace *pace, const Newton *n)
   return fall > 0 ? log(n->unbalanced / n->spec->residual) / fall : INFINITY;
 }
 
-/** Where parts of the body hang on few bonds, motions are slow for which the mass is far too large. What softens answers so unlike an elastic body that
+/** Where few bonds hold parts of the body together, motions are slow for which the mass is far too large. What softens answers so unlike an elastic body that
  *  hardly anything would come of it.
  *  @param[in,out] damping  of the next step */
 static NewtonOutcome keep_pace(Relaxation *r, Newton *n, Pace *pace, double time, double *damping, Error *error)

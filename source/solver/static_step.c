@@ -186,14 +186,14 @@ static int fail_with_broken(const Static *s, NewtonOutcome outcome, Error *error
 {
   char words[320];
   const bool slow = outcome == NEWTON_SLOW && s->newton.relaxes;
-  return error_add(error, BRECCIA_FAILURE,
-                   "static: with %lld broken bonds the body finds no equilibrium any more at time %g %s: %s; it has "
-                   "failed at this load%s go on with "
-                   "a stage of 'explicit', or prescribe displacements instead of forces",
-                   (long long)s->domain->broken_count, s->clock->time, s->clock->time_unit,
-                   describe_failure(s, outcome, words, sizeof words),
-                   slow ? ", or hangs on few bonds and comes to rest slowly: allow more 'relaxation iterations',"
-                        : ":");
+  return error_add(
+      error, BRECCIA_FAILURE,
+      "static: with %lld broken bonds the body finds no equilibrium any more at time %g %s: %s; it has "
+      "failed at this load%s go on with "
+      "a stage of 'explicit', or prescribe displacements instead of forces",
+      (long long)s->domain->broken_count, s->clock->time, s->clock->time_unit,
+      describe_failure(s, outcome, words, sizeof words),
+      slow ? ", or few bonds hold it together and it comes to rest slowly: allow more 'relaxation iterations'," : ":");
 }
 
 /** The next stage goes on from where the body is: at the last state of rest, without the bonds that have broken since. */
