@@ -65,6 +65,7 @@ static void destroy(void *formulation)
   Micropolar *m = formulation;
   if (!m) return;
   for (int k = 0; k < 4; ++k) places_free(&m->shown[k]);
+  for (int k = 0; k < 3; ++k) places_free(&m->spin[k]);
   micropolar_damage_destroy(m);
   free(m->constants);
   free(m->rows);
@@ -119,6 +120,8 @@ static void *create(const FormulationParts *parts, Error *error)
   if (!failed && m->secant && m->foreign)
     failed = error_add(error, BRECCIA_USER_ERROR,
                        "kinematics: links of 'thesis' cannot stand beside other formulations; leave 'kinematics' out");
+  for (int k = 0; k < 3 && parts->space == SPACE_3D; ++k)
+    failed |= !(m->spin[k] = places_array(m->particles->places, "rotations", error));
   for (int block = 0; block < blocks && !failed; ++block)
     if (!block_is_foreign(m->foreign, m->particles, block)) failed = micropolar_find_constants(m, block, error);
   for (int block = 0; block < blocks && !failed; ++block)
@@ -142,6 +145,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
   const Micropolar *m = formulation;
   double *const *u = sweep->at ? sweep->at : m->particles->displacement;
   if (m->particles->motions == 4 || !sweep->at) m->sweeps->show(m, u, sweep->first, sweep->last);
+  if (sweep->at && m->sweeps->show_spins) m->sweeps->show_spins(m, u, sweep->first, sweep->last);
   return -1;
 }
 
@@ -157,7 +161,8 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   const Micropolar *m = formulation;
   for (int64_t slice = sweep->first; slice < sweep->last; ++slice) {
     if (sweep->at) {
-      micropolar_resist_changes(m, sweep->at, slice);
+      if (!m->secant) m->sweeps->resist_changes(m, sweep->at, slice);
+      if (m->secant || m->foreign) micropolar_resist_changes_one_by_one(m, sweep->at, slice, !m->secant);
       continue;
     }
     if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
@@ -299,6 +304,7 @@ static size_t bytes(const void *formulation)
   const Micropolar *m = formulation;
   size_t arrays = 0;
   for (int k = 0; k < 4; ++k) arrays += m->shown[k] != NULL;
+  for (int k = 0; k < 3; ++k) arrays += m->spin[k] != NULL;
   return arrays * sizeof(double) * (size_t)m->particles->places + (size_t)m->family->pattern_count * sizeof *m->rows +
          micropolar_damage_bytes(m);
 }

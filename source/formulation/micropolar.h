@@ -52,6 +52,10 @@ typedef struct Micropolar Micropolar;
 typedef struct MicropolarSweeps {
   /** Forces and moments on a slice, by series where stretches and rotations of all of its links are small. */
   void (*resist)(const Micropolar *m, int64_t slice);
+  /** Their changes with changes of displacements and rotations, which stand in their places. @param[in] at  where the step was linearised */
+  void (*resist_changes)(const Micropolar *m, double *const *at, int64_t slice);
+  /** What changes of rotations of places are as spins. NULL: the same. */
+  void (*show_spins)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
   /** What slices first .. last - 1 show at rotations among these displacements. */
   void (*show)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
 } MicropolarSweeps;
@@ -73,6 +77,7 @@ struct Micropolar {
   LinkConstants *constants; /* [blocks] */
   LinkRow *rows;            /* [patterns] */
   LinkDamage *damage;       /* NULL: all links are elastic */
+  double *spin[3];          /* [places] of changes in space */
   double *shown[4]; /* [places] cosine and sine of the rotation in the plane, or the quaternion of a place in space */
   const MicropolarSweeps *sweeps;
 };
@@ -141,8 +146,9 @@ typedef struct LinkChange {
 LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t place, const Link *link,
                              const LinkMotion *motion);
 
-/** Changes of forces and moments of a slice with changes of displacements and rotations, which stand in their places. */
-void micropolar_resist_changes(const Micropolar *m, double *const *at, int64_t slice);
+/** Changes of forces and moments of a slice with changes of displacements and rotations, which stand in their places, link by link, or only of its links
+ *  to places of other formulations, added to what stands there. */
+void micropolar_resist_changes_one_by_one(const Micropolar *m, double *const *at, int64_t slice, bool only_foreign);
 /** As FormulationType describes them. */
 int64_t micropolar_point_count(const void *formulation);
 int micropolar_point(const void *formulation, int64_t number, Operator *point, Error *error);

@@ -20,8 +20,9 @@ LANES_INLINE bool any_of(LaneMask mask)
 /** Links of half a slot, whichever. @param[in] u  of this end */
 LANES_INLINE LinkLanes links_of(const Micropolar *m, int64_t slice, int64_t slot, int half, const Lanes u[3])
 {
-  if (slot < m->family->stored[slice]) return lattice_links(m, slot, half, 3, u);
-  return stored_links(m, slice * SLICE + LANES * half, slot, half, m->family->intact[slot], 3, u);
+  double *const *at = m->particles->displacement;
+  if (slot < m->family->stored[slice]) return lattice_links(m, at, slot, half, 3, u);
+  return stored_links(m, at, slice * SLICE + LANES * half, slot, half, m->family->intact[slot], 3, u);
 }
 
 /** (|y|^2 - |xi|^2) / |xi|^2, |xi| being longer by the free strain. */

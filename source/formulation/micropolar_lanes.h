@@ -79,8 +79,9 @@ LANES_INLINE Lanes of_others(const LinkLanes *link, const double *from)
   return link->neighbours ? lanes_gather(from, link->neighbours) : lanes_load(from + link->there);
 }
 
-/** @param[in] u  of this end */
-LANES_INLINE LinkLanes lattice_links(const Micropolar *m, int64_t slot, int half, int dimensions, const Lanes *u)
+/** @param[in] at  displacements @param[in] u  of this end */
+LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int64_t slot, int half, int dimensions,
+                                     const Lanes *u)
 {
   const Family *f = m->family;
   const LinkRow *row = &m->rows[f->pattern[slot]];
@@ -92,7 +93,7 @@ LANES_INLINE LinkLanes lattice_links(const Micropolar *m, int64_t slot, int half
   for (int k = 0; k < dimensions; ++k) {
     l.n[k] = lanes_set(row->n[k]);
     /* the ends of broken links may be so far apart that the series would be none */
-    l.e[k] = lanes_intact(l.intact, half, of_others(&l, m->particles->displacement[k]) - u[k]) * l.by_length;
+    l.e[k] = lanes_intact(l.intact, half, of_others(&l, at[k]) - u[k]) * l.by_length;
   }
   return l;
 }
@@ -116,8 +117,8 @@ LANES_INLINE unsigned own_bits(const Micropolar *m, int64_t slot)
 }
 
 /** @param[in] place  of the first lane of the half slice @param[in] wanted  bits of links */
-LANES_INLINE LinkLanes stored_links(const Micropolar *m, int64_t place, int64_t slot, int half, unsigned wanted,
-                                    int dimensions, const Lanes *u)
+LANES_INLINE LinkLanes stored_links(const Micropolar *m, double *const *at, int64_t place, int64_t slot, int half,
+                                    unsigned wanted, int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
@@ -130,7 +131,7 @@ LANES_INLINE LinkLanes stored_links(const Micropolar *m, int64_t place, int64_t 
   for (int k = 0; k < dimensions; ++k) {
     l.n[k] = lanes_where(intact, of_others(&l, p->position[k]) - lanes_load(p->position[k] + place));
     square += l.n[k] * l.n[k];
-    l.e[k] = lanes_where(intact, of_others(&l, p->displacement[k]) - u[k]);
+    l.e[k] = lanes_where(intact, of_others(&l, at[k]) - u[k]);
   }
   l.by_length = lanes_set(1) / lanes_choose(intact, lanes_root(square), lanes_set(1));
   for (int k = 0; k < dimensions; ++k) {

@@ -169,14 +169,16 @@ LinkChange micropolar_change(const Micropolar *m, double *const *at, int64_t pla
   return change;
 }
 
-void micropolar_resist_changes(const Micropolar *m, double *const *at, int64_t slice)
+void micropolar_resist_changes_one_by_one(const Micropolar *m, double *const *at, int64_t slice, bool only_foreign)
 {
   const Particles *p = m->particles;
   const Family *f = m->family;
-  for (int k = 0; k < p->motions; ++k) memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
-  for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
+  for (int k = 0; k < p->motions && !only_foreign; ++k)
+    memset(p->internal[k] + slice * SLICE, 0, SLICE * sizeof(double));
+  for (int64_t slot = only_foreign ? f->stored[slice] : f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
       if (!(f->intact[slot] >> lane & 1)) continue;
+      if (only_foreign && !is_foreign(m->foreign, family_bond(f, slice, slot, lane).neighbour)) continue;
       const int64_t place = slice * SLICE + lane;
       const Link l = micropolar_link(m, at, slice, slot, lane);
       const LinkMotion motion = micropolar_motion(m, at, place, l.bond.neighbour);

@@ -141,11 +141,11 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
     find_matrix(&own);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
       const LinkRow *row = &m->rows[f->pattern[slot]];
-      const LinkLanes l = lattice_links(m, slot, half, 3, own.u);
+      const LinkLanes l = lattice_links(m, p->displacement, slot, half, 3, own.u);
       add_link(m, &l, lattice_stiffness(m, &l), weak, row->bending > 0, row->twist > 0, any, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, place, slot, half, own_bits(m, slot), 3, own.u);
+      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slot), 3, own.u);
       add_link(m, &l, stored_stiffness(m, place, &l), weak, true, true, any, &own);
     }
     if (!any && !lanes_are_within(own.within)) return false;
@@ -162,6 +162,219 @@ static void resist(const Micropolar *m, int64_t slice)
   if (!sweep(m, slice, false)) sweep(m, slice, true);
 }
 
+/* ---- changes: as micropolar_linear.c does for a link ---- */
+
+/** Half a slice: what it has, its changes, and how what acts on it changes. */
+typedef struct HalfChange {
+  int64_t place;
+  Lanes u[3], q[4], v[3], spin[3];
+  Lanes force[3], moment[3];
+} HalfChange;
+
+/** An end as LinkEnd, and its change. */
+typedef struct EndChange {
+  Lanes a[3], b[3], cosine, rotation[3], factor, bend;
+  Lanes a_change[3], b_change[3], cosine_change, rotation_change[3], factor_change, bend_change;
+} EndChange;
+
+LANES_INLINE EndChange change_end(const Lanes q[4], const Lanes n[3], const Lanes chord[3], const Lanes chord_change[3],
+                                  const Lanes spin[3])
+{
+  EndChange e;
+  Lanes turned[3], carried[3];
+  turn_lanes(q, n, e.a);
+  cross_lanes(chord, e.a, e.b);
+  e.cosine = dot_lanes(chord, e.a);
+  const Lanes x = dot_lanes(e.b, e.b), zero = lanes_set(0), two = lanes_set(2);
+  const EndLanes of = end_rotation(x, e.cosine, true);
+  e.factor = of.factor;
+  e.bend = of.bend;
+  cross_lanes(spin, e.a, e.a_change);
+  cross_lanes(chord_change, e.a, turned);
+  cross_lanes(chord, e.a_change, carried);
+  e.cosine_change = dot_lanes(chord_change, e.a) + dot_lanes(chord, e.a_change);
+  e.factor_change = -e.bend * e.cosine_change;
+  const LaneMask small = (LaneMask)(x < lanes_set(1e-3)) & ~(LaneMask)(e.cosine < zero);
+  const Lanes series = lanes_set(16.0 / 105) * x + lanes_set(16.0 / 105),
+              near = -two * e.cosine * (lanes_set(2.0 / 15) + x * series),
+              far = (lanes_set(3) * e.cosine * e.bend - e.factor) / lanes_choose(small, lanes_set(1), x);
+  e.bend_change = e.cosine_change * lanes_choose(small, near, far);
+  for (int k = 0; k < 3; ++k) {
+    e.b_change[k] = turned[k] + carried[k];
+    e.rotation[k] = e.factor * e.b[k];
+    e.rotation_change[k] = e.factor_change * e.b[k] + e.factor * e.b_change[k];
+  }
+  return e;
+}
+
+/** Adds derivatives of the energy by the chord, and their changes. */
+LANES_INLINE void add_by_chord(const EndChange *e, const Lanes moment[3], const Lanes moment_change[3],
+                               Lanes by_chord[2][3])
+{
+  const Lanes along = dot_lanes(e->b, moment),
+              along_change = dot_lanes(e->b_change, moment) + dot_lanes(e->b, moment_change);
+  Lanes arm[3], turned[3], carried[3];
+  cross_lanes(e->a, moment, arm);
+  cross_lanes(e->a_change, moment, turned);
+  cross_lanes(e->a, moment_change, carried);
+  for (int k = 0; k < 3; ++k) {
+    by_chord[0][k] += e->factor * arm[k] - e->bend * along * e->a[k];
+    by_chord[1][k] += e->factor_change * arm[k] + e->factor * (turned[k] + carried[k]) -
+                      (e->bend_change * along + e->bend * along_change) * e->a[k] - e->bend * along * e->a_change[k];
+  }
+}
+
+/** Adds how the derivative by the spin of an end changes. */
+LANES_INLINE void add_by_spin(const EndChange *e, const Lanes chord[3], const Lanes chord_change[3],
+                              const Lanes moment[3], const Lanes moment_change[3], Lanes by_spin[3])
+{
+  const Lanes along = dot_lanes(e->b, moment), off = dot_lanes(e->a, moment),
+              along_change = dot_lanes(e->b_change, moment) + dot_lanes(e->b, moment_change),
+              off_change = dot_lanes(e->a_change, moment) + dot_lanes(e->a, moment_change);
+  const Lanes of_b = e->bend_change * along + e->bend * along_change, of_b_change = e->bend * along,
+              of_moment = e->factor_change * e->cosine + e->factor * e->cosine_change,
+              of_moment_change = e->factor * e->cosine, of_chord = e->factor_change * off + e->factor * off_change,
+              of_chord_change = e->factor * off;
+  for (int k = 0; k < 3; ++k)
+    by_spin[k] += of_b * e->b[k] + of_b_change * e->b_change[k] + of_moment * moment[k] +
+                  of_moment_change * moment_change[k] - of_chord * chord[k] - of_chord_change * chord_change[k];
+}
+
+/** @param[in] spins  of this end and the other */
+LANES_INLINE void add_twist_change(const Lanes own[4], const Lanes q[4], const Lanes chord[3],
+                                   const Lanes chord_change[3], const Lanes spins[2][3], Lanes twist,
+                                   Lanes by_chord[2][3], Lanes by_spin[3])
+{
+  Lanes r[4], apart[3], sum[3], turned[3], change[4], across[3], first[3], second[3];
+  const Lanes half = lanes_set(0.5), twice = twist + twist;
+  twist_of(own, q, r);
+  for (int k = 0; k < 3; ++k) {
+    apart[k] = spins[1][k] - spins[0][k];
+    sum[k] = spins[1][k] + spins[0][k];
+  }
+  cross_lanes(sum, r + 1, turned);
+  change[0] = -half * dot_lanes(apart, r + 1);
+  for (int k = 0; k < 3; ++k) change[1 + k] = half * (r[0] * apart[k] + turned[k]);
+  const Lanes torque = twice * dot_lanes(chord, r + 1),
+              torque_change = twice * (dot_lanes(chord_change, r + 1) + dot_lanes(chord, change + 1));
+  cross_lanes(r + 1, chord, across);
+  cross_lanes(change + 1, chord, first);
+  cross_lanes(r + 1, chord_change, second);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes along = r[0] * chord[k], along_change = change[0] * chord[k] + r[0] * chord_change[k];
+    by_chord[0][k] += (torque + torque) * r[1 + k];
+    by_chord[1][k] += lanes_set(2) * (torque_change * r[1 + k] + torque * change[1 + k]);
+    by_spin[k] += torque_change * (across[k] - along) + torque * (first[k] + second[k] - along_change);
+  }
+}
+
+/** @param[in] bends, twists  whether some of the links do */
+LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness,
+                             const breccia_link *weak, bool bends, bool twists, HalfChange *own)
+{
+  double *const *v = m->particles->displacement;
+  Lanes chord[3], chord_change[3], apart[3], d = lanes_set(0);
+  for (int k = 0; k < 3; ++k) {
+    chord[k] = l->n[k] + l->e[k];
+    d += l->e[k] * (l->n[k] + chord[k]);
+    apart[k] = lanes_intact(l->intact, l->half, of_others(l, v[k]) - own->v[k]);
+  }
+  const Lanes g = shortening(d, RANGE_ANY), inverse = lanes_set(1) - g, over_length = l->by_length * inverse,
+              stretch = d * inverse - g - free_of(m, own->place, l);
+  for (int k = 0; k < 3; ++k) chord[k] *= inverse;
+  const Lanes grown = dot_lanes(chord, apart);
+  for (int k = 0; k < 3; ++k) chord_change[k] = (apart[k] - grown * chord[k]) * over_length;
+  Lanes left[2] = {lanes_set(1), lanes_set(1)};
+  if (weak) find_left(m, weak, own->place, l, stretch, &left[0], &left[1]);
+  const Lanes axial = stiffness.axial * left[0];
+  for (int k = 0; k < 3; ++k) own->force[k] += axial * (grown * l->by_length * chord[k] + stretch * chord_change[k]);
+  if (!bends) return;
+  const Lanes q[4] = {of_others(l, m->shown[0]), of_others(l, m->shown[1]), of_others(l, m->shown[2]),
+                      of_others(l, m->shown[3])};
+  Lanes spins[2][3], by_chord[2][3], by_spin[3];
+  for (int k = 0; k < 3; ++k) {
+    spins[0][k] = own->spin[k];
+    spins[1][k] = of_others(l, m->spin[k]);
+    by_chord[0][k] = by_chord[1][k] = by_spin[k] = lanes_set(0);
+  }
+  const EndChange ends[2] = {change_end(own->q, l->n, chord, chord_change, spins[0]),
+                             change_end(q, l->n, chord, chord_change, spins[1])};
+  const Lanes bending = stiffness.bending * left[1], twice = bending + bending;
+  for (int e = 0; e < 2; ++e) {
+    Lanes moment[3], moment_change[3];
+    for (int k = 0; k < 3; ++k) {
+      const EndChange *here = &ends[e], *other = &ends[1 - e];
+      moment[k] = twice * (here->rotation[k] + here->rotation[k] + other->rotation[k]);
+      moment_change[k] = twice * (here->rotation_change[k] + here->rotation_change[k] + other->rotation_change[k]);
+    }
+    add_by_chord(&ends[e], moment, moment_change, by_chord);
+    if (e == 0) add_by_spin(&ends[e], chord, chord_change, moment, moment_change, by_spin);
+  }
+  if (twists) add_twist_change(own->q, q, chord, chord_change, spins, stiffness.twist * left[1], by_chord, by_spin);
+  const Lanes along = dot_lanes(chord, by_chord[0]),
+              along_change = dot_lanes(chord_change, by_chord[0]) + dot_lanes(chord, by_chord[1]);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes across = by_chord[0][k] - along * chord[k],
+                across_change = by_chord[1][k] - along * chord_change[k] - along_change * chord[k];
+    own->force[k] += (across_change - across * grown * over_length) * over_length;
+    own->moment[k] -= by_spin[k];
+  }
+}
+
+static void resist_changes(const Micropolar *m, double *const *at, int64_t slice)
+{
+  const Family *f = m->family;
+  const Particles *p = m->particles;
+  const breccia_link *weak = weakened_by(m, slice);
+  for (int half = 0; half < HALVES; ++half) {
+    const int64_t place = slice * SLICE + LANES * half;
+    HalfChange own = {.place = place};
+    for (int k = 0; k < 3; ++k) {
+      own.u[k] = lanes_load(at[k] + place);
+      own.v[k] = lanes_load(p->displacement[k] + place);
+      own.spin[k] = lanes_load(m->spin[k] + place);
+      own.force[k] = own.moment[k] = lanes_set(0);
+    }
+    for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+      const LinkRow *row = &m->rows[f->pattern[slot]];
+      const LinkLanes l = lattice_links(m, at, slot, half, 3, own.u);
+      add_change(m, &l, lattice_stiffness(m, &l), weak, row->bending > 0, row->twist > 0, &own);
+    }
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = stored_links(m, at, place, slot, half, own_bits(m, slot), 3, own.u);
+      add_change(m, &l, stored_stiffness(m, place, &l), weak, true, true, &own);
+    }
+    for (int k = 0; k < 3; ++k) {
+      lanes_store(p->internal[k] + place, own.force[k]);
+      lanes_store(p->internal[ROTATION + k] + place, own.moment[k]);
+    }
+  }
+}
+
+/** As find_spin of micropolar_linear.c. */
+static void show_spins(const Micropolar *m, double *const *at, int64_t first, int64_t last)
+{
+  double *const *v = m->particles->displacement;
+  for (int64_t place = first * SLICE; place < last * SLICE; place += LANES) {
+    Lanes held[3], spin[3], once[3], twice[3], sine, cosine;
+    for (int k = 0; k < 3; ++k) {
+      held[k] = lanes_load(at[ROTATION + k] + place);
+      spin[k] = lanes_load(v[ROTATION + k] + place);
+    }
+    const Lanes square = dot_lanes(held, held), angle = lanes_root(square), one = lanes_set(1);
+    const LaneMask small = (LaneMask)(angle < lanes_set(1e-3));
+    const Lanes safe = lanes_choose(small, one, square), safe_angle = lanes_choose(small, one, angle);
+    lanes_sine_cosine(angle, &sine, &cosine);
+    cross_lanes(held, spin, once);
+    cross_lanes(held, once, twice);
+    const Lanes a = lanes_choose(small, lanes_set(0.5) - square * lanes_set(1.0 / 24), (one - cosine) / safe),
+                b = lanes_choose(small, lanes_set(1.0 / 6) - square * lanes_set(1.0 / 120),
+                                 (angle - sine) / (safe * safe_angle));
+    for (int k = 0; k < 3; ++k) lanes_store(m->spin[k] + place, spin[k] + a * once[k] + b * twice[k]);
+  }
+}
+
 static void show(const Micropolar *m, double *const *at, int64_t first, int64_t last)
 {
   Lanes q[4];
@@ -171,4 +384,5 @@ static void show(const Micropolar *m, double *const *at, int64_t first, int64_t 
   }
 }
 
-const MicropolarSweeps LANES_NAMED(micropolar_space) = {.resist = resist, .show = show};
+const MicropolarSweeps LANES_NAMED(micropolar_space) = {
+    .resist = resist, .resist_changes = resist_changes, .show_spins = show_spins, .show = show};
