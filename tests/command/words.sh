@@ -208,10 +208,10 @@ contains "at rest" "$(cat out)" "at rest: forces out of balance are "
 contains "at rest: supports" "$(cat out)" "supports and prescribed motions exert [-0.16, "
 contains "at rest: loads" "$(cat out)" "kN, loads [0.16, 0, 0]; of all these forces "
 read -r x y z <<< "$(figures $s reactions)"
-near "at rest: reactions along x" "$x" -0.16 1e-6
+near "at rest: reactions along x" "$x" -0.16 1e-8
 near "at rest: moment of reactions" "$(figures $s 'moment of reactions' | cut -d' ' -f3)" 0.064 1e-3
 checks=$((checks + 1))
-awk -v left="$(figures $s left)" 'BEGIN {exit !(left != "" && left < 1e-6)}' || fail "at rest: left is $(figures $s left)"
+awk -v left="$(figures $s left)" 'BEGIN {exit !(left != "" && left < 1e-8)}' || fail "at rest: left is $(figures $s left)"
 grep -q '"stable_time_step"\|"stages"' $s && fail "a body at rest has a stable step, or one stage is listed: $(cat $s)"
 
 # What converged by its measure is at rest by the same: a residual of 9e-4 is below 1e-3, where the sum of forces is 8e-3.
