@@ -181,7 +181,11 @@ bool hybrid_rows_next(const Hybrid *hybrid, HybridRows *rows, HybridRow *at);
 
 /* ---- between the two kinds of geometry ---- */
 
-/** K^-1 of all places by the weights of areas; 0 where a family of another formulation is flat. */
+/** Whether both ends of a bond are images beyond a face. A crack near the face has an image, too, and may leave too few images behind that one for a strain:
+ *  such bonds carry nothing, and no particle of the body itself sees them. */
+bool hybrid_is_beyond(const Hybrid *h, int64_t place, int64_t other);
+
+/** K^-1 of all places by the weights of areas; 0 where a family of images or of another formulation is flat. */
 typedef double HybridShape[6];
 /** Section of the bond of a lane, as the body begins. */
 void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],

@@ -310,6 +310,11 @@ static int refuse(const Hybrid *h, int64_t place, const char *what, Error *error
       h->dimensions == 2 ? "plane" : "space", h->family->horizon);
 }
 
+bool hybrid_is_beyond(const Hybrid *h, int64_t place, int64_t other)
+{
+  return body_outside(h->body, h->particles->number[place]) && body_outside(h->body, h->particles->number[other]);
+}
+
 /* Section a = w V (K_A^-1 + K_B^-1) xi / L and volume a . xi / d of each bond: the volumes add up to that of the body, and a uniform stress passes
  * through it exactly, whatever its shape (docs/theory.md 5.3). */
 void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice, int64_t slot, int lane, double area[3],
@@ -321,7 +326,7 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice,
   bond_list_rows(h->bonds, h->family, slice, slot, lane, rows);
   const double share = rows[0] == rows[1] && !is_foreign(h->foreign, bond.neighbour) ? 1 : 0.5;
   double own[3], their[3];
-  times(shape[owner], bond.xi, own);
+  times(shape[owner][XX] > 0 ? shape[owner] : shape[bond.neighbour], bond.xi, own);
   times(shape[bond.neighbour][XX] > 0 ? shape[bond.neighbour] : shape[owner], bond.xi, their);
   *volume = 0;
   for (int k = 0; k < 3; ++k) {
@@ -341,9 +346,14 @@ static int measure_listed(Hybrid *h, const HybridShape *shape, Error *error)
     h->idle[number] = !(h->family->intact[at.slot] >> at.lane & 1);
     if (h->idle[number]) continue;
     hybrid_section_of(h, shape, at.slice, at.slot, at.lane, h->area[number], &h->volume[number]);
-    h->idle[number] = h->volume[number] == 0; /* influence may end at the horizon */
-    if (!h->idle[number] && !weigh(h, number, h->g + h->first[number]))
-      return refuse(h, at.slice * SLICE + at.lane, "has a bond whose two ends see particles", error);
+    if (h->volume[number] != 0 && weigh(h, number, h->g + h->first[number])) continue;
+    h->idle[number] = 1; /* also where influence ends at the horizon */
+    const int64_t owner = at.slice * SLICE + at.lane;
+    if (h->volume[number] != 0 &&
+        !hybrid_is_beyond(h, owner, family_bond(h->family, at.slice, at.slot, at.lane).neighbour))
+      return refuse(h, owner, "has a bond whose two ends see particles", error);
+    h->volume[number] = 0;
+    memset(h->area[number], 0, sizeof h->area[number]);
   }
   return BRECCIA_OK;
 }
@@ -369,7 +379,8 @@ int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
   if (!status && h->listed) status = create_members(h, error);
   if (!status && h->listed) status = create_meetings(h, error);
   for (int32_t n = 0; n < p->count && !status; ++n)
-    if (!find_shape(h, p->place_of[n], shape[p->place_of[n]]) && !is_foreign(h->foreign, p->place_of[n]))
+    if (!find_shape(h, p->place_of[n], shape[p->place_of[n]]) && !is_foreign(h->foreign, p->place_of[n]) &&
+        !body_outside(h->body, n))
       status = refuse(h, p->place_of[n], "has bonds", error);
   if (!status) status = measure_listed(h, (const HybridShape *)shape, error);
   if (!status) status = measure_lattices(h, (const HybridShape *)shape, error);

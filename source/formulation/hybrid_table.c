@@ -512,7 +512,11 @@ int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int6
     if (volume == 0) m.count = 0; /* influence may end at the horizon */
     geometry[lane] = look_up(h, &m, area, volume);
     if (geometry[lane] < 0) return -2;
-    if (volume != 0 && !h->table.geometry[geometry[lane]].count) return lane;
+    if (volume == 0 || h->table.geometry[geometry[lane]].count) continue;
+    if (!hybrid_is_beyond(h, slice * SLICE + lane, h->family->base[slot] + lane)) return lane;
+    m.count = 0;
+    geometry[lane] = look_up(h, &m, (double[3]){0}, 0);
+    if (geometry[lane] < 0) return -2;
   }
   h->table.kept = h->table.count;
   return set_group(h, group, geometry) ? -1 : -2;
