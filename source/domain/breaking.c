@@ -46,6 +46,48 @@ static void note_torn(Domain *d, int32_t place)
   d->torn[d->torn_count++] = (Torn){.place = place};
 }
 
+/** Half of the work that two stresses do together along a change of strain. */
+static double half_work(const double a[6], const double b[6], const double from[6], const double to[6])
+{
+  double sum = 0;
+  for (int k = 0; k < 6; ++k) sum += 0.5 * (a[k] + b[k]) * (to[k] - from[k]);
+  return sum;
+}
+
+static const double nothing[6];
+
+/** Begins the strains of a place's point where they begin for its law: what the free strain grows by in the step does not strain it. */
+static void take_growth_off(const Domain *d, int32_t place, double from[6])
+{
+  for (int k = 0; k < 3 && d->particles->free_growth; ++k) from[k] += d->particles->free_growth[place];
+}
+
+/** What a place that will be torn has received so far. */
+static void find_received(const Domain *d, Torn *torn)
+{
+  const Region *region = domain_region(d, torn->place);
+  const Points *points = &region->points;
+  StoredEnergy energy;
+  region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
+  for (int k = 0; k < 6 && points_on_particles(points); ++k) {
+    torn->strain[k] = points->strain[k][torn->place];
+    torn->stress[k] = points->stress[k][torn->place];
+  }
+  torn->elastic = points_on_particles(points) ? points_elastic_energy(points, torn->place) : 0;
+  take_growth_off(d, torn->place, energy.was);
+  torn->received = energy.received + energy.control +
+                   energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
+  torn->share = region->type->shares(region->formulation)[torn->place];
+}
+
+/** Notes a place that loses its first bond of the step because of others that broke in it. */
+static void note_late(Domain *d, int32_t place)
+{
+  const int64_t before = d->torn_count;
+  note_torn(d, place);
+  if (d->torn_count > before) find_received(d, &d->torn[before]);
+}
+
 static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t neighbour, const Moment *moment)
 {
   const int32_t place = (int32_t)(slice * SLICE + lane), *number = d->particles->number;
@@ -55,12 +97,13 @@ static void break_bond(Domain *d, int64_t slice, int64_t slot, int lane, int32_t
   const double inside = d->counted[place] > 0, beyond = d->counted[neighbour] > 0; /* each end holds half */
   if (own->type->bond_energy) {
     own->type->bond_energy(own->formulation, slice, slot, lane, moment->time_step, &energy);
-    d->fracture_energy += (their == own ? (inside + beyond) / 2 : inside) * energy.received;
+    d->fracture_energy +=
+        own->type->face_force ? energy.inside : (their == own ? (inside + beyond) / 2 : inside) * energy.received;
   }
   if (their != own && their->type->bond_energy) {
     their->type->bond_energy(their->formulation, neighbour / SLICE, family_slot(&d->family, neighbour, place),
                              neighbour % SLICE, moment->time_step, &energy);
-    d->fracture_energy += beyond * energy.received;
+    d->fracture_energy += their->type->face_force ? energy.inside : beyond * energy.received;
   }
   if (domain_record(d, &(BrokenBond){moment->step, moment->time, a < b ? a : b, a < b ? b : a})) {
     d->out_of_memory = true;
@@ -159,7 +202,10 @@ static bool break_stranded(Domain *d, const Moment *moment)
         if (f->intact[slot] >> lane & 1 && !region->type->can_carry(region->formulation, s, slot, lane)) {
           const int32_t neighbour = family_bond(f, s, slot, lane).neighbour;
           const uint8_t *kept = d->failure.kept;
-          if (!kept || !(kept[s * SLICE + lane] & kept[neighbour])) break_bond(d, s, slot, lane, neighbour, moment);
+          if (kept && kept[s * SLICE + lane] & kept[neighbour]) continue;
+          note_late(d, (int32_t)(s * SLICE + lane));
+          note_late(d, neighbour);
+          break_bond(d, s, slot, lane, neighbour, moment);
         }
   }
   return d->broken_count > before;
@@ -176,43 +222,6 @@ static void break_suspects(Domain *d, const Moment *moment)
     if (d->broken_count > d->broken_before && region->type->renew) region->type->renew(region->formulation, s);
     for (int lane = 0; gave_up && lane < SLICE; ++lane)
       if (gave_up[s * SLICE + lane]) gave_up[s * SLICE + lane] = CONSUMED;
-  }
-}
-
-/** Half of the work that two stresses do together along a change of strain. */
-static double half_work(const double a[6], const double b[6], const double from[6], const double to[6])
-{
-  double sum = 0;
-  for (int k = 0; k < 6; ++k) sum += 0.5 * (a[k] + b[k]) * (to[k] - from[k]);
-  return sum;
-}
-
-static const double nothing[6];
-
-/** Begins the strains of a place's point where they begin for its law: what the free strain grows by in the step does not strain it. */
-static void take_growth_off(const Domain *d, int32_t place, double from[6])
-{
-  for (int k = 0; k < 3 && d->particles->free_growth; ++k) from[k] += d->particles->free_growth[place];
-}
-
-/** What places that will be torn have received so far, each place by one thread. */
-static void find_received(Domain *d)
-{
-  TEAM_FOR (n, d->torn_count) {
-    Torn *torn = &d->torn[n];
-    const Region *region = domain_region(d, torn->place);
-    const Points *points = &region->points;
-    StoredEnergy energy;
-    region->type->stored_energy(region->formulation, torn->place, points->time_step, &energy);
-    for (int k = 0; k < 6 && points_on_particles(points); ++k) {
-      torn->strain[k] = points->strain[k][torn->place];
-      torn->stress[k] = points->stress[k][torn->place];
-    }
-    torn->elastic = points_on_particles(points) ? points_elastic_energy(points, torn->place) : 0;
-    take_growth_off(d, torn->place, energy.was);
-    torn->received = energy.received + energy.control +
-                     energy.weight * (torn->elastic + half_work(torn->stress, nothing, energy.was, energy.strain));
-    torn->share = region->type->shares(region->formulation)[torn->place];
   }
 }
 
@@ -310,7 +319,7 @@ void domain_break(Domain *d, const Moment *moment)
     if (d->any_suspect && shared) judge(d, moment, NOTE_THEM);
   }
   if (!d->any_suspect) return;
-  find_received(d);
+  TEAM_FOR (n, d->torn_count) find_received(d, &d->torn[n]);
   forces_remember(&d->forces);
   TEAM_SINGLE
   {

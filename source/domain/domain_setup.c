@@ -180,22 +180,11 @@ static int share_out(Domain *d, Error *error)
   return find_lowest(d, error);
 }
 
-/** Whether points between images exert forces on particles inside that no symmetry takes back: what these do is none of the body's bonds, and the
- *  ledger can only be kept of all together. */
-static bool hands_on_at_faces(const Domain *d)
-{
-  bool wide = false;
-  for (int r = 0; r < d->region_count; ++r) wide |= d->regions[r].type->on_bonds && d->regions[r].type->components == 6;
-  for (int m = 0; wide && m < d->body.margins.count; ++m)
-    if (!d->body.margins.items[m].repeats && !support_slides(&d->body.margins.items[m])) return true;
-  return false;
-}
-
 /** Layers outside supports stand for what the body is half of, and have no energy of its own. */
 static int count_volumes(Domain *d, Error *error)
 {
   const Particles *p = d->particles;
-  const bool apart = d->body.margin_of && !hands_on_at_faces(d);
+  const bool apart = d->body.margin_of != NULL;
   d->counted = apart ? places_array(p->places, "volumes", error) : p->volume;
   if (!d->counted) return BRECCIA_FAILURE;
   for (int64_t n = 0; apart && n < p->count; ++n)

@@ -78,6 +78,8 @@ typedef struct StoredEnergy {
   double stored;            /* what unloading would give back, in all */
   double held;              /* of that, by the control of zero-energy modes */
   double received, control; /* by bonds that act as springs; by the control of zero-energy modes */
+  double
+      inside; /* of what was received, where there is a `face_force`: what the body itself had of it, without images */
   double weight; /* volume for which the law of a point stands, by the share of its stress that is carried; 0: none */
   double strain[6], was[6]; /* of that point at the end and at the beginning of the last step, with the present bonds */
 } StoredEnergy;
@@ -205,6 +207,10 @@ struct FormulationType {
   /** The same of one bond, if bonds have energies of their own and hand nothing on when one of them breaks; or NULL. */
   void (*bond_energy)(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                       StoredEnergy *energy);
+  /** Where points act on places beside their bonds: the force on a place whose work, added to that of minus its internal force if it is one of the body and
+   *  to none if it is an image, makes the energy of what the body itself has of the points. Of the state evaluated last. NULL: each place has the energy of its own half
+   *  states. */
+  void (*face_force)(const void *formulation, int64_t place, double force[3]);
   /** How a bond has changed as its particle sees it: y less the reference vector, turned as the particle's family has turned. Half of its product
    *  with the half state is the particle's share of the bond's energy. NULL: y - |xi| y / |y|, for forces along bonds. */
   void (*elongation)(const void *formulation, int64_t slice, int64_t slot, int lane, double change[3]);

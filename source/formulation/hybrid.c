@@ -288,6 +288,7 @@ const FormulationType formulation_hybrid = {
     .stress = hybrid_stress,
     .stored_energy = hybrid_stored_energy,
     .bond_energy = hybrid_bond_energy,
+    .face_force = hybrid_face_force,
     .elongation = hybrid_elongation,
     .free_tension = hybrid_free_tension,
     .section_stress = hybrid_section_stress,

@@ -242,7 +242,11 @@ int64_t hybrid_resist(void *formulation, const Sweep *sweep);
 /** As FormulationType describes it: whether the members of a bond's points still span space. */
 bool hybrid_can_carry(const void *formulation, int64_t slice, int64_t slot, int lane);
 
+/** Share of a point that lies inside the body: each end of its bond has half, and images have none; of a bond to another formulation all is with its own end. */
+double hybrid_share_inside(const Hybrid *h, const HybridView *view);
+
 /** As FormulationType describes them (hybrid_bonds.c). */
+void hybrid_face_force(const void *formulation, int64_t place, double force[3]);
 void hybrid_half_state(const void *formulation, double *const *at, int64_t slice, int64_t slot, int lane,
                        double state[3]);
 int64_t hybrid_point_count(const void *formulation);

@@ -126,6 +126,43 @@ void hybrid_half_state(const void *formulation, double *const *at, int64_t slice
   for (int k = 0; k < 3; ++k) state[k] = share * force[k] / volumes;
 }
 
+/* ---- what the body itself has of its points ---- */
+
+double hybrid_share_inside(const Hybrid *h, const HybridView *view)
+{
+  int ends = 0, inside = 0;
+  for (int end = 0; end < 2; ++end) {
+    if (is_foreign(h->foreign, view->member[end])) continue;
+    ++ends;
+    inside += !body_outside(h->body, h->particles->number[view->member[end]]);
+  }
+  return (double)inside / ends;
+}
+
+void hybrid_face_force(const void *formulation, int64_t place, double force[3])
+{
+  const Hybrid *h = formulation;
+  const Family *f = h->family;
+  const int inside = !body_outside(h->body, h->particles->number[place]);
+  for (int k = 0; k < 3; ++k) force[k] = 0;
+  for (int64_t slot = f->first[place / SLICE] - 1; slot < f->first[place / SLICE + 1]; ++slot) {
+    const bool own = slot < f->first[place / SLICE]; /* the place's own bonds first, then those of its neighbours */
+    if (!own && !(f->intact[slot] >> place % SLICE & 1)) continue;
+    const int64_t from = own ? place : family_bond(f, place / SLICE, slot, (int)(place % SLICE)).neighbour;
+    HybridRow row;
+    HybridView view;
+    for (HybridRows rows = hybrid_rows(h, from); hybrid_rows_next(h, &rows, &row);) {
+      hybrid_view_at(h, &row, &view);
+      const int member = hybrid_member_of(&view, (int32_t)place);
+      if (view.idle || member == view.count || (own ? member >= 2 : member < 2 || view.member[0] != from)) continue;
+      double p[9], part[3];
+      find_stress(h, rows.row, &view, NULL, p);
+      member_force(h, &view, p, member, part);
+      for (int k = 0; k < 3; ++k) force[k] -= (hybrid_share_inside(h, &view) - inside) * part[k];
+    }
+  }
+}
+
 /** Gradient I + G of a bond's point. */
 static void bond_gradient(const Hybrid *h, int64_t row, double f[9])
 {

@@ -97,17 +97,21 @@ static double lost(const Hybrid *h, int64_t row, const HybridRow *at, double tim
 }
 
 /** What the points of which both ends of a bond are members have lost; those are all that its break changes. Of points that an earlier break of the step has
- *  taken from a place this one takes nothing more. */
-static double lost_by_all(const Hybrid *h, const int32_t places[2], double time)
+ *  taken from a place this one takes nothing more. @param[out] inside  of that, what the body itself has lost */
+static double lost_by_all(const Hybrid *h, const int32_t places[2], double time, double *inside)
 {
   double sum = 0;
+  *inside = 0;
   for (int end = 0; end < 2; ++end) {
     HybridRow row;
     HybridView view;
     for (HybridRows rows = hybrid_rows(h, places[end]); hybrid_rows_next(h, &rows, &row);) {
       hybrid_view_at(h, &row, &view);
       const int other = hybrid_member_of(&view, places[!end]);
-      if (other < view.count && (!end || other >= 2)) sum += lost(h, rows.row, &row, time);
+      if (other == view.count || (end && other < 2)) continue;
+      const double energy = lost(h, rows.row, &row, time);
+      sum += energy;
+      *inside += hybrid_share_inside(h, &view) * energy;
     }
   }
   return sum;
@@ -132,10 +136,12 @@ void hybrid_bond_energy(const void *formulation, int64_t slice, int64_t slot, in
     hybrid_view(h, rows[n], &view);
     if (!view.idle) energy->stored += view.volume * density(h, rows[n], &view, time);
   }
-  const double before = lost_by_all(h, places, time);
+  double inside, inside_before;
+  const double before = lost_by_all(h, places, time, &inside_before);
   h->hidden[0] = places[0];
   h->hidden[1] = places[1];
-  energy->received = lost_by_all(h, places, time) - before;
+  energy->received = lost_by_all(h, places, time, &inside) - before;
+  energy->inside = inside - inside_before;
   h->hidden[0] = h->hidden[1] = -1;
 }
 

@@ -447,9 +447,6 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
   }
   if (!blown_up) text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
-  if (!blown_up && d->body.margin_of && d->counted == d->particles->volume)
-    text_add(t,
-             "these energies count the layers outside supports as well, because hybrid bonds are beside 'held: all'\n");
   if (!blown_up) tell_inverted(d, length, t);
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);

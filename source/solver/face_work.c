@@ -81,7 +81,7 @@ size_t face_work_bytes(const FaceWork *w)
   return (size_t)w->count * (sizeof *w->places + sizeof *w->now + sizeof *w->then);
 }
 
-/** On an image t_ij of the bonds that particles inside have with it, on these - t_ji of its own. */
+/** On an image t_ij of the bonds that particles inside have with it, on these - t_ji of its own; of points between places their shares. */
 static void find_force(const Domain *d, int32_t place, double sum[3])
 {
   const Particles *p = d->particles;
@@ -91,9 +91,16 @@ static void find_force(const Domain *d, int32_t place, double sum[3])
   for (int64_t slot = d->family.first[place / SLICE]; next_across(d, place, &slot, &other); ++slot) {
     const Region *region = domain_region(d, other);
     double state[3];
+    if (region->type->face_force) continue;
     region->type->half_state(region->formulation, NULL, other / SLICE, family_slot(&d->family, other, place),
                              other % SLICE, state);
     for (int k = 0; k < 3; ++k) sum[k] += sign * p->volume[other] * state[k];
+  }
+  for (int r = 0; r < d->region_count; ++r) {
+    double force[3];
+    if (!d->regions[r].type->face_force) continue;
+    d->regions[r].type->face_force(d->regions[r].formulation, place, force);
+    for (int k = 0; k < 3; ++k) sum[k] += force[k];
   }
 }
 
