@@ -221,21 +221,37 @@ const Material *domain_without_tangents(const Domain *d)
   return NULL;
 }
 
+static void show_held(void *context, int64_t slice)
+{
+  const Domain *d = context;
+  for (int r = 0; r < d->region_count; ++r)
+    if (d->regions[r].type->show_held) d->regions[r].type->show_held(d->regions[r].formulation, slice);
+}
+
 static void store_batch(void *context, int64_t b)
 {
   const Domain *d = context;
   d->batch_sum[b] = 0;
-  for (int64_t place = d->batches[b].first * SLICE; place < d->batches[b].last * SLICE; ++place) {
-    StoredEnergy energy;
-    if (!(d->counted[place] > 0)) continue;
-    const Region *region = domain_region(d, place);
-    region->type->stored_energy(region->formulation, place, 0, &energy);
-    d->batch_sum[b] += energy.stored;
+  for (int64_t slice = d->batches[b].first; slice < d->batches[b].last; ++slice) {
+    const Region *region = &d->regions[d->region[slice]];
+    const double *counted = d->counted + slice * SLICE;
+    double energies[SLICE] = {0};
+    if (region->type->stored_energies) region->type->stored_energies(region->formulation, slice, energies);
+    for (int lane = 0; lane < SLICE; ++lane) {
+      StoredEnergy energy = {.stored = energies[lane]};
+      if (!(counted[lane] > 0)) continue;
+      if (!region->type->stored_energies)
+        region->type->stored_energy(region->formulation, slice * SLICE + lane, 0, &energy);
+      d->batch_sum[b] += energy.stored;
+    }
   }
 }
 
 double domain_stored_energy(Domain *d)
 {
+  bool shows = false;
+  for (int r = 0; r < d->region_count; ++r) shows |= d->regions[r].type->show_held != NULL;
+  if (shows) team_each(d->particles->slices, show_held, d);
   team_each(d->batch_count, store_batch, d);
   double sum = 0;
   for (int64_t b = 0; b < d->batch_count; ++b) sum += d->batch_sum[b]; /* in order */

@@ -204,6 +204,10 @@ struct FormulationType {
   /** Energy of the deformation of a place at the displacements held, with its present bonds and the stress that its law gave last.
    *  @param[in] time  of the last step: displacements were those held less `time` times the velocities held */
   void (*stored_energy)(const void *formulation, int64_t place, double time, StoredEnergy *energy);
+  /** What the places of a slice store, each for itself, where that is faster. All have shown their neighbours what `show_held` makes of the displacements held.
+   *  Both or neither. */
+  void (*stored_energies)(const void *formulation, int64_t slice, double energies[SLICE]);
+  void (*show_held)(const void *formulation, int64_t slice);
   /** The same of one bond, if bonds have energies of their own and hand nothing on when one of them breaks; or NULL. */
   void (*bond_energy)(const void *formulation, int64_t slice, int64_t slot, int lane, double time,
                       StoredEnergy *energy);

@@ -244,6 +244,32 @@ static void stored_energy(const void *formulation, int64_t place, double time, S
   }
 }
 
+static void show_held(const void *formulation, int64_t slice)
+{
+  const Micropolar *m = formulation;
+  m->sweeps->show(m, m->particles->displacement, slice, slice + 1);
+}
+
+static void stored_energies(const void *formulation, int64_t slice, double energies[SLICE])
+{
+  const Micropolar *m = formulation;
+  const Family *f = m->family;
+  if (!m->secant) m->sweeps->store(m, slice, energies);
+  for (int lane = 0; lane < SLICE && m->secant; ++lane) {
+    StoredEnergy energy;
+    stored_energy(formulation, slice * SLICE + lane, 0, &energy);
+    energies[lane] = energy.stored;
+  }
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1] && m->foreign && !m->secant; ++slot)
+    for (int lane = 0; lane < SLICE; ++lane) {
+      StoredEnergy bond;
+      if (!(f->intact[slot] >> lane & 1)) continue;
+      if (!is_foreign(m->foreign, family_bond(f, slice, slot, lane).neighbour)) continue;
+      bond_energy(formulation, slice, slot, lane, 0, &bond);
+      energies[lane] += bond.stored;
+    }
+}
+
 static double poisson_of(const Micropolar *m, int64_t place)
 {
   return material_poisson(&m->materials[m->material[place / SLICE]]);
@@ -342,6 +368,8 @@ const FormulationType formulation_micropolar = {
     .point_count = micropolar_point_count,
     .point = micropolar_point,
     .stored_energy = stored_energy,
+    .stored_energies = stored_energies,
+    .show_held = show_held,
     .bond_energy = bond_energy,
     .gradient = gradient,
     .stress = stress,

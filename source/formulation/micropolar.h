@@ -56,6 +56,8 @@ typedef struct MicropolarSweeps {
   void (*resist_changes)(const Micropolar *m, double *const *at, int64_t slice);
   /** What changes of rotations of places are as spins. NULL: the same. */
   void (*show_spins)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
+  /** What the places of a slice store in links, but those to other formulations. */
+  void (*store)(const Micropolar *m, int64_t slice, double energies[SLICE]);
   /** What slices first .. last - 1 show at rotations among these displacements. */
   void (*show)(const Micropolar *m, double *const *at, int64_t first, int64_t last);
 } MicropolarSweeps;

@@ -77,6 +77,50 @@ static void resist(const Micropolar *m, int64_t slice)
   if (!sweep(m, slice, false)) sweep(m, slice, true);
 }
 
+/* ---- energies ---- */
+
+/** Energy of links per volume of this end, times the weights of the bonds. */
+LANES_INLINE Lanes energy_of(const Micropolar *m, int64_t place, const LinkLanes *l, StiffnessLanes stiffness,
+                             const breccia_link *weak, Lanes own_cosine, Lanes own_sine)
+{
+  const Lanes nx = l->n[0], ny = l->n[1], ex = l->e[0], ey = l->e[1], yx = nx + ex, yy = ny + ey;
+  const Lanes d = ex * (nx + yx) + ey * (ny + yy), g = shortening(d, RANGE_ANY), inverse = lanes_set(1) - g;
+  const Lanes stretch = d * inverse - g - free_of(m, place, l), mx = yx * inverse, my = yy * inverse;
+  const Lanes cosine = of_others(l, m->shown[0]), sine = of_others(l, m->shown[1]);
+  const Lanes ax = own_cosine * nx - own_sine * ny, ay = own_sine * nx + own_cosine * ny;
+  const Lanes bx = cosine * nx - sine * ny, by = sine * nx + cosine * ny;
+  const Lanes here = mx * ay - my * ax, other = mx * by - my * bx;
+  const Lanes a = here * end_rotation(here * here, mx * ax + my * ay, true).factor,
+              b = other * end_rotation(other * other, mx * bx + my * by, true).factor;
+  Lanes left[2] = {lanes_set(1), lanes_set(1)};
+  if (weak) find_left(m, weak, place, l, stretch, &left[0], &left[1]);
+  return lanes_set(0.5) * left[0] * stiffness.axial * stretch * stretch / l->by_length +
+         lanes_set(2) * left[1] * stiffness.bending * (a * a + a * b + b * b);
+}
+
+static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
+{
+  const Family *f = m->family;
+  const Particles *p = m->particles;
+  const breccia_link *weak = weakened_by(m, slice);
+  for (int half = 0; half < HALVES; ++half) {
+    const int64_t place = slice * SLICE + LANES * half;
+    const Lanes u[2] = {lanes_load(p->displacement[0] + place), lanes_load(p->displacement[1] + place)},
+                cosine = lanes_load(m->shown[0] + place), sine = lanes_load(m->shown[1] + place);
+    Lanes sum = lanes_set(0);
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+      const LinkLanes l = lattice_links(m, p->displacement, slot, half, 2, u);
+      sum += energy_of(m, place, &l, lattice_stiffness(m, &l), weak, cosine, sine);
+    }
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slot), 2, u);
+      sum += energy_of(m, place, &l, stored_stiffness(m, place, &l), weak, cosine, sine);
+    }
+    lanes_store(energies + LANES * half,
+                lanes_set(0.5) * lanes_load(p->volume + place) * sum); /* half is the other end's */
+  }
+}
+
 /* ---- changes ---- */
 
 /** Half a slice: what it has, its changes, and how what acts on it changes. */
@@ -165,4 +209,4 @@ static void show(const Micropolar *m, double *const *at, int64_t first, int64_t 
 }
 
 const MicropolarSweeps LANES_NAMED(micropolar_plane) = {
-    .resist = resist, .resist_changes = resist_changes, .show = show};
+    .resist = resist, .resist_changes = resist_changes, .store = store, .show = show};

@@ -162,6 +162,66 @@ static void resist(const Micropolar *m, int64_t slice)
   if (!sweep(m, slice, false)) sweep(m, slice, true);
 }
 
+/* ---- energies ---- */
+
+/** Rotation of an end from the chord. */
+LANES_INLINE void find_rotation(const Lanes q[4], const Lanes n[3], const Lanes chord[3], Lanes rotation[3])
+{
+  Lanes a[3];
+  turn_lanes(q, n, a);
+  cross_lanes(chord, a, rotation);
+  const Lanes factor = end_rotation(dot_lanes(rotation, rotation), dot_lanes(chord, a), true).factor;
+  for (int k = 0; k < 3; ++k) rotation[k] *= factor;
+}
+
+/** Energy of links per volume of this end, times the weights of the bonds. */
+LANES_INLINE Lanes energy_of(const Micropolar *m, int64_t place, const LinkLanes *l, StiffnessLanes stiffness,
+                             const breccia_link *weak, const Lanes own[4])
+{
+  Lanes chord[3], d = lanes_set(0), a[3], b[3], r[4];
+  for (int k = 0; k < 3; ++k) {
+    chord[k] = l->n[k] + l->e[k];
+    d += l->e[k] * (l->n[k] + chord[k]);
+  }
+  const Lanes g = shortening(d, RANGE_ANY), inverse = lanes_set(1) - g,
+              stretch = d * inverse - g - free_of(m, place, l);
+  for (int k = 0; k < 3; ++k) chord[k] *= inverse;
+  const Lanes q[4] = {of_others(l, m->shown[0]), of_others(l, m->shown[1]), of_others(l, m->shown[2]),
+                      of_others(l, m->shown[3])};
+  find_rotation(own, l->n, chord, a);
+  find_rotation(q, l->n, chord, b);
+  twist_of(own, q, r);
+  const Lanes psi = lanes_set(2) * dot_lanes(chord, r + 1);
+  Lanes left[2] = {lanes_set(1), lanes_set(1)};
+  if (weak) find_left(m, weak, place, l, stretch, &left[0], &left[1]);
+  return lanes_set(0.5) * left[0] * stiffness.axial * stretch * stretch / l->by_length +
+         left[1] * (lanes_set(2) * stiffness.bending * (dot_lanes(a, a) + dot_lanes(a, b) + dot_lanes(b, b)) +
+                    lanes_set(0.5) * stiffness.twist * psi * psi);
+}
+
+static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
+{
+  const Family *f = m->family;
+  const Particles *p = m->particles;
+  const breccia_link *weak = weakened_by(m, slice);
+  for (int half = 0; half < HALVES; ++half) {
+    const int64_t place = slice * SLICE + LANES * half;
+    Lanes u[3], q[4], sum = lanes_set(0);
+    for (int k = 0; k < 3; ++k) u[k] = lanes_load(p->displacement[k] + place);
+    for (int k = 0; k < 4; ++k) q[k] = lanes_load(m->shown[k] + place);
+    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
+      const LinkLanes l = lattice_links(m, p->displacement, slot, half, 3, u);
+      sum += energy_of(m, place, &l, lattice_stiffness(m, &l), weak, q);
+    }
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slot), 3, u);
+      sum += energy_of(m, place, &l, stored_stiffness(m, place, &l), weak, q);
+    }
+    lanes_store(energies + LANES * half,
+                lanes_set(0.5) * lanes_load(p->volume + place) * sum); /* half is the other end's */
+  }
+}
+
 /* ---- changes: as micropolar_linear.c does for a link ---- */
 
 /** Half a slice: what it has, its changes, and how what acts on it changes. */
@@ -385,4 +445,4 @@ static void show(const Micropolar *m, double *const *at, int64_t first, int64_t 
 }
 
 const MicropolarSweeps LANES_NAMED(micropolar_space) = {
-    .resist = resist, .resist_changes = resist_changes, .show_spins = show_spins, .show = show};
+    .resist = resist, .resist_changes = resist_changes, .store = store, .show_spins = show_spins, .show = show};

@@ -43,18 +43,22 @@ static void pull_out_converges_to_the_closed_form(void **state)
 {
   (void)state;
   const double l = 0.4, rate = lambda(), stiff = young * section;
-  const double force = 0.01 / (0.8 / stiff + 1 / (stiff * rate * tanh(rate * l))), slip = force / (stiff * rate * tanh(rate * l));
+  const double force = 0.01 / (0.8 / stiff + 1 / (stiff * rate * tanh(rate * l))),
+               slip = force / (stiff * rate * tanh(rate * l));
   double slips[3], stresses[3];
   for (int k = 0; k < 3; ++k) {
-    breccia_model *m = led(0.1 / (1 << k), ROD, ", bond: {law: linear, stiffness: 1.4e7}, bonded: [0, 0.4], anchored: [end]",
-                           "0.02*max(0 m, x-0.7 m)");
+    breccia_model *m =
+        led(0.1 / (1 << k), ROD, ", bond: {law: linear, stiffness: 1.4e7}, bonded: [0, 0.4], anchored: [end]",
+            "0.02*max(0 m, x-0.7 m)");
     step_surely(m, INT64_MAX);
     const Bars *b = bars_of(m);
     slips[k] = stresses[k] = 0;
     for (int64_t n = 0; b->node[n][0] < l + 1e-9; ++n)
-      slips[k] = larger_of(slips[k], fabs(b->slips->slip_held[n] - slip * cosh(rate * b->node[n][0]) / cosh(rate * l)) / slip);
+      slips[k] =
+          larger_of(slips[k], fabs(b->slips->slip_held[n] - slip * cosh(rate * b->node[n][0]) / cosh(rate * l)) / slip);
     for (int64_t e = 0; b->node[e + 1][0] < l + 1e-9; ++e) {
-      const double x = (b->node[e][0] + b->node[e + 1][0]) / 2, by_hand = force / section * sinh(rate * x) / sinh(rate * l);
+      const double x = (b->node[e][0] + b->node[e + 1][0]) / 2,
+                   by_hand = force / section * sinh(rate * x) / sinh(rate * l);
       stresses[k] = larger_of(stresses[k], fabs(b->stress_held[e] - by_hand) / (force / section));
     }
     print_message("pull-out, %g m apart: slips %.2e, stresses %.2e off\n", 0.1 / (1 << k), slips[k], stresses[k]);
@@ -79,7 +83,8 @@ static void reports_tell_the_energy_that_is_stored(void **state)
 {
   (void)state;
   const double strain = 1e-3, l = 0.6, rate = lambda(), end = cosh(rate * l);
-  const double squares = 2 * l - 4 * sinh(rate * l) / (rate * end) + (l + sinh(2 * rate * l) / (2 * rate)) / (end * end);
+  const double squares =
+      2 * l - 4 * sinh(rate * l) / (rate * end) + (l + sinh(2 * rate * l) / (2 * rate)) / (end * end);
   const double slips = (sinh(2 * rate * l) / (2 * rate) - l) / (rate * rate * end * end);
   const double perfect = young * section * strain * strain * l,
                bonded = strain * strain * (young * section * squares + stiffness * around() * slips) / 2;

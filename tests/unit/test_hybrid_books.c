@@ -12,9 +12,8 @@ static int64_t broken_across(const Domain *d, bool regions)
   int64_t count = 0;
   for (int64_t n = 0; n < d->broken_count; ++n) {
     const int64_t a = d->broken[n].a, b = d->broken[n].b;
-    count += regions
-                 ? domain_region(d, d->particles->place_of[a]) != domain_region(d, d->particles->place_of[b])
-                 : body_outside(&d->body, a) != body_outside(&d->body, b);
+    count += regions ? domain_region(d, d->particles->place_of[a]) != domain_region(d, d->particles->place_of[b])
+                     : body_outside(&d->body, a) != body_outside(&d->body, b);
   }
   return count;
 }
@@ -36,7 +35,8 @@ static void bonds_break_beside_held_faces(void **state)
 {
   (void)state;
   static const char *const faces[] = {"held: all", "held: all, displacement: [-0.004, 0.002]", "held: across"};
-  static const char *const solvers[] = {"explicit: {end time: 0.4, time step: 4e-4, stiffness damping: 3e-4}", "static: {increments: 12}"};
+  static const char *const solvers[] = {"explicit: {end time: 0.4, time step: 4e-4, stiffness damping: 3e-4}",
+                                        "static: {increments: 12}"};
   int64_t all_across = 0;
   for (int f = 0; f < 3; ++f)
     for (int s = 0; s < 2; ++s)
@@ -57,9 +57,9 @@ static void bonds_break_beside_held_faces(void **state)
           run_to_end(m);
           const Energy e = solver_energy(&m->solver);
           const int64_t across = broken_across(&m->domain, false);
-          print_message("%s, %s, %s strain: %lld bonds broken, %lld of them across the face, imbalance %.2g\n", faces[f],
-                        solvers[s], finite ? "finite" : "small", (long long)m->domain.broken_count, (long long)across,
-                        e.imbalance);
+          print_message("%s, %s, %s strain: %lld bonds broken, %lld of them across the face, imbalance %.2g\n",
+                        faces[f], solvers[s], finite ? "finite" : "small", (long long)m->domain.broken_count,
+                        (long long)across, e.imbalance);
           assert_true(m->domain.broken_count > 10);
           all_across += across;
           assert_true(e.fracture > 1e-3 * e.external);
@@ -77,12 +77,13 @@ static void an_even_shear_stores_what_hooke_says(void **state)
   for (int finite = 0; finite < 2; ++finite)
     for (int longer = 0; longer < 2; ++longer) {
       breccia_model *m = model_of(
-          UNITS "materials: {m: {" ELASTIC "}}\n"
-                "body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [6, 9]}}}}\n"
-                "peridynamics: {space: plane strain, horizon: %s spacings, formulation: hybrid, strain: %s}\n"
-                "loads: [{on: {face: y-}, support: {held: all}}, {on: {face: x-}, support: {held: periodic}}, {on: {face: "
-                "y+}, traction: [%g, 0]}]\n"
-                "solve: {static: {increments: 10, residual: 1e-12}}\n",
+          UNITS
+          "materials: {m: {" ELASTIC "}}\n"
+          "body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [6, 9]}}}}\n"
+          "peridynamics: {space: plane strain, horizon: %s spacings, formulation: hybrid, strain: %s}\n"
+          "loads: [{on: {face: y-}, support: {held: all}}, {on: {face: x-}, support: {held: periodic}}, {on: {face: "
+          "y+}, traction: [%g, 0]}]\n"
+          "solve: {static: {increments: 10, residual: 1e-12}}\n",
           longer ? "2.015" : "1.5", finite ? "green-lagrange" : "small", shear);
       run_to_end(m);
       const Energy e = solver_energy(&m->solver);
@@ -100,29 +101,28 @@ static void bonds_break_beside_other_formulations(void **state)
   (void)state;
   static const struct {
     const char *law, *formulation;
-  } beside[] = {{FIBRES, "bond-based"},
-                {ELASTIC, "ordinary"},
-                {ELASTIC, "correspondence"},
-                {ELASTIC, "hybrid, own bond: 0.8"}};
+  } beside[] = {
+      {FIBRES, "bond-based"}, {ELASTIC, "ordinary"}, {ELASTIC, "correspondence"}, {ELASTIC, "hybrid, own bond: 0.8"}};
   static const char *const solvers[] = {"explicit: {end time: 0.6, time step: 2e-4}", "static: {increments: 12}"};
   for (size_t k = 0; k < sizeof beside / sizeof *beside; ++k)
     for (int s = 0; s < 2; ++s)
       for (int longer = 0; longer < 2; ++longer) {
         if (under_sanitizers() && ((int)k + s + longer) % 2) continue;
         breccia_model *m = model_of(
-            UNITS "materials: {m: {" ELASTIC "}, n: {%s}}\n"
-                  "body:\n"
-                  "  a: {material: n, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [6, 9]}}}\n"
-                  "  b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0.6, 0], to: "
-                  "[1.2, 0.9]}}}\n"
-                  "cracks: [{cut: {line: [[0.6, 0.45], [0.6, 1]]}}]\n"
-                  "peridynamics: {space: plane strain, horizon: %s spacings, regions: {one: {blocks: [a], formulation: "
-                  "%s}, two: {blocks: [b], formulation: hybrid}}}\n"
-                  "failure: {critical stretch: 2e-3}\n"
-                  "loads: [{on: {block: a, face: x-}, support: {held: across}}, {on: {nearest: [0, 0.45]}, displacement: "
-                  "[free, 0]}, {on: {block: b, face: x+, layers: 2}, displacement: [0.012, 0.001], history: {ramp to: "
-                  "1}}]\n"
-                  "solve: {%s}\n",
+            UNITS
+            "materials: {m: {" ELASTIC "}, n: {%s}}\n"
+            "body:\n"
+            "  a: {material: n, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {particles: [6, 9]}}}\n"
+            "  b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: {from: [0.6, 0], to: "
+            "[1.2, 0.9]}}}\n"
+            "cracks: [{cut: {line: [[0.6, 0.45], [0.6, 1]]}}]\n"
+            "peridynamics: {space: plane strain, horizon: %s spacings, regions: {one: {blocks: [a], formulation: "
+            "%s}, two: {blocks: [b], formulation: hybrid}}}\n"
+            "failure: {critical stretch: 2e-3}\n"
+            "loads: [{on: {block: a, face: x-}, support: {held: across}}, {on: {nearest: [0, 0.45]}, displacement: "
+            "[free, 0]}, {on: {block: b, face: x+, layers: 2}, displacement: [0.012, 0.001], history: {ramp to: "
+            "1}}]\n"
+            "solve: {%s}\n",
             beside[k].law, longer ? "2.015" : "1.5", beside[k].formulation, solvers[s]);
         run_to_end(m);
         const Energy e = solver_energy(&m->solver);
@@ -182,22 +182,25 @@ static void what_yields_dissipates_what_its_law_says(void **state)
 static void a_notch_beside_a_face_has_an_image(void **state)
 {
   (void)state;
-  static const char *const laws[] = {ELASTIC, "model: j2, Young modulus: 1e4, Poisson ratio: 0.25, density: 2, yield stress: "
-                                              "15, hardening modulus: 500"};
+  static const char *const laws[] = {ELASTIC,
+                                     "model: j2, Young modulus: 1e4, Poisson ratio: 0.25, density: 2, yield stress: "
+                                     "15, hardening modulus: 500"};
   for (int longer = 0; longer < 2; ++longer)
     for (int k = 0; k < 2; ++k) {
       const double at = longer ? 0.3 : 0.1;
       breccia_model *m[2];
       for (int half = 0; half < 2; ++half) {
-        char left[160] = "{on: {face: x-}, traction: [-5, 0]}, {on: {nearest: [0.05, 0.05]}, displacement: [0, 0]}, {on: "
-                         "{nearest: [-0.05, 0.05]}, displacement: [free, 0]}";
+        char left[160] =
+            "{on: {face: x-}, traction: [-5, 0]}, {on: {nearest: [0.05, 0.05]}, displacement: [0, 0]}, {on: "
+            "{nearest: [-0.05, 0.05]}, displacement: [free, 0]}";
         if (half)
           snprintf(left, sizeof left,
                    "{on: {face: x-}, support: {held: across}}, {on: {nearest: [0.05, 0.05]}, displacement: [free, 0]}");
         char cracks[120];
         snprintf(cracks, sizeof cracks, "{cut: {line: [[%g, 0.45], [%g, 1]]}}%s", at, at, half ? "" : ", ");
         if (!half)
-          snprintf(cracks + strlen(cracks), sizeof cracks - strlen(cracks), "{cut: {line: [[-%g, 0.45], [-%g, 1]]}}", at, at);
+          snprintf(cracks + strlen(cracks), sizeof cracks - strlen(cracks), "{cut: {line: [[-%g, 0.45], [-%g, 1]]}}",
+                   at, at);
         m[half] = model_of(UNITS "materials: {m: {%s}}\n"
                                  "body: {b: {material: m, lattice: square, thickness: 1, spacing: 0.1, shape: {box: "
                                  "{from: [%s, 0], to: [1, 0.9]}}}}\n"
@@ -215,7 +218,8 @@ static void a_notch_beside_a_face_has_an_image(void **state)
         if (body_outside(&m[1]->domain.body, n)) continue;
         const double x[3] = {p->position[0][i], p->position[1][i], 0}, y[3] = {-x[0], x[1], 0};
         const int32_t other = particles_nearest(whole, x), mirrored = particles_nearest(whole, y);
-        middle = (whole->displacement[0][other] + whole->displacement[0][mirrored]) / 2; /* the whole one is not held along x */
+        middle = (whole->displacement[0][other] + whole->displacement[0][mirrored]) /
+                 2; /* the whole one is not held along x */
         most = larger_of(most, fabs(p->displacement[0][i] - (whole->displacement[0][other] - middle)));
         most = larger_of(most, fabs(p->displacement[1][i] - whole->displacement[1][other]));
       }

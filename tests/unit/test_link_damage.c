@@ -236,6 +236,15 @@ static void sweeps_are_sums_of_damaged_links(void **state)
       for (int k = 0; k < p->motions; ++k)
         for (int64_t i = 0; i < p->places; ++i)
           assert_near((swept[k * p->places + i] - p->internal[k][i]) / most[k >= ROTATION], 0, 1e-11);
+      for (int64_t n = 0; n < p->count; ++n) /* no forces are found there */
+        p->displacement[ROTATION][p->place_of[n]] += 0.02 * random_uniform(&seed);
+      double energies[2] = {0, domain_stored_energy(&model->domain)}; /* place by place, and by sweeps */
+      for (int64_t n = 0; n < p->count; ++n) {
+        StoredEnergy stored;
+        model->domain.regions[0].type->stored_energy(m, p->place_of[n], 0, &stored);
+        energies[0] += stored.stored;
+      }
+      assert_near(energies[1] / energies[0], 1, 1e-11);
       check_changes(model);
       free(swept);
       breccia_model_destroy(&model);

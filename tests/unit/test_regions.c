@@ -341,6 +341,7 @@ static double stretched(const char *left, const char *right, const char *space)
   breccia_model_step(model, 1, error);
   assert_string_equal(breccia_error_text(error), "");
   breccia_error_destroy(&error);
+  assert_true(solver_energy(&model->solver).imbalance < 1e-5);
   double force = 0;
   const Particles *p = model->domain.particles;
   double most = 0;
