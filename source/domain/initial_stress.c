@@ -125,11 +125,12 @@ static int mark(Work *w, int n, const SectionList *selections)
     const Material *m = &w->domain->materials[w->domain->material[place / SLICE]];
     const int before = w->item_of[number];
     if (!points_on_particles(&region->points))
-      status =
-          node_error(w->reader->document, spec->head.node, w->reader->error,
-                     "initial stress: '%s' has no stress at its particles that could be given; expected "
-                     "'formulation: correspondence' for particle %d at [%g, %g, %g]",
-                     region->type->name, number, p->position[0][place], p->position[1][place], p->position[2][place]);
+      status = node_error(
+          w->reader->document, spec->head.node, w->reader->error,
+          "initial stress: '%s' has no stress at its particles that could be given, as at particle %d at [%g, %g, %g]; "
+          "expected 'formulation: correspondence', or a first stage 'laws: elastic' under the weight and "
+          "'displacements: zero' in the next one",
+          region->type->name, number, p->position[0][place], p->position[1][place], p->position[2][place]);
     else if (m->remote)
       status = node_error(w->reader->document, spec->head.node, w->reader->error,
                           "initial stress: the law of material '%s' runs in a server, which cannot be led to it; take "

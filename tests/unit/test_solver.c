@@ -106,7 +106,15 @@ static void free_bodies_keep_their_energy(void **state)
             {"elastic-1d, Young modulus: 1e4", "formulation: bond-based, surface correction: energy"},
             {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: ordinary"},
             {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: correspondence"},
-            {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: hybrid"}};
+            {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: hybrid"},
+            {"elastic, Young modulus: 1e4, Poisson ratio: 0.3", "formulation: micropolar"}};
+  for (int k = 0; formulation_at(k); ++k) { /* every one of the program */
+    char key[80];
+    size_t n = 0;
+    snprintf(key, sizeof key, "formulation: %s", formulation_at(k)->name);
+    while (n < sizeof of / sizeof *of && strncmp(of[n].peridynamics, key, strlen(key)) != 0) ++n;
+    if (n == sizeof of / sizeof *of) fail_msg("%s is not among the free bodies", formulation_at(k)->name);
+  }
   const int steps = under_sanitizers() ? 1000 : 20000;
   const double mass = 2 * (2 * 5 * 0.01 * 0.3), whole = 0.5 * mass * 0.25; /* of what moves at the start */
   for (size_t k = 0; k < sizeof of / sizeof *of; ++k) {
