@@ -77,6 +77,7 @@ void particles_destroy(Particles *particles)
   }
   for (int k = 0; k < 4; ++k) places_free(&particles->orientation[k]);
   places_free(&particles->rotary);
+  free(particles->unturned);
   places_free(&particles->free_strain);
   places_free(&particles->volume);
   places_free(&particles->density);

@@ -33,6 +33,7 @@ typedef struct Particles {
       free_growth; /* while bonds break: by how much loads let free strains grow in the step; NULL: not at all. Not owned */
   double *rotary;           /* rotational inertia per volume; NULL without rotations */
   double *inertia[MOTIONS]; /* per volume, of each row: density or rotary. Not owned */
+  uint8_t *unturned;        /* [slices] of formulations without rotations, where others have them; NULL: none */
   double *orientation[4];   /* unit quaternions 1, x, y, z of places with rotations in space; else NULL */
   int32_t *number;          /* [places] global number or -1 */
   int32_t *place_of;        /* [count] place of a number */
@@ -50,6 +51,12 @@ void particles_destroy(Particles *particles);
 int particles_make_rotations(Particles *particles, int dimensions, Error *error);
 
 /** Strain at which a bond carries nothing: the mean of both ends'. */
+/** Whether a particle has a rotation. */
+static inline bool particles_turn(const Particles *p, int64_t place)
+{
+  return p->motions > ROTATION && !(p->unturned && p->unturned[place / SLICE]);
+}
+
 static inline double particles_free_strain(const Particles *p, int64_t a, int64_t b)
 {
   return p->free_strain ? 0.5 * (p->free_strain[a] + p->free_strain[b]) : 0;

@@ -263,9 +263,14 @@ static int tell_at(const DeckReader *reader, const Node *node, int status, Error
 /** Particles have rotations if a formulation of the body wants them. */
 static int make_rotations(Domain *d, Error *error)
 {
-  for (int r = 0; r < d->region_count; ++r)
-    if (d->regions[r].type->gyration) return particles_make_rotations(d->particles, d->body.dimensions, error);
-  return BRECCIA_OK;
+  bool turn = false;
+  for (int r = 0; r < d->region_count; ++r) turn |= d->regions[r].type->gyration != NULL;
+  if (!turn) return BRECCIA_OK;
+  Particles *p = d->particles;
+  if (d->region_count > 1 && !(p->unturned = memory_zeroed((size_t)p->slices, 1, "rotations", error)))
+    return BRECCIA_FAILURE;
+  for (int64_t s = 0; s < p->slices && p->unturned; ++s) p->unturned[s] = !domain_region(d, s * SLICE)->type->gyration;
+  return particles_make_rotations(p, d->body.dimensions, error);
 }
 
 /** Rotational inertia; of places of formulations without rotations, which nothing turns, that of cubes of a spacing. */

@@ -70,6 +70,12 @@ int regions_create(Domain *d, const DeckReader *reader, const PeridynamicsSpec *
       return node_error(reader->document, d->regions[r].node, reader->error,
                         "formulation: %s cannot stand beside others in one body; leave 'regions' out",
                         d->regions[r].type->name);
+    for (int before = 0; before < r; ++before)
+      if (d->regions[r].type->gyration && d->regions[before].type->gyration)
+        return node_error(reader->document, d->regions[r].node, reader->error,
+                          "formulation: two regions of %s, whose particles turn, cannot stand beside each other; give "
+                          "their blocks one region",
+                          d->regions[r].type->name);
     d->regions[r].foreign = memory_zeroed((size_t)p->slices, 1, "regions", reader->error);
     if (!d->regions[r].foreign) return BRECCIA_FAILURE;
     for (int64_t s = 0; s < p->slices; ++s) d->regions[r].foreign[s] = d->region[s] != r;

@@ -144,7 +144,7 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
   double *const *u = sweep->at ? sweep->at : m->particles->displacement;
-  if (m->particles->motions == 4 || !sweep->at) m->sweeps->show(m, u, sweep->first, sweep->last);
+  m->sweeps->show(m, u, sweep->first, sweep->last);
   if (sweep->at && m->sweeps->show_spins) m->sweeps->show_spins(m, u, sweep->first, sweep->last);
   return -1;
 }

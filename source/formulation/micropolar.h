@@ -101,7 +101,7 @@ void micropolar_describe(const void *formulation, const Units *units, Text *text
  *  they turn with the end that has, which is exact where strains are even, and take no moments. */
 typedef struct Link {
   Bond bond;
-  bool alone;
+  bool alone; /* the other end is such a place */
   LinkStiffness stiffness;
   double y[3], length; /* to the other end, as deformed */
   double stretch;      /* without the free strain */

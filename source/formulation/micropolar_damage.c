@@ -76,7 +76,8 @@ LANES_INLINE Lanes damage_now(const Micropolar *m, int64_t place, const LinkLane
   Lanes now = tension ? damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force)
                       : damage_of(-stretch, law->compression_begin, law->compression_end, false);
   for (int k = 0; k < LANES && joins_blocks(m, place, l); ++k) /* both ends by the same formula */
-    now[k] = larger_damage(m, place + k, l->neighbours[k], stretch[k], tension);
+    if (m->particles->block[l->neighbours[k] / SLICE] != m->particles->block[place / SLICE])
+      now[k] = larger_damage(m, place + k, l->neighbours[k], stretch[k], tension);
   return now;
 }
 
@@ -287,5 +288,5 @@ size_t micropolar_damage_bytes(const Micropolar *m)
 {
   if (!m->damage) return 0;
   return 4 * sizeof(double) * (size_t)m->family->slots * SLICE + sizeof(double) * (size_t)m->particles->places +
-         (size_t)m->particles->slices;
+         2 * (size_t)m->particles->slices;
 }

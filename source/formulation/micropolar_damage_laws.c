@@ -96,7 +96,8 @@ static int find_laws(Micropolar *m, Error *error)
 int micropolar_damage_create(Micropolar *m, Error *error)
 {
   bool any = false;
-  for (int block = 0; block < m->body->block_count; ++block) any |= micropolar_material(m, block)->law->link != NULL;
+  for (int block = 0; block < m->body->block_count; ++block)
+    any |= !block_is_foreign(m->foreign, m->particles, block) && micropolar_material(m, block)->law->link != NULL;
   if (!any) return BRECCIA_OK;
   LinkDamage *damage = m->damage = memory_zeroed(1, sizeof *damage, "damage of links", error);
   if (!damage) return BRECCIA_FAILURE;

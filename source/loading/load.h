@@ -135,7 +135,6 @@ typedef struct LoadMaking {
   const Material *materials;
   const int32_t *material; /* [slices] number of each one's */
   const Forces *forces;    /* beside those of bonds; NULL: there are none */
-  const uint8_t *still;    /* [slices] whose particles have no rotations where others do; NULL: none */
 } LoadMaking;
 
 struct LoadType {

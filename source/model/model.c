@@ -140,16 +140,6 @@ static int create_loading(breccia_model *model, Error *error)
     const SolveSpec *stage = spec->solve.items[k];
     stages[k] = (LoadStage){&stage->loads, &stage->without, stage};
   }
-  const Domain *d = &model->domain;
-  uint8_t *still = NULL;
-  if (d->particles->motions > ROTATION && d->region_count > 1) {
-    still = memory_zeroed((size_t)d->particles->slices, sizeof *still, "loads", error);
-    for (int64_t s = 0; s < d->particles->slices && still; ++s) still[s] = !domain_region(d, s * SLICE)->type->gyration;
-    if (!still) {
-      free(stages);
-      return BRECCIA_FAILURE;
-    }
-  }
   const LoadMaking making = {.loading = &model->loading,
                              .body = &model->domain.body,
                              .family = &model->domain.family,
@@ -158,11 +148,9 @@ static int create_loading(breccia_model *model, Error *error)
                              .selections = &spec->selections,
                              .materials = model->domain.materials,
                              .material = model->domain.material,
-                             .forces = &model->domain.forces,
-                             .still = still};
+                             .forces = &model->domain.forces};
   const int status = loading_create(&making, &spec->loads, stages, spec->solve.count);
   free(stages);
-  free(still);
   return status;
 }
 

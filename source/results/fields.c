@@ -27,6 +27,7 @@ static void internal_force(const Domain *d, int32_t place, double *value)
 static void rotation(const Domain *d, int32_t place, double *value)
 {
   particles_rotation(d->particles, place, value);
+  for (int k = 0; k < 3; ++k) value[k] *= 180 / acos(-1);
 }
 /** Rows of rotations of a vector, about x, y, z; 0 where there are none. */
 static void rotations_at(const Particles *p, double *const from[MOTIONS], int32_t place, double *value)

@@ -22,8 +22,8 @@ static void clear_flat(const Unknowns *u, double *const v[MOTIONS])
   const Domain *d = u->domain;
   for (int k = 0; k < 3; ++k)
     if (u->flat[k]) memset(v[k], 0, sizeof(double) * (size_t)d->particles->places);
-  for (int64_t s = 0; s < d->particles->slices && d->particles->motions > ROTATION && d->region_count > 1; ++s)
-    if (!domain_region(d, s * SLICE)->type->gyration)
+  for (int64_t s = 0; s < d->particles->slices && d->particles->unturned; ++s)
+    if (d->particles->unturned[s])
       for (int k = ROTATION; k < d->particles->motions; ++k) memset(v[k] + s * SLICE, 0, SLICE * sizeof(double));
 }
 

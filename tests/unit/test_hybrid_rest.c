@@ -1,6 +1,6 @@
 /* Hybrid bodies at rest: relaxation beside Newton's method for both forms, stresses kept from a first stage, and limits of bonds in closed form. */
-#include "formulation/hybrid.h"
 #include "base/tensor.h"
+#include "formulation/hybrid.h"
 #include "support.h"
 
 #define UNITS "units: {length: m, force: kN, time: s}\n"
@@ -64,13 +64,13 @@ static void ground_keeps_the_stresses_of_its_first_stage(void **state)
                   "{held: all}}]\n"
                   "solve: [{laws: elastic, static: {increments: 1, residual: 1e-12}},\n"
                   "        {displacements: zero%s, %s}]\n",
-            pairwise ? "pairwise" : "variational",
-            loaded ? ", loads: [{on: {face: y+}, pressure: 5}]" : "", stage);
+            pairwise ? "pairwise" : "variational", loaded ? ", loads: [{on: {face: y+}, pressure: 5}]" : "", stage);
         const Domain *d = &m->domain;
         const Particles *p = d->particles;
         step_surely(m, 1);
         const Energy begun = solver_energy(&m->solver);
-        assert_near(begun.external, begun.stored, (pairwise ? 1e-3 : 1e-9) * begun.stored); /* pairwise forces have no energy */
+        assert_near(begun.external, begun.stored,
+                    (pairwise ? 1e-3 : 1e-9) * begun.stored); /* pairwise forces have no energy */
         while (!solver_is_done(&m->solver)) step_surely(m, 1);
         double moved = 0;
         for (int64_t n = 0; n < p->count; ++n) {
@@ -80,7 +80,8 @@ static void ground_keeps_the_stresses_of_its_first_stage(void **state)
           moved = larger_of(moved, fabs(particles_moved(p, 1, i) + settled));
           moved = larger_of(moved, fabs(particles_moved(p, 0, i)));
           if (depth < 1.3 || depth > height - 1.3) continue; /* beside faces bonds see other depths */
-          const double within = (loaded ? 1e-6 : 1e-8) * weight * height, vertical = -weight * depth - (loaded ? load : 0);
+          const double within = (loaded ? 1e-6 : 1e-8) * weight * height,
+                       vertical = -weight * depth - (loaded ? load : 0);
           double strain[6], stress[6];
           domain_look(d, i, strain, stress);
           assert_near(stress[YY], vertical, within);
@@ -146,8 +147,8 @@ static void bonds_have_the_limits_of_closed_forms(void **state)
                   "solve: {explicit: {steps: 1, time step: 1e-9%s}}\n",
             pairwise ? "pairwise" : "variational", criterion, pairwise ? ", stiffness damping: 1e-3" : "");
         /* Along the diagonal of a pull half of the strain goes, and half of the work: cos^2 of 1 + ... of the bond's force along its ends */
-        const double strain = (above ? 1.01 : 0.99) * limit *
-                              (by_energy ? of[k].rows ? sqrt(sqrt(2)) : 1 : of[k].strain);
+        const double strain =
+            (above ? 1.01 : 0.99) * limit * (by_energy ? of[k].rows ? sqrt(sqrt(2)) : 1 : of[k].strain);
         const double f[9] = {of[k].way == PULL ? 1 + strain : 1, of[k].way == SHEAR ? strain : 0, 0, 0, 1, 0, 0, 0, 1};
         deform_uniformly(m, f);
         compute_forces(m);

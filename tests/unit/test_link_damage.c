@@ -189,8 +189,8 @@ static void sweeps_are_sums_of_damaged_links(void **state)
                {space_cloud, "3-D", 0.016},
                {space_blocks, "3-D", 0.016},
                {OF("hexagonal", PLATE), "plane stress", 0.15}, /* from here on beyond the series */
-               {OF("hexagonal", PLATE), "plane stress", 1.4},
-               {plane_cloud, "plane strain", 1.4},
+               {OF("hexagonal", PLATE), "plane stress", 3},
+               {plane_cloud, "plane strain", 3},
                {plane_blocks, "plane stress", 1.4},
                {OF("face-centred cubic", CUBE), "3-D", 0.15},
                {OF("face-centred cubic", CUBE), "3-D", 1.4},
@@ -463,7 +463,7 @@ static void what_was_tried_leaves_nothing_behind(void **state)
     breccia_error_destroy(&error);
   }
   for (int way = 1; way < WAYS; ++way)
-    for (int k = 0; k < 2; ++k)
+    for (int k = 0; k < MOTIONS && models[0]->domain.particles->internal[k]; ++k)
       assert_memory_equal(models[0]->domain.particles->internal[k], models[way]->domain.particles->internal[k],
                           sizeof(double) * (size_t)models[0]->domain.particles->places);
   for (int way = 0; way < WAYS; ++way) breccia_model_destroy(&models[way]);

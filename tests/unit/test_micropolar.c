@@ -500,7 +500,7 @@ static breccia_model *torn_plate(bool space)
                         "peridynamics: {formulation: micropolar, space: %s}\nfailure: {critical stretch: 0.01}\n"
                         "loads: [{on: {face: x-, block: a}, velocity: [-1, 0, 0], name: l}, {on: {face: x-, block: a}, "
                         "rotation: [0, 0, 0]}, {on: {face: x+, block: b}, velocity: [1, 0.3, 0]}, {on: {face: x+, "
-                        "block: b}, rotation: [free, free, 0.1], history: {ramp to: 0.02}}]\n"
+                        "block: b}, rotation: [free, free, 0.1 rad], history: {ramp to: 0.02}}]\n"
                         "solve: {explicit: {steps: 120}}\n",
                   space ? "cubic" : "square", space ? "" : "thickness: 0.3,", space ? "[9, 4, 3]" : "[9, 4]",
                   space ? "cubic" : "square", space ? "" : "thickness: 0.3,", space ? "3-D" : "plane stress");

@@ -180,7 +180,6 @@ static const Couple couples[] = {
     {"3-D", "influence: conical,", {{"hybrid", &solid[0]}, {"micropolar, torsion: 0.5", &solid[0]}}},
     {"plane strain", "", {{"ordinary", &solid[0]}, {"micropolar", &solid[0]}}},
     {"plane stress", "", {{"micropolar", &solid[0]}, {"bond-based", &fibre[0]}}},
-    {"plane stress", "", {{"micropolar", &solid[0]}, {"micropolar", &solid[0]}}},
 };
 
 static breccia_model *coupled_body(const Couple *c)

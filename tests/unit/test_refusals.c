@@ -153,6 +153,12 @@ static const struct Case {
       .loads = "loads: []"},
      3,
      "kinematics: links of 'thesis' cannot stand beside other formulations; leave 'kinematics' out"},
+    {{.horizon = "peridynamics: {formulation: micropolar, regions: {r: {blocks: [b], formulation: micropolar}}}",
+      .body = "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [4, 4, 4]}}}, c: {material: m, spacing: "
+              "0.1, shape: {box: {from: [0.4, 0, 0], to: [0.8, 0.4, 0.4]}}}}",
+      .loads = "loads: []"},
+     3,
+     "formulation: two regions of micropolar, whose particles turn, cannot stand beside each other; give their blocks"},
     {{.more = "failure: {criterion: critical bond stress, bond tensile strength: 1}"},
      6,
      "criterion: bonds of correspondence have no stress on a section"},

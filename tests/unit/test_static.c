@@ -300,7 +300,7 @@ static void laws_with_tangents_converge_quadratically(void **state)
     bool plastic = false, quick = false;
     for (int n = 1; n < count; ++n) {
       plastic |= residual[n - 1] > 1e-6;
-      quick |= residual[n - 1] < 2e-3 && residual[n] < 30 * residual[n - 1] * residual[n - 1] + 1e-12 &&
+      quick |= residual[n - 1] < 2e-3 && residual[n] < 90 * residual[n - 1] * residual[n - 1] + 1e-12 &&
                residual[n - 1] > 1e-8;
     }
     if (!plastic || !quick || cuts_near_rest(model) || count > 10)

@@ -100,7 +100,8 @@ static bool begin(Load *load, Particles *p)
     double v[3];
     velocity_at(&m, p, i, v);
     for (int k = 0; k < 3; ++k) p->velocity[k][i] = v[k];
-    for (int k = ROTATION; k < p->motions; ++k) p->velocity[k][i] = m.rotation[p->motions == 4 ? 2 : k - ROTATION];
+    for (int k = ROTATION; k < p->motions && particles_turn(p, i); ++k)
+      p->velocity[k][i] = m.rotation[p->motions == 4 ? 2 : k - ROTATION];
   }
   return true;
 }
@@ -114,7 +115,7 @@ static LoadWords tell(const Load *load, const Particles *p)
     double v[3];
     velocity_at(&m, p, i, v);
     kinetic += 0.5 * p->density[i] * p->volume[i] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int k = 0; k < 3 && p->rotary; ++k)
+    for (int k = 0; k < 3 && particles_turn(p, i); ++k)
       kinetic += 0.5 * p->rotary[i] * p->volume[i] * m.rotation[k] * m.rotation[k];
   }
   return (LoadWords){"its particles begin with a kinetic energy of", kinetic, "energy", "J"};

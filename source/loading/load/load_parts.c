@@ -68,9 +68,9 @@ int load_rotations(const Load *load, const LoadMaking *making, int axis[3])
       return node_error(making->reader->document, load->node, making->reader->error,
                         "%s: the body is plane and turns about z only: [0, 0, value]", load->node->key),
              -1;
-  for (int64_t n = 0; n < load->selection.count && making->still; ++n) {
+  for (int64_t n = 0; n < load->selection.count; ++n) {
     const int32_t i = load->selection.places[n];
-    if (making->still[i / SLICE])
+    if (!particles_turn(p, i))
       return node_error(
                  making->reader->document, load->node, making->reader->error,
                  "%s: particle %d at [%g, %g, %g] has no rotation, as its formulation has none; select particles "
@@ -85,8 +85,10 @@ int load_constrain_rotations(Load *load, const LoadMaking *making, int order)
 {
   int of[3];
   const int count = load_rotations(load, making, of);
+  const double degree = acos(-1) / 180;
   for (int k = 0; k < count; ++k)
-    if (!isnan(load->value->point[of[k]])) load_constrain_rotation(load, making, k, load->value->point[of[k]], order);
+    if (!isnan(load->value->point[of[k]]))
+      load_constrain_rotation(load, making, k, degree * load->value->point[of[k]], order);
   return count < 0 ? BRECCIA_USER_ERROR : BRECCIA_OK;
 }
 
