@@ -80,7 +80,7 @@ def bishop(cx, cy, radius, parts=300):
 
 
 slices = min(bishop(cx, cy, cy - low / 2) for cx in range(20, 36) for cy in range(14, 36) for low in range(0, 5))
-FACTORS = (1.0, 1.2, 1.3, 1.35, 1.4, 1.45, 1.5, 1.55)
+FACTORS = (1.0, 1.2, 1.3, 1.35, 1.4, 1.45, 1.5, 1.55, 1.6, 1.65, 1.7)
 
 
 class Friction:
@@ -95,12 +95,13 @@ class Friction:
             self.particles, self.last = run.summary["particles"], run
             if slides:
                 break
+        assert slides, f"with a spacing of {spacing} m it stands at all factors"
         self.low, self.high = FACTORS[len(self.settled) - 2], FACTORS[len(self.settled) - 1]
 
     def row(self):
         middle = (self.low + self.high) / 2
         return [f"{self.spacing:g} m", str(self.particles), f"{self.settled[0]:.1f} mm", f"{self.settled[-2]:.1f} mm at {self.low}",
-                f"{self.settled[-1]:.1f} mm at {self.high}", f"{middle:.3f}", f"{100 * (middle / slices - 1):+.1f} %"]
+                f"{self.settled[-1]:.1f} mm at {self.high}" + ("" if self.last.summary["completed"] else ", at the last equilibrium"), f"{middle:.3f}", f"{100 * (middle / slices - 1):+.1f} %"]
 
 
 soils = [Friction(0.5), Friction(0.25)]
