@@ -444,7 +444,8 @@ static void what_cannot_be_meant_is_told(void **state)
        "zz is 3; expected 0 in plane stress"},
       {ELASTIC PLATE "peridynamics: {space: plane strain, formulation: ordinary}\nsolve: {explicit: {steps: 1}}\n"
                      "initial stress: {stress: [1, 0, 3, 0, 0, 0]}\n",
-       "expected 'formulation: correspondence' for particle 0"},
+       "as at particle 0 at [0.05, 0.05, 0]; expected 'formulation: correspondence', or a first stage 'laws: elastic' "
+       "under the weight"},
       {UNITS
        "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 50}}\n" PLATE
        "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
