@@ -399,7 +399,13 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
              : rise < 10 * e->crossing ? "waves will show"
                                        : "slow");
   }
-  if (!(rise > 0)) text_add(text, "acts in full from the start");
+  const Polyline *line = &load->history.line;
+  const double *last = line->count > 1 ? line->rows + 2 * (line->count - 1) : NULL; /* time and value */
+  if (!(rise > 0) && last && last[1] != line->rows[1]) {
+    text_add(text, "goes from %g to %g of its value over ", line->rows[1], last[1]);
+    quantity_describe(plausibility_in_si(model, "time", last[0] - line->rows[0]), "s", text);
+  } else if (!(rise > 0))
+    text_add(text, "acts in full from the start");
   if (plausibility_is_kind(l, "velocity") && !rests) {
     const Material *m = main_material(model);
     const double speed = plausibility_in_si(model, "velocity", magnitude);

@@ -457,15 +457,16 @@ NewtonOutcome newton_solve(Newton *n, double time, Error *error)
 
 const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words, size_t size)
 {
+  enum { FEW = 10 }; /* bodies that yield take as many */
   const Domain *d = n->domain;
   const Particles *p = d->particles;
   const char *parts =
       d->forces.count ? " (parts that only contact holds must touch at first, and not slide freely)" : "";
   switch (outcome) {
   case NEWTON_SLOW:
-    snprintf(words, size, "%lld iterations left %.2g of the forces out of balance%s%s", (long long)n->iterations - 1,
-             n->unbalanced, n->indefinite ? ", and the body does not resist some motion any more" : "",
-             n->indefinite ? parts : "");
+    snprintf(words, size, "%lld iteration%s left %.2g of the forces out of balance%s%s%s", (long long)n->iterations - 1,
+             n->iterations == 2 ? "" : "s", n->unbalanced, n->spec->iterations < FEW ? ": allow more 'iterations'" : "",
+             n->indefinite ? ", and the body does not resist some motion any more" : "", n->indefinite ? parts : "");
     break;
   case NEWTON_LEFT:
     snprintf(words, size, "it hardly comes on: %lld iterations left %.2g of the forces out of balance",

@@ -237,6 +237,20 @@ awk -v d="$(figures cracks/summary.json damping)" -v e="$(figures cracks/summary
   fail "nothing to round: $(grep energy cracks/summary.json)"
 grep -q '^energy:.* damping' out && fail "damping below zero: $(grep ^energy: out)"
 
+# ---- a load that goes, and too few iterations ----
+cat > taken.yaml <<'Y'
+title: A load that is taken away
+materials: {m: {model: j2, density: 2400 kg/m3, Young modulus: 30 GPa, Poisson ratio: 0.2, yield stress: 1 MPa}}
+body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [8, 3, 3]}}}}
+loads: [{on: {face: x-, layers: 2}, displacement: [0, 0, 0]},
+        {name: pull, on: {face: x+, layers: 1}, traction: [0, 0.2 MPa, 0], history: {table: [[0, 1], [2, 0.25]]}}]
+solve: {static: {end time: 1, increments: 1, iterations: 1}}
+Y
+contains "a load that goes" "$("$breccia" check taken.yaml 2>&1)" "kN; goes from 1 to 0.25 of its value over 2 s"
+"$breccia" run taken.yaml --quiet 2> errors && fail "one iteration for a body that yields"
+contains "one iteration" "$(cat errors)" "1 iteration left "
+contains "one iteration: what to do" "$(cat errors)" "out of balance: allow more 'iterations'"
+
 # ---- a state each second step, one for a picture, and a folder of pictures that cannot be made ----
 cat > block.yaml <<'Y'
 title: Block

@@ -104,8 +104,8 @@ static int add_margin(MarginList *list, const LoadSpec *spec, const SectionList 
   const int b = on ? find_block(on, blocks) : -1;
   if (b < 0)
     return node_error(reader->document, node, reader->error,
-                      "support: takes the whole face of a block: 'on' must be like {face: x-}%s",
-                      blocks->count > 1 ? " with 'block'" : "");
+                      "support: takes the whole face of a block: 'on' must be like {%sface: x-}",
+                      blocks->count > 1 ? "block: NAME, " : "");
   const BlockSpec *block = blocks->items[b];
   if (block->file || !block->lattice || !lattice_is_grid(lattice_find(block->lattice)))
     return node_error(
