@@ -184,12 +184,13 @@ bool domain_lags(const Domain *d)
   return lags;
 }
 
-bool domain_may_lag(const Domain *d)
+double domain_lag_allowed(const Domain *d)
 {
-  bool may = false;
+  double allowed = INFINITY;
   for (int r = 0; r < d->region_count; ++r)
-    may |= d->regions[r].type->may_lag && d->regions[r].type->may_lag(d->regions[r].formulation);
-  return may;
+    if (d->regions[r].type->lag_allowed)
+      allowed = fmin(allowed, d->regions[r].type->lag_allowed(d->regions[r].formulation));
+  return allowed;
 }
 
 bool domain_has_secants(const Domain *d)

@@ -261,8 +261,8 @@ const char *domain_server_problem(const Domain *domain);
 bool domain_has_servers(const Domain *domain);
 /** Whether forces are found with something as the step before left it. */
 bool domain_lags(const Domain *domain);
-/** Whether that may be so after some step to come. */
-bool domain_may_lag(const Domain *domain);
+/** Share of the forces that a step may leave out of balance once it is as the step left it; INFINITY: nothing lags, ever. */
+double domain_lag_allowed(const Domain *domain);
 /** A material whose server cannot repeat a trial, as iterations have it do; NULL: there is none. */
 const Material *domain_without_trials(const Domain *domain);
 /** A material whose law does not tell how stress changes with strain; NULL: there is none. */

@@ -132,7 +132,7 @@ void correspondence_destroy_fading(Correspondence *c);
 void correspondence_fade(const Correspondence *c, const Sweep *sweep);
 void correspondence_commit(void *formulation, bool well);
 bool correspondence_lags(const void *formulation);
-bool correspondence_may_lag(const void *formulation);
+double correspondence_lag_allowed(const void *formulation);
 void correspondence_state(void *formulation, const char *part, StateList *list);
 size_t correspondence_fading_bytes(const Correspondence *c);
 /** Whether control keeps its stiffness where points of a material have lost theirs. */

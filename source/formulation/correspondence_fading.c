@@ -282,9 +282,13 @@ bool correspondence_lags(const void *formulation)
   return c->fading && c->fading->softened;
 }
 
-bool correspondence_may_lag(const void *formulation)
+/* Where soil yields, the hundredth that softening bodies may leave would carry a slope that slides: a tenth of its factor of safety came of it
+ * (docs/theory.md 8.7). */
+double correspondence_lag_allowed(const void *formulation)
 {
-  return ((const Correspondence *)formulation)->fading != NULL;
+  const Correspondence *c = formulation;
+  if (!c->fading) return INFINITY;
+  return c->fades == FADES_WITH_YIELDING ? 1e-3 : 1e-2;
 }
 
 /** Factors were put in place from outside. */

@@ -7,7 +7,7 @@
 
 bool static_may_go_on_again(const Static *s)
 {
-  return domain_may_lag(s->domain) && !domain_is_elastic(s->domain);
+  return isfinite(domain_lag_allowed(s->domain)) && !domain_is_elastic(s->domain);
 }
 
 int static_keep(Solver *run, Error *error)
@@ -69,8 +69,8 @@ static int try_again(Static *s, bool first, TryBy by, NewtonOutcome *outcome, Er
 int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, TryBy *way, Error *error)
 {
   enum { MOST = 20 };
-  const double enough = 1e-2; /* of forces out of balance: what comes of so few is left to the next increment */
   Static *s = run->own;
+  const double enough = domain_lag_allowed(s->domain); /* what comes of so few is left to the next increment */
   int status = break_bonds(run, outcome, error);
   bool first = true; /* the last try began a way */
   *settled = true;
@@ -79,10 +79,6 @@ int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, TryBy *way
     NewtonOutcome again;
     if (try_again(s, first, BY_METHOD, &again, error)) return BRECCIA_FAILURE;
     const bool few = s->newton.unbalanced_before < enough;
-    if (again != NEWTON_CONVERGED && few) {
-      text_add(&run->log, "    no equilibrium: control as it was is kept in this increment\n");
-      break;
-    }
     for (TryBy by = BY_SECANTS; by <= BY_RELAXATION && again != NEWTON_CONVERGED && static_may_relax(s); ++by) {
       text_add(&run->log, "    no equilibrium\n"); /* none near: the body jumps */
       if (try_again(s, false, by, &again, error)) return BRECCIA_FAILURE;
