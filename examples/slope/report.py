@@ -80,7 +80,7 @@ def bishop(cx, cy, radius, parts=300):
 
 
 slices = min(bishop(cx, cy, cy - low / 2) for cx in range(20, 36) for cy in range(14, 36) for low in range(0, 5))
-FACTORS = (1.0, 1.2, 1.3, 1.35, 1.4, 1.45, 1.5, 1.55, 1.6, 1.65, 1.7)
+FACTORS = (1.0, 1.2, 1.3, 1.35, 1.375, 1.4, 1.425, 1.45, 1.475, 1.5, 1.525, 1.55, 1.575, 1.6, 1.65, 1.7)
 
 
 class Friction:

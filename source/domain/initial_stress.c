@@ -251,10 +251,12 @@ static int tell_misfit(const Work *w, const InitialMisfit *misfit)
   }
   node_error(
       w->reader->document, spec->head.node, w->reader->error,
-      "initial stress: the law %s of material '%s' does not bear [%s] of particle %d at [%g, %g, %g], it comes to "
+      "initial stress: the law %s of material '%s' does not bear [%s] of particle %d at [%g, %g, %g]%s, it comes to "
       "[%s]; give a stress within its strength",
       m->law_name, m->name, text_words(&words[0]), p->number[row], p->position[0][row], p->position[1][row],
-      p->position[2][row], text_words(&words[1]));
+      p->position[2][row],
+      inside == p->number[row] ? "" : ", outside a support, where the ground goes on with its depth",
+      text_words(&words[1]));
   text_free(&words[0]);
   text_free(&words[1]);
   return BRECCIA_USER_ERROR;

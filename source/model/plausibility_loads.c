@@ -174,11 +174,13 @@ static void check_balance(breccia_model *model, const InitialStressSpec *item)
     load = fmax(load, sqrt(square));
   }
   if (most <= usual * load) return;
+  char unit[64];
+  units_name(model->units, dimension_find("force per volume"), unit, sizeof unit);
   plausibility_say(model, section_node(item, "surface"),
-                   "surface: the ground begins out of balance: on particle %d at [%g, %g, %g] acts %.3g per volume, "
+                   "surface: the ground begins out of balance: on particle %d at [%g, %g, %g] acts %.3g %s, "
                    "beside loads of %.3g at most; hold its faces by 'support', or in layers two horizons deep, and "
                    "expect a free face to move",
-                   p->number[at], p->position[0][at], p->position[1][at], p->position[2][at], most, load);
+                   p->number[at], p->position[0][at], p->position[1][at], p->position[2][at], most, unit, load);
 }
 
 /* Only weight balances stresses that grow with depth. */

@@ -308,8 +308,8 @@ static void tell_rest(const Solver *s, const Units *units, bool failed, Text *t)
   if (s->records[s->clock.stage].steady != STEADY_UNASKED)
     ; /* it is told by what it was judged */
   else if (rest.reached)
-    text_add(t, "at rest: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",
-             rest.unbalanced, rest.kinetic);
+    text_add(t, "%s: forces out of balance are %.2g of those that act, kinetic energy %.2g of the work\n",
+             failed ? "at rest in the last state that it came to" : "at rest", rest.unbalanced, rest.kinetic);
   else
     text_add(
         t,
@@ -399,12 +399,14 @@ void run_tell_outcome(Run *run, int status)
   units_name(model->units, dimension_find("time"), time, sizeof time);
   units_name(model->units, dimension_find("length"), length, sizeof length);
   text_free(t);
-  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld step%s, %.2f ns per directed bond and step\n",
+  text_add(t, "%s at step %lld of %lld, time %.6g %s; %.1f s for %lld step%s",
            status == BRECCIA_INTERRUPTED ? "stopped on request"
            : status                      ? "stopped by a failure"
                                          : "finished",
            (long long)s->clock.step, (long long)s->clock.steps, s->clock.time, time, model->run_seconds,
-           (long long)model->run_steps, model->run_steps == 1 ? "" : "s", nanoseconds_per_bond(model));
+           (long long)model->run_steps, model->run_steps == 1 ? "" : "s");
+  if (!s->type->few_steps) text_add(t, ", %.2f ns per directed bond and step", nanoseconds_per_bond(model));
+  text_add(t, "\n");
   if (status && run->unwritten)
     text_add(t, "once files can be written again, %s\n",
              checkpoint_exists(run->wish->folder) ? "--restart goes on from the last checkpoint"

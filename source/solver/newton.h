@@ -22,7 +22,7 @@ typedef struct NewtonSpec {
    .offset = offsetof(type, member.residual),                                                                          \
    .dimension = "1",                                                                                                   \
    .standard = "1e-8",                                                                                                 \
-   .range = "(0, 0.1]",                                                                                                \
+   .range = "[1e-14, 0.1]",                                                                                            \
    .meaning = "equilibrium: forces out of balance are below this share of those that loads and supports exert"},       \
       {.key = "displacement tolerance",                                                                                \
        .kind = FIELD_NUMBER,                                                                                           \

@@ -165,8 +165,10 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
              "the control of zero-energy modes as far as it fades leaves %.2g of the forces out of balance", s->lag);
     advice = s->spec->control ? "prescribe displacements with 'method: relaxation' instead of 'control'"
              : s->newton.relaxes
-                 ? "allow more 'relaxation iterations', or go on with a stage of 'explicit'"
-                 : "take 'method: relaxation' with more 'relaxation iterations', or go on with a stage of 'explicit'";
+                 ? "the body may fail at this load: allow more 'relaxation iterations', or go on with a "
+                   "stage of 'explicit'"
+                 : "the body may fail at this load: take 'method: relaxation' with more 'relaxation "
+                   "iterations', or go on with a stage of 'explicit'";
   } else {
     describe_failure(s, outcome, words, sizeof words);
     if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)

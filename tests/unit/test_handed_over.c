@@ -1,4 +1,5 @@
 /* Stages at rest that find no equilibrium any more, and those that go on from there: through the failure in motion, and to rest again. */
+#include "solver/reactions.h"
 #include "support.h"
 
 /** Mean displacement along x of the outermost layer at the right. */
@@ -62,6 +63,69 @@ static void a_bar_flows_between_two_stages_at_rest(void **state)
   breccia_model_destroy(&m);
 }
 
+/** All kinds of stages in a row: a bar of metal under its weight, by an elastic law and then by its own, which changes nothing; pulled, displacements
+ *  counted from zero and stresses kept, until weight and load are its strength; in motion while the load is taken back; and at rest again, longer by
+ *  Hooke's law as the load grows once more, with reactions that are weight and load. */
+static void stages_of_all_kinds_follow_each_other(void **state)
+{
+  (void)state;
+  const double weight = 0.4, length = 0.85,
+               young = 1e4; /* stress at the support; from there to the middle of the last layer */
+  breccia_model *m = model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening "
+      "modulus: 0}}\n"
+      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
+      "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
+      "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}},"
+      " {on: {face: z-}, support: {held: across}}, {gravity: [0.2222222222, 0, 0]}]\n"
+      "solve:\n"
+      "  - {laws: elastic, static: {increments: 1}}\n"
+      "  - {static: {increments: 1}}\n"
+      "  - {displacements: zero, loads: [{name: pull, on: {face: x+, layers: 1}, traction: [12, 0, 0], history: {ramp "
+      "to: 1}}], static: {increments: 12, no equilibrium: next stage}}\n"
+      "  - {loads: [{name: pull, on: {face: x+, layers: 1}, traction: [9, 0, 0], history: {table: [[0, "
+      "1], [0.2, 1], [0.3, 0.3333333333]]}}], explicit: {end time: 2, local damping: 0.8, rest: 1e-7}}\n"
+      "  - {loads: [{name: pull, on: {face: x+, layers: 1}, traction: [6, 0, 0], history: {table: [[0, 0.5], "
+      "[1, 1]]}}], static: {increments: 2}}\n");
+  const Particles *p = m->domain.particles;
+  const Points *points = &m->domain.regions[0].points;
+  const int32_t foot = particles_nearest(p, (const double[3]){0.05, 0.15, 0.15});
+  end_stage(m);
+  const double hung = mean_end(m);
+  assert_near(hung, weight / young * (length - length * length / 2 / 0.9),
+              0.01 * hung); /* to the middle of the last layer */
+  step_surely(m, 1);
+  assert_int_equal(m->solver.clock.stage, 1);
+  assert_near(mean_end(m), hung, 1e-8 * hung);
+  step_surely(m, 1);
+  assert_int_equal(m->solver.clock.stage, 2);
+  assert_near(points->stress[0][foot], weight * 0.85 / 0.9 + 1, 0.02); /* that of the weight is kept */
+  const int32_t end = particles_nearest(p, (const double[3]){0.85, 0.15, 0.15});
+  assert_near(particles_moved(p, 0, end), length / young, 0.01 * length / young);
+  end_stage(m);
+  const double failed = 12 * (m->solver.clock.time - 2);
+  print_message("no equilibrium beyond %.2f of load and %.2f of weight, strength 10\n", failed, weight);
+  assert_near(failed + weight, 10, 0.5);
+  step_surely(m, 1);
+  end_stage(m);
+  assert_int_equal(m->solver.clock.stage, 3);
+  const double flown = mean_end(m);
+  step_surely(m, INT64_MAX);
+  assert_true(solver_is_done(&m->solver));
+  assert_near(mean_end(m) - flown, 3 / young * length, 2e-3 * 3 / young * length);
+  Reactions reactions = {0};
+  const double origin[3] = {0};
+  assert_int_equal(reactions_create(&reactions, p, NULL), 0);
+  const Wrench held = reactions_sum(&reactions, &m->solver, NULL, NULL, origin),
+               loads = reactions_of_loads(&m->solver, origin);
+  reactions_destroy(&reactions);
+  assert_near(loads.force[0], 6 * 0.09 + 2 * 0.2222222222 * 0.9 * 0.09, 1e-6);
+  assert_near(held.force[0], -loads.force[0], 1e-7 * loads.force[0]);
+  assert_balanced(m, 2e-2);
+  breccia_model_destroy(&m);
+}
+
 /** A brittle strip that a growing force tears: what is torn off flies on, with the momentum that the force gives it. */
 static void what_is_torn_off_at_rest_flies_on(void **state)
 {
@@ -111,6 +175,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_bar_flows_between_two_stages_at_rest),
+      cmocka_unit_test(stages_of_all_kinds_follow_each_other),
       cmocka_unit_test(what_is_torn_off_at_rest_flies_on),
       cmocka_unit_test(the_last_stage_has_none_to_go_on),
   };

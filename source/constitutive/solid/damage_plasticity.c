@@ -68,7 +68,7 @@ static int prepare_tail(DamagePlasticity *c, const double *v, double area, char 
   if (first <= (1 - c->tension_share) * strength / young) {
     snprintf(reason, size,
              "a length of %g makes the curve of tension snap back; with this 'initial fracture energy' it must be less "
-             "than %g: take a finer spacing",
+             "than %g: take a finer spacing, if the units of these numbers are right",
              length, 2 * v[INITIAL_ENERGY] * young / (strength * strength));
     return 1;
   }
@@ -121,7 +121,8 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
     return 1;
   }
   snprintf(reason, size,
-           "a length of %g makes the curve of tension snap back; it must be less than %g: take a finer spacing",
+           "a length of %g makes the curve of tension snap back; it must be less than %g: take a finer spacing, if the "
+           "units of these numbers are right",
            v[LENGTH], v[ENERGY] / (stored * (1 - m + m / (2 * (2 - m)))));
   return 1;
 }

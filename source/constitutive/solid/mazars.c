@@ -44,7 +44,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   snprintf(
       reason, size,
       "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must "
-      "be less than 2 E G_F / f_t^2 = %g: take a finer spacing",
+      "be less than 2 E G_F / f_t^2 = %g: take a finer spacing, if the units of these numbers are right",
       v[LENGTH], 2 * young * v[ENERGY] / (v[STRENGTH] * v[STRENGTH]));
   return 1;
 }
