@@ -66,10 +66,6 @@ int regions_create(Domain *d, const DeckReader *reader, const PeridynamicsSpec *
   }
   free(region_of);
   for (int r = 0; r < d->region_count && d->region_count > 1 && !status; ++r) {
-    if (!d->regions[r].type->joins)
-      return node_error(reader->document, d->regions[r].node, reader->error,
-                        "formulation: %s cannot stand beside others in one body; leave 'regions' out",
-                        d->regions[r].type->name);
     for (int before = 0; before < r; ++before)
       if (d->regions[r].type->gyration && d->regions[before].type->gyration)
         return node_error(reader->document, d->regions[r].node, reader->error,

@@ -290,7 +290,6 @@ const FormulationType formulation_bond_based = {
     .components = 1,
     .on_bonds = true,
     .bond_lengths = true,
-    .joins = true,
     .section = &bond_based_section,
     .create = create,
     .destroy = destroy,

@@ -39,7 +39,6 @@ const FormulationType formulation_correspondence = {
     .components = 6,
     .row_sums = true,
     .may_stiffen = true,
-    .joins = true,
     .section = &correspondence_section,
     .check = correspondence_check,
     .create = correspondence_create,

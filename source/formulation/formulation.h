@@ -150,7 +150,6 @@ struct FormulationType {
   bool bond_lengths;             /* lengths of stored bonds are read in sweeps */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
   bool knows_hooke;       /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
-  bool joins;             /* it minds which places are foreign, so that a body may have others beside it */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */

@@ -263,7 +263,6 @@ const FormulationType formulation_hybrid = {
     .components = 6,
     .on_bonds = true,
     .horizon = 2.015,
-    .joins = true,
     .fibres = &formulation_bond_based,
     .may_stiffen = true,
     .knows_hooke = true,

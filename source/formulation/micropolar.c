@@ -345,7 +345,6 @@ const FormulationType formulation_micropolar = {
     .components = 6,
     .horizon = 1.5,
     .keeps_no_points = true,
-    .joins = true,
     .takes = takes,
     .section = &micropolar_section,
     .check = check,

@@ -49,7 +49,6 @@ const FormulationType formulation_ordinary = {
     .takes = ordinary_takes,
     .check_material = ordinary_check_material,
     .bond_lengths = true,
-    .joins = true,
     .section = &ordinary_section,
     .check = ordinary_check,
     .create = ordinary_create,

@@ -168,7 +168,8 @@ static void steps_cost_little_more_where_cores_are_too_few(void **state)
   if (sched_getaffinity(0, sizeof allowed, &allowed)) skip();
   confine(&allowed, 2);
   breccia_model *one = small_body(1), *many = small_body(4 * cores_available()), *two = small_body(2);
-  const double most_many = 2.5, most_two = 1.5; /* threads that look for their turn all the time take ten times as long */
+  const double most_many = 2.5,
+               most_two = 1.5; /* threads that look for their turn all the time take ten times as long */
   double best_many = INFINITY, best_two = INFINITY;
   for (int k = 0; k < 40 && (best_many > most_many || best_two > most_two); ++k) {
     confine(&allowed, 2);
