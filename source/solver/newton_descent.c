@@ -136,13 +136,13 @@ static NewtonOutcome try_tangents(const Descent *d, Newton *n, double time, doub
   return *kept ? NEWTON_CONVERGED : newton_find_forces(n, time, error);
 }
 
-/** A step by secants. @param[in] time  up to which prescribed motions are part of it; NAN: none is */
-static NewtonOutcome step(Descent *d, Newton *n, double time, double motions, double force, double *correction,
-                          double *energy, Error *error)
+/** A step by secants. @param[in] motions  time up to which prescribed motions are part of it; NAN: none is; @param[out] share  of it that was taken */
+static NewtonOutcome step(Descent *d, Newton *n, double time, double motions, double force, double *share,
+                          double *correction, double *energy, Error *error)
 {
   const Unknowns *u = &n->linear.unknowns;
   LinearRecord linear = {0};
-  double share = 1, work;
+  double work;
   const double accuracy = n->exerted > 0 ? newton_wanted_accuracy(n, force, 0) : n->spec->residual / 10;
   if (find_direction(d, n, accuracy, &linear, error)) return NEWTON_FAILED;
   double start = unknowns_work(u, n->force, n->change);
@@ -156,36 +156,40 @@ static NewtonOutcome step(Descent *d, Newton *n, double time, double motions, do
   unknowns_spread(u, motions, n->change);
   if (isnan(motions)) {
     vectors_combine(n->domain, 0, d->before, 1, n->force);
-    outcome = search(n, time, start, &work, &share, error);
+    outcome = search(n, time, start, &work, share, error);
   } else {
     newton_move(n, 1);
     outcome = newton_find_forces(n, time, error);
     work = unknowns_work(u, n->force, n->change);
   }
   if (outcome != NEWTON_CONVERGED) return outcome;
-  if (isnan(motions)) keep_pair(d, n, share);
+  if (isnan(motions)) keep_pair(d, n, *share);
   const double all = newton_size_of_motions(n, n->moved);
   if (d->first_work == 0) d->first_work = start;
-  *correction = all > 0 ? share * newton_size_of_motions(n, n->change) / all : 0;
+  *correction = all > 0 ? *share * newton_size_of_motions(n, n->change) / all : 0;
   *energy = energy_of(d, work);
   n->unbalanced = n->exerted > 0 ? newton_size_of_forces(n, n->force) / n->exerted : INFINITY;
-  newton_tell(n, *correction, *energy, share, &linear);
+  newton_tell(n, *correction, *energy, *share, &linear);
   return NEWTON_CONVERGED;
 }
 
 /** Down to the next equilibrium. @param[in] moves  up to the time prescribed motions are part of the first step, and of the forces out of balance */
 static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int64_t most, Error *error)
 {
-  const double nearer = 0.1;
+  enum { MOST_IDLE = 20 };
+  const double nearer = 0.1,
+               hardly =
+                   1e-3; /* of a step; where it leads nowhere laws jump, as where ground flows that finds no rest */
+  int idle = 0;
   const int64_t begin = n->iterations;
   double force = newton_size_of_forces(n, n->force), near = nearer * force;
   bool balanced = !moves && newton_is_balanced(n, force);
   d->count = 0;
   while (!balanced) {
-    double correction = 0, energy = 0;
+    double correction = 0, energy = 0, share = 1;
     bool kept = false;
     NewtonOutcome outcome = NEWTON_CONVERGED;
-    if (++n->iterations - begin > most) return NEWTON_SLOW;
+    if (++n->iterations - begin > most || idle == MOST_IDLE) return NEWTON_SLOW;
     if (force < near) {
       outcome = try_tangents(d, n, time, force, &kept, &correction, &energy, error);
       near = nearer * force;
@@ -196,8 +200,9 @@ static NewtonOutcome go_down(Descent *d, Newton *n, double time, bool moves, int
       }
     }
     if (outcome == NEWTON_CONVERGED && !kept)
-      outcome = step(d, n, time, moves && n->iterations == 1 ? time : NAN, force, &correction, &energy, error);
+      outcome = step(d, n, time, moves && n->iterations == 1 ? time : NAN, force, &share, &correction, &energy, error);
     if (outcome != NEWTON_CONVERGED) return outcome;
+    idle = share < hardly ? idle + 1 : 0;
     force = newton_size_of_forces(n, n->force);
     if (!isfinite(force)) return NEWTON_DIVERGED;
     if (!kept && isinf(near)) near = nearer * force;
