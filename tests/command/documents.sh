@@ -11,7 +11,7 @@ if command -v python3 > /dev/null; then
   diff -r "$work/pictures" "$source/docs/pictures" > /dev/null || fail "docs/pictures is not current: run 'make docs'"
 fi
 every=1 # of laws and decks: under the sanitizers some are enough
-[ -z "${BRECCIA_SANITIZED:-}" ] || every=9
+[ -z "${BRECCIA_SANITIZED:-}" ] || every=17
 number=0
 for name in $("$breccia" models | sed -n '/^Formulations/q; s/^\([a-z0-9-]*\): .*/\1/p'); do
   [ -s "$source/docs/models/$name.png" ] || fail "docs/models/$name.png is missing: run 'make docs'"

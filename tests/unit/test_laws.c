@@ -6,7 +6,7 @@
 #include "results/fields.h"
 
 #ifdef __SANITIZE_ADDRESS__
-enum { WALK = 100000 };
+enum { WALK = 30000 };
 #else
 enum { WALK = 1000000 };
 #endif
@@ -68,7 +68,7 @@ static void stress_turns_with_the_strain(void **state)
     double some[6], value[3], q[9], strain[6] = {0}, turned_strain[6], s[6], t[6], expected[6], largest = 1;
     for (int k = 0; k < 6; ++k) some[k] = random_uniform(&seed);
     tensor_eigen(some, value, q); /* an orthonormal basis */
-    for (int step = 0; step < 2000; ++step) {
+    for (int step = 0; step < (under_sanitizers() ? 500 : 2000); ++step) {
       sample_wander(&seed, samples[n].strain, samples[n].strain / 20, strain);
       turned(q, strain, 0.5, turned_strain);
       point_try(&a, strain, s, NULL, 0);
