@@ -187,6 +187,54 @@ static void a_mesh_by_pitch_has_the_bits_of_its_bars_one_by_one(void **state)
   }
 }
 
+static const char *bond_of_struck;
+
+/** A slab whose halves fly apart, with its mesh and a grid of ties: steel yields, and bonds slip. */
+static breccia_model *struck(int threads)
+{
+  char *bars = mesh(true, bond_of_struck);
+  char *deck = text_format(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n  " STEEL "\n"
+      "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.8, 0.3]}}}}\n"
+      "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+      "bars: {%s, ties: {points: [[0.1, 0.1, 0.05], [0.1, 0.1, 0.25]], diameter: 4 mm, material: steel%s, "
+      "repeat: [{along: [1, 0, 0], pitch: 0.3, over: 1}, {along: [0, 1, 0], pitch: 0.25, number: 3}]}}\n"
+      "loads: [{on: {inside: {box: {from: [0, 0, 0], to: [0.6, 1, 1]}}}, initial velocity: {translation: [-2, 0, "
+      "0.4]}},\n"
+      "        {on: {inside: {box: {from: [0.6, 0, 0], to: [2, 1, 1]}}}, initial velocity: {translation: [2, 0.4, "
+      "0]}},\n"
+      "        {prestress: {bars: [along x], stress: 2e5}, history: {ramp to: 1e-3}}]\n"
+      "solve: {explicit: {end time: 1}}\npictures: []\n",
+      bars, bond_of_struck);
+  breccia_options options = {.size = sizeof options, .threads = threads};
+  Error *error = breccia_error_create();
+  breccia_model *m;
+  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  free(deck);
+  free(bars);
+  return m;
+}
+
+static void threads_and_restarts_give_the_same_bits(void **state)
+{
+  (void)state;
+  static const char *const bonds[] = {"", ", bond: {compressive strength: 38 MPa, rib spacing: 8 mm}"};
+  for (int k = 0; k < 2; ++k) {
+    bond_of_struck = bonds[k];
+    breccia_model *m = struck(2);
+    step_surely(m, 120);
+    const BarReport mesh_across = bar_report(bars_of(m), 0), ties = bar_report(bars_of(m), 2);
+    print_message("mesh: yielded %g, slip %g; ties: stress %g to %g\n", mesh_across.yielded, mesh_across.largest_slip,
+                  ties.lowest_stress, ties.highest_stress);
+    assert_true(k ? mesh_across.largest_slip > 5e-5 : mesh_across.yielded > 0.05);
+    assert_true(ties.highest_stress > 1e3);
+    breccia_model_destroy(&m);
+    assert_same_bits_by_threads_and_restart(struck, 60, 120);
+  }
+}
+
 static void nonsense_is_refused(void **state)
 {
   (void)state;
@@ -232,6 +280,7 @@ int main(void)
       cmocka_unit_test(lines_stand_at_the_pitch),
       cmocka_unit_test(two_directions_make_a_grid),
       cmocka_unit_test(a_mesh_by_pitch_has_the_bits_of_its_bars_one_by_one),
+      cmocka_unit_test(threads_and_restarts_give_the_same_bits),
       cmocka_unit_test(nonsense_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
