@@ -301,7 +301,7 @@ typedef struct breccia_plot {
   double low_corner[3], high_corner[3]; /* of a box: only particles that stand in it before they move; NaN: no limit */
   /* of reinforcing bars */
   const char *
-      bars; /* "stress", "strain", "force", "dissipated", "slip", "bond stress": bars in these colours over the pale body, in place of a
+      bars; /* what a deck may give its pictures as `bars` (docs/deck.md), like "stress": bars in these colours over the pale body, in place of a
                      * field; NULL: the field */
   const double *times; /* [time_count] of curves over their length, up to 6; the states nearest to them are taken */
   int time_count;      /* 0: `state` */

@@ -36,7 +36,7 @@ static const Option options[] = {
     {"field", "NAME", "what the particles are coloured by (octahedral shear stress)"},
     {"component", "NAME", "of a vector or tensor, like x or xy"},
     {"bars", "COLUMN",
-     "instead: reinforcing bars over the pale body, coloured by strain, stress, force, dissipated, slip or bond "
+     "instead: reinforcing bars over the pale body, coloured by what a deck may give its pictures as 'bars', like "
      "stress"},
     {"over-length", NULL, "with --bars: curves of it over the length of bars, of many those with the largest values"},
     {"step", "N|last|all", "which written step (last)"},
@@ -115,18 +115,20 @@ static void tell(void *context, const char *path)
   printf("%s\n", path);
 }
 
-enum { MOST_TIMES = 64 }; /* that are read; how many can be drawn, others say */
+enum { MOST_TIMES = 64 }; /* that are read, of which the library draws some */
 
 /** Times with commas between them. @return 0, or 1 after saying what is wrong */
 static int read_times(const char *words, double *times, int *count)
 {
   char *end;
-  for (*count = 0; *count < MOST_TIMES; words = end + 1) {
-    times[(*count)++] = strtod(words, &end);
-    if (end == words || !isfinite(times[*count - 1]) || (*end && *end != ',')) break;
+  const char *at = words;
+  for (*count = 0; *count < MOST_TIMES; at = end + 1) {
+    times[(*count)++] = strtod(at, &end);
+    if (end == at || !isfinite(times[*count - 1]) || (*end && *end != ',')) break;
     if (!*end) return 0;
   }
-  complain("breccia plot: --time: '%s' should be up to %d numbers with commas between them", words, MOST_TIMES);
+  if (*count == MOST_TIMES && *end == ',') return 0; /* far more than can be drawn, which the library says */
+  complain("breccia plot: --time: '%s' should be numbers with commas between them", words);
   return 1;
 }
 
@@ -184,6 +186,52 @@ static int read_plot(const char **values, breccia_plot *plot)
   return read_state(values, plot);
 }
 
+enum { OF_FIELD = 1, OF_BARS = 2, OF_LENGTH = 4, OF_HISTORIES = 8, OF_BODY = OF_FIELD | OF_BARS };
+
+/** Options that some kinds of pictures have no use for, and the kinds that have. */
+static const struct {
+  int option, kinds;
+} uses[] = {{FIELD, OF_FIELD},
+            {COMPONENT, OF_FIELD},
+            {BARS, OF_BARS | OF_LENGTH},
+            {OVER_LENGTH, OF_LENGTH},
+            {STEP, OF_BODY | OF_LENGTH},
+            {TIME, OF_BODY | OF_LENGTH},
+            {DEFORMED, OF_BODY},
+            {VIEW, OF_BODY},
+            {INSIDE, OF_BODY},
+            {BROKEN, OF_BODY},
+            {SIZE, OF_BODY},
+            {MOVIE, OF_BODY},
+            {RATE, OF_BODY},
+            {CURVE, OF_HISTORIES},
+            {ENERGY, OF_HISTORIES},
+            {OVERLAY, OF_HISTORIES},
+            {LOG, OF_LENGTH | OF_HISTORIES}};
+
+/** @return 0, or 1 after naming an option that this kind of picture has no use for */
+static int refuse_useless(const char **values, int kind)
+{
+  const char *picture = kind == OF_LENGTH      ? "a curve over the length of bars"
+                        : kind == OF_BARS      ? "a picture of bars"
+                        : kind == OF_HISTORIES ? "a curve of histories"
+                                               : "a picture of a field";
+  for (size_t k = 0; k < sizeof uses / sizeof *uses; ++k)
+    if (values[uses[k].option] && !(uses[k].kinds & kind)) {
+      complain("breccia plot: --%s: %s has no use for it; leave it out", options[uses[k].option].name, picture);
+      return 1;
+    }
+  if (values[RANGE] && !strcmp(values[RANGE], "each") && !(kind & OF_BODY)) {
+    complain("breccia plot: --range each: %s has no use for it; leave it out", picture);
+    return 1;
+  }
+  if (values[RATE] && !values[MOVIE]) {
+    complain("breccia plot: --rate: is of movies; leave it out, or give --movie");
+    return 1;
+  }
+  return 0;
+}
+
 static int run(int argc, char **argv, const Verb *verb)
 {
   const char *values[COUNT];
@@ -196,25 +244,20 @@ static int run(int argc, char **argv, const Verb *verb)
   }
   breccia_plot plot;
   if (read_plot(values, &plot)) return 2;
-  if (values[BARS] && (values[FIELD] || values[COMPONENT] || curve)) {
-    complain("breccia plot: --bars shows bars in place of the particles: leave out %s", values[FIELD] ? "--field"
-                                                                                        : values[COMPONENT]
-                                                                                            ? "--component"
-                                                                                            : "--curve and --energy");
+  if (values[OVER_LENGTH] && !values[BARS]) {
+    complain("breccia plot: --over-length needs --bars COLUMN, like --bars stress");
     return 2;
   }
-  if (values[OVER_LENGTH] && (!values[BARS] || values[MOVIE] || values[INSIDE])) {
-    complain("breccia plot: --over-length %s", !values[BARS]   ? "needs --bars COLUMN, like --bars stress"
-                                               : values[MOVIE] ? "shows some times as curves: leave out --movie"
-                                                               : "shows whole bars: leave out --inside");
+  if (refuse_useless(values, curve                 ? OF_HISTORIES
+                             : values[OVER_LENGTH] ? OF_LENGTH
+                             : values[BARS]        ? OF_BARS
+                                                   : OF_FIELD))
     return 2;
-  }
-  if (values[MOVIE] && (curve || values[STEP] || values[TIME] || values[OUTPUT])) {
-    complain("breccia plot: --movie shows a field at all written steps and names its file itself: leave out %s",
+  if (values[MOVIE] && (values[STEP] || values[TIME] || values[OUTPUT])) {
+    complain("breccia plot: --movie shows all written steps and names its file itself: leave out %s",
              values[OUTPUT] ? "--output"
              : values[STEP] ? "--step"
-             : values[TIME] ? "--time"
-                            : "--curve and --energy");
+                            : "--time");
     return 2;
   }
   breccia_error *error = breccia_error_create();

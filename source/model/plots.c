@@ -118,13 +118,11 @@ static PictureOptions field_options(const breccia_plot *plot, const Part *part)
 /** The written state nearest to a time, or -1 after saying that the run did not come there. */
 static int nearest_state(const ResultView *view, double time, Error *error)
 {
-  const double begin = view->times[0], end = view->times[view->steps - 1], rounding = 1e-6 * fabs(end);
-  int nearest = view->steps - 1;
-  for (int k = 0; k < view->steps; ++k)
-    if (fabs(view->times[k] - time) < fabs(view->times[nearest] - time)) nearest = k;
-  if (time >= begin - rounding && time <= end + rounding) return nearest;
-  error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only", time, begin, end);
-  return -1;
+  const int nearest = result_view_nearest(view, time);
+  if (nearest < 0)
+    error_add(error, BRECCIA_USER_ERROR, "time %g: the run wrote states from the time %g to %g only", time,
+              view->times[0], view->times[view->steps - 1]);
+  return nearest;
 }
 
 /** Which of the written states are asked for. */

@@ -56,29 +56,17 @@ static int check_component(const breccia_model *model, const PictureSpec *pictur
   return status;
 }
 
-/** What bars are coloured by is a column of theirs, and the deck has such bars. */
+/** The deck has bars, and they have what they are to be coloured by. */
 static int check_bars(const breccia_model *model, const PictureSpec *picture)
 {
   const Bars *b = bars_among(&model->domain.forces);
-  const BarColumn *column = bar_column_find(picture->bars);
   const Node *node = section_node(picture, "bars");
   Error *error = model->reader.error;
   if (!b)
     return node_error(model->document, node, error, "bars: there are none to draw: the deck has no section 'bars'");
-  if (column && bar_column_is_there(column, b)) return BRECCIA_OK;
-  if (column)
-    return node_error(model->document, node, error, "bars: '%s' is of bars with a 'bond', and none has one",
-                      picture->bars);
-  const char *words[16];
-  int count = 0;
-  for (; count < 16 && bar_column_at(count) && bar_column_is_there(bar_column_at(count), b); ++count)
-    words[count] = bar_column_at(count)->name;
-  Text advice = {0};
-  spelling_advice(&advice, picture->bars, words, count, "they are coloured by");
-  const int status =
-      node_error(model->document, node, error, "bars: they have no '%s'; %s", picture->bars, text_words(&advice));
-  text_free(&advice);
-  return status;
+  if (bar_column_is_there(bar_column_find(picture->bars), b)) return BRECCIA_OK;
+  return node_error(model->document, node, error, "bars: '%s' is of bars with a 'bond', and none has one",
+                    picture->bars);
 }
 
 /** A column that a curve draws is one that a history of the deck will write. */

@@ -16,14 +16,6 @@ static void note_file(Run *run, const char *path)
   text_add(&run->files, "  %s\n", path);
 }
 
-static int nearest_write(const ResultView *view, double time)
-{
-  int best = view->steps - 1;
-  for (int k = 0; k < view->steps; ++k)
-    if (fabs(view->times[k] - time) < fabs(view->times[best] - time)) best = k;
-  return best;
-}
-
 /** A path in the folder of pictures that no other picture of this run has. To be freed. */
 static char *picture_path(const Run *run, const char *given, const char *name)
 {
@@ -68,9 +60,8 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
   PictureSurvey survey;
   int status = spec->same_range ? picture_survey(view, 0, view->steps - 1, false, &o, &survey, error) : BRECCIA_OK;
   for (int t = 0; !status && t < (spec->times.count ? spec->times.count : 1); ++t) {
-    const double time = spec->times.count ? spec->times.values[t] : run->model->solver.clock.time;
-    if (time > run->model->solver.clock.time * (1 + 1e-9)) continue; /* the run did not come so far */
-    const int step = nearest_write(view, time);
+    const int step = spec->times.count ? result_view_nearest(view, spec->times.values[t]) : view->steps - 1;
+    if (step < 0) continue; /* the run did not come so far */
     char name[160];
     picture_name(view, step, spec->bars ? "bars" : spec->field, spec->bars ? spec->bars : spec->component,
                  spec->times.count > 0, name, sizeof name);
@@ -92,9 +83,8 @@ static int draw_field(Run *run, const ResultView *view, const PictureSpec *spec,
 static int draw_over_length(Run *run, const ResultView *view, const PictureSpec *spec, bool *no_gnuplot, Error *error)
 {
   int steps[BAR_CURVE_TIMES], count = 0;
-  const double reached = run->model->solver.clock.time * (1 + 1e-9);
   for (int t = 0; t < spec->times.count && t < BAR_CURVE_TIMES; ++t)
-    if (spec->times.values[t] <= reached) steps[count++] = nearest_write(view, spec->times.values[t]);
+    if ((steps[count] = result_view_nearest(view, spec->times.values[t])) >= 0) ++count;
   if (spec->times.count && !count) return BRECCIA_OK;
   if (!count) steps[count++] = view->steps - 1;
   char words[128];

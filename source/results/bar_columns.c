@@ -45,6 +45,11 @@ const BarColumn *bar_column_find(const char *name)
   return NULL;
 }
 
+const char *bar_column_name(int k)
+{
+  return k < COUNT ? columns[k].name : NULL;
+}
+
 bool bar_column_is_there(const BarColumn *column, const Bars *b)
 {
   return !column->of_slip || b->slips;

@@ -107,11 +107,6 @@ static void find_title(const Curves *c, const ResultView *view, const BarCurveOp
     snprintf(title, size, "%s along bars%s", heading, at);
 }
 
-static bool is_logarithmic(const BarCurveOptions *o, char axis)
-{
-  return o->log_axes && strcmp(o->log_axes, "none") != 0 && strchr(o->log_axes, axis);
-}
-
 int bar_curve_draw(const ResultView *view, const BarCurveOptions *o, const char *path, Error *error)
 {
   Curves *c = memory_zeroed(1, sizeof *c, "bars", error);
@@ -126,16 +121,18 @@ int bar_curve_draw(const ResultView *view, const BarCurveOptions *o, const char 
     char title[320];
     choose_bars(c, view, o);
     find_title(c, view, o, title, sizeof title);
-    const PlotOptions options = {
-        .title = o->title ? o->title : title,
-        .x = {.words = "along the bar",
-              .unit = view->length_unit,
-              .label = o->x_label,
-              .logarithmic = is_logarithmic(o, 'x')},
-        .y = {.words = o->column, .unit = c->unit, .label = o->y_label, .logarithmic = is_logarithmic(o, 'y')},
-        .low = o->low,
-        .high = o->high,
-        .no_gnuplot = o->no_gnuplot};
+    const PlotOptions options = {.title = o->title ? o->title : title,
+                                 .x = {.words = "along the bar",
+                                       .unit = view->length_unit,
+                                       .label = o->x_label,
+                                       .logarithmic = plot_is_logarithmic(o->log_axes, 'x')},
+                                 .y = {.words = o->column,
+                                       .unit = c->unit,
+                                       .label = o->y_label,
+                                       .logarithmic = plot_is_logarithmic(o->log_axes, 'y')},
+                                 .low = o->low,
+                                 .high = o->high,
+                                 .no_gnuplot = o->no_gnuplot};
     status = plot_draw(c->lines, c->count, &options, path, error);
   }
   bar_view_close(&c->bars);

@@ -37,6 +37,9 @@ static bool lines_make_sense(const BarView *b)
 int bar_view_open(BarView *b, const ResultView *view, Error *error)
 {
   *b = (BarView){.lines = 0};
+  if (view->frequency_count)
+    return error_add(error, BRECCIA_USER_ERROR,
+                     "modes of vibration are written without bars; draw a field, like displacement, or bars of a run");
   if (H5Lexists(view->file.id, "Breccia/Bars", H5P_DEFAULT) <= 0)
     return error_add(error, BRECCIA_USER_ERROR,
                      "the result file holds no bars: the deck has none ('bars'), or it was written by a version "

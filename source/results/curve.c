@@ -227,10 +227,9 @@ int curve_draw(const char *const *folders, int folder_count, const char *words, 
       name_column(&names, 1, y_words);
     else
       snprintf(y_words, sizeof y_words, "%s", of_one_watch(&names) ? names.watch[1] : "");
-    const char *logarithmic = o->log_axes && strcmp(o->log_axes, "none") ? o->log_axes : "";
     const PlotOptions plot = {.title = o->title,
-                              .x = {x_words, columns->x_unit, o->x_label, strchr(logarithmic, 'x') != NULL},
-                              .y = {y_words, columns->y_unit, o->y_label, strchr(logarithmic, 'y') != NULL},
+                              .x = {x_words, columns->x_unit, o->x_label, plot_is_logarithmic(o->log_axes, 'x')},
+                              .y = {y_words, columns->y_unit, o->y_label, plot_is_logarithmic(o->log_axes, 'y')},
                               .low = o->low,
                               .high = o->high,
                               .no_gnuplot = o->no_gnuplot};

@@ -1,4 +1,5 @@
 /* What a deck says of a picture. */
+#include "results/bar_columns.h"
 #include "results/bar_curve.h"
 #include "results/picture.h"
 
@@ -31,11 +32,12 @@ static const Field picture_fields[] = {
      .meaning = "all energies over time; needs a watch with 'energy: yes'",
      .group = 'A'},
     {.key = "bars",
-     .kind = FIELD_TEXT,
+     .kind = FIELD_CHOICE,
      .offset = offsetof(PictureSpec, bars),
      .standard = "",
-     .meaning = "reinforcing bars as lines over the pale body, coloured by their strain, stress, force, dissipated "
-                "energy, slip or bond stress",
+     .meaning = "reinforcing bars as lines over the pale body, coloured by this; slip and bond stress are those of "
+                "bars with 'bond'",
+     .choice = bar_column_name,
      .group = 'A'},
     {.key = "over length",
      .kind = FIELD_FLAG,
@@ -123,27 +125,46 @@ static const Field picture_fields[] = {
      .meaning = "of the file, without its ending; made from the field or the curve when absent"},
 };
 
+enum { OF_FIELD = 1, OF_BARS = 2, OF_LENGTH = 4, OF_HISTORIES = 8 };
+
+/** Keys that some kinds of pictures have no use for, and the kinds that have. */
+static const struct {
+  const char *key;
+  int kinds;
+} uses[] = {{"over length", OF_LENGTH | OF_BARS},   {"component", OF_FIELD},
+            {"at", OF_FIELD | OF_BARS | OF_LENGTH}, {"deformed", OF_FIELD | OF_BARS},
+            {"view", OF_FIELD | OF_BARS},           {"inside", OF_FIELD | OF_BARS},
+            {"same range", OF_FIELD | OF_BARS},     {"broken bonds", OF_FIELD | OF_BARS},
+            {"log axes", OF_LENGTH | OF_HISTORIES}};
+
+static void refuse_useless_keys(const DeckReader *reader, const PictureSpec *p)
+{
+  const int kind = p->over_length && p->bars ? OF_LENGTH
+                   : p->bars                 ? OF_BARS
+                   : p->curve || p->energy   ? OF_HISTORIES
+                                             : OF_FIELD;
+  const char *picture = kind == OF_LENGTH      ? "a curve over the length of bars"
+                        : kind == OF_BARS      ? "a picture of bars"
+                        : kind == OF_HISTORIES ? "a curve of histories"
+                                               : "a picture of a field";
+  for (size_t k = 0; k < sizeof uses / sizeof *uses; ++k)
+    if (!(uses[k].kinds & kind) && node_get(p->head.node, uses[k].key))
+      node_error(reader->document, section_node(p, uses[k].key), reader->error,
+                 "%s: %s has no use for it; leave it out", uses[k].key, picture);
+}
+
 static void check_picture(const DeckReader *reader, void *section)
 {
   const PictureSpec *p = section;
   if (p->range[0] >= p->range[1])
     node_error(reader->document, section_node(p, "range"), reader->error,
                "range: the lowest value %g is not below the highest, %g", p->range[0], p->range[1]);
-  const bool of_body = p->field || (p->bars && !p->over_length);
-  if (p->over_length && !p->bars)
-    node_error(reader->document, section_node(p, "over length"), reader->error,
-               "over length: is for pictures of 'bars'; leave it out");
-  if (p->component && p->bars)
-    node_error(reader->document, section_node(p, "component"), reader->error,
-               "component: what bars are coloured by is one number; leave it out");
+  refuse_useless_keys(reader, p);
   if (p->over_length && p->times.count > BAR_CURVE_TIMES)
     node_error(reader->document, section_node(p, "at"), reader->error,
                "at: curves over the length of bars are drawn at up to %d times, and these are %d", BAR_CURVE_TIMES,
                p->times.count);
-  if (p->inside && !of_body)
-    node_error(reader->document, section_node(p, "inside"), reader->error,
-               "inside: a curve has no particles; leave it out");
-  else if (p->inside && shape_counts_particles(p->inside))
+  if (p->inside && shape_counts_particles(p->inside))
     node_error(reader->document, section_node(p, "inside"), reader->error,
                "inside: a box is given by its corners here, 'from' and 'to': no lattice tells the size of 'particles'");
 }

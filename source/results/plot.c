@@ -12,6 +12,11 @@
 #define LARGEST 1e290  /* that gnuplot can lay out on an axis, in any unit and with room beyond */
 #define NARROWEST 1e-7 /* range, beside its ends, which are written with nine digits */
 
+bool plot_is_logarithmic(const char *log_axes, char axis)
+{
+  return log_axes && strcmp(log_axes, "none") != 0 && strchr(log_axes, axis);
+}
+
 /** In single quotes, between which gnuplot reads no escapes and runs no commands. */
 static void quote(Text *script, const char *words)
 {

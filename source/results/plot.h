@@ -26,6 +26,9 @@ typedef struct PlotOptions {
   bool *no_gnuplot; /* set where it is not installed, which is said as well; may be NULL */
 } PlotOptions;
 
+/** Whether words for axes ("none", "x", "y" or "xy"; NULL: none) name one, 'x' or 'y'. */
+bool plot_is_logarithmic(const char *log_axes, char axis);
+
 /** Draws a picture, whole or not at all. @param[in] path  .png, .svg or .pdf */
 int plot_draw(const PlotLine *lines, int count, const PlotOptions *options, const char *path, Error *error);
 

@@ -247,6 +247,16 @@ void result_view_close(ResultView *view)
   *view = (ResultView){.file = {.id = -1}};
 }
 
+int result_view_nearest(const ResultView *view, double time)
+{
+  const double begin = view->times[0], end = view->times[view->steps - 1], rounding = 1e-6 * fabs(end);
+  int nearest = view->steps - 1;
+  if (!(time >= begin - rounding && time <= end + rounding)) return -1;
+  for (int k = 0; k < view->steps; ++k)
+    if (fabs(view->times[k] - time) < fabs(view->times[nearest] - time)) nearest = k;
+  return nearest;
+}
+
 static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *names)
 {
   (void)group, (void)info;

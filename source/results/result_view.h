@@ -41,6 +41,8 @@ int result_view_say_damaged(const ResultView *view, const char *what, Error *err
 /** The status where something of the file could not be had, which was said. */
 int result_view_lost(const ResultView *view);
 
+/** The written step nearest to a time; -1: the run did not write so early or so late, by more than roundings. */
+int result_view_nearest(const ResultView *view, double time);
 /** The lattice that a particle stands on. */
 const LatticeType *result_view_lattice(const ResultView *view, int64_t particle);
 /** Names of the fields, comma separated. */

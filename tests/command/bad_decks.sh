@@ -46,7 +46,7 @@ refuse() {
 }
 
 refuse 's/{field: damage}$/{field: damage, inside: {union: [{sphere: {centre: [0, 0, 0], radius: 1}}, {box: {particles: [2, 2, 2]}}]}}/' 24:21 "no lattice tells the size of 'particles'"
-refuse 's/{field: damage}$/{curve: "tip.x : tip.y", inside: {sphere: {centre: [0, 0, 0], radius: 1}}}/' 24:30 'inside: a curve has no particles; leave it out'
+refuse 's/{field: damage}$/{curve: "tip.x : tip.y", inside: {sphere: {centre: [0, 0, 0], radius: 1}}}/' 24:30 'inside: a curve of histories has no use for it; leave it out'
 refuse 's/spacing: 0.1$/spacing: 3 s/' 9:14 "has the wrong dimension; expected a length, like '1.5 m'"
 refuse 's/spacing: 0.1$/spacing: 0.1 parsec m/' 9:14 "has the wrong dimension"
 refuse 's/spacing: 0.1$/spacing: 0.1 smoots/' 9:14 "unit 'smoots' is not known"

@@ -226,12 +226,19 @@ refused_bars() { # refused_bars WORDS PICTURE [EDIT]: a deck with this picture
   contains "$2" "$(cat errors)" "$1"
   equal "$2: lines: $(cat errors)" "$(wc -l < errors)" 1
 }
-refused_bars "bars: they have no 'stresses'; did you mean 'stress'?" "{bars: stresses}"
+refused_bars "bars: 'stresses' is not known; did you mean 'stress'? (choose from strain, stress, force, dissipated, slip, bond stress)" "{bars: stresses}"
 refused_bars "bars: 'slip' is of bars with a 'bond', and none has one" "{bars: slip}" "s/, bond: {[^}]*}//"
 refused_bars "bars: there are none to draw: the deck has no section 'bars'" "{bars: stress}" "/^bars:/d; /^  along:/d; /^  across:/d; /^  steel:/d"
-refused_bars "over length: is for pictures of 'bars'; leave it out" "{field: damage, over length: yes}"
-refused_bars "component: what bars are coloured by is one number; leave it out" "{bars: stress, component: xx}"
-refused_bars "inside: a curve has no particles; leave it out" "{bars: stress, over length: yes, inside: {box: {from: [0, 0], to: [1, 1]}}}"
+# keys that a picture has no use for
+refused_bars "over length: a picture of a field has no use for it; leave it out" "{field: damage, over length: yes}"
+refused_bars "log axes: a picture of a field has no use for it; leave it out" "{field: damage, log axes: x}"
+refused_bars "component: a picture of bars has no use for it; leave it out" "{bars: stress, component: xx}"
+refused_bars "log axes: a picture of bars has no use for it; leave it out" "{bars: stress, log axes: y}"
+for key in "deformed: 5" "view: [0, 20]" "inside: {box: {from: [0, 0], to: [1, 1]}}" "broken bonds: yes" "same range: no" "component: xx"; do
+  refused_bars "${key%%:*}: a curve over the length of bars has no use for it; leave it out" "{bars: stress, over length: yes, $key}"
+  refused_bars "${key%%:*}: a curve of histories has no use for it; leave it out" "{curve: 'end.time : end.x', $key}" "s/^results/watch: {end: {displacement of: {face: x+}}}\nresults/"
+done
+refused_bars "at: a curve of histories has no use for it; leave it out" "{energy: yes, at: [1]}" "s/^results/watch: {ledger: {energy: yes}}\nresults/"
 refused_bars "at: curves over the length of bars are drawn at up to 6 times, and these are 7" "{bars: stress, over length: yes, at: [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}"
 wrong() { # wrong WORDS ARGUMENTS ...
   words=$1
@@ -260,13 +267,25 @@ wrong "leave out --step" bar --movie bar.mp4 --step 0
 wrong "movies end in .mp4" bar --field damage --movie bar.avi
 wrong "the result file holds no bars: the deck has none ('bars')" bar --bars stress
 wrong "bars have no 'colour' in the result file; it holds strain, stress, force, dissipated, slip, bond stress of them" steel --bars colour
-wrong "leave out --field" steel --bars stress --field damage
+"$breccia" modes bar.yaml --count 1 --output modes > out 2>&1 || fail "modes: $(cat out)"
+wrong "modes of vibration are written without bars; draw a field, like displacement, or bars of a run" modes --bars stress
+wrong "--field: a picture of bars has no use for it; leave it out" steel --bars stress --field damage
+for option in "--component xx" "--deformed 5" "--view 0:20" "--inside 0:1,:" "--broken-bonds" "--size 300" "--movie a.mp4" "--range each"; do
+  # shellcheck disable=SC2086 # two words
+  wrong "${option%% [x05am3-]*}: a curve over the length of bars has no use for it; leave it out" steel --bars stress --over-length $option
+done
+for option in "--field damage" "--bars stress" "--step 0" "--time 1" "--deformed 5"; do
+  # shellcheck disable=SC2086
+  wrong "${option% *}: a curve of histories has no use for it; leave it out" steel --energy $option
+done
+wrong "--log: a picture of a field has no use for it; leave it out" steel --log x
+wrong "--overlay: a picture of bars has no use for it; leave it out" steel --bars stress --overlay a.csv
+wrong "--rate: is of movies; leave it out, or give --movie" steel --rate 5
 wrong "--over-length needs --bars COLUMN" steel --over-length
-wrong "leave out --movie" steel --bars stress --over-length --movie a.mp4
-wrong "leave out --inside" steel --bars stress --over-length --inside 0:1,:
-wrong "should be up to 64 numbers with commas between them" steel --bars stress --over-length --time 0,,1
+wrong "'0,,1' should be numbers with commas between them" steel --bars stress --over-length --time 0,,1
 wrong "the run wrote states from the time 0 to 1 only" steel --bars stress --over-length --time 0,2
 wrong "are drawn at up to 6 times, and these are 7" steel --bars stress --over-length --time 0,0,0,0,0,0,0
+wrong "are drawn at up to 6 times, and these are 64" steel --bars stress --over-length --time "$(printf '0,%.0s' $(seq 99))0"
 wrong "inside: no bar stands in this shape" steel --bars stress --inside 0:0.1,:
 wrong "cannot share an axis" bar --curve "end.time : end.x, pull.value"
 wrong "no history of energies" clay --energy
