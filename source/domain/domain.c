@@ -275,7 +275,7 @@ size_t domain_particle_bytes(const Domain *d)
     if (points_on_particles(&d->regions[r].points))
       tensors = d->initial_strain[0] ? 18 : 12;
     else if (points_keep_tensors(&d->regions[r].points))
-      bonds += 12 * (size_t)d->regions[r].points.count;
+      bonds += (d->regions[r].initial[0] ? 18 : 12) * (size_t)d->regions[r].points.count;
   }
   const Particles *p = d->particles;
   if (d->strains.given) tensors += 6;

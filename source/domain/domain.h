@@ -22,6 +22,8 @@ typedef struct Region {
   void *formulation;
   Points points;
   BondList bonds; /* where points are on bonds; empty otherwise */
+  /** [rows of points on bonds] strains at which their laws have the stress under which they begin; NULL: they begin under none */
+  double *initial[6];
   double *beside
       [3]; /* [rows of points] what free strains put in the place of Points.initial, where it is not shared; NULL: nothing */
   int64_t particles; /* of them */
@@ -90,9 +92,13 @@ typedef struct Domain {
   int32_t *material; /* [slices] */
   /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
-  double *initial_strain[6]; /* [places] what points that begin under stress add to their strains; NULL: none does */
-  double initial_energy;     /* that they store by it */
-  bool is_strained;          /* loads may give it free strains */
+  bool begins_under_stress; /* some of its particles do */
+  double *initial_strain
+      [6]; /* [places] what points on particles that begin under stress add to their strains; NULL: none does */
+  int64_t stressed; /* particles of the body that begin under stress, and between which mean stresses */
+  double least_mean, largest_mean;
+  double initial_energy; /* that they store by it */
+  bool is_strained;      /* loads may give it free strains */
   Strains strains;
   /** [places] 1: a law of its point or bonds could not be integrated, and carries nothing; NULL: that is a failure */
   uint8_t *gave_up;
@@ -136,6 +142,7 @@ typedef struct DomainSpec {
   const FailureSpec *failure; /* or NULL */
   void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
   bool is_strained;           /* some load is an initial strain */
+  bool begins_under_stress;   /* the deck gives stresses to begin with */
 } DomainSpec;
 
 static inline Region *domain_region(const Domain *domain, int64_t place)

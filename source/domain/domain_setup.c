@@ -293,6 +293,7 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   d->failed_place = -1;
   d->forces_spec = spec->forces;
   d->is_strained = spec->is_strained;
+  d->begins_under_stress = spec->begins_under_stress;
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
@@ -382,7 +383,10 @@ void domain_destroy(Domain *d)
     }
     free(d->gave_up);
   }
-  for (int k = 0; k < 6; ++k) places_free(&d->initial_strain[k]);
+  for (int k = 0; k < 6; ++k) {
+    places_free(&d->initial_strain[k]);
+    for (int r = 0; r < d->region_count; ++r) places_free(&d->regions[r].initial[k]);
+  }
   joint_destroy(&d->joint);
   domain_strains_destroy(d);
   regions_destroy(d);

@@ -72,7 +72,7 @@ static const Field initial_stress_fields[] = {
 const Section initial_stress_section = {
     .name = "initial stress",
     .about = "Stresses with which particles begin, without displacements. Laws begin at them; strains in results count "
-             "from there. With correspondence.",
+             "from there. With correspondence and hybrid, whose bonds begin under the mean of both ends'.",
     .size = sizeof(InitialStressSpec),
     FIELDS(initial_stress_fields),
     .check = check_initial_stress};
@@ -124,13 +124,13 @@ static int mark(Work *w, int n, const SectionList *selections)
     const Region *region = domain_region(w->domain, place);
     const Material *m = &w->domain->materials[w->domain->material[place / SLICE]];
     const int before = w->item_of[number];
-    if (!points_on_particles(&region->points))
-      status = node_error(
-          w->reader->document, spec->head.node, w->reader->error,
-          "initial stress: '%s' has no stress at its particles that could be given, as at particle %d at [%g, %g, %g]; "
-          "expected 'formulation: correspondence', or a first stage 'laws: elastic' under the weight and "
-          "'displacements: zero' in the next one",
-          region->type->name, number, p->position[0][place], p->position[1][place], p->position[2][place]);
+    if (region->points.components != 6)
+      status =
+          node_error(w->reader->document, spec->head.node, w->reader->error,
+                     "initial stress: '%s' has no law for stress in space, as at particle %d at [%g, %g, %g]; expected "
+                     "'formulation: correspondence' or 'hybrid', or a first stage 'laws: elastic' under the weight and "
+                     "'displacements: zero' in the next one",
+                     region->type->name, number, p->position[0][place], p->position[1][place], p->position[2][place]);
     else if (m->remote)
       status = node_error(w->reader->document, spec->head.node, w->reader->error,
                           "initial stress: the law of material '%s' runs in a server, which cannot be led to it; take "
@@ -237,29 +237,118 @@ static int fill(const Work *w)
   return BRECCIA_OK;
 }
 
-static int tell_misfit(const Work *w, const InitialMisfit *misfit)
+/** @param[in] place, stress  of the point whose law does not bear it */
+static void tell_misfit(const Work *w, int64_t place, const double stress[6], const InitialMisfit *misfit)
 {
   const Particles *p = &w->domain->body.particles;
-  const int64_t row = misfit->row;
-  const int64_t inside = body_original(&w->domain->body, p->number[row]);
+  const int64_t inside = body_original(&w->domain->body, p->number[place]);
   const InitialStressSpec *spec = w->items->items[w->item_of[inside]];
-  const Material *m = &w->domain->materials[w->domain->material[row / SLICE]];
+  const Material *m = points_material(&domain_region(w->domain, place)->points, misfit->row);
   Text words[2] = {{0}, {0}};
   for (int k = 0; k < 6; ++k) {
-    text_add(&words[0], "%s%g", k ? ", " : "", w->stress[k][row]);
+    text_add(&words[0], "%s%g", k ? ", " : "", stress[k]);
     text_add(&words[1], "%s%g", k ? ", " : "", misfit->reached[k]);
   }
   node_error(
       w->reader->document, spec->head.node, w->reader->error,
       "initial stress: the law %s of material '%s' does not bear [%s] of particle %d at [%g, %g, %g]%s, it comes to "
       "[%s]; give a stress within its strength",
-      m->law_name, m->name, text_words(&words[0]), p->number[row], p->position[0][row], p->position[1][row],
-      p->position[2][row],
-      inside == p->number[row] ? "" : ", outside a support, where the ground goes on with its depth",
+      m->law_name, m->name, text_words(&words[0]), p->number[place], p->position[0][place], p->position[1][place],
+      p->position[2][place],
+      inside == p->number[place] ? "" : ", outside a support, where the ground goes on with its depth",
       text_words(&words[1]));
   text_free(&words[0]);
   text_free(&words[1]);
-  return BRECCIA_USER_ERROR;
+}
+
+static int begin_on_particles(Work *w, Region *region)
+{
+  Domain *d = w->domain;
+  Error *error = w->reader->error;
+  InitialMisfit misfit;
+  double stress[6];
+  for (int k = 0; k < 6 && !d->initial_strain[k]; ++k)
+    if (!(d->initial_strain[k] = places_array(d->particles->places, "initial stress", error))) return BRECCIA_FAILURE;
+  const int status = points_begin_under(&region->points, w->stress, d->initial_strain, &misfit, error);
+  if (misfit.row < 0) return status;
+  for (int k = 0; k < 6; ++k) stress[k] = w->stress[k][misfit.row];
+  tell_misfit(w, misfit.row, stress, &misfit);
+  return status;
+}
+
+/** The ends of the bond of a row. */
+static void find_ends(const Domain *d, const Region *region, int64_t slice, int64_t row, int64_t ends[2])
+{
+  int64_t slot;
+  int lane;
+  bond_list_bond(&region->bonds, &d->family, slice, row, &slot, &lane);
+  ends[0] = slice * SLICE + lane;
+  ends[1] = family_bond(&d->family, slice, slot, lane).neighbour;
+}
+
+/** Points on bonds, which stand in their middles.
+ *  @param[out] stress  [6][rows]. @param[in] present  [rows] */
+static int begin_on_bonds(Work *w, Region *region, double *const stress[6], const uint8_t *present)
+{
+  const Domain *d = w->domain;
+  const int64_t *first = region->bonds.first;
+  int64_t ends[2], slice = 0;
+  InitialMisfit misfit;
+  for (; slice < d->particles->slices; ++slice)
+    for (int64_t row = first[slice]; row < first[slice + 1]; ++row) {
+      if (!present[row]) continue;
+      find_ends(d, region, slice, row, ends);
+      for (int k = 0; k < 6; ++k) stress[k][row] = 0.5 * (w->stress[k][ends[0]] + w->stress[k][ends[1]]);
+    }
+  const int status = points_begin_under(&region->points, stress, region->initial, &misfit, w->reader->error);
+  if (misfit.row < 0) return status;
+  double given[6];
+  for (slice = 0; first[slice + 1] <= misfit.row;) ++slice;
+  find_ends(d, region, slice, misfit.row, ends);
+  for (int k = 0; k < 6; ++k) given[k] = stress[k][misfit.row];
+  const bool told = w->item_of[body_original(&d->body, d->particles->number[ends[0]])] >= 0;
+  tell_misfit(w, ends[!told], given, &misfit);
+  return status;
+}
+
+static int begin_region(Work *w, Region *region)
+{
+  Error *error = w->reader->error;
+  double *stress[6] = {NULL};
+  if (region->points.components != 6) return BRECCIA_OK;
+  if (points_on_particles(&region->points)) return begin_on_particles(w, region);
+  uint8_t *present = memory_zeroed((size_t)region->points.count, 1, "initial stress", error);
+  int status = present ? BRECCIA_OK : BRECCIA_FAILURE;
+  for (int k = 0; k < 6 && !status; ++k) {
+    stress[k] = places_array(region->points.count, "initial stress", error);
+    region->initial[k] = places_array(region->points.count, "initial stress", error);
+    if (!stress[k] || !region->initial[k]) status = BRECCIA_FAILURE;
+  }
+  if (!status) {
+    bond_list_mark(&region->bonds, &w->domain->family, present);
+    status = begin_on_bonds(w, region, stress, present);
+  }
+  for (int k = 0; k < 6; ++k) places_free(&stress[k]);
+  free(present);
+  return status;
+}
+
+/** How many particles of the body begin under stress, and between which means. */
+static void count_stressed(const Work *w)
+{
+  Domain *d = w->domain;
+  d->least_mean = INFINITY;
+  d->largest_mean = -INFINITY;
+  for (int32_t n = 0; n < d->particles->count; ++n) {
+    const int32_t place = d->particles->place_of[n];
+    bool any = false;
+    for (int k = 0; k < 6; ++k) any |= w->stress[k][place] != 0;
+    if (!any || body_outside(&d->body, n)) continue;
+    const double mean = (w->stress[XX][place] + w->stress[YY][place] + w->stress[ZZ][place]) / 3;
+    d->least_mean = fmin(d->least_mean, mean);
+    d->largest_mean = fmax(d->largest_mean, mean);
+    ++d->stressed;
+  }
 }
 
 static int begin(Work *w, const Loading *loading, const SectionList *selections)
@@ -269,11 +358,8 @@ static int begin(Work *w, const Loading *loading, const SectionList *selections)
   const Particles *p = d->particles;
   w->item_of = memory_zeroed((size_t)p->count, sizeof *w->item_of, "initial stress", error);
   w->item = memory_zeroed((size_t)w->items->count, sizeof *w->item, "initial stress", error);
-  for (int k = 0; k < 6; ++k) {
-    w->stress[k] = places_array(p->places, "initial stress", error);
-    d->initial_strain[k] = places_array(p->places, "initial stress", error);
-    if (!w->stress[k] || !d->initial_strain[k]) return BRECCIA_FAILURE;
-  }
+  for (int k = 0; k < 6; ++k)
+    if (!(w->stress[k] = places_array(p->places, "initial stress", error))) return BRECCIA_FAILURE;
   if (!w->item_of || !w->item) return BRECCIA_FAILURE;
   for (int32_t n = 0; n < p->count; ++n) w->item_of[n] = -1;
   find_gravity(w, loading);
@@ -284,13 +370,9 @@ static int begin(Work *w, const Loading *loading, const SectionList *selections)
     if (!status) status = find_weight(w, n);
   }
   if (!status) status = fill(w);
-  for (int r = 0; r < d->region_count && !status; ++r) {
-    InitialMisfit misfit;
-    if (!points_on_particles(&d->regions[r].points)) continue;
-    status = points_begin_under(&d->regions[r].points, w->stress, d->initial_strain, &misfit, error);
-    if (misfit.row >= 0) tell_misfit(w, &misfit);
-  }
+  for (int r = 0; r < d->region_count && !status; ++r) status = begin_region(w, &d->regions[r]);
   if (status) return status;
+  count_stressed(w);
   domain_evaluate(d);
   d->initial_energy = domain_stored_energy(d);
   return BRECCIA_OK;

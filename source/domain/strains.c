@@ -41,7 +41,9 @@ static void share_rows(Domain *d, Region *region, int64_t slice)
     int lane;
     bond_list_bond(&region->bonds, &d->family, slice, row, &slot, &lane);
     const int64_t other = family_bond(&d->family, slice, slot, lane).neighbour;
-    region->beside[0][row] = -0.5 * (of[slice * SLICE + lane] + of[other]);
+    const double mean = 0.5 * (of[slice * SLICE + lane] + of[other]);
+    for (int k = 0; k < (region->initial[0] ? 3 : 1); ++k)
+      region->beside[k][row] = (region->initial[k] ? region->initial[k][row] : 0) - mean;
   }
 }
 
@@ -103,8 +105,7 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
   for (int r = 0; r < d->region_count; ++r)
     if (make_rows(d, &d->regions[r], error)) return BRECCIA_FAILURE;
   share(d);
-  s->known = 1; /* nothing is strained yet; of points that begin under stress it is found */
-  for (int r = 0; r < d->region_count; ++r) s->known &= !d->initial_strain[0];
+  s->known = !d->begins_under_stress; /* else nothing is strained yet */
   return BRECCIA_OK;
 }
 

@@ -155,24 +155,11 @@ static void describe_limit(const breccia_model *model, int material, Text *text)
 static void describe_initial_stress(const breccia_model *model, Text *text)
 {
   const Domain *d = &model->domain;
-  const Particles *p = d->particles;
-  int64_t count = 0;
-  double low = INFINITY, high = -INFINITY;
-  if (!d->initial_strain[0] || model->begun) return;
-  for (int32_t n = 0; n < p->count; ++n) {
-    const int32_t i = p->place_of[n];
-    bool stressed = false;
-    for (int k = 0; k < 6; ++k) stressed |= !body_outside(&d->body, n) && d->initial_strain[k][i] != 0;
-    if (!stressed) continue;
-    const double mean = (d->stress[XX][i] + d->stress[YY][i] + d->stress[ZZ][i]) / 3;
-    low = fmin(low, mean);
-    high = fmax(high, mean);
-    ++count;
-  }
   char unit[64];
+  if (!d->stressed || model->begun) return;
   units_name(model->units, dimension_find("stress"), unit, sizeof unit);
-  if (count)
-    text_add(text, "%lld particles begin under stress, mean %.4g to %.4g %s\n", (long long)count, low, high, unit);
+  text_add(text, "%lld particles begin under stress, mean %.4g to %.4g %s\n", (long long)d->stressed, d->least_mean,
+           d->largest_mean, unit);
 }
 
 const char *breccia_model_overview(breccia_model *model)

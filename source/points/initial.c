@@ -30,16 +30,51 @@ static bool lead(Driver *d, const Material *m, const double target[6], Error *er
          keeps(d, target, tolerance);
 }
 
+/** Laws that were led to a stress, of the material that is worked on: rows of a lattice often lie at few depths. */
+enum { LED = 16 };
+typedef struct Led {
+  double target[LED][6];
+  Driver driver[LED];
+  int count, next;
+} Led;
+
+static void forget_led(Led *led)
+{
+  for (int k = 0; k < led->count; ++k) driver_destroy(&led->driver[k]);
+  led->count = led->next = 0;
+}
+
+/** @param[out] found  that of the stress; where the law does not bear it, as far as it came. NULL without memory
+ *  @return BRECCIA_USER_ERROR where it does not */
+static int lead_to(Led *led, const Material *m, const double target[6], const Driver **found, Error *error)
+{
+  *found = NULL;
+  for (int k = 0; k < led->count && !*found; ++k)
+    if (!memcmp(led->target[k], target, sizeof led->target[k])) *found = &led->driver[k];
+  if (*found) return BRECCIA_OK;
+  const int at = led->next;
+  if (at < led->count)
+    driver_destroy(&led->driver[at]);
+  else
+    ++led->count;
+  led->next = (at + 1) % LED;
+  memcpy(led->target[at], target, sizeof led->target[at]);
+  led->driver[at] = (Driver){0};
+  if (driver_create(&led->driver[at], m, error)) return BRECCIA_FAILURE;
+  *found = &led->driver[at];
+  return lead(&led->driver[at], m, target, error) ? BRECCIA_OK : BRECCIA_USER_ERROR;
+}
+
 int points_begin_under(Points *points, double *const stress[6], double *const strain[6], InitialMisfit *misfit,
                        Error *error)
 {
   int status = BRECCIA_OK;
+  Led led = {0};
   misfit->row = -1;
   for (int64_t n = 0; n < points->run_count && !status; ++n) {
     const PointsRun *run = &points->runs[n];
     const Material *m = &points->materials[run->material];
-    double last[6] = {0};
-    Driver d = {0};
+    if (n && run->material != points->runs[n - 1].material) forget_led(&led);
     for (int64_t row = run->first; row < run->first + run->count && !status; ++row) {
       double target[6], square = 0;
       for (int k = 0; k < 6; ++k) {
@@ -47,23 +82,19 @@ int points_begin_under(Points *points, double *const stress[6], double *const st
         square += target[k] * target[k];
       }
       if (square == 0) continue;
-      if (!d.committed || memcmp(target, last, sizeof last)) { /* rows of a lattice often lie at one depth */
-        driver_destroy(&d);
-        status = driver_create(&d, m, error);
-        if (!status && !lead(&d, m, target, error)) {
-          misfit->row = row;
-          memcpy(misfit->reached, d.stress, sizeof misfit->reached);
-          status = BRECCIA_USER_ERROR;
-        }
-        memcpy(last, target, sizeof last);
+      const Driver *d;
+      status = lead_to(&led, m, target, &d, error);
+      if (status == BRECCIA_USER_ERROR) {
+        misfit->row = row;
+        memcpy(misfit->reached, d->stress, sizeof misfit->reached);
       }
-      for (int k = 0; k < 6 && !status; ++k) strain[k][row] = d.strain[k];
+      for (int k = 0; k < 6 && !status; ++k) strain[k][row] = d->strain[k];
       if (!status)
-        memcpy(points->committed + points->history_first[n] + (row - run->first) * m->history_values, d.committed,
+        memcpy(points->committed + points->history_first[n] + (row - run->first) * m->history_values, d->committed,
                sizeof(double) * (size_t)m->history_values);
     }
-    driver_destroy(&d);
   }
+  forget_led(&led);
   if (status) return status;
   for (int k = 0; k < 6; ++k) points->initial[k] = strain[k];
   points_take_up(points);

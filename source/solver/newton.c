@@ -44,7 +44,7 @@ int newton_create(Newton *n, Error *error)
     made = vectors_make(n->unit_force, p, "controlled loads", error) &&
            vectors_make(n->unit_motion, p, "controlled loads", error);
   if (!made) return BRECCIA_FAILURE;
-  if (n->domain->initial_strain[0]) newton_note_forces_held(n);
+  if (n->domain->begins_under_stress) newton_note_forces_held(n);
   n->stiffness = stiffness_of(n->domain);
   return n->relaxes ? BRECCIA_OK : linear_solver_create(&n->linear, n->spec->linear, error);
 }
