@@ -5,24 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *law_word(int k)
-{
-  static const char *const words[] = {"fib", "linear", NULL};
-  return words[k];
-}
-
-static const char *condition_word(int k)
-{
-  static const char *const words[] = {"good", "other", NULL};
-  return words[k];
-}
-
-static const char *confinement_word(int k)
-{
-  static const char *const words[] = {"none", "stirrups", NULL};
-  return words[k];
-}
-
 static bool is_linear(const BondSpec *bond)
 {
   return !strcmp(bond->law, "linear");
@@ -72,7 +54,7 @@ static const Field bond_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, law),
      .standard = "fib",
-     .choice = law_word,
+     .words = (const char *const[]){"fib", "linear", NULL},
      .meaning = "'fib': that of fib Model Code 2010, table 6.1-1; 'linear': stress in proportion to slip, without end"},
     {.key = "stiffness",
      .kind = FIELD_NUMBER,
@@ -85,7 +67,7 @@ static const Field bond_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, condition),
      .standard = "good",
-     .choice = condition_word,
+     .words = (const char *const[]){"good", "other", NULL},
      .meaning =
          "of 'fib': good bond (tau_max = 2.5 sqrt(f_cm / MPa) MPa, s1 = 1 mm, s2 = 2 mm), or all other conditions "
          "(1.25 sqrt(f_cm / MPa) MPa, 1.8 mm, 3.6 mm)"},
@@ -118,7 +100,7 @@ static const Field bond_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(BondSpec, confinement),
      .standard = "none",
-     .choice = confinement_word,
+     .words = (const char *const[]){"none", "stirrups", NULL},
      .meaning = "of 'fib' where concrete splits: with stirrups 0.4 of the stress is left as friction, else nothing"},
     {.key = "unloading stiffness",
      .kind = FIELD_NUMBER,

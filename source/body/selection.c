@@ -5,12 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *face_word(int k)
-{
-  static const char *const words[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
-  return words[k];
-}
-
 static void check_selection(const DeckReader *reader, void *section)
 {
   const SelectionSpec *s = section;
@@ -38,7 +32,7 @@ static const Field selection_fields[] = {
      .offset = offsetof(SelectionSpec, face),
      .standard = "",
      .meaning = "particles next to the outermost ones in this direction, of the block and the group if these are given",
-     .choice = face_word},
+     .words = (const char *const[]){"x-", "x+", "y-", "y+", "z-", "z+", NULL}},
     {.key = "layers",
      .kind = FIELD_COUNT,
      .offset = offsetof(SelectionSpec, layers),

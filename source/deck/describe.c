@@ -128,7 +128,7 @@ void describe_section(const Section *section, Text *text)
       add_anchor(text, field->section->name);
       text_add(text, ")");
     }
-    for (int k = 0; field->choice && field->choice(k); ++k) text_add(text, "%s `%s`", k ? "," : "", field->choice(k));
+    for (int k = 0; field_word(field, k); ++k) text_add(text, "%s `%s`", k ? "," : "", field_word(field, k));
     if (field->dimension && field->kind != FIELD_NUMBER && strcmp(field->dimension, "1"))
       text_add(text, " (%s)", field->dimension);
     text_add(text, " | ");
@@ -262,9 +262,9 @@ static void add_value_schema(Text *text, const Field *field)
   case FIELD_NAME: text_add(text, "\"type\": [\"string\", \"number\"]"); break;
   case FIELD_CHOICE:
     text_add(text, "\"anyOf\": [{\"enum\": [");
-    for (int k = 0; field->choice(k); ++k) {
+    for (int k = 0; field_word(field, k); ++k) {
       if (k) text_add(text, ", ");
-      text_add_json(text, field->choice(k));
+      text_add_json(text, field_word(field, k));
     }
     text_add(text, "]}, " EXPRESSION "]");
     break;

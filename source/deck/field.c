@@ -255,7 +255,7 @@ static void say_choices(const DeckReader *reader, const Node *node, const char *
 {
   const char *names[64];
   int count = 0;
-  while (count < 64 && (names[count] = field->choice(count))) ++count;
+  while (count < 64 && (names[count] = field_word(field, count))) ++count;
   Text advice = {0};
   const char *given = field_found(node);
   spelling_advice(&advice, given, names, count, "choose from");
@@ -309,9 +309,9 @@ void field_read(const DeckReader *reader, const Node *node, const char *label, c
   case FIELD_COUNT: read_count(reader, node, label, field->range, target); break;
   case FIELD_FLAG: read_flag(reader, node, label, target); break;
   case FIELD_CHOICE:
-    for (int k = 0; node->kind == NODE_SCALAR && field->choice(k); ++k)
-      if (!strcmp(field->choice(k), node->text)) {
-        *(const char **)target = field->choice(k);
+    for (int k = 0; node->kind == NODE_SCALAR && field_word(field, k); ++k)
+      if (!strcmp(field_word(field, k), node->text)) {
+        *(const char **)target = field_word(field, k);
         return;
       }
     say_choices(reader, node, label, field);

@@ -62,7 +62,7 @@ typedef enum FieldKind {
   FIELD_FLAG,              /* bool */
   FIELD_TEXT,              /* const char * */
   FIELD_NAME,              /* const char *: the name of something that the deck defines elsewhere */
-  FIELD_CHOICE,            /* const char *, one of Field.choice */
+  FIELD_CHOICE,            /* const char *, one of its words */
   FIELD_POINT,             /* double[3]; a third component left out is 0; NaN when optional and absent */
   FIELD_FREE_POINT,        /* the same, where the word 'free' makes a component NaN */
   FIELD_COUNTS,            /* int64_t[3]; a third left out is 1; -1 when optional and absent */
@@ -92,9 +92,16 @@ typedef struct Field {
   const char *range;     /* interval like "(0, inf)", in deck units; NULL: any */
   const char *meaning;
   const Section *section;
-  const char *(*choice)(int k); /* k-th allowed word, NULL after the last */
+  const char *const *words;     /* of a choice, NULL after the last; or */
+  const char *(*choice)(int k); /* its k-th word, NULL after the last, where other tables have them */
   char group;                   /* of the fields with one letter exactly one is given; 0: none */
 } Field;
+
+/** The k-th word of a choice; NULL: it has fewer, or the field is none. */
+static inline const char *field_word(const Field *field, int k)
+{
+  return field->words ? field->words[k] : field->choice ? field->choice(k) : NULL;
+}
 
 typedef struct DeckReader {
   const Document *document;

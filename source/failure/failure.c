@@ -47,18 +47,6 @@ static const Section *criterion_keys(int k)
 static const SectionChoice criterion_choice = {
     .section = {.name = "criterion"}, .chosen = criterion_keys, .word = criterion_word};
 
-static const char *failed_laws_word(int k)
-{
-  static const char *const words[] = {"stop", "break", NULL};
-  return words[k];
-}
-
-static const char *near_grips_word(int k)
-{
-  static const char *const words[] = {"break", "hold", NULL};
-  return words[k];
-}
-
 static const Field no_failure_fields[] = {
     {.key = "of",
      .kind = FIELD_REFERENCE,
@@ -100,14 +88,14 @@ static const Field failure_fields[] = {
      .standard = "stop",
      .meaning =
          "what happens to a particle whose law cannot be integrated: the run stops there, or all its bonds break",
-     .choice = failed_laws_word},
+     .words = (const char *const[]){"stop", "break", NULL}},
     {.key = "near grips",
      .kind = FIELD_CHOICE,
      .offset = offsetof(FailureSpec, near_grips),
      .standard = "",
      .meaning = "bonds between particles that are moved by a load or stand within a horizon of such: they break as "
                 "everywhere, or hold whatever their stretch; when absent they break, and `breccia check` warns",
-     .choice = near_grips_word},
+     .words = (const char *const[]){"break", "hold", NULL}},
     {.key = "no failure within",
      .kind = FIELD_ONE_OR_SECTIONS,
      .offset = offsetof(FailureSpec, nowhere),

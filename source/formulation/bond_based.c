@@ -22,12 +22,6 @@ static const char *calibration_word(int k)
   return calibrations[k];
 }
 
-static const char *surface_word(int k)
-{
-  static const char *const words[] = {"none", "energy", NULL};
-  return words[k];
-}
-
 static const Field bond_based_fields[] = {
     {.key = "calibration",
      .kind = FIELD_CHOICE,
@@ -43,7 +37,7 @@ static const Field bond_based_fields[] = {
      .standard = "none",
      .meaning = "stiffens bonds of particles near surfaces, whose families are not whole, such that stretching along "
                 "each axis costs them as much energy as inside",
-     .choice = surface_word},
+     .words = (const char *const[]){"none", "energy", NULL}},
 };
 static const Section bond_based_section = {.name = "bond-based",
                                            .about = "Keys of `peridynamics` with `formulation: bond-based`.",

@@ -19,12 +19,6 @@ typedef struct CorrespondenceSpec {
   ControlSpec *control;
 } CorrespondenceSpec;
 
-static const char *strain_word(int k)
-{
-  static const char *const words[] = {"green-lagrange", "small", NULL};
-  return words[k];
-}
-
 static const char *const fade_words[] = {
     [FADES_NEVER] = "never", [FADES_WITH_SOFTENING] = "softening", [FADES_WITH_YIELDING] = "yielding", NULL};
 
@@ -78,7 +72,7 @@ static const Field correspondence_fields[] = {
      .offset = offsetof(CorrespondenceSpec, strain),
      .standard = "green-lagrange",
      .meaning = "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations",
-     .choice = strain_word},
+     .words = (const char *const[]){"green-lagrange", "small", NULL}},
     {.key = "zero-energy control",
      .kind = FIELD_SECTION,
      .offset = offsetof(CorrespondenceSpec, control),

@@ -16,18 +16,6 @@ typedef struct HybridSpec {
   double own;
 } HybridSpec;
 
-static const char *form_word(int k)
-{
-  static const char *const words[] = {"variational", "pairwise", NULL};
-  return words[k];
-}
-
-static const char *strain_word(int k)
-{
-  static const char *const words[] = {"green-lagrange", "small", NULL};
-  return words[k];
-}
-
 static const Field hybrid_fields[] = {
     {.key = "form",
      .kind = FIELD_CHOICE,
@@ -37,13 +25,13 @@ static const Field hybrid_fields[] = {
          "variational: the stress of a bond acts on all particles that its strain comes from, so that momenta and "
          "energy are kept; pairwise: on its two ends only, as published, with a stiffness that is not symmetric: "
          "needs stiffness damping where it moves",
-     .choice = form_word},
+     .words = (const char *const[]){"variational", "pairwise", NULL}},
     {.key = "strain",
      .kind = FIELD_CHOICE,
      .offset = offsetof(HybridSpec, strain),
      .standard = "green-lagrange",
      .meaning = "finite strain (second Piola-Kirchhoff stress), or small strain for small rotations",
-     .choice = strain_word},
+     .words = (const char *const[]){"green-lagrange", "small", NULL}},
     {.key = "own bond",
      .kind = FIELD_NUMBER,
      .offset = offsetof(HybridSpec, own),

@@ -15,12 +15,6 @@ typedef struct MicropolarSpec {
   double torsion;
 } MicropolarSpec;
 
-static const char *kinematics_word(int k)
-{
-  static const char *const words[] = {"corotational", "thesis", NULL};
-  return words[k];
-}
-
 static const Field micropolar_fields[] = {
     {.key = "kinematics",
      .kind = FIELD_CHOICE,
@@ -29,7 +23,7 @@ static const Field micropolar_fields[] = {
      .meaning = "corotational: links turn with their ends, at any rotation; thesis: the stiffness along the present "
                 "direction times all of the displacements and rotations, as in Tuniki 2012, in the plane only: it "
                 "resists rigid rotation and is there to compare with",
-     .choice = kinematics_word},
+     .words = (const char *const[]){"corotational", "thesis", NULL}},
     {.key = "torsion",
      .kind = FIELD_NUMBER,
      .offset = offsetof(MicropolarSpec, torsion),

@@ -13,12 +13,6 @@ typedef struct OrdinarySpec {
   const char *weights;
 } OrdinarySpec;
 
-static const char *weights_word(int k)
-{
-  static const char *const words[] = {"isotropic", "plain", NULL};
-  return words[k];
-}
-
 static const Field ordinary_fields[] = {
     {.key = "lattice weights",
      .kind = FIELD_CHOICE,
@@ -27,7 +21,7 @@ static const Field ordinary_fields[] = {
      .meaning =
          "isotropic: bonds along a lattice count more or less by their direction, such that it shows its shear modulus "
          "in all directions; plain: as in most codes, 16 % off along the axes of a cubic lattice at 3.015 spacings",
-     .choice = weights_word},
+     .words = (const char *const[]){"isotropic", "plain", NULL}},
 };
 const Section ordinary_section = {.name = "ordinary",
                                   .about = "Keys of `peridynamics` with `formulation: ordinary`.",

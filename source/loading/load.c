@@ -14,12 +14,6 @@ static const LoadType *const types[] = {
 #include "loading/load/loads.h"
 };
 
-static const char *spread_word(int k)
-{
-  static const char *const words[] = {"bonds", "layers", NULL};
-  return words[k];
-}
-
 enum { OTHERS = 5 }; /* keys that all loads have */
 
 static const Field load_fields[] = {
@@ -56,7 +50,7 @@ static const Field load_fields[] = {
          "of what acts on a face. bonds: to the particles that the bonds cut off by the face would have pulled, "
          "and as they would have, so that an even stress up to the face is exact: standard for one layer of square and "
          "cubic lattices in formulations that can tell (hybrid). layers: evenly over the layers of the face",
-     .choice = spread_word},
+     .words = (const char *const[]){"bonds", "layers", NULL}},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \
    .kind = form,                                                                                                       \

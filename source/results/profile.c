@@ -11,12 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *axis_word(int k)
-{
-  static const char *const words[] = {"x", "y", "z", NULL};
-  return words[k];
-}
-
 static const Field profile_fields[] = {
     {.key = "of",
      .kind = FIELD_REFERENCE,
@@ -27,7 +21,7 @@ static const Field profile_fields[] = {
      .kind = FIELD_CHOICE,
      .offset = offsetof(ProfileSpec, along),
      .meaning = "the axis",
-     .choice = axis_word},
+     .words = (const char *const[]){"x", "y", "z", NULL}},
     {.key = "every",
      .kind = FIELD_COUNT,
      .offset = offsetof(ProfileSpec, every),

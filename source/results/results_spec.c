@@ -1,11 +1,5 @@
 #include "results/results_spec.h"
 
-static const char *precision_word(int k)
-{
-  static const char *const words[] = {"single", "double", NULL};
-  return words[k];
-}
-
 static const Field results_fields[] = {
     {.key = "fields",
      .kind = FIELD_TEXTS,
@@ -19,7 +13,7 @@ static const Field results_fields[] = {
      .offset = offsetof(ResultsSpec, precision),
      .standard = "single",
      .meaning = "of numbers in the result file",
-     .choice = precision_word},
+     .words = (const char *const[]){"single", "double", NULL}},
     {.key = "number",
      .kind = FIELD_COUNT,
      .offset = offsetof(ResultsSpec, number),

@@ -9,12 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *scheme_word(int k)
-{
-  static const char *const words[] = {"Newmark", "HHT", NULL};
-  return words[k];
-}
-
 static bool is_given(const void *section, const char *key)
 {
   return section_node(section, key) != ((const SectionHead *)section)->node;
@@ -90,7 +84,7 @@ static const Field implicit_fields[] = {
      .meaning =
          "Newmark: by 'beta' and 'gamma', whose defaults are the average acceleration, which keeps energy; HHT: by "
          "'alpha', which takes energy out of vibrations that steps are too long for",
-     .choice = scheme_word},
+     .words = (const char *const[]){"Newmark", "HHT", NULL}},
     {.key = "beta",
      .kind = FIELD_NUMBER,
      .offset = offsetof(ImplicitSpec, beta),

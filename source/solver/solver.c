@@ -18,18 +18,6 @@ static const SolverType *const types[] = {
 #undef SOLVER
 };
 
-static const char *laws_word(int k)
-{
-  static const char *const words[] = {"as given", "elastic", NULL};
-  return words[k];
-}
-
-static const char *displacements_word(int k)
-{
-  static const char *const words[] = {"keep", "zero", NULL};
-  return words[k];
-}
-
 static const Field solve_fields[] = {
 #define SOLVER(name, about)                                                                                            \
   {.key = #name,                                                                                                       \
@@ -51,7 +39,7 @@ static const Field solve_fields[] = {
      .offset = offsetof(SolveSpec, laws),
      .standard = "as given",
      .meaning = "elastic: while this stage lasts, all laws answer elastically and no bond breaks",
-     .choice = laws_word},
+     .words = (const char *const[]){"as given", "elastic", NULL}},
     {.key = "displacements",
      .kind = FIELD_CHOICE,
      .offset = offsetof(SolveSpec, displacements),
@@ -59,7 +47,7 @@ static const Field solve_fields[] = {
      .meaning =
          "zero: displacements that are written, drawn and watched count from the beginning of this stage; stresses, "
          "strains and what laws remember stay",
-     .choice = displacements_word},
+     .words = (const char *const[]){"keep", "zero", NULL}},
     {.key = "loads",
      .kind = FIELD_SECTIONS,
      .offset = offsetof(SolveSpec, loads),

@@ -11,18 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *method_word(int k)
-{
-  static const char *const words[] = {"newton", "relaxation", NULL};
-  return words[k];
-}
-
-static const char *no_equilibrium_word(int k)
-{
-  static const char *const words[] = {"stop", "next stage", NULL};
-  return words[k];
-}
-
 static const Field static_fields[] = {
     {.key = "end time",
      .kind = FIELD_NUMBER,
@@ -58,7 +46,7 @@ static const Field static_fields[] = {
      .meaning = "newton: by linearised equations; relaxation: by forces alone, as if the body came to rest in a damped "
                 "motion (dynamic relaxation): it needs no tangents, and goes on to the next state of rest where a body "
                 "gives way",
-     .choice = method_word},
+     .words = (const char *const[]){"newton", "relaxation", NULL}},
     {.key = "relaxation iterations",
      .kind = FIELD_COUNT,
      .offset = offsetof(StaticSpec, relaxation_iterations),
@@ -73,7 +61,7 @@ static const Field static_fields[] = {
      .meaning = "what happens where none is found: the run stops there, with an error; or the stage ends and the next "
                 "one, as of "
                 "'explicit', goes on from the last state of rest, without the bonds that have broken since",
-     .choice = no_equilibrium_word},
+     .words = (const char *const[]){"stop", "next stage", NULL}},
     {.key = "control",
      .kind = FIELD_SECTION,
      .offset = offsetof(StaticSpec, control),

@@ -18,12 +18,6 @@ typedef struct SupportSpec {
   int64_t layers;
 } SupportSpec;
 
-static const char *held_word(int k)
-{
-  static const char *const words[] = {"all", "across", "periodic", NULL};
-  return words[k];
-}
-
 static const Field support_fields[] = {
     {.key = "held",
      .kind = FIELD_CHOICE,
@@ -32,7 +26,7 @@ static const Field support_fields[] = {
          "all: the face does not move; across: it slides along itself without friction, as in a plane of "
          "symmetry; periodic: it is not held, but the body goes on beyond it and the face opposite as it is, again "
          "and again: what leaves by one comes in by the other, of which nothing is said",
-     .choice = held_word},
+     .words = (const char *const[]){"all", "across", "periodic", NULL}},
     {.key = "displacement",
      .kind = FIELD_POINT,
      .offset = offsetof(SupportSpec, displacement),

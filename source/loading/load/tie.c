@@ -12,12 +12,6 @@ typedef struct TieSpec {
   const char *directions;
 } TieSpec;
 
-static const char *directions_word(int k)
-{
-  static const char *const words[] = {"xyz", "x", "y", "z", "xy", "yz", "xz", NULL};
-  return words[k];
-}
-
 static const Field tie_fields[] = {
     {.key = "to",
      .kind = FIELD_REFERENCE,
@@ -31,7 +25,7 @@ static const Field tie_fields[] = {
      .offset = offsetof(TieSpec, directions),
      .standard = "xyz",
      .meaning = "in which the motions are one; in the others they stay apart",
-     .choice = directions_word},
+     .words = (const char *const[]){"xyz", "x", "y", "z", "xy", "yz", "xz", NULL}},
 };
 
 const Section tie_load_section = {.name = "tie",
