@@ -2,10 +2,12 @@
 #include "model/plausibility_parts.h"
 
 #include "base/memory.h"
+#include "base/tensor.h"
 #include "body/nearer.h"
 #include "failure/critical_stretch.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- loads ---- */
 
@@ -183,10 +185,91 @@ static void check_balance(breccia_model *model, const InitialStressSpec *item)
                    p->number[at], p->position[0][at], p->position[1][at], p->position[2][at], most, unit, load);
 }
 
+/** Gravity on the whole body as the first stage leaves it, of length 0 if there is none. */
+static void find_gravity(const breccia_model *model, double gravity[3])
+{
+  for (int k = 0; k < 3; ++k) gravity[k] = 0;
+  for (int n = 0; n < model->loading.count; ++n) {
+    const Load *load = &model->loading.loads[n];
+    if (load->first > 0 || load->spec->on.node || !node_get(load->spec->head.node, "gravity")) continue;
+    for (int k = 0; k < 3; ++k)
+      gravity[k] +=
+          history_factor(&load->history, model->solver.clock.stage_end) * load->spec->of[LOAD_gravity].point[k];
+  }
+}
+
+/** Stress of ground at a depth between walls that do not give way, as an elastic stage finds it. @param[in] pull  density times gravity */
+static void stress_at_depth(const Material *m, const double pull[3], double depth, double stress[6])
+{
+  const double nu = material_poisson(m), k0 = nu / (1 - nu);
+  const double size = sqrt(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2]);
+  for (int k = 0; k < 6; ++k) {
+    const int r = symmetric_row[k], s = symmetric_column[k];
+    stress[k] = -depth * ((r == s ? k0 * size : 0) + (1 - k0) * pull[r] * pull[s] / size);
+  }
+}
+
+/** Warns where an elastic first stage leads ground under its weight beyond its strength, by walls that do not give way: with other sides it is
+ *  led further. */
+static void check_strength(breccia_model *model, int material, const double gravity[3])
+{
+  const Domain *d = &model->domain;
+  const Particles *p = d->particles;
+  const Material *m = &d->materials[material];
+  const double size = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
+  double top = -INFINITY, low = INFINITY, pull[3], stress[6];
+  for (int32_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    double height = 0;
+    if (body_outside(&d->body, n)) continue;
+    for (int k = 0; k < 3; ++k) height -= gravity[k] / size * p->position[k][i];
+    top = fmax(top, height);
+    if (d->material[i / SLICE] == material) low = fmin(low, height);
+  }
+  for (int k = 0; k < 3; ++k) pull[k] = m->density * gravity[k];
+  double kept = 0, lost = top - low;
+  stress_at_depth(m, pull, lost, stress);
+  if (!(lost > 0) || points_law_keeps(m, stress)) return;
+  for (int k = 0; k < 10; ++k) {
+    const double middle = (kept + lost) / 2;
+    stress_at_depth(m, pull, middle, stress);
+    *(points_law_keeps(m, stress) ? &kept : &lost) = middle;
+  }
+  char length[64];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  plausibility_say(model, section_node(model->solver.stages->items[0], "laws"),
+                   "laws: elastic: under its weight alone material '%s' is beyond its strength from a depth of %.2g %s "
+                   "on, with the horizontal stress of its Poisson ratio %.4g, %.3g of the vertical one; it yields at "
+                   "once when laws answer as given: 'initial stress' with a larger K0, or a Poisson ratio nearer to "
+                   "0.5, keeps it within",
+                   m->name, (kept + lost) / 2, length, material_poisson(m),
+                   material_poisson(m) / (1 - material_poisson(m)));
+}
+
+static void check_elastic_stage(breccia_model *model)
+{
+  const Domain *d = &model->domain;
+  const SectionList *stages = model->solver.stages;
+  double gravity[3];
+  bool yields = false;
+  if (strcmp(((const SolveSpec *)stages->items[0])->laws, "elastic") != 0 || d->begins_under_stress) return;
+  for (int k = 1; k < stages->count; ++k) yields |= strcmp(((const SolveSpec *)stages->items[k])->laws, "elastic") != 0;
+  find_gravity(model, gravity);
+  if (!yields || (gravity[0] == 0 && gravity[1] == 0 && gravity[2] == 0)) return;
+  for (int k = 0; k < d->material_count; ++k) {
+    bool in_space = false;
+    for (int r = 0; r < d->region_count; ++r)
+      in_space |= d->regions[r].points.components == 6 && !d->regions[r].points.plane_stress &&
+                  region_is_made_of(d, &d->regions[r], d->materials[k].name);
+    if (in_space && !d->materials[k].remote) check_strength(model, k, gravity);
+  }
+}
+
 /* Only weight balances stresses that grow with depth. */
 void plausibility_warn_of_ground(breccia_model *model)
 {
   bool weight = false;
+  check_elastic_stage(model);
   for (int k = 0; k < model->loading.count; ++k)
     weight |= model->loading.loads[k].first == 0 && plausibility_is_kind(model->loading.loads[k].spec, "gravity");
   for (int n = 0; n < model->spec->initial_stress.count; ++n) {

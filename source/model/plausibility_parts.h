@@ -21,7 +21,7 @@ void plausibility_warn_of_loads(breccia_model *model);
 /** Adds a line where a load acts on the particle nearest to a point to which several are: one that is meant for the middle of a body stands beside it. */
 void plausibility_describe_middle(const breccia_model *model, const Load *load, Text *text);
 
-/** Warns where ground begins under stresses that nothing balances. */
+/** Warns where ground begins under stresses that nothing balances, or that its law does not bear. */
 void plausibility_warn_of_ground(breccia_model *model);
 
 /** Warns where blocks overlap, or are bonded across a gap. */

@@ -449,6 +449,8 @@ void run_tell_outcome(Run *run, int status)
     quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
   }
   if (!blown_up) text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
+  if (!blown_up && e.imbalance > 1e-3 && domain_flutters(d))
+    text_add(t, "the imbalance is not that of steps alone: %s\n", domain_flutters(d));
   if (!blown_up) tell_inverted(d, length, t);
   const Peaks *peaks = &model->peaks;
   const double stress = units_in_si(model->units, dimension_find("stress"), 1);

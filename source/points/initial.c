@@ -30,6 +30,19 @@ static bool lead(Driver *d, const Material *m, const double target[6], Error *er
          keeps(d, target, tolerance);
 }
 
+bool points_law_keeps(const Material *m, const double stress[6])
+{
+  double square = 0;
+  Driver d = {0};
+  for (int k = 0; k < 6; ++k) square += stress[k] * stress[k];
+  const double tolerance = 1e-9 * sqrt(square);
+  const bool made = driver_create(&d, m, NULL) == BRECCIA_OK;
+  d.elastic = true;
+  const bool kept = !made || !driver_step(&d, all_by_stress, stress, tolerance) || keeps(&d, stress, tolerance);
+  driver_destroy(&d);
+  return kept;
+}
+
 /** Laws that were led to a stress, of the material that is worked on: rows of a lattice often lie at few depths. */
 enum { LED = 16 };
 typedef struct Led {

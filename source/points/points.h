@@ -114,6 +114,9 @@ typedef struct InitialMisfit {
 int points_begin_under(Points *points, double *const stress[6], double *const strain[6], InitialMisfit *misfit,
                        Error *error);
 
+/** Whether a law in space keeps a stress to which it was led elastically, as in an elastic stage. Not for laws in servers. */
+bool points_law_keeps(const Material *material, const double stress[6]);
+
 /** Whether what must always hold of points does: runs in order, the last one up to the last row, histories behind each other. */
 bool points_is_valid(const Points *points);
 

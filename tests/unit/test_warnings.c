@@ -228,6 +228,59 @@ static void bodies_that_lock_are_told(void **state)
   }
 }
 
+/** An elastic stage under the weight leads clay to the octahedral shear sqrt(2)/3 (1 - K0) of the vertical stress, K0 = nu / (1 - nu): with 30 kPa of
+ *  strength and 15 kN/m3 beyond it from 6.364 m on at a Poisson ratio of 1/4, from 8.485 m on at 1/3. */
+static void ground_beyond_its_strength_is_told(void **state)
+{
+  (void)state;
+  static const char elastic[] = "{laws: elastic, static: {increments: 1}}, ", given[] = "{static: {increments: 1}}";
+  const struct {
+    double bulk; /* beside a shear modulus of 6e4; below zero: a Poisson ratio of it, with friction */
+    int rows;    /* of 0.5 m */
+    const char *space, *first, *more;
+    double gravity;
+    const char *told;
+  } grounds[] = {
+      {1e5, 20, "plane strain", elastic, "", -10,
+       "from a depth of 6.4 m on, with the horizontal stress of its Poisson "
+       "ratio 0.25, 0.333 of the vertical one"},
+      {1e5, 13, "plane strain", elastic, "", -10, NULL}, /* the centres reach down to 6 m below the highest ones */
+      {1e5, 14, "plane strain", elastic, "", -10, "from a depth of 6.4 m on"},
+      {1e5, 20, "plane strain", elastic, "", 5, NULL},
+      {1.6e5, 20, "plane strain", elastic, "", -10, "from a depth of 8.5 m on"}, /* 1 - K0 = 1/2 */
+      {3e6, 20, "plane strain", elastic, "", -10, NULL},
+      /* s (1 - K0) / 2 = c cos phi + s (1 + K0) / 2 sin phi with K0 = 1/4 at s = 69.28; 1/3 is borne everywhere */
+      {-0.2, 20, "plane strain", elastic, "", -10, "from a depth of 4.6 m on"},
+      {-0.25, 20, "plane strain", elastic, "", -10, NULL},
+      {1e5, 20, "plane strain", "", "", -10, NULL},
+      {1e5, 20, "plane strain", elastic, "initial stress: {surface: 10, K0: 0.9}\n", -10, NULL}};
+  for (size_t k = 0; k < sizeof grounds / sizeof *grounds; ++k) {
+    char *law =
+        grounds[k].bulk > 0
+            ? text_format("multi-yield-j2, shear modulus: 6e4, bulk modulus: %g, octahedral strength: 30",
+                          grounds[k].bulk)
+            : text_format("mohr-coulomb, Young modulus: 1e5, Poisson ratio: %g, cohesion: 5, friction angle: 30 "
+                          "deg",
+                          -grounds[k].bulk);
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {clay: {density: 1.5, model: %s}}\n"
+        "body: {soil: {material: clay, lattice: square, spacing: 0.5, thickness: 1, shape: {box: {particles: [8, "
+        "%d]}}}}\n"
+        "peridynamics: {formulation: hybrid, horizon: 1.5 spacings, space: %s}\n%s"
+        "loads: [{gravity: [0, %g]}, {on: {face: x-}, support: {held: across}}, {on: {face: x+}, support: {held: "
+        "across}}, {on: {face: y-}, support: {held: across}}]\n"
+        "solve: [%s%s]\n",
+        law, grounds[k].rows, grounds[k].space, grounds[k].more, grounds[k].gravity, grounds[k].first, given);
+    free(law);
+    const char *words = breccia_model_warnings(m), *found = strstr(words, "is beyond its strength");
+    if (!grounds[k].told && *words) fail_msg("ground %d: no warning was expected: %s", (int)k, words);
+    if (grounds[k].told && (!found || !strstr(found, grounds[k].told)))
+      fail_msg("ground %d: expected '%s', found: %s", (int)k, grounds[k].told, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** A load on the particle nearest to a point in the middle of four: told, and one beside it is not. */
 static void points_between_particles_are_told(void **state)
 {
@@ -342,6 +395,7 @@ int main(void)
   const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say),
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
                                      cmocka_unit_test(bodies_that_lock_are_told),
+                                     cmocka_unit_test(ground_beyond_its_strength_is_told),
                                      cmocka_unit_test(points_between_particles_are_told),
                                      cmocka_unit_test(control_that_outlasts_yielding_is_told),
                                      cmocka_unit_test(damping_that_lets_a_body_creep_is_told),
