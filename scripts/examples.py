@@ -1,10 +1,11 @@
 """Runs the report scripts of the examples in a copy of them, and makes one page of what they found: tables, pictures, times, in red what failed or is out of its band.
 
-    examples.py [--strict] [--page PAGE] SOURCE PROGRAMS WORK [EXAMPLE ...]
+    examples.py [--strict] [--minutes M] [--page PAGE] SOURCE PROGRAMS WORK [EXAMPLE ...]
 
 SOURCE: the project; PROGRAMS: the folder with the command breccia; WORK: a folder of its own, which is emptied first; PAGE: SOURCE/examples/report.html when absent.
 Tables are those between marks in the pages of the examples, which report.sh has written there. A row with columns 'computed' and 'accepted' must keep to what is accepted,
-'2.2 to 3.0' or words; a column whose head says '(accepted -5 to 5)' to these. --strict: numbers that differ from those of the project's own pages by more than a hundredth count, too.
+'2.2 to 3.0' or words; a column whose head says '(accepted -5 to 5)' to these; a column 'difference' to the size in the 'band' beside it. --strict: numbers that differ from those of the
+project's own pages by more than a hundredth count, too, and so does a time of all examples beyond M minutes (45).
 Ends with 1 if anything is red."""
 import base64
 import html
@@ -55,6 +56,10 @@ def outside(head, row):
     if "computed" in head and "accepted" in head and row[head.index("accepted")]:
         if not keeps_to(row[head.index("computed")], row[head.index("accepted")]):
             bad.add(head.index("computed"))
+    for n, name in enumerate(head):
+        band = numbers(row[n]) if name == "band" and n and head[n - 1] == "difference" else []
+        if band and not all(abs(value) <= band[0] for value in numbers(row[n - 1])):
+            bad.add(n - 1)
     return bad
 
 
@@ -147,10 +152,15 @@ def section(example):
     return "\n".join(out)
 
 
-def report(examples):
+def whole_time(examples):
+    return f"{sum(e.seconds for e in examples):.0f} s, {sum(e.processor for e in examples):.0f} s of processors"
+
+
+def report(examples, late):
     rows = "".join(f'<tr class="{"red" if e.status or e.outside else "changed" if e.differs else ""}"><td><a href="#{e.name}">{e.name}</a></td><td>{text(e.told())}</td></tr>\n' for e in examples)
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>Examples of Breccia</title><style>{STYLE}</style></head><body>\n<h1>Examples of Breccia</h1>\n'
-            f"<p>Computed beside published. Red: failed, or out of what is accepted; yellow: not as in the example's README.md.</p>\n<table>{rows}</table>\n"
+            f"<p>Computed beside published. Red: failed, or out of what is accepted; yellow: not as in the example's README.md.</p>\n<table>{rows}"
+            f'<tr class="{"changed" if late else ""}"><td>together</td><td>{whole_time(examples)}</td></tr>\n</table>\n'
             + "\n".join(section(e) for e in examples) + "\n</body></html>\n")
 
 
@@ -175,11 +185,13 @@ def copy_of(source, programs, work):
 def main(words):
     strict = "--strict" in words
     words = [word for word in words if word != "--strict"]
-    page = None
-    if "--page" in words:
-        place = words.index("--page")
-        page = words[place + 1]
-        del words[place:place + 2]
+    values = {"--page": None, "--minutes": "45"}
+    for option in values:
+        if option in words:
+            place = words.index(option)
+            values[option] = words[place + 1]
+            del words[place:place + 2]
+    page, minutes = values["--page"], float(values["--minutes"])
     source, programs, work, *names = words
     source = os.path.abspath(source)
     known = sorted(name for name in os.listdir(os.path.join(source, "examples")) if os.path.exists(os.path.join(source, "examples", name, "report.sh")))
@@ -187,16 +199,18 @@ def main(words):
         if name not in known:
             sys.exit(f"examples.py: there is no example '{name}' with a report.sh; there are {', '.join(known)}")
     copy_of(source, programs, work)
-    examples = []
+    examples, late = [], False
     for name in names or known:
         example = Example(name, source, work)
         print(f"{name}: ", end="", flush=True)
         example.run()
         print(example.told(), flush=True)
         examples.append(example)
+        late = sum(e.seconds for e in examples) > 60 * minutes
         with open(page or os.path.join(source, "examples", "report.html"), "w", encoding="utf-8") as file:
-            file.write(report(examples))
-    return any(e.status or e.outside or (strict and e.differs) for e in examples)
+            file.write(report(examples, late))
+    print(f"together: {whole_time(examples)}" + (f", beyond {minutes:g} minutes" if late else ""))
+    return (strict and late) or any(e.status or e.outside or (strict and e.differs) for e in examples)
 
 
 if __name__ == "__main__":

@@ -118,8 +118,8 @@ for motion, title in TITLES.items():
     name, head = f"bounding-surface, {title}", [f"`bounding-surface-clay`, {title}", "hybrid", "beam in shear", "difference", "band"]
     if motion == "record":
         finer = compare(halves, beams["bounding-surface", motion])
-        rows = [a + ([b[1], b[3]] if a[0] == b[0] else [b[1], f"{b[3]}, at {b[0].split(', ')[-1]}"]) for a, b in zip(rows, finer)]
-        head += ["hybrid, steps of 2.5 ms", "difference"]
+        rows = [a[:4] + [b[1], b[3] if a[0] == b[0] else f"{b[3]}, at {b[0].split(', ')[-1]}", a[4]] for a, b in zip(rows, finer)]
+        head[4:4] = ["hybrid, steps of 2.5 ms", "difference"]  # to which the band belongs
     between(name, table(head, rows))
 between("sides", table(["`multi-yield-j2`, the pulse", "sides periodic", "levels tied", "difference", "band"], compare(periodic, runs["multi-yield", "ricker"])))
 

@@ -6,7 +6,7 @@ before=$(cksum "$source"/examples/gravity-column/README.md)
 python3 -B "$source/scripts/examples.py" --page "$work/page.html" "$source" "$(dirname "$breccia")" "$work/copy" gravity-column > "$work/out" 2>&1 ||
   fail "gravity-column: $(cat "$work/out")"
 equal "the page of the example itself" "$(cksum "$source"/examples/gravity-column/README.md)" "$before"
-contains "the page" "$(cat "$work/page.html")" "<th class=\"\">deviation</th>"
+contains "the page" "$(cat "$work/page.html")" "<th class=\"\">deviation (accepted -1 to 1)</th>"
 equal "pictures of the page" "$(grep -c 'src="data:image/png;base64,' "$work/page.html")" "$(grep -c '!\[' "$source/examples/gravity-column/README.md")"
 
 # A project with four examples; their scripts write 'kept' pages.
@@ -28,13 +28,17 @@ example() { # NAME COMPUTED: the page of an example, and a script that writes wh
 |---|---|
 | small | +3.1 % |
 
+| | ours | theirs | difference | band |
+|---|---|---|---|---|
+| frequency | 1 | 1.01 | -0.5 % | 1 % |
+
 <!-- end of loads -->
 END
   printf '%s\n' "$2" > "$work/project/examples/$1/report.sh"
 }
 example same 'sed -i "s/9 s/12 s/; s/5.1/5.11/" README.md; test -x ../../build/release/breccia; test ! -L ../../docs; test -e ../../docs/other.md'
 example other 'sed -i "s/4.9 to 5.1/4.7 to 5.1/" README.md'
-example outside 'sed -i "s/4.9 to/3.9 to/; s/| failed | failed/| steady | failed/; s/+3.1/+5.2/; s/| 2.1 |/| none |/" README.md'
+example outside 'sed -i "s/4.9 to/3.9 to/; s/| failed | failed/| steady | failed/; s/+3.1/+5.2/; s/-0.5 %/-1.5 %/; s/| 2.1 |/| none |/" README.md'
 example broken 'echo "no <such> command"; exit 3'
 mkdir "$work/project/docs" "$work/project/examples/same/results"
 touch "$work/project/docs/other.md" "$work/project/examples/same/results/old"
@@ -48,22 +52,27 @@ report 1 . "$(dirname "$breccia")" build/examples
 page=$(cat "$work/project/examples/report.html")
 contains "all" "$(cat "$work/out")" "broken: FAILED with 3; "
 contains "after one that failed" "$(cat "$work/out")" "other: 1 not as in README.md; "
-contains "out of four bands" "$(cat "$work/out")" "outside: 4 outside of what is accepted, 4 not as in README.md; "
+contains "out of five bands" "$(cat "$work/out")" "outside: 5 outside of what is accepted, 5 not as in README.md; "
 contains "times and a hundredth" "$(cat "$work/out")" "same: good; "
 contains "the page" "$page" '<tr class="red"><td><a href="#broken">broken</a></td>'
 contains "the page" "$page" '<tr class="changed"><td><a href="#other">other</a></td>'
 contains "the page" "$page" '<tr class=""><td><a href="#same">same</a></td>'
 contains "what a script said" "$page" '<pre>no &lt;such&gt; command'
-equal "red cells" "$(grep -o '<td class="red">' "$work/project/examples/report.html" | wc -l)" 4
+equal "red cells" "$(grep -o '<td class="red">' "$work/project/examples/report.html" | wc -l)" 5
 contains "a red cell" "$page" '<td class="red">3.9 to 5.1</td>'
 contains "a red word" "$page" '<td class="red">steady</td>'
 contains "a red share" "$page" '<td class="red">+5.2 %</td>'
+contains "a red difference" "$page" '<td class="red">-1.5 %</td><td class="">1 %</td>'
+contains "the time of all" "$page" '<td>together</td>'
 equal "results of former runs" "$([ -e "$work/project/build/examples/examples/same/results" ] && echo copied)" ""
 report 0 . "$(dirname "$breccia")" build/examples same other
 report 1 . "$(dirname "$breccia")" build/examples outside
 report 1 . "$(dirname "$breccia")" build/examples broken
 report 1 --strict . "$(dirname "$breccia")" build/examples same other
 report 0 --strict . "$(dirname "$breccia")" build/examples same
+report 1 --strict --minutes 0 . "$(dirname "$breccia")" build/examples same
+contains "a time beyond what is allowed" "$(cat "$work/out")" ", beyond 0 minutes"
+report 0 --minutes 0 . "$(dirname "$breccia")" build/examples same
 report 1 . "$(dirname "$breccia")" build/examples another
 contains "an example that is not there" "$(cat "$work/out")" "there is no example 'another' with a report.sh; there are broken, other, outside, same"
 
