@@ -95,14 +95,29 @@ LANES_INLINE Lanes lanes_where(LaneMask mask, Lanes lanes)
 #include "base/lanes_four.h"
 #endif
 
-/** a where the mask is set, b elsewhere. */
-LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
+/** a b, rounded by itself: of two products that are added a compiler may fuse either with the sum, and the bits differ. Here it is fused with nothing. */
+LANES_INLINE Lanes lanes_product(Lanes a, Lanes b)
 {
-  return (Lanes)(((LaneMask)a & mask) | ((LaneMask)b & ~mask));
+  return lanes_set(0) + a * b;
 }
 
-/** e^x - 1 to its last digits, also for small x; below -708 it is -1, above 709 it is 8e307. x must be a number. */
-LANES_INLINE Lanes lanes_exponential_less_one(Lanes x)
+/* Sums of products, each in one order for all kinds of vectors. */
+LANES_INLINE Lanes lanes_dot(Lanes a, Lanes b, Lanes c, Lanes d, Lanes e, Lanes f)
+{
+  return (lanes_product(a, b) + c * d) + e * f;
+}
+LANES_INLINE Lanes lanes_square(Lanes a, Lanes b, Lanes c)
+{
+  return lanes_dot(a, a, b, b, c, c);
+}
+/** a b - c d */
+LANES_INLINE Lanes lanes_cross(Lanes a, Lanes b, Lanes c, Lanes d)
+{
+  return lanes_product(a, b) - c * d;
+}
+
+/** e^x = power (1 + p). Below -708 and above 709 it is what it is there. */
+LANES_INLINE void lanes_split_exponential(Lanes x, Lanes *power, Lanes *part)
 {
   x = lanes_choose(x < lanes_set(-708), lanes_set(-708), x);
   x = lanes_choose(x > lanes_set(709), lanes_set(709), x);
@@ -118,10 +133,46 @@ LANES_INLINE Lanes lanes_exponential_less_one(Lanes x)
   p = p * r2 + (lanes_set(1.0 / 5040) * r + lanes_set(1.0 / 720));
   p = p * r2 + (lanes_set(1.0 / 120) * r + lanes_set(1.0 / 24));
   p = p * r2 + (lanes_set(1.0 / 6) * r + lanes_set(0.5));
-  p = p * r2 + r;
-  const LaneMask one = (LaneMask)lanes_set(1);
-  const Lanes power = (Lanes)(one + ((LaneMask)shifted << 52));
-  return power * p + (power - lanes_set(1));
+  *part = p * r2 + r;
+  *power = (Lanes)((LaneMask)lanes_set(1) + ((LaneMask)shifted << 52));
+}
+
+/** e^x - 1 to its last digits, also for small x; below -708 it is -1, above 709 it is 8e307. x must be a number. */
+LANES_INLINE Lanes lanes_exponential_less_one(Lanes x)
+{
+  Lanes power, part;
+  lanes_split_exponential(x, &power, &part);
+  return power * part + (power - lanes_set(1));
+}
+
+/** e^x to its last digits, from -708 to 709 as above. */
+LANES_INLINE Lanes lanes_exponential(Lanes x)
+{
+  Lanes power, part;
+  lanes_split_exponential(x, &power, &part);
+  return power * part + power;
+}
+
+/** The natural logarithm of a positive number that is neither infinite nor below 2e-308, to its last digits. */
+LANES_INLINE Lanes lanes_logarithm(Lanes x)
+{
+  /* x = 2^n m with m from sqrt(1/2) to sqrt(2), ln m = 2 artanh(s), s = (m - 1) / (m + 1): at most 0.172. */
+  const LaneMask one = (LaneMask)lanes_set(1), half_root = (LaneMask)lanes_set(0.70710678118654752),
+                 moved = (LaneMask)x + (one - half_root), mantissa = (LaneMask){0} + 0xfffffffffffffll;
+  const Lanes m = (Lanes)((moved & mantissa) + half_root), round = lanes_set(6755399441055744.0),
+              n = ((Lanes)((moved >> 52) + (LaneMask)round) - round) - lanes_set(1023);
+  const Lanes s = (m - lanes_set(1)) / (m + lanes_set(1)), s2 = s * s;
+  Lanes p = lanes_set(2.0 / 21) * s2 + lanes_set(2.0 / 19);
+  p = p * s2 + lanes_set(2.0 / 17);
+  p = p * s2 + lanes_set(2.0 / 15);
+  p = p * s2 + lanes_set(2.0 / 13);
+  p = p * s2 + lanes_set(2.0 / 11);
+  p = p * s2 + lanes_set(2.0 / 9);
+  p = p * s2 + lanes_set(2.0 / 7);
+  p = p * s2 + lanes_set(2.0 / 5);
+  p = p * s2 + lanes_set(2.0 / 3);
+  p = p * lanes_product(s2, s) + (s + s);
+  return n * lanes_set(6.93147180369123816490e-01) + (n * lanes_set(1.90821492927058770002e-10) + p);
 }
 
 /** Sine and cosine to their last digits, of angles up to a hundred thousand turns. */

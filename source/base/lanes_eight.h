@@ -74,6 +74,16 @@ LANES_INLINE Lanes lanes_root(Lanes x)
   return (Lanes)_mm512_sqrt_pd((__m512d)x);
 }
 
+LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
+{
+  return (Lanes)_mm512_ternarylogic_epi64((__m512i)mask, (__m512i)a, (__m512i)b, 0xca);
+}
+
+LANES_INLINE int lanes_any(LaneMask mask)
+{
+  return _mm512_movepi64_mask((__m512i)mask) != 0;
+}
+
 LANES_INLINE Lanes lanes_absolute(Lanes a)
 {
   return (Lanes)_mm512_abs_pd((__m512d)a);

@@ -4,6 +4,10 @@
 
 #include "base/lanes.h"
 
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 /** One number in all lanes. By way of its bits, because gcc then makes one load of it instead of a load and a permutation. */
 LANES_INLINE Lanes lanes_set(double value)
 {
@@ -89,7 +93,31 @@ LANES_INLINE Lanes lanes_load_some(const double *from, unsigned bits, int half)
 
 LANES_INLINE Lanes lanes_root(Lanes x)
 {
+#ifdef __AVX__
+  return (Lanes)_mm256_sqrt_pd((__m256d)x);
+#else
   return (Lanes){__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
+#endif
+}
+
+/** a where the mask is set, b elsewhere. */
+LANES_INLINE Lanes lanes_choose(LaneMask mask, Lanes a, Lanes b)
+{
+#ifdef __AVX__
+  return (Lanes)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)mask);
+#else
+  return (Lanes)(((LaneMask)a & mask) | ((LaneMask)b & ~mask));
+#endif
+}
+
+/** Whether the mask is set in any lane. */
+LANES_INLINE int lanes_any(LaneMask mask)
+{
+#ifdef __AVX__
+  return _mm256_movemask_pd((__m256d)mask) != 0;
+#else
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
 }
 
 LANES_INLINE Lanes lanes_absolute(Lanes a)

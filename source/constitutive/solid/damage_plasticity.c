@@ -7,17 +7,7 @@
  * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
  *
  * The flow keeps the direction of the trial deviator, and all else follows from one multiplier: its equation has one unknown. */
-#include "constitutive/solid/dual.h"
-#include "constitutive/solid/elastic_first.h"
-#include "constitutive/solid/spectral.h"
-
-typedef struct DamagePlasticity {
-  Elasticity elastic;
-  double alpha, gamma, dilation, rounding; /* tan(psi), e f_t tan(psi) */
-  double tension, tension_rate, tension_share;
-  double tail, steeper; /* t, and k - 1; 1 and 0: one exponential */
-  double compression, hump, compression_rate, compression_share;
-} DamagePlasticity;
+#include "constitutive/solid/damage_plasticity.h"
 
 enum {
   TENSILE = ELASTIC_PARAMETERS,
@@ -34,7 +24,6 @@ enum {
   LENGTH,
   INITIAL_ENERGY
 };
-enum { PLASTIC = 0, IN_TENSION = 6, IN_COMPRESSION, DAMAGE, HISTORY };
 
 static const breccia_parameter parameters[] = {
     ELASTIC_PARAMETER_ROWS,
@@ -99,6 +88,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->gamma = 3 * (1 - v[MERIDIAN]) / (2 * v[MERIDIAN] - 1);
   c->dilation = tan(v[DILATION] * acos(-1) / 180);
   c->rounding = v[ECCENTRICITY] * strength * c->dilation;
+  c->update = damage_plasticity_update_chosen();
   c->tension = strength;
   c->tension_share = v[TENSION_DAMAGE];
   c->compression_share = v[COMPRESSION_DAMAGE];
@@ -136,196 +126,19 @@ static double softening_energy(const void *constants)
 static int history_values(const void *constants)
 {
   (void)constants;
-  return HISTORY;
+  return DAMAGE_PLASTICITY_HISTORY;
 }
 
 static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
   static const char *const names[] = {"plastic strain in tension", "plastic strain in compression", "material damage"};
-  snprintf(name, size, "%s", k >= IN_TENSION ? names[k - IN_TENSION] : "");
+  snprintf(name, size, "%s", k >= PLASTIC_IN_TENSION ? names[k - PLASTIC_IN_TENSION] : "");
 }
 
-/** Where the flow with a multiplier leads: principal effective stresses, plastic strains in tension and compression, and F. */
-typedef struct Flow {
-  Dual stress[3], tension, compression, excess, share;
-} Flow;
-
-/** Effective deviator after a flow: q + 3 G dl q / sqrt(e^2 + q^2) = q_trial, which grows in q; returns q / q_trial. */
-static double shrink_of(const DamagePlasticity *c, double trial, double multiplier)
-{
-  if (trial <= 0) return 1;
-  const double pull = 3 * c->elastic.shear * multiplier, e2 = c->rounding * c->rounding;
-  double low = fmax(0, trial - pull), high = trial, q = low > 0 ? low : trial / (1 + pull / c->rounding);
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const double root = sqrt(e2 + q * q), gap = q + pull * q / root - trial;
-    if (gap > 0)
-      high = q;
-    else
-      low = q;
-    double next = q - gap / (1 + pull * e2 / (root * root * root));
-    if (!(next >= low && next <= high)) next = (low + high) / 2;
-    if (fabs(next - q) <= 1e-16 * trial) break;
-    q = next;
-  }
-  return q / trial;
-}
-
-/** The curve of tension over plastic strain, to a power: c^share. */
-static Dual remaining(const DamagePlasticity *c, Dual plastic, double share)
-{
-  const Dual slow = dual_exp(dual_scale(-c->tension_rate * share, plastic));
-  if (c->tail == 1) return slow;
-  const Dual quick = dual_exp(dual_scale(-c->tension_rate * c->steeper, plastic)),
-             both = dual_shift(dual_scale(1 - c->tail, quick), c->tail);
-  const double power = pow(both.value, share);
-  return dual_product(slow, dual_chain(power, share * power / both.value, both, 0, both));
-}
-
-/** Trial principal stresses are the variables 0 to 2, the multiplier is 3. */
-static Flow flow_by(const DamagePlasticity *c, const double trial[3], double multiplier, const double *committed)
-{
-  Flow f;
-  const Dual dl = dual_variable(multiplier, 3);
-  Dual sum = dual_constant(0), deviator[3], square = dual_constant(0);
-  for (int k = 0; k < 3; ++k) sum = dual_sum(1, sum, 1, dual_variable(trial[k], k));
-  for (int k = 0; k < 3; ++k) {
-    deviator[k] = dual_sum(1, dual_variable(trial[k], k), -1.0 / 3, sum);
-    square = dual_sum(1, square, 1.5, dual_product(deviator[k], deviator[k]));
-  }
-  const Dual q_trial = dual_sqrt(square);
-  const double triple = 3 * c->elastic.shear, e2 = c->rounding * c->rounding;
-  Dual q = dual_constant(q_trial.value * shrink_of(c, q_trial.value, multiplier));
-  /* Derivatives of q from its equation. */
-  const double root = sqrt(e2 + q.value * q.value), stiff = 1 + triple * multiplier * e2 / (root * root * root);
-  q = dual_chain(q.value, 1 / stiff, q_trial, -triple * q.value / root / stiff, dl);
-  const Dual shrink = q_trial.value > 0 ? dual_quotient(q, q_trial) : dual_constant(1);
-  const Dual whole = dual_sum(1, sum, -3 * c->elastic.bulk * c->dilation, dl);
-  /* Plastic strain increments: dl (1.5 s / root + tan(psi) / 3). */
-  const Dual steep = dual_quotient(dual_scale(1.5, dl), dual_sqrt(dual_shift(dual_product(q, q), e2)));
-  Dual positive = dual_constant(0), all = dual_constant(0), s[3];
-  for (int k = 0; k < 3; ++k) {
-    s[k] = dual_product(shrink, deviator[k]);
-    f.stress[k] = dual_sum(1, s[k], 1.0 / 3, whole);
-    positive = dual_sum(1, positive, 1, dual_positive(f.stress[k]));
-    all = dual_sum(1, all, 1, dual_absolute(f.stress[k]));
-  }
-  f.share = all.value > 0 ? dual_quotient(positive, all) : dual_constant(0);
-  const Dual largest = dual_sum(1, dual_product(steep, s[0]), c->dilation / 3, dl),
-             least = dual_sum(1, dual_product(steep, s[2]), c->dilation / 3, dl);
-  f.tension = dual_shift(dual_product(f.share, dual_positive(largest)), committed[IN_TENSION]);
-  f.compression = dual_shift(dual_product(dual_shift(dual_scale(-1, f.share), 1), dual_positive(dual_scale(-1, least))),
-                             committed[IN_COMPRESSION]);
-  const double b = c->compression_rate, m = c->compression_share;
-  Dual strength = dual_scale(c->tension, remaining(c, f.tension, 1 - c->tension_share));
-  strength = dual_larger(strength, dual_constant(1e-9 * c->tension)); /* a crack cannot carry, but divides */
-  Dual cohesion = dual_sum(c->compression * (1 + c->hump), dual_exp(dual_scale(-b * (1 - m), f.compression)),
-                           -c->compression * c->hump, dual_exp(dual_scale(-b * (2 - m), f.compression)));
-  cohesion = dual_larger(cohesion, dual_constant(1e-9 * c->compression));
-  const Dual beta = dual_shift(dual_scale(1 - c->alpha, dual_quotient(cohesion, strength)), -(1 + c->alpha));
-  Dual excess = dual_sum(1, q, c->alpha, whole);
-  excess = dual_sum(1, excess, 1, dual_product(beta, dual_positive(f.stress[0])));
-  excess = dual_sum(1, excess, -c->gamma, dual_positive(dual_scale(-1, f.stress[0])));
-  f.excess = dual_sum(1 / (1 - c->alpha), excess, -1, cohesion);
-  return f;
-}
-
-/** 1 - D of a state. */
-static Dual wholeness(const DamagePlasticity *c, const Flow *f)
-{
-  const Dual tension = remaining(c, f->tension, c->tension_share),
-             compression = dual_exp(dual_scale(-c->compression_rate * c->compression_share, f->compression));
-  const Dual lost = dual_product(f->share, dual_shift(dual_scale(-1, tension), 1));
-  return dual_product(compression, dual_shift(dual_scale(-1, lost), 1));
-}
-
-/** The multiplier at which F vanishes, by Newton's method in a bracket. @return NaN if there is none */
-static double find_multiplier(const DamagePlasticity *c, const double trial[3], const double *committed, double scale,
-                              Flow *flow)
-{
-  double low = 0, high = INFINITY, dl = 0, step = INFINITY;
-  for (int iteration = 0; iteration < 400; ++iteration) {
-    *flow = flow_by(c, trial, dl, committed);
-    const double gap = flow->excess.value, slope = flow->excess.slope[3];
-    if (gap > 0)
-      low = dl;
-    else
-      high = dl;
-    const bool bracketed = isfinite(high);
-    if (fabs(gap) <= 1e-14 * scale || (bracketed && high - low <= 4e-16 * high)) return dl;
-    double next = dl - gap / slope;
-    if (bracketed) {
-      if (!(next > low && next < high) || fabs(next - dl) > 0.5 * step) next = (low + high) / 2;
-      step = fabs(next - dl);
-    } else if (!(next > low) || !isfinite(next)) {
-      next = dl > 0 ? 2 * dl : scale / c->elastic.bulk;
-    }
-    if (next == dl) return dl;
-    dl = next;
-  }
-  return NAN;
-}
-
-static bool update_point(const void *constants, SolidPoint *p)
-{
-  const DamagePlasticity *c = constants;
-  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
-  double elastic[6], effective[6];
-  for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[PLASTIC + k];
-  const double volume = lambda * trace(elastic);
-  elastic_stress(&c->elastic, elastic, effective);
-  memcpy(p->trial, p->committed, sizeof(double) * HISTORY);
-  const Spectrum strain = spectrum_of(elastic);
-  double trial[3], scale = c->compression;
-  for (int k = 0; k < 3; ++k) {
-    trial[k] = volume + twice * strain.value[k];
-    scale = fmax(scale, fabs(trial[k]));
-  }
-  Flow flow = flow_by(c, trial, 0, p->committed);
-  const bool plastic = flow.excess.value > 1e-12 * c->compression;
-  if (plastic) {
-    if (isnan(find_multiplier(c, trial, p->committed, c->compression, &flow))) return false;
-    double value[3];
-    for (int k = 0; k < 3; ++k) value[k] = flow.stress[k].value;
-    spectral_tensor(&strain, value, effective);
-    plastic_strain(&c->elastic, p->strain, effective, p->trial + PLASTIC);
-    p->trial[IN_TENSION] = flow.tension.value;
-    p->trial[IN_COMPRESSION] = flow.compression.value;
-  }
-  const Dual whole = wholeness(c, &flow);
-  p->trial[DAMAGE] = 1 - whole.value;
-  for (int k = 0; k < 6; ++k) p->stress[k] = whole.value * effective[k];
-  if (!p->tangent) return true;
-  double value[3], slopes[9];
-  for (int k = 0; k < 3; ++k) {
-    const Dual nominal = dual_product(whole, flow.stress[k]);
-    double to_trial[3];
-    value[k] = nominal.value;
-    for (int n = 0; n < 3; ++n)
-      to_trial[n] = nominal.slope[n] - (plastic ? nominal.slope[3] * flow.excess.slope[n] / flow.excess.slope[3] : 0);
-    for (int n = 0; n < 3; ++n)
-      slopes[3 * k + n] = lambda * (to_trial[0] + to_trial[1] + to_trial[2]) + twice * to_trial[n];
-  }
-  spectral_tangent(&strain, value, slopes, p->tangent);
-  return true;
-}
-
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
-{
-  const DamagePlasticity *c = constants;
-  const Lanes zero = lanes_set(0), radius = trial_radius(t),
-              most = lanes_greatest(zero, t->invariant / lanes_set(3) + lanes_set(2) * radius);
-  const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
-  const Lanes stress = lanes_set(3) * radius + lanes_set(c->alpha) * t->invariant + lanes_set(fmax(0, beta)) * most;
-  *found = (trial_history(t, IN_TENSION) <= zero) & (trial_history(t, IN_COMPRESSION) <= zero) &
-           (stress <= lanes_set((1 - c->alpha) * c->compression));
-}
-
-BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  const DamagePlasticity *c = constants;
-  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, true, inside, update_point);
+  return ((const DamagePlasticity *)constants)->update(constants, batch);
 }
 
 const breccia_law law_damage_plasticity = {

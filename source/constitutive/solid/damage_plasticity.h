@@ -1,0 +1,21 @@
+/* The plastic-damage model of concrete: what its parameters become, and a point's history (damage_plasticity.c tells the law). */
+#ifndef BRECCIA_CONSTITUTIVE_DAMAGE_PLASTICITY_H
+#define BRECCIA_CONSTITUTIVE_DAMAGE_PLASTICITY_H
+
+#include "constitutive/solid/solid_lanes.h"
+
+typedef struct DamagePlasticity {
+  Elasticity elastic;
+  double alpha, gamma, dilation, rounding; /* tan(psi), e f_t tan(psi) */
+  double tension, tension_rate, tension_share;
+  double tail, steeper; /* t, and k - 1; 1 and 0: one exponential */
+  double compression, hump, compression_rate, compression_share;
+  SolidUpdate *update; /* for the vectors of this machine */
+} DamagePlasticity;
+
+/* Plastic strain first. */
+enum { PLASTIC_IN_TENSION = 6, PLASTIC_IN_COMPRESSION, PLASTIC_DAMAGE, DAMAGE_PLASTICITY_HISTORY };
+
+LANES_CHOICE(SolidUpdate, damage_plasticity_update)
+
+#endif

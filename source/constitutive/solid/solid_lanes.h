@@ -1,0 +1,270 @@
+/* Points of laws in space side by side, a point a lane: those that are surely elastic are done with at once, the others are lined up, so that all lanes have
+ * work, and go through the law's own step together. A point's numbers do not depend on the points beside it, nor on how many lanes there are. */
+#ifndef BRECCIA_CONSTITUTIVE_SOLID_LANES_H
+#define BRECCIA_CONSTITUTIVE_SOLID_LANES_H
+
+#include "base/lane_kinds.h"
+#include "base/lanes.h"
+#include "constitutive/solid/solid_law.h"
+
+enum { MOST_HISTORY = 13, SOLID_CHUNK = 128 };
+
+/** `update` of a law that is compiled for each kind of vectors, and how it is chosen: LANES_CHOICE(SolidUpdate, name). */
+typedef int SolidUpdate(const void *constants, const breccia_batch *batch);
+
+/** Elastic trial of points: first invariant, deviator and its norm, and their rows of history. */
+typedef struct TrialLanes {
+  Lanes invariant, s[6], length;
+  const double *row[LANES];
+} TrialLanes;
+
+/** Number k of the rows of history. */
+LANES_INLINE Lanes trial_history(const TrialLanes *t, int k)
+{
+  Lanes number = lanes_set(t->row[0][k]);
+  for (int l = 1; l < LANES; ++l) number[l] = t->row[l][k];
+  return number;
+}
+
+/** Bound of principal stresses, for points so far inside that no decomposition is needed: none is larger than a third of the invariant and
+ *  2 r, the largest less the smallest no more than 2 sqrt(3) r. @return r = sqrt(J2 / 3) */
+LANES_INLINE Lanes trial_radius(const TrialLanes *t)
+{
+  return t->length * lanes_set(1 / sqrt(6));
+}
+
+/** @param[out] found  the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it */
+typedef void (*SolidInside)(const void *constants, const TrialLanes *trial, LaneMask *found);
+
+/** Points that the sieve leaves. */
+typedef struct SolidLanes {
+  Lanes strain[6], committed[MOST_HISTORY];
+  /* Out: all of them; a stress that is no number tells that a point could not be integrated. Tangents of points that are wanted, [6][6] to engineering shear
+   * strains. */
+  Lanes stress[6], trial[MOST_HISTORY];
+  double *tangent[LANES];
+} SolidLanes;
+
+/** @param[in] tangents  whether they are wanted: a constant where it is asked */
+typedef void (*SolidStep)(const void *constants, SolidLanes *points, bool tangents);
+
+LANES_INLINE Lanes lanes_trace(const Lanes a[6])
+{
+  return a[XX] + a[YY] + a[ZZ];
+}
+
+LANES_INLINE Lanes lanes_norm(const Lanes a[6])
+{
+  return lanes_root(lanes_square(a[0], a[1], a[2]) + lanes_set(2) * lanes_square(a[3], a[4], a[5]));
+}
+
+/** Stress of an elastic strain: first invariant, deviator and its norm. */
+LANES_INLINE void elastic_trial_lanes(const Elasticity *e, const Lanes strain[6], TrialLanes *t)
+{
+  const Lanes twice = lanes_set(2 * e->shear), volume = lanes_trace(strain), mean = volume / lanes_set(3);
+  for (int k = 0; k < 6; ++k) t->s[k] = lanes_product(twice, k < 3 ? strain[k] - mean : strain[k]);
+  t->invariant = lanes_product(lanes_set(3 * e->bulk), volume);
+  t->length = lanes_norm(t->s);
+}
+
+/** The elastic trial of points whose history begins with the plastic strain. */
+LANES_INLINE void plastic_trial_lanes(const Elasticity *e, const SolidLanes *p, TrialLanes *t)
+{
+  Lanes elastic[6];
+  for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[k];
+  elastic_trial_lanes(e, elastic, t);
+}
+
+LANES_INLINE void elastic_stress_lanes(const Elasticity *e, const Lanes strain[6], Lanes stress[6])
+{
+  const Lanes twice = lanes_set(2 * e->shear), volume = lanes_product(lanes_set(e->bulk - 2 * e->shear / 3), lanes_trace(strain));
+  for (int k = 0; k < 6; ++k) stress[k] = k < 3 ? twice * strain[k] + volume : twice * strain[k];
+}
+
+/** Plastic strain that leaves a stress of first invariant I and deviator s at a strain. */
+LANES_INLINE void plastic_rest_lanes(const Elasticity *e, const Lanes strain[6], Lanes invariant, const Lanes s[6],
+                                     Lanes plastic[6])
+{
+  const Lanes half = lanes_set(1 / (2 * e->shear)), share = lanes_product(invariant, lanes_set(1 / (9 * e->bulk)));
+  for (int k = 0; k < 6; ++k) {
+    plastic[k] = strain[k] - s[k] * half;
+    if (k < 3) plastic[k] -= share;
+  }
+}
+
+/** Plastic strain that leaves a stress at a strain. */
+LANES_INLINE void plastic_strain_lanes(const Elasticity *e, const Lanes strain[6], const Lanes stress[6],
+                                       Lanes plastic[6])
+{
+  const Lanes half = lanes_set(1 / (2 * e->shear)),
+              share = lanes_product(lanes_set(1 / (9 * e->bulk) - 1 / (6 * e->shear)), lanes_trace(stress));
+  for (int k = 0; k < 6; ++k) {
+    plastic[k] = strain[k] - stress[k] * half;
+    if (k < 3) plastic[k] -= share;
+  }
+}
+
+/** Tangents to where they are wanted. */
+LANES_INLINE void store_tangents(const Lanes tangent[36], double *const to[LANES])
+{
+  double numbers[36][LANES];
+  for (int k = 0; k < 36; ++k) lanes_store(numbers[k], tangent[k]);
+  for (int l = 0; l < LANES; ++l)
+    for (int k = 0; k < 36; ++k) to[l][k] = numbers[k][l];
+}
+
+/** Some points of a batch, and those of them that are left after the sieve. */
+typedef struct SolidChunk {
+  const breccia_batch *batch;
+  int first, count, values;
+  double strain[6][SOLID_CHUNK + LANES]; /* tensors, of those that are left */
+  int32_t at[SOLID_CHUNK + LANES];
+  int left;
+} SolidChunk;
+
+/** The first numbers of rows of history, turned round. @param[in] values, count  of a row, and of those wanted: constants */
+LANES_INLINE void load_rows(const double *from, int values, int count, const int32_t *at, Lanes *out)
+{
+  for (int k = 0; k + QUAD <= count; k += QUAD) lanes_gather_rows(from + k, values, at, out + k);
+  if (count > QUAD && count % QUAD) lanes_gather_rows(from + count - QUAD, values, at, out + count - QUAD);
+  for (int k = 0; k < count && count < QUAD; ++k) {
+    double numbers[LANES];
+    for (int l = 0; l < LANES; ++l) numbers[l] = from[values * at[l] + k];
+    out[k] = lanes_load(numbers);
+  }
+}
+
+/** The reverse, of the first `count` rows. */
+LANES_INLINE void store_rows(const Lanes *numbers, int values, const int32_t *at, int count, double *to)
+{
+  double turned[MOST_HISTORY][LANES];
+  for (int k = 0; k < values; ++k) lanes_store(turned[k], numbers[k]);
+  for (int l = 0; l < count; ++l)
+    for (int k = 0; k < values; ++k) to[values * at[l] + k] = turned[k][l];
+}
+
+LANES_INLINE void sieve_chunk(const void *constants, SolidChunk *chunk, const Elasticity *e, bool plastic,
+                              SolidInside inside)
+{
+  const breccia_batch *batch = chunk->batch;
+  const int values = chunk->values, last = chunk->first + chunk->count - 1;
+  double tangent[36];
+  if (batch->tangent) elastic_tangent(e, tangent);
+  chunk->left = 0;
+  for (int first = chunk->first; first <= last; first += LANES) {
+    const bool all = first + LANES <= last + 1;
+    TrialLanes trial;
+    int32_t at[LANES];
+    for (int l = 0; l < LANES; ++l) { /* beyond the end the last point stands in */
+      at[l] = all || first + l <= last ? first + l : last;
+      trial.row[l] = batch->committed + (ptrdiff_t)values * at[l];
+    }
+    Lanes strain[6], elastic[6], spent[6];
+    if (plastic) load_rows(batch->committed, values, 6, at, spent);
+    for (int k = 0; k < 6; ++k) {
+      const double *from = batch->strain[k];
+      if (all) {
+        strain[k] = lanes_load(from + first);
+      } else {
+        strain[k] = lanes_gather(from, at);
+      }
+      if (k >= 3) strain[k] = lanes_product(strain[k], lanes_set(0.5));
+      elastic[k] = plastic ? strain[k] - spent[k] : strain[k];
+    }
+    elastic_trial_lanes(e, elastic, &trial);
+    const Lanes size = trial.length + trial.invariant;
+    LaneMask done = size - size == lanes_set(0); /* finite */
+    if (!batch->elastic_stage) {
+      LaneMask found;
+      inside(constants, &trial, &found);
+      done &= found;
+    }
+    const Lanes pressure = lanes_product(lanes_set(e->bulk), lanes_trace(elastic));
+    const bool whole = all && !lanes_any(~done), none = all && !lanes_any(done);
+    if (none) {
+      for (int k = 0; k < 6; ++k) lanes_store(chunk->strain[k] + chunk->left, strain[k]);
+      for (int l = 0; l < LANES; ++l) chunk->at[chunk->left++] = at[l];
+      continue;
+    }
+    for (int k = 0; k < 6; ++k) {
+      const Lanes stress = k < 3 ? trial.s[k] + pressure : trial.s[k];
+      if (whole)
+        lanes_store(batch->stress[k] + first, stress);
+      else
+        for (int l = 0; l < LANES; ++l)
+          if (done[l]) batch->stress[k][at[l]] = stress[l];
+    }
+    for (int k = 0; k < values && whole; ++k) /* rows lie side by side */
+      lanes_store(batch->trial + (ptrdiff_t)values * first + LANES * k, lanes_load(trial.row[0] + LANES * k));
+    double tensors[6][LANES];
+    for (int k = 0; k < 6 && !whole; ++k) lanes_store(tensors[k], strain[k]);
+    for (int l = 0; l < LANES && first + l <= last && (!whole || batch->tangent); ++l) {
+      if (!done[l]) {
+        for (int k = 0; k < 6; ++k) chunk->strain[k][chunk->left] = tensors[k][l];
+        chunk->at[chunk->left++] = at[l];
+        continue;
+      }
+      for (int k = 0; k < values && !whole; ++k) batch->trial[(ptrdiff_t)values * at[l] + k] = trial.row[l][k];
+      if (batch->tangent) memcpy(batch->tangent + 36 * at[l], tangent, sizeof tangent);
+    }
+  }
+}
+
+/** @return the first of the points that are left which could not be integrated, or -1 */
+LANES_INLINE int step_chunk(const void *constants, SolidChunk *chunk, SolidStep step, bool tangents)
+{
+  const breccia_batch *batch = chunk->batch;
+  const int values = chunk->values;
+  int bad = -1;
+  for (int l = 0; l < LANES && chunk->left; ++l) { /* beyond the end the last point stands in */
+    for (int k = 0; k < 6; ++k) chunk->strain[k][chunk->left + l] = chunk->strain[k][chunk->left - 1];
+    chunk->at[chunk->left + l] = chunk->at[chunk->left - 1];
+  }
+  for (int first = 0; first < chunk->left; first += LANES) {
+    const int32_t *at = chunk->at + first;
+    SolidLanes points;
+    for (int k = 0; k < 6; ++k) points.strain[k] = lanes_load(chunk->strain[k] + first);
+    load_rows(batch->committed, values, values, at, points.committed);
+    for (int l = 0; l < LANES && tangents; ++l) points.tangent[l] = batch->tangent + 36 * at[l];
+    step(constants, &points, tangents);
+    Lanes size = lanes_set(0);
+    for (int k = 0; k < 6; ++k) size += lanes_absolute(points.stress[k]);
+    const LaneMask finite = size - size == lanes_set(0);
+    const int rest = chunk->left - first, count = rest < LANES ? rest : LANES;
+    for (int l = 0; l < count && bad < 0 && lanes_any(~finite); ++l)
+      if (!finite[l]) bad = at[l];
+    store_rows(points.trial, values, at, count, batch->trial);
+    if (count == LANES && at[LANES - 1] - at[0] == LANES - 1) { /* side by side */
+      for (int k = 0; k < 6; ++k) lanes_store(batch->stress[k] + at[0], points.stress[k]);
+      continue;
+    }
+    double stress[6][LANES];
+    for (int k = 0; k < 6; ++k) lanes_store(stress[k], points.stress[k]);
+    for (int l = 0; l < count; ++l)
+      for (int k = 0; k < 6; ++k) batch->stress[k][at[l]] = stress[k][l];
+  }
+  return bad;
+}
+
+/** `update` of a law.
+ *  @param[in] history_values  a constant
+ *  @param[in] plastic  whether history begins with the plastic strain; otherwise all strain is elastic */
+LANES_INLINE int solid_update_lanes(const void *constants, const breccia_batch *batch, int history_values,
+                                    const Elasticity *e, bool plastic, SolidInside inside, SolidStep step)
+{
+  for (int first = 0; first < batch->count; first += SOLID_CHUNK) {
+    const int rest = batch->count - first;
+    SolidChunk chunk; /* field by field: all of it would be cleared */
+    chunk.batch = batch;
+    chunk.first = first;
+    chunk.count = rest < SOLID_CHUNK ? rest : SOLID_CHUNK;
+    chunk.values = history_values;
+    sieve_chunk(constants, &chunk, e, plastic, inside);
+    const int bad = batch->tangent ? step_chunk(constants, &chunk, step, true)
+                                   : step_chunk(constants, &chunk, step, false);
+    if (bad >= 0) return bad;
+  }
+  return -1;
+}
+
+#endif
