@@ -108,6 +108,6 @@ soils = [Friction(0.5), Friction(0.25)]
 between("friction", table(["spacing", "particles", "the crest settles, factor 1", "before it slides", "as it slides", "factor of safety", f"over Bishop's, {slices:.2f}"],
                           [soil.row() for soil in soils]))
 chart("settlement", "Settlement of the crest as strength is divided", "factor", "settlement [mm]",
-      [(f"spacing {soil.spacing:g} m", style, list(zip(FACTORS, soil.settled))) for soil, style in zip(soils, STYLES)],
-      f"set arrow from {slices}, graph 0 to {slices}, graph 1 nohead lw 1.5 lc rgb '#555555'\nset label \"Bishop's slices\" at {slices + 0.005}, graph 0.6 tc rgb '#555555'")
+      [(f"spacing {soil.spacing:g} m", style, list(zip(FACTORS, soil.settled[:None if soil.last.summary["completed"] else -1]))) for soil, style in zip(soils, STYLES)],
+      f"set arrow from {slices}, graph 0 to {slices}, graph 1 nohead lw 1.5 lc rgb '#555555'\nset label \"Bishop's slices\" at {slices - 0.005}, graph 0.8 right tc rgb '#555555'")
 picture(soils[-1].last, "octahedral shear strain", "friction-shear-strain", "--deformed", "20")
