@@ -17,21 +17,19 @@ LANES_INLINE bool any_of(LaneMask mask)
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
 
-/** Links of half a slot, whichever. @param[in] u  of this end */
-LANES_INLINE LinkLanes links_of(const Micropolar *m, int64_t slice, int64_t slot, int half, const Lanes u[3])
+/** All links of half a slot, also those to places of other formulations. @param[in] u  of this end */
+LANES_INLINE LinkLanes all_links(const Micropolar *m, int64_t slice, int64_t slot, int half, const Lanes u[3])
 {
-  double *const *at = m->particles->displacement;
-  if (slot < m->family->stored[slice]) return lattice_links(m, at, slot, half, 3, u);
-  return stored_links(m, at, slice * SLICE + LANES * half, slot, half, m->family->intact[slot], 3, u);
+  return links_of(m, m->particles->displacement, slice, slot, half, m->family->intact[slot], 3, u);
 }
 
 /** (|y|^2 - |xi|^2) / |xi|^2, |xi| being longer by the free strain. */
-LANES_INLINE Lanes squares_of(const Micropolar *m, int64_t place, const LinkLanes *l)
+LANES_INLINE Lanes squares_of(const Micropolar *m, const LinkLanes *l)
 {
   Lanes d = lanes_set(0);
   for (int k = 0; k < 3; ++k) d += l->e[k] * (l->n[k] + l->n[k] + l->e[k]);
   if (!m->particles->free_strain) return d;
-  const Lanes left = stretch_of(d) - free_of(m, place, l);
+  const Lanes left = stretch_of(d) - free_of(m, l);
   return left * (lanes_set(2) + left);
 }
 
@@ -65,19 +63,19 @@ static double larger_damage(const Micropolar *m, int64_t place, int64_t other, d
 }
 
 /** Damage in tension or compression at present stretches. */
-LANES_INLINE Lanes damage_now(const Micropolar *m, int64_t place, const LinkLanes *l, bool tension)
+LANES_INLINE Lanes damage_now(const Micropolar *m, const LinkLanes *l, bool tension)
 {
-  const breccia_link *law = &m->damage->laws[m->particles->block[place / SLICE]];
-  const Lanes d = squares_of(m, place, l);
+  const breccia_link *law = &m->damage->laws[m->particles->block[l->place / SLICE]];
+  const Lanes d = squares_of(m, l);
   const LaneMask beyond =
       tension ? (LaneMask)(d > lanes_set(m->damage->longer)) : (LaneMask)(d < lanes_set(m->damage->shorter));
   if (!any_of(beyond)) return lanes_set(0); /* spares roots and quotients where nothing new is damaged */
   const Lanes stretch = stretch_of(d);
   Lanes now = tension ? damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force)
                       : damage_of(-stretch, law->compression_begin, law->compression_end, false);
-  for (int k = 0; k < LANES && joins_blocks(m, place, l); ++k) /* both ends by the same formula */
-    if (m->particles->block[l->neighbours[k] / SLICE] != m->particles->block[place / SLICE])
-      now[k] = larger_damage(m, place + k, l->neighbours[k], stretch[k], tension);
+  for (int k = 0; k < LANES && joins_blocks(m, l); ++k) /* both ends by the same formula */
+    if (m->particles->block[l->neighbours[k] / SLICE] != m->particles->block[l->place / SLICE])
+      now[k] = larger_damage(m, l->place + k, l->neighbours[k], stretch[k], tension);
   return now;
 }
 
@@ -106,8 +104,8 @@ LANES_INLINE bool is_beyond(const Micropolar *m, int64_t slice)
     Lanes u[3];
     load_displacements(m, place, u);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = links_of(m, slice, slot, half, u);
-      const Lanes d = squares_of(m, place, &l);
+      const LinkLanes l = all_links(m, slice, slot, half, u);
+      const Lanes d = squares_of(m, &l);
       beyond |= ((LaneMask)(d > longer) | (LaneMask)(d < shorter)) & lanes_half(l.intact, half);
     }
   }
@@ -127,10 +125,10 @@ LANES_INLINE void find_tension(const Micropolar *m, int64_t slice)
     Lanes count = lanes_set(0), u[3];
     load_displacements(m, place, u);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = links_of(m, slice, slot, half, u);
+      const LinkLanes l = all_links(m, slice, slot, half, u);
       Lanes most;
-      grown |= grow(damage->tension, slot * SLICE + LANES * half, lanes_half(l.intact, half),
-                    damage_now(m, place, &l, true), stale, &most);
+      grown |= grow(damage->tension, slot * SLICE + LANES * half, lanes_half(l.intact, half), damage_now(m, &l, true),
+                    stale, &most);
       count += lanes_where((LaneMask)(most > lanes_set(0)), lanes_set(1)); /* also of links that broke with it */
     }
     lanes_store(damage->damaged + place, count);
@@ -166,13 +164,13 @@ static void find_compression(const Micropolar *m, int64_t slice)
     load_displacements(m, place, u);
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       const int64_t at = slot * SLICE + LANES * half;
-      const LinkLanes l = links_of(m, slice, slot, half, u);
+      const LinkLanes l = all_links(m, slice, slot, half, u);
       /* what is torn just now is pulled, so that it does not matter here */
       const Lanes itself = lanes_where((LaneMask)(lanes_load(damage->tension[0] + at) > lanes_set(0)), lanes_set(1));
       const LaneMask beside =
           (LaneMask)(lanes_greatest(own, of_others(&l, damage->damaged)) > itself) & lanes_half(l.intact, half);
       Lanes most;
-      grown |= grow(damage->compression, at, beside, damage_now(m, place, &l, false), stale, &most);
+      grown |= grow(damage->compression, at, beside, damage_now(m, &l, false), stale, &most);
     }
   }
   damage->grown[slice] = (uint8_t)((damage->grown[slice] & ~GROWN_IN_COMPRESSION) | (grown ? GROWN_IN_COMPRESSION : 0));

@@ -60,8 +60,8 @@ LANES_INLINE EndLanes end_rotation(Lanes square, Lanes cosine, bool any)
 
 /** Links of half a slot. */
 typedef struct LinkLanes {
-  int64_t slot, there;       /* the first place of their other ends, where these stand side by side */
-  const int32_t *neighbours; /* NULL, or where they do not */
+  int64_t place, slot, there; /* of the first lane; there: of its other end, where these stand side by side */
+  const int32_t *neighbours;  /* NULL, or where they do not */
   int half;
   unsigned intact;
   Lanes n[3], by_length; /* reference vector over its length, and 1 over that */
@@ -71,6 +71,7 @@ typedef struct LinkLanes {
 /** As in LinkRow; 0 where a link is broken. */
 typedef struct StiffnessLanes {
   Lanes axial, bending, twist;
+  bool bends, twists; /* some of the links do */
 } StiffnessLanes;
 
 /** Numbers of the other ends. */
@@ -80,12 +81,13 @@ LANES_INLINE Lanes of_others(const LinkLanes *link, const double *from)
 }
 
 /** @param[in] at  displacements @param[in] u  of this end */
-LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int64_t slot, int half, int dimensions,
-                                     const Lanes *u)
+LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int64_t place, int64_t slot, int half,
+                                     int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
   const LinkRow *row = &m->rows[f->pattern[slot]];
-  LinkLanes l = {.slot = slot,
+  LinkLanes l = {.place = place,
+                 .slot = slot,
                  .half = half,
                  .there = f->base[slot] + LANES * half,
                  .intact = f->intact[slot],
@@ -103,26 +105,17 @@ LANES_INLINE StiffnessLanes lattice_stiffness(const Micropolar *m, const LinkLan
   const LinkRow *row = &m->rows[m->family->pattern[l->slot]];
   return (StiffnessLanes){lanes_intact(l->intact, l->half, lanes_set(row->axial)),
                           lanes_intact(l->intact, l->half, lanes_set(row->bending)),
-                          lanes_intact(l->intact, l->half, lanes_set(row->twist))};
+                          lanes_intact(l->intact, l->half, lanes_set(row->twist)), row->bending > 0, row->twist > 0};
 }
 
-/** Intact bits of a stored slot without its links to places of other formulations, which go one by one. */
-LANES_INLINE unsigned own_bits(const Micropolar *m, int64_t slot)
-{
-  const int32_t *neighbours = m->family->neighbour + (int64_t)m->family->base[slot] * SLICE;
-  unsigned bits = m->family->intact[slot];
-  for (int lane = 0; lane < SLICE && m->foreign; ++lane)
-    if (bits >> lane & 1u && m->foreign[neighbours[lane] / SLICE]) bits &= ~(1u << lane);
-  return bits;
-}
-
-/** @param[in] place  of the first lane of the half slice @param[in] wanted  bits of links */
+/** @param[in] wanted  bits of links */
 LANES_INLINE LinkLanes stored_links(const Micropolar *m, double *const *at, int64_t place, int64_t slot, int half,
                                     unsigned wanted, int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
   const Particles *p = m->particles;
-  LinkLanes l = {.slot = slot,
+  LinkLanes l = {.place = place,
+                 .slot = slot,
                  .half = half,
                  .neighbours = f->neighbour + (int64_t)f->base[slot] * SLICE + LANES * half,
                  .intact = wanted};
@@ -141,65 +134,116 @@ LANES_INLINE LinkLanes stored_links(const Micropolar *m, double *const *at, int6
   return l;
 }
 
-LANES_INLINE StiffnessLanes stored_stiffness(const Micropolar *m, int64_t place, const LinkLanes *l)
+LANES_INLINE StiffnessLanes stored_stiffness(const Micropolar *m, const LinkLanes *l)
 {
   const Family *f = m->family;
   Lanes weight = of_others(l, m->particles->volume);
   if (f->scale) weight *= lanes_load(f->scale + (int64_t)f->base[l->slot] * SLICE + LANES * l->half);
   weight = lanes_intact(l->intact, l->half, weight);
   const LinkStiffness *any = &m->constants[0].any;
-  StiffnessLanes s = {lanes_set(any->axial), lanes_set(any->bending), lanes_set(any->twist)};
+  Lanes axial = lanes_set(any->axial), bending = lanes_set(any->bending), twist = lanes_set(any->twist);
   for (int k = 0; k < LANES && (m->body->block_count > 1 || m->constants[0].lengths); ++k) {
     const Bond bond = {.neighbour = l->neighbours[k], .length = 1 / l->by_length[k]};
-    const LinkStiffness stiffness = micropolar_stiffness(m, place + k, &bond);
-    s.axial[k] = stiffness.axial;
-    s.bending[k] = stiffness.bending;
-    s.twist[k] = stiffness.twist;
+    const LinkStiffness stiffness = micropolar_stiffness(m, l->place + k, &bond);
+    axial[k] = stiffness.axial;
+    bending[k] = stiffness.bending;
+    twist[k] = stiffness.twist;
   }
   const Lanes over_length = weight * l->by_length;
-  return (StiffnessLanes){s.axial * weight, s.bending * over_length, s.twist * over_length};
+  return (StiffnessLanes){axial * weight, bending * over_length, twist * over_length, true, true};
+}
+
+/** Intact bits of a slot without its links to places of other formulations, which go one by one. */
+LANES_INLINE unsigned own_bits(const Micropolar *m, int64_t slice, int64_t slot)
+{
+  unsigned bits = m->family->intact[slot];
+  if (!m->foreign || slot < m->family->stored[slice]) return bits;
+  const int32_t *neighbours = m->family->neighbour + (int64_t)m->family->base[slot] * SLICE;
+  for (int lane = 0; lane < SLICE; ++lane)
+    if (bits >> lane & 1u && m->foreign[neighbours[lane] / SLICE]) bits &= ~(1u << lane);
+  return bits;
+}
+
+/** Links of half a slot of a slice, whichever way it is kept. @param[in] wanted  bits of them, where it is a stored one */
+LANES_INLINE LinkLanes links_of(const Micropolar *m, double *const *at, int64_t slice, int64_t slot, int half,
+                                unsigned wanted, int dimensions, const Lanes *u)
+{
+  const int64_t place = slice * SLICE + LANES * half;
+  if (slot < m->family->stored[slice]) return lattice_links(m, at, place, slot, half, dimensions, u);
+  return stored_links(m, at, place, slot, half, wanted, dimensions, u);
+}
+
+LANES_INLINE StiffnessLanes stiffness_of_links(const Micropolar *m, const LinkLanes *l)
+{
+  return l->neighbours ? stored_stiffness(m, l) : lattice_stiffness(m, l);
 }
 
 /** Some other end is of another block than this one. */
-LANES_INLINE bool joins_blocks(const Micropolar *m, int64_t place, const LinkLanes *l)
+LANES_INLINE bool joins_blocks(const Micropolar *m, const LinkLanes *l)
 {
   const int32_t *block = m->particles->block;
   bool joins = false;
   for (int k = 0; k < LANES && l->neighbours && m->body->block_count > 1; ++k)
-    joins |= block[l->neighbours[k] / SLICE] != block[place / SLICE];
+    joins |= block[l->neighbours[k] / SLICE] != block[l->place / SLICE];
   return joins;
 }
 
 /** Stretch at which links carry nothing. */
-LANES_INLINE Lanes free_of(const Micropolar *m, int64_t place, const LinkLanes *l)
+LANES_INLINE Lanes free_of(const Micropolar *m, const LinkLanes *l)
 {
   const double *free = m->particles->free_strain;
-  return free ? lanes_set(0.5) * (lanes_load(free + place) + of_others(l, free)) : lanes_set(0);
+  return free ? lanes_set(0.5) * (lanes_load(free + l->place) + of_others(l, free)) : lanes_set(0);
+}
+
+/** Links as they are deformed. */
+typedef struct ChordLanes {
+  Lanes m[3];    /* to the other end, of length 1 */
+  Lanes inverse; /* reference over present length */
+  Lanes d;       /* (|y|^2 - |xi|^2) / |xi|^2 */
+  Lanes stretch; /* without the free strain */
+} ChordLanes;
+
+/** @param[in] any  of any stretches, or within the series */
+LANES_INLINE ChordLanes chords_of(const Micropolar *m, const LinkLanes *l, int dimensions, bool any)
+{
+  ChordLanes c = {.d = {0}};
+  for (int k = 0; k < dimensions; ++k) {
+    c.m[k] = l->n[k] + l->e[k];
+    c.d += l->e[k] * (l->n[k] + c.m[k]);
+  }
+  const Lanes g = shortening(c.d, any ? RANGE_ANY : RANGE_SERIES);
+  c.inverse = lanes_set(1) - g;
+  c.stretch = c.d * c.inverse - g - free_of(m, l);
+  for (int k = 0; k < dimensions; ++k) c.m[k] *= c.inverse;
+  return c;
 }
 
 /** What damage of a link that is open leaves of it when it closes again, of both ends' laws. */
-LANES_INLINE Lanes recovery_of(const Micropolar *m, const breccia_link *law, int64_t place, const LinkLanes *l)
+LANES_INLINE Lanes recovery_of(const Micropolar *m, const breccia_link *law, const LinkLanes *l)
 {
   Lanes recovery = lanes_set(law->recovery);
-  for (int k = 0; k < LANES && joins_blocks(m, place, l); ++k) {
+  for (int k = 0; k < LANES && joins_blocks(m, l); ++k) {
     const double other = m->damage->laws[m->particles->block[l->neighbours[k] / SLICE]].recovery;
     recovery[k] = law->recovery < other ? law->recovery : other;
   }
   return recovery;
 }
 
-/** What is left of a link's axial stiffness, and of the others. */
-LANES_INLINE void find_left(const Micropolar *m, const breccia_link *law, int64_t place, const LinkLanes *l,
-                            Lanes stretch, Lanes *axial, Lanes *other)
+/** Takes from the stiffness of links what their damage has taken. @param[in] law  NULL: nothing */
+LANES_INLINE void weaken(const Micropolar *m, const breccia_link *law, const LinkLanes *l, Lanes stretch,
+                         StiffnessLanes *stiffness)
 {
+  if (!law) return;
   const int64_t at = l->slot * SLICE + LANES * l->half;
   const LinkDamage *damage = m->damage;
-  const uint8_t grown = damage->grown[place / SLICE];
+  const uint8_t grown = damage->grown[l->place / SLICE];
   const Lanes tension = lanes_load(damage->tension[grown & GROWN_IN_TENSION ? 1 : 0] + at), one = lanes_set(1),
               rest = one - lanes_load(damage->compression[grown & GROWN_IN_COMPRESSION ? 1 : 0] + at);
-  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), one - recovery_of(m, law, place, l), one);
-  *axial = (one - tension * closed) * rest;
-  *other = (one - tension) * rest;
+  const Lanes closed = lanes_choose((LaneMask)(stretch < lanes_set(0)), one - recovery_of(m, law, l), one),
+              left = (one - tension) * rest;
+  stiffness->axial *= (one - tension * closed) * rest;
+  stiffness->bending *= left;
+  stiffness->twist *= left;
 }
 
 /** The law by which links of a slice are weakened now; NULL: none is. */

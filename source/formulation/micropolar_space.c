@@ -9,7 +9,6 @@
 
 /** Half a slice: what it has, and what acts on it. */
 typedef struct HalfSlice {
-  int64_t place;
   Lanes u[3], q[4], turned[3][3]; /* quaternion, and its matrix */
   Lanes force[3], moment[3];
   LanesWithin within; /* the series */
@@ -25,6 +24,12 @@ LANES_INLINE void turn_lanes(const Lanes q[4], const Lanes n[3], Lanes a[3])
     const Lanes half = q[0] * once[k] + twice[k];
     a[k] = n[k] + (half + half);
   }
+}
+
+/** Quaternions of the other ends. */
+LANES_INLINE void turns_of_others(const Micropolar *m, const LinkLanes *l, Lanes q[4])
+{
+  for (int k = 0; k < 4; ++k) q[k] = of_others(l, m->shown[k]);
 }
 
 /** Quaternion of the rotation from this end to the other, by the shorter way. */
@@ -43,7 +48,7 @@ typedef struct Spins {
 } Spins;
 
 LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes n[3], const Lanes chord[3],
-                            Lanes bending, Lanes twist, bool twists, bool any, Lanes cosine[2])
+                            const StiffnessLanes *stiffness, bool any, Lanes cosine[2])
 {
   Lanes a[3], c[3], b[3], d[3]; /* where the sections of this end and the other point, and the chord x these */
   Spins s;
@@ -56,7 +61,7 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   cosine[1] = dot_lanes(chord, c);
   const EndLanes ends[2] = {end_rotation(bb, cosine[0], any), end_rotation(dd, cosine[1], any)};
   const Lanes f = ends[0].factor, g = ends[1].factor, bend = ends[0].bend, other = ends[1].bend;
-  const Lanes twice = bending + bending, by_f = twice * f, by_g = twice * g;
+  const Lanes twice = stiffness->bending + stiffness->bending, by_f = twice * f, by_g = twice * g;
   /* this end by b and d, then the other by d and b */
   const Lanes bs = by_f + by_f + bend * by_g * bd, ds = by_g * (one - bend * bb);
   const Lanes db = by_g + by_g + other * by_f * bd, bo = by_f * (one - other * dd);
@@ -65,10 +70,10 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
     s.both[k] = (bs + bo) * b[k] + (ds + db) * d[k];
   }
   Lanes along = by_f * g * dot_lanes(a, d);
-  if (twists) {
+  if (stiffness->twists) {
     Lanes r[4], across[3];
     twist_of(own->q, q, r);
-    const Lanes psi = dot_lanes(chord, r + 1), torque = twist * (psi + psi);
+    const Lanes psi = dot_lanes(chord, r + 1), torque = stiffness->twist * (psi + psi);
     cross_lanes(r + 1, chord, across);
     for (int k = 0; k < 3; ++k) {
       const Lanes part = torque * across[k];
@@ -81,37 +86,26 @@ LANES_INLINE Spins spins_of(const HalfSlice *own, const Lanes q[4], const Lanes 
   return s;
 }
 
-/** @param[in] bends, twists  whether some of the links do */
 LANES_INLINE void add_link(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness, const breccia_link *weak,
-                           bool bends, bool twists, bool any, HalfSlice *own)
+                           bool any, HalfSlice *own)
 {
-  Lanes chord[3], d = lanes_set(0);
-  for (int k = 0; k < 3; ++k) {
-    chord[k] = l->n[k] + l->e[k];
-    d += l->e[k] * (l->n[k] + chord[k]);
-  }
-  const Lanes g = shortening(d, any ? RANGE_ANY : RANGE_SERIES), inverse = lanes_set(1) - g,
-              stretch = d * inverse - g - free_of(m, own->place, l);
-  for (int k = 0; k < 3; ++k) chord[k] *= inverse;
+  const ChordLanes chord = chords_of(m, l, 3, any);
   Lanes cosine[2] = {lanes_set(1), lanes_set(1)};
-  Lanes left[2] = {lanes_set(1), lanes_set(1)};
-  if (weak) find_left(m, weak, own->place, l, stretch, &left[0], &left[1]);
-  const Lanes pull = stiffness.axial * left[0] * stretch;
-  for (int k = 0; k < 3; ++k) own->force[k] += pull * chord[k];
-  if (bends) {
-    const Lanes q[4] = {of_others(l, m->shown[0]), of_others(l, m->shown[1]), of_others(l, m->shown[2]),
-                        of_others(l, m->shown[3])};
-    const Spins s =
-        spins_of(own, q, l->n, chord, stiffness.bending * left[1], stiffness.twist * left[1], twists, any, cosine);
-    const Lanes by_present = l->by_length * inverse;
-    Lanes across[3];
-    cross_lanes(chord, s.both, across);
+  weaken(m, weak, l, chord.stretch, &stiffness);
+  const Lanes pull = stiffness.axial * chord.stretch;
+  for (int k = 0; k < 3; ++k) own->force[k] += pull * chord.m[k];
+  if (stiffness.bends) {
+    Lanes q[4], across[3];
+    turns_of_others(m, l, q);
+    const Spins s = spins_of(own, q, l->n, chord.m, &stiffness, any, cosine);
+    const Lanes by_present = l->by_length * chord.inverse;
+    cross_lanes(chord.m, s.both, across);
     for (int k = 0; k < 3; ++k) {
       own->force[k] += by_present * across[k];
       own->moment[k] -= s.own[k];
     }
   }
-  if (!any) own->within = links_within(own->within, l, d, cosine[0], cosine[1]);
+  if (!any) own->within = links_within(own->within, l, chord.d, cosine[0], cosine[1]);
 }
 
 /** The matrix of the own quaternion, as every link of the half slice turns its direction by it. */
@@ -124,7 +118,8 @@ LANES_INLINE void find_matrix(HalfSlice *own)
   }
 }
 
-/** @param[in] any  of any stretches and rotations, or within the series @return whether they were within them */
+/** Both kinds of slots have a loop of their own, as in the plane (micropolar_plane.c).
+ *  @param[in] any  of any stretches and rotations, or within the series @return whether they were within them */
 LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
 {
   const Family *f = m->family;
@@ -132,7 +127,7 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfSlice own = {.place = place, .within = lanes_all_within()};
+    HalfSlice own = {.within = lanes_all_within()};
     for (int k = 0; k < 3; ++k) {
       own.u[k] = lanes_load(p->displacement[k] + place);
       own.force[k] = own.moment[k] = lanes_set(0);
@@ -140,13 +135,12 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
     for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
     find_matrix(&own);
     for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-      const LinkRow *row = &m->rows[f->pattern[slot]];
-      const LinkLanes l = lattice_links(m, p->displacement, slot, half, 3, own.u);
-      add_link(m, &l, lattice_stiffness(m, &l), weak, row->bending > 0, row->twist > 0, any, &own);
+      const LinkLanes l = lattice_links(m, p->displacement, place, slot, half, 3, own.u);
+      add_link(m, &l, lattice_stiffness(m, &l), weak, any, &own);
     }
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slot), 3, own.u);
-      add_link(m, &l, stored_stiffness(m, place, &l), weak, true, true, any, &own);
+      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slice, slot), 3, own.u);
+      add_link(m, &l, stored_stiffness(m, &l), weak, any, &own);
     }
     if (!any && !lanes_are_within(own.within)) return false;
     for (int k = 0; k < 3; ++k) {
@@ -175,28 +169,21 @@ LANES_INLINE void find_rotation(const Lanes q[4], const Lanes n[3], const Lanes 
 }
 
 /** Energy of links per volume of this end, times the weights of the bonds. */
-LANES_INLINE Lanes energy_of(const Micropolar *m, int64_t place, const LinkLanes *l, StiffnessLanes stiffness,
+LANES_INLINE Lanes energy_of(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness,
                              const breccia_link *weak, const Lanes own[4])
 {
-  Lanes chord[3], d = lanes_set(0), a[3], b[3], r[4];
-  for (int k = 0; k < 3; ++k) {
-    chord[k] = l->n[k] + l->e[k];
-    d += l->e[k] * (l->n[k] + chord[k]);
-  }
-  const Lanes g = shortening(d, RANGE_ANY), inverse = lanes_set(1) - g,
-              stretch = d * inverse - g - free_of(m, place, l);
-  for (int k = 0; k < 3; ++k) chord[k] *= inverse;
-  const Lanes q[4] = {of_others(l, m->shown[0]), of_others(l, m->shown[1]), of_others(l, m->shown[2]),
-                      of_others(l, m->shown[3])};
-  find_rotation(own, l->n, chord, a);
-  find_rotation(q, l->n, chord, b);
+  const ChordLanes chord = chords_of(m, l, 3, true);
+  weaken(m, weak, l, chord.stretch, &stiffness);
+  const Lanes energy = lanes_set(0.5) * stiffness.axial * chord.stretch * chord.stretch / l->by_length;
+  if (!stiffness.bends) return energy;
+  Lanes q[4], a[3], b[3], r[4];
+  turns_of_others(m, l, q);
+  find_rotation(own, l->n, chord.m, a);
+  find_rotation(q, l->n, chord.m, b);
   twist_of(own, q, r);
-  const Lanes psi = lanes_set(2) * dot_lanes(chord, r + 1);
-  Lanes left[2] = {lanes_set(1), lanes_set(1)};
-  if (weak) find_left(m, weak, place, l, stretch, &left[0], &left[1]);
-  return lanes_set(0.5) * left[0] * stiffness.axial * stretch * stretch / l->by_length +
-         left[1] * (lanes_set(2) * stiffness.bending * (dot_lanes(a, a) + dot_lanes(a, b) + dot_lanes(b, b)) +
-                    lanes_set(0.5) * stiffness.twist * psi * psi);
+  const Lanes psi = lanes_set(2) * dot_lanes(chord.m, r + 1);
+  return energy + lanes_set(2) * stiffness.bending * (dot_lanes(a, a) + dot_lanes(a, b) + dot_lanes(b, b)) +
+         lanes_set(0.5) * stiffness.twist * psi * psi;
 }
 
 static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
@@ -209,13 +196,9 @@ static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
     Lanes u[3], q[4], sum = lanes_set(0);
     for (int k = 0; k < 3; ++k) u[k] = lanes_load(p->displacement[k] + place);
     for (int k = 0; k < 4; ++k) q[k] = lanes_load(m->shown[k] + place);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-      const LinkLanes l = lattice_links(m, p->displacement, slot, half, 3, u);
-      sum += energy_of(m, place, &l, lattice_stiffness(m, &l), weak, q);
-    }
-    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, p->displacement, place, slot, half, own_bits(m, slot), 3, u);
-      sum += energy_of(m, place, &l, stored_stiffness(m, place, &l), weak, q);
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = links_of(m, p->displacement, slice, slot, half, own_bits(m, slice, slot), 3, u);
+      sum += energy_of(m, &l, stiffness_of_links(m, &l), weak, q);
     }
     lanes_store(energies + LANES * half,
                 lanes_set(0.5) * lanes_load(p->volume + place) * sum); /* half is the other end's */
@@ -226,7 +209,6 @@ static void store(const Micropolar *m, int64_t slice, double energies[SLICE])
 
 /** Half a slice: what it has, its changes, and how what acts on it changes. */
 typedef struct HalfChange {
-  int64_t place;
   Lanes u[3], q[4], v[3], spin[3];
   Lanes force[3], moment[3];
 } HalfChange;
@@ -328,30 +310,22 @@ LANES_INLINE void add_twist_change(const Lanes own[4], const Lanes q[4], const L
   }
 }
 
-/** @param[in] bends, twists  whether some of the links do */
 LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessLanes stiffness,
-                             const breccia_link *weak, bool bends, bool twists, HalfChange *own)
+                             const breccia_link *weak, HalfChange *own)
 {
   double *const *v = m->particles->displacement;
-  Lanes chord[3], chord_change[3], apart[3], d = lanes_set(0);
-  for (int k = 0; k < 3; ++k) {
-    chord[k] = l->n[k] + l->e[k];
-    d += l->e[k] * (l->n[k] + chord[k]);
-    apart[k] = lanes_intact(l->intact, l->half, of_others(l, v[k]) - own->v[k]);
-  }
-  const Lanes g = shortening(d, RANGE_ANY), inverse = lanes_set(1) - g, over_length = l->by_length * inverse,
-              stretch = d * inverse - g - free_of(m, own->place, l);
-  for (int k = 0; k < 3; ++k) chord[k] *= inverse;
+  const ChordLanes links = chords_of(m, l, 3, true);
+  const Lanes *chord = links.m, stretch = links.stretch, over_length = l->by_length * links.inverse;
+  Lanes chord_change[3], apart[3];
+  for (int k = 0; k < 3; ++k) apart[k] = lanes_intact(l->intact, l->half, of_others(l, v[k]) - own->v[k]);
   const Lanes grown = dot_lanes(chord, apart);
   for (int k = 0; k < 3; ++k) chord_change[k] = (apart[k] - grown * chord[k]) * over_length;
-  Lanes left[2] = {lanes_set(1), lanes_set(1)};
-  if (weak) find_left(m, weak, own->place, l, stretch, &left[0], &left[1]);
-  const Lanes axial = stiffness.axial * left[0];
-  for (int k = 0; k < 3; ++k) own->force[k] += axial * (grown * l->by_length * chord[k] + stretch * chord_change[k]);
-  if (!bends) return;
-  const Lanes q[4] = {of_others(l, m->shown[0]), of_others(l, m->shown[1]), of_others(l, m->shown[2]),
-                      of_others(l, m->shown[3])};
-  Lanes spins[2][3], by_chord[2][3], by_spin[3];
+  weaken(m, weak, l, stretch, &stiffness);
+  for (int k = 0; k < 3; ++k)
+    own->force[k] += stiffness.axial * (grown * l->by_length * chord[k] + stretch * chord_change[k]);
+  if (!stiffness.bends) return;
+  Lanes q[4], spins[2][3], by_chord[2][3], by_spin[3];
+  turns_of_others(m, l, q);
   for (int k = 0; k < 3; ++k) {
     spins[0][k] = own->spin[k];
     spins[1][k] = of_others(l, m->spin[k]);
@@ -359,7 +333,7 @@ LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessL
   }
   const EndChange ends[2] = {change_end(own->q, l->n, chord, chord_change, spins[0]),
                              change_end(q, l->n, chord, chord_change, spins[1])};
-  const Lanes bending = stiffness.bending * left[1], twice = bending + bending;
+  const Lanes twice = stiffness.bending + stiffness.bending;
   for (int e = 0; e < 2; ++e) {
     Lanes moment[3], moment_change[3];
     for (int k = 0; k < 3; ++k) {
@@ -370,7 +344,7 @@ LANES_INLINE void add_change(const Micropolar *m, const LinkLanes *l, StiffnessL
     add_by_chord(&ends[e], moment, moment_change, by_chord);
     if (e == 0) add_by_spin(&ends[e], chord, chord_change, moment, moment_change, by_spin);
   }
-  if (twists) add_twist_change(own->q, q, chord, chord_change, spins, stiffness.twist * left[1], by_chord, by_spin);
+  if (stiffness.twists) add_twist_change(own->q, q, chord, chord_change, spins, stiffness.twist, by_chord, by_spin);
   const Lanes along = dot_lanes(chord, by_chord[0]),
               along_change = dot_lanes(chord_change, by_chord[0]) + dot_lanes(chord, by_chord[1]);
   for (int k = 0; k < 3; ++k) {
@@ -388,7 +362,7 @@ static void resist_changes(const Micropolar *m, double *const *at, int64_t slice
   const breccia_link *weak = weakened_by(m, slice);
   for (int half = 0; half < HALVES; ++half) {
     const int64_t place = slice * SLICE + LANES * half;
-    HalfChange own = {.place = place};
+    HalfChange own;
     for (int k = 0; k < 3; ++k) {
       own.u[k] = lanes_load(at[k] + place);
       own.v[k] = lanes_load(p->displacement[k] + place);
@@ -396,14 +370,9 @@ static void resist_changes(const Micropolar *m, double *const *at, int64_t slice
       own.force[k] = own.moment[k] = lanes_set(0);
     }
     for (int k = 0; k < 4; ++k) own.q[k] = lanes_load(m->shown[k] + place);
-    for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-      const LinkRow *row = &m->rows[f->pattern[slot]];
-      const LinkLanes l = lattice_links(m, at, slot, half, 3, own.u);
-      add_change(m, &l, lattice_stiffness(m, &l), weak, row->bending > 0, row->twist > 0, &own);
-    }
-    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
-      const LinkLanes l = stored_links(m, at, place, slot, half, own_bits(m, slot), 3, own.u);
-      add_change(m, &l, stored_stiffness(m, place, &l), weak, true, true, &own);
+    for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
+      const LinkLanes l = links_of(m, at, slice, slot, half, own_bits(m, slice, slot), 3, own.u);
+      add_change(m, &l, stiffness_of_links(m, &l), weak, &own);
     }
     for (int k = 0; k < 3; ++k) {
       lanes_store(p->internal[k] + place, own.force[k]);
