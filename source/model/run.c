@@ -360,6 +360,7 @@ static int loop(Run *run, Error *error)
     status = host_status(run->host, model_advance(model, error), error);
     if (s->clock.stage != stage) begin_stage(model);
     model->run_steps += s->clock.step - step;
+    if (status == BRECCIA_INTERRUPTED) break;
     if (status) {
       run->step_failed = status == BRECCIA_FAILURE && !*domain_server_problem(&model->domain) &&
                          memory_refusals() == run->host->refusals;
@@ -440,6 +441,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
   int status = model_enter(model, &entry, error);
   if (status) return status;
   run.host = &entry.host;
+  model->solver.interrupted = wish->interrupted;
   status = folder_make(wish->folder, error);
   if (!status) status = folder_lock_take(&lock, wish->folder, error);
   if (!status) status = model_field_names(model, &run.names, error);
@@ -454,6 +456,7 @@ static int run_whole(breccia_model *model, const breccia_run *wish, Error *error
     run.told_at = model->solver.clock.step;
     status = finish(&run, loop(&run, error), error);
   }
+  model->solver.interrupted = NULL;
   result_file_destroy(&run.results);
   folder_lock_return(&lock);
   free(run.names.items);

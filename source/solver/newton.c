@@ -108,6 +108,7 @@ NewtonOutcome newton_find_forces(Newton *n, double time, Error *error)
 {
   Domain *d = n->domain;
   const Particles *p = d->particles;
+  if (newton_is_interrupted(n)) return NEWTON_STOPPED;
   if (n->beside && n->beside->prepare(n->beside->context, n->moved, time, error)) return NEWTON_FAILED;
   if (n->relaxes)
     domain_evaluate(d);
@@ -480,6 +481,7 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
     break;
   }
   case NEWTON_SINGULAR: snprintf(words, size, "the body does not resist some motion at all%s", parts); break;
+  case NEWTON_STOPPED: snprintf(words, size, "stopped on request"); break;
   case NEWTON_ASTRAY: snprintf(words, size, "an iteration led far away from the body as it was"); break;
   case NEWTON_COARSE: snprintf(words, size, "the body softens on the way, which is gone in smaller parts"); break;
   case NEWTON_FAR:

@@ -57,9 +57,10 @@ typedef enum NewtonOutcome {
   NEWTON_LAW,      /* a law could not be integrated: domain->failed_place */
   NEWTON_SINGULAR, /* the linearised equations have no solution */
   NEWTON_COARSE, /* there is equilibrium, but the body softens on a way to it that the increment skips: said by who asks for it */
-  NEWTON_ASTRAY, /* an iteration has led so far away that what is found from there would not be the next equilibrium */
-  NEWTON_FAR,    /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
-  NEWTON_FAILED, /* the reason is in the error */
+  NEWTON_ASTRAY,  /* an iteration has led so far away that what is found from there would not be the next equilibrium */
+  NEWTON_FAR,     /* there is equilibrium, but farther away than forces beside those of bonds look ahead */
+  NEWTON_STOPPED, /* on request */
+  NEWTON_FAILED,  /* the reason is in the error */
 } NewtonOutcome;
 
 /** Forces beside those of bonds and loads that are to be balanced too: of inertia and damping. The tangent has theirs by `mass_factor` and
@@ -81,6 +82,7 @@ typedef struct Newton {
   const NewtonForces *beside; /* NULL: none, as at rest */
   bool
       has_others; /* other ways to rest are at hand, to which an increment is left where Newton's method hardly comes on */
+  const volatile int *interrupted; /* non-zero: what is under way ends at once; NULL: it never is */
   bool relaxes; /* by dynamic relaxation (relaxation.h): no equations are solved, and no tangents asked for */
   LinearSolver linear;
   Control *control;        /* NULL: all factors of loads are given */
@@ -120,6 +122,12 @@ void newton_destroy(Newton *newton);
  *  at which it began, nothing need act on it in the end. */
 void newton_note_forces_held(Newton *newton);
 
+/** Whether what is under way is to end at once. */
+static inline bool newton_is_interrupted(const Newton *newton)
+{
+  return newton->interrupted && __atomic_load_n(newton->interrupted, __ATOMIC_RELAXED);
+}
+
 /** Forces at the displacements held, and what linearised steps need of them. */
 int newton_linearise(const Newton *newton, Error *error);
 
@@ -127,7 +135,7 @@ int newton_linearise(const Newton *newton, Error *error);
 bool newton_has_gone_far(const Newton *newton);
 
 /** Forces out of balance on the unknowns, with loads as they are at a time of the run, and the most that supports and loads exert.
- *  @return that the laws could be asked */
+ *  @return that the laws could be asked, or that the solution is to stop */
 NewtonOutcome newton_find_forces(Newton *newton, double time, Error *error);
 
 /** From the displacements held, which are those of the committed state, to equilibrium with loads and motions as they are at a time of the run. */

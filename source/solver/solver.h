@@ -55,10 +55,12 @@ typedef struct Solver {
   const SectionList *stages;     /* of SolveSpec, one at least */
   const SectionList *selections; /* those of the deck that have names */
   const DeckReader *reader;      /* for messages that point into the deck */
-  bool force;                    /* accept a chosen step above the stable one */
-  bool loose;                    /* what nothing holds is told when a stage of statics begins, not before */
-  bool trap;                     /* fail where a step divides by zero, overflows or does what is not defined */
-  bool unbegun;                  /* the stage under way has failed to begin: no step can go on from what is there */
+  const volatile int
+      *interrupted; /* non-zero: a step that takes many iterations ends before its time; NULL: none does */
+  bool force;       /* accept a chosen step above the stable one */
+  bool loose;       /* what nothing holds is told when a stage of statics begins, not before */
+  bool trap;        /* fail where a step divides by zero, overflows or does what is not defined */
+  bool unbegun;     /* the stage under way has failed to begin: no step can go on from what is there */
   Clock clock;
   Ledger ledger;
   const double *stops; /* ascending times at which steps of the program's own shall end; may be NULL */
@@ -87,7 +89,8 @@ struct SolverType {
   void (*plan_again)(Solver *solver);
   /** Forces and accelerations of the state held, before the first step. */
   int (*begin)(Solver *solver, Error *error);
-  /** One step, of the clock too, and whether the stage has ended; solver_advance says what holds after a failure. */
+  /** One step, of the clock too, and whether the stage has ended; solver_advance says what holds after a failure. BRECCIA_INTERRUPTED: on request there
+   *  was none, and the state is as it was. */
   int (*advance)(Solver *solver, Text *warning, Error *error);
   /** After steps that a program has asked for: the body's arrays are where they were before these. NULL: they never move. */
   void (*put_arrays_back)(Solver *solver);

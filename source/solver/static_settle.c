@@ -45,6 +45,7 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
   Static *s = run->own;
   int64_t broken;
   *outcome = NEWTON_CONVERGED;
+  s->newton.interrupted = NULL; /* bonds that have broken stay so: there is no way back */
   while (*outcome == NEWTON_CONVERGED &&
          (broken = increment_break(&s->increment, s->clock, s->spec->bonds_at_once)) > 0) {
     if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
@@ -52,6 +53,7 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
     *outcome = static_try(s, s->clock->time, (Try){0}, error);
     if (*outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
   }
+  s->newton.interrupted = run->interrupted;
   return BRECCIA_OK;
 }
 

@@ -249,11 +249,11 @@ static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *wa
   s->newton.has_others = others && bonds && *may_relax;
   NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
   s->newton.has_others = false;
-  if (outcome == NEWTON_FAILED || came_to_equilibrium(outcome) || !others ||
+  if (outcome >= NEWTON_STOPPED || came_to_equilibrium(outcome) || !others ||
       !is_stuck(s, outcome, end - s->clock->time))
     return outcome;
   const TryBy ways[] = {bonds ? BY_RELAXATION : BY_SECANTS, bonds ? BY_SECANTS : BY_RELAXATION};
-  for (int k = 0; k < 2 && outcome != NEWTON_FAILED && !came_to_equilibrium(outcome); ++k) {
+  for (int k = 0; k < 2 && outcome < NEWTON_STOPPED && !came_to_equilibrium(outcome); ++k) {
     if (ways[k] == BY_RELAXATION && !*may_relax) continue;
     tell_refused(s, outcome, true);
     outcome = static_try(s, end, (Try){.by = ways[k]}, error);
@@ -263,34 +263,45 @@ static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *wa
   return outcome;
 }
 
-/** A step that has failed for good before anything came of it. */
-static int give_up(Static *s, double next, int64_t cuts)
+/** What tries have learned for those to come. */
+typedef struct Learned {
+  double next;
+  int64_t cuts, given_up;
+} Learned;
+
+/** A step that has failed for good before anything came of it, or was stopped. */
+static int give_up(Static *s, const Learned *before, int status)
 {
-  s->next = next;
-  s->cuts = cuts;
-  return BRECCIA_FAILURE;
+  s->next = before->next;
+  s->cuts = before->cuts;
+  if (status != BRECCIA_INTERRUPTED) return status;
+  s->newton.linear.given_up = before->given_up; /* a restart comes to the same bits */
+  s->relaxation.prepared = NAN;
+  return status;
 }
 
 int static_advance(Solver *run, Text *warning, Error *error)
 {
   Static *s = run->own;
   Clock *clock = &run->clock;
-  const double first = s->next;
+  const Learned before = {s->next, s->cuts, s->newton.linear.given_up};
   const bool was_spent = control_is_spent(&s->control);
-  const int64_t broken = s->domain->broken_count, cuts = s->cuts;
+  const int64_t broken = s->domain->broken_count;
   int64_t iterations = 0;
   bool may_relax = true;
   TryBy way;
   if (increment_keep(&s->increment, run, error) || static_keep(run, error)) return BRECCIA_FAILURE;
   s->newton.log = &run->log;
-  for (int64_t cut = 0;; s->cuts = cuts + ++cut) {
+  s->newton.interrupted = run->interrupted;
+  for (int64_t cut = 0;; s->cuts = before.cuts + ++cut) {
     const double begin = clock->time, end = increment_end(run, s->next);
     text_add(&run->log, "increment %lld, from time %.6g to %.6g %s\n", (long long)clock->step + 1, begin, end,
              clock->time_unit);
     bool settled = true;
     way = BY_METHOD;
     NewtonOutcome outcome = try_first(s, end, &may_relax, &way, error);
-    if (outcome == NEWTON_FAILED) return give_up(s, first, cuts);
+    if (outcome == NEWTON_FAILED) return give_up(s, &before, BRECCIA_FAILURE);
+    if (outcome == NEWTON_STOPPED) return give_up(s, &before, BRECCIA_INTERRUPTED);
     if (outcome == NEWTON_CONVERGED) {
       clock->time_step = end - begin;
       clock->time = end;
@@ -305,6 +316,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
       }
       if (settled) return fail_with_broken(s, outcome, error);
       if (static_give_back(run, error)) return BRECCIA_FAILURE;
+      if (newton_is_interrupted(&s->newton)) return give_up(s, &before, BRECCIA_INTERRUPTED);
     }
     tell_refused(s, outcome, settled);
     s->next = (end - begin) / 2;
@@ -316,7 +328,7 @@ int static_advance(Solver *run, Text *warning, Error *error)
         break;
       }
       fail(s, outcome, settled, error);
-      return give_up(s, first, cuts);
+      return give_up(s, &before, BRECCIA_FAILURE);
     }
   }
   const int64_t most = s->newton.relaxes ? s->spec->relaxation_iterations : newton_most_iterations(&s->newton);

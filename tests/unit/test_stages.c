@@ -3,6 +3,7 @@
 
 #include "deck/spelling.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 static void run_all(breccia_model *model)
@@ -333,6 +334,58 @@ static void a_run_that_is_stopped_says_how_far_it_has_come(void **state)
   assert_int_equal(system(command), 0);
 }
 
+static volatile int stop_asked;
+
+static void ask_to_stop(int signal)
+{
+  (void)signal;
+  stop_asked = 1;
+}
+
+/** A bar of metal that is pulled by more than it bears, and given iterations without end: a wish to stop is heard within the increment, and leaves the
+ *  last state of rest, to the bit. */
+static void a_wish_to_stop_is_heard_within_an_increment(void **state)
+{
+  (void)state;
+  char folder[] = "/tmp/breccia-XXXXXX", command[64];
+  assert_non_null(mkdtemp(folder));
+  signal(SIGALRM, ask_to_stop);
+  Error *error = breccia_error_create();
+  breccia_run run = {.size = sizeof run, .folder = folder, .interrupted = &stop_asked};
+  double *left[3];
+  int64_t steps = 0;
+  for (int k = 0; k < 2; ++k, run.steps = steps, run.interrupted = NULL) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10}}\n"
+        "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
+        "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
+        "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}, {on: {face: z-}, "
+        "support: {held: across}}, {on: {face: x+, layers: 1}, traction: [40, 0, 0], history: {ramp to: 1}}]\n"
+        "solve: {static: {increments: 8, method: relaxation, relaxation iterations: 1000000000}}\npictures: []\n");
+    const Particles *p = m->domain.particles;
+    if (k == 0) {
+      alarm(1);
+      assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_INTERRUPTED);
+      steps = m->solver.clock.step;
+      for (int c = 0; c < 3; ++c) {
+        left[c] = malloc(sizeof(double) * (size_t)p->places);
+        memcpy(left[c], p->displacement[c], sizeof(double) * (size_t)p->places);
+      }
+      print_message("stopped behind increment %lld\n", (long long)steps);
+      assert_true(steps < 4); /* of which the third would be beyond the strength */
+    } else if (steps > 0) {
+      assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_OK);
+    }
+    for (int c = 0; c < 3; ++c) assert_memory_equal(left[c], p->displacement[c], sizeof(double) * (size_t)p->places);
+    breccia_model_destroy(&m);
+  }
+  for (int c = 0; c < 3; ++c) free(left[c]);
+  breccia_error_destroy(&error);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 /** Metres for millimetres: a block that is pushed through itself comes to rest behind its face, in balance. */
 static void a_body_that_is_turned_inside_out_is_told(void **state)
 {
@@ -576,6 +629,7 @@ int main(void)
       cmocka_unit_test(a_restart_in_any_stage_goes_on_to_the_same_bits),
       cmocka_unit_test(loads_of_later_stages_are_watched_from_the_beginning),
       cmocka_unit_test(a_run_that_is_stopped_says_how_far_it_has_come),
+      cmocka_unit_test(a_wish_to_stop_is_heard_within_an_increment),
       cmocka_unit_test(a_body_that_is_turned_inside_out_is_told),
       cmocka_unit_test(histories_have_a_row_for_each_long_step),
       cmocka_unit_test(explicit_steps_behind_long_ones_are_done),

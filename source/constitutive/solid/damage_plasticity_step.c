@@ -78,7 +78,8 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
   f.compression.value += committed[PLASTIC_IN_COMPRESSION];
   const double b = c->compression_rate, m = c->compression_share;
   Dual strength = dual_scale(n, c->tension, remaining(n, c, tail, f.tension, 1 - c->tension_share));
-  strength = dual_larger(n, strength, dual_constant(lanes_set(1e-9 * c->tension))); /* a crack cannot carry, but divides */
+  strength =
+      dual_larger(n, strength, dual_constant(lanes_set(1e-9 * c->tension))); /* a crack cannot carry, but divides */
   const Dual rise = dual_exponential(n, dual_scale(n, -b * (1 - m), f.compression)),
              fall = dual_exponential(n, dual_scale(n, -b * (2 - m), f.compression));
   Dual cohesion = dual_sum(n, dual_scale(n, c->compression * (1 + c->hump), rise), -c->compression * c->hump, fall);
@@ -95,7 +96,8 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
 LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, bool tail, const Flow *f)
 {
   const Dual tension = remaining(n, c, tail, f->tension, c->tension_share),
-             compression = dual_exponential(n, dual_scale(n, -c->compression_rate * c->compression_share, f->compression));
+             compression =
+                 dual_exponential(n, dual_scale(n, -c->compression_rate * c->compression_share, f->compression));
   return dual_product(n, compression, dual_rest(n, dual_product(n, f->share, dual_rest(n, tension))));
 }
 
@@ -170,14 +172,12 @@ LANES_INLINE void step_along(const DamagePlasticity *c, SolidLanes *p, bool tail
   flow = flow_by(every, c, tail, &varied, left, p->committed);
   whole = wholeness(every, c, tail, &flow);
   Lanes slopes[9], tangent[36];
-  const Lanes by_flow =
-      lanes_where(flows, lanes_set(1) / lanes_choose(flows, flow.excess.slope[LEFT], lanes_set(1)));
+  const Lanes by_flow = lanes_where(flows, lanes_set(1) / lanes_choose(flows, flow.excess.slope[LEFT], lanes_set(1)));
   for (int k = 0; k < 3; ++k) {
     const Dual nominal = dual_product(every, whole, flow.stress[k]);
     Lanes to_trial[3];
     value[k] = nominal.value;
-    for (int n = 0; n < 3; ++n)
-      to_trial[n] = nominal.slope[n] - nominal.slope[LEFT] * (flow.excess.slope[n] * by_flow);
+    for (int n = 0; n < 3; ++n) to_trial[n] = nominal.slope[n] - nominal.slope[LEFT] * (flow.excess.slope[n] * by_flow);
     const Lanes all = lanes_product(lanes_set(lambda), to_trial[0] + to_trial[1] + to_trial[2]);
     for (int n = 0; n < 3; ++n) slopes[3 * k + n] = all + lanes_set(twice) * to_trial[n];
   }
@@ -201,7 +201,8 @@ LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *f
   const Lanes zero = lanes_set(0), radius = trial_radius(t),
               most = lanes_greatest(zero, lanes_product(t->invariant, lanes_set(1.0 / 3)) + lanes_set(2) * radius);
   const double beta = (1 - c->alpha) * c->compression / c->tension - (1 + c->alpha);
-  const Lanes stress = lanes_dot(lanes_set(3), radius, lanes_set(c->alpha), t->invariant, lanes_set(fmax(0, beta)), most);
+  const Lanes stress =
+      lanes_dot(lanes_set(3), radius, lanes_set(c->alpha), t->invariant, lanes_set(fmax(0, beta)), most);
   *found = (trial_history(t, PLASTIC_IN_TENSION) <= zero) & (trial_history(t, PLASTIC_IN_COMPRESSION) <= zero) &
            (stress <= lanes_set((1 - c->alpha) * c->compression));
 }

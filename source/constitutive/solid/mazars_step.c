@@ -29,19 +29,18 @@ LANES_INLINE void respond(DualSlopes n, const Mazars *c, const Dual strain[3], c
     share = dual_add(n, share, dual_product(n, positive[k], by_tension));
   }
   const LaneMask strained = square.value > zero;
-  share = dual_where(
-      n, strained, dual_quotient(n, share, dual_choose(n, strained, square, dual_constant(one))));
+  share = dual_where(n, strained, dual_quotient(n, share, dual_choose(n, strained, square, dual_constant(one))));
   share = dual_choose(n, share.value > one, dual_constant(one), share);
   const Dual past = dual_shift(*largest, -c->threshold),
              relative = dual_quotient(n, dual_constant(lanes_set(c->threshold)), *largest);
   const Dual in_tension =
       dual_rest(n, dual_product(n, relative, dual_exponential(n, dual_scale(n, -c->tension_rate, past))));
-  Dual in_compression = dual_rest(n, dual_sum(n, dual_scale(n, 1 - c->compression_share, relative), c->compression_share,
-                                              dual_exponential(n, dual_scale(n, -c->compression_rate, past))));
+  Dual in_compression =
+      dual_rest(n, dual_sum(n, dual_scale(n, 1 - c->compression_share, relative), c->compression_share,
+                            dual_exponential(n, dual_scale(n, -c->compression_rate, past))));
   in_compression = dual_positive(n, in_compression);
   in_compression = dual_choose(n, in_compression.value > one, dual_constant(one), in_compression);
-  const Dual found =
-      dual_add(n, in_compression, dual_product(n, share, dual_sum(n, in_tension, -1, in_compression)));
+  const Dual found = dual_add(n, in_compression, dual_product(n, share, dual_sum(n, in_tension, -1, in_compression)));
   *damage = dual_constant(committed[MAZARS_DAMAGE]);
   *damage = dual_choose(n, (largest->value > lanes_set(c->threshold)) & (found.value > damage->value), found, *damage);
   const Dual whole = dual_rest(n, *damage);

@@ -77,7 +77,8 @@ LANES_INLINE void plastic_trial_lanes(const Elasticity *e, const SolidLanes *p, 
 
 LANES_INLINE void elastic_stress_lanes(const Elasticity *e, const Lanes strain[6], Lanes stress[6])
 {
-  const Lanes twice = lanes_set(2 * e->shear), volume = lanes_product(lanes_set(e->bulk - 2 * e->shear / 3), lanes_trace(strain));
+  const Lanes twice = lanes_set(2 * e->shear),
+              volume = lanes_product(lanes_set(e->bulk - 2 * e->shear / 3), lanes_trace(strain));
   for (int k = 0; k < 6; ++k) stress[k] = k < 3 ? twice * strain[k] + volume : twice * strain[k];
 }
 
@@ -260,8 +261,8 @@ LANES_INLINE int solid_update_lanes(const void *constants, const breccia_batch *
     chunk.count = rest < SOLID_CHUNK ? rest : SOLID_CHUNK;
     chunk.values = history_values;
     sieve_chunk(constants, &chunk, e, plastic, inside);
-    const int bad = batch->tangent ? step_chunk(constants, &chunk, step, true)
-                                   : step_chunk(constants, &chunk, step, false);
+    const int bad =
+        batch->tangent ? step_chunk(constants, &chunk, step, true) : step_chunk(constants, &chunk, step, false);
     if (bad >= 0) return bad;
   }
   return -1;

@@ -14,8 +14,9 @@ typedef struct Spectrum {
 typedef struct SpectrumApart {
   Lanes scale, mean, b[6]; /* 2^n */
   Lanes value;             /* of b */
-  Lanes adjugate[6];       /* of b - value: nothing but its vector v, (value - value 2) (value - value 3) v v; 1, 0 ... where b is nothing */
-  LaneMask least;          /* it is the smallest value */
+  Lanes adjugate
+      [6]; /* of b - value: nothing but its vector v, (value - value 2) (value - value 3) v v; 1, 0 ... where b is nothing */
+  LaneMask least; /* it is the smallest value */
 } SpectrumApart;
 
 /** By a closed form: with size^2 = |b|^2 / 6 the values are 2 size cos of angles a third of a turn apart. The one that stands apart is the largest where the
@@ -35,13 +36,14 @@ LANES_INLINE SpectrumApart spectrum_apart(const Lanes a[6])
   x.mean = lanes_product(x.b[XX] + x.b[YY] + x.b[ZZ], lanes_set(1.0 / 3));
   for (int k = 0; k < 3; ++k) x.b[k] -= x.mean;
   const Lanes *b = x.b;
-  const Lanes square = lanes_set(1.0 / 3) * (lanes_square(b[XX], b[YY], b[ZZ]) * half + lanes_square(b[XY], b[YZ], b[ZX]));
+  const Lanes square =
+      lanes_set(1.0 / 3) * (lanes_square(b[XX], b[YY], b[ZZ]) * half + lanes_square(b[XY], b[YZ], b[ZX]));
   const LaneMask apart = square > lanes_set(1e-60); /* otherwise all values are alike */
   for (int k = 0; k < 6; ++k) x.b[k] = lanes_where(apart, x.b[k]);
   const Lanes size = lanes_root(lanes_where(apart, square)), cube = lanes_choose(apart, square * size, one);
-  const Lanes determinant = lanes_dot(b[XX], lanes_cross(b[YY], b[ZZ], b[YZ], b[YZ]), b[XY],
-                                      lanes_cross(b[YZ], b[ZX], b[XY], b[ZZ]), b[ZX],
-                                      lanes_cross(b[XY], b[YZ], b[YY], b[ZX]));
+  const Lanes determinant =
+      lanes_dot(b[XX], lanes_cross(b[YY], b[ZZ], b[YZ], b[YZ]), b[XY], lanes_cross(b[YZ], b[ZX], b[XY], b[ZZ]), b[ZX],
+                lanes_cross(b[XY], b[YZ], b[YY], b[ZX]));
   const LaneMask sign = (LaneMask)determinant & (LaneMask)lanes_set(-0.0);
   x.least = determinant < lanes_set(0);
   const Lanes h = lanes_least(lanes_absolute(determinant) * half / cube, one), h2 = h * h;
@@ -52,9 +54,9 @@ LANES_INLINE SpectrumApart spectrum_apart(const Lanes a[6])
   t -= gap * slope / lanes_cross(slope, slope, lanes_set(3) * t, gap);
   x.value = (Lanes)((LaneMask)(t * size) ^ sign);
   const Lanes xx = b[XX] - x.value, yy = b[YY] - x.value, zz = b[ZZ] - x.value;
-  const Lanes adjugate[6] = {
-      lanes_cross(yy, zz, b[YZ], b[YZ]),    lanes_cross(xx, zz, b[ZX], b[ZX]), lanes_cross(xx, yy, b[XY], b[XY]),
-      lanes_cross(b[ZX], b[YZ], b[XY], zz), lanes_cross(b[XY], b[ZX], b[YZ], xx), lanes_cross(b[XY], b[YZ], b[ZX], yy)};
+  const Lanes adjugate[6] = {lanes_cross(yy, zz, b[YZ], b[YZ]),    lanes_cross(xx, zz, b[ZX], b[ZX]),
+                             lanes_cross(xx, yy, b[XY], b[XY]),    lanes_cross(b[ZX], b[YZ], b[XY], zz),
+                             lanes_cross(b[XY], b[ZX], b[YZ], xx), lanes_cross(b[XY], b[YZ], b[ZX], yy)};
   for (int k = 0; k < 6; ++k) x.adjugate[k] = k ? adjugate[k] : lanes_choose(apart, adjugate[k], one);
   return x;
 }
@@ -69,9 +71,8 @@ LANES_INLINE void spectrum_values(const Lanes a[6], Lanes value[3])
   Lanes rest[6];
   for (int k = 0; k < 6; ++k) rest[k] = x.b[k] + part * x.adjugate[k];
   for (int k = 0; k < 3; ++k) rest[k] -= middle;
-  const Lanes radius =
-      lanes_root(lanes_square(rest[XX], rest[YY], rest[ZZ]) * lanes_set(0.5) +
-                 lanes_square(rest[XY], rest[YZ], rest[ZX]));
+  const Lanes radius = lanes_root(lanes_square(rest[XX], rest[YY], rest[ZZ]) * lanes_set(0.5) +
+                                  lanes_square(rest[XY], rest[YZ], rest[ZX]));
   const Lanes high = middle + radius, low = middle - radius;
   value[0] = (x.mean + lanes_choose(x.least, high, x.value)) * x.scale;
   value[1] = (x.mean + lanes_choose(x.least, low, high)) * x.scale;
@@ -97,13 +98,17 @@ LANES_INLINE Spectrum spectrum_of(const Lanes a[6])
                       lanes_choose(steep, v[0], -v[1]) * flat};
   const Lanes w[3] = {lanes_cross(v[1], u[2], v[2], u[1]), lanes_cross(v[2], u[0], v[0], u[2]),
                       lanes_cross(v[0], u[1], v[1], u[0])};
-  const Lanes bu[3] = {lanes_dot(b[XX], u[0], b[XY], u[1], b[ZX], u[2]), lanes_dot(b[XY], u[0], b[YY], u[1], b[YZ], u[2]),
+  const Lanes bu[3] = {lanes_dot(b[XX], u[0], b[XY], u[1], b[ZX], u[2]),
+                       lanes_dot(b[XY], u[0], b[YY], u[1], b[YZ], u[2]),
                        lanes_dot(b[ZX], u[0], b[YZ], u[1], b[ZZ], u[2])};
-  const Lanes bw[3] = {lanes_dot(b[XX], w[0], b[XY], w[1], b[ZX], w[2]), lanes_dot(b[XY], w[0], b[YY], w[1], b[YZ], w[2]),
+  const Lanes bw[3] = {lanes_dot(b[XX], w[0], b[XY], w[1], b[ZX], w[2]),
+                       lanes_dot(b[XY], w[0], b[YY], w[1], b[YZ], w[2]),
                        lanes_dot(b[ZX], w[0], b[YZ], w[1], b[ZZ], w[2])};
-  const Lanes uu = lanes_dot(u[0], bu[0], u[1], bu[1], u[2], bu[2]), uw = lanes_dot(u[0], bw[0], u[1], bw[1], u[2], bw[2]),
+  const Lanes uu = lanes_dot(u[0], bu[0], u[1], bu[1], u[2], bu[2]),
+              uw = lanes_dot(u[0], bw[0], u[1], bw[1], u[2], bw[2]),
               ww = lanes_dot(w[0], bw[0], w[1], bw[1], w[2], bw[2]);
-  const Lanes middle = lanes_product(uu + ww, half), lean = lanes_product(uu - ww, half), both = lanes_square(lean, uw, zero);
+  const Lanes middle = lanes_product(uu + ww, half), lean = lanes_product(uu - ww, half),
+              both = lanes_square(lean, uw, zero);
   const LaneMask turns = both > lanes_set(1e-290);
   const Lanes radius = lanes_root(lanes_where(turns, both)), share = half / lanes_choose(turns, radius, half);
   /* Cosine and sine of the smaller turn: half the angle of (lean, uw). */
@@ -151,7 +156,8 @@ LANES_INLINE void spectral_tangent(const Spectrum *strain, const Lanes stress[3]
   }
   for (int a = 0; a < 3; ++a)
     for (int k = 0; k < 6; ++k)
-      weighted[a][k] = lanes_dot(slopes[3 * a], basis[0][k], slopes[3 * a + 1], basis[1][k], slopes[3 * a + 2], basis[2][k]);
+      weighted[a][k] =
+          lanes_dot(slopes[3 * a], basis[0][k], slopes[3 * a + 1], basis[1][k], slopes[3 * a + 2], basis[2][k]);
   for (int n = 3; n < 6; ++n) {
     const int a = symmetric_row[n], b = symmetric_column[n];
     const Lanes apart = strain->value[a] - strain->value[b];
