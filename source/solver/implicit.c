@@ -214,7 +214,7 @@ static int plan(Solver *run, Text *warning, Error *error)
   run->clock.time_step = s->next;
   run->clock.stage_end = run->clock.stage_time + s->spec->end_time;
   implicit_count_steps(run);
-  if (s->next < s->stable) {
+  if (s->next < s->stable && isfinite(s->stable)) { /* nothing but springs may be stiff */
     char where[WHERE_SIZE];
     node_where(run->reader->document, section_node(s->spec, "time step"), where, sizeof where);
     text_add(warning,

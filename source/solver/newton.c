@@ -304,10 +304,11 @@ bool newton_has_converged(const Newton *n, double force, double correction, doub
   return isnan(n->spec->energy) || fabs(work) <= n->spec->energy * fabs(first_work);
 }
 
-bool newton_is_carried_away(const Particles *p)
+bool newton_is_carried_away(const Domain *d)
 {
   const double most = 1e3; /* sizes of the body */
-  double low[3], high[3], size = 0, farthest = 0;
+  const Particles *p = d->particles;
+  double low[3], high[3], size = d->body.largest_spacing, farthest = 0; /* a body may be one particle */
   particles_bounds(p, low, high);
   for (int k = 0; k < 3; ++k) {
     size = fmax(size, high[k] - low[k]);
@@ -430,7 +431,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     newton_tell(n, correction, energy, share, &linear);
     if (newton_has_converged(n, force, correction, work, first_work)) {
-      if (!n->beside && newton_is_carried_away(p)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
+      if (!n->beside && newton_is_carried_away(n->domain)) return NEWTON_SINGULAR; /* bodies with inertia may fly far */
       n->reference = n->exerted;
       return NEWTON_CONVERGED;
     }
@@ -465,8 +466,12 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
       d->forces.count ? " (parts that only contact holds must touch at first, and not slide freely)" : "";
   switch (outcome) {
   case NEWTON_SLOW:
-    snprintf(words, size, "%lld iteration%s left %.2g of the forces out of balance%s%s%s", (long long)n->iterations - 1,
-             n->iterations == 2 ? "" : "s", n->unbalanced, n->spec->iterations < FEW ? ": allow more 'iterations'" : "",
+    snprintf(words, size, "%lld iteration%s left %.2g of the forces out of balance%s%s%s%s",
+             (long long)n->iterations - 1, n->iterations == 2 ? "" : "s", n->unbalanced,
+             n->unbalanced <= n->spec->residual
+                 ? ", few enough, but more than another tolerance allows of the last correction"
+                 : "",
+             n->spec->iterations < FEW ? ": allow more 'iterations'" : "",
              n->indefinite ? ", and the body does not resist some motion any more" : "", n->indefinite ? parts : "");
     break;
   case NEWTON_LEFT:

@@ -250,7 +250,7 @@ static NewtonOutcome solve(Descent *d, Newton *n, double time, int64_t most, Err
     if (outcome == NEWTON_CONVERGED && pushed) outcome = go_down(d, n, time, false, most, error);
   }
   if (outcome != NEWTON_CONVERGED) return outcome;
-  if (newton_is_carried_away(p)) return NEWTON_SINGULAR;
+  if (newton_is_carried_away(n->domain)) return NEWTON_SINGULAR;
   n->reference = n->exerted;
   return NEWTON_CONVERGED;
 }

@@ -32,7 +32,7 @@ bool newton_is_balanced(const Newton *newton, double force);
 bool newton_has_converged(const Newton *newton, double force, double correction, double work, double first_work);
 
 /** Whether displacements are beyond all reason: factors of a stiffness that is singular but for rounding give such ones, in balance. */
-bool newton_is_carried_away(const Particles *particles);
+bool newton_is_carried_away(const Domain *domain);
 
 /** How an increment comes on (newton_pace.c). */
 typedef struct Pace {

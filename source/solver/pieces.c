@@ -12,8 +12,7 @@ enum { RIGID = 6 };
 typedef struct Hold {
   int64_t particles, inside; /* all, and without images outside supports */
   int32_t place;             /* of its particle of the lowest number inside */
-  bool sprung;               /* by springs, which hold */
-  bool worked;               /* a load or a prescribed motion acts on it */
+  bool loaded, worked;       /* a load acts on it; or a prescribed motion */
   double low[3], high[3], centre[3], size;
   double moment[RIGID][RIGID];
 } Hold;
@@ -198,20 +197,35 @@ static void hold_ties(const Pieces *q)
   }
 }
 
+/** A spring to the ground, in its direction or in all. */
+static void hold_spring(const Pieces *q, const Load *load)
+{
+  static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const double *given = load->type->vector(load->value),
+               length = sqrt(given[0] * given[0] + given[1] * given[1] + given[2] * given[2]),
+               along[3] = {given[0] / length, given[1] / length, given[2] / length};
+  for (int64_t n = 0; n < load->selection.count; ++n)
+    for (int k = 0; k < (isnan(along[0]) ? 3 : 1); ++k) {
+      double moved[RIGID] = {0};
+      const int32_t i = load->selection.places[n];
+      rigid(q, hold_at(q, i), isnan(along[0]) ? axes[k] : along, i, 1, moved);
+      add_row(hold_at(q, i), moved);
+    }
+}
+
 static void note_loads(const Pieces *q)
 {
   const Loading *loading = q->unknowns->loading;
   for (int l = 0; l < loading->count; ++l) {
     const Load *load = &loading->loads[l];
     if (!load_acts(loading, load)) continue;
-    const bool springs = is_spring(q, load);
     const Selection *of[] = {&load->selection, &load->other};
     for (int k = 0; k < 2; ++k)
       for (int64_t n = 0; n < of[k]->count; ++n) {
         Hold *h = hold_at(q, of[k]->places[n]);
-        h->worked = true;
-        h->sprung |= springs;
+        h->worked = h->loaded = true;
       }
+    if (is_spring(q, load) && !load->other.count) hold_spring(q, load);
   }
 }
 
@@ -238,16 +252,30 @@ static int find_free_motion(Hold *h, const bool wanted[RIGID])
   }
 }
 
+/** Whether a single particle that nothing joins to others is let be: nothing acts on it, or something holds it. */
+static bool is_let_be(const Hold *h)
+{
+  bool held = false;
+  for (int a = 0; a < RIGID; ++a) held |= h->moment[a][a] > 0;
+  return held || !h->loaded;
+}
+
 static void judge(Pieces *q, PiecesTaken taken, LoosePiece *loose)
 {
   const int dimensions = q->unknowns->domain->body.dimensions;
-  const bool wanted[RIGID] = {true, dimensions > 1, dimensions > 2, dimensions > 2, dimensions > 2, dimensions > 1};
   unknowns_each_row(q->unknowns, hold_row, q);
   hold_ties(q);
   note_loads(q);
   for (int64_t n = 0; n < q->count; ++n) {
     Hold *h = &q->holds[n];
-    if (h->sprung || !h->inside || (h->particles == 1 && q->count > 1) || (taken == PIECES_WORKED && !h->worked))
+    const bool turns = h->particles > 1 || q->particles->motions > 3;
+    const bool wanted[RIGID] = {true,
+                                dimensions > 1,
+                                dimensions > 2,
+                                turns && dimensions > 2,
+                                turns && dimensions > 2,
+                                turns && dimensions > 1};
+    if (!h->inside || (h->particles == 1 && q->count > 1 && is_let_be(h)) || (taken == PIECES_WORKED && !h->worked))
       continue;
     const int motion = find_free_motion(h, wanted);
     if (motion < 0) continue;
@@ -283,7 +311,8 @@ const char *pieces_describe(const LoosePiece *loose, const Particles *particles,
   char others[64] = "";
   if (loose->pieces > 1) snprintf(others, sizeof others, ", nor %lld smaller ones", (long long)loose->pieces - 1);
   snprintf(words, size,
-           "nothing holds a piece of %lld particles, with particle %d at [%g, %g, %g], against moving %s as a whole%s",
-           (long long)loose->particles, particles->number[loose->place], at[0], at[1], at[2], loose->motion, others);
+           "nothing holds a piece of %lld particle%s, with particle %d at [%g, %g, %g], against moving %s as a whole%s",
+           (long long)loose->particles, loose->particles == 1 ? "" : "s", particles->number[loose->place], at[0], at[1],
+           at[2], loose->motion, others);
   return words;
 }

@@ -24,7 +24,7 @@ typedef enum PiecesTaken {
 } PiecesTaken;
 
 /** Finds what nothing holds in the stage under way, with the bonds that are intact, where particles are now. Particles that nothing joins to others
- *  are no pieces: solvers leave them where they are.
+ *  are no pieces where no load acts on them, or anything holds them: solvers leave them where they are.
  *  @return BRECCIA_FAILURE: no memory */
 int pieces_find_loose(const Unknowns *unknowns, PiecesTaken taken, LoosePiece *loose, Error *error);
 

@@ -172,7 +172,10 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
   } else {
     describe_failure(s, outcome, words, sizeof words);
     if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
-      advice = "allow more 'iterations', or take a larger 'residual'";
+      advice = s->newton.relaxes ? "allow more 'relaxation iterations', or take a larger 'residual'"
+               : s->newton.unbalanced <= s->spec->newton.residual
+                   ? "take a larger 'displacement tolerance' or 'energy tolerance'"
+                   : "allow more 'iterations', or take a larger 'residual'";
     else if (domain_may_soften(s->domain) && static_may_relax(s)) {
       tried = "by Newton's method, descent by secants and dynamic relaxation; at last ";
       advice = "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', "

@@ -165,11 +165,84 @@ static void stages_to_come_may_let_pieces_meet(void **state)
   pair_is_refused(0.5, more, "nothing holds a piece of 35 particles");
 }
 
+#define BONDS                                                                                                          \
+  UNITS "materials: {m: {model: elastic-1d, density: 2, Young modulus: 1e4}}\n"                                        \
+        "peridynamics: {formulation: bond-based, space: plane stress, horizon: 0.2015}\npictures: []\n"
+
+/** A particle that a cut frees of all bonds is let be where nothing acts on it; under a load it is named, as no equations hold it. */
+static void a_single_particle_must_be_held_under_a_load(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *load, *refusal;
+  } cases[] = {
+      {"{on: {face: x+}, force: [0, -1], history: {ramp to: 1}}",
+       "nothing holds a piece of 1 particle, with particle 9 at [0.95, 0.05, 0], against moving along x as a whole"},
+      {"{gravity: [0, -10]}", "nothing holds a piece of 1 particle"},
+      {"{on: {inside: {box: {from: [0.5, 0.2], to: [2, 2]}}}, force: [0, -1]}", NULL},
+      {"{gravity: [0, -10]}, {on: {nearest: [0.95, 0.05]}, spring: {stiffness: 1e3}}", NULL},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char deck[2000];
+    snprintf(deck, sizeof deck,
+             BONDS "body: {b: {" SQUARE "{box: {particles: [10, 4]}}}}\n"
+                   "cracks: [{cut: {line: [[0.92, -1], [0.92, 0.12], [2, 0.12]]}}]\n"
+                   "loads: [{on: {face: x-}, displacement: [0, 0]}, %s]\n" SOLVE,
+             cases[k].load);
+    if (cases[k].refusal) {
+      char *words = refusal_of(deck);
+      holds_words(words, cases[k].refusal);
+      free(words);
+      continue;
+    }
+    breccia_model *m = model_of("%s", deck);
+    step_surely(m, INT64_MAX);
+    breccia_model_destroy(&m);
+  }
+}
+
+/** A body of one particle does not turn; and a spring at one particle keeps no other body from turning. */
+static void springs_hold_along_their_direction(void **state)
+{
+  (void)state;
+  static const char *const held[] = {"{on: {all: yes}, spring: {stiffness: 1e3}}",
+                                     "{on: {all: yes}, spring: {stiffness: 1e3, direction: [2e-6, 0]}}, {on: {all: "
+                                     "yes}, displacement: [free, 0]}"};
+  for (int k = 0; k < 2; ++k) {
+    breccia_model *m = model_of(BONDS "body: {b: {" SQUARE "{box: {particles: [1, 1]}}}}\n"
+                                      "loads: [%s, {on: {face: x+}, force: [1, 0], history: {ramp to: 1}}]\n" SOLVE,
+                                held[k]);
+    step_surely(m, INT64_MAX);
+    const Particles *p = m->domain.particles;
+    assert_near(p->displacement[0][p->place_of[0]], 1e-3, 1e-9);
+    breccia_model_destroy(&m);
+  }
+  static const struct {
+    const char *springs, *motion;
+  } loose[] = {
+      {"{on: {nearest: [0.95, 0.05]}, spring: {stiffness: 1e3}}", "about z"},
+      {"{on: {all: yes}, spring: {stiffness: 1e3, direction: [1, 0]}}", "along y"},
+  };
+  for (int k = 0; k < 2; ++k) {
+    char deck[2000], words[64];
+    snprintf(deck, sizeof deck,
+             BONDS "body: {b: {" SQUARE "{box: {particles: [10, 4]}}}}\n"
+                   "loads: [%s, {on: {face: x+}, force: [0, 1]}]\n" SOLVE,
+             loose[k].springs);
+    snprintf(words, sizeof words, "nothing holds the body against moving %s as a whole", loose[k].motion);
+    char *refusal = refusal_of(deck);
+    holds_words(refusal, words);
+    free(refusal);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(each_piece_must_be_held),
       cmocka_unit_test(what_joins_pieces_holds_them),
+      cmocka_unit_test(a_single_particle_must_be_held_under_a_load),
+      cmocka_unit_test(springs_hold_along_their_direction),
       cmocka_unit_test(contact_joins_what_touches),
       cmocka_unit_test(a_crack_that_cuts_a_body_is_named),
       cmocka_unit_test(what_has_come_off_rests_until_something_acts_on_it),

@@ -360,7 +360,8 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
         "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10}}\n"
         "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
         "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
-        "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}, {on: {face: z-}, "
+        "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}, {on: {face: "
+        "z-}, "
         "support: {held: across}}, {on: {face: x+, layers: 1}, traction: [40, 0, 0], history: {ramp to: 1}}]\n"
         "solve: {static: {increments: 8, method: relaxation, relaxation iterations: 1000000000}}\npictures: []\n");
     const Particles *p = m->domain.particles;
