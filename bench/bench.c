@@ -42,18 +42,22 @@ static const Case cases[] = {
 
 typedef struct BenchBody {
   const char *name, *space, *block, *cracks;
+  const char *only; /* formulation that it is for; NULL: all */
 } BenchBody;
 
 #define NOTCH "cracks: [{remove: {box: {from: [2.4, 0, -1], to: [2.43, 1.2, 1]}}, cut faces: yes}]\n"
 static const BenchBody bodies[] = {
-    {"cube 32³", "3-D", "shape: {box: {particles: [32, 32, 32]}}", ""},
-    {"cube 40³", "3-D", "shape: {box: {particles: [40, 40, 40]}}", ""},
-    {"cube 80³", "3-D", "shape: {box: {particles: [80, 80, 80]}}", ""},
-    {"face-centred 40³", "3-D", "lattice: face-centred cubic, shape: {box: {particles: [40, 40, 40]}}", ""},
-    {"square 256²", "plane strain", "lattice: square, thickness: 1, shape: {box: {particles: [256, 256]}}", ""},
-    {"hexagonal 256²", "plane strain", "lattice: hexagonal, thickness: 1, shape: {box: {particles: [256, 256]}}", ""},
-    {"notched plate", "3-D", "shape: {box: {particles: [160, 120, 6]}}", NOTCH},
-    {"scattered", "3-D", "file: scattered.csv", ""},
+    {"cube 32³", "3-D", "shape: {box: {particles: [32, 32, 32]}}", "", NULL},
+    {"cube 40³", "3-D", "shape: {box: {particles: [40, 40, 40]}}", "", NULL},
+    {"cube 80³", "3-D", "shape: {box: {particles: [80, 80, 80]}}", "", NULL},
+    {"face-centred 40³", "3-D", "lattice: face-centred cubic, shape: {box: {particles: [40, 40, 40]}}", "", NULL},
+    {"square 256²", "plane strain", "lattice: square, thickness: 1, shape: {box: {particles: [256, 256]}}", "", NULL},
+    {"hexagonal 256²", "plane strain", "lattice: hexagonal, thickness: 1, shape: {box: {particles: [256, 256]}}", "",
+     NULL},
+    {"notched plate", "3-D", "shape: {box: {particles: [160, 120, 6]}}", NOTCH, NULL},
+    {"scattered", "3-D", "file: scattered.csv", "", NULL},
+    {"face-centred 100³", "3-D", "lattice: face-centred cubic, shape: {box: {particles: [100, 100, 100]}}", "",
+     "micropolar"},
 };
 
 static breccia_model *load(const char *folder, const BenchBody *body, const Case *c)
@@ -214,6 +218,7 @@ int main(int count, char **words)
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
       const char *only = count > 2 ? words[2] : "";
       if (!strstr(cases[c].formulation, only) && !strstr(cases[c].law, only) && !strstr(bodies[b].name, only)) continue;
+      if (bodies[b].only && strcmp(bodies[b].only, cases[c].formulation)) continue;
       use_threads(all);
       breccia_model *model = load(folder, &bodies[b], &cases[c]);
       if (!model) continue; /* refused, and said: bonds of 1.5 spacings span no space on every lattice */

@@ -146,7 +146,8 @@ static int64_t show_displacements(void *formulation, const Sweep *sweep)
 static int64_t find_damage(void *formulation, const Sweep *sweep)
 {
   const Micropolar *m = formulation;
-  if (m->damage && !sweep->at && !m->points->elastic_stage) micropolar_find_tension(m, sweep->first, sweep->last);
+  if (m->damage && !sweep->at && !m->points->elastic_stage)
+    m->damage->sweeps->find_tension(m, sweep->first, sweep->last);
   return -1;
 }
 
@@ -159,7 +160,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
       if (m->secant || m->foreign) micropolar_resist_changes_one_by_one(m, sweep->at, slice, !m->secant);
       continue;
     }
-    if (micropolar_is_weak(m, slice)) micropolar_find_compression(m, slice);
+    if (micropolar_is_weak(m, slice)) m->damage->sweeps->find_compression(m, slice);
     if (!m->secant) m->sweeps->resist(m, slice);
     if (m->secant || m->foreign) micropolar_resist_one_by_one(m, slice, !m->secant);
   }

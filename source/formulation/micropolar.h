@@ -1,6 +1,7 @@
 /* What the parts of micropolar peridynamics share: the table entry (micropolar.c), constants of links (micropolar_constants.c), links one by one
  * (micropolar_link.c), their changes (micropolar_linear.c), sweeps over links in the plane (micropolar_plane.c) and in space
- * (micropolar_space.c), and damage of links (micropolar_damage.c, by what laws say micropolar_damage_laws.c). */
+ * (micropolar_space.c), and damage of links (micropolar_damage.c, found by
+ * micropolar_damage_sweep.c from what laws say, micropolar_damage_laws.c). */
 #ifndef BRECCIA_FORMULATION_MICROPOLAR_H
 #define BRECCIA_FORMULATION_MICROPOLAR_H
 
@@ -34,7 +35,19 @@ typedef struct LinkRow {
   double twist;       /* twist w / L */
 } LinkRow;
 
-enum { GROWN_IN_TENSION = 1, GROWN_IN_COMPRESSION = 2 };
+/* Of a slice: in which of the two what was tried is more than what is committed, and whether a link is shorter now than it can be undamaged. */
+enum { GROWN_IN_TENSION = 1, GROWN_IN_COMPRESSION = 2, PRESSED = 4 };
+
+typedef struct Micropolar Micropolar;
+
+/** How damage of links is found, for each kind of vectors. */
+typedef struct DamageSweeps {
+  /** That in tension of the links of slices, as tried. */
+  void (*find_tension)(const Micropolar *m, int64_t first, int64_t last);
+  /** Then that in compression, which asks how many links of both ends have the former. */
+  void (*find_compression)(const Micropolar *m, int64_t slice);
+} DamageSweeps;
+LANES_CHOICE(const DamageSweeps, micropolar_damage)
 
 /** Damage of links, and by which laws. Both ends of a link keep its damage, found from the same numbers. */
 typedef struct LinkDamage {
@@ -43,10 +56,9 @@ typedef struct LinkDamage {
   double *tension[2], *compression[2]; /* [slots * SLICE] committed, and as tried */
   double *damaged;                     /* [places] links with damage in tension, as tried */
   uint8_t *touched;                    /* [slices] some link has been beyond its bounds */
-  uint8_t *grown;                      /* [slices] in which of the two what was tried is more than what is committed */
+  uint8_t *grown;                      /* [slices] GROWN_IN_TENSION and the like */
+  const DamageSweeps *sweeps;
 } LinkDamage;
-
-typedef struct Micropolar Micropolar;
 
 /** What sweeps over links do, for each kind of vectors. */
 typedef struct MicropolarSweeps {
@@ -178,9 +190,6 @@ static inline bool micropolar_is_weak(const Micropolar *m, int64_t slice)
   return m->damage && m->damage->touched[slice] && !m->points->elastic_stage;
 }
 
-/** Damage in tension of the links of slices, as tried; then that in compression, which asks how many links of both ends have the former. */
-void micropolar_find_tension(const Micropolar *m, int64_t first, int64_t last);
-void micropolar_find_compression(const Micropolar *m, int64_t slice);
 /** Stiffness that is left at a stretch. */
 void micropolar_weaken(const Micropolar *m, int64_t place, int64_t other, int64_t at, double stretch,
                        LinkStiffness *stiffness);

@@ -101,6 +101,7 @@ int micropolar_damage_create(Micropolar *m, Error *error)
   if (!any) return BRECCIA_OK;
   LinkDamage *damage = m->damage = memory_zeroed(1, sizeof *damage, "damage of links", error);
   if (!damage) return BRECCIA_FAILURE;
+  damage->sweeps = micropolar_damage_chosen();
   const size_t links = (size_t)m->family->slots * SLICE;
   int failed =
       !(damage->laws = memory_zeroed((size_t)m->body->block_count, sizeof *damage->laws, "damage of links", error));
