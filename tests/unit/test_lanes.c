@@ -1,6 +1,6 @@
-/* Vectors of eight lanes beside those of four (base/lane_kinds.h): the same bits, of all formulations, along lattices and among scattered
+/* Vectors of eight lanes beside those of four (base/lane_kinds.h): the same bits, of all laws in space and of all formulations, along lattices and among scattered
  * particles. */
-#include "support.h"
+#include "sample_laws.h"
 
 #include "base/lane_kinds.h"
 #include "base/random.h"
@@ -128,10 +128,75 @@ static void eight_lanes_give_the_bits_of_four_among_scattered_particles(void **s
       check(of[k][0], of[k][1], "file: lanes.csv");
 }
 
+enum { CROWD = 45, CROWD_STEPS = 60 };
+
+/** Answers of points of a law by `lanes`, in steps with tangents and without: all that it wrote. @return to be freed */
+static double *answers_by(const char *lanes, const Sample *sample, size_t *count)
+{
+  setenv("BRECCIA_LANES", lanes, 1);
+  Material m = sample->make();
+  const size_t values = (size_t)m.history_values, each = 6 + values + 36;
+  double *answers = calloc(CROWD_STEPS * CROWD * each, sizeof *answers), *to = answers, *committed, *trial;
+  double strain[6][CROWD] = {{0}}, stress[6][CROWD], tangent[36 * CROWD];
+  committed = calloc(values * CROWD + 1, sizeof *committed);
+  trial = calloc(values * CROWD + 1, sizeof *trial);
+  *count = CROWD_STEPS * CROWD * each;
+  for (size_t i = 0; i < CROWD && m.law->begin; ++i) {
+    m.law->begin(m.constants, committed + values * i);
+    m.law->begin(m.constants, trial + values * i);
+  }
+  uint64_t seed = 71;
+  for (int step = 0; step < CROWD_STEPS; ++step) {
+    breccia_batch batch = {.size = sizeof batch, .count = CROWD, .committed = committed, .trial = trial};
+    if (step % 2) batch.tangent = tangent;
+    for (int i = 0; i < CROWD; ++i) {
+      double e[6];
+      for (int k = 0; k < 6; ++k) e[k] = strain[k][i];
+      const double size = sample->strain * (i % 3 ? 1 : 30); /* some far beyond */
+      sample_wander(&seed, size, size / 5, e);
+      for (int k = 0; k < 6; ++k) strain[k][i] = step % 20 == 9 ? 0.1 * e[k] : e[k];
+    }
+    for (int k = 0; k < 6; ++k) {
+      batch.strain[k] = strain[k];
+      batch.stress[k] = stress[k];
+    }
+    assert_int_equal(m.law->update(m.constants, &batch), -1);
+    for (size_t i = 0; i < CROWD; ++i, to += each) {
+      for (int k = 0; k < 6; ++k) to[k] = stress[k][i];
+      memcpy(to + 6, trial + values * i, sizeof(double) * values);
+      if (batch.tangent) memcpy(to + 6 + values, tangent + 36 * i, sizeof(double) * 36);
+    }
+    double *other = committed;
+    committed = trial;
+    trial = other;
+  }
+  free(committed);
+  free(trial);
+  material_destroy(&m);
+  return answers;
+}
+
+static void eight_lanes_give_the_bits_of_four_in_laws(void **state)
+{
+  (void)state;
+  skip_without_eight();
+  for (int n = 0; n < SAMPLES; ++n) {
+    size_t count, other;
+    double *four = answers_by("4", &samples[n], &count), *eight = answers_by("8", &samples[n], &other);
+    assert_int_equal(count, other);
+    for (size_t i = 0; i < count; ++i)
+      if (memcmp(&four[i], &eight[i], sizeof(double)))
+        fail_msg("%s: number %zu is %a by four lanes, %a by eight", samples[n].name, i, four[i], eight[i]);
+    free(four);
+    free(eight);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_variable_chooses_four_lanes),
+      cmocka_unit_test(eight_lanes_give_the_bits_of_four_in_laws),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_along_lattices),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_among_scattered_particles),
   };

@@ -157,6 +157,7 @@ static void points_of_a_batch_do_not_know_of_each_other(void **state)
     Material m = samples[n].make();
     const size_t values = (size_t)m.history_values;
     static double strain[6][POINTS], stress[6][POINTS];
+    static double tangent[POINTS][36];
     double *committed = calloc(values * POINTS + 1, sizeof(double)),
            *trial = calloc(values * POINTS + 1, sizeof(double));
     Point alone[POINTS];
@@ -169,6 +170,7 @@ static void points_of_a_batch_do_not_know_of_each_other(void **state)
     }
     for (int step = 0; step < STEPS; ++step) {
       breccia_batch batch = {.size = sizeof(breccia_batch), .count = POINTS, .committed = committed, .trial = trial};
+      if (step % 2) batch.tangent = tangent[0];
       for (int i = 0; i < POINTS; ++i) {
         double e[6];
         for (int k = 0; k < 6; ++k) e[k] = strain[k][i];
@@ -181,9 +183,14 @@ static void points_of_a_batch_do_not_know_of_each_other(void **state)
       }
       assert_int_equal(m.law->update(m.constants, &batch), -1);
       for (int i = 0; i < POINTS; ++i) {
-        double e[6], s[6];
+        double e[6], s[6], own[36];
         for (int k = 0; k < 6; ++k) e[k] = strain[k][i];
-        point_try(&alone[i], e, s, NULL, 0);
+        point_try(&alone[i], e, s, batch.tangent ? own : NULL, 0);
+        if (values) assert_memory_equal(alone[i].trial, trial + values * (size_t)i, sizeof(double) * values);
+        for (int k = 0; k < 36 && batch.tangent; ++k)
+          if (tangent[i][k] != own[k])
+            fail_msg("%s: point %d has tangent %.17g in company and %.17g alone in step %d", samples[n].name, i,
+                     tangent[i][k], own[k], step);
         for (int k = 0; k < 6; ++k)
           if (stress[k][i] != s[k])
             fail_msg("%s: point %d has stress %.17g in company and %.17g alone in step %d", samples[n].name, i,

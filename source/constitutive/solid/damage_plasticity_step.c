@@ -3,8 +3,8 @@
  * The flow keeps the direction of the trial deviator, and all else follows from the share r of it that is left: q + 3 G dl q / sqrt(e^2 + q^2) = q_trial
  * with q = r q_trial says the multiplier dl, and F = 0 is one equation in r. */
 #include "constitutive/solid/damage_plasticity.h"
-#include "constitutive/solid/dual_lanes.h"
-#include "constitutive/solid/spectral_lanes.h"
+#include "constitutive/solid/dual.h"
+#include "constitutive/solid/spectral.h"
 
 enum { LEFT = 3 }; /* the variable r; trial principal stresses are 0 to 2 */
 

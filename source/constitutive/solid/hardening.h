@@ -3,18 +3,21 @@
 #ifndef BRECCIA_CONSTITUTIVE_HARDENING_H
 #define BRECCIA_CONSTITUTIVE_HARDENING_H
 
-#include "base/lanes.h"
-#include "constitutive/solid/solid_law.h"
+#include "constitutive/solid/solid_lanes.h"
 
 typedef struct Hardening {
   double first, gain, rate, modulus;
 } Hardening;
 
-static inline double hardening_strength(const Hardening *h, double x, double *slope)
+/** What saturation has not given yet. */
+LANES_INLINE Lanes hardening_left(const Hardening *h, Lanes x)
 {
-  const double fall = h->gain > 0 ? h->gain * exp(-h->rate * x) : 0;
-  *slope = h->rate * fall + h->modulus;
-  return h->first + h->gain - fall + h->modulus * x;
+  return lanes_product(lanes_set(h->gain), lanes_exponential(lanes_set(-h->rate) * x));
+}
+
+LANES_INLINE Lanes hardening_strength(const Hardening *h, Lanes x)
+{
+  return (lanes_set(h->first + h->gain) - hardening_left(h, x)) + lanes_set(h->modulus) * x;
 }
 
 /** sqrt(2/3) times a strength that is reached at least. */
@@ -23,19 +26,28 @@ LANES_INLINE Lanes hardening_least(const Hardening *h, Lanes x)
   return lanes_set(root23) * (lanes_set(h->first) + lanes_set(h->modulus) * x);
 }
 
-/** Multiplier g >= 0 of excess - stiffness g = sqrt(2/3) (Y(x + sqrt(2/3) g) - Y(x)); Newton's method never overshoots, because Y is concave.
- *  @param[out] strength, slope  of Y at the end */
-static inline double hardening_multiplier(const Hardening *h, double excess, double stiffness, double x,
-                                          double *strength, double *slope)
+/** Multiplier g >= 0 of excess - stiffness g = sqrt(2/3) (Y(x + sqrt(2/3) g) - Y(x)); Newton's method never overshoots, because Y is concave. It is 0 where
+ *  the excess is not positive.
+ *  @param[out] grown, slope  Y(x + sqrt(2/3) g) - Y(x), and the slope of Y there */
+LANES_INLINE Lanes hardening_multiplier(const Hardening *h, Lanes excess, double stiffness, Lanes x, Lanes *grown,
+                                        Lanes *slope)
 {
-  const double before = hardening_strength(h, x, slope);
-  double flow = 0;
-  *strength = before;
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const double step = (excess - stiffness * flow - root23 * (*strength - before)) / (stiffness + 2 * *slope / 3);
-    flow += step;
-    *strength = hardening_strength(h, x + root23 * flow, slope);
-    if (fabs(step) <= 1e-15 * flow) break;
+  enum { MOST_ITERATIONS = 100 };
+  const Lanes left = hardening_left(h, x), stiff = lanes_set(stiffness);
+  excess = lanes_where(excess > lanes_set(0), excess);
+  Lanes flow = lanes_set(0);
+  LaneMask ended = {0};
+  *grown = lanes_set(0);
+  *slope = lanes_set(h->rate) * left + lanes_set(h->modulus);
+  for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
+    const Lanes step = ((excess - stiff * flow) - lanes_set(root23) * *grown) / (stiff + lanes_set(2.0 / 3) * *slope);
+    flow = lanes_choose(ended, flow, flow + step);
+    const Lanes further = lanes_product(lanes_set(root23), flow),
+                fade = lanes_exponential_less_one(lanes_set(-h->rate) * further);
+    *grown = lanes_set(h->modulus) * further - lanes_product(left, fade);
+    *slope = lanes_set(h->rate) * (left + lanes_product(left, fade)) + lanes_set(h->modulus);
+    ended |= ~(lanes_absolute(step) > lanes_set(1e-15) * flow);
+    if (!lanes_any(~ended)) break;
   }
   return flow;
 }

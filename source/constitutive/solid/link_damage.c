@@ -4,18 +4,9 @@
  * s the stiffness that closing cracks gain back and q = <pressure - tension> / (pressure + tension) of their sums. A factor common to both parts, by their
  * share in the stress (Lee and Fenves 1998), would let a crack that is open and sheared carry tension without end: C strain grows with the opening, nothing
  * flows. So would pressure that is given back beside a tension that outweighs it. */
-#include "constitutive/link_damage.h"
-#include "constitutive/solid/dual.h"
-#include "constitutive/solid/elastic_first.h"
-#include "constitutive/solid/spectral.h"
-
-typedef struct LinkLaw {
-  Elasticity elastic;
-  breccia_link link;
-} LinkLaw;
+#include "constitutive/solid/link_law.h"
 
 enum { TENSION = ELASTIC_PARAMETERS, TENSION_END, ENERGY, COMPRESSION, COMPRESSION_END, RECOVERY, LENGTH };
-enum { TENSILE = 0, COMPRESSIVE, HISTORY };
 
 static const double ductility = 2;
 
@@ -41,6 +32,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
   LinkLaw *c = constants;
   breccia_link *link = &c->link;
+  c->update = link_damage_update_chosen();
   if (elasticity_prepare(&c->elastic, v, reason, size)) return 1;
   const double begin = v[TENSION], young = elasticity_young(&c->elastic);
   const bool energy = !isnan(v[ENERGY]);
@@ -90,89 +82,18 @@ static double softening_energy(const void *constants)
 static int history_values(const void *constants)
 {
   (void)constants;
-  return HISTORY;
+  return LINK_HISTORY;
 }
 
 static void history_name(const void *constants, int k, char *name, size_t size)
 {
   (void)constants;
-  snprintf(name, size, "%s", k == TENSILE ? "tensile damage" : "compressive damage");
+  snprintf(name, size, "%s", k == LINK_TENSILE ? "tensile damage" : "compressive damage");
 }
 
-static Dual damage_of(Dual stretch, double begin, double end, bool linear_force)
-{
-  return dual_chain(link_damage(stretch.value, begin, end, linear_force),
-                    link_damage_slope(stretch.value, begin, end, linear_force), stretch, 0, stretch);
-}
-
-/** What is left of the stiffness, in tension and in pressure, of principal strains that are the variables 0, 1, 2. */
-static void find_rest(const LinkLaw *c, const double *committed, const Dual strain[3], const Dual effective[3],
-                      double trial[HISTORY], Dual rest[2])
-{
-  const breccia_link *l = &c->link;
-  Dual most = dual_constant(0), least = dual_constant(0), pressure = dual_constant(0), all = dual_constant(0);
-  for (int k = 0; k < 3; ++k) {
-    most = dual_larger(strain[k], most);
-    least = dual_larger(dual_scale(-1, strain[k]), least);
-    pressure = dual_sum(1, pressure, -1, effective[k]);
-    all = dual_sum(1, all, 1, dual_absolute(effective[k]));
-  }
-  Dual d[HISTORY] = {damage_of(most, l->tension_begin, l->tension_end, l->linear_force), dual_constant(0)};
-  if (d[TENSILE].value > 0 || committed[TENSILE] > 0)
-    d[COMPRESSIVE] = damage_of(least, l->compression_begin, l->compression_end, false);
-  for (int k = 0; k < HISTORY; ++k) {
-    if (!(d[k].value > committed[k])) d[k] = dual_constant(committed[k]);
-    trial[k] = d[k].value;
-  }
-  const Dual closed = pressure.value > 0 ? dual_scale(l->recovery, dual_quotient(pressure, all)) : dual_constant(0);
-  const Dual uncrushed = dual_shift(dual_scale(-1, d[COMPRESSIVE]), 1);
-  rest[0] = dual_product(dual_shift(dual_scale(-1, d[TENSILE]), 1), uncrushed);
-  rest[1] = dual_product(dual_shift(dual_product(d[TENSILE], dual_shift(closed, -1)), 1), uncrushed);
-}
-
-static bool update_point(const void *constants, SolidPoint *p)
-{
-  const LinkLaw *c = constants;
-  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
-  const Spectrum spectrum = spectrum_of(p->strain);
-  Dual strain[3], effective[3], rest[2];
-  double value[3], slopes[9];
-  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
-  const Dual volume = dual_sum(1, dual_sum(1, strain[0], 1, strain[1]), 1, strain[2]);
-  for (int k = 0; k < 3; ++k) effective[k] = dual_sum(lambda, volume, twice, strain[k]);
-  find_rest(c, p->committed, strain, effective, p->trial, rest);
-  for (int k = 0; k < 3; ++k) value[k] = (effective[k].value < 0 ? rest[1] : rest[0]).value * effective[k].value;
-  if (rest[0].value == rest[1].value) {
-    elastic_stress(&c->elastic, p->strain, p->stress); /* of the strain itself: nothing is lost to the decomposition */
-    for (int k = 0; k < 6; ++k) p->stress[k] *= rest[0].value;
-  } else {
-    spectral_tensor(&spectrum, value, p->stress);
-  }
-  if (!p->tangent) return true;
-  for (int k = 0; k < 3; ++k) {
-    const Dual stress = dual_product(effective[k].value < 0 ? rest[1] : rest[0], effective[k]);
-    for (int n = 0; n < 3; ++n) slopes[3 * k + n] = stress.slope[n];
-  }
-  spectral_tangent(&spectrum, value, slopes, p->tangent);
-  return true;
-}
-
-/** Points that were never damaged and whose strains, all together, are less than what damages. */
-LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
-{
-  const LinkLaw *c = constants;
-  const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
-              mean = t->invariant * lanes_set(1 / (9 * c->elastic.bulk)),
-              square = deviator * deviator + lanes_set(3) * mean * mean;
-  *found = (trial_history(t, TENSILE) <= lanes_set(0)) & (trial_history(t, COMPRESSIVE) <= lanes_set(0)) &
-           (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
-}
-
-BRECCIA_CLONES
 static int update(const void *constants, const breccia_batch *batch)
 {
-  const LinkLaw *c = constants;
-  return solid_update_elastic_first(constants, batch, HISTORY, &c->elastic, false, inside, update_point);
+  return ((const LinkLaw *)constants)->update(constants, batch);
 }
 
 const breccia_law law_link_damage = {

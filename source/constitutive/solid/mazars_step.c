@@ -1,7 +1,7 @@
 /* A step of Mazars' damage, a point a lane, for each kind of vectors (mazars.c tells the law). */
-#include "constitutive/solid/dual_lanes.h"
+#include "constitutive/solid/dual.h"
 #include "constitutive/solid/mazars.h"
-#include "constitutive/solid/spectral_lanes.h"
+#include "constitutive/solid/spectral.h"
 
 /** Principal stresses and damage at principal strains, which come as the variables 0, 1, 2. */
 LANES_INLINE void respond(DualSlopes n, const Mazars *c, const Dual strain[3], const Lanes *committed, Dual stress[3],

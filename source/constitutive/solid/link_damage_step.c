@@ -1,0 +1,93 @@
+/* A step of damage by stretch at points in space, a point a lane, for each kind of vectors (link_damage.c tells the law). */
+#include "constitutive/link_damage.h"
+#include "constitutive/solid/dual.h"
+#include "constitutive/solid/link_law.h"
+#include "constitutive/solid/spectral.h"
+
+/* One lane after the other: links ask the same function (formulation/micropolar_damage). */
+LANES_INLINE Dual damage_of(DualSlopes n, Dual stretch, double begin, double end, bool linear_force)
+{
+  double value[LANES], slope[LANES];
+  lanes_store(value, stretch.value);
+  for (int l = 0; l < LANES; ++l) {
+    slope[l] = n.end > n.first ? link_damage_slope(value[l], begin, end, linear_force) : 0;
+    value[l] = link_damage(value[l], begin, end, linear_force);
+  }
+  return dual_of(n, lanes_load(value), lanes_load(slope), stretch);
+}
+
+/** What is left of the stiffness, in tension and in pressure, of principal strains that are the variables 0, 1, 2. */
+LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committed, const Dual strain[3],
+                            const Dual effective[3], Lanes trial[LINK_HISTORY], Dual rest[2])
+{
+  const breccia_link *l = &c->link;
+  const Lanes zero = lanes_set(0);
+  Dual most = dual_constant(zero), least = dual_constant(zero), pressure = dual_constant(zero),
+       all = dual_constant(zero);
+  for (int k = 0; k < 3; ++k) {
+    most = dual_larger(n, strain[k], most);
+    least = dual_larger(n, dual_scale(n, -1, strain[k]), least);
+    pressure = dual_sum(n, pressure, -1, effective[k]);
+    all = dual_add(n, all, dual_absolute(n, effective[k]));
+  }
+  Dual d[LINK_HISTORY] = {damage_of(n, most, l->tension_begin, l->tension_end, l->linear_force),
+                          damage_of(n, least, l->compression_begin, l->compression_end, false)};
+  const LaneMask beside = (d[LINK_TENSILE].value > zero) | (committed[LINK_TENSILE] > zero);
+  d[LINK_COMPRESSIVE] = dual_where(n, beside, d[LINK_COMPRESSIVE]);
+  for (int k = 0; k < LINK_HISTORY; ++k) {
+    d[k] = dual_choose(n, d[k].value > committed[k], d[k], dual_constant(committed[k]));
+    trial[k] = d[k].value;
+  }
+  const LaneMask pressed = pressure.value > zero;
+  const Dual closed = dual_scale(
+      n, l->recovery,
+      dual_where(n, pressed, dual_quotient(n, pressure, dual_choose(n, pressed, all, dual_constant(lanes_set(1))))));
+  const Dual uncrushed = dual_rest(n, d[LINK_COMPRESSIVE]);
+  rest[0] = dual_product(n, dual_rest(n, d[LINK_TENSILE]), uncrushed);
+  rest[1] = dual_product(n, dual_rest(n, dual_product(n, d[LINK_TENSILE], dual_rest(n, closed))), uncrushed);
+}
+
+LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
+{
+  const LinkLaw *c = constants;
+  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
+  const DualSlopes n = {0, tangents ? 3 : 0};
+  const Spectrum spectrum = spectrum_of(p->strain);
+  Dual strain[3], effective[3], stress[3], rest[2];
+  Lanes value[3], slopes[9], tangent[36], whole[6];
+  for (int k = 0; k < 3; ++k) strain[k] = dual_variable(spectrum.value[k], k);
+  const Dual volume = dual_add(n, dual_add(n, strain[0], strain[1]), strain[2]);
+  for (int k = 0; k < 3; ++k) effective[k] = dual_sum(n, dual_scale(n, lambda, volume), twice, strain[k]);
+  find_rest(n, c, p->committed, strain, effective, p->trial, rest);
+  for (int k = 0; k < 3; ++k) {
+    stress[k] = dual_product(n, dual_choose(n, effective[k].value < lanes_set(0), rest[1], rest[0]), effective[k]);
+    value[k] = stress[k].value;
+  }
+  /* Where both parts have as much left stress follows the strain itself: nothing is lost to the decomposition. */
+  const LaneMask alike = rest[0].value == rest[1].value;
+  elastic_stress_lanes(&c->elastic, p->strain, whole);
+  spectral_tensor(&spectrum, value, p->stress);
+  for (int k = 0; k < 6; ++k) p->stress[k] = lanes_choose(alike, lanes_product(whole[k], rest[0].value), p->stress[k]);
+  if (!tangents) return;
+  for (int k = 0; k < 3; ++k)
+    for (int m = 0; m < 3; ++m) slopes[3 * k + m] = stress[k].slope[m];
+  spectral_tangent(&spectrum, value, slopes, tangent);
+  store_tangents(tangent, p->tangent);
+}
+
+/** Points that were never damaged and whose strains, all together, are less than what damages. */
+LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
+{
+  const LinkLaw *c = constants;
+  const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
+              mean = t->invariant * lanes_set(sqrt(3) / (9 * c->elastic.bulk)),
+              square = lanes_square(deviator, mean, lanes_set(0));
+  *found = (trial_history(t, LINK_TENSILE) <= lanes_set(0)) & (trial_history(t, LINK_COMPRESSIVE) <= lanes_set(0)) &
+           (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
+}
+
+int LANES_NAMED(link_damage_update)(const void *constants, const breccia_batch *batch)
+{
+  const LinkLaw *c = constants;
+  return solid_update_lanes(constants, batch, LINK_HISTORY, &c->elastic, false, inside, step);
+}

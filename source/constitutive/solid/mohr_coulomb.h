@@ -1,0 +1,30 @@
+/* Mohr-Coulomb plasticity: what its parameters become, and a point's history (mohr_coulomb.c tells the law). */
+#ifndef BRECCIA_CONSTITUTIVE_MOHR_COULOMB_H
+#define BRECCIA_CONSTITUTIVE_MOHR_COULOMB_H
+
+#include "constitutive/solid/solid_lanes.h"
+
+/* Planes: shear between principal directions 1 and 3, 1 and 2, 2 and 3; tension in 1, 2, 3. */
+enum { SHEAR13, SHEAR12, SHEAR23, TENSION1, TENSION2, TENSION3, PLANES };
+enum { COULOMB_SETS = 9 };
+enum { COULOMB_HISTORY = 6 }; /* the plastic strain */
+
+/** The return of sorted principal stresses to a set of planes: multipliers are `inverse` times what the trial stress is beyond them; each takes its `stiff_flow`
+ *  off. Spare planes have none. */
+typedef struct CoulombReturn {
+  bool exists, corner; /* corner: three planes */
+  int plane[3];
+  double inverse[3][3], stiff_flow[3][3], slopes[9]; /* d stress / d principal strain */
+} CoulombReturn;
+
+typedef struct MohrCoulomb {
+  Elasticity elastic;
+  double sine, dilation, limit;        /* sin(phi), sin(psi), 2 c cos(phi) */
+  double tensile;                      /* infinite: no cut-off */
+  CoulombReturn returns[COULOMB_SETS]; /* in the order in which they are tried */
+  SolidUpdate *update;                 /* for the vectors of this machine */
+} MohrCoulomb;
+
+LANES_CHOICE(SolidUpdate, mohr_coulomb_update)
+
+#endif
