@@ -19,7 +19,7 @@ static void tensor_of(uint64_t *seed, const double value[3], double a[6])
   }
 }
 
-enum { ANY, ALIKE, NEARLY, GRADED, DIAGONAL, SPARSE, KINDS };
+enum { ANY, ALIKE, NEARLY, ALL_NEARLY, GRADED, DIAGONAL, SPARSE, KINDS };
 
 static void draw(uint64_t *seed, int kind, double a[6])
 {
@@ -30,8 +30,7 @@ static void draw(uint64_t *seed, int kind, double a[6])
   if (kind == ALIKE) value[1] = value[random_uniform(seed) < 0.5 ? 0 : 2];
   if (kind == NEARLY) value[1] = value[random_uniform(seed) < 0.5 ? 0 : 2] + gap;
   for (int k = 0; k < 3 && kind == GRADED; ++k) value[k] *= pow(10, -20 * random_uniform(seed));
-  for (int k = 0; k < 3 && kind == NEARLY && random_uniform(seed) < 0.3; ++k)
-    value[k] = mean + gap * random_uniform(seed);
+  for (int k = 0; k < 3 && kind == ALL_NEARLY; ++k) value[k] = size + size * pow(10, -20 * random_uniform(seed));
   if (kind == ANY || kind == SPARSE)
     for (int k = 0; k < 6; ++k)
       a[k] =

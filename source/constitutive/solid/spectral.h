@@ -35,6 +35,10 @@ LANES_INLINE SpectrumApart spectrum_apart(const Lanes a[6])
   for (int k = 0; k < 6; ++k) x.b[k] = lanes_product(a[k], shrink);
   x.mean = lanes_product(x.b[XX] + x.b[YY] + x.b[ZZ], lanes_set(1.0 / 3));
   for (int k = 0; k < 3; ++k) x.b[k] -= x.mean;
+  /* Where all values are alike roundings of the mean are much beside what is left. */
+  const Lanes missed = lanes_product(x.b[XX] + x.b[YY] + x.b[ZZ], lanes_set(1.0 / 3));
+  for (int k = 0; k < 3; ++k) x.b[k] -= missed;
+  x.mean += missed;
   const Lanes *b = x.b;
   const Lanes square =
       lanes_set(1.0 / 3) * (lanes_square(b[XX], b[YY], b[ZZ]) * half + lanes_square(b[XY], b[YZ], b[ZX]));
