@@ -390,9 +390,8 @@ static int finish(Run *run, int status, Error *error)
     if (!status) status = write_results(run, error);
   } else if (status == BRECCIA_INTERRUPTED) {
     int bad = write_checkpoint(run, error);
+    if (!bad) bad = write_results(run, error); /* so that pictures are of the state in which it was stopped */
     if (bad) status = bad;
-    if (!domain_observe(&model->domain, error))
-      update_peaks(model); /* for the summary, and not for the checkpoint: the state is not written */
   } else if (!run->unwritten && memory_refusals() == run->host->refusals) {
     /* The last good state. Of a step in which memory was refused nobody knows what was left out: the checkpoint before stays. */
     write_checkpoint(run, error);

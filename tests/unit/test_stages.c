@@ -347,7 +347,7 @@ static void ask_to_stop(int signal)
 static void a_wish_to_stop_is_heard_within_an_increment(void **state)
 {
   (void)state;
-  char folder[] = "/tmp/breccia-XXXXXX", command[64];
+  char folder[] = "/tmp/breccia-XXXXXX", command[128];
   assert_non_null(mkdtemp(folder));
   signal(SIGALRM, ask_to_stop);
   Error *error = breccia_error_create();
@@ -363,7 +363,8 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
         "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}}, {on: {face: "
         "z-}, "
         "support: {held: across}}, {on: {face: x+, layers: 1}, traction: [40, 0, 0], history: {ramp to: 1}}]\n"
-        "solve: {static: {increments: 8, method: relaxation, relaxation iterations: 1000000000}}\npictures: []\n");
+        "solve: {static: {increments: 8, method: relaxation, relaxation iterations: 1000000000}}\n"
+        "results: {every: 100}\npictures: []\n");
     const Particles *p = m->domain.particles;
     if (k == 0) {
       alarm(1);
@@ -374,6 +375,8 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
         memcpy(left[c], p->displacement[c], sizeof(double) * (size_t)p->places);
       }
       print_message("stopped behind increment %lld\n", (long long)steps);
+      snprintf(command, sizeof command, "grep -q 'Time Value=\"%g\"' %s/results.xdmf", m->solver.clock.time, folder);
+      assert_int_equal(system(command), 0); /* pictures are of this state */
       assert_true(steps < 4); /* of which the third would be beyond the strength */
     } else if (steps > 0) {
       assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_OK);
