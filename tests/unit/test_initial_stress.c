@@ -390,7 +390,8 @@ static void a_law_that_hardens_is_led_along_its_own_path(void **state)
   for (int k = 0; k < points_material(points, i)->history_values; ++k)
     found |= fabs(points_history(points, i)[k] - 0.015) < 1e-9;
   assert_true(found); /* before anything moves */
-  assert_memory_equal(points->committed, points->trial, sizeof(double) * points->history_size);
+  for (size_t k = 0; k < points->history_size; ++k) /* but for the roundings of a law that stands where it yields */
+    assert_near(points->trial[k], points->committed[k], 1e-15);
   run_all(m);
   assert_near(d->stress[XX][i] - d->stress[YY][i], 60 + 8000 * 1000 / 13000.0 * 0.004, 1e-3);
   assert_balanced(m, 1e-3);
