@@ -1,6 +1,8 @@
 /* Increments of statics, and the tries that make them. */
 #include "solver/pieces.h"
 #include "solver/static.h"
+
+#include "loading/support.h"
 #include "solver/vectors.h"
 
 #include <math.h>
@@ -153,6 +155,16 @@ static const char *describe_failure(const Static *s, NewtonOutcome outcome, char
   return words;
 }
 
+/** Whether images that do not slide stand for a support: what cracks beside them loses its way behind the peak, as images hand no force on
+ *  (docs/choosing.md). */
+static bool cracks_along_images(const Domain *d)
+{
+  bool found = false;
+  for (int k = 0; k < d->body.margins.count; ++k)
+    found |= !d->body.margins.items[k].repeats && !support_slides(&d->body.margins.items[k]);
+  return found;
+}
+
 /** No increment leads on from here, however short. */
 static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *error)
 {
@@ -180,6 +192,9 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
       tried = "by Newton's method, descent by secants and dynamic relaxation; at last ";
       advice = "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', "
                "go on with a stage of 'explicit', as by 'quasi-static', or look at the loads and at the last pictures";
+    } else if (domain_may_soften(s->domain) && cracks_along_images(s->domain)) {
+      advice = "the body may fail at this load; where it cracks along a support 'held: all', hold layers by "
+               "'displacement' instead, beside which the branch behind the peak can be followed";
     }
   }
   return error_add(error, BRECCIA_FAILURE,

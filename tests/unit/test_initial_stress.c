@@ -389,7 +389,7 @@ static void a_law_that_hardens_is_led_along_its_own_path(void **state)
   bool found = false;
   for (int k = 0; k < points_material(points, i)->history_values; ++k)
     found |= fabs(points_history(points, i)[k] - 0.015) < 1e-9;
-  assert_true(found); /* before anything moves */
+  assert_true(found);                               /* before anything moves */
   for (size_t k = 0; k < points->history_size; ++k) /* but for the roundings of a law that stands where it yields */
     assert_near(points->trial[k], points->committed[k], 1e-15);
   run_all(m);

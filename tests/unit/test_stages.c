@@ -377,7 +377,7 @@ static void a_wish_to_stop_is_heard_within_an_increment(void **state)
       print_message("stopped behind increment %lld\n", (long long)steps);
       snprintf(command, sizeof command, "grep -q 'Time Value=\"%g\"' %s/results.xdmf", m->solver.clock.time, folder);
       assert_int_equal(system(command), 0); /* pictures are of this state */
-      assert_true(steps < 4); /* of which the third would be beyond the strength */
+      assert_true(steps < 4);               /* of which the third would be beyond the strength */
     } else if (steps > 0) {
       assert_int_equal(breccia_model_run(m, &run, error), BRECCIA_OK);
     }
