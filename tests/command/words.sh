@@ -287,7 +287,7 @@ told() {
   equal "$*" "$(cat errors)" "$words"
   equal "$*: nothing else" "$(cat out)" ""
 }
-movie="breccia plot: --movie shows a field at all written steps and names its file itself: leave out"
+movie="breccia plot: --movie shows all written steps and names its file itself: leave out"
 told "breccia plot: --rate: '0' is not above 0 and up to 120 written steps a second" plot block --movie a.mp4 --rate 0
 told "breccia plot: --rate: '121' is not above 0 and up to 120 written steps a second" plot block --movie a.mp4 --rate 121
 told "breccia plot: --view: '3' should be two numbers with a colon between" plot block --view 3
@@ -303,8 +303,8 @@ told "breccia plot: give one result folder (several with --curve); see 'breccia 
 told "$movie --output" plot block --movie a.mp4 --output b.mp4
 told "$movie --time" plot block --movie a.mp4 --time 0
 told "$movie --step" plot block --movie a.mp4 --step 0
-told "$movie --curve and --energy" plot block --movie a.mp4 --energy
-told "$movie --curve and --energy" plot block --movie a.mp4 --curve end.x:end.y
+told "breccia plot: --movie: a curve of histories has no use for it; leave it out" plot block --movie a.mp4 --energy
+told "breccia plot: --movie: a curve of histories has no use for it; leave it out" plot block --movie a.mp4 --curve end.x:end.y
 told "breccia study: give one deck; see 'breccia study --help'" study block.yaml block.yaml
 told "breccia: --jobs: '0' is not a whole number of at least 1" study block.yaml --vary a=1,2 --jobs 0
 told "breccia: --threads: '0' is not a whole number from 1 to 2147483647" study block.yaml --vary a=1,2 --threads 0
