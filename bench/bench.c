@@ -126,8 +126,7 @@ static double search_seconds(const Domain *d)
 {
   Family family;
   use_threads(1);
-  FamilySpec spec = {d->family.horizon, influence_find("constant"), VOLUME_WHOLE, d->regions[0].type->row_sums,
-                     d->regions[0].type->bond_lengths};
+  FamilySpec spec = {d->family.horizon, influence_find("constant"), VOLUME_WHOLE, d->regions[0].type->row_sums};
   double start = clock_seconds();
   family_create(&family, &d->body, &spec, NULL);
   double seconds = clock_seconds() - start;

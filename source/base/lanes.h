@@ -207,18 +207,4 @@ LANES_INLINE void lanes_sine_cosine(Lanes x, Lanes *sine, Lanes *cosine)
   *cosine = (Lanes)((LaneMask)b ^ (sign & (((quarter + one) & two) != 0)));
 }
 
-/** The smaller of two, lane by lane; a where b is not a number. */
-LANES_INLINE Lanes lanes_least(Lanes a, Lanes b)
-{
-  LaneMask smaller = b < a;
-  return lanes_where(smaller, b) + lanes_where(~smaller, a);
-}
-
-/** The greater of two, lane by lane; a where b is not a number. */
-LANES_INLINE Lanes lanes_greatest(Lanes a, Lanes b)
-{
-  LaneMask greater = b > a;
-  return lanes_where(greater, b) + lanes_where(~greater, a);
-}
-
 #endif

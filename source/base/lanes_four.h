@@ -55,6 +55,15 @@ LANES_INLINE void lanes_gather_rows(const double *from, int stride, const int32_
              lanes_load(from + (int64_t)index[2] * stride), lanes_load(from + (int64_t)index[3] * stride), out);
 }
 
+/** Pairs of an array, turned round. */
+LANES_INLINE void lanes_gather_pairs(const double *from, const int32_t *index, Lanes out[2])
+{
+  const double *a = from + 2 * (int64_t)index[0], *b = from + 2 * (int64_t)index[1], *c = from + 2 * (int64_t)index[2],
+               *d = from + 2 * (int64_t)index[3];
+  out[0] = (Lanes){a[0], b[0], c[0], d[0]};
+  out[1] = (Lanes){a[1], b[1], c[1], d[1]};
+}
+
 /** All bits set in the lanes whose bit (0 to 3) is set in `bits`. Looked up: computing it took two registers that the sweeps
  *  need for their sums. */
 LANES_INLINE LaneMask lanes_mask(unsigned bits)
@@ -91,6 +100,16 @@ LANES_INLINE Lanes lanes_load_some(const double *from, unsigned bits, int half)
 #endif
 }
 
+/** Those of a half whose bit of a slot is set, one after another. What stands behind them, up to as many numbers as there are lanes, is of no use then. */
+LANES_INLINE void lanes_store_some(double *to, unsigned bits, int half, Lanes lanes)
+{
+  for (int k = 0; k < LANES; ++k) {
+    *to = lanes[k];
+    to += bits >> (LANES * half + k) & 1u;
+  }
+}
+
+/** Square roots, rounded as the standard asks: the same bits on all processors. */
 LANES_INLINE Lanes lanes_root(Lanes x)
 {
 #ifdef __AVX__
@@ -117,6 +136,28 @@ LANES_INLINE int lanes_any(LaneMask mask)
   return _mm256_movemask_pd((__m256d)mask) != 0;
 #else
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
+}
+
+/** The smaller of two, lane by lane; a where one is not a number. */
+LANES_INLINE Lanes lanes_least(Lanes a, Lanes b)
+{
+#ifdef __AVX__
+  return (Lanes)_mm256_min_pd((__m256d)b, (__m256d)a); /* whose second is taken where they do not compare */
+#else
+  const LaneMask smaller = b < a;
+  return lanes_where(smaller, b) + lanes_where(~smaller, a);
+#endif
+}
+
+/** The greater of two, lane by lane; a where one is not a number. */
+LANES_INLINE Lanes lanes_greatest(Lanes a, Lanes b)
+{
+#ifdef __AVX__
+  return (Lanes)_mm256_max_pd((__m256d)b, (__m256d)a);
+#else
+  const LaneMask greater = b > a;
+  return lanes_where(greater, b) + lanes_where(~greater, a);
 #endif
 }
 

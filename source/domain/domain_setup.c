@@ -325,11 +325,8 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
                       d->body.largest_spacing);
   int correction = 0;
   while (strcmp(volume_correction_word(correction), pd->volume_correction)) ++correction;
-  FamilySpec family = {horizon, influence, (VolumeCorrection)correction, false, false};
-  for (int r = 0; r < d->region_count; ++r) {
-    family.row_sums |= d->regions[r].type->row_sums;
-    family.bond_lengths |= d->regions[r].type->bond_lengths;
-  }
+  FamilySpec family = {horizon, influence, (VolumeCorrection)correction, false};
+  for (int r = 0; r < d->region_count; ++r) family.row_sums |= d->regions[r].type->row_sums;
   Error *told = breccia_error_create();
   status = family_create(&d->family, &d->body, &family, told);
   if (tell_at(reader, section_node(pd, "horizon"), status, &told)) return status;

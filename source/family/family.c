@@ -149,7 +149,6 @@ typedef struct Rows { /* of slices of one lattice, for a loop over slices */
 
 typedef struct Build {
   Family *family;
-  bool bond_lengths;
   const Body *body;
   const Rows *rows;
   const StoredBonds *stored;
@@ -201,9 +200,6 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
         bool here = at < stored->first[place + 1];
         family->neighbour[row * SLICE + lane] = here ? stored->neighbour[at] : (int32_t)place;
         if (family->scale) family->scale[row * SLICE + lane] = here ? stored->scale[at] : 0;
-        if (here && family->inverse_length)
-          family->inverse_length[row * SLICE + lane] =
-              1 / (float)particles_distance(&build->body->particles, (int32_t)place, stored->neighbour[at]);
         if (here) family->intact[slot + k] |= (uint8_t)(1u << lane);
       }
     }
@@ -266,13 +262,11 @@ static int fill_slots(Build *build, Error *error)
   family->base = memory_zeroed((size_t)family->slots, sizeof *family->base, "bonds", error);
   family->pattern = memory_zeroed((size_t)family->slots, sizeof *family->pattern, "bonds", error);
   family->intact = memory_zeroed((size_t)family->slots, sizeof *family->intact, "bonds", error);
-  family->neighbour = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(int32_t), "bonds", error);
+  const int64_t ahead = family->stored_slots ? FAMILY_AHEAD : 0;
+  family->neighbour = memory_zeroed((size_t)(family->stored_slots + ahead) * SLICE, sizeof(int32_t), "bonds", error);
   int failed = !family->base || !family->pattern || !family->intact || !family->neighbour;
   if (build->stored->scale)
     failed |= !(family->scale = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(double), "bonds", error));
-  if (build->bond_lengths)
-    failed |= !(family->inverse_length =
-                    memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(float), "bond lengths", error));
   if (!failed) team_each(slices, write_slots, build);
   free(stored_before);
   return failed ? BRECCIA_FAILURE : BRECCIA_OK;
@@ -306,7 +300,7 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
     status = search_beyond_lattices(&stored, body, &weight, error);
   }
   if (!status) {
-    Build build = {.family = family, .bond_lengths = spec->bond_lengths, .body = body, .rows = rows, .stored = &stored};
+    Build build = {.family = family, .body = body, .rows = rows, .stored = &stored};
     status = fill_slots(&build, error);
   }
   if (!status && spec->row_sums) status = lattice_rows_create(family, body, error);
@@ -330,7 +324,6 @@ void family_destroy(Family *family)
   free(family->pattern_begin);
   free(family->neighbour);
   free(family->scale);
-  free(family->inverse_length);
   lattice_rows_destroy(&family->rows);
   *family = (Family){0};
 }
@@ -426,8 +419,7 @@ void family_state(Family *family, StateList *list)
 size_t family_bytes(const Family *family)
 {
   size_t slot = sizeof *family->base + sizeof *family->pattern + sizeof *family->intact;
-  size_t stored = SLICE * (sizeof *family->neighbour + (family->scale ? sizeof *family->scale : 0) +
-                           (family->inverse_length ? sizeof *family->inverse_length : 0));
+  size_t stored = SLICE * (sizeof *family->neighbour + (family->scale ? sizeof *family->scale : 0));
   return (size_t)family->slots * slot + (size_t)family->stored_slots * stored +
          (size_t)family->particles->slices * 2 * sizeof(int64_t) + lattice_rows_bytes(family);
 }

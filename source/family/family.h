@@ -33,9 +33,11 @@ typedef struct FamilySpec {
   double horizon;
   const Influence *influence;
   VolumeCorrection correction;
-  bool row_sums;     /* the formulation makes sums along lattice rows */
-  bool bond_lengths; /* it needs the lengths of stored bonds in its sweeps */
+  bool row_sums; /* the formulation makes sums along lattice rows */
 } FamilySpec;
+
+/* So many stored slots ahead sweeps ask for what they will read of neighbours: less and it is not there in time, more and it is gone again. */
+enum { FAMILY_AHEAD = 32 };
 
 struct Family {
   const Particles *particles;
@@ -49,11 +51,11 @@ struct Family {
   uint8_t *intact;   /* [slots] */
   Pattern *patterns;
   int pattern_count,
-      *pattern_begin;    /* [lattices + 1] those of lattice b are pattern_begin[b] .. pattern_begin[b + 1] - 1 */
-  int32_t *neighbour;    /* [stored_slots][8] */
-  double *scale;         /* [stored_slots][8] influence x volume correction; NULL: 1 */
-  float *inverse_length; /* [stored_slots][8] 0 where there is no bond; NULL if the formulation does not need it */
-  LatticeRows rows;      /* empty if the formulation makes no sums along rows */
+      *pattern_begin; /* [lattices + 1] those of lattice b are pattern_begin[b] .. pattern_begin[b + 1] - 1 */
+  int32_t *
+      neighbour; /* [stored_slots + FAMILY_AHEAD][8] the place itself where there is no bond; place 0 behind the last slot */
+  double *scale;    /* [stored_slots][8] influence x volume correction; NULL: 1 */
+  LatticeRows rows; /* empty if the formulation makes no sums along rows */
 };
 
 /** One bond seen from one end. */
@@ -87,6 +89,18 @@ static inline Bond family_bond(const Family *family, int64_t slice, int64_t slot
   }
   bond.length = __builtin_sqrt(square);
   return bond;
+}
+
+/** Asks for what half a stored slot will read of its neighbours in FAMILY_AHEAD slots, and, further ahead, for which ones they are: the processor
+ *  itself asks for what lies in a row up to the end of a page only.
+ *  @param[in] at     where its neighbours stand now
+ *  @param[in] shown  [places][length] what is read of a place */
+LANES_INLINE void family_fetch_ahead(const Family *family, int64_t at, const double *shown, int length)
+{
+  const int32_t *ahead = family->neighbour + at + FAMILY_AHEAD * SLICE;
+  __builtin_prefetch((const void *)((uintptr_t)ahead + 4 * FAMILY_AHEAD * SLICE * sizeof *ahead));
+  for (int lane = 0; lane < LANES; ++lane)
+    for (int k = 0; k < length; k += 8) __builtin_prefetch(shown + (int64_t)ahead[lane] * length + k);
 }
 
 /** Which lattice row the bonds of a lattice slot lead to: alike for slots of one row. */

@@ -283,7 +283,6 @@ const FormulationType formulation_bond_based = {
     .maturity = "verified against closed forms on lattices",
     .components = 1,
     .on_bonds = true,
-    .bond_lengths = true,
     .section = &bond_based_section,
     .create = create,
     .destroy = destroy,

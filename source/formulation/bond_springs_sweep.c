@@ -44,9 +44,10 @@ LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool g
 }
 
 /** Half a stored slot; its forces have their constants in them. */
-LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, StretchRange range, Sum *sum)
+LANES_INLINE void add_stored(const BondBased *b, int64_t slot, int64_t slice, int half, const StretchHere *here,
+                             StretchRange range, Sum *sum)
 {
-  StretchEnds ends = stretch_ends(b->family, b->shown, slice, slot, half, sum->own);
+  const StretchEnds ends = stretch_ends(b->family, b->shown, slot, half, here);
   sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
   Lanes pull = bond_constant(b, slice, &ends) * (ends.weight * ends.by_length) * shortening(ends.d, range);
   if (b->surface) pull *= bond_surface(b, slot, half);
@@ -68,7 +69,8 @@ LANES_INLINE StretchRange resist_slice(const BondBased *b, int64_t slice, bool g
     for (int64_t slot = f->first[slice]; slot < stored; ++slot)
       add_lattice(b, slot, half, gaps, corrected, range, &sum);
     for (int k = 0; k < 3; ++k) sum.force[k] *= scale;
-    for (int64_t slot = stored; slot < last; ++slot) add_stored(b, slot, slice, half, range, &sum);
+    const StretchHere own = stretch_here(p, slice, half);
+    for (int64_t slot = stored; slot < last; ++slot) add_stored(b, slot, slice, half, &own, range, &sum);
     for (int k = 0; k < 3; ++k) lanes_store(p->internal[k] + here, sum.force[k]);
     if (!lanes_are_within(sum.within)) most = INFINITY;
     for (int k = 0; k < LANES; ++k) most = sum.largest[k] > most ? sum.largest[k] : most;

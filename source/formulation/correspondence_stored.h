@@ -62,6 +62,7 @@ LANES_INLINE void deform_together(const Correspondence *c, int64_t slice, bool s
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
       const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
       Lanes x[QUAD], u[QUAD];
+      family_fetch_ahead(f, at, c->shown, CORRESPONDENCE_SHOWN);
       lanes_gather_rows(c->shown, CORRESPONDENCE_SHOWN, f->neighbour + at, x);
       lanes_gather_rows(c->shown + QUAD, CORRESPONDENCE_SHOWN, f->neighbour + at, u);
       for (int r = 0; r < 3; ++r) {
@@ -140,6 +141,7 @@ LANES_INLINE void resist_together(const Correspondence *c, int64_t slice, bool s
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
       const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
       const Lanes factor = scaled ? lanes_load(f->scale + at) : lanes_set(1);
+      family_fetch_ahead(f, at, c->row, length);
       for (int k = 0; k < 3; ++k) {
         Lanes q[QUAD];
         lanes_gather_rows(c->row + 4 * k, length, f->neighbour + at, q);

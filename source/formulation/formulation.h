@@ -147,7 +147,6 @@ struct FormulationType {
   const FormulationType *fibres; /* what it is with laws of one strain; NULL: it takes none */
   double horizon;                /* in spacings, where the deck gives none; 0: 3.015 */
   bool row_sums;                 /* neighbours read sums along lattice rows */
-  bool bond_lengths;             /* lengths of stored bonds are read in sweeps */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
   bool knows_hooke;       /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */

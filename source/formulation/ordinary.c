@@ -48,7 +48,6 @@ const FormulationType formulation_ordinary = {
     .keeps_no_points = true,
     .takes = ordinary_takes,
     .check_material = ordinary_check_material,
-    .bond_lengths = true,
     .section = &ordinary_section,
     .check = ordinary_check,
     .create = ordinary_create,

@@ -80,6 +80,7 @@ struct Ordinary {
   double *base, *slope;         /* [places] a and b - a */
   double *change;               /* [places] of theta in a linearised step, then of a; NULL before */
   double *shown;                /* [places][8] what bonds of stored slots read of a neighbour; NULL if there are none */
+  double *answer;               /* [places][2] a and b - a, for them too */
   double shortest;              /* of all bonds */
   breccia_deviator *deviators;  /* [materials] */
   Flow *flow;                   /* NULL: all families are elastic */

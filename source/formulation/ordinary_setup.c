@@ -154,8 +154,8 @@ void ordinary_destroy(void *formulation)
   free(o->factor);
   free(o->dilating);
   free(o->resisting);
-  double **const arrays[] = {&o->inverse,    &o->left, &o->volumetric, &o->shear,  &o->share,
-                             &o->dilatation, &o->base, &o->slope,      &o->change, &o->shown};
+  double **const arrays[] = {&o->inverse, &o->left,  &o->volumetric, &o->shear, &o->share, &o->dilatation,
+                             &o->base,    &o->slope, &o->change,     &o->shown, &o->answer};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) places_free(arrays[k]);
   free(o->range);
   free(o->gaps);
@@ -170,7 +170,10 @@ static int allocate(Ordinary *o, Error *error)
   int failed = 0;
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
     failed |= !(*arrays[k] = places_array(places, "force states", error));
-  if (o->family->stored_slots) failed |= !(o->shown = places_array(STRETCH_SHOWN * places, "force states", error));
+  if (o->family->stored_slots) {
+    failed |= !(o->shown = places_array(STRETCH_SHOWN * places, "force states", error));
+    failed |= !(o->answer = places_array(2 * places, "force states", error));
+  }
   failed |= !(o->range = memory_zeroed((size_t)o->particles->slices, 1, "bond constants", error));
   failed |= !(o->gaps = memory_zeroed((size_t)o->particles->slices, 1, "bond constants", error));
   failed |= !(o->factor = memory_zeroed((size_t)o->family->pattern_count, sizeof(double), "bond constants", error));
@@ -290,7 +293,7 @@ size_t ordinary_bytes(const void *formulation)
 {
   const Ordinary *o = formulation;
   return (size_t)o->particles->places * sizeof(double) *
-             (size_t)(7 + (o->shown ? STRETCH_SHOWN : 0) + (o->change ? 1 : 0)) +
+             (size_t)(7 + (o->shown ? STRETCH_SHOWN + 2 : 0) + (o->change ? 1 : 0)) +
          2 * (size_t)o->particles->slices +
          (size_t)o->family->pattern_count * (sizeof(double) + sizeof *o->dilating + sizeof *o->resisting) +
          ordinary_flow_bytes(o);

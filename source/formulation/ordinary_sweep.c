@@ -59,10 +59,10 @@ LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slot, int half, bool
   sum->sum += lanes_set(2 * o->resisting[pattern].weight / bond->by_square) * stretch_of(d, range);
 }
 
-LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int64_t slice, int half, StretchRange range,
-                                const Lanes own[3], Dilated *sum)
+LANES_INLINE void dilate_stored(const Ordinary *o, int64_t slot, int half, StretchRange range, const StretchHere *here,
+                                Dilated *sum)
 {
-  const StretchEnds ends = stretch_ends(o->family, o->shown, slice, slot, half, own);
+  const StretchEnds ends = stretch_ends(o->family, o->shown, slot, half, here);
   sum->largest = lanes_greatest(sum->largest, lanes_absolute(ends.d));
   sum->sum += lanes_intact(o->family->intact[slot], half, ends.weight * stretch_of(ends.d, range) * ends.square);
 }
@@ -80,8 +80,11 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half) dilate_lattice(o, slot, half, gaps, range, own[half], &sum[half]);
-  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int half = 0; half < HALVES; ++half) dilate_stored(o, slot, slice, half, range, own[half], &sum[half]);
+  for (int half = 0; half < HALVES; ++half) {
+    const StretchHere at = stretch_here(o->particles, slice, half);
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+      dilate_stored(o, slot, half, range, &at, &sum[half]);
+  }
   for (int half = 0; half < HALVES; ++half) {
     const int64_t here = slice * SLICE + LANES * half;
     lanes_store(o->dilatation + here, lanes_load(o->inverse + here) * sum[half].sum);
@@ -135,8 +138,10 @@ static int64_t respond(const Ordinary *o, const Sweep *sweep)
     lanes_store(o->base + place, base);
     lanes_store(o->slope + place, lanes_load(o->shear + place) - base);
   }
-  for (int64_t place = sweep->first * SLICE; o->shown && place < sweep->last * SLICE; ++place)
-    o->shown[STRETCH_SHOWN * place + STRETCH_SHOWN - 1] = o->base[place];
+  for (int64_t place = sweep->first * SLICE; o->answer && place < sweep->last * SLICE; ++place) {
+    o->answer[2 * place] = o->base[place];
+    o->answer[2 * place + 1] = o->slope[place];
+  }
   return -1;
 }
 
@@ -160,13 +165,17 @@ LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slot, int half, bool
   for (int k = 0; k < 3; ++k) force[k] += pull * twice[k];
 }
 
-LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int64_t slice, int half, StretchRange range,
-                                const Lanes own[3], Lanes base, Lanes slope, Lanes force[3])
+LANES_INLINE void resist_stored(const Ordinary *o, int64_t slot, int half, StretchRange range, const StretchHere *here,
+                                Lanes base, Lanes slope, Lanes force[3])
 {
   const Family *f = o->family;
-  const StretchEnds ends = stretch_ends(f, o->shown, slice, slot, half, own);
-  base += ends.last;
-  slope += lanes_gather(o->slope, f->neighbour + (int64_t)f->base[slot] * SLICE + LANES * half);
+  const StretchEnds ends = stretch_ends(f, o->shown, slot, half, here);
+  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
+  Lanes answer[2];
+  lanes_gather_pairs(o->answer, f->neighbour + at, answer);
+  family_fetch_ahead(f, at, o->answer, 2);
+  base += answer[0];
+  slope += answer[1];
   const Lanes pull = lanes_intact(f->intact[slot], half, ends.weight * (base + slope * shortening(ends.d, range)));
   for (int k = 0; k < 3; ++k) force[k] += pull * ends.y[k];
 }
@@ -184,9 +193,11 @@ LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, Stre
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
       resist_lattice(o, slot, half, gaps, range, own[half], base[half], slope[half], force[half]);
-  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
-    for (int half = 0; half < HALVES; ++half)
-      resist_stored(o, slot, slice, half, range, own[half], base[half], slope[half], force[half]);
+  for (int half = 0; half < HALVES; ++half) {
+    const StretchHere here = stretch_here(o->particles, slice, half);
+    for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+      resist_stored(o, slot, half, range, &here, base[half], slope[half], force[half]);
+  }
   for (int half = 0; half < HALVES; ++half)
     for (int k = 0; k < 3; ++k) lanes_store(o->particles->internal[k] + slice * SLICE + LANES * half, force[half][k]);
 }

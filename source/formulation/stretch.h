@@ -61,7 +61,7 @@ LANES_INLINE Lanes shortening(Lanes d, StretchRange range)
   return d * r * r / (lanes_set(1) + r);
 }
 
-/* What stored slots read of a neighbour lies together: x, y, z, V, u, v, w, and one number of the formulation's. */
+/* What stored slots read of a neighbour lies together, a line of the cache: x, y, z, V, u, v, w, and one number of the formulation's. */
 enum { STRETCH_SHOWN = 8 };
 
 /** Half a stored slot: y, d, 1 / |xi| (0 where there is no intact bond), influence x correction x V, and the neighbours' last number. */
@@ -69,28 +69,41 @@ typedef struct StretchEnds {
   Lanes y[3], d, square, by_length, weight, last; /* square: |xi|^2 */
 } StretchEnds;
 
-/** @param[in] shown  [places][STRETCH_SHOWN]
- *  @param[in] own    displacements of the half slice */
-LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int64_t slice, int64_t slot, int half,
-                                      const Lanes own[3])
+/** Positions and displacements of half a slice. */
+typedef struct StretchHere {
+  Lanes x[3], u[3];
+} StretchHere;
+
+LANES_INLINE StretchHere stretch_here(const Particles *p, int64_t slice, int half)
 {
-  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half, here = slice * SLICE + LANES * half;
+  StretchHere here;
+  for (int k = 0; k < 3; ++k) {
+    here.x[k] = lanes_load(p->position[k] + slice * SLICE + LANES * half);
+    here.u[k] = lanes_load(p->displacement[k] + slice * SLICE + LANES * half);
+  }
+  return here;
+}
+
+/** @param[in] shown  [places][STRETCH_SHOWN] */
+LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int64_t slot, int half,
+                                      const StretchHere *here)
+{
+  const int64_t at = (int64_t)f->base[slot] * SLICE + LANES * half;
   Lanes x[QUAD], u[QUAD];
   StretchEnds ends = {.d = {0}, .square = {0}};
+  family_fetch_ahead(f, at, shown, STRETCH_SHOWN);
   lanes_gather_rows(shown, STRETCH_SHOWN, f->neighbour + at, x);
   lanes_gather_rows(shown + QUAD, STRETCH_SHOWN, f->neighbour + at, u);
   for (int k = 0; k < 3; ++k) {
-    Lanes xi = x[k] - lanes_load(f->particles->position[k] + here), eta = u[k] - own[k];
+    const Lanes xi = x[k] - here->x[k], eta = u[k] - here->u[k];
     ends.y[k] = xi + eta;
     ends.d += eta * (xi + ends.y[k]);
     ends.square += xi * xi;
   }
-  /* 1 / |xi| from its value to single precision by one step of third order */
-  Lanes r = lanes_intact(f->intact[slot], half, lanes_widen(f->inverse_length + at));
-  Lanes off = lanes_set(1) - ends.square * r * r;
-  r += r * off * (lanes_set(0.5) + lanes_set(0.375) * off);
-  ends.d *= r * r;
-  ends.by_length = r;
+  /* Quotient and root are found beside the other arithmetic; kept lengths would have to come from memory. */
+  const Lanes by_square = lanes_intact(f->intact[slot], half, lanes_set(1) / ends.square);
+  ends.d *= by_square;
+  ends.by_length = lanes_root(by_square);
   ends.weight = x[3];
   if (f->scale) ends.weight *= lanes_load(f->scale + at);
   ends.last = u[3];
