@@ -7,6 +7,7 @@
 
 /** Directions in which a particle is held, and, behind them, those in which it is free, over its rows of motion. */
 typedef struct Held {
+  int32_t place;
   int held, free;
   double direction[MOTIONS][MOTIONS];
 } Held;
@@ -25,6 +26,14 @@ typedef struct Numbering {
 static void mark(Numbering *of, int32_t i)
 {
   if (!of->which[i]) of->which[i] = ++of->held_count;
+}
+
+/** Gives each particle that is held its entry. */
+static void place_held(Numbering *of)
+{
+  const Particles *p = of->unknowns->domain->particles;
+  for (int64_t i = 0; i < p->places; ++i)
+    if (of->which[i]) of->held[of->which[i] - 1].place = (int32_t)i;
 }
 
 static double product(const double a[MOTIONS], const double b[MOTIONS])
@@ -85,16 +94,17 @@ static void follow_tie(Numbering *of, int32_t follower, int32_t leader, int axis
       of->follow[of->motions * (int64_t)leader + axis]; /* of its own: few terms */
 }
 
-static bool is_flat(const Numbering *of, int row)
+/** Whether a row is no motion of a particle: out of a plane or line, or a rotation where there is none. */
+static bool is_flat(const Numbering *of, int32_t place, int row)
 {
-  return row < ROTATION && of->unknowns->flat[row];
+  return row < ROTATION ? of->unknowns->flat[row] : !particles_turn(of->unknowns->domain->particles, place);
 }
 
 /** Directions across those that are held, of the axes along which the body extends: those that differ from them most come first. */
 static void find_free(const Numbering *of, Held *h)
 {
   int left = -h->held;
-  for (int k = 0; k < of->motions; ++k) left += !is_flat(of, k);
+  for (int k = 0; k < of->motions; ++k) left += !is_flat(of, h->place, k);
   for (; h->free < left; ++h->free) {
     double best = 0, chosen[MOTIONS] = {0};
     for (int k = 0; k < of->motions; ++k) {
@@ -105,7 +115,7 @@ static void find_free(const Numbering *of, Held *h)
         for (int j = 0; j < MOTIONS; ++j) v[j] -= along * d[j];
       }
       const double square = product(v, v);
-      if (is_flat(of, k) || square < best + 1e-6) continue;
+      if (is_flat(of, h->place, k) || square < best + 1e-6) continue;
       best = square;
       for (int j = 0; j < MOTIONS; ++j) chosen[j] = v[j] / sqrt(square);
     }
@@ -141,7 +151,7 @@ static void follow_own(Numbering *of, int32_t i)
   Follow *own = &of->follow[of->motions * (int64_t)i];
   const Held *h = of->which[i] ? &of->held[of->which[i] - 1] : NULL;
   for (int k = 0; k < of->motions && !h; ++k)
-    if (!is_flat(of, k)) add_term(of, &own[k], of->count++, 1 / unknowns_length(of->unknowns, k));
+    if (!is_flat(of, i, k)) add_term(of, &own[k], of->count++, 1 / unknowns_length(of->unknowns, k));
   for (int f = 0; h && f < h->free; ++f, ++of->count)
     for (int k = 0; k < of->motions; ++k)
       add_term(of, &own[k], of->count, h->direction[h->held + f][k] / unknowns_length(of->unknowns, k));
@@ -198,6 +208,7 @@ Follow *follow_create(const Unknowns *u, int64_t *count, Error *error)
     failed = !of.held;
   }
   if (!failed) {
+    place_held(&of);
     unknowns_each_row(u, hold_row, &of);
     each_tie(&of, hold_tie);
     for (int64_t n = 0; n < of.held_count; ++n) find_free(&of, &of.held[n]);

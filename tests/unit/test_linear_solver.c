@@ -79,6 +79,15 @@ static const struct Case {
      LINKS "body: {b: {material: m, lattice: face-centred cubic, spacing: 0.1, shape: {box: {particles: [4, 3, 3]}}}}\n"
            "peridynamics: {formulation: micropolar, space: 3-D}\n"
            "loads: [" HOLD ", {on: {nearest: [0.3, 0.1, 0.1]}, rotation: [0, free, 0]}]\n"},
+    {"links beside particles without rotations", LINKS
+     "body: {b: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {particles: [5, 6]}}},"
+     " c: {material: m, lattice: square, spacing: 0.1, thickness: 0.2, shape: {box: {from: [0.5, 0], to: [1, 0.6]}}}}\n"
+     "peridynamics: {formulation: micropolar, space: plane stress, horizon: 1.5 spacings,"
+     " regions: {other: {blocks: [c], formulation: ordinary}}}\n"
+     "loads: [{on: {block: c, face: y-}, support: {held: across}}, {on: {face: x-, layers: 1}, displacement: [0, 0]},"
+     " {on: {face: x+, layers: 1}, displacement: [0, free]}, {on: {nearest: [0.75, 0.35]}, roller: [0.6, 0.8]},"
+     " {on: {inside: {box: {from: [0.2, 0.5], to: [0.8, 0.6]}}}, "
+     "tie: {directions: y}}]\n"},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
