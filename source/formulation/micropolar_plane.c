@@ -77,9 +77,11 @@ LANES_INLINE bool sweep(const Micropolar *m, int64_t slice, bool any)
   return true;
 }
 
-static void resist(const Micropolar *m, int64_t slice)
+static bool resist(const Micropolar *m, int64_t slice)
 {
-  if (!sweep(m, slice, false)) sweep(m, slice, true);
+  if (sweep(m, slice, false)) return true;
+  sweep(m, slice, true);
+  return false;
 }
 
 /* ---- energies ---- */

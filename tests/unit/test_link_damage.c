@@ -30,7 +30,7 @@ static const char space_cloud[] = "b: {material: m, spacing: 0.1, file: test_spa
 static const char plane_blocks[] =
     "b: {material: m, lattice: hexagonal, spacing: 0.1, thickness: 0.3, shape: {box: {particles: [19, 9]}}}\n"
     "  c: {material: n, lattice: square, spacing: 0.09, thickness: 0.3, shape: {box: "
-    "{from: [2.02, 0.03], to: [2.83, 0.75]}}}";
+    "{from: [1.93, 0.03], to: [2.74, 0.75]}}}";
 static const char space_blocks[] =
     "b: {material: m, lattice: face-centred cubic, spacing: 0.1, shape: {box: {particles: [9, 6, 5]}}}\n"
     "  c: {material: n, lattice: cubic, spacing: 0.09, shape: {box: {from: [0.72, 0.03, 0.03], to: [1.08, "
@@ -171,6 +171,24 @@ static void check_changes(const breccia_model *model)
   }
 }
 
+/** Finds forces of all slices by sweeps once more. What of them went by series, which slots they went through, and that what was damaged counted. */
+typedef struct Ways {
+  int64_t by_series, stored, along_rows, weak;
+} Ways;
+
+static Ways ways_of(const breccia_model *model)
+{
+  const Micropolar *m = formulation_of(model);
+  Ways ways = {0};
+  for (int64_t slice = 0; slice < m->particles->slices; ++slice) {
+    ways.by_series += m->sweeps->resist(m, slice);
+    ways.weak += micropolar_is_weak(m, slice);
+    ways.along_rows += m->family->stored[slice] - m->family->first[slice];
+    ways.stored += m->family->first[slice + 1] - m->family->stored[slice];
+  }
+  return ways;
+}
+
 /** Sweeps find what links do one by one, whatever share of its stiffness a closed one has back: where end rotations are as large as their series allow, where
  *  they are larger, up to half a turn, and between particles that stand in no lattice, or in two of other laws. */
 static void sweeps_are_sums_of_damaged_links(void **state)
@@ -218,6 +236,13 @@ static void sweeps_are_sums_of_damaged_links(void **state)
       for (int64_t n = 0; n < p->count && space; n += 3) /* the same rotation, told otherwise */
         for (int k = 0; k < 4; ++k) p->orientation[k][p->place_of[n]] *= -1;
       compute_forces(model);
+      const Ways ways = ways_of(model);
+      const bool far = cases[c].turn > 0.1, cloud = strstr(cases[c].body, "file") != NULL,
+                 joined = cases[c].body == plane_blocks || cases[c].body == space_blocks;
+      assert_int_equal(ways.weak, p->slices);
+      assert_true(far ? ways.by_series == 0 : ways.by_series > (p->slices * 9) / 10);
+      assert_int_equal(ways.stored > 0, cloud || joined);
+      assert_int_equal(ways.along_rows > 0, !cloud);
       double most[2] = {0}, *swept = calloc((size_t)(p->motions * p->places), sizeof(double));
       int closed = 0;
       for (int k = 0; k < p->motions; ++k) {
@@ -251,6 +276,110 @@ static void sweeps_are_sums_of_damaged_links(void **state)
     }
   remove("test_plane_links.csv");
   remove("test_space_links.csv");
+}
+
+/** Links that are damaged beside another formulation: forces and moments have no sum, sweeps find what links do one by one, those of the joint with half of their
+ *  stiffness, and energies are those of the links. */
+static void links_are_damaged_beside_other_formulations(void **state)
+{
+  (void)state;
+  const char *const beside[] = {"correspondence", "ordinary", "hybrid"};
+  for (int c = 0; c < 6; ++c) {
+    const bool space = c > 2;
+    const char *lattice = space ? "" : "lattice: square, thickness: 0.3, ";
+    breccia_model *model = model_of(
+        UNITS
+        "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, tensile stretch: 1e-4,"
+        " compressive stretch: 2e-4, stiffness recovery: 0.4}, n: {model: elastic, density: 2, Young modulus: 1e7,"
+        " Poisson ratio: 0.2}}\n"
+        "peridynamics: {space: %s, horizon: 1.5 spacings, formulation: micropolar, regions: {other: {blocks: [right],"
+        " formulation: %s}}}\n"
+        "body: {left: {material: m, spacing: 0.1, %sshape: {box: {from: [0, 0, 0], to: [0.9, 0.6, 0.5]}}}, right:"
+        " {material: n, spacing: 0.1, %sshape: {box: {from: [0.9, 0, 0], to: [1.5, 0.6, 0.5]}}}}\n"
+        "solve: {explicit: {steps: 1}}\n",
+        space ? "3-D" : "plane strain", beside[c % 3], lattice, lattice);
+    model->threads = 1;
+    const Particles *p = model->domain.particles;
+    const Micropolar *m = formulation_of(model);
+    disturb(model, 1e-3, 5);
+    for (int64_t n = 0; n < p->count; ++n)
+      for (int k = ROTATION; k < p->motions; ++k)
+        if (!particles_turn(p, p->place_of[n])) p->displacement[k][p->place_of[n]] = 0;
+    compute_forces(model);
+    double sum[3] = {0}, size = 0, largest[2] = {0}, off[2] = {0}, energy = 0, missed = 0;
+    for (int64_t n = 0; n < p->count; ++n)
+      for (int k = 0; k < 3; ++k) {
+        const double force = p->volume[p->place_of[n]] * p->internal[k][p->place_of[n]];
+        sum[k] += force;
+        size += fabs(force);
+      }
+    for (int k = 0; k < 3; ++k) assert_near(sum[k] / size, 0, 1e-13);
+    int across = 0;
+    for (int64_t slice = 0; slice < p->slices; ++slice) {
+      if (m->foreign[slice]) continue;
+      double swept[MOTIONS][SLICE], energies[SLICE];
+      m->sweeps->resist(m, slice);
+      micropolar_resist_one_by_one(m, slice, true);
+      for (int k = 0; k < p->motions; ++k) memcpy(swept[k], p->internal[k] + slice * SLICE, sizeof swept[k]);
+      micropolar_resist_one_by_one(m, slice, false);
+      for (int k = 0; k < p->motions; ++k)
+        for (int lane = 0; lane < SLICE; ++lane) {
+          const double there = p->internal[k][slice * SLICE + lane];
+          largest[k >= ROTATION] = larger_of(largest[k >= ROTATION], fabs(there));
+          off[k >= ROTATION] = larger_of(off[k >= ROTATION], fabs(swept[k][lane] - there));
+        }
+      model->domain.regions[0].type->stored_energies(m, slice, energies);
+      for (int lane = 0; lane < SLICE; ++lane) {
+        StoredEnergy stored;
+        model->domain.regions[0].type->stored_energy(m, slice * SLICE + lane, 0, &stored);
+        energy = larger_of(energy, stored.stored);
+        missed = larger_of(missed, fabs(energies[lane] - stored.stored));
+        for (int64_t slot = m->family->stored[slice]; slot < m->family->first[slice + 1]; ++slot)
+          if (m->family->intact[slot] >> lane & 1 && tension_of(m, slice, slot, lane) > 0) {
+            const Link weak = micropolar_link(m, NULL, slice, slot, lane);
+            const LinkStiffness whole = micropolar_stiffness(m, slice * SLICE + lane, &weak.bond);
+            if (!weak.alone) continue;
+            ++across;
+            assert_true(weak.stiffness.bending <= whole.bending && weak.stiffness.axial < whole.axial);
+          }
+      }
+    }
+    assert_true(across > 5);
+    assert_true(energy > 0 && missed <= 1e-11 * energy);
+    for (int k = 0; k < 2; ++k) assert_true(off[k] <= 1e-11 * largest[k]);
+    breccia_model_destroy(&model);
+  }
+}
+
+/** A bar whose half is a lattice that softens and breaks beside ordinary particles that do not, drawn until it is torn: the crack stays in the lattice and takes its
+ *  fracture energy, that of one row of links and a part of those beside it, and the other half moves off as it was. */
+static void a_lattice_tears_beside_an_elastic_half(void **state)
+{
+  (void)state;
+  breccia_model *model = model_of(
+      UNITS
+      "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, tensile stretch: 1e-4,"
+      " compressive stretch: 1e-2, fracture energy: 0.08}, n: {model: elastic, density: 2, Young modulus: 1e7,"
+      " Poisson ratio: 0.2}}\n"
+      "peridynamics: {space: plane stress, horizon: 1.5 spacings, formulation: micropolar, regions: {other: {blocks:"
+      " [right], formulation: ordinary}}}\n"
+      "body: {left: {material: m, spacing: 0.1, lattice: square, thickness: 0.3, shape: {box: {from: [0, 0], to: [1,"
+      " 0.6]}}}, right: {material: n, spacing: 0.1, lattice: square, thickness: 0.3, shape: {box: {from: [1, 0], to:"
+      " [2, 0.6]}}}}\n"
+      "loads: [{on: {face: x-, layers: 1}, displacement: [0, free]}, {on: {face: x+, layers: 1}, displacement: [5e-4,"
+      " free], history: {ramp to: 0.05}}, {on: {nearest: [0, 0]}, displacement: [free, 0]}]\n"
+      "solve: {explicit: {end time: 0.05, local damping: 0.3}}\n");
+  model->threads = 1;
+  while (!model->solver.clock.ended) step_surely(model, 50);
+  const Energy e = solver_energy(&model->solver);
+  const double spent = e.dissipated / (0.08 * 0.6 * 0.3);
+  if (!(spent > 1 && spent < 1.6)) fail_msg("%g of the fracture energy", spent);
+  assert_true(e.stored < 1e-3 * e.dissipated);
+  const Particles *p = model->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n)
+    if (p->position[0][p->place_of[n]] > 1) assert_near(p->displacement[0][p->place_of[n]] / 5e-4, 1, 0.01);
+  assert_balanced(model, 1e-3);
+  breccia_model_destroy(&model);
 }
 
 /* ---- one link ---- */
@@ -650,6 +779,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(damaged_bodies_keep_their_momenta),
       cmocka_unit_test(sweeps_are_sums_of_damaged_links),
+      cmocka_unit_test(links_are_damaged_beside_other_formulations),
+      cmocka_unit_test(a_lattice_tears_beside_an_elastic_half),
       cmocka_unit_test(a_link_follows_its_law),
       cmocka_unit_test(a_fracture_energy_says_where_the_force_ends),
       cmocka_unit_test(links_crush_beside_torn_ones),
