@@ -87,6 +87,7 @@ static void fill_slice(void *context, int64_t slice)
         if (!owns_stored(b, slice, slot, lane)) continue;
         if (!first && other_material(b, slice, slot, lane) != material) continue;
         (first ? l->stored_row : l->partner_row)[at] = (int32_t)row++;
+        l->keeps[f->base[slot]] |= (uint8_t)(1u << lane);
         l->single[single++] = first ? code : -1 - code;
       }
     material = next_material(b, slice, material);
@@ -146,9 +147,11 @@ int bond_list_create(BondList *l, const Family *f, const int32_t *material, cons
       .owned_first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
       .single_first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "list of bonds", error),
       .slot_row = memory_zeroed((size_t)f->slots + BOND_LIST_SPARE, sizeof *l->slot_row, "list of bonds", error),
-      .stored_row = memory_zeroed((size_t)f->stored_slots * SLICE, sizeof(int32_t), "list of bonds", error)};
+      .keeps = memory_zeroed((size_t)f->stored_slots, 1, "list of bonds", error),
+      .stored_row =
+          memory_zeroed((size_t)(f->stored_slots + FAMILY_AHEAD) * SLICE, sizeof(int32_t), "list of bonds", error)};
   if (several) l->partner_row = memory_zeroed((size_t)f->stored_slots * SLICE, sizeof(int32_t), "list of bonds", error);
-  if (!l->first || !l->owned_first || !l->single_first || !l->slot_row || !l->stored_row ||
+  if (!l->first || !l->owned_first || !l->single_first || !l->keeps || !l->slot_row || !l->stored_row ||
       (several && !l->partner_row))
     return BRECCIA_FAILURE;
   for (int64_t n = 0; several && n < f->stored_slots * SLICE; ++n) l->partner_row[n] = -1;
@@ -181,6 +184,7 @@ void bond_list_destroy(BondList *l)
   free(l->owned);
   free(l->single_first);
   free(l->single);
+  free(l->keeps);
   free(l->slot_row);
   free(l->stored_row);
   free(l->partner_row);
@@ -233,5 +237,5 @@ size_t bond_list_bytes(const BondList *l, const Family *f)
   const int64_t slices = f->particles->slices;
   return 3 * (size_t)slices * sizeof *l->first + (size_t)l->owned_first[slices] * sizeof *l->owned +
          (size_t)l->single_first[slices] * sizeof *l->single + (size_t)f->slots * sizeof *l->slot_row +
-         (size_t)f->stored_slots * SLICE * sizeof(int32_t) * (l->partner_row ? 2 : 1);
+         (size_t)f->stored_slots * (sizeof *l->keeps + SLICE * sizeof(int32_t) * (l->partner_row ? 2 : 1));
 }

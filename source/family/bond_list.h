@@ -20,10 +20,11 @@ typedef struct BondList {
   int64_t *single_first; /* [slices + 1] entries of `single` */
   int32_t
       *single; /* stored bonds that have rows: 8 (slot - first slot of the slice) + lane; second rows: -1 less that */
+  uint8_t *keeps; /* [stored_slots] bits of the lanes that own their bonds */
   /** [slots][2] of a lattice slot: the row of lane 0. Where the neighbours are the owners, they may stand in two slices: lanes with neighbours in the
    *  first of them have row [0] + lane, the others [1] + lane. */
   int32_t (*slot_row)[2]; /* with BOND_LIST_SPARE entries behind the last */
-  int32_t *stored_row;    /* [stored_slots][8] the row of the owner's material */
+  int32_t *stored_row;    /* [stored_slots + FAMILY_AHEAD][8] the row of the owner's material */
   int32_t *partner_row;   /* [stored_slots][8] of the other end's, or -1; NULL: there is one material */
 } BondList;
 

@@ -19,10 +19,13 @@ static bool on_top(const Body *body, int own, int block, double square)
   return sqrt(square) < 0.005 * (body->lattices[own].spacing + body->lattices[block].spacing);
 }
 
-/** Finds the neighbours of a place that stand in no common lattice with it, cell by cell and by number within a cell.
+/** Finds the neighbours of a place that stand in no common lattice with it. Those at higher places come first, cell by cell and by number within a
+ *  cell, and the others behind them the other way round: bonds are kept once, by their lower ends (family/bond_list.h), and slots are full of bonds that
+ *  eight particles keep so.
+ *  @param[in] total              how many there are
  *  @param[out] neighbour, scale  where they go; either may be NULL
  *  @return how many, or -1 if a particle lies on top of this one */
-static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, double *scale)
+static int64_t collect(const Search *search, int32_t place, int64_t total, int32_t *neighbour, double *scale)
 {
   const Cells *cells = search->cells;
   const Body *body = search->body;
@@ -31,7 +34,7 @@ static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, 
   const int own = p->block[place / SLICE];
   const bool own_too = !body->lattices[own].chunks;
   const double here[3] = {p->position[0][place], p->position[1][place], p->position[2][place]};
-  int64_t rows[9][2], count = 0;
+  int64_t rows[9][2], count = 0, higher = 0;
   const int row_count = cells_around(cells, here, rows);
   for (int row = 0; row < row_count; ++row)
     for (int64_t k = rows[row][0]; k < rows[row][1]; ++k) {
@@ -51,8 +54,9 @@ static int64_t collect(const Search *search, int32_t place, int32_t *neighbour, 
         share = length > reach * (1 + 1e-9) ? 0 : rule->share(rule->correction, length, rule->horizon, half);
       }
       if (share == 0 || (body->crack_count && body_cuts_bond(body, place, other))) continue;
-      if (neighbour) neighbour[count] = other;
-      if (scale) scale[count] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
+      const int64_t at = other > place ? higher++ : total - 1 - (count - higher);
+      if (neighbour) neighbour[at] = other;
+      if (scale) scale[at] = rule->influence->value(fmin(1, length / rule->horizon), length) * share;
       ++count;
     }
   return count;
@@ -71,7 +75,8 @@ static void sweep_place(void *context, int64_t place)
   StoredBonds *stored = s->stored;
   if (s->search->body->particles.number[place] < 0) return;
   int64_t at = s->fill ? stored->first[place] : 0;
-  int64_t count = collect(s->search, (int32_t)place, s->fill ? stored->neighbour + at : NULL,
+  const int64_t total = s->fill ? stored->first[place + 1] - at : 0;
+  int64_t count = collect(s->search, (int32_t)place, total, s->fill ? stored->neighbour + at : NULL,
                           s->fill && stored->scale ? stored->scale + at : NULL);
   if (!s->fill) stored->first[place + 1] = count;
 }

@@ -256,7 +256,7 @@ static int64_t resist(void *formulation, const Sweep *sweep)
   if (sweep->at)
     bond_resist_changes(b, sweep);
   else if (b->bonds)
-    bond_resist_points(b, sweep->first, sweep->last);
+    b->point_sweeps->resist(b, sweep->first, sweep->last);
   else
     b->resist_springs(b, sweep->first, sweep->last);
   return -1;

@@ -1,5 +1,6 @@
 /* What the parts of bond-based peridynamics share: the table entry (bond_based.c), constants (bond_constants.c), sweeps over linear bonds
- * (bond_springs_sweep.c, what they read bond_springs.c) and over bonds with points (bond_points.c), surfaces (bond_surface.c). */
+ * (bond_springs_sweep.c, what they read bond_springs.c) and over bonds with points (bond_points_sweep.c, bond_points.c), surfaces
+ * (bond_surface.c). */
 #ifndef BRECCIA_FORMULATION_BOND_BASED_H
 #define BRECCIA_FORMULATION_BOND_BASED_H
 
@@ -24,6 +25,13 @@ typedef struct BondBased BondBased;
 typedef void BondResist(const BondBased *b, int64_t first, int64_t last);
 LANES_CHOICE(BondResist, bond_resist_springs)
 
+/** Over bonds with points: stretches of a batch of rows, and forces on slices first .. last - 1 from pulls (bond_points_sweep.c). */
+typedef struct BondPointSweeps {
+  void (*stretch)(const BondBased *b, const Sweep *sweep);
+  BondResist *resist;
+} BondPointSweeps;
+LANES_CHOICE(const BondPointSweeps, bond_point_sweeps)
+
 struct BondBased {
   const Particles *particles;
   const Family *family;
@@ -47,6 +55,7 @@ struct BondBased {
   uint8_t *range;          /* [slices] how large stretches were at the last evaluation */
   uint8_t *gaps;           /* [slices] 1: a bond of a lattice slot is missing */
   BondResist *resist_springs;
+  const BondPointSweeps *point_sweeps;
 };
 
 /** Material of a block. */
@@ -79,10 +88,9 @@ LANES_INLINE Lanes bond_constant(const BondBased *b, int64_t slice, const Stretc
   return lanes_set(0.5) * (lanes_set(b->shown[BOND_SHOWN * slice * SLICE + 7]) + ends->last);
 }
 
-/** Of bonds with points: stretches of a batch of rows, their pulls from stresses, forces from pulls (bond_points.c). */
+/** Of bonds with points: stretches of a batch of rows, their pulls from stresses (bond_points.c). */
 int64_t bond_stretch(void *formulation, const Sweep *sweep);
 int64_t bond_pull_of_stress(void *formulation, const Sweep *sweep);
-void bond_resist_points(const BondBased *b, int64_t first, int64_t last);
 
 /** Changes of forces in a linearised step, and bonds one by one (bond_linear.c). */
 void bond_resist_changes(const BondBased *b, const Sweep *sweep);

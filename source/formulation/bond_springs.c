@@ -27,6 +27,7 @@ int bond_springs_create(BondBased *b, Error *error)
   b->numbers = places_array((int64_t)f->pattern_count * (3 * QUAD + LENGTH_SIZE), "bond constants", error);
   if (!b->rows || !b->numbers) return BRECCIA_FAILURE;
   b->resist_springs = bond_resist_springs_chosen();
+  b->point_sweeps = bond_point_sweeps_chosen();
   int32_t end = 0;
   for (int p = 0; p < f->pattern_count; ++p)
     for (int k = 0; k < 3; ++k) {

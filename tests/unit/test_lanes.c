@@ -9,12 +9,13 @@
 
 static breccia_model *body(const char *peridynamics, const char *law, const char *shape)
 {
-  return model_of("materials: {m: {model: %s, density: 1, Young modulus: 150}}\n"
-                  "peridynamics: {formulation: %s, horizon: 3.015}\n"
-                  "cracks: [{cut: {line: [[9.05, -9], [9.05, 3.1]]}}]\n"
-                  "body: {b: {material: m, spacing: 1, %s}}\n"
-                  "solve: {explicit: {steps: 20}}\n",
-                  law, peridynamics, shape);
+  return model_of(
+      "materials: {m: {model: %s, density: 1, Young modulus: 150}, n: {model: %s, density: 1, Young modulus: 90}}\n"
+      "peridynamics: {formulation: %s, horizon: 3.015}\n"
+      "cracks: [{cut: {line: [[9.05, -9], [9.05, 3.1]]}}]\n"
+      "body: {b: {material: m, spacing: 1, %s}}\n"
+      "solve: {explicit: {steps: 20}}\n",
+      law, law, peridynamics, shape);
 }
 
 /** Displacements with stretches of a thousandth; of one particle, if wanted, so large that bonds around it leave the series. */
@@ -110,19 +111,28 @@ static void eight_lanes_give_the_bits_of_four_along_lattices(void **state)
   check("micropolar, space: plane strain", "elastic, Poisson ratio: 0.2", plane);
 }
 
-static void eight_lanes_give_the_bits_of_four_among_scattered_particles(void **state)
+/** A file of the particles of a body 15 long that stand from one x on to another. */
+static void write_scattered(const char *name, int from, int to)
 {
-  (void)state;
-  skip_without_eight();
-  FILE *file = fopen("lanes.csv", "w");
+  FILE *file = fopen(name, "w");
   uint64_t seed = 3;
   fprintf(file, "x,y,z,volume\n");
   for (int n = 0; n < 15 * 7 * 6; ++n) {
     const int at[3] = {n % 15, n / 15 % 7, n / 105};
-    for (int k = 0; k < 3; ++k) fprintf(file, "%.17g,", at[k] + 0.6 * (random_uniform(&seed) - 0.5));
-    fprintf(file, "%.17g\n", 0.9 + 0.2 * random_uniform(&seed));
+    double number[4];
+    for (int k = 0; k < 4; ++k) number[k] = random_uniform(&seed) - 0.5;
+    if (at[0] < from || at[0] >= to) continue;
+    for (int k = 0; k < 3; ++k) fprintf(file, "%.17g,", at[k] + 0.6 * number[k]);
+    fprintf(file, "%.17g\n", 1 + 0.2 * number[3]);
   }
   fclose(file);
+}
+
+static void eight_lanes_give_the_bits_of_four_among_scattered_particles(void **state)
+{
+  (void)state;
+  skip_without_eight();
+  write_scattered("lanes.csv", 0, 15);
   for (size_t k = 0; k < sizeof of / sizeof *of; ++k)
     if (strncmp(of[k][0], "micropolar", 10) && strncmp(of[k][0], "hybrid", 6))
       check(of[k][0], of[k][1], "file: lanes.csv");
@@ -192,6 +202,17 @@ static void eight_lanes_give_the_bits_of_four_in_laws(void **state)
   }
 }
 
+/** Bonds with a history between two materials have two rows each, and go another way. */
+static void eight_lanes_give_the_bits_of_four_between_materials(void **state)
+{
+  (void)state;
+  skip_without_eight();
+  write_scattered("lanes-left.csv", 0, 7);
+  write_scattered("lanes-right.csv", 7, 15);
+  check("bond-based", "bilinear-softening, tensile strength: 0.01, fracture energy: 0.001",
+        "file: lanes-left.csv}, c: {material: n, spacing: 1, file: lanes-right.csv");
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -199,6 +220,7 @@ int main(void)
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_in_laws),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_along_lattices),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four_among_scattered_particles),
+      cmocka_unit_test(eight_lanes_give_the_bits_of_four_between_materials),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
