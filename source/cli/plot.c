@@ -254,7 +254,7 @@ static int run(int argc, char **argv, const Verb *verb)
                                                    : OF_FIELD))
     return 2;
   if (values[MOVIE] && (values[STEP] || values[TIME] || values[OUTPUT])) {
-    complain("breccia plot: --movie shows all written steps and names its file itself: leave out %s",
+    complain("breccia plot: --movie shows a field at all written steps and names its file itself: leave out %s",
              values[OUTPUT] ? "--output"
              : values[STEP] ? "--step"
                             : "--time");
