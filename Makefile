@@ -2,7 +2,7 @@
 cores := $(shell nproc 2>/dev/null || echo 2)
 jobs := $(shell expr $(cores) + 1)# tests at a time: some wait for sockets and servers
 
-.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 coverage clang clang-test fuzz torture mutants install clean
+.PHONY: all setup demo demo-opensees test test-external bench bench-peers bench-servers bench-beside bench-rest bench-bars bench-elements bench-report recovery examples docs format check-format asan tsan arm64 coverage clang clang-test fuzz torture mutants install clean
 
 all:
 	@cmake --preset release > build-log.txt 2>&1 || { cat build-log.txt; echo "Missing packages? 'make setup' installs them."; exit 1; }
@@ -50,6 +50,10 @@ bench-servers: setup all
 # Parameters found again from points of known ones; the table of docs/laboratory.md.
 recovery: all
 	@python3 bench/recovery.py build/release/breccia docs/laboratory.md
+
+# The same bodies by the program of another commit (COMMIT=..., the one before), in turn; tells what takes 5 % longer.
+bench-beside: all
+	@python3 -B bench/beside.py build/release/breccia_bench $(COMMIT)
 
 # LAMMPS from the distribution, on the same cubes in the same run.
 bench-peers: all

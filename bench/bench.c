@@ -11,33 +11,95 @@
 
 enum { MOST_THREADS = 12 }; /* numbers of threads that are tried: 1, 2, 4 ... all */
 
+/** The least that forces take: vector operations a directed bond (fused ones counted once, and for scattered neighbours those that turn records round),
+ *  as the text of the sweeps has them on small strains in space; sweeps over all bonds, and numbers that a place's part of the phases reads and writes,
+ *  each counted once in each phase; bytes a bond that are no family's. All 0: not counted. */
+typedef struct Least {
+  double operations, sweeps, numbers, bytes;
+} Least;
+
 typedef struct Case {
   const char *formulation, *law, *words;
   void (*plain)(Plain *plain); /* NULL: not written */
   bool limit;                  /* the law has none: bonds get a critical stretch */
   const char *horizon;         /* in spacings */
+  Least on_lattices, scattered;
 } Case;
 
 static const Case cases[] = {
-    {"bond-based", "elastic-brittle", "model: elastic-brittle, Young modulus: 150 MPa, tensile strength: 7.5 MPa",
-     plain_bonds, false, "3.015"},
-    {"bond-based", "bilinear-softening",
+    {"bond-based",
+     "elastic-brittle",
+     "model: elastic-brittle, Young modulus: 150 MPa, tensile strength: 7.5 MPa",
+     plain_bonds,
+     false,
+     "3.015",
+     {24, 1, 6, 0},
+     {62, 1, 32, 0}},
+    {"bond-based",
+     "bilinear-softening",
      "model: bilinear-softening, Young modulus: 150 MPa, tensile strength: 75 kPa, fracture energy: 1 kN/m",
-     plain_bonds, false, "3.015"},
-    {"correspondence", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", plain_correspondence,
-     true, "3.015"},
-    {"correspondence", "multi-yield-j2",
+     plain_bonds,
+     false,
+     "3.015",
+     {24, 2, 9, 13},
+     {78, 2, 35, 16}},
+    {"correspondence",
+     "elastic",
+     "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25",
+     plain_correspondence,
+     true,
+     "3.015",
+     {9.7, 2, 99, 0},
+     {90, 2, 107, 0}},
+    {"correspondence",
+     "multi-yield-j2",
      "model: multi-yield-j2, shear modulus: 60 MPa, bulk modulus: 100 MPa, octahedral strength: 30",
-     plain_correspondence, true, "3.015"},
-    {"ordinary", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.3", plain_ordinary, true,
-     "3.015"},
-    {"hybrid", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", NULL, true, "1.5"},
-    {"hybrid", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25", NULL, true, "2.015"},
-    {"micropolar", "elastic", "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.2", plain_links, true, "1.5"},
-    {"micropolar", "link-damage",
+     plain_correspondence,
+     true,
+     "3.015",
+     {0, 0, 0, 0},
+     {0, 0, 0, 0}},
+    {"ordinary",
+     "elastic",
+     "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.3",
+     plain_ordinary,
+     true,
+     "3.015",
+     {45, 2, 22, 0},
+     {124, 2, 52, 0}},
+    {"hybrid",
+     "elastic",
+     "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25",
+     NULL,
+     true,
+     "1.5",
+     {0, 0, 0, 0},
+     {0, 0, 0, 0}},
+    {"hybrid",
+     "elastic",
+     "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.25",
+     NULL,
+     true,
+     "2.015",
+     {0, 0, 0, 0},
+     {0, 0, 0, 0}},
+    {"micropolar",
+     "elastic",
+     "model: elastic, Young modulus: 150 MPa, Poisson ratio: 0.2",
+     plain_links,
+     true,
+     "1.5",
+     {0, 0, 0, 0},
+     {0, 0, 0, 0}},
+    {"micropolar",
+     "link-damage",
      "model: link-damage, Young modulus: 150 MPa, Poisson ratio: 0.2, tensile stretch: 1e-9, compressive stretch: "
      "1e-9, fracture energy: 1 kN/m",
-     plain_links, false, "1.5"}, /* all links damaged a little */
+     plain_links,
+     false,
+     "1.5",
+     {0, 0, 0, 0},
+     {0, 0, 0, 0}}, /* all links damaged a little */
 };
 
 typedef struct BenchBody {
@@ -89,27 +151,29 @@ typedef struct Times {
       speedup[REPEATS], search;
 } Times;
 
-static double step_seconds(breccia_model *model, int threads, int64_t steps)
+/** @param[out] busy  processor time, of all threads */
+static double step_seconds(breccia_model *model, int threads, int64_t steps, double *busy)
 {
   model->threads = threads;
-  double start = clock_seconds();
+  double start = clock_seconds(), busy_start = busy_seconds();
   breccia_model_step(model, steps, NULL);
+  *busy = (busy_seconds() - busy_start) / (double)steps;
   return (clock_seconds() - start) / (double)steps;
 }
 
 static double force_seconds(Domain *d, int threads)
 {
   use_threads(threads);
-  double start = clock_seconds();
+  double start = busy_seconds();
   domain_evaluate(d);
-  return clock_seconds() - start;
+  return busy_seconds() - start;
 }
 
 /** Stresses of all points on particles once more; of points on bonds the law is part of the forces. */
 static double law_seconds(Domain *d)
 {
   if (!points_on_particles(&d->regions[0].points)) return 0;
-  double start = clock_seconds();
+  double start = busy_seconds();
   for (int64_t b = 0; b < d->batch_count; ++b) {
     const int64_t first = d->batches[b].first * SLICE;
     double *strain[6], *stress[6];
@@ -119,7 +183,7 @@ static double law_seconds(Domain *d)
     }
     points_update(&d->regions[0].points, first, (int)(d->batches[b].last * SLICE - first), strain, stress);
   }
-  return clock_seconds() - start;
+  return busy_seconds() - start;
 }
 
 static double search_seconds(const Domain *d)
@@ -127,9 +191,9 @@ static double search_seconds(const Domain *d)
   Family family;
   use_threads(1);
   FamilySpec spec = {d->family.horizon, influence_find("constant"), VOLUME_WHOLE, d->regions[0].type->row_sums};
-  double start = clock_seconds();
+  double start = busy_seconds();
   family_create(&family, &d->body, &spec, NULL);
-  double seconds = clock_seconds() - start;
+  double seconds = busy_seconds() - start;
   family_destroy(&family);
   return seconds;
 }
@@ -141,18 +205,39 @@ static void measure(breccia_model *model, const Case *c, const int *threads, int
   const int64_t steps = (int64_t)(2e7 / (double)d->family.bonds) + 1;
   for (int r = -1; r < REPEATS; ++r) {
     int at = r < 0 ? 0 : r;
-    for (int k = threads_count - 1; k >= 0; --k) t->step[k][at] = step_seconds(model, threads[k], steps);
+    double busy = 0, waited = 0;
+    for (int k = threads_count - 1; k >= 0; --k)
+      t->step[k][at] = waited = step_seconds(model, threads[k], steps, &busy);
+    t->speedup[at] = waited / t->step[threads_count - 1][at];
+    t->step[0][at] = busy; /* of one thread */
     t->force[at] = force_seconds(d, 1);
     t->law[at] = law_seconds(d);
-    double start = clock_seconds();
+    double start = busy_seconds();
     if (plain) c->plain(plain);
-    t->plain[at] = clock_seconds() - start;
+    t->plain[at] = busy_seconds() - start;
     t->ratio[at] = t->plain[at] / (t->force[at] - (strcmp(c->law, "elastic") ? t->law[at] : 0));
     t->share[at] = t->step[0][at] / t->force[at];
-    t->speedup[at] = t->step[0][at] / t->step[threads_count - 1][at];
   }
   t->search = search_seconds(d);
   if (plain) plain_destroy(plain);
+}
+
+/** What a machine allows at most. */
+typedef struct Ceilings {
+  double arithmetic, stream, cache; /* thousand million numbers and bytes a second; bytes */
+} Ceilings;
+
+/** Least time of a force evaluation by arithmetic, and by bytes where these do not stay in the caches, in ns a bond. */
+typedef struct Floor {
+  double arithmetic, bytes;
+} Floor;
+
+static Floor floor_of(const Domain *d, const Least *least, const Ceilings *machine)
+{
+  const double bonds = (double)d->family.bonds, bytes = least->sweeps * (double)family_bytes(&d->family) +
+                                                        least->bytes * bonds +
+                                                        8 * least->numbers * (double)d->particles->places;
+  return (Floor){least->operations / machine->arithmetic, bytes > machine->cache ? bytes / bonds / machine->stream : 0};
 }
 
 static size_t formulation_bytes(const Domain *d)
@@ -196,20 +281,25 @@ int main(int count, char **words)
   write_scattered(cloud, NULL);
   use_threads(1);
   double flops = multiply_add_rate(), one = stream_bandwidth();
+  const Ceilings machine = {arithmetic_rate(), one, last_cache()};
   use_threads(all);
   double many = stream_bandwidth();
-  printf("Ceilings of the machine: %.1f GFLOP/s fused multiply-add on one thread; triad %.1f GB/s on one thread, %.1f "
-         "GB/s on %d.\n\n",
-         flops, one, many, all);
-  printf("| formulation, law | horizon / spacing | body | particles | bytes | search | plain | force | plain / ours | "
-         "step | step / force "
-         "| step, %d "
-         "threads | speed-up | law | bits |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-         all);
+  printf("Ceilings of the machine: %.1f GFLOP/s fused multiply-add on one thread, on four lanes; %.1f thousand million "
+         "numbers a second by the vectors "
+         "that the program takes, half of them fused; triad %.1f GB/s on one thread, %.1f GB/s on %d; %.0f MB in the "
+         "last cache.\n\n",
+         flops, machine.arithmetic, one, many, all, machine.cache / 1e6);
+  printf(
+      "| formulation, law | horizon / spacing | body | particles | bytes | search | plain | force | floor, arithmetic "
+      "| floor, bytes | share | plain / ours | "
+      "step | step / force "
+      "| step, %d "
+      "threads | speed-up | law | bits |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      all);
   fprintf(
       csv,
       "formulation,law,horizon,body,particles,bonds,bytes per bond,search ns per bond,plain ns per bond,force ns per "
-      "bond,ratio,law ns per point,same bits");
+      "bond,floor by arithmetic,floor by bytes,ratio,law ns per point,same bits");
   for (int k = 0; k < threads_count; ++k) fprintf(csv, ",step ns per bond on %d threads", threads[k]);
   fprintf(csv, "\n");
   int failed = 0;
@@ -232,13 +322,20 @@ int main(int count, char **words)
       for (int k = 0; k < threads_count; ++k) step[k] = unit * median(t.step[k], REPEATS);
       const double plain = unit * median(t.plain, REPEATS), force = unit * median(t.force, REPEATS),
                    ratio = median(t.ratio, REPEATS), law = 1e9 * median(t.law, REPEATS) / (double)d->particles->count;
-      printf("| %s, %s | %s | %s | %lld | %.2f | %.0f | %.1f | %.2f | %.1f | %.2f | %.2f | %.2f | %.2f | %.0f | %s |\n",
+      const bool scattered = !strcmp(bodies[b].name, "scattered");
+      const Floor least = floor_of(d, scattered ? &cases[c].scattered : &cases[c].on_lattices, &machine);
+      char floors[80] = "– | – | –";
+      if (least.arithmetic > 0)
+        snprintf(floors, sizeof floors, "%.2f | %.2f | %.0f %%", least.arithmetic, least.bytes,
+                 100 * fmax(least.arithmetic, least.bytes) / force);
+      printf("| %s, %s | %s | %s | %lld | %.2f | %.0f | %.1f | %.2f | %s | %.1f | %.2f | %.2f | %.2f | %.2f | %.0f | "
+             "%s |\n",
              cases[c].formulation, cases[c].law, cases[c].horizon, bodies[b].name, (long long)d->particles->count,
-             bytes, unit * t.search, plain, force, ratio, step[0], median(t.share, REPEATS), step[threads_count - 1],
-             median(t.speedup, REPEATS), law, bits ? "equal" : "DIFFER");
-      fprintf(csv, "%s,%s,%s,%s,%lld,%.0f,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%d", cases[c].formulation, cases[c].law,
-              cases[c].horizon, bodies[b].name, (long long)d->particles->count, bonds, bytes, unit * t.search, plain,
-              force, ratio, law, bits);
+             bytes, unit * t.search, plain, force, floors, ratio, step[0], median(t.share, REPEATS),
+             step[threads_count - 1], median(t.speedup, REPEATS), law, bits ? "equal" : "DIFFER");
+      fprintf(csv, "%s,%s,%s,%s,%lld,%.0f,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,%d", cases[c].formulation,
+              cases[c].law, cases[c].horizon, bodies[b].name, (long long)d->particles->count, bonds, bytes,
+              unit * t.search, plain, force, least.arithmetic, least.bytes, ratio, law, bits);
       for (int k = 0; k < threads_count; ++k) fprintf(csv, ",%.4g", step[k]);
       fprintf(csv, "\n");
       fflush(stdout);
@@ -251,9 +348,13 @@ int main(int count, char **words)
   printf(
       "\nbytes: per directed bond, beyond what is kept per particle; search: ns per bond to find all families on one "
       "thread; "
-      "plain, force, step: ns per directed bond and step on one thread (plain: scalar neighbour rows; of "
+      "plain, force, step: ns of processor time per directed bond and step on one thread (plain: scalar neighbour "
+      "rows; of "
       "correspondence "
-      "elastic and without control); plain / ours: the clay's law left out; law: ns per point; bits: of forces for all "
+      "elastic and without control); floor: what arithmetic takes at least, and bytes at the bandwidth of one thread "
+      "where they do not fit into the last "
+      "cache; share: of the time that the greater of them is; plain / ours: the clay's law left out; law: ns per "
+      "point; bits: of forces for all "
       "numbers of threads. Medians of %d, taken in turn.\n",
       REPEATS);
   return failed;

@@ -1,10 +1,20 @@
 #include "measure.h"
 
 #include "base/cores.h"
+#include "base/lane_kinds.h"
 #include "base/lanes.h"
 #include "base/team.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
+
+double busy_seconds(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 int all_threads(void)
 {
@@ -88,9 +98,61 @@ double multiply_add_rate(void)
   const int64_t rounds = 20000000;
   double seconds[REPEATS], sink = 0;
   for (int r = 0; r < REPEATS; ++r) {
-    double start = clock_seconds();
+    double start = busy_seconds();
     sink += multiply_add(rounds);
-    seconds[r] = clock_seconds() - start;
+    seconds[r] = busy_seconds() - start;
   }
   return 2.0 * 10 * LANES * (double)rounds / median(seconds, REPEATS) / 1e9 + 0 * sink;
+}
+
+/* As many chains as hide how long an operation takes; in turn fused and plain ones, for which processors may have units of their own. */
+#define ARITHMETIC(name, lanes)                                                                                        \
+  double name(int64_t rounds)                                                                                          \
+  {                                                                                                                    \
+    enum { CHAINS = 8 };                                                                                               \
+    typedef double Vector __attribute__((vector_size(8 * (lanes))));                                                   \
+    Vector fused[CHAINS], plain[CHAINS], x = (Vector){0} + 1.000000001, y = (Vector){0} + 1e-9;                        \
+    for (int k = 0; k < CHAINS; ++k) fused[k] = plain[k] = (Vector){0} + k;                                            \
+    for (int64_t r = 0; r < rounds; ++r)                                                                               \
+      for (int k = 0; k < CHAINS; ++k) {                                                                               \
+        fused[k] = fused[k] * x + y;                                                                                   \
+        plain[k] = plain[k] + y;                                                                                       \
+      }                                                                                                                \
+    double total = 0;                                                                                                  \
+    for (int k = 0; k < CHAINS; ++k)                                                                                   \
+      for (int l = 0; l < (lanes); ++l) total += fused[k][l] + plain[k][l];                                            \
+    return total;                                                                                                      \
+  }
+#ifdef __x86_64__
+#define OF_PROCESSORS(words) __attribute__((target(words)))
+#else
+#define OF_PROCESSORS(words)
+#endif
+OF_PROCESSORS("avx512f,fma") static ARITHMETIC(arithmetic_of_eight, 8);
+OF_PROCESSORS("avx2,fma") static ARITHMETIC(arithmetic_of_four, 4);
+
+double arithmetic_rate(void)
+{
+  const int64_t rounds = 4000000;
+  const bool eight = lane_kind() == LANES_OF_AVX512;
+  double seconds[REPEATS], sink = 0;
+  for (int r = 0; r < REPEATS; ++r) {
+    double start = busy_seconds();
+    sink += eight ? arithmetic_of_eight(rounds) : arithmetic_of_four(rounds);
+    seconds[r] = busy_seconds() - start;
+  }
+  return 2.0 * 8 * (eight ? 8 : 4) * (double)rounds / median(seconds, REPEATS) / 1e9 + 0 * sink;
+}
+
+double last_cache(void)
+{
+  double kilobytes = 0;
+  for (int level = 2; level < 4; ++level) { /* entries 0 and 1 are of the first level */
+    char name[64], words[32] = "";
+    snprintf(name, sizeof name, "/sys/devices/system/cpu/cpu0/cache/index%d/size", level);
+    FILE *file = fopen(name, "r");
+    if (file && fgets(words, sizeof words, file)) kilobytes = strtod(words, NULL);
+    if (file) fclose(file);
+  }
+  return 1024 * kilobytes;
 }

@@ -7,6 +7,8 @@
 
 enum { REPEATS = 9 };
 
+/** Processor time of the program, which others on the machine do not lengthen as they do time: of what one thread does. */
+double busy_seconds(void);
 int all_threads(void);
 void use_threads(int threads);
 
@@ -20,6 +22,11 @@ void write_scattered(const char *csv, const char *lammps);
 /** What the machine allows: triad in GB/s on the threads in use, fused multiply-add in GFLOP/s on one. */
 double stream_bandwidth(void);
 double multiply_add_rate(void);
+/** Arithmetic on the widest vectors that the program takes here, half of it fused: thousand million numbers a second on one thread, a fused operation
+ *  counted as one. */
+double arithmetic_rate(void);
+/** Bytes of the last cache before memory, by the system's own files; 0 where there are none. */
+double last_cache(void);
 
 /** Scalar kernels over plain neighbour rows, as most codes walk them: the yardstick of one formulation on one body. */
 typedef struct Plain Plain;
