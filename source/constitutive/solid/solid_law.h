@@ -134,20 +134,6 @@ static inline double elastic_trial(const Elasticity *e, const double strain[6], 
   return 3 * e->bulk * trace(elastic);
 }
 
-static inline void elastic_stress(const Elasticity *e, const double strain[6], double stress[6])
-{
-  const double volume = (e->bulk - 2 * e->shear / 3) * trace(strain);
-  for (int k = 0; k < 6; ++k) stress[k] = 2 * e->shear * strain[k] + (k < 3 ? volume : 0);
-}
-
-/** Plastic strain that leaves a stress at a strain. */
-static inline void plastic_strain(const Elasticity *e, const double strain[6], const double stress[6],
-                                  double plastic[6])
-{
-  const double share = (1 / (9 * e->bulk) - 1 / (6 * e->shear)) * trace(stress);
-  for (int k = 0; k < 6; ++k) plastic[k] = strain[k] - stress[k] / (2 * e->shear) - (k < 3 ? share : 0);
-}
-
 /** Plastic strain that leaves a stress of first invariant I and deviator s at a strain. */
 static inline void plastic_rest(const Elasticity *e, const double strain[6], double invariant, const double s[6],
                                 double plastic[6])
