@@ -285,6 +285,20 @@ static void torsion_is_a_share_of_that_of_round_beams(void **state)
   }
 }
 
+/** Hexagonal lattices have the rows of the thesis: three of them are 47 loaded particles at each end of its plate of 15 in, and its deep beam has 3703. */
+static void lattices_have_the_rows_of_the_thesis(void **state)
+{
+  (void)state;
+  breccia_model *model = NULL;
+  assert_int_equal(breccia_model_load_file(EXAMPLES "/concrete-tension/plate.yaml", NULL, &model, NULL), 0);
+  assert_int_equal(model->loading.count, 2);
+  for (int n = 0; n < 2; ++n) assert_int_equal(model->loading.loads[n].selection.count, 47);
+  breccia_model_destroy(&model);
+  assert_int_equal(breccia_model_load_file(EXAMPLES "/deep-beam/beam.yaml", NULL, &model, NULL), 0);
+  assert_int_equal(model->domain.particles->count, 3703);
+  breccia_model_destroy(&model);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -296,6 +310,7 @@ int main(void)
       cmocka_unit_test(check_tells_how_unlike_the_directions_are),
       cmocka_unit_test(particles_turn_like_their_cells),
       cmocka_unit_test(torsion_is_a_share_of_that_of_round_beams),
+      cmocka_unit_test(lattices_have_the_rows_of_the_thesis),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
