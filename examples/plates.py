@@ -2,6 +2,7 @@
 import csv
 import os
 import shutil
+import tempfile
 from math import floor, sqrt
 
 from reporting import breccia, work
@@ -26,19 +27,20 @@ def by_code(strength, width):
 
 
 class Plate:
-    def __init__(self, width, low, high, **more):
-        """Searches between two loads (N on a particle). more: further variables of the deck."""
+    def __init__(self, width, low, high, within=0.01, keys=None, **more):
+        """Searches between two loads (N on a particle). keys: what else the deck is to say; more: further variables of it."""
         self.width, self.rows = width, rows_of(3 * width)
         self.variables = {"width": f"{width} in", "rows": self.rows, **more}
-        self.folder = os.path.join(work.name, "-".join(f"{value}" for value in self.variables.values()).replace(" ", ""))
-        breccia("failure", "plate.yaml", *self.settings(), "--load", f"variables.load={low} N:{high} N", "--within", "0.01", "--output", self.folder)
+        self.keys = keys or {}
+        self.folder = os.path.join(tempfile.mkdtemp(dir=work.name), "plate")
+        breccia("failure", "plate.yaml", *self.settings(), "--load", f"variables.load={low} N:{high} N", "--within", f"{within}", "--output", self.folder)
         with open(os.path.join(self.folder, "failure.csv")) as file:
             trials = [(float(row["load"].split()[0]), row["outcome"]) for row in csv.DictReader(file)]
         self.fails = min(load for load, outcome in trials if outcome != "bears it")
         self.bears = max(load for load, outcome in trials if outcome == "bears it" and load < self.fails)
 
     def settings(self):
-        return [word for key, value in self.variables.items() for word in ("--set", f"variables.{key}={value}")]
+        return [word for key, value in {**{f"variables.{key}": value for key, value in self.variables.items()}, **self.keys}.items() for word in ("--set", f"{key}={value}")]
 
     def load(self):
         return (self.bears + self.fails) / 2
