@@ -13,16 +13,17 @@ from concurrent.futures import ThreadPoolExecutor
 from reporting import STYLES, between, breccia, chart, table
 
 MODELS = {"bonds": "bonds that soften", "plastic-damage": "plastic damage", "damage": "damage", "hybrid": "damage, hybrid", "lattice": "lattice of beams"}
-TURN = -12.5  # degrees: with it rows of a square lattice are as far from level as from 25 degrees
+TURNS = {"turned": -12.5, "inclined": 30}  # degrees: with the first rows of a square lattice are as far from level as from 25 degrees; with the other those of a
+# hexagonal one rise and fall by 30 degrees, and none is level
 PLACES = (0.05, 0.121, 0.208, 0.324, 0.499, 1.0)  # mm
 
 with open("measured.csv") as file:
     MEASURED = [(float(row[0]), float(row[1])) for row in list(csv.reader(file))[1:]]
 
 
-def turned(text):
-    """The deck with the panel turned by TURN about the origin, on the same lattice."""
-    c, s = math.cos(math.radians(TURN)), math.sin(math.radians(TURN))
+def turned(text, degrees):
+    """The deck with the panel turned about the origin, on the same lattice."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     turn = lambda pair: "[{:.6g}, {:.6g}]".format(*(float(pair[1]) * a + float(pair[2]) * b for a, b in ((c, -s), (s, c))))
     lines = [re.sub(r"\[(-?[\d.]+), (-?[\d.]+)\]", turn, line) if "corners" in line else line for line in text.split("\n")]
     return "\n".join(lines).replace("direction: [0, 1]", f"direction: [{-s:.6f}, {c:.6f}]")
@@ -42,7 +43,7 @@ def scattered(text, folder):
 
 class Panel:
     def __init__(self, model, way="along"):
-        """way: 'along', 'turned' or 'scattered': how the particles stand to the panel."""
+        """way: 'along', one of TURNS or 'scattered': how the particles stand to the panel."""
         self.model, self.way = model, way
         self.folder = model if way == "along" else f"{model}-{way}"
         if "--only-write" in sys.argv:
@@ -51,12 +52,13 @@ class Panel:
         deck = self.folder + "-deck"
         os.makedirs(deck, exist_ok=True)
         with open(os.path.join(deck, "deck.yaml"), "w") as file:
-            file.write(turned(text) if way == "turned" else scattered(text, deck) if way == "scattered" else text)
+            file.write(turned(text, TURNS[way]) if way in TURNS else scattered(text, deck) if way == "scattered" else text)
         breccia("run", os.path.join(deck, "deck.yaml"), "--quiet", "--output", self.folder)
 
     def read(self):
         """Displacement [mm] and force [N] along the jack, and what came of it."""
-        s, c = (math.sin(math.radians(TURN)), math.cos(math.radians(TURN))) if self.way == "turned" else (0, 1)
+        angle = math.radians(TURNS.get(self.way, 0))
+        s, c = math.sin(angle), math.cos(angle)
         rows = {}
         for watch in ("moved", "jack"):
             with open(os.path.join(self.folder, watch + ".csv")) as file:
@@ -91,13 +93,13 @@ def row(name, curve):
             *(f"{load(curve, place):.0f}" for place in PLACES)]
 
 
-with ThreadPoolExecutor(9 if "--all-at-once" in sys.argv else 1) as pool:
-    wanted = [(model,) for model in MODELS] + [(model, "turned") for model in ("bonds", "damage", "lattice")] + [("damage", "scattered")]
+with ThreadPoolExecutor(10 if "--all-at-once" in sys.argv else 1) as pool:
+    wanted = [(model,) for model in MODELS] + [(model, "turned") for model in ("bonds", "damage", "lattice")] + [("damage", "scattered"), ("lattice", "inclined")]
     panels = [panel.read() for panel in pool.map(lambda words: Panel(*words), wanted)]
 plain, others = panels[:5], panels[5:]
 head = ["model", "largest load", "at", "work up to 0.5 mm", *(f"N at {place} mm" for place in PLACES)]
 between("models", table(head, [row("test", MEASURED)] + [row(MODELS[panel.model], panel.curve) for panel in plain]))
-ways = {"turned": f"rows turned by {-TURN} degrees", "scattered": "no rows"}
+ways = {"turned": f"rows turned by {-TURNS['turned']} degrees", "scattered": "no rows", "inclined": f"rows that rise and fall by {TURNS['inclined']} degrees"}
 between("rows", table(head, [row(f"{MODELS[panel.model]}, {ways[panel.way]}", panel.curve) for panel in others]))
 between("quiet", "At the end the kinetic energy is {:.2f} to {:.2f} % of the work, and damping has taken {:.1f} to {:.1f} % of it.".format(
     *(end(100 * panel.energy[name] / panel.energy["external"] for panel in panels) for name in ("kinetic", "damping") for end in (min, max))))
@@ -112,5 +114,5 @@ chart("load", "Load of the L-shaped panel", "displacement of the jack [mm]", "lo
        zip(plain, [style.replace("linespoints", "lines").split(" pt")[0] + " lw 1.5 " + style[style.index("lc"):] for style in STYLES] + ["with lines lw 1.5 lc rgb '#b03a8c'"])],
       "set xrange [0:1]\nset yrange [0:9000]\nset bmargin 8")
 for panel, field, name in ((plain[0], "damage", "bonds"), (plain[2], "material-damage", "damage"), (plain[4], "tensile-damage", "lattice"), (plain[3], "material-damage", "hybrid"),
-                           (others[0], "damage", "bonds-turned"), (others[1], "material-damage", "damage-turned"), (others[2], "tensile-damage", "lattice-turned"), (others[3], "material-damage", "damage-scattered")):
+                           (others[0], "damage", "bonds-turned"), (others[1], "material-damage", "damage-turned"), (others[2], "tensile-damage", "lattice-turned"), (others[3], "material-damage", "damage-scattered"), (others[4], "tensile-damage", "lattice-inclined")):
     shutil.copy(os.path.join(panel.folder, "pictures", field + ".png"), f"pictures/{name}.png")
