@@ -177,7 +177,7 @@ typedef struct breccia_run {
   int restart;        /* breccia_restart */
   int64_t steps;      /* stop after so many steps in all; 0: as the deck says */
   const volatile int *
-      interrupted; /* polled between steps, and between the iterations of an increment at rest: non-zero stops the run cleanly, with a
+      interrupted; /* polled between steps, and between the iterations of an increment at rest, but not while bonds break there: non-zero stops the run cleanly, with a
                      * checkpoint; may be NULL */
   void (*progress)(void *context, int64_t step, int64_t steps,
                    double seconds_left); /* a few times a second; may be NULL */

@@ -116,7 +116,7 @@ LANES_INLINE Lanes lanes_cross(Lanes a, Lanes b, Lanes c, Lanes d)
   return lanes_product(a, b) - c * d;
 }
 
-/** e^x = power (1 + p). Below -708 and above 709 it is what it is there. */
+/** e^x = power (1 + part); x is limited to -708 to 709. */
 LANES_INLINE void lanes_split_exponential(Lanes x, Lanes *power, Lanes *part)
 {
   x = lanes_choose(x < lanes_set(-708), lanes_set(-708), x);

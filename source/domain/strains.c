@@ -105,7 +105,7 @@ int domain_take_loads(Domain *d, Loading *loading, const DeckReader *reader)
   for (int r = 0; r < d->region_count; ++r)
     if (make_rows(d, &d->regions[r], error)) return BRECCIA_FAILURE;
   share(d);
-  s->known = !d->begins_under_stress; /* else nothing is strained yet */
+  s->known = !d->begins_under_stress; /* else laws are led to their stress first */
   return BRECCIA_OK;
 }
 

@@ -192,7 +192,7 @@ struct FormulationType {
   /** Whether forces are found with something as the step before left it, so that a step that is tried again from where it ended comes to other
    *  ones; NULL: never. */
   bool (*lags)(const void *formulation);
-  /** Share of the forces that a step may leave out of balance once that something is as the step left it; INFINITY or NULL: nothing lags, ever. */
+  /** Share of the forces that may be out of balance once what lags is as the step has left it; INFINITY or NULL: nothing lags, ever. */
   double (*lag_allowed)(const void *formulation);
   /** Whether linearised steps take what is damaged by the stiffness that it has left, without what its damage changes: such corrections always come
    *  on, but slowly. NULL: never. */

@@ -5,13 +5,6 @@
 
 #include <math.h>
 
-LANES_INLINE bool any_of(LaneMask mask)
-{
-  int64_t any = 0;
-  for (int k = 0; k < LANES; ++k) any |= mask[k];
-  return any != 0;
-}
-
 /** Stretch of (|y|^2 - |xi|^2) / |xi|^2. Each lane goes its own way, so that both ends of a link find the same bits. */
 LANES_INLINE Lanes stretch_of(Lanes d)
 {
@@ -21,7 +14,7 @@ LANES_INLINE Lanes stretch_of(Lanes d)
   for (int n = 0; n < STRETCH_TERMS; n += 2)
     pair[n / 2] = lanes_set(stretch_terms[n]) - d * lanes_set(stretch_terms[n + 1]);
   const Lanes series = d * (pair[0] + square * (pair[1] + square * pair[2]));
-  if (!any_of(far)) return series;
+  if (!lanes_any(far)) return series;
   return lanes_choose(far, d / (lanes_set(1) + lanes_root(lanes_set(1) + d)), series);
 }
 
@@ -75,7 +68,7 @@ static double larger_damage(const Micropolar *m, int64_t place, int64_t other, d
 LANES_INLINE Lanes damage_now(const Micropolar *m, const LinkLanes *l, Lanes d, LaneMask beyond, bool tension)
 {
   const breccia_link *law = &m->damage->laws[m->particles->block[l->place / SLICE]];
-  if (!any_of(beyond)) return lanes_set(0); /* spares quotients where nothing new is damaged */
+  if (!lanes_any(beyond)) return lanes_set(0); /* spares quotients where nothing new is damaged */
   const Lanes stretch = stretch_of(d);
   Lanes now = tension ? damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force)
                       : damage_of(-stretch, law->compression_begin, law->compression_end, false);
@@ -91,7 +84,7 @@ LANES_INLINE bool grow(double *const damage[2], int64_t at, LaneMask counts, Lan
 {
   const Lanes before = lanes_load(damage[0] + at);
   const LaneMask more = (LaneMask)(now > before) & counts;
-  const bool grows = any_of(more);
+  const bool grows = lanes_any(more);
   *most = lanes_choose(more, now, before);
   if (grows || stale) lanes_store(damage[1] + at, *most);
   return grows;
@@ -112,7 +105,7 @@ LANES_INLINE bool is_beyond(const Micropolar *m, int64_t slice, int dimensions)
       beyond |= ((LaneMask)(d > longer) | (LaneMask)(d < shorter)) & lanes_half(l.intact, half);
     }
   }
-  return any_of(beyond);
+  return lanes_any(beyond);
 }
 
 LANES_INLINE void find_tension(const Micropolar *m, int64_t slice, int dimensions)
@@ -141,7 +134,7 @@ LANES_INLINE void find_tension(const Micropolar *m, int64_t slice, int dimension
     lanes_store(damage->damaged + place, count);
   }
   damage->grown[slice] = (uint8_t)((damage->grown[slice] & GROWN_IN_COMPRESSION) | (grown ? GROWN_IN_TENSION : 0) |
-                                   (any_of(pressed) ? PRESSED : 0));
+                                   (lanes_any(pressed) ? PRESSED : 0));
 }
 
 LANES_INLINE void find_compression(const Micropolar *m, int64_t slice, int dimensions)

@@ -101,7 +101,9 @@ LANES_INLINE StretchEnds stretch_ends(const Family *f, const double *shown, int6
     ends.square += xi * xi;
   }
   /* Quotient and root are found beside the other arithmetic; kept lengths would have to come from memory. */
-  const Lanes by_square = lanes_intact(f->intact[slot], half, lanes_set(1) / ends.square);
+  const LaneMask intact =
+      lanes_half(f->intact[slot], half); /* where there is no bond, the particle has itself as neighbour */
+  const Lanes by_square = lanes_where(intact, lanes_set(1) / lanes_choose(intact, ends.square, lanes_set(1)));
   ends.d *= by_square;
   ends.by_length = lanes_root(by_square);
   ends.weight = x[3];

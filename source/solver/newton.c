@@ -468,9 +468,9 @@ const char *newton_describe(const Newton *n, NewtonOutcome outcome, char *words,
   case NEWTON_SLOW:
     snprintf(words, size, "%lld iteration%s left %.2g of the forces out of balance%s%s%s%s",
              (long long)n->iterations - 1, n->iterations == 2 ? "" : "s", n->unbalanced,
-             n->unbalanced <= n->spec->residual
-                 ? ", few enough, but more than another tolerance allows of the last correction"
-                 : "",
+             n->unbalanced <= n->spec->residual ? ", which is enough, but the last correction is larger than "
+                                                  "'displacement tolerance' or 'energy tolerance' allows"
+                                                : "",
              n->spec->iterations < FEW ? ": allow more 'iterations'" : "",
              n->indefinite ? ", and the body does not resist some motion any more" : "", n->indefinite ? parts : "");
     break;

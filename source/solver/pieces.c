@@ -12,7 +12,7 @@ enum { RIGID = 6 };
 typedef struct Hold {
   int64_t particles, inside; /* all, and without images outside supports */
   int32_t place;             /* of its particle of the lowest number inside */
-  bool loaded, worked;       /* a load acts on it; or a prescribed motion */
+  bool loaded, worked;       /* a load acts on it; a load or a prescribed motion */
   double low[3], high[3], centre[3], size;
   double moment[RIGID][RIGID];
 } Hold;

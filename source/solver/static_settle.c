@@ -45,7 +45,7 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
   Static *s = run->own;
   int64_t broken;
   *outcome = NEWTON_CONVERGED;
-  s->newton.interrupted = NULL; /* bonds that have broken stay so: there is no way back */
+  s->newton.interrupted = NULL; /* bonds that have broken in equilibrium stay so: what this leads to is found first */
   while (*outcome == NEWTON_CONVERGED &&
          (broken = increment_break(&s->increment, s->clock, s->spec->bonds_at_once)) > 0) {
     if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
@@ -81,7 +81,8 @@ int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, TryBy *way
     NewtonOutcome again;
     if (try_again(s, first, BY_METHOD, &again, error)) return BRECCIA_FAILURE;
     const bool few = s->newton.unbalanced_before < enough;
-    for (TryBy by = BY_SECANTS; by <= BY_RELAXATION && again != NEWTON_CONVERGED && static_may_relax(s); ++by) {
+    for (TryBy by = BY_SECANTS;
+         by <= BY_RELAXATION && again < NEWTON_STOPPED && again != NEWTON_CONVERGED && static_may_relax(s); ++by) {
       text_add(&run->log, "    no equilibrium\n"); /* none near: the body jumps */
       if (try_again(s, false, by, &again, error)) return BRECCIA_FAILURE;
       *way = by > *way ? by : *way;

@@ -157,7 +157,7 @@ static const char *describe_failure(const Static *s, NewtonOutcome outcome, char
 
 /** Whether images that do not slide stand for a support: what cracks beside them loses its way behind the peak, as images hand no force on
  *  (docs/choosing.md). */
-static bool cracks_along_images(const Domain *d)
+static bool has_fixed_images(const Domain *d)
 {
   bool found = false;
   for (int k = 0; k < d->body.margins.count; ++k)
@@ -183,16 +183,16 @@ static int fail(const Static *s, NewtonOutcome outcome, bool settled, Error *err
                    "iterations', or go on with a stage of 'explicit'";
   } else {
     describe_failure(s, outcome, words, sizeof words);
-    if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
+    if (outcome == NEWTON_SLOW && s->newton.unbalanced <= s->spec->newton.residual)
+      advice = "take a larger 'displacement tolerance' or 'energy tolerance'";
+    else if (outcome == NEWTON_SLOW && domain_is_elastic(s->domain) && !s->newton.indefinite)
       advice = s->newton.relaxes ? "allow more 'relaxation iterations', or take a larger 'residual'"
-               : s->newton.unbalanced <= s->spec->newton.residual
-                   ? "take a larger 'displacement tolerance' or 'energy tolerance'"
-                   : "allow more 'iterations', or take a larger 'residual'";
+                                 : "allow more 'iterations', or take a larger 'residual'";
     else if (domain_may_soften(s->domain) && static_may_relax(s)) {
       tried = "by Newton's method, descent by secants and dynamic relaxation; at last ";
       advice = "the body may fail at this load: take 'method: relaxation' with more 'relaxation iterations', "
                "go on with a stage of 'explicit', as by 'quasi-static', or look at the loads and at the last pictures";
-    } else if (domain_may_soften(s->domain) && cracks_along_images(s->domain)) {
+    } else if (s->spec->control && domain_may_soften(s->domain) && has_fixed_images(s->domain)) {
       advice = "the body may fail at this load; where it cracks along a support 'held: all', hold layers by "
                "'displacement' instead, beside which the branch behind the peak can be followed";
     }

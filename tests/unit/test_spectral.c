@@ -74,15 +74,15 @@ static void eigenvalues_and_vectors_are_right_to_a_few_roundings(void **state)
       for (int n = 0; n < 3; ++n) {
         assert_true(n == 0 || s.value[n][l] <= s.value[n - 1][l]);
         assert_true(n == 0 || plain[n][l] <= plain[n - 1][l]);
-        worst[0] = fmax(worst[0], fmax(fabs(s.value[n][l] - value[n]), fabs(plain[n][l] - value[n])) / size);
+        worst[0] = larger_of(worst[0], larger_of(fabs(s.value[n][l] - value[n]), fabs(plain[n][l] - value[n])) / size);
         for (int m = 0; m < 3; ++m) {
           double dot = 0, product = 0;
           for (int k = 0; k < 3; ++k) {
             dot += s.vector[n][k][l] * s.vector[m][k][l];
             product += a[l][symmetric_place[3 * m + k]] * s.vector[n][k][l];
           }
-          worst[1] = fmax(worst[1], fabs(dot - (n == m)));
-          worst[2] = fmax(worst[2], fabs(product - s.value[n][l] * s.vector[n][m][l]) / size);
+          worst[1] = larger_of(worst[1], fabs(dot - (n == m)));
+          worst[2] = larger_of(worst[2], fabs(product - s.value[n][l] * s.vector[n][m][l]) / size);
         }
       }
     }
@@ -119,8 +119,8 @@ static void exponentials_and_logarithms_are_right_to_their_last_digits(void **st
   double worst[2] = {0};
   for (int n = 0; n < 100000; ++n) {
     const double x = n % 2 ? 1400 * (random_uniform(&seed) - 0.5) : 2 * (random_uniform(&seed) - 0.5), y = exp(x);
-    worst[0] = fmax(worst[0], fabs(lanes_exponential(lanes_set(x))[0] / y - 1));
-    worst[1] = fmax(worst[1], fabs(lanes_logarithm(lanes_set(y))[0] - log(y)) / fmax(fabs(log(y)), 1e-300));
+    worst[0] = larger_of(worst[0], fabs(lanes_exponential(lanes_set(x))[0] / y - 1));
+    worst[1] = larger_of(worst[1], fabs(lanes_logarithm(lanes_set(y))[0] - log(y)) / fmax(fabs(log(y)), 1e-300));
   }
   assert_near(lanes_logarithm(lanes_set(1))[0], 0, 0);
   assert_near(lanes_exponential(lanes_set(0))[0], 1, 0);

@@ -6,7 +6,7 @@
  * f_c0 ((1 + a) exp(-b x) - a exp(-2 b x)), with 1 - D = exp(-m b x), so that a share m of the softening is loss of stiffness. Where concrete
  * has an initial fracture energy of its own (Bazant 2002), tension is f_t c(x), c = t exp(-b x) + (1 - t) exp(-k b x), and 1 - D = c^m.
  *
- * The flow keeps the direction of the trial deviator, and all else follows from one multiplier: its equation has one unknown. */
+ * The flow keeps the direction of the trial deviator. */
 #include "constitutive/solid/damage_plasticity.h"
 
 enum {

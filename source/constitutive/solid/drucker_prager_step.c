@@ -27,8 +27,8 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
               dilated = t.invariant - lanes_set(bulk9 * c->dilation) * on_cone,
               sheared = t.length - lanes_set(shear2) * on_cone;
   const LaneMask cone = (excess > zero) & (dilated <= cut) & (sheared >= zero);
-  /* Otherwise the cut-off, or where the cone meets it. Without friction there is none, and nothing is lost by a number that is none. */
-  const Lanes rest = radius - lanes_set(c->slope * c->cut), at_cut = lanes_where(rest > zero, rest),
+  /* Otherwise the cut-off, or where the cone meets it. Without friction there may be none. */
+  const Lanes rest = radius - lanes_set(isinf(c->cut) ? 0 : c->slope * c->cut), at_cut = lanes_where(rest > zero, rest),
               beyond = t.length - at_cut;
   const LaneMask shears = beyond > zero;
   const Lanes on_cut = hardening_multiplier(&c->hardening, beyond, shear2, x, &grown, &hard_at_cut),

@@ -32,13 +32,19 @@ LANES_INLINE void return_stress(const MohrCoulomb *c, const Lanes trial[3], cons
     const CoulombReturn *r = &c->returns[set];
     if (!r->exists) continue;
     Lanes tried[3] = {trial[0], trial[1], trial[2]}, least = lanes_set(INFINITY), beyond[PLANES];
-    for (int n = 0; n < 3; ++n) {
-      const Lanes multiplier = lanes_dot(lanes_set(r->inverse[n][0]), excess[r->plane[0]], lanes_set(r->inverse[n][1]),
-                                         excess[r->plane[1]], lanes_set(r->inverse[n][2]), excess[r->plane[2]]);
-      least = lanes_least(least, multiplier);
-      for (int k = 0; k < 3; ++k) tried[k] -= multiplier * lanes_set(r->stiff_flow[n][k]);
+    Lanes multiplier[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+    for (int k = 0; k < PLANES; ++k) beyond[k] = excess[k];
+    for (int turn = 0; turn < 2;
+         ++turn) { /* once more for roundings of the inverse, which are large where volumes hardly change */
+      for (int n = 0; n < 3; ++n) {
+        const Lanes more = lanes_dot(lanes_set(r->inverse[n][0]), beyond[r->plane[0]], lanes_set(r->inverse[n][1]),
+                                     beyond[r->plane[1]], lanes_set(r->inverse[n][2]), beyond[r->plane[2]]);
+        multiplier[n] += more;
+        for (int k = 0; k < 3; ++k) tried[k] -= more * lanes_set(r->stiff_flow[n][k]);
+      }
+      excess_of(c, tried, beyond);
     }
-    excess_of(c, tried, beyond);
+    for (int n = 0; n < 3; ++n) least = lanes_least(least, multiplier[n]);
     const LaneMask admissible = (tried[0] >= tried[1] - tolerance) & (tried[1] >= tried[2] - tolerance) &
                                 (beyond[SHEAR13] <= tolerance) & (beyond[TENSION1] <= tolerance) & ~found,
                    good = admissible & (least >= least_push), number = (LaneMask){0} + set;
