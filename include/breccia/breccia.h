@@ -130,6 +130,8 @@ typedef struct breccia_law {
   int (*link)(const void *constants, breccia_link *link, char *reason, size_t reason_size);
   /** Dimension of history number k that has a name, like "stress"; "": a plain number. NULL: all are plain numbers. */
   const char *(*history_dimension)(const void *constants, int k);
+  /** 1: history number k is a damage, from 0 to 1, and a bond that is broken counts as 1 in the mean over a family. NULL: none is. */
+  int (*history_is_damage)(const void *constants, int k);
 } breccia_law;
 
 /** @return the k-th law of the library, or NULL after the last */

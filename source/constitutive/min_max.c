@@ -54,6 +54,13 @@ static const char *history_dimension(const void *constants, int k)
   return own || !c->base.law->history_dimension ? "" : c->base.law->history_dimension(c->base.constants, k);
 }
 
+static int history_is_damage(const void *constants, int k)
+{
+  const MinMax *c = constants;
+  if (k == c->base.history_values) return 1;
+  return c->base.law->history_is_damage && c->base.law->history_is_damage(c->base.constants, k);
+}
+
 static void begin(const void *constants, double *history)
 {
   const MinMax *c = constants;
@@ -106,6 +113,7 @@ const breccia_law law_min_max = {
     .history_values = history_values,
     .history_name = history_name,
     .history_dimension = history_dimension,
+    .history_is_damage = history_is_damage,
     .begin = begin,
     .update = update,
 };

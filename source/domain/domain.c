@@ -7,12 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-double domain_history(const Domain *d, int64_t place, int k)
+/** Of the bonds of a place that are not broken. */
+static double mean_history(const Domain *d, const Region *region, int64_t place, int k)
 {
-  const Region *region = domain_region(d, place);
-  if (!region->points.components)
-    return region->type->history ? region->type->history(region->formulation, place, k) : 0;
-  if (points_on_particles(&region->points)) return points_history(&region->points, place)[k];
   const int64_t slice = place / SLICE;
   const int lane = (int)(place % SLICE);
   double sum = 0;
@@ -25,6 +22,18 @@ double domain_history(const Domain *d, int64_t place, int k)
       ++count;
     }
   return count ? sum / count : 0;
+}
+
+double domain_history(const Domain *d, int64_t place, int k)
+{
+  const Region *region = domain_region(d, place);
+  const Material *material = &d->materials[d->material[place / SLICE]];
+  if (points_on_particles(&region->points)) return points_history(&region->points, place)[k];
+  if (!region->points.components && region->type->history) return region->type->history(region->formulation, place, k);
+  const double mean = region->points.components ? mean_history(d, region, place, k) : 0;
+  if (!material->law->history_is_damage || !material->law->history_is_damage(material->constants, k)) return mean;
+  const double broken = domain_damage(d, (int32_t)place);
+  return broken + (1 - broken) * mean;
 }
 
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])

@@ -292,7 +292,8 @@ bool domain_is_elastic(const Domain *domain);
  *  virial stress of the bonds. */
 void domain_look(const Domain *domain, int64_t place, double strain[6], double stress[6]);
 
-/** History number k of the law at a place, as committed; of bonds the mean over the family. */
+/** History number k of the law at a place, as committed; of bonds the mean over the family, of a damage with broken ones as 1, of others
+ *  without them. */
 double domain_history(const Domain *domain, int64_t place, int k);
 
 /** Brings the arrays of strains and stresses up to date where no law writes them; makes them when they are first wanted. */

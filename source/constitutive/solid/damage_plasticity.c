@@ -136,6 +136,12 @@ static void history_name(const void *constants, int k, char *name, size_t size)
   snprintf(name, size, "%s", k >= PLASTIC_IN_TENSION ? names[k - PLASTIC_IN_TENSION] : "");
 }
 
+static int history_is_damage(const void *constants, int k)
+{
+  (void)constants;
+  return k == PLASTIC_DAMAGE;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   return ((const DamagePlasticity *)constants)->update(constants, batch);
@@ -165,5 +171,6 @@ const breccia_law law_damage_plasticity = {
     .softening_energy = softening_energy,
     .history_values = history_values,
     .history_name = history_name,
+    .history_is_damage = history_is_damage,
     .update = update,
 };

@@ -91,6 +91,12 @@ static void history_name(const void *constants, int k, char *name, size_t size)
   snprintf(name, size, "%s", k == LINK_TENSILE ? "tensile damage" : "compressive damage");
 }
 
+static int history_is_damage(const void *constants, int k)
+{
+  (void)constants;
+  return k == LINK_TENSILE;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   return ((const LinkLaw *)constants)->update(constants, batch);
@@ -118,6 +124,7 @@ const breccia_law law_link_damage = {
     .softening_energy = softening_energy,
     .history_values = history_values,
     .history_name = history_name,
+    .history_is_damage = history_is_damage,
     .update = update,
     .link = find_link,
 };

@@ -66,6 +66,12 @@ static void begin(const void *constants, double *history)
   history[MAZARS_DAMAGE] = 0;
 }
 
+static int history_is_damage(const void *constants, int k)
+{
+  (void)constants;
+  return k == MAZARS_DAMAGE;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   return ((const Mazars *)constants)->update(constants, batch);
@@ -90,6 +96,7 @@ const breccia_law law_mazars = {
     .softening_energy = softening_energy,
     .history_values = history_values,
     .history_name = history_name,
+    .history_is_damage = history_is_damage,
     .begin = begin,
     .update = update,
 };

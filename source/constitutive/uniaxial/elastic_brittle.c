@@ -58,6 +58,12 @@ static void history_name(const void *constants, int k, char *name, size_t size)
   snprintf(name, size, "bond damage");
 }
 
+static int history_is_damage(const void *constants, int k)
+{
+  (void)constants;
+  return k == 0;
+}
+
 static int update(const void *constants, const breccia_batch *batch)
 {
   const Brittle *c = constants;
@@ -87,5 +93,6 @@ const breccia_law law_elastic_brittle = {
     .failure_strain = failure_strain,
     .history_values = history_values,
     .history_name = history_name,
+    .history_is_damage = history_is_damage,
     .update = update,
 };

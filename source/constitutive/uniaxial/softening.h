@@ -114,4 +114,10 @@ static inline void softening_history_name(const void *constants, int k, char *na
   snprintf(name, size, "bond damage");
 }
 
+static inline int softening_history_is_damage(const void *constants, int k)
+{
+  (void)constants;
+  return k == 0;
+}
+
 #endif

@@ -67,5 +67,6 @@ const breccia_law law_trilinear_softening = {
     .softening_energy = softening_start,
     .history_values = softening_history_values,
     .history_name = softening_history_name,
+    .history_is_damage = softening_history_is_damage,
     .update = update,
 };
