@@ -49,7 +49,8 @@ static const Field load_fields[] = {
      .meaning =
          "of what acts on a face. bonds: to the particles that the bonds cut off by the face would have pulled, "
          "and as they would have, so that an even stress up to the face is exact: standard for one layer of square and "
-         "cubic lattices in formulations that can tell (hybrid). layers: evenly over the layers of the face",
+         "cubic lattices in formulations that can tell (hybrid and correspondence). layers: evenly over the layers of "
+         "the face",
      .words = (const char *const[]){"bonds", "layers", NULL}},
 #define LOAD(name, word, form, measure, about)                                                                         \
   {.key = word,                                                                                                        \

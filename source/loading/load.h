@@ -116,6 +116,7 @@ typedef struct LoadWords {
   const char *words;            /* NULL: nothing to tell */
   double value;                 /* in the deck's units */
   const char *dimension, *unit; /* and that unit of the SI to show it in */
+  double direction[3];          /* unit vector; 0: none to tell */
 } LoadWords;
 
 /** How an even stress acts on marked places, as FormulationType.even_stress says it; NAN where that is not known. */

@@ -22,8 +22,10 @@ static const Field picture_fields[] = {
      .kind = FIELD_TEXT,
      .offset = offsetof(PictureSpec, curve),
      .standard = "",
-     .meaning = "columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis; several "
-                "for the vertical one have commas between them; a minus before a name turns the sign",
+     .meaning =
+         "columns of histories, 'watch.column : watch.column' for the horizontal and the vertical axis; several "
+         "for the vertical one have commas between them; a minus before a name turns the sign; each history has the "
+         "columns 'time' and 'step'",
      .group = 'A'},
     {.key = "energy",
      .kind = FIELD_FLAG,

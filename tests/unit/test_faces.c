@@ -155,6 +155,23 @@ static void water_presses_by_depth_at_the_face(void **state)
   breccia_model_destroy(&m);
 }
 
+/** 1/2 of the unit weight times the depth squared times the thickness, whatever columns at corners stand for. */
+static void water_comes_to_the_force_on_its_face(void **state)
+{
+  (void)state;
+  double at;
+  for (int f = 0; f < 3; ++f)
+    for (int k = 0; k < 2; ++k)
+      for (int above = 0; above < 2; ++above) {
+        char loads[200];
+        snprintf(loads, sizeof loads, "loads: [{on: {face: x-}, water pressure: {surface: %d, unit weight: 10}}]\n",
+                 above ? 2 : 4);
+        breccia_model *m = brick(forms[f], "plane strain", horizons[k], "[12, 30]", loads);
+        assert_near(forces_of(m, 0, &at).external[0], 10 * 0.3 * (above ? 2 * 2 : 4 * 4 - 1) / 2, 1e-12);
+        breccia_model_destroy(&m);
+      }
+}
+
 /** What a user gets of it: a bar that is pulled at its last row has an even strain to the end, and its end moves as it should. */
 static void a_pulled_bar_strains_evenly_to_its_end(void **state)
 {
@@ -220,6 +237,7 @@ int main(void)
       cmocka_unit_test(an_even_stress_reaches_up_to_all_faces),
       cmocka_unit_test(resultants_are_right_whatever_stands_behind_the_face),
       cmocka_unit_test(water_presses_by_depth_at_the_face),
+      cmocka_unit_test(water_comes_to_the_force_on_its_face),
       cmocka_unit_test(a_pulled_bar_strains_evenly_to_its_end),
       cmocka_unit_test(what_bonds_cannot_tell_is_refused),
   };

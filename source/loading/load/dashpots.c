@@ -271,7 +271,10 @@ static const char *kind(const LoadValue *value, const char **dimension)
 
 static LoadWords tell(const Load *load, const Particles *p)
 {
-  return (LoadWords){"waves leave through", face_area(&((const Dashpots *)load->own)->face, load, p), "area", "m2"};
+  return (LoadWords){.words = "waves leave through",
+                     .value = face_area(&((const Dashpots *)load->own)->face, load, p),
+                     .dimension = "area",
+                     .unit = "m2"};
 }
 
 const LoadType dashpots_load = {.create = create,

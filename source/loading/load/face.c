@@ -49,14 +49,40 @@ void face_destroy(Face *face)
   *face = (Face){0};
 }
 
-double face_area(const Face *face, const Load *load, const Particles *p)
+double face_force(const Face *face, const Load *load, const Particles *p, const double *value)
 {
   double sum = 0;
   for (int64_t n = 0; n < load->selection.count; ++n) {
     const int32_t place = load->selection.places[n];
-    sum += p->volume[place] * face->per_depth[place / SLICE];
+    sum += (value ? value[n] : 1) * p->volume[place] * face->per_depth[place / SLICE];
   }
   return sum;
+}
+
+double face_area(const Face *face, const Load *load, const Particles *p)
+{
+  return face_force(face, load, p, NULL);
+}
+
+int face_balance(Face *face, const Load *load, const Particles *p, const double *value, Error *error)
+{
+  double *area = memory_zeroed((size_t)load->selection.count, sizeof *area, "face", error); /* that columns stand for */
+  if (!area) return BRECCIA_FAILURE;
+  double missing = face_force(face, load, p, value), at_corners = 0;
+  for (int64_t n = 0; n < face->count; ++n) area[face->at[n]] += face->per_volume[n] * p->volume[face->place[n]];
+  for (int64_t n = 0; n < load->selection.count; ++n) {
+    const int32_t place = load->selection.places[n];
+    const double own = p->volume[place] * face->per_depth[place / SLICE];
+    missing -= value[n] * area[n];
+    if (fabs(area[n] - own) <= 1e-9 * own)
+      area[n] = 0;
+    else
+      at_corners += value[n] * area[n];
+  }
+  for (int64_t n = 0; n < face->count && at_corners > 0; ++n)
+    if (area[face->at[n]] != 0) face->per_volume[n] *= 1 + missing / at_corners;
+  free(area);
+  return BRECCIA_OK;
 }
 
 void face_push(const Face *face, Particles *p, const double traction[3])

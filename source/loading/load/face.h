@@ -20,10 +20,14 @@ int face_create(Face *face, const Load *load, const LoadMaking *making);
 /** Spreads it over the particles on which forces act: those of the load, or as the bonds would that the face has cut off (docs/theory.md 5.5), with
  *  those behind them, which become the load's `other`. */
 int face_spread(Face *face, Load *load, const LoadMaking *making);
+/** Scales what columns take that stand for other areas than their own, near corners, so that the force of an uneven load in all is the one over the face.
+ *  @param[in] value  [particles of the load] force per area */
+int face_balance(Face *face, const Load *load, const Particles *particles, const double *value, Error *error);
 void face_destroy(Face *face);
 
-/** Area of the face. */
+/** Area of the face; with `value`, [particles of the load] force per area, the force on it. */
 double face_area(const Face *face, const Load *load, const Particles *particles);
+double face_force(const Face *face, const Load *load, const Particles *particles, const double *value);
 
 /** Adds a force per area to the external forces, by all threads. */
 void face_push(const Face *face, Particles *particles, const double traction[3]);

@@ -200,7 +200,8 @@ int face_spread(Face *face, Load *load, const LoadMaking *making)
   bool any = false;
   const int status = can ? spread_by_bonds(face, load, making, &any) : BRECCIA_OK;
   if (status || any || !told) return status;
-  return node_error(reader->document, section_node(load->spec, "spread"), reader->error,
-                    "spread: bonds tell where forces act behind one layer of a face of a square or cubic lattice with "
-                    "'formulation: hybrid', no nearer to another block than that; take 'spread: layers'");
+  return node_error(
+      reader->document, section_node(load->spec, "spread"), reader->error,
+      "spread: bonds tell where forces act behind one layer of a face of a square or cubic lattice with "
+      "'formulation: hybrid' or correspondence, no nearer to another block than that; take 'spread: layers'");
 }

@@ -118,7 +118,8 @@ static LoadWords tell(const Load *load, const Particles *p)
     for (int k = 0; k < 3 && particles_turn(p, i); ++k)
       kinetic += 0.5 * p->rotary[i] * p->volume[i] * m.rotation[k] * m.rotation[k];
   }
-  return (LoadWords){"its particles begin with a kinetic energy of", kinetic, "energy", "J"};
+  return (LoadWords){
+      .words = "its particles begin with a kinetic energy of", .value = kinetic, .dimension = "energy", .unit = "J"};
 }
 
 static const char *kind(const LoadValue *value, const char **dimension)

@@ -16,6 +16,14 @@ double load_length(const LoadValue *value)
   return sqrt(square);
 }
 
+LoadWords load_force_in_all(double size, const double along[3])
+{
+  LoadWords told = {.words = "a force in all of", .value = size, .dimension = "force", .unit = "N"};
+  const double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+  for (int k = 0; k < 3 && length > 0; ++k) told.direction[k] = along[k] / length;
+  return told;
+}
+
 void load_push(const Load *load, Particles *p, const double uniform[3], const double per_density[3])
 {
   TEAM_FOR (n, load->selection.count) {

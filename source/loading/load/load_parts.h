@@ -4,6 +4,9 @@
 
 #include "loading/load.h"
 
+/** What a force comes to on the body, in all and in which direction. @param[in] along  of any length; 0: none to tell */
+LoadWords load_force_in_all(double size, const double along[3]);
+
 /** The vector of a value that is one. */
 const double *load_point(const LoadValue *value);
 /** Its length, without components that are free. */

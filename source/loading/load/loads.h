@@ -14,9 +14,9 @@ LOAD(base_acceleration, "base acceleration", FIELD_POINT, "acceleration",
      "of the ground under the body, which is seen from there: each particle feels the opposite acceleration, and all "
      "motions are relative to the ground")
 LOAD(pressure, "pressure", FIELD_NUMBER, "stress",
-     "on the face that 'on' selects, inwards, spread over its layers; its direction stays as the body turns")
+     "on the face that 'on' selects, inwards, spread as 'spread' says; its direction stays as the body turns")
 LOAD(traction, "traction", FIELD_POINT, "stress",
-     "force per area of the face that 'on' selects, spread over its layers; or of 'area'")
+     "force per area of the face that 'on' selects, spread as 'spread' says; or of 'area'")
 LOAD_SECTION(water_pressure, "water pressure", "of water at rest on the face that 'on' selects, growing with depth")
 LOAD_SECTION(radial_pressure, "radial pressure", "on a round surface, away from its axis or towards it")
 LOAD_SECTION(spring, "spring", "springs to the ground or to other particles")

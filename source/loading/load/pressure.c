@@ -1,4 +1,5 @@
 #include "loading/load/face.h"
+#include "loading/load/load_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,7 +33,10 @@ static double magnitude(const LoadValue *value)
 
 static LoadWords tell(const Load *load, const Particles *p)
 {
-  return (LoadWords){"a force in all of", fabs(load->value->number) * face_area(load->own, load, p), "force", "N"};
+  const Face *face = load->own;
+  double along[3] = {0};
+  along[face->axis] = -face->outwards * load->value->number;
+  return load_force_in_all(fabs(load->value->number) * face_area(face, load, p), along);
 }
 
 const LoadType pressure_load = {

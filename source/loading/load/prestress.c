@@ -100,7 +100,8 @@ static LoadWords tell(const Load *load, const Particles *particles)
   for (int n = 0; n < p->count; ++n)
     force += p->strain[n] * young(p->bars, p->bar[n]) * p->bars->bar_area[p->bars->lines.first[p->bar[n]]] *
              deck_bar_lines(p->bars, p->bar[n]);
-  return (LoadWords){"before the body gives way, a force in all of", force, "force", "N"};
+  return (LoadWords){
+      .words = "before the body gives way, a force in all of", .value = force, .dimension = "force", .unit = "N"};
 }
 
 static const char *kind(const LoadValue *value, const char **dimension)

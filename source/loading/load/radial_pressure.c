@@ -111,7 +111,7 @@ static LoadWords tell(const Load *load, const Particles *p)
 {
   (void)p;
   const RadialPressureSpec *s = load->value->section;
-  return (LoadWords){"a force in all of", fabs(s->pressure) * s->area, "force", "N"};
+  return load_force_in_all(fabs(s->pressure) * s->area, (const double[3]){0});
 }
 
 const LoadType radial_pressure_load = {

@@ -295,8 +295,10 @@ static LoadWords tell(const Load *load, const Particles *p)
   for (int64_t n = 0; n < load->other.count; ++n)
     mass[1] += p->density[load->other.places[n]] * p->volume[load->other.places[n]];
   const double swings = joins(load) ? mass[0] * mass[1] / (mass[0] + mass[1]) : mass[0];
-  return (LoadWords){"its particles alone on it swing with a period of",
-                     2 * acos(-1) * sqrt(swings / spring->stiffness), "time", "s"};
+  return (LoadWords){.words = "its particles alone on it swing with a period of",
+                     .value = 2 * acos(-1) * sqrt(swings / spring->stiffness),
+                     .dimension = "time",
+                     .unit = "s"};
 }
 
 static const double *vector(const LoadValue *value)

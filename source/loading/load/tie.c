@@ -106,7 +106,8 @@ static double magnitude(const LoadValue *value)
 
 static LoadWords tell(const Load *load, const Particles *p)
 {
-  return (LoadWords){"particles tied over at most", tie_reach(load, p), "length", "m"};
+  return (LoadWords){
+      .words = "particles tied over at most", .value = tie_reach(load, p), .dimension = "length", .unit = "m"};
 }
 
 const LoadType tie_load = {

@@ -26,7 +26,7 @@ static void force(const Load *load, Particles *p, double factor)
 
 static LoadWords tell(const Load *load, const Particles *p)
 {
-  return (LoadWords){"a force in all of", load_length(load->value) * face_area(load->own, load, p), "force", "N"};
+  return load_force_in_all(load_length(load->value) * face_area(load->own, load, p), load->value->point);
 }
 
 const LoadType traction_load = {

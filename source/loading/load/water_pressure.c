@@ -1,14 +1,11 @@
+#include "loading/load/water_pressure.h"
+
 #include "loading/load/face.h"
 #include "loading/load/load_parts.h"
 
 #include "base/team.h"
 #include <math.h>
 #include <stdlib.h>
-
-typedef struct WaterPressureSpec {
-  SectionHead head;
-  double surface, unit_weight;
-} WaterPressureSpec;
 
 static const Field water_pressure_fields[] = {
     {.key = "surface",
@@ -27,8 +24,9 @@ static const Field water_pressure_fields[] = {
 
 const Section water_pressure_load_section = {
     .name = "water pressure",
-    .about = "Pressure of water at rest on a face, inwards: its unit weight times the depth of each particle's centre "
-             "as the body stands at first.",
+    .about =
+        "Pressure of water at rest on a face, inwards: its unit weight times the depth of each particle's centre "
+        "as the body stands at first. It is spread as 'spread' says, and its force in all is the sum over the face.",
     .size = sizeof(WaterPressureSpec),
     FIELDS(water_pressure_fields)};
 
@@ -60,7 +58,7 @@ static int create(Load *load, const LoadMaking *making)
   if (deepest == 0)
     return node_error(reader->document, section_node(s, "surface"), reader->error,
                       "surface: all particles of the face stand above it");
-  return BRECCIA_OK;
+  return face_balance(&own->face, load, p, own->pressure, reader->error);
 }
 
 static void destroy(Load *load)
@@ -95,12 +93,9 @@ static const char *kind(const LoadValue *value, const char **dimension)
 static LoadWords tell(const Load *load, const Particles *p)
 {
   const WaterPressure *own = load->own;
-  double sum = 0;
-  for (int64_t n = 0; n < load->selection.count; ++n) {
-    const int32_t place = load->selection.places[n];
-    sum += own->pressure[n] * p->volume[place] * own->face.per_depth[place / SLICE];
-  }
-  return (LoadWords){"a force in all of", sum, "force", "N"};
+  double along[3] = {0};
+  along[own->face.axis] = -own->face.outwards;
+  return load_force_in_all(face_force(&own->face, load, p, own->pressure), along);
 }
 
 const LoadType water_pressure_load = {
