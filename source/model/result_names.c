@@ -105,11 +105,13 @@ static int check_curve(const breccia_model *model, const PictureSpec *picture)
   const Node *node = section_node(picture, "curve");
   if (!model->watches) return BRECCIA_OK; /* the deck is refused for something else */
   CurveNames names;
-  if (curve_names(picture->curve, &names))
-    return node_error(model->document, node, model->reader.error,
-                      "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or "
-                      "with a minus 'tip.y : -grip.y'",
-                      picture->curve);
+  if (curve_names(picture->curve, &names)) {
+    Text advice = {0};
+    curve_advise(picture->curve, &advice);
+    const int refused = node_error(model->document, node, model->reader.error, "%s", text_words(&advice));
+    text_free(&advice);
+    return refused;
+  }
   int status = BRECCIA_OK;
   for (int k = 0; k < names.count && !status; ++k) status = check_column(model, &names, k, node);
   return status;

@@ -17,10 +17,11 @@ enum { AXIS_WORDS = 2 * CURVE_NAME + 8 };
 static int read_curve(const char *words, CurveNames *names, Error *error)
 {
   if (!curve_names(words, names)) return BRECCIA_OK;
-  return error_add(error, BRECCIA_USER_ERROR,
-                   "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or with "
-                   "a minus 'tip.y : -grip.y'",
-                   words);
+  Text advice = {0};
+  curve_advise(words, &advice);
+  const int status = error_add(error, BRECCIA_USER_ERROR, "%s", text_words(&advice));
+  text_free(&advice);
+  return status;
 }
 
 void curve_name(const char *words, char *name, size_t size)

@@ -1,5 +1,6 @@
 #include "results/curve_names.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -32,4 +33,40 @@ int curve_names(const char *curve, CurveNames *names)
     rest = comma ? comma + 1 : NULL;
   }
   return bad;
+}
+
+/** Words between two places without the spaces around them. */
+static void trimmed(const char *begin, const char *end, char words[CURVE_NAME])
+{
+  while (begin < end && *begin == ' ') ++begin;
+  while (end > begin && end[-1] == ' ') --end;
+  snprintf(words, CURVE_NAME, "%.*s", (int)(end - begin), begin);
+}
+
+static bool of_all_histories(const char *words)
+{
+  return !strcmp(words, "time") || !strcmp(words, "step");
+}
+
+void curve_advise(const char *curve, Text *text)
+{
+  const char *colon = strchr(curve, ':');
+  char side[2][CURVE_NAME];
+  CurveNames other = {.count = 0};
+  text_add(text,
+           "curve: '%s' should be 'watch.column : watch.column', like 'opening.distance : pull.value', or with a minus "
+           "'tip.y : -grip.y'",
+           curve);
+  if (!colon) return;
+  trimmed(curve, colon, side[0]);
+  trimmed(colon + 1, curve + strlen(curve), side[1]);
+  for (int k = 0; k < 2; ++k) {
+    const char *there = side[1 - k];
+    const char *end = there + strcspn(there, ",");
+    if (!of_all_histories(side[k]) || add_name(there, end, &other)) continue;
+    char own[2 * CURVE_NAME];
+    snprintf(own, sizeof own, "%s.%s", other.watch[0], side[k]);
+    text_add(text, "; each history has its %s: '%s : %s'", side[k], k ? there : own, k ? own : there);
+    return;
+  }
 }

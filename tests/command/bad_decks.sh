@@ -183,6 +183,8 @@ refuse 's/{box: {from/{cuboid: {from/' 10:13 "unknown key 'cuboid'; did you mean
 # Curves of columns that no history writes
 refuse 's/{field: damage}/{curve: "tap.x : tip.y"}/' 24:14 "there is no history 'tap'; did you mean 'tip'?"
 refuse 's/{field: damage}/{curve: "tip.x : tip.force"}/' 24:14 "curve: tip: there is no column 'force'; its columns are step, time, x, y, z"
+refuse 's/{field: damage}/{curve: "time : tip.x, tip.y"}/' 24:14 "; each history has its time: 'tip.time : tip.x, tip.y'"
+refuse 's/{field: damage}/{curve: "-tip.x:step"}/' 24:14 "; each history has its step: '-tip.x : tip.step'"
 refuse 's/{field: damage}/{curve: "tip.x , tip.y"}/' 24:14 "should be 'watch.column : watch.column'"
 
 # Unknown names are told all at once, each at its own place, with wrong keys or with what else is wrong
