@@ -69,6 +69,13 @@ int model_advance(breccia_model *model, Error *error);
  *  @param[in] again  plan steps to end with them; not where a plan has been taken up from a file */
 int model_make_schedule(breccia_model *model, bool again, Error *error);
 
+/** Time that the deck gives a stage; INFINITY of an explicit one, whose length may show only in it. */
+double model_stage_time(const breccia_model *model, int64_t stage);
+/** Whether the next stage goes on where a stage finds no equilibrium, before its time. */
+bool model_stage_hands_over(const breccia_model *model, int64_t stage);
+/** The most that a step of an implicit stage may err by; INFINITY of others. */
+double model_stage_error(const breccia_model *model, int64_t stage);
+
 /** Rows of the whole state: of the domain, the solver, the largest values so far and how far results are written. */
 void model_state(breccia_model *model, StateList *list);
 

@@ -49,13 +49,8 @@ static double wave_speed(const breccia_model *model, const Material *m)
   return sqrt(plausibility_in_si(model, "stress", modulus) / plausibility_in_si(model, "density", m->density));
 }
 
-typedef struct Candidate {
-  const char *unit;
-  double factor; /* to SI */
-} Candidate;
-
 /** The unit in which a number as it stands in the deck has a usual size, to be suggested. @return its words, or "" */
-static void suggest(const breccia_model *model, const Node *node, const char *dimension, const Candidate *candidates,
+static void suggest(const breccia_model *model, const Node *node, const char *dimension, const UnitMeant *candidates,
                     int count, double low, double high, Text *text)
 {
   const double number = node->kind == NODE_SCALAR ? strtod(node->text, NULL) : NAN;
@@ -71,14 +66,13 @@ static void suggest(const breccia_model *model, const Node *node, const char *di
   }
 }
 
-static const Candidate densities[] = {{"kg/m3", 1}, {"t/m3", 1000}};
-static const Candidate stiffnesses[] = {{"GPa", 1e9}, {"MPa", 1e6}, {"kPa", 1e3}, {"Pa", 1}};
-static const Candidate fracture_energies[] = {{"N/m", 1}, {"N/mm", 1000}};
+static const UnitMeant densities[] = {{"kg/m3", 1}, {"t/m3", 1000}};
+static const UnitMeant stiffnesses[] = {{"GPa", 1e9}, {"MPa", 1e6}, {"kPa", 1e3}, {"Pa", 1}};
+static const UnitMeant fracture_energies[] = {{"N/m", 1}, {"N/mm", 1000}};
 
-/** Warns where a number lies outside of what real things have. @return whether it does */
-static bool beyond(breccia_model *model, const Node *node, const char *what, const char *dimension, double value,
-                   double low, double high, const char *unit, const Candidate *candidates, int count, double usual_low,
-                   double usual_high)
+bool plausibility_beyond(breccia_model *model, const Node *node, const char *what, const char *dimension, double value,
+                         double low, double high, const char *unit, const UnitMeant *candidates, int count,
+                         double usual_low, double usual_high)
 {
   const double real = plausibility_in_si(model, dimension, value);
   if (real >= low && real <= high) return false;
@@ -124,8 +118,8 @@ static bool like_concrete(const breccia_model *model, const Material *m)
 static void check_fracture_energy(breccia_model *model, const Material *m, double energy, const Node *node)
 {
   const double real = plausibility_in_si(model, "fracture energy", energy);
-  if (isnan(real) ||
-      beyond(model, node, "fracture energy", "fracture energy", energy, 0.1, 1e6, "J/m2", fracture_energies, 2, 1, 1e4))
+  if (isnan(real) || plausibility_beyond(model, node, "fracture energy", "fracture energy", energy, 0.1, 1e6, "J/m2",
+                                         fracture_energies, 2, 1, 1e4))
     return;
   if (like_concrete(model, m) && (real < 40 || real > 400))
     plausibility_say(model, node, "fracture energy: %.4g N/m is %s for concrete, which has 60 to 200 N/m", real,
@@ -141,12 +135,12 @@ static void check_material(breccia_model *model, int k)
   if (stiff == spec->head.node) stiff = section_node(spec, "bulk modulus");
   if (stiff == spec->head.node) stiff = section_node(spec, "shear modulus");
   const bool young_given = !isnan(parameter(model, m, "Young modulus"));
-  bool odd = beyond(model, section_node(spec, "density"), "density", "density", m->density, 100, 25000, "kg/m3",
-                    densities, 2, 300, 20000);
+  bool odd = plausibility_beyond(model, section_node(spec, "density"), "density", "density", m->density, 100, 25000,
+                                 "kg/m3", densities, 2, 300, 20000);
   const bool concrete = called_concrete(m); /* from lean mortar to the strongest */
-  odd |= beyond(model, stiff, young_given ? "Young modulus" : "Young's modulus that follows", "stress",
-                material_young(m), concrete ? 1e9 : 1e4, concrete ? 2e11 : 1e12, "Pa", stiffnesses, 4,
-                concrete ? 5e9 : 1e6, concrete ? 1e11 : 5e11);
+  odd |= plausibility_beyond(model, stiff, young_given ? "Young modulus" : "Young's modulus that follows", "stress",
+                             material_young(m), concrete ? 1e9 : 1e4, concrete ? 2e11 : 1e12, "Pa", stiffnesses, 4,
+                             concrete ? 5e9 : 1e6, concrete ? 1e11 : 5e11);
   const double speed = wave_speed(model, m), strength = parameter(model, m, "tensile strength");
   if (!odd && !(speed >= 10 && speed <= 10000 * 1.5))
     plausibility_say(
@@ -363,6 +357,19 @@ static void describe_frequencies(breccia_model *model, const Extent *e, bool sea
 
 /* ---- loads ---- */
 
+/** " along -y", or the unit vector where it lies along no axis. */
+static void describe_direction(const double direction[3], int dimensions, Text *text)
+{
+  for (int k = 0; k < 3; ++k)
+    if (fabs(direction[k]) > 1 - 1e-9) {
+      text_add(text, " along %s%c", direction[k] < 0 ? "-" : "", "xyz"[k]);
+      return;
+    }
+  if (direction[0] == 0 && direction[1] == 0 && direction[2] == 0) return;
+  for (int k = 0; k < dimensions; ++k) text_add(text, "%s%.3g", k ? ", " : " along [", direction[k]);
+  text_add(text, "]");
+}
+
 static void describe_load(const breccia_model *model, const Load *load, const Extent *e, Text *text)
 {
   const LoadSpec *l = load->spec;
@@ -377,6 +384,7 @@ static void describe_load(const breccia_model *model, const Load *load, const Ex
   if (told.words) {
     text_add(text, "%s ", told.words);
     quantity_describe(plausibility_in_si(model, told.dimension, told.value), told.unit, text);
+    describe_direction(told.direction, model->domain.body.dimensions, text);
     text_add(text, "%s", load->type->timeless ? "\n" : "; ");
     if (load->type->timeless) return;
   }

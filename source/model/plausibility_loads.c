@@ -5,6 +5,7 @@
 #include "base/tensor.h"
 #include "body/nearer.h"
 #include "failure/critical_stretch.h"
+#include "loading/load/water_pressure.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,6 +81,77 @@ static void check_dashpots(breccia_model *model, const Load *load)
                      load->node->key);
 }
 
+/** Fluids that press on faces are lighter than lava and heavier than petrol; and dams do not stand at the bottom of seas. */
+static void check_water(breccia_model *model, const Load *load)
+{
+  static const UnitMeant weights[] = {{"N/m3", 1}, {"kN/m3", 1e3}, {"MN/m3", 1e6}};
+  const double most = 20; /* of the body's height */
+  if (load->type != &water_pressure_load) return;
+  const WaterPressureSpec *water = load->value->section;
+  plausibility_beyond(model, section_node(water, "unit weight"), "unit weight", "force per volume", water->unit_weight,
+                      5e3, 30e3, "N/m3", weights, 3, 9e3, 12e3);
+  const Body *body = &model->domain.body;
+  const int up = body->dimensions - 1;
+  const double *height = body->particles.position[up];
+  double top = -INFINITY;
+  for (int64_t n = 0; n < load->selection.count; ++n) top = fmax(top, height[load->selection.places[n]]);
+  const double tall = body->high[up] - body->low[up] + body->coarsest->plane[up], above = water->surface - top;
+  if (above <= most * tall) return;
+  char length[64];
+  units_name(model->units, dimension_find("length"), length, sizeof length);
+  plausibility_say(model, section_node(water, "surface"),
+                   "surface: the water stands %.4g %s above the face, %.3g times the height of the body: look at its "
+                   "unit; it is a height, not a depth",
+                   above, length, above / tall);
+}
+
+/** In the deck's units, from when a load begins until it ends; INFINITY where the length of a stage shows only in it. */
+static double time_of_load(const breccia_model *model, const Load *load)
+{
+  const Solver *s = &model->solver;
+  double time = 0;
+  for (int64_t k = load->first; k < s->clock.stages && k < load->behind; ++k)
+    time += k == s->clock.stage ? s->clock.stage_end - s->clock.stage_time : model_stage_time(model, k);
+  return time;
+}
+
+/** A load that is to grow for longer than it acts never comes to its full value. */
+static void check_growth(breccia_model *model, const Load *load)
+{
+  const History *h = &load->history;
+  const bool table = h->value_node && !strcmp(h->value_node->key, "table");
+  if (!table && !(h->value_node && !strcmp(h->value_node->key, "ramp to"))) return;
+  const double time = time_of_load(model, load),
+               grown = table ? h->line.rows[2 * (h->line.count - 1)] : h->value->number;
+  const double largest = history_peak(h, grown);
+  if (!(time < (1 - 1e-9) * grown) || fabs(history_peak(h, time)) >= (1 - 1e-9) * fabs(largest)) return;
+  char unit[64];
+  units_name(model->units, dimension_find("time"), unit, sizeof unit);
+  plausibility_say(model, h->value_node,
+                   "%s: the load ends at %.3g of its value and never comes to %.3g: it acts for %.4g %s, and its "
+                   "history goes on to %.4g %s; let it grow sooner, or the last stage end later",
+                   h->value_node->key, history_factor(h, time), largest, time, unit, grown, unit);
+}
+
+/** Implicit steps follow the waves that a jump of a force sets off, as errors of steps are measured by displacements that have not grown yet. */
+static void check_sudden(breccia_model *model, const Load *load)
+{
+  const double all = 1; /* the share by which the first step after a jump errs, whatever its length */
+  const LoadType *type = load->type;
+  if (model_stage_error(model, load->first) > all || !type->force || type->brake || type->energy || type->goes_on)
+    return;
+  for (int k = 0; k < model->loading.count; ++k) /* one that goes on under its name */
+    if (load->first > 0 && model->loading.loads[k].behind == load->first && load->spec->name &&
+        model->loading.loads[k].spec->name && !strcmp(model->loading.loads[k].spec->name, load->spec->name))
+      return;
+  if (load_magnitude(load->spec) * history_factor(&load->history, 0) == 0) return;
+  plausibility_say(model, load->node,
+                   "%s: it acts at once, so that 'local error' cuts the first implicit steps to a hundredth and less, "
+                   "to follow the waves of the jump; let it grow over some steps, like 'history: {ramp to: ...}', or "
+                   "take 'local error: 10', which leaves steps as long as they are and these waves out",
+                   load->node->key);
+}
+
 /** Concrete shrinks by less than 1e-3; steel warms by as much in 80 K. */
 static void check_initial_strain(breccia_model *model, const Load *load)
 {
@@ -130,6 +202,9 @@ void plausibility_warn_of_loads(breccia_model *model)
     check_shaking(model, &model->loading.loads[k]);
     check_dashpots(model, &model->loading.loads[k]);
     check_initial_strain(model, &model->loading.loads[k]);
+    check_water(model, &model->loading.loads[k]);
+    check_growth(model, &model->loading.loads[k]);
+    check_sudden(model, &model->loading.loads[k]);
   }
   check_grips(model);
 }

@@ -12,6 +12,18 @@ double plausibility_in_si(const breccia_model *model, const char *dimension, dou
 __attribute__((format(printf, 3, 4))) void plausibility_say(breccia_model *model, const Node *node, const char *format,
                                                             ...);
 
+/** A unit that may have been meant. */
+typedef struct UnitMeant {
+  const char *unit;
+  double factor; /* to SI */
+} UnitMeant;
+
+/** Warns where a number lies outside of what real things have, and names a unit in which it would be usual.
+ *  @param[in] value  in the deck's units  @param[in] low, high, usual_low, usual_high  in SI  @param[in] unit  of them  @return whether it does */
+bool plausibility_beyond(breccia_model *model, const Node *node, const char *what, const char *dimension, double value,
+                         double low, double high, const char *unit, const UnitMeant *candidates, int count,
+                         double usual_low, double usual_high);
+
 /** Whether a load prescribes what a key of the deck says, like "velocity". */
 bool plausibility_is_kind(const LoadSpec *load, const char *kind);
 

@@ -1,10 +1,32 @@
-/* When results are written. */
+/* How long stages are, and when results are written. */
 #include "model/model.h"
 
 #include "base/memory.h"
+#include "solver/implicit.h"
+#include "solver/static.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+double model_stage_time(const breccia_model *model, int64_t number)
+{
+  const SolveSpec *stage = model->solver.stages->items[number];
+  const StaticSpec *rest = stage->of[SOLVER_static];
+  const ImplicitSpec *implicit = stage->of[SOLVER_implicit];
+  return rest ? rest->end_time : implicit ? implicit->end_time : INFINITY;
+}
+
+bool model_stage_hands_over(const breccia_model *model, int64_t number)
+{
+  const StaticSpec *rest = ((const SolveSpec *)model->solver.stages->items[number])->of[SOLVER_static];
+  return rest && static_hands_over(rest);
+}
+
+double model_stage_error(const breccia_model *model, int64_t number)
+{
+  const ImplicitSpec *implicit = ((const SolveSpec *)model->solver.stages->items[number])->of[SOLVER_implicit];
+  return implicit ? implicit->local_error : INFINITY;
+}
 
 static int by_value(const void *a, const void *b)
 {

@@ -152,6 +152,72 @@ static void limits_are_where_they_say(void **state)
   }
 }
 
+#define WATER(surface, weight)                                                                                         \
+  "solve: {static: {}}\n", "{on: {face: x-}, water pressure: {surface: " surface ", unit weight: " weight "}}"
+#define PUSH(history) "{on: {face: x+}, force: [1e-3, 0]" history "}"
+
+/** Loads that are hardly meant, on a body of 8 x 6 particles of 0.01 m; stages are what stands under `solve`. */
+static void loads_that_are_hardly_meant_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *solve, *load, *warning; /* NULL: there is none */
+  } loads[] = {
+      /* the face ends at 0.055 m, of its centres, and the body is 0.06 m high */
+      {WATER("1.25", "9.81"), NULL},
+      {WATER("1.26", "9.81"),
+       "surface: the water stands 1.205 m above the face, 20.1 times the height of the body: look at its unit"},
+      {WATER("0.05", "5.1"), NULL},
+      {WATER("0.05", "4.9"), "unit weight: 4.9 is 4.9 kN/m3; materials like it have 5 kN/m3 to 30 kN/m3"},
+      {WATER("0.05", "29.9"), NULL},
+      {WATER("0.05", "30.1"), "unit weight: 30.1 is 30.1 kN/m3; materials like it"},
+      {WATER("0.05", "9.81e3"), "; did you mean '9810 N/m3'? In m, kN, s that is 9.81"},
+      {WATER("0.05", "9.81 N/m3"), "; did you mean '9.81 kN/m3'? In m, kN, s that is 9.81"},
+      /* histories that go on beyond the end */
+      {"solve: {static: {}}\n", PUSH(", history: {ramp to: 1}"), NULL},
+      {"solve: {static: {}}\n", PUSH(", history: {ramp to: 10}"),
+       "ramp to: the load ends at 0.1 of its value and never comes to 1: it acts for 1 s, and its history goes on to "
+       "10 "
+       "s; let it grow sooner"},
+      {"solve: {static: {end time: 10}}\n", PUSH(", history: {ramp to: 10}"), NULL},
+      {"solve: [{static: {}}, {static: {end time: 9}}]\n", PUSH(", history: {ramp to: 10}"), NULL},
+      {"solve: [{static: {}}, {static: {end time: 4}}]\n", PUSH(", history: {ramp to: 10}"),
+       "ends at 0.5 of its value"},
+      {"solve: [{static: {}}, {explicit: {end time: 1e-4}}]\n", PUSH(", history: {ramp to: 10}"), NULL},
+      {"solve: {explicit: {end time: 1e-4}}\n", PUSH(", history: {ramp to: 2e-4}"), "ends at 0.5 of its value"},
+      {"solve: {static: {}}\n", PUSH(", history: {table: [[0, 0], [1, 1], [2, 0.5]]}"), NULL},
+      {"solve: {static: {}}\n", PUSH(", history: {table: [[0, 0], [2, -3]]}"),
+       "table: the load ends at -1.5 of its value and never comes to -3"},
+      /* jumps that implicit steps follow */
+      {"solve: {implicit: {end time: 0.1}}\n", PUSH(""),
+       "force: it acts at once, so that 'local error' cuts the first implicit steps"},
+      {"solve: {implicit: {end time: 0.1, local error: 1.1}}\n", PUSH(""), NULL},
+      {"solve: {implicit: {end time: 0.1}}\n", PUSH(", history: {ramp to: 0.01}"), NULL},
+      {"solve: {implicit: {end time: 0.1}}\n", PUSH(", history: {table: [[0, 0.1], [0.1, 1]]}"),
+       "force: it acts at once"},
+      {"solve: {implicit: {end time: 0.1}}\n", "{on: {face: x-}, spring: {stiffness: 1}}", NULL},
+      {"solve: {explicit: {end time: 1e-4}}\n", PUSH(""), NULL},
+      {"solve: [{static: {}}, {implicit: {end time: 0.1}}]\n", PUSH(""), NULL},
+      {"solve: [{static: {}}, {implicit: {end time: 0.1}, loads: [" PUSH("") "]}]\n", "{gravity: [0, -9.81]}",
+       "force: it acts at once"},
+  };
+  for (size_t k = 0; k < sizeof loads / sizeof *loads; ++k) {
+    breccia_model *m =
+        model_of("units: {length: m, force: kN, time: s}\nmaterials: {m: {" USUAL "}}\n"
+                 "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 0.1, shape: {box: {particles: [8, "
+                 "6], first "
+                 "particle: [0.005, 0.005]}}}}\n"
+                 "peridynamics: {space: plane strain}\n%sloads: [{on: {face: y-}, displacement: [0, 0]}, %s]\n",
+                 loads[k].solve, loads[k].load);
+    const char *words = breccia_model_warnings(m);
+    if (!loads[k].warning && *words)
+      fail_msg("%s %s: no warning was expected: %s", loads[k].solve, loads[k].load, words);
+    if (loads[k].warning && (!strstr(words, loads[k].warning) || strchr(words, '\n')))
+      fail_msg("%s %s: expected '%s', found: %s", loads[k].solve, loads[k].load, loads[k].warning, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 /** Images turned back in all directions would change the volume of what hardly can. */
 static void held_faces_of_what_keeps_its_volume_are_told(void **state)
 {
@@ -393,6 +459,7 @@ static void damping_that_lets_a_body_creep_is_told(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(limits_are_where_they_say),
+                                     cmocka_unit_test(loads_that_are_hardly_meant_are_told),
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
                                      cmocka_unit_test(bodies_that_lock_are_told),
                                      cmocka_unit_test(ground_beyond_its_strength_is_told),
