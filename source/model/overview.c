@@ -114,9 +114,11 @@ static void describe_regions(const Domain *d, Text *text)
     const Region *region = &d->regions[r];
     text_add(text, "%s%s", r ? ", " : "", region->type->name);
     if (region->name) text_add(text, " in %s", region->name);
-    if (d->region_count > 1) text_add(text, " (%lld particles)", (long long)region->particles);
+    if (d->region_count > 1)
+      text_add(text, " (%lld particle%s)", (long long)region->particles, region->particles == 1 ? "" : "s");
   }
-  if (d->region_count > 1) text_add(text, ", joined by %lld bonds", (long long)d->joint.bond_count / 2);
+  if (d->region_count > 1)
+    text_add(text, ", joined by %lld bond%s", (long long)d->joint.bond_count / 2, d->joint.bond_count == 2 ? "" : "s");
   text_add(text, ";");
 }
 
@@ -180,10 +182,12 @@ const char *breccia_model_overview(breccia_model *model)
   char length[64], time[64];
   units_name(model->units, dimension_find("length"), length, sizeof length);
   units_name(model->units, dimension_find("time"), time, sizeof time);
-  text_add(text, "%s: %lld particles", model->spec->title, (long long)d->particles->count);
+  text_add(text, "%s: %lld particle%s", model->spec->title, (long long)d->particles->count,
+           d->particles->count == 1 ? "" : "s");
   if (outside) text_add(text, ", of them %lld in layers outside supports", (long long)outside);
-  text_add(text, ", %lld bonds, %d to %d per particle (mean %.1f), horizon %g %s\n", (long long)d->family.bonds / 2,
-           fewest, most, (double)d->family.bonds / (double)d->particles->count, d->family.horizon, length);
+  text_add(text, ", %lld bond%s, %d to %d per particle (mean %.1f), horizon %g %s\n", (long long)d->family.bonds / 2,
+           d->family.bonds == 2 ? "" : "s", fewest, most, (double)d->family.bonds / (double)d->particles->count,
+           d->family.horizon, length);
   describe_regions(d, text);
   for (int k = 0; k < d->material_count; ++k)
     text_add(text, "%s %s (%s)", k ? "," : "", d->materials[k].name, d->materials[k].law_name);

@@ -6,6 +6,7 @@
 #include "solver/quasi_static.h"
 #include "solver/reactions.h"
 #include "solver/rest.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -57,13 +58,20 @@ static void add_origin(const breccia_model *model, Text *t)
   text_add(t, "},\n");
 }
 
+/** 0 for what is a rounding beside a whole. */
+static double without_rounding(double value, double whole)
+{
+  return fabs(value) < 1e-12 * whole ? 0 : value;
+}
+
 /** The bond that broke first, and its middle; NULL if none did. */
 static const BrokenBond *first_broken(const Domain *d, double middle[3])
 {
   if (!d->broken_count) return NULL;
   const BrokenBond *bond = &d->broken[0];
   const int32_t a = d->particles->place_of[bond->a], b = d->particles->place_of[bond->b];
-  for (int k = 0; k < 3; ++k) middle[k] = (d->particles->position[k][a] + d->particles->position[k][b]) / 2;
+  for (int k = 0; k < 3; ++k)
+    middle[k] = without_rounding((d->particles->position[k][a] + d->particles->position[k][b]) / 2, d->family.horizon);
   return bond;
 }
 
@@ -79,9 +87,22 @@ static void add_jumps(const Solver *s, Text *text)
   if (relaxed > 0) text_add(text, "  \"increments_by_relaxation\": %.0f,\n", relaxed);
 }
 
-/** The stages that have begun, where there are several. */
-static void add_stages(const Solver *s, Text *text)
+/** Whether a stage has ended with the body at rest, as far as that is known: because the body was, or by increments that are states of rest, unless
+ *  it ended before its time where there was none. */
+static bool ended_at_rest(const breccia_model *model, int64_t stage)
 {
+  const Solver *s = &model->solver;
+  const StageRecord *r = &s->records[stage];
+  const bool ended = stage < s->clock.stage || s->clock.ended;
+  const bool early = r->end < r->begin + (1 - 1e-9) * model_stage_time(model, stage);
+  return r->came_to_rest > 0 ||
+         (ended && solver_stage_rests(s, stage) && !(early && model_stage_hands_over(model, stage)));
+}
+
+/** The stages that have begun, where there are several. */
+static void add_stages(const breccia_model *model, Text *text)
+{
+  const Solver *s = &model->solver;
   if (s->clock.stages == 1) return;
   text_add(text, "  \"stages\": [");
   for (int64_t k = 0; k <= s->clock.stage; ++k) {
@@ -91,7 +112,7 @@ static void add_stages(const Solver *s, Text *text)
     text_add_json(text, solver_stage_name(s, k, name, sizeof name));
     text_add(text, ", \"steps\": [%.0f, %.0f], ", r->first_step, r->last_step);
     text_add(text, "\"times\": [%.10g, %.10g], \"at_rest\": %s}", r->begin, r->end,
-             r->came_to_rest > 0 ? "true" : "false");
+             ended_at_rest(model, k) ? "true" : "false");
   }
   text_add(text, "],\n");
 }
@@ -201,7 +222,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
            (long long)d->family.bonds / 2, (long long)s->clock.step);
   text_add(&t, "  \"time\": %.10g,\n  \"time_step\": %.10g,\n", s->clock.time, s->clock.time_step);
   if (isfinite(s->clock.stable)) text_add(&t, "  \"stable_time_step\": %.10g,\n", s->clock.stable);
-  add_stages(s, &t);
+  add_stages(model, &t);
   add_jumps(s, &t);
   text_add(&t, "  \"wall_seconds\": %.3f,\n  \"ns_per_directed_bond_step\": %.4f,\n  \"threads\": %d,\n",
            model->run_seconds, nanoseconds_per_bond(model), model->threads);
@@ -324,15 +345,25 @@ static void tell_rest(const Solver *s, const Units *units, bool failed, Text *t)
   const double *r = balance.reactions.force, *l = balance.loads.force;
   char force[64];
   units_name(units, dimension_find("force"), force, sizeof force);
-  text_add(t, "supports and prescribed motions exert [%.6g, %.6g, %.6g] %s, loads [%.6g, %.6g, %.6g]; ", r[0], r[1],
-           r[2], force, l[0], l[1], l[2]);
+  const double all = balance.reactions.size + balance.loads.size;
+  text_add(t, "supports and prescribed motions exert [%.6g, %.6g, %.6g] %s, loads [%.6g, %.6g, %.6g]; ",
+           without_rounding(r[0], all), without_rounding(r[1], all), without_rounding(r[2], all), force,
+           without_rounding(l[0], all), without_rounding(l[1], all), without_rounding(l[2], all));
   text_add(t, "of all these forces %.2g is left\n", balance.left);
 }
 
 static void tell_load(const breccia_model *model, const Load *load, Text *t)
 {
   const char *dimension, *kind = load_kind(load->spec, &dimension);
-  text_add(t, "load '%s': %s", load->spec->name, kind);
+  int alike = 0; /* loads of one name, which take each other's place */
+  char stage[64];
+  for (int k = 0; k < model->loading.count; ++k) {
+    const char *other = model->loading.loads[k].spec->name;
+    alike += other && !strcmp(other, load->spec->name);
+  }
+  text_add(t, "load '%s'", load->spec->name);
+  if (alike > 1) text_add(t, " of stage '%s'", solver_stage_name(&model->solver, load->first, stage, sizeof stage));
+  text_add(t, ": %s", kind);
   if (!has_begun(load, &model->solver.clock))
     text_add(t, ", has not begun");
   else if (load_magnitude(load->spec) != 0) { /* else a support, which has no size */
@@ -386,6 +417,15 @@ static void tell_control(const Domain *d, double stored, Text *t)
              "carries load beside them, and limit loads come out too high; take 'zero-energy control: {silling: ..., "
              "fades: yielding}'\n",
              100 * held / stored);
+}
+
+/** Energy of strains that are roundings: what is less says nothing. */
+static double rounding_energy(const Domain *d)
+{
+  double stiffest = 0, volume = 0;
+  for (int k = 0; k < d->material_count; ++k) stiffest = fmax(stiffest, material_young(&d->materials[k]));
+  for (int64_t n = 0; n < d->particles->count; ++n) volume += d->particles->volume[d->particles->place_of[n]];
+  return DBL_EPSILON * DBL_EPSILON * stiffest * volume;
 }
 
 void run_tell_outcome(Run *run, int status)
@@ -448,8 +488,12 @@ void run_tell_outcome(Run *run, int status)
     text_add(t, "%s", energies[k].words);
     quantity_describe(units_in_si(model->units, dimension_find("energy"), energies[k].value), "J", t);
   }
-  if (!blown_up) text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
-  if (!blown_up && e.imbalance > 1e-3 && domain_flutters(d))
+  const bool tiny = s->ledger.paid > 0 && s->ledger.paid < rounding_energy(d);
+  if (!blown_up && tiny)
+    text_add(t, ", less than roundings of strains hold: nothing balances them\n");
+  else if (!blown_up)
+    text_add(t, ", imbalance %.2g %%\n", 100 * e.imbalance);
+  if (!blown_up && !tiny && e.imbalance > 1e-3 && domain_flutters(d))
     text_add(t, "the imbalance is not that of steps alone: %s\n", domain_flutters(d));
   if (!blown_up) tell_inverted(d, length, t);
   const Peaks *peaks = &model->peaks;

@@ -261,6 +261,8 @@ cmp -s whole-stages/profiles/strip.csv stopped-stages/profiles/strip.csv || fail
 [ "$(wc -l < whole-stages/profiles/strip.csv)" = 19 ] || fail "stages: a profile of 18 layers: $(cat whole-stages/profiles/strip.csv)"
 stop_at ground 1 4 16
 stop_at handed 6 20 50
+grep -q '"times": .*"at_rest": false}, {"name": "flow"' whole-handed/summary.json || fail "handed: what found no rest is told as at rest: $(grep '"stages"' whole-handed/summary.json)"
+checks=$((checks + 1))
 tail -n 30 whole-handed/solution.txt | grep -q "no equilibrium:" || fail "handed: the body finds rest, the test is too tame"
 # what the log tells of steps behind the checkpoint is cut
 "$breccia" run stages.yaml --output stopped-stages --steps 44 > out 2>&1
