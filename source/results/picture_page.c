@@ -52,6 +52,17 @@ static Ticks place_ticks(double low, double high, double points, double apart)
   return (Ticks){distance, first * distance, (int)(floor(high / distance + 1e-9) - first) + 1};
 }
 
+/** A narrow body may lie between two ticks: then nearer ones, of which words that take `room` each leave one. */
+static Ticks one_at_least(Ticks t, double low, double high, double points, double room)
+{
+  for (double number = 1; !t.count && number < 1000; number *= 1.5) {
+    const double distance = scale_ticks(high - low, number), first = ceil(low / distance - 1e-9);
+    t = (Ticks){distance, first * distance, (int)(floor(high / distance + 1e-9) - first) + 1};
+  }
+  if (t.count > 1 && room > t.distance / (high - low) * points) t.count = 1;
+  return t;
+}
+
 /** Room that the widest words of some ticks take. */
 static double ticks_width(cairo_t *cr, const Ticks *t)
 {
@@ -66,7 +77,7 @@ static double ticks_width(cairo_t *cr, const Ticks *t)
 
 static Ticks upright_ticks(double low, double high, double points)
 {
-  return place_ticks(low, high, points, 20);
+  return one_at_least(place_ticks(low, high, points, 20), low, high, points, TICK_SIZE);
 }
 
 /** Ticks of a lying axis: their words must not touch. */
@@ -74,7 +85,7 @@ static Ticks level_ticks(cairo_t *cr, double low, double high, double points)
 {
   Ticks t = place_ticks(low, high, points, 40);
   for (int k = 0; k < 4; ++k) t = place_ticks(low, high, points, ticks_width(cr, &t) + 16);
-  return t;
+  return one_at_least(t, low, high, points, ticks_width(cr, &t) + 4);
 }
 
 static bool has_y_axis(const Page *page)

@@ -553,6 +553,47 @@ static void pages_have_margins_on_all_sides(void **state)
   }
 }
 
+/** A body so narrow that no round number lies on its axis, as from 1.1 to 3.1, has a number there all the same: the words from below are the axis' name,
+ *  numbers, and then the body in its frame. */
+static void narrow_bodies_have_a_number_on_their_axis(void **state)
+{
+  (void)state;
+  char into[40], path[80];
+  snprintf(into, sizeof into, "%s/narrow", folder);
+  breccia_model *model = model_of(
+      "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
+      "body: {b: {material: m, lattice: square, thickness: 1, spacing: 1, shape: {box: {particles: [2, 60], first "
+      "particle: [1.6, 0.5]}}}}\n"
+      "peridynamics: {space: plane stress}\nsolve: {explicit: {steps: 1, time step: 1e-3}}\n"
+      "results: {number: 1, fields: [damage]}\npictures: []\n");
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+  breccia_model_destroy(&model);
+  ResultView view;
+  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  const PictureOptions o = {.field = "damage", .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
+  PictureSurvey survey;
+  int wide, high, tall[3] = {0}, group = -1;
+  assert_int_equal(picture_survey(&view, 0, 0, true, &o, &survey, NULL), 0);
+  unsigned char *pixels = picture_pixels(&view, 0, &o, &survey, &wide, &high, NULL);
+  assert_non_null(pixels);
+  bool dark = false;
+  for (int y = high - 1; y >= 0 && group < 3; --y) {
+    const bool before = dark;
+    dark = false;
+    for (int x = 0; x < wide; ++x) {
+      const unsigned char *at = pixels + 4 * (y * wide + x);
+      dark |= at[0] + at[1] + at[2] < 740;
+    }
+    if (dark && !before) ++group;
+    if (dark && group < 3) ++tall[group];
+  }
+  free(pixels);
+  result_view_close(&view);
+  assert_true(tall[0] < 20 && tall[1] < 20 && tall[2] > 200);
+}
+
 /** Every dataset that results.xdmf names is there and holds the step's numbers. */
 static void xdmf_names_a_whole_dataset_for_every_step(void **state)
 {
@@ -628,6 +669,7 @@ int main(void)
       cmocka_unit_test(thin_plates_are_seen_from_the_front),
       cmocka_unit_test(bodies_in_the_plane_are_seen_from_the_front),
       cmocka_unit_test(pages_have_margins_on_all_sides),
+      cmocka_unit_test(narrow_bodies_have_a_number_on_their_axis),
       cmocka_unit_test(xdmf_names_a_whole_dataset_for_every_step),
       cmocka_unit_test(names_of_pictures_are_short),
   };
