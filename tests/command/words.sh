@@ -307,7 +307,7 @@ told() {
   equal "$*" "$(cat errors)" "$words"
   equal "$*: nothing else" "$(cat out)" ""
 }
-movie="breccia plot: --movie shows all written steps and names its file itself: leave out"
+movie="breccia plot: --movie shows a field at all written steps and names its file itself: leave out"
 told "breccia plot: --rate: '0' is not above 0 and up to 120 written steps a second" plot block --movie a.mp4 --rate 0
 told "breccia plot: --rate: '121' is not above 0 and up to 120 written steps a second" plot block --movie a.mp4 --rate 121
 told "breccia plot: --view: '3' should be two numbers with a colon between" plot block --view 3
