@@ -73,7 +73,8 @@ LANES_INLINE Lanes stretch_stored(const StretchHere *here, const Lanes x[QUAD], 
     d += eta * (xi + xi + eta);
     square += xi * xi;
   }
-  const Lanes by_square = lanes_where((LaneMask)(*lever != lanes_set(0)), lanes_set(1) / square);
+  const LaneMask there = (LaneMask)(*lever != lanes_set(0)); /* where no bond is, both ends may be one */
+  const Lanes by_square = lanes_where(there, lanes_set(1) / lanes_choose(there, square, lanes_set(1)));
   d *= by_square;
   const Lanes strain = stretch_of(d, series, &shortened);
   *within = lanes_within_where(*within, counted, half, d, lanes_set(range_limit[RANGE_SERIES]));

@@ -4,6 +4,7 @@
 
 #include "base/lane_kinds.h"
 #include "base/random.h"
+#include "base/trap.h"
 
 #include <stdlib.h>
 
@@ -40,7 +41,12 @@ static double *forces_by(const char *lanes, const char *peridynamics, const char
   *count = p->motions * p->places;
   double *forces = malloc(sizeof(double) * (size_t)*count);
   displace(&model->domain, far);
+  Trap trap = {0};
+  Text words = {0};
+  if (trap_is_possible()) trap_begin(&trap); /* lanes without a bond divide by nothing either */
   compute_forces(model);
+  if (trap_is_possible()) trap_end();
+  if (trap_tell(&trap, &words)) fail_msg("%s, %s lanes: %s", peridynamics, lanes, text_words(&words));
   for (int k = 0; k < p->motions; ++k)
     memcpy(forces + k * p->places, p->internal[k], sizeof(double) * (size_t)p->places);
   breccia_model_destroy(&model);
