@@ -19,7 +19,7 @@ cracks:
 peridynamics: {horizon: 3.015 spacings}
 failure: {critical stretch: 0.05}
 loads:
-  - {name: pull, on: end, body force: [1, 0, 0], history: {ramp to: 0.1 s}}
+  - {name: pull, on: end, body force: [1, 0, 0], history: {ramp to: 1 ms}}
 solve: {explicit: {steps: 10}}
 watch:
   tip: {displacement of: end}
@@ -90,7 +90,7 @@ refuse 's/    spacing: 0.1$/    spacing: 0.1\n    lattice: fcc/' 10:14 "'fcc' is
 refuse 's/body force: \[1, 0, 0\]/body force: [1, 0, 0], force: [1, 0, 0]/' 18:50 "more than one of"
 refuse 's/body force: \[1, 0, 0\], //' 18:6 "none of 'body force', 'force'"
 refuse 's/body force: \[1, 0, 0\]/body force: [1 kN, 0, 0]/' 18:40 'wrong dimension; expected a force per volume'
-refuse 's/ramp to: 0.1 s/table: [[0, 0], [1, 1], [1, 2]]/' 18:85 'times must grow'
+refuse 's/ramp to: 1 ms/table: [[0, 0], [1, 1], [1, 2]]/' 18:85 'times must grow'
 refuse 's/horizon: 3.015 spacings/horizon: 0.05/' 15:25 'so that no particle has a neighbour'
 refuse 's/horizon: 3.015 spacings/space: plane stress/' 15:23 'needs a square or hexagonal lattice'
 refuse 's/horizon: 3.015 spacings/zero-energy control: {silling: 0.1, wan: 0.1}/' 15:57 'more than one of'
@@ -148,7 +148,7 @@ refuse 's/field: damage/field: von mises/' 24:13 "did you mean 'von Mises stress
 refuse 's/field: damage/field: stress, component: 11/' 24:32 "component: stress has no '11'; did you mean 'xx'?"
 refuse 's/field: damage/field: stress/' 24:13 "field: stress is drawn by 'component'; its components are xx, yy, zz, xy, yz, zx"
 refuse 's/field: damage/field: damage, component: x/' 24:32 "component: damage has no 'x'; it is one number, leave 'component' out"
-refuse 's/, history: {ramp to: 0.1 s}/, ramp: 0.1 s/' 18:50 "unknown key 'ramp'; 'ramp to' stands under 'history', like history: {ramp to: ...}"
+refuse 's/, history: {ramp to: 1 ms}/, ramp: 0.1 s/' 18:50 "unknown key 'ramp'; 'ramp to' stands under 'history', like history: {ramp to: ...}"
 refuse 's/{face: x+, layers: 2}/{box: {from: [0, 0, 0], to: [1, 1, 1]}}/' 12:9 "'box' stands under 'inside', like inside: {box: ...}"
 refuse 's/{explicit: {steps: 10}}/{steps: 10}/' 19:9 "unknown key 'steps'; 'steps' stands under 'explicit'"
 refuse 's/{explicit: {steps: 10}}/{static: {quasi-static: {}}}/' 19:18 "static: unknown key 'quasi-static'; 'quasi-static' stands under 'explicit'; the keys here are"
@@ -156,7 +156,7 @@ refuse 's/body force: \[1, 0, 0\]/fix: [x]/' 18:27 "did you mean 'displacement'?
 refuse 's/body force: \[1, 0, 0\]/displacement: [0, fixed]/' 18:45 "expected a number or 'free', found 'fixed'"
 refuse 's/^body:/geometry:/' 6:1 "unknown key 'geometry'; did you mean 'body'?"
 refuse 's/face: x+/face: right/' 12:15 "did you mean 'x+'?"
-refuse 's/ramp to: 0.1 s/table: motion.csv/' 18:67 'like [[0, 0], [0.1 s, 1]]; found motion.csv: files are not read here, write the rows out'
+refuse 's/ramp to: 1 ms/table: motion.csv/' 18:67 'like [[0, 0], [0.1 s, 1]]; found motion.csv: files are not read here, write the rows out'
 
 # Numbers and units as they are written elsewhere
 refuse 's/spacing: 0.1$/spacing: 0,1/' 9:14 "'0,1': write decimals with a point"
@@ -173,7 +173,7 @@ refuse 's/^units: .*/units: SI/' 2:8 'units: expected keys and values, like {len
 refuse 's/spacing: 0.1$/spacing: 2/' 10:13 'its size along x, 1, is less than one spacing of 2'
 refuse 's/face: x+, layers: 2/inside: {box: {from: [3, 0, 0], to: [4, 1, 1]}}/' 12:3 "the selection 'end' holds no particle; particles stand at x from 0.05 to 0.95, y from 0.05 to 0.45, z from 0.05 to 0.25; the one nearest to the middle of the shape is at [0.95, 0.45, 0.25]"
 
-refuse 's/ramp to: 0.1 s/sine: {frequency: 2 s}/' 18:78 "'2 s' has the wrong dimension; expected a frequency"
+refuse 's/ramp to: 1 ms/sine: {frequency: 2 s}/' 18:78 "'2 s' has the wrong dimension; expected a frequency"
 refuse 's/density: 7.85/density: 7.85 gr\/cm3/' 5:36 "'gr' is a grain of 65 mg to some; write g"
 refuse 's/horizon: 3.015 spacings/horizon: 3,015 spacings/' 15:27 'inside { } a comma parts items: write decimals with a point'
 refuse 's/on: end/on: [end, end]/' 18:18 'on: expected one name, or keys and values; found a list'
@@ -214,7 +214,7 @@ sed -i 's/title:/titel:/; s/spacing:/spacin:/' "$work/names.yaml"
 (cd "$work" && "$breccia" check names.yaml > out 2>&1)
 equal "names beside wrong keys" "$(grep -c 'there is no' "$work/out") $(grep -c 'unknown key' "$work/out")" "6 2"
 refuse 's/displacement of: end/load: pul/; s/{field: damage}/{curve: "tip.value : tip.factor"}/' 21:15 "there is no load 'pul'; did you mean 'pull'?"
-sed 's/table: .*//; s/ramp to: 0.1 s/table: ['"$(for k in $(seq 40); do printf '[%d, x%d], ' $k $k; done)"'[50, 1]]/' "$work/good.yaml" > "$work/deck.yaml"
+sed 's/table: .*//; s/ramp to: 1 ms/table: ['"$(for k in $(seq 40); do printf '[%d, x%d], ' $k $k; done)"'[50, 1]]/' "$work/good.yaml" > "$work/deck.yaml"
 (cd "$work" && "$breccia" check deck.yaml > out 2>&1)
 equal "forty wrong numbers" "$(wc -l < "$work/out") $(tail -1 "$work/out")" "31 and more, which are told when these are mended"
 
@@ -287,7 +287,7 @@ equal "softening with breakage: warnings" "$(cat "$work/errors")" ""
 contains "softening: brittleness" "$(cat "$work/out")" "fracture energy 120 J/m2, E G_F / f_t^2 400 mm (1.3 horizons)"
 warns "s/  steel: .*/  wall: $(echo "$mazars" | sed 's/120/22/; s/3 MPa/1.4 MPa/')/" 5:126 "fracture energy: 22 N/m is little for concrete, which has 60 to 200 N/m"
 warns 's/  steel: .*/  wall: {model: mohr-coulomb, density: 2.4, Young modulus: 30 GPa, Poisson ratio: 0.2, cohesion: 10 GPa, friction angle: 30, tensile strength: 3 GPa}/' 5:144 "tensile strength: it is 0.1 of Young's modulus"
-warns 's/body force: \[1, 0, 0\], history: {ramp to: 0.1 s}/displacement: [0.01, free, free]/' 18:27 "displacement: the particles jump by 0.01 m in the first step; let it grow"
+warns 's/body force: \[1, 0, 0\], history: {ramp to: 1 ms}/displacement: [0.01, free, free]/' 18:27 "displacement: the particles jump by 0.01 m in the first step; let it grow"
 for law in 'model: elastic' 'model: j2, yield stress: 1 MPa'; do
   cat > "$work/rest.yaml" <<Y
 title: A plate at rest
@@ -427,7 +427,7 @@ for file in /dev/zero pipe .; do
   equal "$file as deck: status" $? 2
   contains "$file as deck" "$(cat "$work/errors")" "$file: cannot be read: "
   refuse "s#^title: .*#include: $file#" 1:10 'is not a file of at most 64 MB'
-  refuse "s#ramp to: 0.1 s#file: {name: $file}#" 18:73 "$file: "
+  refuse "s#ramp to: 1 ms#file: {name: $file}#" 18:73 "$file: "
   refuse "s#shape: .*#file: $file#" 10:11 "$file: "
 done
 many() { seq "$1" | sed "s/.*/$2/"; }
