@@ -142,6 +142,7 @@ def groups_of_words(text, tell, time):
     """Numbers in what is printed, with the unit behind them; and the words between."""
     groups, count, force, name = {}, 0, "", ""
     text = IDLE.sub("", text.split("written:")[0])
+    text = re.sub(r"(\.yaml:\d+):\d+", r"\1", text)  # numbers in other units make lines of other lengths
     words = []
     position = 0
     for match in TOKEN.finditer(text):
