@@ -145,6 +145,7 @@ static void check_sudden(breccia_model *model, const Load *load)
         model->loading.loads[k].spec->name && !strcmp(model->loading.loads[k].spec->name, load->spec->name))
       return;
   if (load_magnitude(load->spec) * history_factor(&load->history, 0) == 0) return;
+  if (load->first == 0 && model->spec->initial_stress.count) return; /* which it may balance from the beginning */
   plausibility_say(model, load->node,
                    "%s: it acts at once, so that 'local error' cuts the first implicit steps to a hundredth and less, "
                    "to follow the waves of the jump; let it grow over some steps, like 'history: {ramp to: ...}', or "
