@@ -253,9 +253,29 @@ static void a_step_that_a_law_refuses_is_cut(void **state)
   material_destroy(&m);
 }
 
+/** Where volumes hardly change, corners of Mohr and Coulomb's pyramid are found to roundings of stresses that the bulk modulus makes large. */
+static void corners_are_found_near_constant_volume(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
+                              "materials: {m: {model: mohr-coulomb, density: 2, Young modulus: 1e4, Poisson ratio: "
+                              "0.49999, cohesion: 6, friction "
+                              "angle: 30 deg, dilation angle: 10 deg}}\n"
+                              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
+                              "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings}\n"
+                              "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x+, layers: "
+                              "1}, displacement: [0, 0, 0.1], "
+                              "history: {ramp to: 0.05}}]\n"
+                              "solve: {explicit: {steps: 1000, damping: 30}}\n");
+  step_surely(m, 1000);
+  assert_true(solver_energy(&m->solver).dissipated > 0);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(corners_are_found_near_constant_volume),
       cmocka_unit_test(a_law_that_gives_up_stops_the_run_or_breaks_its_particle),
       cmocka_unit_test(a_law_that_gives_up_at_rest_is_named_with_its_particle),
       cmocka_unit_test(a_law_without_tangents_is_refused_where_they_are_needed),
