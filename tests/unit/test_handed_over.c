@@ -2,6 +2,16 @@
 #include "solver/reactions.h"
 #include "support.h"
 
+/* Of metal, on planes of symmetry; a list of loads goes on. */
+#define METAL_BAR                                                                                                      \
+  "units: {length: m, force: kN, time: s}\n"                                                                           \
+  "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening "       \
+  "modulus: 0}}\n"                                                                                                     \
+  "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"                                     \
+  "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"                    \
+  "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}},"                      \
+  " {on: {face: z-}, support: {held: across}}"
+
 /** Mean displacement along x of the outermost layer at the right. */
 static double mean_end(const breccia_model *m)
 {
@@ -30,13 +40,8 @@ static void a_bar_flows_between_two_stages_at_rest(void **state)
 {
   (void)state;
   breccia_model *m = model_of(
-      "units: {length: m, force: kN, time: s}\n"
-      "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening "
-      "modulus: 0}}\n"
-      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
-      "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
-      "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}},"
-      " {on: {face: z-}, support: {held: across}},"
+      METAL_BAR
+      ","
       " {name: pull, on: {face: x+, layers: 1}, traction: [12, 0, 0], history: {ramp to: 1}}]\n"
       "solve:\n"
       "  - {static: {increments: 12, no equilibrium: next stage}}\n"
@@ -72,13 +77,8 @@ static void stages_of_all_kinds_follow_each_other(void **state)
   const double weight = 0.4, length = 0.85,
                young = 1e4; /* stress at the support; from there to the middle of the last layer */
   breccia_model *m = model_of(
-      "units: {length: m, force: kN, time: s}\n"
-      "materials: {m: {model: j2, density: 2, Young modulus: 1e4, Poisson ratio: 0.25, yield stress: 10, hardening "
-      "modulus: 0}}\n"
-      "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [9, 3, 3]}}}}\n"
-      "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings, strain: small}\n"
-      "loads: [{on: {face: x-}, support: {held: across}}, {on: {face: y-}, support: {held: across}},"
-      " {on: {face: z-}, support: {held: across}}, {gravity: [0.2222222222, 0, 0]}]\n"
+      METAL_BAR
+      ", {gravity: [0.2222222222, 0, 0]}]\n"
       "solve:\n"
       "  - {laws: elastic, static: {increments: 1}}\n"
       "  - {static: {increments: 1}}\n"

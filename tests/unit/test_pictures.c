@@ -8,6 +8,17 @@
 #include <hdf5.h>
 #include <unistd.h>
 
+/** Runs a model into a folder and opens what it has written. */
+static void run_to_view(breccia_model *model, const char *into, ResultView *view)
+{
+  char path[80];
+  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
+  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
+  breccia_model_destroy(&model);
+  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
+  assert_int_equal(result_view_open(view, path, NULL), 0);
+}
+
 /** Lightness L* of CIELAB from sRGB (IEC 61966-2-1, CIE 15). */
 static double lightness(const double rgb[3])
 {
@@ -353,7 +364,7 @@ static void layers_outside_the_body_are_not_shown(void **state)
 static void bodies_that_turn_and_grow_have_no_gaps(void **state)
 {
   (void)state;
-  char into[40], path[80];
+  char into[40];
   snprintf(into, sizeof into, "%s/turned", folder);
   breccia_model *model = model_of(
       "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
@@ -361,12 +372,8 @@ static void bodies_that_turn_and_grow_have_no_gaps(void **state)
       "peridynamics: {space: plane stress}\n"
       "loads: [{on: {all: yes}, initial velocity: {rotation: [0, 0, 1]}}]\n"
       "solve: {explicit: {steps: 1, time step: 1e-3}}\nresults: {number: 1, fields: [displacement]}\npictures: []\n");
-  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
-  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
-  breccia_model_destroy(&model);
   ResultView view;
-  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
-  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  run_to_view(model, into, &view);
   const PictureOptions o = {
       .field = "displacement", .deformed = 2e3, .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
   PictureSurvey all;
@@ -449,19 +456,15 @@ static void thin_plates_are_seen_from_the_front(void **state)
 {
   (void)state;
   for (int layers = 2; layers <= 3; ++layers) {
-    char into[40], path[80];
+    char into[40];
     snprintf(into, sizeof into, "%s/plate%d", folder, layers);
     breccia_model *model = model_of(
         "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
         "body: {b: {material: m, spacing: 1, shape: {box: {particles: [12, 10, %d]}}}}\n"
         "solve: {explicit: {steps: 1, time step: 1e-3}}\nresults: {number: 1, fields: [damage]}\npictures: []\n",
         layers);
-    const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
-    assert_int_equal(breccia_model_run(model, &run, NULL), 0);
-    breccia_model_destroy(&model);
     ResultView view;
-    snprintf(path, sizeof path, "%s/results.vtkhdf", into);
-    assert_int_equal(result_view_open(&view, path, NULL), 0);
+    run_to_view(model, into, &view);
     for (int wish = 0; wish < 2; ++wish) {
       const PictureOptions o = {
           .field = "damage", .azimuth = wish ? -60 : NAN, .elevation = NAN, .low = NAN, .high = NAN};
@@ -478,19 +481,15 @@ static void thin_plates_are_seen_from_the_front(void **state)
 static void bodies_in_the_plane_are_seen_from_the_front(void **state)
 {
   (void)state;
-  char into[40], path[80];
+  char into[40];
   snprintf(into, sizeof into, "%s/flat", folder);
   breccia_model *model = model_of(
       "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
       "body: {b: {material: m, lattice: square, spacing: 1, thickness: 1, shape: {box: {particles: [12, 10]}}}}\n"
       "peridynamics: {space: plane stress}\nsolve: {explicit: {steps: 1, time step: 1e-3}}\n"
       "results: {number: 1, fields: [damage]}\npictures: []\n");
-  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
-  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
-  breccia_model_destroy(&model);
   ResultView view;
-  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
-  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  run_to_view(model, into, &view);
   assert_true(view.plane);
   for (int wish = 0; wish < 2; ++wish) {
     const PictureOptions o = {
@@ -514,7 +513,7 @@ static void pages_have_margins_on_all_sides(void **state)
                 {"tall", "[5, 40]", false},
                 {"solid", "[9, 6, 5]", true}};
   for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
-    char into[40], path[80];
+    char into[40];
     snprintf(into, sizeof into, "%s/margins-%s", folder, bodies[b].name);
     breccia_model *model =
         model_of("materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
@@ -524,12 +523,8 @@ static void pages_have_margins_on_all_sides(void **state)
                  "results: {number: 1, fields: [velocity]}\npictures: []\n",
                  bodies[b].space ? "" : "lattice: square, thickness: 1, ", bodies[b].particles,
                  bodies[b].space ? "3-D" : "plane stress", bodies[b].space ? ", 0" : "");
-    const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
-    assert_int_equal(breccia_model_run(model, &run, NULL), 0);
-    breccia_model_destroy(&model);
     ResultView view;
-    snprintf(path, sizeof path, "%s/results.vtkhdf", into);
-    assert_int_equal(result_view_open(&view, path, NULL), 0);
+    run_to_view(model, into, &view);
     const PictureOptions o = {
         .field = "velocity", .component = "x", .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
     PictureSurvey survey;
@@ -558,7 +553,7 @@ static void pages_have_margins_on_all_sides(void **state)
 static void narrow_bodies_have_a_number_on_their_axis(void **state)
 {
   (void)state;
-  char into[40], path[80];
+  char into[40];
   snprintf(into, sizeof into, "%s/narrow", folder);
   breccia_model *model = model_of(
       "materials: {m: {model: elastic, density: 1, Young modulus: 100, Poisson ratio: 0.2}}\n"
@@ -566,12 +561,8 @@ static void narrow_bodies_have_a_number_on_their_axis(void **state)
       "particle: [1.6, 0.5]}}}}\n"
       "peridynamics: {space: plane stress}\nsolve: {explicit: {steps: 1, time step: 1e-3}}\n"
       "results: {number: 1, fields: [damage]}\npictures: []\n");
-  const breccia_run run = {.size = sizeof(breccia_run), .folder = into};
-  assert_int_equal(breccia_model_run(model, &run, NULL), 0);
-  breccia_model_destroy(&model);
   ResultView view;
-  snprintf(path, sizeof path, "%s/results.vtkhdf", into);
-  assert_int_equal(result_view_open(&view, path, NULL), 0);
+  run_to_view(model, into, &view);
   const PictureOptions o = {.field = "damage", .azimuth = NAN, .elevation = NAN, .low = NAN, .high = NAN};
   PictureSurvey survey;
   int wide, high, tall[3] = {0}, group = -1;

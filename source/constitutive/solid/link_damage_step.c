@@ -79,9 +79,7 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
 LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const LinkLaw *c = constants;
-  const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
-              mean = t->invariant * lanes_set(sqrt(3) / (9 * c->elastic.bulk)),
-              square = lanes_square(deviator, mean, lanes_set(0));
+  const Lanes square = trial_strain_square(&c->elastic, t);
   *found = (trial_history(t, LINK_TENSILE) <= lanes_set(0)) & (trial_history(t, LINK_COMPRESSIVE) <= lanes_set(0)) &
            (square <= lanes_set(c->link.tension_begin * c->link.tension_begin));
 }

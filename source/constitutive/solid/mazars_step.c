@@ -78,9 +78,7 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
 LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)
 {
   const Mazars *c = constants;
-  const Lanes deviator = t->length * lanes_set(1 / (2 * c->elastic.shear)),
-              mean = t->invariant * lanes_set(sqrt(3) / (9 * c->elastic.bulk)),
-              square = lanes_square(deviator, mean, lanes_set(0));
+  const Lanes square = trial_strain_square(&c->elastic, t);
   *found = (trial_history(t, MAZARS_LARGEST) <= lanes_set(c->threshold)) &
            (square <= lanes_set(c->threshold * c->threshold));
 }

@@ -33,6 +33,14 @@ LANES_INLINE Lanes trial_radius(const TrialLanes *t)
   return t->length * lanes_set(1 / sqrt(6));
 }
 
+/** @return the sum of squares of all components of the elastic strain, which is at least that of the principal ones that stretch */
+LANES_INLINE Lanes trial_strain_square(const Elasticity *e, const TrialLanes *t)
+{
+  const Lanes deviator = t->length * lanes_set(1 / (2 * e->shear)),
+              mean = t->invariant * lanes_set(sqrt(3) / (9 * e->bulk));
+  return lanes_square(deviator, mean, lanes_set(0));
+}
+
 /** @param[out] found  the points that are inside their yield surface for sure; a point's answer must not depend on the points beside it */
 typedef void (*SolidInside)(const void *constants, const TrialLanes *trial, LaneMask *found);
 
