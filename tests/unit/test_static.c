@@ -430,6 +430,37 @@ static void a_step_that_fails_before_anything_broke_does_not_count(void **state)
   breccia_model_destroy(&model);
 }
 
+/** What is not met is named, with the key that helps: of elastic and of yielding bodies, by Newton's method and by relaxation. */
+static void the_tolerance_that_is_not_met_is_named(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *law, *solve, *words;
+  } missed[] = {
+      {"elastic", "displacement tolerance: 1e-40",
+       "which is enough, but the last correction is larger than|; take a larger 'displacement tolerance' or 'energy "
+       "tolerance'"},
+      {"j2, yield stress: 5, hardening modulus: 1e3", "energy tolerance: 1e-40",
+       "which is enough, but the last correction is larger than|; take a larger 'displacement tolerance' or 'energy "
+       "tolerance'"},
+      {"elastic", "method: relaxation, relaxation iterations: 1",
+       "; allow more 'relaxation iterations', or take a larger 'residual'"},
+      {"elastic", "iterations: 1, residual: 1e-13", "; allow more 'iterations', or take a larger 'residual'"},
+  };
+  for (size_t k = 0; k < sizeof missed / sizeof *missed; ++k) {
+    breccia_model *model = model_of(
+        UNITS "materials: {m: {model: %s, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+              "body: {b: {material: m, spacing: 0.1, shape: {box: {particles: [5, 3, 3]}}}}\n"
+              "peridynamics: {formulation: correspondence, space: 3-D, horizon: 1.5 spacings}\n"
+              "loads: [{on: {face: x-, layers: 1}, displacement: [0, 0, 0]}, {on: {face: x+, layers: 1}, traction: [6, "
+              "1, 0], history: {ramp to: 1}}]\n"
+              "solve: {static: {increments: 1, smallest increment: 0.6, %s}}\n",
+        missed[k].law, missed[k].solve);
+    step_must_fail(model, missed[k].words);
+    breccia_model_destroy(&model);
+  }
+}
+
 /** Patterns that nothing resists, of correspondence without control: factors that are singular but for rounding lead them away by 1e14 m, in balance. */
 static void a_body_that_is_carried_away_finds_no_equilibrium(void **state)
 {
@@ -648,6 +679,7 @@ int main(void)
       cmocka_unit_test(a_bar_that_flows_carries_its_strength_and_no_more),
       cmocka_unit_test(a_step_that_fails_before_anything_broke_does_not_count),
       cmocka_unit_test(a_step_in_which_bonds_broke_counts_though_it_fails),
+      cmocka_unit_test(the_tolerance_that_is_not_met_is_named),
       cmocka_unit_test(a_body_that_is_carried_away_finds_no_equilibrium),
       cmocka_unit_test(a_body_that_is_moved_as_a_whole_is_at_rest),
       cmocka_unit_test(an_unloaded_body_is_at_rest),
