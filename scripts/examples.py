@@ -64,7 +64,9 @@ def outside(head, row):
 
 
 def differs(new, old):
-    """Whether the words of two cells differ, or a number by more than a hundredth."""
+    """Whether the words of two cells differ, or a number by more than a hundredth. What reports run on request only may be left out."""
+    if new == "not run":
+        return False
     if NUMBER.sub("#", new) != NUMBER.sub("#", old):
         return True
     return any(abs(a - b) > 0.01 * max(abs(a), abs(b)) for a, b in zip(numbers(new), numbers(old)))

@@ -129,6 +129,8 @@ along() {
     echo "The curves of p, q, the corner, width and height inside the program and in OpenSees"
     echo "differ by $(apart block block-opensees 0.002) of the largest value up to 2 ms, $(apart block block-opensees 0.004) up to 4 ms, $(apart block block-opensees 0.006) up to 6 ms and $(apart block block-opensees 0.008) up to 8 ms."
     echo
+  fi
+  if [ -x ../../.venv/opensees/bin/python ]; then # scripts/opensees.sh
     echo "| the law alone, CapPlasticity of OpenSees against ours | stresses agree | which is right |"
     echo "|---|---|---|"
     echo "| triaxial at 5 MPa, to 2 % and back to 0, three times | $(along "kind: triaxial, strain: -0.02, return strain: 0, cycles: 3, confining pressure: 5000") | both |"
