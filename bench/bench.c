@@ -1,6 +1,6 @@
 /* What a bond costs: whole steps of cubes, a notched plate and scattered particles, on one thread and more, beside what the machine
  * allows and beside plain rows. A Markdown table goes to stdout, all numbers to a CSV file.
- *   breccia_bench [FILE.csv [WORD]]     WORD: only rows that have it in the name of formulation, law or body */
+ *   breccia_bench [FILE.csv [WORD...]]     only rows that have each of the words in the name of formulation, law or body */
 #include "measure.h"
 
 #include <math.h>
@@ -264,6 +264,13 @@ static bool same_bits(Domain *d, const int *threads, int threads_count)
   return same;
 }
 
+static bool is_wanted(const Case *c, const BenchBody *body, char *const *words, int count)
+{
+  for (int n = 0; n < count; ++n)
+    if (!strstr(c->formulation, words[n]) && !strstr(c->law, words[n]) && !strstr(body->name, words[n])) return false;
+  return true;
+}
+
 int main(int count, char **words)
 {
   const int all = all_threads();
@@ -305,8 +312,7 @@ int main(int count, char **words)
   int failed = 0;
   for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c)
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; ++b) {
-      const char *only = count > 2 ? words[2] : "";
-      if (!strstr(cases[c].formulation, only) && !strstr(cases[c].law, only) && !strstr(bodies[b].name, only)) continue;
+      if (!is_wanted(&cases[c], &bodies[b], words + 2, count - 2)) continue;
       if (bodies[b].only && strcmp(bodies[b].only, cases[c].formulation)) continue;
       use_threads(all);
       breccia_model *model = load(folder, &bodies[b], &cases[c]);

@@ -6,54 +6,72 @@
 #include <string.h>
 #include <strings.h>
 
-/** Spreads the lowest 21 bits so that two others fit between each two of them. */
-static uint64_t spread(uint64_t x)
+/* Each part is halved across its longest side until eight particles are left, which make a slice: the more they lie in one place, the more neighbours they share. */
+static double extent_along(const Cloud *cloud, const int32_t *part, int64_t count, int k)
 {
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
+  double low = INFINITY, high = -INFINITY;
+  for (int64_t n = 0; n < count; ++n) {
+    low = fmin(low, cloud->position[k][part[n]]);
+    high = fmax(high, cloud->position[k][part[n]]);
+  }
+  return high - low;
 }
 
-typedef struct Keyed {
-  uint64_t key;
-  int32_t index;
-} Keyed;
-
-static int by_key(const void *a, const void *b)
+static bool comes_before(const double *x, int32_t a, int32_t b)
 {
-  const Keyed *x = a, *y = b;
-  if (x->key != y->key) return x->key < y->key ? -1 : 1;
-  return x->index < y->index ? -1 : x->index > y->index;
+  return x[a] < x[b] || (x[a] == x[b] && a < b);
 }
 
-/* Along Morton's curve: bits of the three coordinates in turn. */
+/** Puts the first `middle` along x before the others. */
+static void part_at(const double *x, int32_t *part, int64_t count, int64_t middle)
+{
+  int64_t low = 0, high = count - 1;
+  while (low < high) {
+    const int32_t pivot = part[low + (high - low) / 2];
+    int64_t i = low, j = high;
+    while (i <= j) {
+      while (comes_before(x, part[i], pivot)) ++i;
+      while (comes_before(x, pivot, part[j])) --j;
+      if (i > j) break;
+      const int32_t other = part[i];
+      part[i++] = part[j];
+      part[j--] = other;
+    }
+    if (middle <= j)
+      high = j;
+    else if (middle >= i)
+      low = i;
+    else
+      return;
+  }
+}
+
+static void halve(const Cloud *cloud, int32_t *part, int64_t count)
+{
+  while (count > SLICE) {
+    const int64_t slices = (count + SLICE - 1) / SLICE, middle = slices / 2 * SLICE;
+    int longest = 0;
+    double most = -1;
+    for (int k = 0; k < 3 && cloud->position[k]; ++k) {
+      const double along = extent_along(cloud, part, count, k);
+      if (along > most) {
+        most = along;
+        longest = k;
+      }
+    }
+    part_at(cloud->position[longest], part, count, middle);
+    halve(cloud, part, middle);
+    part += middle;
+    count -= middle;
+  }
+}
+
 int cloud_sort(Cloud *cloud, Error *error)
 {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
-  for (int k = 0; k < 3; ++k) {
-    double high = -INFINITY;
-    for (int64_t n = 0; cloud->position[k] && n < cloud->count; ++n) {
-      low[k] = fmin(low[k], cloud->position[k][n]);
-      high = fmax(high, cloud->position[k][n]);
-    }
-    extent = fmax(extent, high - low[k]);
-  }
-  Keyed *keyed = memory_zeroed((size_t)cloud->count, sizeof *keyed, "order of particles", error);
   cloud->order = memory_zeroed((size_t)cloud->count, sizeof *cloud->order, "order of particles", error);
-  if (!keyed || !cloud->order) {
-    free(keyed);
-    return BRECCIA_FAILURE;
-  }
-  for (int64_t n = 0; n < cloud->count; ++n) {
-    keyed[n].index = (int32_t)n;
-    for (int k = 0; k < 3 && cloud->position[k]; ++k)
-      keyed[n].key |= spread((uint64_t)((cloud->position[k][n] - low[k]) / (extent > 0 ? extent : 1) * 0x1fffff)) << k;
-  }
-  qsort(keyed, (size_t)cloud->count, sizeof *keyed, by_key);
-  for (int64_t n = 0; n < cloud->count; ++n) cloud->order[n] = keyed[n].index;
-  free(keyed);
+  if (!cloud->order) return BRECCIA_FAILURE;
+  for (int64_t n = 0; n < cloud->count; ++n) cloud->order[n] = (int32_t)n;
+  halve(cloud, cloud->order, cloud->count);
   return BRECCIA_OK;
 }
 

@@ -15,6 +15,7 @@
 
 #include "base/lane_kinds.h"
 #include "base/tensor.h"
+#include "family/surroundings.h"
 #include "formulation/formulation.h"
 #include "formulation/shape_table.h"
 
@@ -64,6 +65,7 @@ struct Correspondence {
       [ROW_KINDS]; /* [slices][pulls][8] for each r: moment of Q_r,along, sums of Q_r,across; sums of held; of hold */
   int pulls;
   /* What bonds of stored slots read of a neighbour, together (correspondence_stored.h); NULL if there are none. */
+  Surroundings around;
   double *shown;     /* [places][CORRESPONDENCE_SHOWN] */
   double *row;       /* [places][state_length] of its response */
   double *gradients; /* [slices][9][8] G of the state at which it was linearised; NULL before */

@@ -113,6 +113,7 @@ void correspondence_destroy(void *formulation)
   places_free(&c->gradients);
   places_free(&c->turns);
   shape_table_destroy(&c->shapes);
+  surroundings_destroy(&c->around);
   free(c->axial);
   free(c);
 }
@@ -167,6 +168,7 @@ void correspondence_renew(void *formulation, int64_t slice)
   uint8_t before[SLICE];
   memcpy(before, c->shapes.mode + slice * SLICE, sizeof before);
   shape_table_renew(&c->shapes, c->family, slice);
+  if (c->around.first) surroundings_renew(&c->around, c->family, slice);
   for (int lane = 0; lane < SLICE; ++lane) {
     int32_t place = (int32_t)(slice * SLICE + lane);
     if (c->shapes.mode[place] != SHAPE_AXIAL || before[lane] == SHAPE_AXIAL) continue;
@@ -264,6 +266,7 @@ void *correspondence_create(const FormulationParts *parts, Error *error)
     failed |= !(c->row_pull[kind] = places_array(pull_count(c->widest) * places, "row sums", error));
   }
   if (c->family->stored_slots) {
+    failed |= surroundings_create(&c->around, c->family, error) != BRECCIA_OK;
     failed |= !(c->row = places_array(state_length(c->widest) * places, "force states", error));
     failed |= !(c->shown = places_array(CORRESPONDENCE_SHOWN * places, "force states", error));
   }
@@ -292,7 +295,8 @@ size_t correspondence_bytes(const void *formulation)
                    (c->gradients ? 9 : 0);
   numbers += (size_t)(c->family->rows.kinds * (6 + pull_count(c->widest)) + (c->row ? state_length(c->widest) + 8 : 0));
   return (size_t)c->particles->places * numbers * sizeof(double) + shape_table_bytes(&c->shapes, c->family) +
-         correspondence_fading_bytes(c) + (size_t)c->particles->count * sizeof(int32_t);
+         surroundings_bytes(&c->around, c->family) + correspondence_fading_bytes(c) +
+         (size_t)c->particles->count * sizeof(int32_t);
 }
 
 /** Only the bonds of contact itself cross the face (docs/theory.md 2, pairs that a cut parts). */

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "base/tensor.h"
+#include "family/surroundings.h"
 
 #define FILE_NAME "test_cloud.csv"
 
@@ -166,7 +167,7 @@ static void numbers_follow_the_file_and_slices_hold_neighbours(void **state)
   write_scattered(12);
   breccia_model *model = body_of(&(Setting){false, SOLID, "horizon: 3 spacings"}, "file: " FILE_NAME);
   const Particles *p = model->domain.particles;
-  double before = -1, apart = 0;
+  double before = -1, apart = 0, around = 0;
   for (int32_t n = 0; n < p->count; ++n) {
     assert_int_equal(p->number[p->place_of[n]], n);
     double along = round(p->position[2][p->place_of[n]] * 10); /* layers come one after the other in the file */
@@ -180,7 +181,61 @@ static void numbers_follow_the_file_and_slices_hold_neighbours(void **state)
     apart += sqrt(square) / (double)p->places;
   }
   assert_true(apart < 0.2); /* two spacings; numbered along x they would be 3.5 apart */
+  Surroundings s;
+  assert_int_equal(surroundings_create(&s, &model->domain.family, NULL), BRECCIA_OK);
+  around = (double)s.first[p->slices] / (double)model->domain.family.bonds;
+  assert_true(around < 0.28); /* along Morton's curve 0.31: slices that share less */
+  surroundings_destroy(&s);
   breccia_model_destroy(&model);
+  remove(FILE_NAME);
+}
+
+/** Bonds of a slice's surroundings are those of its slots. */
+static void check_surroundings(const Surroundings *s, const Family *f, int64_t slice)
+{
+  int64_t bonds = 0;
+  for (int64_t n = s->first[slice]; n < s->first[slice + 1]; ++n) {
+    if (n > s->first[slice]) assert_true(s->place[n] > s->place[n - 1]);
+    bonds += __builtin_popcount(s->lanes[n]);
+    for (int lane = 0; lane < SLICE; ++lane) {
+      const int32_t here = (int32_t)(slice * SLICE + lane);
+      const bool joined = s->lanes[n] >> lane & 1;
+      assert_int_equal(joined, here != s->place[n] && family_joins(f, here, s->place[n]));
+      if (!s->scale) continue;
+      const int64_t slot = joined ? family_slot(f, here, s->place[n]) : 0;
+      assert_true(s->scale[n * SLICE + lane] == (joined ? f->scale[(int64_t)f->base[slot] * SLICE + lane] : 0));
+    }
+  }
+  int64_t intact = 0;
+  for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
+    intact += __builtin_popcount(f->intact[slot]);
+  assert_int_equal(bonds, intact);
+}
+
+static void surroundings_have_every_bond_once(void **state)
+{
+  (void)state;
+  write_scattered(6);
+  for (int scaled = 0; scaled < 2; ++scaled) {
+    const Setting setting = {false, SOLID, scaled ? "volume correction: partial" : "horizon: 3 spacings"};
+    breccia_model *model = body_of(&setting, "file: " FILE_NAME);
+    Family *f = &model->domain.family;
+    Surroundings s;
+    assert_int_equal(surroundings_create(&s, f, NULL), BRECCIA_OK);
+    assert_int_equal(s.scale != NULL, scaled);
+    for (int64_t slice = 0; slice < f->particles->slices; ++slice) check_surroundings(&s, f, slice);
+    const int32_t a = s.place[0], b = (int32_t)__builtin_ctz(s.lanes[0]);
+    assert_true(family_break(f, a, b));
+    surroundings_renew(&s, f, a / SLICE);
+    surroundings_renew(&s, f, 0);
+    for (int64_t slice = 0; slice < f->particles->slices; ++slice) check_surroundings(&s, f, slice);
+    assert_true(family_mend(f, a, b));
+    surroundings_renew(&s, f, a / SLICE);
+    surroundings_renew(&s, f, 0);
+    for (int64_t slice = 0; slice < f->particles->slices; ++slice) check_surroundings(&s, f, slice);
+    surroundings_destroy(&s);
+    breccia_model_destroy(&model);
+  }
   remove(FILE_NAME);
 }
 
@@ -387,6 +442,7 @@ int main(void)
       cmocka_unit_test(a_lattice_read_from_a_file_has_the_forces_of_the_lattice),
       cmocka_unit_test(a_bar_from_a_file_is_as_stiff_as_its_law_says),
       cmocka_unit_test(numbers_follow_the_file_and_slices_hold_neighbours),
+      cmocka_unit_test(surroundings_have_every_bond_once),
       cmocka_unit_test(scattered_particles_have_exact_gradients_and_balance),
       cmocka_unit_test(scattered_bonds_are_calibrated_inside_the_body),
       cmocka_unit_test(threads_do_not_change_a_bit),
