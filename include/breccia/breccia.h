@@ -90,6 +90,9 @@ typedef struct breccia_link {
   double fracture_energy; /* per area of crack, from which the formulation finds `tension_end`; NaN: it stands there */
   double compression_begin, compression_end; /* shortening, as positive numbers; infinite: there is no such damage */
   double recovery; /* share of what tension has damaged along a link that it carries again in compression */
+  double initial_fracture_energy; /* of it what the first of two lines spends that the force falls by; 0: it is one */
+  double tension_kink;            /* where the second one begins, as a share of the largest force */
+  double tension_first_end;       /* where the first one would end, which the formulation finds too; 0: there is one */
 } breccia_link;
 
 /** A constitutive law: strain to stress for many points. */

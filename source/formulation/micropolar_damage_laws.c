@@ -5,6 +5,7 @@
 #include "formulation/micropolar.h"
 
 #include "base/memory.h"
+#include "constitutive/link_damage.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,16 +55,19 @@ int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *lin
   if (isnan(link->fracture_energy)) return BRECCIA_OK;
   const bool lattice = m->body->lattices[block].chunks != 0;
   const double sum = lattice ? least_crossing(m, block) : mean_crossing(m, block);
-  link->tension_end = 4 * link->fracture_energy / (link->tension_begin * sum);
-  if (link->tension_end > link->tension_begin) return BRECCIA_OK;
+  link_find_ends(link, 4 * link->fracture_energy / (link->tension_begin * sum));
+  const bool bends = link->tension_first_end > 0;
+  const double first_end = bends ? link->tension_first_end : link->tension_end;
+  if (first_end > link->tension_begin) return BRECCIA_OK;
   char advice[80] = "take finer particles";
   if (lattice)
     snprintf(advice, sizeof advice, "take a spacing %.3g times smaller or less",
-             1.001 * link->tension_begin / link->tension_end);
+             1.001 * link->tension_begin / first_end);
   return error_add(error, BRECCIA_USER_ERROR,
-                   "block '%s': its links store more up to the tensile stretch of %g than the fracture energy of "
+                   "block '%s': its links store more up to the tensile stretch of %g than the %sfracture energy of "
                    "material '%s' lets a crack take; %s, or give more fracture energy",
-                   m->body->blocks[block]->head.name, link->tension_begin, micropolar_material(m, block)->name, advice);
+                   m->body->blocks[block]->head.name, link->tension_begin, bends ? "initial " : "",
+                   micropolar_material(m, block)->name, advice);
 }
 
 static int find_laws(Micropolar *m, Error *error)

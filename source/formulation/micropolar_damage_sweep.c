@@ -41,15 +41,17 @@ LANES_INLINE void load_displacements(const Micropolar *m, int64_t place, int dim
 }
 
 /** link_damage, lane by lane. */
-LANES_INLINE Lanes damage_of(Lanes stretch, double begin, double end, bool linear_force)
+LANES_INLINE Lanes damage_of(Lanes stretch, LinkCurve c)
 {
-  const LaneMask beyond = (LaneMask)(stretch > lanes_set(begin));
-  if (!isfinite(begin)) return lanes_set(0);
-  const Lanes x = lanes_choose(beyond, stretch, lanes_set(begin));
+  const LaneMask beyond = (LaneMask)(stretch > lanes_set(c.begin));
+  if (!isfinite(c.begin)) return lanes_set(0);
+  const Lanes x = lanes_choose(beyond, stretch, lanes_set(c.begin));
   /* gcc 12 takes a division under a condition of one number to be one of the first lane only: both forms are made of one formula */
-  const Lanes share = (x - lanes_set(begin)) * lanes_set(1 / (end - begin)) *
-                      (lanes_set(!linear_force) + lanes_set(linear_force ? end : 0) / x);
-  return lanes_where(beyond, lanes_choose((LaneMask)(x >= lanes_set(end)), lanes_set(1), share));
+  const Lanes inverse = lanes_set(1) / x,
+              first = (x - lanes_set(c.begin)) * lanes_set(1 / (c.first_end - c.begin)) *
+                      (lanes_set(!c.linear_force) + lanes_set(c.linear_force ? c.first_end : 0) * inverse),
+              second = lanes_set(1 + c.tail) - lanes_set(c.tail * c.end) * inverse;
+  return lanes_where(beyond, lanes_choose((LaneMask)(x >= lanes_set(c.end)), lanes_set(1), lanes_least(first, second)));
 }
 
 /** The larger damage of what both ends' blocks say of a stretch. */
@@ -58,8 +60,8 @@ static double larger_damage(const Micropolar *m, int64_t place, int64_t other, d
   double most = 0;
   for (int end = 0; end < 2; ++end) {
     const breccia_link *l = &m->damage->laws[m->particles->block[(end ? other : place) / SLICE]];
-    most = fmax(most, tension ? link_damage(stretch, l->tension_begin, l->tension_end, l->linear_force)
-                              : link_damage(-stretch, l->compression_begin, l->compression_end, false));
+    const LinkCurve curves[2] = {link_in_tension(l), link_in_compression(l)};
+    most = fmax(most, tension ? link_damage(stretch, &curves[0]) : link_damage(-stretch, &curves[1]));
   }
   return most;
 }
@@ -70,8 +72,7 @@ LANES_INLINE Lanes damage_now(const Micropolar *m, const LinkLanes *l, Lanes d, 
   const breccia_link *law = &m->damage->laws[m->particles->block[l->place / SLICE]];
   if (!lanes_any(beyond)) return lanes_set(0); /* spares quotients where nothing new is damaged */
   const Lanes stretch = stretch_of(d);
-  Lanes now = tension ? damage_of(stretch, law->tension_begin, law->tension_end, law->linear_force)
-                      : damage_of(-stretch, law->compression_begin, law->compression_end, false);
+  Lanes now = tension ? damage_of(stretch, link_in_tension(law)) : damage_of(-stretch, link_in_compression(law));
   for (int k = 0; k < LANES && joins_blocks(m, l); ++k) /* both ends by the same formula */
     if (m->particles->block[l->neighbours[k] / SLICE] != m->particles->block[l->place / SLICE])
       now[k] = larger_damage(m, l->place + k, l->neighbours[k], stretch[k], tension);

@@ -166,7 +166,8 @@ static Material mazars(void)
 static Material link_damage(void)
 {
   return material_of("link-damage", "Young modulus=30e6", "Poisson ratio=0.2", "tensile stretch=1e-4",
-                     "fracture energy=0.1", "length=0.03", "compressive stretch=4e-4", NULL);
+                     "fracture energy=0.1", "initial fracture energy=0.06", "length=0.1", "compressive stretch=4e-4",
+                     NULL);
 }
 static double over_tension(const Point *p, const double s[6])
 {

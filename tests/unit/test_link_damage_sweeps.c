@@ -25,7 +25,7 @@ static breccia_model *links_of(const char *body, const char *space, const char *
             "  m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: 0.2, tensile stretch: 1e-4, "
             "compressive stretch: 2e-4, stiffness recovery: 0.4}\n"
             "  n: {model: link-damage, density: 2, Young modulus: 3e7, Poisson ratio: 0.2, tensile stretch: 2e-4, "
-            "compressive stretch: 1e-4, stiffness recovery: 0.7}\n"
+            "compressive stretch: 1e-4, stiffness recovery: 0.7, fracture energy: 0.6, initial fracture energy: 0.3}\n"
             "body:\n  %s\nperidynamics: {formulation: micropolar, space: %s, horizon: 1.8 spacings}\n%s"
             "solve: {explicit: {steps: 1}}\n",
       body, space, loads);

@@ -6,8 +6,24 @@
 typedef struct Stretches {
   double tension, tension_end, compression, compression_end, recovery;
   bool linear_force;
+  double first, kink; /* share of the energy below the first of two lines, and where the second begins; 0: one line */
   Visits visits;
 } Stretches;
+
+/** What is left of the largest force by two lines over the opening, which is the strain less what is elastic. */
+static double left_by_two_lines(const Stretches *c, double most)
+{
+  const double straight = c->tension_end, kink = (1 - c->kink) * c->first * straight,
+               end = (straight - kink) / c->kink; /* as much as a triangle that ends at `straight` */
+  double low = 0, high = 1;
+  for (int k = 0; k < 60; ++k) {
+    const double force = (low + high) / 2, opening = most - c->tension * force,
+                 carried = opening < kink ? 1 - (1 - c->kink) * opening / kink
+                                          : fmax(0, c->kink * (end - opening) / (end - kink));
+    *(force < carried ? &low : &high) = force;
+  }
+  return low;
+}
 
 static void stretches_obey(const Step *s, void *data)
 {
@@ -23,7 +39,9 @@ static void stretches_obey(const Step *s, void *data)
     push += past(-stress[k]);
   }
   /* Of the end of the softening: a force that falls linearly is that share of the one at the peak, and the rest of the stiffness follows from it. */
-  const double left = fmax(0, fmin(1, (c->tension_end - most) / (c->tension_end - c->tension))),
+  const double left = c->first > 0 && most > c->tension
+                          ? left_by_two_lines(c, most)
+                          : fmax(0, fmin(1, (c->tension_end - most) / (c->tension_end - c->tension))),
                torn = most <= c->tension ? 0
                       : c->linear_force  ? 1 - left * c->tension / most
                                          : 1 - left,
@@ -55,13 +73,16 @@ static void damage_by_stretch_follows_its_lines(void **state)
       material_of("link-damage", MODULI, "compressive stretch=4e-4", NULL),
       material_of("link-damage", MODULI, "tensile ductility=7", "stiffness recovery=0.4", "compressive stretch=2e-4",
                   "compressive ductility=5", NULL),
-      material_of("link-damage", MODULI, "fracture energy=0.1", "length=0.04", "stiffness recovery=0", NULL)};
+      material_of("link-damage", MODULI, "fracture energy=0.1", "length=0.04", "stiffness recovery=0", NULL),
+      material_of("link-damage", MODULI, "fracture energy=0.1", "initial fracture energy=0.04", "kink stress=0.25",
+                  "length=0.2", "stiffness recovery=0", NULL)};
   /* 2 G_F / (E S_t l): a triangle of stress over strain. */
-  const Stretches cases[] = {{1e-4, 2e-4, 4e-4, 8e-4, 1, false, {{0}}},
-                             {1e-4, 7e-4, 2e-4, 1e-3, 0.4, false, {{0}}},
-                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.04), INFINITY, INFINITY, 0, true, {{0}}}};
+  const Stretches cases[] = {{1e-4, 2e-4, 4e-4, 8e-4, 1, false, 0, 0, {{0}}},
+                             {1e-4, 7e-4, 2e-4, 1e-3, 0.4, false, 0, 0, {{0}}},
+                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.04), INFINITY, INFINITY, 0, true, 0, 0, {{0}}},
+                             {1e-4, 2 * 0.1 / (30e6 * 1e-4 * 0.2), INFINITY, INFINITY, 0, true, 0.4, 0.25, {{0}}}};
   static const double sizes[] = {6e-5, 3e-4, 1.5e-3};
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 4; ++k) {
     Stretches c = cases[k];
     for (int n = 0; n < 3; ++n) walk(&m[k], sizes[n], false, stretches_obey, &c);
     all_visited("link-damage", &c.visits, k < 2 ? 7 : 5);

@@ -4,9 +4,20 @@
  * s the stiffness that closing cracks gain back and q = <pressure - tension> / (pressure + tension) of their sums. A factor common to both parts, by their
  * share in the stress (Lee and Fenves 1998), would let a crack that is open and sheared carry tension without end: C strain grows with the opening, nothing
  * flows. So would pressure that is given back beside a tension that outweighs it. */
+#include "constitutive/link_damage.h"
 #include "constitutive/solid/link_law.h"
 
-enum { TENSION = ELASTIC_PARAMETERS, TENSION_END, ENERGY, COMPRESSION, COMPRESSION_END, RECOVERY, LENGTH };
+enum {
+  TENSION = ELASTIC_PARAMETERS,
+  TENSION_END,
+  ENERGY,
+  COMPRESSION,
+  COMPRESSION_END,
+  RECOVERY,
+  LENGTH,
+  INITIAL_ENERGY,
+  KINK
+};
 
 static const double ductility = 2;
 
@@ -26,6 +37,11 @@ static const breccia_parameter parameters[] = {
      "share of the axial stiffness lost in tension that comes back where cracks close; the thesis has 0"},
     {"length", "length", "", "(0, inf)",
      "over which the fracture energy is spread; that of the formulation or of the links when absent"},
+    {"initial fracture energy", "fracture energy", "", "(0, inf)",
+     "G_f below the first of two lines that the force then falls by, which decides largest loads; 0.4 to 0.6 G_F in "
+     "concrete; when absent G_F, one line"},
+    {"kink stress", "1", "0.3333333333333333", "(0, 1)",
+     "at which the second line begins, over the strength; of no use without an initial fracture energy"},
 };
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
@@ -43,6 +59,11 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
                          .compression_begin = isnan(v[COMPRESSION]) ? INFINITY : v[COMPRESSION],
                          .compression_end = isnan(v[COMPRESSION]) ? INFINITY : v[COMPRESSION] * v[COMPRESSION_END],
                          .recovery = v[RECOVERY]};
+  const bool bends = !isnan(v[INITIAL_ENERGY]);
+  if (bends && !(v[INITIAL_ENERGY] < v[ENERGY])) {
+    snprintf(reason, size, "'initial fracture energy' is a part of 'fracture energy', which must be given and be more");
+    return 1;
+  }
   if (!energy) return 0;
   if (!isnan(v[TENSION_END])) {
     snprintf(reason, size, "give 'tensile ductility' or 'fracture energy', which says where the force ends");
@@ -52,17 +73,20 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
     snprintf(reason, size, "a fracture energy needs the 'length' over which it is spread");
     return 1;
   }
-  if (isinf(v[LENGTH])) { /* links find their own */
-    link->fracture_energy = v[ENERGY];
-    return 0;
-  }
-  link->tension_end = 2 * v[ENERGY] / (young * begin * v[LENGTH]);
-  if (link->tension_end > begin) return 0;
+  link->fracture_energy = v[ENERGY];
+  link->initial_fracture_energy = bends ? v[INITIAL_ENERGY] : 0;
+  link->tension_kink = v[KINK];
+  if (isinf(v[LENGTH])) return 0; /* links find their own */
+  link_find_ends(link, 2 * v[ENERGY] / (young * begin * v[LENGTH]));
+  link->fracture_energy = NAN;
+  const double first_end = bends ? link->tension_first_end : link->tension_end;
+  if (first_end > begin) return 0;
   snprintf(
       reason, size,
-      "a length of %g stores more at the peak than the fracture energy, so that the curve would snap back; it must "
-      "be less than 2 G_F / (E S_t^2) = %g: take a finer spacing, if the units of these numbers are right",
-      v[LENGTH], 2 * v[ENERGY] / (young * begin * begin));
+      "a length of %g stores more at the peak than the %sfracture energy, so that the curve would snap back; it must "
+      "be less than 2 %s / (E S_t^2) = %g: take a finer spacing, if the units of these numbers are right",
+      v[LENGTH], bends ? "initial " : "", bends ? "G_f" : "G_F",
+      2 * v[bends ? INITIAL_ENERGY : ENERGY] / (young * begin * begin));
   return 1;
 }
 
@@ -113,6 +137,8 @@ const breccia_law law_link_damage = {
         "S the stretch of a link; of a point in space S the largest principal strain, or less the smallest one\n"
         "D_t = (S − S_t)/((α_t − 1) S_t), with a fracture energy α (S − S_t)/((α − 1) S); D_c alike from S_c, "
         "where D_t > 0 beside it; both stay\n"
+        "with an initial fracture energy G_f the force falls by two lines, over the opening w = S − (1 − D_t) S_t: to "
+        "the kink towards w = 2 G_f/f_t, and on to 0 where G_F is spent\n"
         "all that links carry, or σ, times (1 − D_t)(1 − D_c); of what is along a link, and of principal stresses, D_t "
         "counts by 1 − q recovery where it is pressure\n"
         "q = 1 of a link, ⟨pressure − tension⟩/(pressure + tension) of the sums of principal stresses",

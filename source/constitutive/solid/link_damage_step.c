@@ -5,13 +5,13 @@
 #include "constitutive/solid/spectral.h"
 
 /* One lane after the other: links ask the same function (formulation/micropolar_damage). */
-LANES_INLINE Dual damage_of(DualSlopes n, Dual stretch, double begin, double end, bool linear_force)
+LANES_INLINE Dual damage_of(DualSlopes n, Dual stretch, LinkCurve curve)
 {
   double value[LANES], slope[LANES];
   lanes_store(value, stretch.value);
   for (int l = 0; l < LANES; ++l) {
-    slope[l] = n.end > n.first ? link_damage_slope(value[l], begin, end, linear_force) : 0;
-    value[l] = link_damage(value[l], begin, end, linear_force);
+    slope[l] = n.end > n.first ? link_damage_slope(value[l], &curve) : 0;
+    value[l] = link_damage(value[l], &curve);
   }
   return dual_of(n, lanes_load(value), lanes_load(slope), stretch);
 }
@@ -30,8 +30,7 @@ LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committ
     pressure = dual_sum(n, pressure, -1, effective[k]);
     all = dual_add(n, all, dual_absolute(n, effective[k]));
   }
-  Dual d[LINK_HISTORY] = {damage_of(n, most, l->tension_begin, l->tension_end, l->linear_force),
-                          damage_of(n, least, l->compression_begin, l->compression_end, false)};
+  Dual d[LINK_HISTORY] = {damage_of(n, most, link_in_tension(l)), damage_of(n, least, link_in_compression(l))};
   const LaneMask beside = (d[LINK_TENSILE].value > zero) | (committed[LINK_TENSILE] > zero);
   d[LINK_COMPRESSIVE] = dual_where(n, beside, d[LINK_COMPRESSIVE]);
   for (int k = 0; k < LINK_HISTORY; ++k) {
