@@ -125,11 +125,11 @@ static int64_t reach_of(const Domain *d, const Region *region)
   return reach;
 }
 
-/** Stripes are twice as long as bonds reach, so that what they have in common is little, but not so long that many threads find no work. */
+/** Stripes are much longer than bonds reach, so that what they have in common is little, but not so long that many threads find no work. */
 static int create_stripes(const Domain *d, Region *region, Error *error)
 {
-  enum { LEAST = 8, MANY = 16 };
-  const int64_t batches = region->last_batch - region->first_batch, wanted = 2 * reach_of(d, region),
+  enum { LEAST = 8, MANY = 16, LONG = 6 };
+  const int64_t batches = region->last_batch - region->first_batch, wanted = LONG * reach_of(d, region),
                 most = batches / MANY;
   int64_t size = wanted < most ? wanted : most;
   if (size < LEAST) size = LEAST;

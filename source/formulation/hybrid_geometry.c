@@ -386,7 +386,9 @@ int hybrid_measure(Hybrid *h, const FormulationParts *parts, Error *error)
   if (!status) status = measure_lattices(h, (const HybridShape *)shape, error);
   free(shape);
   h->stripes = parts->stripe_count;
-  return status ? status : hybrid_stripes_create(h, parts->stripe, error);
+  if (!status) status = hybrid_stripes_create(h, parts->stripe, error);
+  if (!status && h->planar) hybrid_planes_choose(h);
+  return status;
 }
 
 void hybrid_forget(Hybrid *h)

@@ -9,6 +9,10 @@
 /** Bonds of a slot that have the same members. */
 typedef struct HookeBonds {
   int64_t first;                      /* of the members in the table */
+  const uint16_t *near;               /* lattice vectors that lead to them */
+  const double (*vector)[3];          /* their g */
+  const int32_t *base;                /* places of lane 0's members by lattice vector; or NULL: */
+  const int32_t (*place)[SLICE];      /* those of all members lane by lane */
   int count;                          /* of members */
   int other;                          /* lattice vector of the other end */
   bool mirrored;                      /* as in HybridGeometry */
@@ -19,11 +23,21 @@ typedef struct HookeBonds {
 } HookeBonds;
 
 /** What kind of sweep it is: a constant where it is asked. */
-enum { HOOKE_FINITE = 1, HOOKE_PAIRWISE = 2, HOOKE_LINEAR = 4 /* a linearised step */ };
+enum {
+  HOOKE_FINITE = 1,
+  HOOKE_PAIRWISE = 2,
+  HOOKE_LINEAR = 4 /* a linearised step */,
+  HOOKE_GATHERED = 8 /* bonds of several slices */
+};
 
 /** What a sweep works with, the same for all its slices. */
 typedef struct HookeWork {
   double *u[3], *at[3]; /* as in Sweep */
+  int kind;
+  const HybridStripe *stripe;
+  struct HookeGathering *gathering;
+  const uint8_t *planar; /* bonds that planes go through, or NULL */
+  const HybridHooke *hooke;
   double lame, shear;
   double *sums; /* of lane 0 by lattice vector, [3][room] */
   int room;
@@ -32,6 +46,8 @@ typedef struct HookeWork {
 LANES_INLINE void take_geometry(const Hybrid *h, HookeBonds *bonds, const HybridGeometry *geometry)
 {
   bonds->first = geometry->first;
+  bonds->near = h->table.near + geometry->first;
+  bonds->vector = (const double(*)[3])(h->table.g + geometry->first);
   bonds->count = geometry->count;
   bonds->other = geometry->other;
   bonds->mirrored = geometry->mirrored;
@@ -65,25 +81,29 @@ LANES_INLINE void next_bonds(const Hybrid *h, int64_t group, unsigned *left, Hoo
   bonds->lanes &= ~*left;
 }
 
-/** G of the bonds of lanes `lane` and on. */
-LANES_INLINE void find_gradient(const SliceOf *s, const HookeBonds *bonds, double *const u[3], int lane, Lanes g[9])
+/** Numbers of member n of the bonds of lanes `lane` and on. */
+LANES_INLINE Lanes of_member(const HookeBonds *bonds, const double *u, int n, int lane, bool gathered)
 {
-  const double(*vector)[3] = (const double(*)[3])(s->h->table.g + bonds->first);
-  const uint16_t *near = s->h->table.near + bonds->first;
+  return gathered ? lanes_gather(u, bonds->place[n] + lane) : lanes_load(u + bonds->base[bonds->near[n]] + lane);
+}
+
+/** G of the bonds of lanes `lane` and on. */
+LANES_INLINE void find_gradient(const HookeBonds *bonds, double *const u[3], int lane, int kind, Lanes g[9])
+{
+  const bool gathered = kind & HOOKE_GATHERED;
+  const double(*vector)[3] = bonds->vector;
   for (int k = 0; k < 9; ++k) g[k] = lanes_set(0);
   if (bonds->mirrored) {
-    for (int n = 0; n + 1 < bonds->count; n += 2) {
-      const int64_t a = s->base[near[n]] + lane, b = s->base[near[n + 1]] + lane;
+    for (int n = 0; n + 1 < bonds->count; n += 2)
       for (int k = 0; k < 3; ++k) {
-        const Lanes apart = lanes_load(u[k] + a) - lanes_load(u[k] + b);
+        const Lanes apart = of_member(bonds, u[k], n, lane, gathered) - of_member(bonds, u[k], n + 1, lane, gathered);
         for (int j = 0; j < 3; ++j) g[3 * k + j] += apart * lanes_set(vector[n][j]);
       }
-    }
     return;
   }
   for (int n = 0; n < bonds->count; ++n)
     for (int k = 0; k < 3; ++k) {
-      const Lanes moved = lanes_load(u[k] + s->base[near[n]] + lane);
+      const Lanes moved = of_member(bonds, u[k], n, lane, gathered);
       for (int j = 0; j < 3; ++j) g[3 * k + j] += moved * lanes_set(vector[n][j]);
     }
 }
@@ -117,12 +137,11 @@ LANES_INLINE void add_turned(const Lanes g[9], const Lanes stress[6], Lanes p[9]
 }
 
 /** F S, or in a linearised step its change. */
-LANES_INLINE void find_first_stress(const SliceOf *s, const HookeWork *w, const HookeBonds *bonds, int lane, int kind,
-                                    Lanes p[9])
+LANES_INLINE void find_first_stress(const HookeWork *w, const HookeBonds *bonds, int lane, int kind, Lanes p[9])
 {
   Lanes g[9], strain[6], stress[6];
-  find_gradient(s, bonds, w->u, lane, g);
-  if (kind != (kind | HOOKE_FINITE | HOOKE_LINEAR)) {
+  find_gradient(bonds, w->u, lane, kind, g);
+  if (!(kind & HOOKE_FINITE) || !(kind & HOOKE_LINEAR)) {
     find_strain(g, kind, strain);
     find_stress(w, strain, stress);
     for (int k = 0; k < 9; ++k) p[k] = stress[symmetric_place[k]];
@@ -130,7 +149,7 @@ LANES_INLINE void find_first_stress(const SliceOf *s, const HookeWork *w, const 
     return;
   }
   Lanes at[9], held[6];
-  find_gradient(s, bonds, w->at, lane, at);
+  find_gradient(bonds, w->at, lane, kind, at);
   find_strain(at, kind, strain);
   find_stress(w, strain, held);
   for (int k = 0; k < 6; ++k) {
@@ -154,6 +173,12 @@ LANES_INLINE Lanes of_lanes(unsigned bits, Lanes value)
   return bits == (1u << LANES) - 1 ? value : lanes_intact(bits, 0, value);
 }
 
+/** Bonds of a slot that carry something and that planes leave. */
+LANES_INLINE unsigned left_by_planes(const Hybrid *h, const HookeWork *w, int64_t group)
+{
+  return h->active[group] & ~(w->planar ? w->planar[group] : 0u);
+}
+
 LANES_INLINE void add_vector(double *to, Lanes value)
 {
   lanes_store(to, lanes_load(to) + value);
@@ -165,11 +190,11 @@ LANES_INLINE Lanes scale_of(const HookeBonds *bonds, int k, int lane)
 }
 
 /** Adds what bonds exert on their members. */
-LANES_INLINE void exert(const SliceOf *s, const HookeWork *w, const HookeBonds *bonds, int lane, int kind)
+LANES_INLINE void exert(const HookeWork *w, const HookeBonds *bonds, int lane, int kind)
 {
   const unsigned lanes = bonds->lanes >> lane & ((1u << LANES) - 1);
   Lanes p[9];
-  find_first_stress(s, w, bonds, lane, kind, p);
+  find_first_stress(w, bonds, lane, kind, p);
   double *sums = w->sums + lane;
   const int room = w->room;
   if (kind & HOOKE_PAIRWISE) {
@@ -182,8 +207,8 @@ LANES_INLINE void exert(const SliceOf *s, const HookeWork *w, const HookeBonds *
     }
     return;
   }
-  const double(*vector)[3] = (const double(*)[3])(s->h->table.g + bonds->first);
-  const uint16_t *near = s->h->table.near + bonds->first;
+  const double(*vector)[3] = bonds->vector;
+  const uint16_t *near = bonds->near;
   const Lanes volume = scale_of(bonds, 0, lane);
   for (int k = 0; k < 9; ++k) p[k] = of_lanes(lanes, p[k] * volume);
   const int step = bonds->mirrored ? 2 : 1;
@@ -198,56 +223,215 @@ LANES_INLINE void exert(const SliceOf *s, const HookeWork *w, const HookeBonds *
   }
 }
 
-LANES_INLINE void exert_groups(const SliceOf *s, const HookeWork *w, int kind)
+/* ---- bonds that are alone in their slots: those of several slices that have the same members go through one turn ---- */
+
+enum {
+  GATHERED = 3,         /* bonds of a turn that wait for others, at most */
+  GATHERED_SLICES = 16, /* from which they come */
+  GATHERED_KINDS = 512,
+  GATHERED_LISTS = 1024
+};
+
+/** Bonds with the same members that wait. */
+typedef struct HookeList {
+  int64_t first; /* of the members in the table */
+  int count, next;
+  int32_t geometry[SLICE];
+  uint8_t slice[SLICE], lane[SLICE];
+} HookeList;
+
+typedef struct HookeGathering {
+  int slices, kinds;
+  int16_t list[GATHERED_LISTS]; /* by hash, one more than the number of the first one; 0: none */
+  HookeList kind[GATHERED_KINDS];
+  int32_t base[GATHERED_SLICES][HYBRID_NEAR];
+} HookeGathering;
+
+/** Adds what eight bonds at most exert on their members, lane by lane, to the sums of the stripe. */
+LANES_INLINE void exert_gathered(const HookeWork *w, const HookeBonds *bonds, int lanes, int kind)
 {
-  const Hybrid *h = s->h;
-  HookeBonds bonds = {0};
-  for (int n = 0; n < s->groups; ++n)
-    for (unsigned left = h->active[s->first + n]; left;) {
-      next_bonds(h, s->first + n, &left, &bonds);
-      for (int lane = 0; lane < SLICE; lane += LANES)
-        if (bonds.lanes >> lane & ((1u << LANES) - 1)) exert(s, w, &bonds, lane, kind);
+  _Alignas(64) double exerted[HYBRID_NEAR][3][SLICE];
+  const int members = kind & HOOKE_PAIRWISE ? 2 : bonds->count;
+  for (int lane = 0; lane < lanes; lane += LANES) {
+    Lanes p[9];
+    find_first_stress(w, bonds, lane, kind | HOOKE_GATHERED, p);
+    if (kind & HOOKE_PAIRWISE) {
+      for (int k = 0; k < 3; ++k) {
+        Lanes force = lanes_set(0);
+        for (int j = 0; j < 3; ++j) force += p[3 * k + j] * scale_of(bonds, j, lane);
+        lanes_store(exerted[0][k] + lane, force);
+        lanes_store(exerted[1][k] + lane, -force);
+      }
+      continue;
     }
+    const Lanes volume = scale_of(bonds, 0, lane);
+    for (int k = 0; k < 9; ++k) p[k] = p[k] * volume;
+    for (int n = 0; n < members; ++n)
+      for (int k = 0; k < 3; ++k) {
+        Lanes force = lanes_set(0);
+        for (int j = 0; j < 3; ++j) force += p[3 * k + j] * lanes_set(bonds->vector[n][j]);
+        lanes_store(exerted[n][k] + lane, -force);
+      }
+  }
+  const int64_t size = w->stripe->high - w->stripe->low;
+  double *to = w->stripe->sums - w->stripe->low;
+  for (int n = 0; n < members; ++n)
+    for (int lane = 0; lane < lanes; ++lane)
+      for (int k = 0; k < 3; ++k) to[k * size + bonds->place[n][lane]] += exerted[n][k][lane];
 }
 
-void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
+static void exert_list(const Hybrid *h, const HookeWork *w, HookeList *list)
 {
-  const Sweep whole = *sweep; /* so that stores are seen not to change it */
-  const int margin = sums_margin(h), room = 2 * margin + SLICE;
-  _Alignas(64) double sums[3 * HYBRID_NEAR * MOST_ROOM];
-  HookeWork w = {.sums = sums + margin, .room = room};
-  const int kind = (h->finite ? HOOKE_FINITE : 0) | (h->pairwise ? HOOKE_PAIRWISE : 0) | (whole.at ? HOOKE_LINEAR : 0);
-  for (int k = 0; k < 3; ++k) {
-    w.u[k] = h->particles->displacement[k];
-    if (whole.at) w.at[k] = whole.at[k];
+  int32_t place[HYBRID_NEAR][SLICE];
+  HookeBonds bonds = {.place = (const int32_t(*)[SLICE])place};
+  take_geometry(h, &bonds, &h->table.geometry[list->geometry[0]]);
+  for (int lane = 0; lane < SLICE; ++lane) {
+    const int of = lane < list->count ? lane : 0; /* lanes that are left over do what the first one does */
+    const HybridGeometry *geometry = &h->table.geometry[list->geometry[of]];
+    const int32_t *base = w->gathering->base[list->slice[of]];
+    for (int k = 0; k < 3 && h->pairwise; ++k) bonds.each[k][lane] = geometry->area[k];
+    if (!h->pairwise) bonds.each[0][lane] = geometry->volume;
+    for (int n = 0; n < bonds.count; ++n) place[n][lane] = base[bonds.near[n]] + list->lane[of];
   }
+  const int lanes = list->count;
+  list->count = 0;
+  switch (w->kind) {
+  case 0: exert_gathered(w, &bonds, lanes, 0); break;
+  case HOOKE_FINITE: exert_gathered(w, &bonds, lanes, HOOKE_FINITE); break;
+  case HOOKE_LINEAR: exert_gathered(w, &bonds, lanes, HOOKE_LINEAR); break;
+  case HOOKE_FINITE | HOOKE_LINEAR: exert_gathered(w, &bonds, lanes, HOOKE_FINITE | HOOKE_LINEAR); break;
+  case HOOKE_PAIRWISE: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE); break;
+  case HOOKE_PAIRWISE | HOOKE_FINITE: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE | HOOKE_FINITE); break;
+  case HOOKE_PAIRWISE | HOOKE_LINEAR: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE | HOOKE_LINEAR); break;
+  default: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR);
+  }
+}
+
+/** Lets all that wait exert what they do. */
+static void finish_gathering(const Hybrid *h, const HookeWork *w)
+{
+  HookeGathering *g = w->gathering;
+  for (int n = 0; n < g->kinds; ++n)
+    if (g->kind[n].count) exert_list(h, w, &g->kind[n]);
+  if (g->kinds) memset(g->list, 0, sizeof g->list);
+  g->kinds = g->slices = 0;
+}
+
+/** The list of bonds with the members of some, or NULL: there is no room for more. */
+static HookeList *list_of(HookeGathering *g, int64_t first)
+{
+  int16_t *list = &g->list[(uint64_t)first * 0x9e3779b97f4a7c15u >> 54];
+  for (int n = *list; n; n = g->kind[n - 1].next)
+    if (g->kind[n - 1].first == first) return &g->kind[n - 1];
+  if (g->kinds == GATHERED_KINDS) return NULL;
+  g->kind[g->kinds] = (HookeList){.first = first, .next = *list};
+  *list = (int16_t)(g->kinds + 1);
+  return &g->kind[g->kinds++];
+}
+
+/** Puts bonds of a slot aside. @return false: there is no room for them */
+static bool gather(const SliceOf *s, const HookeWork *w, int64_t group, const HookeBonds *bonds)
+{
+  const Hybrid *h = s->h;
+  HookeGathering *g = w->gathering;
+  HookeList *list = list_of(g, bonds->first);
+  if (!list) return false;
+  for (unsigned left = bonds->lanes; left; left &= left - 1) {
+    const int lane = __builtin_ctz(left), n = list->count++;
+    list->slice[n] = (uint8_t)g->slices;
+    list->lane[n] = (uint8_t)lane;
+    list->geometry[n] = h->group[group] < 0 ? h->mixed[-1 - h->group[group]][lane] : h->group[group];
+    if (list->count == SLICE) exert_list(h, w, list);
+  }
+  return true;
+}
+
+/** @return whether there is something in the sums of lattice vectors */
+LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *w, int kind)
+{
+  const Hybrid *h = s->h;
+  HookeBonds bonds = {.base = s->base};
+  const bool gathers = w->planar && h->lattice[h->particles->block[s->slice]]
+                                        .kind; /* elsewhere slices have whole turns besides, and nothing is gained */
+  bool some = false;
+  for (int n = 0; n < s->groups; ++n)
+    for (unsigned left = left_by_planes(h, w, s->first + n); left;) {
+      next_bonds(h, s->first + n, &left, &bonds);
+      if (gathers && __builtin_popcount(bonds.lanes) <= GATHERED && gather(s, w, s->first + n, &bonds)) continue;
+      some = true;
+      for (int lane = 0; lane < SLICE; lane += LANES)
+        if (bonds.lanes >> lane & ((1u << LANES) - 1)) exert(w, &bonds, lane, kind);
+    }
+  return some;
+}
+
+static bool exert_slice(const SliceOf *s, const HookeWork *w)
+{
+  switch (w->kind) {
+  case 0: return exert_groups(s, w, 0);
+  case HOOKE_FINITE: return exert_groups(s, w, HOOKE_FINITE);
+  case HOOKE_LINEAR: return exert_groups(s, w, HOOKE_LINEAR);
+  case HOOKE_FINITE | HOOKE_LINEAR: return exert_groups(s, w, HOOKE_FINITE | HOOKE_LINEAR);
+  case HOOKE_PAIRWISE: return exert_groups(s, w, HOOKE_PAIRWISE);
+  case HOOKE_PAIRWISE | HOOKE_FINITE: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_FINITE);
+  case HOOKE_PAIRWISE | HOOKE_LINEAR: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_LINEAR);
+  default: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR);
+  }
+}
+
+static void walk_stripe(const Hybrid *h, HookeWork *w)
+{
+  const HybridStripe *stripe = w->stripe;
   int cleared = 0; /* lattice vectors whose sums are zero */
-  for (int64_t slice = whole.first; slice < whole.last; ++slice) {
+  for (int64_t slice = stripe->first; slice < stripe->last; ++slice) {
     const HybridLattice *lattice = &h->lattice[h->particles->block[slice]];
     const HybridHooke *hooke = &h->hooke[h->material[slice]];
-    const HybridStripe *stripe = stripe_of(h, slice);
-    SliceOf s;
-    find_slice(h, slice, &s);
-    if (slice == stripe->first) clear_stripe(stripe);
-    if (!s.groups || !lattice->count) continue;
+    unsigned left = 0;
+    const int planes = w->planar ? h->planar_kind[slice] : HYBRID_ODD;
+    if (planes != HYBRID_ODD && !h->planes[planes].leaves) continue;
+    for (int64_t group = h->bonds->owned_first[slice]; group < h->bonds->owned_first[slice + 1]; ++group)
+      left |= left_by_planes(h, w, group);
+    if (!left || !lattice->count) continue;
     if (cleared < lattice->count) {
-      memset(sums + 3 * cleared * room, 0, sizeof *sums * (size_t)(3 * (lattice->count - cleared) * room));
+      memset(w->sums - sums_margin(h) + 3 * cleared * w->room, 0,
+             sizeof *w->sums * (size_t)(3 * (lattice->count - cleared) * w->room));
       cleared = lattice->count;
     }
-    w.lame = hooke->lame;
-    w.shear = hooke->shear;
-    switch (kind) {
-    case 0: exert_groups(&s, &w, 0); break;
-    case HOOKE_FINITE: exert_groups(&s, &w, HOOKE_FINITE); break;
-    case HOOKE_LINEAR: exert_groups(&s, &w, HOOKE_LINEAR); break;
-    case HOOKE_FINITE | HOOKE_LINEAR: exert_groups(&s, &w, HOOKE_FINITE | HOOKE_LINEAR); break;
-    case HOOKE_PAIRWISE: exert_groups(&s, &w, HOOKE_PAIRWISE); break;
-    case HOOKE_PAIRWISE | HOOKE_FINITE: exert_groups(&s, &w, HOOKE_PAIRWISE | HOOKE_FINITE); break;
-    case HOOKE_PAIRWISE | HOOKE_LINEAR: exert_groups(&s, &w, HOOKE_PAIRWISE | HOOKE_LINEAR); break;
-    default: exert_groups(&s, &w, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR);
-    }
-    add_to_stripe(&s, stripe, w.sums, room);
+    if (w->gathering->slices == GATHERED_SLICES || w->hooke != hooke) finish_gathering(h, w);
+    w->hooke = hooke;
+    w->lame = hooke->lame;
+    w->shear = hooke->shear;
+    SliceOf s;
+    find_slice(h, slice, &s);
+    memcpy(w->gathering->base[w->gathering->slices], s.base, sizeof *s.base * (size_t)lattice->count);
+    const bool some = exert_slice(&s, w);
+    ++w->gathering->slices;
+    if (!some) continue;
+    add_to_stripe(&s, stripe, w->sums, w->room);
     for (int n = 0; n < 3 * lattice->count; ++n)
-      for (int lane = 0; lane < SLICE; lane += LANES) lanes_store(w.sums + n * room + lane, lanes_set(0));
+      for (int lane = 0; lane < SLICE; lane += LANES) lanes_store(w->sums + n * w->room + lane, lanes_set(0));
   }
+  if (w->hooke) finish_gathering(h, w);
+}
+
+/** The first batch of a stripe stands for all of them. */
+void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
+{
+  const HybridStripe *stripe = stripe_of(h, sweep->first);
+  if (sweep->first != stripe->first) return;
+  _Alignas(64) double sums[3 * HYBRID_NEAR * MOST_ROOM];
+  HookeGathering gathering;
+  gathering.slices = gathering.kinds = 0;
+  memset(gathering.list, 0, sizeof gathering.list);
+  HookeWork w = {
+      .stripe = stripe, .gathering = &gathering, .sums = sums + sums_margin(h), .room = 2 * sums_margin(h) + SLICE};
+  w.kind = (h->finite ? HOOKE_FINITE : 0) | (h->pairwise ? HOOKE_PAIRWISE : 0) | (sweep->at ? HOOKE_LINEAR : 0);
+  for (int k = 0; k < 3; ++k) {
+    w.u[k] = h->particles->displacement[k];
+    if (sweep->at) w.at[k] = sweep->at[k];
+  }
+  clear_stripe(stripe);
+  if (w.kind != (w.kind | HOOKE_FINITE | HOOKE_LINEAR)) w.planar = h->planar;
+  if (w.planar) LANES_NAMED(hybrid_planes)(h, stripe);
+  walk_stripe(h, &w);
 }

@@ -41,7 +41,8 @@ static int64_t lay_out(Hybrid *h, const int64_t *begin)
   int64_t size = 0;
   for (int64_t n = 0; n < h->stripes; ++n) {
     HybridStripe *stripe = &h->stripe[n];
-    *stripe = (HybridStripe){.first = begin[n], .row = h->bonds->first[begin[n]], .low = INT64_MAX};
+    *stripe =
+        (HybridStripe){.first = begin[n], .last = begin[n + 1], .row = h->bonds->first[begin[n]], .low = INT64_MAX};
     for (int64_t slice = begin[n]; slice < begin[n + 1]; ++slice) {
       if (!exerts(h, slice)) continue;
       const int needed = (reach_of(h, slice, &stripe->low, &stripe->high) + LANES - 1) / LANES * LANES;
