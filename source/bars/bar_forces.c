@@ -56,9 +56,16 @@ void bars_resist(void *forces)
     find_strains(b, (int)n, b->first[n], b->first[n + 1]);
     bar_find_slips(b, (int)n);
   }
+  const bool ahead = b->has_points && points_ask_ahead(&b->points);
   TEAM_FOR (c, b->chunk_count) {
     const int64_t from = b->chunk[c], to = b->chunk[c + 1];
     if (!bar_slips(b, b->chunk_bar[c])) find_strains(b, b->chunk_bar[c], from, to);
+    double *const strain[6] = {b->strain + from};
+    if (ahead && b->served[b->chunk_bar[c]]) points_send(&b->points, from, (int)(to - from), strain);
+  }
+  if (ahead) TEAM_SINGLE points_await(&b->points);
+  TEAM_FOR (c, b->chunk_count) {
+    const int64_t from = b->chunk[c], to = b->chunk[c + 1];
     if (b->young[from] > 0) {
       for (int64_t e = from; e < to; ++e) b->stress[e] = b->young[e] * b->strain[e];
     } else {
@@ -68,34 +75,50 @@ void bars_resist(void *forces)
     for (int64_t e = from; e < to; ++e)
       for (int k = 0; k < 3; ++k) b->pull[e][k] = b->area[e] * b->stress[e] * b->along[e][k];
   }
+  TEAM_FOR (c, b->bends ? b->chunk_count : 0) bar_bend(b, b->chunk[c], b->chunk[c + 1]);
   spread(b, b->pull, b->body->particles.internal);
 }
 
 /* ---- changes ---- */
 
-double bar_stress_at(const Bars *b, int64_t e, double strain, double *slope)
+/** Asks for stresses and slopes of the elements of a bar whose law runs in a server. */
+static void ask_slopes(Bars *b, int n)
 {
-  if (!(b->young[e] > 0)) return points_try(&b->points, e, strain, slope);
-  if (slope) *slope = b->young[e];
-  return b->young[e] * strain;
+  const int64_t behind = b->first[n + 1];
+  for (int64_t from = b->first[n]; from < behind; from += BATCH)
+    points_ask_slopes(&b->points, from, (int)(behind - from < BATCH ? behind - from : BATCH), b->strain + from,
+                      b->stress + from, b->slope + from);
 }
 
-static double slope(const Bars *b, int64_t e)
+/** Slope of the stress of an element at its strain. @param[out] stress  from the committed state; NULL: not wanted */
+static double slope(const Bars *b, int n, int64_t e, double *stress)
 {
-  double tangent;
-  bar_stress_at(b, e, b->strain[e], &tangent);
+  double found = b->young[e] * b->strain[e], tangent = b->young[e];
+  if (b->served[n])
+    tangent = points_mixed_slope(&b->points, e, b->strain[e], found = b->stress[e], b->slope[e]);
+  else if (!(b->young[e] > 0))
+    found = points_try(&b->points, e, b->strain[e], &tangent);
+  if (stress) *stress = found;
   return tangent;
+}
+
+void bar_try_stresses(Bars *b, int n)
+{
+  if (b->served[n]) ask_slopes(b, n);
+  for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) b->tangent[e] = slope(b, n, e, &b->stress[e]);
 }
 
 void bars_linearise(void *forces)
 {
   Bars *b = forces;
-  for (int64_t e = 0; e < b->count; ++e) {
-    b->tangent[e] = b->area[e] * slope(b, e) / b->length[e];
-    b->across[e] = b->area[e] * b->stress[e] / (b->length[e] * (1 + b->line_strain[e]));
-  }
-  for (int n = 0; n < b->specs->count; ++n)
+  for (int n = 0; n < b->specs->count; ++n) {
+    if (b->served[n]) ask_slopes(b, n);
+    for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
+      b->tangent[e] = b->area[e] * slope(b, n, e, NULL) / b->length[e];
+      b->across[e] = b->area[e] * b->stress[e] / (b->length[e] * (1 + b->line_strain[e]));
+    }
     if (bar_slips(b, n)) bar_factor_slips(b, n);
+  }
 }
 
 void bars_change(void *forces, double *const v[3], double *const change[3])
@@ -105,8 +128,13 @@ void bars_change(void *forces, double *const v[3], double *const change[3])
     gather(b, e, v, b->pull[e]);
     b->longer[e] = 0;
     for (int k = 0; k < 3; ++k) b->longer[e] += b->along[e][k] * b->pull[e][k];
-    for (int k = 0; k < 3; ++k) b->pull[e][k] = b->across[e] * (b->pull[e][k] - b->longer[e] * b->along[e][k]);
+    for (int k = 0; k < 3; ++k) {
+      const double across = b->pull[e][k] - b->longer[e] * b->along[e][k];
+      b->pull[e][k] = b->across[e] * across;
+      if (b->bends) b->turn[e][k] = across / (b->length[e] * (1 + b->line_strain[e]));
+    }
   }
+  TEAM_FOR (e, b->bends ? b->count : 0) bar_change_bending(b, e);
   TEAM_FOR (n, b->slips ? b->specs->count : 0)
     if (bar_slips(b, (int)n)) bar_change_slips(b, (int)n);
   TEAM_FOR (e, b->count)
@@ -116,7 +144,9 @@ void bars_change(void *forces, double *const v[3], double *const change[3])
 
 const char *bars_unassembled(const void *forces)
 {
-  return ((const Bars *)forces)->slips ? "the slips of a bar join all particles along it" : NULL;
+  const Bars *b = forces;
+  if (b->slips) return "the slips of a bar join all particles along it";
+  return b->bends ? "the bending of a bar joins particles of two elements" : NULL;
 }
 
 const char *bars_stuck(const void *forces)
@@ -138,7 +168,7 @@ int bars_point(const void *forces, int64_t e, Operator *point, Error *error)
 {
   const Bars *b = forces;
   const double stretch = 1 + b->line_strain[e], stress = b->stress[e] / stretch,
-               tangent = (slope(b, e) - stress) / (stretch * stretch);
+               tangent = (slope(b, bar_of(b, e), e, NULL) - stress) / (stretch * stretch);
   double t[3], m[6];
   for (int k = 0; k < 3; ++k) t[k] = b->rest[e][k] / b->length[e];
   for (int k = 0; k < 6; ++k) m[k] = t[symmetric_row[k]] * t[symmetric_column[k]];
@@ -184,6 +214,7 @@ void bars_accept(void *forces)
   }
   if (b->has_points) points_commit(&b->points);
   bar_accept_slips(b);
+  bar_accept_bending(b);
   bars_note(b);
 }
 
@@ -192,7 +223,7 @@ double bars_energy(void *forces)
   const Bars *b = forces;
   double bond = 0;
   for (int n = 0; n < b->specs->count; ++n) bond += bar_bond_stored(b, n);
-  return bars_stored(b, 0, b->count, true) + bars_stored(b, 0, b->count, false) + bond;
+  return bars_stored(b, 0, b->count, true) + bars_stored(b, 0, b->count, false) + bond + bars_bent(b, 0, b->count);
 }
 
 double bars_given(const void *forces)
@@ -203,7 +234,7 @@ double bars_given(const void *forces)
 double bars_dissipated(const void *forces)
 {
   const Bars *b = forces;
-  double work = 0;
+  double work = b->bending_lost;
   for (int64_t e = 0; e < b->count; ++e) work += b->worked[e];
   if (b->has_points) work -= bars_stored(b, 0, b->count, false);
   for (int n = 0; n < b->specs->count; ++n) work += bar_bond_dissipated(b, n);

@@ -85,11 +85,12 @@ int64_t bar_nearest(const Bars *b, int deck_bar, const double point[3])
 }
 
 /** Strain that an element whose law is not Hooke's would give back. One that has not moved holds all of the stress that it began with: laws with
- *  rounded corners leave that stress by a jump, which is no flow. */
+ *  rounded corners leave that stress by a jump, which is no flow. Laws in servers, which are not asked, are taken to unload by their first modulus. */
 static double elastic_strain(const Bars *b, int64_t e)
 {
-  const double begun = -b->stress_held[e] / material_young(points_material(&b->points, e));
-  if (b->strain_held[e] == 0 && b->slack[e] == begun) return -begun;
+  const Material *m = points_material(&b->points, e);
+  const double begun = -b->stress_held[e] / material_young(m);
+  if (m->remote || (b->strain_held[e] == 0 && b->slack[e] == begun)) return -begun;
   return points_elastic_strain(&b->points, e, b->strain_held[e], b->slack[e]);
 }
 
@@ -169,7 +170,7 @@ BarReport bar_report(const Bars *b, int deck_bar)
     note_first(b->torn, e, &r.first_torn);
   }
   const double of_points = b->has_points ? bars_stored(b, from, to, false) : 0;
-  r.stored = bars_stored(b, from, to, true) + of_points;
+  r.stored = bars_stored(b, from, to, true) + of_points + bars_bent(b, from, to);
   r.dissipated -= of_points;
   for (int n = first; n < behind; ++n) {
     r.lowest_stress = fmin(r.lowest_stress, b->lowest[n]);

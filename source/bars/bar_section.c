@@ -37,6 +37,10 @@ static void check_bar(const DeckReader *reader, void *section)
     if (!memcmp(bar->points.values + 3 * n, bar->points.values + 3 * (n - 1), 3 * sizeof(double)))
       node_error(reader->document, node, reader->error, "points: points %d and %d are the same; leave one out", n,
                  n + 1);
+  if (bar->bending && bar->snap)
+    node_error(reader->document, section_node(section, "bending"), reader->error,
+               "bending: a line that is moved to particles has a corner at each of them, where no moment is handed on; "
+               "leave 'snap' out, or this");
   check_slip(reader, bar);
   bar_check_repeat(reader, bar);
 }
@@ -73,12 +77,19 @@ static const Field bar_fields[] = {
      .kind = FIELD_NAME,
      .offset = offsetof(BarSpec, material),
      .dimension = "material",
-     .meaning = "name of one of the materials: of a law of one strain, or 'elastic', of which Young's modulus counts"},
+     .meaning = "name of one of the materials: of a law of one strain, of this program or in a server, or 'elastic', "
+                "of which Young's modulus counts"},
     {.key = "snap",
      .kind = FIELD_FLAG,
      .offset = offsetof(BarSpec, snap),
      .standard = "no",
      .meaning = "ends of elements are moved to the nearest particles, and pull on those only"},
+    {.key = "bending",
+     .kind = FIELD_FLAG,
+     .offset = offsetof(BarSpec, bending),
+     .standard = "no",
+     .meaning = "whether it resists bending too, as a dowel does across a crack: by Young's modulus times the second "
+                "moment of its round section, at any stress; corners hand on no moment"},
     {.key = "bond",
      .kind = FIELD_SECTION,
      .offset = offsetof(BarSpec, bond),
@@ -232,6 +243,24 @@ bool bars_use(const void *spec, const char *material)
   return false;
 }
 
+/** Servers hold the points of bars apart from those of blocks, and slips are found by trials. */
+static int check_served(const BarSpec *bar, const Material *m, const ForcesParts *parts)
+{
+  for (int k = 0; k < parts->body->block_count; ++k)
+    if (!strcmp(parts->body->blocks[k]->material, bar->material))
+      return node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
+                        "material: '%s' runs in a server, which holds the points of block '%s' with it; give bars a "
+                        "material of their own",
+                        bar->material, parts->body->blocks[k]->head.name);
+  if (bar->bond && !remote_iterates(m->remote))
+    return node_error(parts->reader->document, section_node(bar, "bond"), parts->reader->error,
+                      "bond: slips are found by trying strains several times, and the server of material '%s' cannot "
+                      "take a trial back; leave 'bond' out, take a server that can (docs/material-server.md), or a law "
+                      "of this program",
+                      bar->material);
+  return BRECCIA_OK;
+}
+
 int bars_check(const void *spec, const ForcesParts *parts)
 {
   const SectionList *list = spec;
@@ -242,12 +271,8 @@ int bars_check(const void *spec, const ForcesParts *parts)
     const BarSpec *bar = list->items[n];
     const Material *m = bar_material(bar, parts);
     int bad = check_lines(&lines, n, parts);
-    if (m && m->remote)
-      bad =
-          node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
-                     "material: '%s' runs in a material server, which bars do not ask yet; take a law of this program",
-                     bar->material);
-    else if (m && m->law->components != 1 && !material_is_hookean(m))
+    if (m && m->remote && !bad) bad = check_served(bar, m, parts);
+    if (m && m->law->components != 1 && !material_is_hookean(m))
       bad = node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,
                        "material: '%s' is '%s', a law of strain in space; bars take laws of one strain, like "
                        "'steel-bilinear', and 'elastic'",

@@ -160,7 +160,10 @@ static void evaluate(Bars *b, int n)
   for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
     const int64_t k = e + n;
     b->strain[e] = b->line_strain[e] + b->prestrain[n] + (s->slip[k + 1] - s->slip[k]) / b->length[e];
-    b->stress[e] = bar_stress_at(b, e, b->strain[e], &b->tangent[e]);
+  }
+  bar_try_stresses(b, n);
+  for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
+    const int64_t k = e + n;
     b->tangent[e] *= b->area[e] / b->length[e];
     s->residual[k] -= b->area[e] * b->stress[e];
     s->residual[k + 1] += b->area[e] * b->stress[e];

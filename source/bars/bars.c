@@ -13,6 +13,8 @@ static void destroy(void *forces)
   bar_slips_destroy(b);
   bar_lines_destroy(&b->lines);
   free(b->first);
+  free(b->served);
+  free(b->slope);
   free(b->bar_area);
   free(b->node);
   free(b->node_begin);
@@ -44,6 +46,9 @@ static void destroy(void *forces)
   free(b->across);
   free(b->chunk);
   free(b->chunk_bar);
+  free(b->bend);
+  free(b->bent);
+  free(b->turn);
   free(b->worked);
   free(b->yielded);
   free(b->torn);
@@ -128,9 +133,9 @@ static bool make_room(Bars *b, int64_t count, Error *error)
   b->chunk_bar = memory_zeroed(n + 1, sizeof *b->chunk_bar, "bars", error);
   bool made = b->node && b->node_begin && b->lowest && b->highest && b->prestrain && b->prestrain_held && b->rest &&
               b->along && b->pull && b->begin && b->chunk && b->chunk_bar;
-  double **const numbers[] = {&b->length,      &b->area,        &b->young,       &b->strain, &b->stress,
-                              &b->strain_held, &b->stress_held, &b->tangent,     &b->across, &b->worked,
-                              &b->yielded,     &b->torn,        &b->line_strain, &b->longer, &b->slack};
+  double **const numbers[] = {&b->length,      &b->area,    &b->young,  &b->strain, &b->stress,  &b->strain_held,
+                              &b->stress_held, &b->tangent, &b->across, &b->worked, &b->yielded, &b->torn,
+                              &b->line_strain, &b->longer,  &b->slack,  &b->slope};
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
     made &= (*numbers[k] = memory_zeroed(n, sizeof(double), "bars", error)) != NULL;
   for (size_t e = 0; e < n && made; ++e) b->yielded[e] = b->torn[e] = -1;
@@ -157,11 +162,13 @@ static int make_elements(Bars *b, const ForcesParts *parts, double *const *nodes
     const Material *m = bar_material(bar, parts);
     b->first[n] = b->count;
     b->bar_area[n] = area_of(bar);
+    b->served[n] = m->remote != NULL;
     whole = add_elements(b, n, &cells, nodes[n], counts[n]);
     b->first[n + 1] = b->count;
     for (int64_t e = b->first[n]; e < b->count; ++e) {
       b->area[e] = b->bar_area[n];
       b->young[e] = m->law->components == 1 ? 0 : material_young(m);
+      b->slope[e] = material_young(m);
       if ((e - b->first[n]) % BATCH == 0) {
         b->chunk_bar[b->chunk_count] = n;
         b->chunk[b->chunk_count++] = e;
@@ -243,9 +250,10 @@ static int make(Bars *b, const ForcesParts *parts, Error *error)
   int status = BRECCIA_OK;
   b->first = memory_zeroed((size_t)bars + 1, sizeof *b->first, "bars", error);
   b->bar_area = memory_zeroed((size_t)bars, sizeof *b->bar_area, "bars", error);
+  b->served = memory_zeroed((size_t)bars, sizeof *b->served, "bars", error);
   double **nodes = memory_zeroed((size_t)bars, sizeof *nodes, "bars", error);
   int64_t *counts = memory_zeroed((size_t)bars, sizeof *counts, "bars", error);
-  if (!b->first || !b->bar_area || !nodes || !counts) status = BRECCIA_FAILURE;
+  if (!b->first || !b->bar_area || !b->served || !nodes || !counts) status = BRECCIA_FAILURE;
   for (int n = 0; n < bars && !status; ++n) {
     const BarSpec *bar = b->specs->items[n];
     counts[n] = bar_nodes(bar, b->body, &nodes[n]);
@@ -260,6 +268,7 @@ static int make(Bars *b, const ForcesParts *parts, Error *error)
   if (!status) status = bar_slips_create(b, parts, error);
   if (!status) status = make_points(b, parts, error);
   if (!status) begin_under_stress(b);
+  if (!status) status = bar_bending_create(b, error);
   return status;
 }
 
@@ -323,17 +332,21 @@ static void state(void *forces, StateList *list)
   state_add_number(list, "work of prestrains", "energy", STATE_COMMITTED, &b->given);
   if (b->has_points) points_state(&b->points, "bars", list);
   if (b->slips) bar_slips_state(b, list);
+  if (b->bends) bar_bending_state(b, list);
 }
+
+static const Dimension stiffness_in_bending = {.name = "stiffness in bending", .length = 2, .force = 1};
 
 static void describe(const void *forces, const Units *units, Text *text)
 {
   const Bars *b = forces;
   int64_t bars = 0;
   double volume = 0;
-  char unit[64];
+  char unit[64], bending[64];
   for (int n = 0; n < b->specs->count; ++n) bars += ((const BarSpec *)b->specs->items[n])->number;
   for (int64_t e = 0; e < b->count; ++e) volume += b->area[e] * b->length[e];
   units_name(units, dimension_find("area"), unit, sizeof unit);
+  units_name(units, &stiffness_in_bending, bending, sizeof bending);
   text_add(text, "bars:");
   const int of_deck = b->lines.deck->count;
   for (int n = 0; n < of_deck && n < 6; ++n) {
@@ -343,6 +356,7 @@ static void describe(const void *forces, const Units *units, Text *text)
     if (lines > 1) text_add(text, "%d times ", lines);
     text_add(text, "%lld '%s' of %.4g %s%s", (long long)bar->number, bar->head.name, b->bar_area[b->lines.first[n]],
              unit, bar->number > 1 ? " together" : "");
+    if (bar->bending) text_add(text, " (EI %.4g %s)", bar_bending_stiffness(b, b->lines.first[n]), bending);
   }
   if (of_deck > 6) text_add(text, " and others, %lld in all", (long long)bars);
   units_name(units, dimension_find("volume"), unit, sizeof unit);

@@ -17,7 +17,7 @@ typedef struct BarSpec {
   double diameter, area;
   int64_t number;
   const char *material;
-  bool snap;
+  bool snap, bending;
   BondSpec *bond;     /* NULL: perfect */
   NumberList bonded;  /* from where to where along the bar */
   TextList anchored;  /* ends that do not slip */
@@ -80,12 +80,19 @@ typedef struct Bars {
   double *tangent, *across; /* of a linearised step: stiffness along an element and across it */
   Points points;            /* a row an element, of those that are not Hooke's */
   bool has_points;
+  bool *served;  /* [bars] whether the law of one runs in a server, which is asked for many elements at once */
+  double *slope; /* of elements of such bars: what the server told last */
   double *
       slack; /* strain at which the law of an element carries nothing at first: below zero in steel that begins in tension */
   int64_t *chunk; /* [chunk_count + 1] elements of one bar, at most BATCH, gone through together */
   int *chunk_bar; /* [chunk_count] */
   int64_t chunk_count;
   BarSlips *slips;          /* NULL: no bar does */
+  bool bends;               /* some bar resists bending; else the rows of that are not there */
+  double *bend;             /* of the joint of an element and the next: moment by angle; 0: none */
+  double *bent;             /* energy of these joints, as committed */
+  double bending_lost;      /* what joints held of elements that tore */
+  double (*turn)[3];        /* of a linearised step: changes of unit vectors */
   double *worked;           /* work on elements that have points, with what they held at the beginning */
   double *yielded, *torn;   /* when an element did so first; below zero: it has not */
   double *lowest, *highest; /* [bars] stresses so far */
@@ -154,6 +161,21 @@ void bar_slips_describe(const Bars *bars, int bar, const Units *units, Text *tex
 double bar_slip_in(const Bars *bars, int bar, int64_t element);
 double bar_bond_stress_in(const Bars *bars, int bar, int64_t element);
 
+/* bar_bending.c: bars that resist bending. */
+
+/** Makes room for joints, when elements are there with their points. @return status */
+int bar_bending_create(Bars *bars, Error *error);
+/** Young's modulus times second moment of area, of all parallel bars of a line. */
+double bar_bending_stiffness(const Bars *bars, int bar);
+/** Adds to what elements pull with the moments of their joints, when unit vectors of all are found. */
+void bar_bend(Bars *bars, int64_t from, int64_t to);
+/** The change of that, of an element; `turn` and `longer` of its neighbours are known. */
+void bar_change_bending(Bars *bars, int64_t element);
+void bar_accept_bending(Bars *bars);
+/** Energy that joints of elements hold. */
+double bars_bent(const Bars *bars, int64_t from, int64_t to);
+void bar_bending_state(Bars *bars, StateList *list);
+
 /* bar_report.c */
 
 /** The bars of a body, or NULL. */
@@ -175,8 +197,8 @@ int64_t bar_nearest(const Bars *bars, int deck_bar, const double point[3]);
 double bars_stored(const Bars *bars, int64_t from, int64_t to, bool hookean);
 /** When a step has come out well: notes what has yielded or is torn since. */
 void bars_note(Bars *bars);
-/** Stress of an element at a strain, from its committed state. @param[out] slope  of it; NULL: not wanted */
-double bar_stress_at(const Bars *bars, int64_t element, double strain, double *slope);
+/** Stresses of elements of a bar at their strains, from the committed state, and slopes of them (`tangent`). By one thread. */
+void bar_try_stresses(Bars *bars, int bar);
 
 /* bar_forces.c: as ForcesType says. */
 void bars_resist(void *forces);

@@ -163,12 +163,64 @@ void domain_commit_points(Domain *d)
   forces_accept(&d->forces);
 }
 
+/* ---- laws in servers ---- */
+
+static int points_groups(const Domain *d)
+{
+  return d->region_count + d->forces.count;
+}
+
+/** Points of the n-th region, or behind them of a kind of forces; NULL: it has none. */
+static Points *points_group(const Domain *d, int n)
+{
+  return n < d->region_count ? &d->regions[n].points : forces_points(&d->forces, n - d->region_count);
+}
+
+int domain_begin_points(Domain *d, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int n = 0; n < points_groups(d) && !status; ++n)
+    if (points_group(d, n)) status = points_begin(points_group(d, n), error);
+  return status;
+}
+
+bool domain_can_save_points(Domain *d)
+{
+  bool can = true;
+  for (int n = 0; n < points_groups(d) && can; ++n)
+    if (points_group(d, n)) can = points_can_save(points_group(d, n));
+  return can;
+}
+
+void domain_report_servers(const Domain *d, double run_seconds, bool json, Text *text)
+{
+  for (int n = 0; n < points_groups(d); ++n)
+    if (points_group(d, n)) points_report(points_group(d, n), run_seconds, json, text);
+}
+
 const char *domain_server_problem(const Domain *d)
 {
-  for (int r = 0; r < d->region_count; ++r)
-    if (*points_problem(&d->regions[r].points)) return points_problem(&d->regions[r].points);
-  return "";
+  const char *problem = "";
+  for (int n = 0; n < points_groups(d) && !*problem; ++n)
+    if (points_group(d, n)) problem = points_problem(points_group(d, n));
+  return problem;
 }
+
+bool domain_has_servers(const Domain *d)
+{
+  bool servers = false;
+  for (int n = 0; n < points_groups(d); ++n) servers |= points_group(d, n) && points_group(d, n)->servers;
+  return servers;
+}
+
+const Material *domain_without_trials(const Domain *d)
+{
+  for (int k = 0; k < d->material_count; ++k)
+    if (d->materials[k].remote && !remote_iterates(d->materials[k].remote)) return &d->materials[k];
+  return NULL;
+}
+
+/* ---- what formulations are like ---- */
 
 const char *domain_flutters(const Domain *d)
 {
@@ -208,20 +260,6 @@ bool domain_has_secants(const Domain *d)
   for (int r = 0; r < d->region_count; ++r)
     has |= d->regions[r].type->takes_secants && d->regions[r].type->takes_secants(d->regions[r].formulation);
   return has;
-}
-
-bool domain_has_servers(const Domain *d)
-{
-  bool servers = false;
-  for (int r = 0; r < d->region_count; ++r) servers |= d->regions[r].points.servers != NULL;
-  return servers;
-}
-
-const Material *domain_without_trials(const Domain *d)
-{
-  for (int k = 0; k < d->material_count; ++k)
-    if (d->materials[k].remote && !remote_iterates(d->materials[k].remote)) return &d->materials[k];
-  return NULL;
 }
 
 const Material *domain_without_tangents(const Domain *d)

@@ -266,6 +266,10 @@ void domain_strains_destroy(Domain *domain);
 /** What went wrong in a material server, one line; "" if nothing did. */
 const char *domain_server_problem(const Domain *domain);
 bool domain_has_servers(const Domain *domain);
+/** points_begin, points_can_save and points_report (points/points.h) of all points: those of regions and of forces beside. */
+int domain_begin_points(Domain *domain, Error *error);
+bool domain_can_save_points(Domain *domain);
+void domain_report_servers(const Domain *domain, double run_seconds, bool json, Text *text);
 /** Whether forces are found with something as the step before left it. */
 bool domain_lags(const Domain *domain);
 /** Share of the forces that a step may leave out of balance once it is as the step left it; INFINITY: nothing lags, ever. */

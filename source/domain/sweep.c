@@ -290,7 +290,7 @@ void domain_forces(Domain *d)
       d->force_sum += d->batch_sum[b];
       if (d->failed_place < 0) d->failed_place = d->batch_failed[b];
     }
-    if (forces_stuck(&d->forces, NULL)) d->force_sum = NAN; /* these are no forces */
+    if (forces_stuck(&d->forces, NULL) || *domain_server_problem(d)) d->force_sum = NAN; /* these are no forces */
   }
 }
 

@@ -345,9 +345,7 @@ void breccia_model_destroy(breccia_model **out)
 int model_begin(breccia_model *model, Error *error)
 {
   if (model->begun) return BRECCIA_OK;
-  int status = BRECCIA_OK;
-  for (int r = 0; r < model->domain.region_count && !status; ++r)
-    status = points_begin(&model->domain.regions[r].points, error);
+  int status = domain_begin_points(&model->domain, error);
   if (!status) status = solver_begin(&model->solver, error);
   model->begun = !status;
   return status;

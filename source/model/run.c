@@ -98,9 +98,8 @@ static int write_checkpoint(Run *run, Error *error)
     return BRECCIA_FAILURE;
   }
   run->last_checkpoint = clock_seconds();
-  for (int r = 0; r < model->domain.region_count; ++r)
-    if (!points_can_save(&model->domain.regions[r].points))
-      return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
+  if (!domain_can_save_points(&model->domain))
+    return BRECCIA_OK; /* the checkpoint before, if any, is all that is left */
   if (watches_settle(model->watches, error) || settle_results(run, error) || run_log_settle(run, error)) {
     run->unwritten = true;
     return BRECCIA_FAILURE;

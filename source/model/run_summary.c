@@ -293,7 +293,7 @@ int run_write_summary(Run *run, int status, const char *problem, Error *error)
   }
   text_add(&t, "}");
   Text servers = {0};
-  for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, true, &servers);
+  domain_report_servers(d, model->run_seconds, true, &servers);
   if (servers.length) text_add(&t, ",\n  \"servers\": [%s]", text_words(&servers));
   text_free(&servers);
   text_add(&t, "\n}\n");
@@ -514,7 +514,7 @@ void run_tell_outcome(Run *run, int status)
   if (!blown_up) run_tell_bars(model, t);
   tell_verdicts(s, t);
   if (!blown_up) tell_rest(s, model->units, status == BRECCIA_FAILURE, t);
-  for (int r = 0; r < d->region_count; ++r) points_report(&d->regions[r].points, model->run_seconds, false, t);
+  domain_report_servers(d, model->run_seconds, false, t);
   text_add(t, "written:\n%s", text_words(&run->files));
   if (t->length && t->characters[t->length - 1] == '\n') t->characters[--t->length] = 0;
 }

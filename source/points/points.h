@@ -153,6 +153,12 @@ void points_change(const Points *points, int64_t first, int count, double *const
 /** Stress of a point of one strain; histories stay as they are.
  *  @param[out] tangent  its slope, and by the elastic weight Young's modulus; NULL: not wanted. A law in a server is not asked: its last stress, over the strain */
 double points_try(const Points *points, int64_t row, double strain, double *tangent);
+/** Stresses and slopes of `count` rows of one strain, of one run and at most BATCH, whose law runs in a server, which is asked: a trial like that of
+ *  points_update. Slopes are those that the law tells (points_mixed_slope).
+ *  @return -1, or a row whose law could not be integrated */
+int64_t points_ask_slopes(Points *points, int64_t first, int count, double *strain, double *stress, double *slope);
+/** The slope that points_try tells, of one that the law has told at a strain and its stress: a secant in its place, and the elastic weight. */
+double points_mixed_slope(const Points *points, int64_t row, double strain, double stress, double slope);
 /** Stress of a point of six strains at a strain, from its committed history, which stays. In plane stress the strain across it is found.
  *  @return false where nobody can tell without a trace (laws in servers, very long histories), or the law gives up */
 bool points_try_stress(const Points *points, int64_t row, const double strain[6], double stress[6]);

@@ -24,6 +24,13 @@ static double stress_from(const Points *points, int64_t row, const double *from,
   return 0;
 }
 
+double points_mixed_slope(const Points *points, int64_t row, double strain, double stress, double slope)
+{
+  const double weight = points->elastic_weight;
+  if (points->secants != SECANTS_OF_NONE && slope < 0 && strain * stress > 0) slope = stress / strain;
+  return weight > 0 ? (1 - weight) * slope + weight * material_young(points_material(points, row)) : slope;
+}
+
 double points_try(const Points *points, int64_t row, double strain, double *tangent)
 {
   const Material *m = points_material(points, row);
@@ -36,10 +43,18 @@ double points_try(const Points *points, int64_t row, double strain, double *tang
   } else if (m->history_values <= MOST_TRIED_VALUES) {
     stress = stress_from(points, row, history, strain, scratch, tangent);
   }
-  if (tangent && points->secants != SECANTS_OF_NONE && *tangent < 0 && strain * stress > 0) *tangent = stress / strain;
-  if (tangent && points->elastic_weight > 0)
-    *tangent = (1 - points->elastic_weight) * *tangent + points->elastic_weight * material_young(m);
+  if (tangent) *tangent = points_mixed_slope(points, row, strain, stress, *tangent);
   return stress;
+}
+
+int64_t points_ask_slopes(Points *points, int64_t first, int count, double *strain, double *stress, double *slope)
+{
+  const Material *m = points_material(points, first);
+  breccia_batch batch;
+  points_make_batch(&batch, points, first, count, &strain, &stress);
+  batch.tangent = slope;
+  const int bad = m->law->update(m->constants, &batch);
+  return bad < 0 ? -1 : first + bad;
 }
 
 bool points_try_stress(const Points *points, int64_t row, const double strain[6], double stress[6])
@@ -128,11 +143,13 @@ double points_elastic_strain(const Points *points, int64_t row, double strain, d
   const double back = 1e-3, step = along ? back * strained : back * stress / material_young(m);
   const double drop = stress - stress_from(points, row, here, strain - step, scratch, NULL);
   const double share = drop != 0 ? back * stress / drop : 0;
-  if (along) return (share > 0 ? fmin(1, share) : 1) * strained;
+  /* No more than the strain, or what the first modulus makes of a stress against which plastic strain stays. */
+  const double most = along ? fmax(1, stress / (material_young(m) * strained)) : 1;
+  if (along) return (share > 0 ? fmin(most, share) : 1) * strained;
   return share > 0 ? share * step / back : 0;
 }
 
 double points_elastic_share(const Points *points, int64_t row, double strain)
 {
-  return strain == 0 ? 1 : points_elastic_strain(points, row, strain, 0) / strain;
+  return strain == 0 ? 1 : fmin(1, points_elastic_strain(points, row, strain, 0) / strain);
 }

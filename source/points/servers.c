@@ -53,12 +53,14 @@ static int divide(Points *points, int material, int64_t count, Error *error)
   return BRECCIA_OK;
 }
 
-int point_servers_create(Points *points, const uint8_t *present, Error *error)
+/** Room for the servers of materials that have points here: others belong to other points, as those of bars do.
+ *  @param[in] counts  [materials] */
+static int make_servers(Points *points, const int64_t *counts, Error *error)
 {
   const size_t materials = (size_t)points->material_count;
   size_t servers = 0;
   for (size_t k = 0; k < materials; ++k)
-    if (points->materials[k].remote) servers += (size_t)remote_servers(points->materials[k].remote);
+    if (counts[k]) servers += (size_t)remote_servers(points->materials[k].remote);
   if (!servers) return BRECCIA_OK;
   points->identity_size = 2 * servers;
   points->identity = memory_zeroed(points->identity_size, sizeof(double), "servers", error);
@@ -67,11 +69,19 @@ int point_servers_create(Points *points, const uint8_t *present, Error *error)
   s->failed = -1;
   s->starts = memory_zeroed(materials, sizeof *s->starts, "servers", error);
   s->left = memory_zeroed(materials, sizeof *s->left, "servers", error);
-  Numbering numbering = {present, memory_zeroed(materials, sizeof(int64_t), "servers", error)};
-  int status = s->starts && s->left && numbering.counts ? BRECCIA_OK : BRECCIA_FAILURE;
-  if (!status) each_row(points, number_row, &numbering);
+  int status = s->starts && s->left ? BRECCIA_OK : BRECCIA_FAILURE;
   for (int k = 0; !status && k < points->material_count; ++k)
-    if (points->materials[k].remote) status = divide(points, k, numbering.counts[k], error);
+    if (counts[k]) status = divide(points, k, counts[k], error);
+  return status;
+}
+
+int point_servers_create(Points *points, const uint8_t *present, Error *error)
+{
+  Numbering numbering = {present,
+                         memory_zeroed((size_t)points->material_count, sizeof *numbering.counts, "servers", error)};
+  if (!numbering.counts) return BRECCIA_FAILURE;
+  each_row(points, number_row, &numbering);
+  const int status = make_servers(points, numbering.counts, error);
   free(numbering.counts);
   return status;
 }

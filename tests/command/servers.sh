@@ -157,6 +157,83 @@ relayed 300 > faulty.yaml
 same home faulty results.vtkhdf
 kill $relay 2> /dev/null; wait $relay 2> /dev/null
 
+# Bars whose law runs in a server, in motion, at rest and slipping, and beside a body whose law runs in one: forces to the same bits, and energies as inside the program.
+bars() { # STEEL KEYS SOLVE [BODY]
+  cat << END
+units: {length: m, force: kN, time: s}
+materials:
+  soft: {${4:-model: elastic-1d, Young modulus: 1e5}, density: 2}
+  steel: {$1, density: 7}
+body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}
+peridynamics: {formulation: bond-based, horizon: 2.015 spacings}
+bars:
+  upper: {points: [[0.02, 0.14, 0.21], [1.18, 0.14, 0.21]], area: 1e-4, material: steel$2}
+  lower: {points: [[0.02, 0.14, 0.11], [0.62, 0.14, 0.11]], area: 1e-4, material: steel$2}
+loads:
+  - {on: {face: x-, layers: 3}, displacement: [0, 0, 0]}
+  - {on: {face: x+, layers: 3}, displacement: [12 mm, 0, 0], history: {table: [[0, 0], [0.1, 1], [0.2, -0.2]]}}
+watch: {upper: {bar: upper}, lower: {bar: lower}}
+solve: {$3}
+results: {number: 2, precision: double, checkpoint steps: 4}
+pictures: []
+END
+}
+bond=', bond: {compressive strength: 30 MPa, rib spacing: 8 mm}'
+tension='steel-bilinear; Young modulus=2e8; yield stress=5e5; hardening ratio=0.01'
+steel="remote: '$tension', server: ['unix:$PWD/one']"
+rest='static: {increments: 8, end time: 0.2}'
+try_bars() { # NAME KEYS SOLVE [BODY]
+  bars "model: steel-bilinear, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01" "$2" "$3" > "bars-$1.yaml"
+  bars "$steel" "$2" "$3" "${4:-}" > "bars-$1-away.yaml"
+  for where in "" -away; do "$breccia" run "bars-$1$where.yaml" > out 2>&1 || fail "bars-$1$where: $(cat out)"; done
+  contains "bars, $1: the outcome tells of the server" "$(cat out)" "material 'steel': server at unix:$PWD/one: 18 points, "
+  same_bars "bars-$1" "bars-$1-away" ${5:-0}
+  for bar in upper lower; do nearly "bars-$1" "$bar"; done
+}
+same_bars() { # FOLDER FOLDER [TOLERANCE]
+  "$build/tests/compare_results" "$1/results.vtkhdf" "$2/results.vtkhdf" "${3:-0}" displacement velocity stress strain > differences ||
+    fail "$2: $(cat differences)"
+}
+nearly() { # FOLDER BAR: stored and dissipated energies are found by another way
+  paste -d, "$1/$2.csv" "$1-away/$2.csv" | awk -F, -v n="$(head -1 "$1/$2.csv" | awk -F, '{print NF}')" '
+    NR > 1 {for (k = 2; k <= n; ++k) {d = $k - $(n + k); if (d < 0) d = -d; s = $k < 0 ? -$k : $k; if (s > most[k]) most[k] = s; if (d > off[k]) off[k] = d}}
+    END {for (k = 2; k <= n; ++k) if (off[k] > 1e-6 * most[k] + 1e-12) exit 1}' || fail "$1: $2: $(tail -n 1 "$1/$2.csv") and $(tail -n 1 "$1-away/$2.csv")"
+}
+try_bars motion '' 'explicit: {end time: 0.2, damping: 20 1/s}'
+try_bars rest '' "$rest"
+try_bars slip "$bond" "$rest"
+serve "unix:$PWD/body"; second=$server
+try_bars both '' 'explicit: {end time: 0.02, damping: 20 1/s}' "remote: elastic-1d; Young modulus=1e5, server: ['unix:$PWD/body']" 1e-9
+server=$second; stop
+for way in motion slip; do # from the middle, with what the server saved
+  "$breccia" run bars-$way-away.yaml --steps 4 > out 2>&1
+  "$breccia" run bars-$way-away.yaml --restart > out 2>&1 || fail "bars, $way: restart: $(cat out)"
+  same_bars bars-$way bars-$way-away
+done
+refuse_bars() { # STEEL KEYS WORDS [BODY]
+  bars "$1" "$2" "$rest" "${4:-}" > refused.yaml
+  "$breccia" run refused.yaml > out 2> err
+  equal "refused bars: status" $? 2
+  contains "refused bars" "$(head -n 1 err)" "$3"
+}
+refuse_bars "remote: j2; Young modulus=2e8; Poisson ratio=0.3; yield stress=4e5, server: ['unix:$PWD/one']" '' \
+  "material: 'steel' is 'j2 of a server', a law of strain in space; bars take laws of one strain"
+sed 's/material: soft, spacing/material: steel, spacing/' bars-rest-away.yaml > refused.yaml
+"$breccia" run refused.yaml > out 2> err; equal "shared: status" $? 2
+contains "shared" "$(cat err)" "material: 'steel' runs in a server, which holds the points of block 'b' with it; give bars a material of their own"
+# A server that is lost in the middle of bars.
+relay close
+sed "s:unix.*/one:unix\:$PWD/relay:" bars-motion-away.yaml > lost.yaml
+"$breccia" run lost.yaml > out 2> err; equal "lost: status" $? 1
+equal "lost: lines" "$(wc -l < err)" 1
+contains "lost" "$(cat err)" "material 'steel': server at unix:$PWD/relay: it has closed the connection"
+kill $relay 2> /dev/null; wait $relay 2> /dev/null
+"$breccia" run lost.yaml --restart > out 2> err; equal "lost for good: status" $? 2
+relay none
+"$breccia" run lost.yaml --restart > out 2>&1 || fail "lost: restart: $(cat out)"
+same_bars bars-motion lost
+kill $relay 2> /dev/null; wait $relay 2> /dev/null
+
 refuse() { # MATERIAL WORDS
   deck "$1" > refused.yaml
   "$breccia" run refused.yaml > out 2> err

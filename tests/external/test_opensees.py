@@ -292,6 +292,47 @@ pictures: []
             check(f"hybrid {name} yields", works[0]["dissipated"] > 0.2 * works[0]["external"], str(works[0]))
 
 
+def bars_agree(tcl):
+    """Bars whose steel is that of OpenSees: in motion by the Python package; at rest, in perfect bond and slipping, by that of Tcl, which takes trials back."""
+    deck = """units: {{length: m, force: kN, time: s}}
+materials: {{soft: {{model: elastic-1d, density: 2, Young modulus: 1e5}}, steel: {{{material}, density: 7}}}}
+body: {{b: {{material: soft, spacing: 0.1, shape: {{box: {{from: [0, 0, 0], to: [1.2, 0.3, 0.3]}}}}}}}}
+peridynamics: {{formulation: bond-based, horizon: 2.015 spacings}}
+bars: {{bar: {{points: [[0.02, 0.14, 0.21], [1.18, 0.14, 0.21]], area: 1e-4, material: steel{bond}}}}}
+loads:
+  - {{on: {{face: x-, layers: 3}}, displacement: [0, 0, 0]}}
+  - {{on: {{face: x+, layers: 3}}, displacement: [12 mm, 0, 0], history: {{table: [[0, 0], [0.1, 1], [0.2, -0.2]]}}}}
+solve: {solve}
+results: {{number: 2, precision: double}}
+pictures: []
+"""
+    laws = {
+        "bilinear": ("model: steel-bilinear, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01", "opensees: uniaxialMaterial Steel01 $tag 5e5 2e8 0.01"),
+        "rounded": ("model: menegotto-pinto, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01, roundness: 18", "opensees: uniaxialMaterial Steel02 $tag 5e5 2e8 0.01 18. 0.925 0.15"),
+    }
+    bond = ", bond: {compressive strength: 30 MPa, rib spacing: 8 mm}"
+    for law, (home, away) in laws.items():
+        for way, keys, solve in (("motion", "", "{explicit: {end time: 0.2, damping: 20 1/s}}"), ("rest", "", "{static: {increments: 8, end time: 0.2}}"), ("slip", bond, "{static: {increments: 8, end time: 0.2}}")):
+            there = away if way == "motion" else f"{away}, server: ['{tcl.address}']"
+            folders, stresses = [], []
+            for place, material in {"home": home, "away": there}.items():
+                folders.append(f"{WORK}/bars-{law}-{way}-{place}")
+                with open(f"{folders[-1]}.yaml", "w", encoding="utf-8") as file:
+                    file.write(deck.format(material=material, bond=keys, solve=solve))
+                run = run_when_free(f"{folders[-1]}.yaml")
+                check(f"bars {law} {way} {place} run", run.returncode == 0, run.stderr)
+                with open(f"{folders[-1]}/summary.json", encoding="utf-8") as file:
+                    stresses.append(json.load(file)["bars"][0]["stress_so_far"])
+            check(f"bars {law} {way} yield both ways", stresses[0][1] > 5e5 and (way == "slip" or stresses[0][0] < -4e5), str(stresses))
+            same = subprocess.run([COMPARE, *(f"{folder}/results.vtkhdf" for folder in folders), "1e-7", "displacement", "stress"], capture_output=True, text=True)
+            check(f"bars {law} {way}: inside the program and in OpenSees", same.returncode == 0, same.stdout)
+    for keys, solve, words in ((bond, "{explicit: {end time: 0.2}}", "bond: slips are found by trying strains several times"), ("", "{static: {increments: 8}}", "static: it tries strains several times")):
+        with open(f"{WORK}/bars-refused.yaml", "w", encoding="utf-8") as file:
+            file.write(deck.format(material=away, bond=keys, solve=solve))
+        run = subprocess.run([BRECCIA, "run", f"{WORK}/bars-refused.yaml"], capture_output=True, text=True, timeout=1800)
+        check("what cannot take a trial back is refused", run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1, run.stderr)
+
+
 def the_plate_agrees():
     """The plate of clay of the examples, all 8910 particles, 500 steps of it."""
     for name in ("clay", "clay-opensees"):
@@ -492,6 +533,7 @@ def main():
     refusals_of_tcl_are_told(client)
     a_client_at_a_time(client)
     decks_agree(client)
+    bars_agree(client)
     client.end()
     hybrid_bodies_agree()
     the_plate_agrees()

@@ -302,9 +302,11 @@ static void steel_pushed_back_keeps_the_energy_of_its_stress(void **state)
   const struct {
     const char *history;
     double stress, strain;
-  } cases[] = {{"table: [[0, 0], [1, 1]]", 5e5 + 0.01 * 2e8 * 7.5e-3, 0.01},
-               {"table: [[0, 0], [0.5, 1], [1, 0.6]]", 5e5 + 0.01 * 2e8 * 7.5e-3 - 2e8 * 0.004, 0.006},
-               {"table: [[0, 0], [0.5, 1], [1, 0]]", -0.99 * 5e5, 0}}; /* on the lower line */
+  } cases[] = {
+      {"table: [[0, 0], [1, 1]]", 5e5 + 0.01 * 2e8 * 7.5e-3, 0.01},
+      {"table: [[0, 0], [0.5, 1], [1, 0.6]]", 5e5 + 0.01 * 2e8 * 7.5e-3 - 2e8 * 0.004, 0.006},
+      {"table: [[0, 0], [0.5, 1], [1, 0]]", -0.99 * 5e5, 0},                             /* on the lower line */
+      {"table: [[0, 0], [0.5, 1], [1, -0.1]]", -0.99 * 5e5 - 0.01 * 2e8 * 1e-3, -1e-3}}; /* against what stays */
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     breccia_model *m = stretched(STEEL_OF, cases[k].history);
     step_surely(m, INT64_MAX);

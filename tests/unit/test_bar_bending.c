@@ -1,0 +1,250 @@
+/* Bars that resist bending against beams: clamped at an end, bent to a sine, turned, torn, in motion. */
+#include "support.h"
+
+#include "bars/bars.h"
+#include "base/random.h"
+
+static const double young = 2e8;
+
+/** Of a round bar of an area. */
+static double stiffness(double area)
+{
+  return young * area * area / (4 * acos(-1));
+}
+
+static Bars *bars_of(const breccia_model *m)
+{
+  return m->domain.forces.own[0];
+}
+
+/** A beam of four rows clamped at one end, with a bar in the middle of its height. */
+static breccia_model *beam_of(const char *keys, const char *loads, const char *solver)
+{
+  return model_of("units: {length: m, force: kN, time: s}\n"
+                  "materials:\n  soft: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0}\n"
+                  "  rod: {model: elastic, density: 7, Young modulus: 2e8, Poisson ratio: 0.3}\n"
+                  "body: {b: {material: soft, spacing: 0.1, lattice: square, thickness: 0.5, shape: {box: {from: [0, "
+                  "-0.2], to: [4, "
+                  "0.2]}}}}\n"
+                  "peridynamics: {formulation: correspondence, space: plane stress, horizon: 1.5 spacings}\n"
+                  "bars: {rod: {points: [[0.05, 0], [3.95, 0]], area: 2.5e-3, number: 2, material: rod%s}}\n"
+                  "loads:\n  - {on: {inside: {box: {from: [-1, -1], to: [1, 1]}}}, displacement: [0, 0]}\n%s"
+                  "solve: {%s}\npictures: []\n",
+                  keys, loads, solver);
+}
+
+static double height(const Bars *b, int64_t node)
+{
+  double u[3];
+  bar_node_displacement(b, node, u);
+  return u[1];
+}
+
+/** Bending stiffness of the beam: the end is P L^3 / (3 E I) off the line that goes on straight from a section away from the clamp. */
+static double stiffness_of_beam(const char *keys)
+{
+  const double load = 1e-4;
+  const int64_t from = 15;
+  breccia_model *m =
+      beam_of(keys, "  - {on: {face: x+}, force: [0, 1e-4]}\n", "static: {increments: 1, residual: 1e-7}");
+  step_surely(m, INT64_MAX);
+  const Bars *b = bars_of(m);
+  const double length = b->node[b->count][0] - b->node[from][0],
+               slope = (height(b, from + 1) - height(b, from - 1)) / (b->node[from + 1][0] - b->node[from - 1][0]),
+               bent = height(b, b->count) - height(b, from) - slope * length;
+  breccia_model_destroy(&m);
+  return load * pow(length, 3) / (3 * bent);
+}
+
+static void a_bar_adds_its_bending_stiffness(void **state)
+{
+  (void)state;
+  const double with = stiffness_of_beam(", bending: yes"), without = stiffness_of_beam(""),
+               by_hand = 2 * stiffness(2.5e-3);
+  print_message("%.4g and %.4g without: %.4g of %.4g more\n", with, without, with - without, by_hand);
+  assert_near(with - without, by_hand, 0.03 * by_hand);
+}
+
+/** Energy of a sine a sin(k x): a^2 k^4 E I / 4 a length. */
+static void a_sine_holds_its_energy(void **state)
+{
+  (void)state;
+  const double a = 1e-5, k = 2 * acos(-1) / 4;
+  breccia_model *m = beam_of(", bending: yes", "", "explicit: {end time: 1}");
+  const Particles *p = m->domain.particles;
+  for (int64_t n = 0; n < p->count; ++n) {
+    const int32_t i = p->place_of[n];
+    p->displacement[1][i] = a * sin(k * p->position[0][i]);
+  }
+  compute_forces(m);
+  Bars *b = bars_of(m);
+  bars_accept(b);
+  const double energy = 2 * stiffness(2.5e-3) * a * a * pow(k, 4) / 4 * 4;
+  print_message("sine: %.4g of %.4g\n", bars_bent(b, 0, b->count), energy);
+  assert_near(bars_bent(b, 0, b->count), energy, 0.03 * energy);
+  breccia_model_destroy(&m);
+}
+
+static const char *const lattices[] = {"square", "hexagonal", "cubic", "face-centred cubic"};
+
+/** A body with a bar that stands nowhere on particles and has a corner; of its corner nothing is known, of both pieces bending. */
+static breccia_model *bent_bar(const char *lattice)
+{
+  const bool plane = lattice[0] == 's' || lattice[0] == 'h';
+  return model_of(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1}\n"
+      "  rod: {model: elastic, density: 7, Young modulus: 2e8, Poisson ratio: 0.3}\n"
+      "body: {b: {material: soft, spacing: 0.1, lattice: %s%s, shape: {box: {from: [0, 0%s], to: [1, 0.6%s]}}}}\n"
+      "peridynamics: {formulation: bond-based%s}\n"
+      "bars: {bent: {points: [[0, 0.13%s], [0.52, 0.31%s], [1, 0.55%s]], diameter: 0.1, number: 2, material: rod, "
+      "bending: yes}}\nsolve: {explicit: {end time: 1}}\npictures: []\n",
+      lattice, plane ? ", thickness: 0.3" : "", plane ? "" : ", 0", plane ? "" : ", 0.5",
+      plane ? ", space: plane stress" : "", plane ? "" : ", 0.21", plane ? "" : ", 0.29", plane ? "" : ", 0.17");
+}
+
+static void shake(breccia_model *m, double by)
+{
+  Particles *p = m->domain.particles;
+  uint64_t seed = 7;
+  for (int k = 0; k < m->domain.body.dimensions; ++k)
+    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
+}
+
+static void find_beside(breccia_model *m, double *force[3])
+{
+  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
+  domain_forces_beside(&m->domain, force);
+}
+
+static void drop(double *force[3])
+{
+  for (int k = 0; k < 3; ++k) places_free(&force[k]);
+}
+
+/** Energy of bars as they stand. */
+static double energy_of(breccia_model *m)
+{
+  bars_accept(bars_of(m));
+  return bars_energy(bars_of(m));
+}
+
+/** Forces and their changes against difference quotients of energy and of forces, where the whole is turned and strained; sums and moments. */
+static void moments_follow_from_an_energy(void **state)
+{
+  (void)state;
+  for (size_t l = 0; l < sizeof lattices / sizeof *lattices; ++l) {
+    breccia_model *m = bent_bar(lattices[l]);
+    const Particles *p = m->domain.particles;
+    const bool plane = m->domain.body.dimensions == 2;
+    deform_uniformly(m, (const double[]){0.8, -0.6, 0, 0.6, 0.81, 0, 0, 0, 1});
+    shake(m, 0.03);
+    double *v[3], *changed[3], *up[3], *down[3], *here[3], sum[6] = {0}, size = 0;
+    find_beside(m, here);
+    bars_linearise(bars_of(m));
+    const double bent = (bars_accept(bars_of(m)), bars_bent(bars_of(m), 0, bars_of(m)->count)),
+                 all = bars_energy(bars_of(m));
+    assert_true(bent > 0.01 * all);
+    for (int64_t n = 0; n < p->count; ++n) {
+      const int32_t i = p->place_of[n];
+      for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, c = (k + 2) % 3;
+        sum[k] += p->volume[i] * here[k][i];
+        sum[3 + k] += p->volume[i] * ((p->position[a][i] + p->displacement[a][i]) * here[c][i] -
+                                      (p->position[c][i] + p->displacement[c][i]) * here[a][i]);
+        size += fabs(p->volume[i] * here[k][i]);
+      }
+    }
+    for (int k = 0; k < 6; ++k) assert_near(sum[k], 0, 1e-13 * size);
+    uint64_t seed = 3;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = places_array(p->places, "test", NULL);
+      changed[k] = places_array(p->places, "test", NULL);
+      for (int64_t n = 0; n < p->count && (k < 2 || !plane); ++n) v[k][p->place_of[n]] = random_uniform(&seed) - 0.5;
+    }
+    domain_change_forces(&m->domain, v, changed);
+    const double h = 1e-7;
+    double energy[2] = {0}, work = 0;
+    for (int side = 0; side < 2; ++side) {
+      for (int k = 0; k < 3; ++k)
+        for (int64_t i = 0; i < p->places; ++i) p->displacement[k][i] += (side ? -2 : 1) * h * v[k][i];
+      find_beside(m, side ? down : up);
+      energy[side] = energy_of(m);
+    }
+    size = 0;
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) size = larger_of(size, fabs(changed[k][i]));
+    for (int k = 0; k < 3; ++k)
+      for (int64_t i = 0; i < p->places; ++i) {
+        assert_near((up[k][i] - down[k][i]) / (2 * h), changed[k][i], 1e-6 * size);
+        work -= p->volume[i] * (up[k][i] + down[k][i]) / 2 * v[k][i];
+      }
+    assert_near((energy[0] - energy[1]) / (2 * h), work, 1e-6 * fabs(work));
+    drop(v);
+    drop(changed);
+    drop(up);
+    drop(down);
+    drop(here);
+    breccia_model_destroy(&m);
+  }
+}
+
+static void turning_bends_nothing_and_what_tears_is_lost(void **state)
+{
+  (void)state;
+  breccia_model *m = bent_bar("cubic");
+  Bars *b = bars_of(m);
+  deform_uniformly(m, (const double[]){0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1});
+  double *force[3];
+  find_beside(m, force);
+  assert_near(energy_of(m), 0, 1e-12);
+  drop(force);
+  shake(m, 0.02);
+  find_beside(m, force);
+  energy_of(m);
+  int64_t most = 0, corner = -1;
+  for (int64_t e = 0; e < b->count; ++e) {
+    if (b->bent[e] > b->bent[most]) most = e;
+    if (e + 1 < b->count && !(b->bend[e] > 0)) corner = e;
+  }
+  assert_true(corner > 0 && b->bent[corner] == 0); /* it hands on no moment */
+  const double before = bars_bent(b, 0, b->count), lost = b->bent[most], dissipated = bars_dissipated(b);
+  b->torn[most + 1] = 0;
+  const double behind = most + 2 < b->count ? b->bent[most + 1] : 0;
+  bars_accept(b);
+  assert_true(lost > 0);
+  assert_near(bars_bent(b, 0, b->count), before - lost - behind, 1e-12 * before);
+  assert_near(bars_dissipated(b), dissipated + lost + behind, 1e-12 * before);
+  drop(force);
+  breccia_model_destroy(&m);
+}
+
+/** Its stiffness is in the stable step, its energy in the ledger. */
+static void a_bar_in_motion_keeps_its_energy(void **state)
+{
+  (void)state;
+  static const char *const solvers[] = {"explicit: {end time: 0.04}", "implicit: {end time: 0.04, time step: 0.002}"};
+  for (int s = 0; s < 2; ++s) {
+    breccia_model *m = beam_of(
+        ", bending: yes", "  - {on: {face: x+}, force: [0, 0.5], history: {table: [[0, 0], [0.01, 1], [0.02, 0]]}}\n",
+        solvers[s]);
+    step_surely(m, INT64_MAX);
+    const double bent = bars_bent(bars_of(m), 0, bars_of(m)->count), kinetic = m->solver.ledger.kinetic;
+    print_message("kinetic %g, bending %g, %lld steps\n", kinetic, bent, (long long)m->solver.clock.step);
+    assert_true(bent > 0.01 * kinetic && kinetic > 0);
+    assert_balanced(m, 1e-3);
+    breccia_model_destroy(&m);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_bar_adds_its_bending_stiffness),
+      cmocka_unit_test(a_sine_holds_its_energy),
+      cmocka_unit_test(moments_follow_from_an_energy),
+      cmocka_unit_test(turning_bends_nothing_and_what_tears_is_lost),
+      cmocka_unit_test(a_bar_in_motion_keeps_its_energy),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
