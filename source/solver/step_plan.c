@@ -170,9 +170,11 @@ static int check_stiffness_damping(const Solver *run, const ExplicitSpec *spec, 
   if (!(spec->damping.stiffness > 0)) return BRECCIA_OK;
   const char *key = spec->damping_given.rayleigh ? "Rayleigh damping" : "stiffness damping";
   const Node *node = section_node(spec, key);
-  if (run->domain->forces.count)
+  if (run->domain->forces.count) {
+    const char *kind = run->domain->forces.type[0]->name;
     return node_error(run->reader->document, node, error,
-                      "%s: contact has no place in it yet; leave 'contact' out, or take 'damping' alone", key);
+                      "%s: '%s' has no place in it yet; leave '%s' out, or take 'damping' alone", key, kind, kind);
+  }
   if (served)
     return node_error(run->reader->document, node, error,
                       "%s: it tries strains beside those of the step, and the server of material '%s' cannot take a "

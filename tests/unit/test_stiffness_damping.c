@@ -309,7 +309,10 @@ static void wrong_damping_is_refused(void **state)
       {"solve: {explicit: {steps: 1, stiffness damping: 1e-3, Rayleigh damping: {ratio: 0.05, from: 1, to: 2}}}",
        "stiffness damping: 'Rayleigh damping' says it already"},
       {"contact: {}\nsolve: {explicit: {steps: 1, stiffness damping: 1e-3}}",
-       "stiffness damping: contact has no place in it yet"},
+       "stiffness damping: 'contact' has no place in it yet; leave 'contact' out"},
+      {"bars: {rod: {points: [[1, 0, 0], [4, 0, 0]], area: 1e-4, material: m}}\nsolve: {explicit: {steps: 1, "
+       "stiffness damping: 1e-3}}",
+       "stiffness damping: 'bars' has no place in it yet; leave 'bars' out"},
   };
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
     char deck[1024];
