@@ -401,6 +401,7 @@ typedef struct breccia_concrete { /* numbers with units, in words; NULL: by rule
   const char *compression, *tension; /* strengths; one at least is given */
   const char *fracture_energy, *aggregate, *modulus, *poisson, *density, *spacing;
   int unverified; /* 1: no plates are run, and with a fracture energy the tensile stretch is that of an even stress */
+  const char *initial_fracture_energy; /* NULL: the force falls by one line */
 } breccia_concrete;
 /** Parameters of 'link-damage' for a lattice of links that is to be such a concrete, and what plates of it bear.
  *  @param[out] words  a block of a deck with comments, for breccia_text_free; NULL after a message */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { AGAINST, PICTURE, FC, FT, ENERGY, AGGREGATE, MODULUS, POISSON, DENSITY, SPACING, UNVERIFIED, COUNT };
+enum { AGAINST, PICTURE, FC, FT, ENERGY, AGGREGATE, MODULUS, POISSON, DENSITY, SPACING, UNVERIFIED, INITIAL, COUNT };
 
 static const Option options[] = {
     {"against", "DATA.csv", "measured points, instead of those that the file names"},
@@ -20,6 +20,8 @@ static const Option options[] = {
     {"density", "DENSITY", "of concrete (145 lb/ft3, or 2400 kg/m3)"},
     {"spacing", "LENGTH", "of the lattice (--aggregate, or 1 in, 25 mm)"},
     {"unverified", NULL, "of concrete: run no plates"},
+    {"initial-fracture-energy", "ENERGY",
+     "of concrete, below the first of two lines by which links soften, like '60 N/m' (one line)"},
     {0},
 };
 
@@ -66,7 +68,8 @@ static int calibrate_concrete(const char **values)
                                  .poisson = values[POISSON],
                                  .density = values[DENSITY],
                                  .spacing = values[SPACING],
-                                 .unverified = values[UNVERIFIED] != NULL};
+                                 .unverified = values[UNVERIFIED] != NULL,
+                                 .initial_fracture_energy = values[INITIAL]};
   char *words;
   int status = breccia_concrete_calibrate(&wish, &words, error);
   if (words && fputs(words, stdout) < 0) status = BRECCIA_FAILURE;

@@ -20,6 +20,7 @@ typedef struct Concrete {
       compressive_stretch;
   const char *rules[10]; /* where each comes from, in that order; NULL: it was given */
   bool us;               /* told in units of the US */
+  double initial;        /* fracture energy below the first of two lines; NaN: there is one */
 } Concrete;
 
 enum { COMPRESSION, TENSION, ENERGY, AGGREGATE, MODULUS, POISSON, DENSITY, SPACING, TENSILE, COMPRESSIVE };
@@ -49,12 +50,14 @@ static int read_all(Concrete *c, const breccia_concrete *given, Error *error)
 {
   Units *units = units_create(UNITS_LENGTH, UNITS_FORCE, UNITS_TIME, error);
   if (!units) return BRECCIA_FAILURE;
-  *c = (Concrete){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, {0}, false};
+  *c = (Concrete){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, {0}, false, NAN};
   const Given rows[] = {
       {"fc", given->compression, "stress", &c->compression, 1e6, 250e6, "1 MPa to 250 MPa, like 4000psi"},
       {"ft", given->tension, "stress", &c->tension, 0.1e6, 25e6, "0.1 MPa to 25 MPa, like 250psi"},
       {"fracture-energy", given->fracture_energy, "fracture energy", &c->energy, 1, 1e5,
        "1 N/m to 100 kN/m, like '100 N/m'"},
+      {"initial-fracture-energy", given->initial_fracture_energy, "fracture energy", &c->initial, 1, 1e5,
+       "1 N/m to 100 kN/m, like '60 N/m'"},
       {"aggregate", given->aggregate, "length", &c->aggregate, 1e-3, 0.3, "1 mm to 300 mm, like 16mm"},
       {"modulus", given->modulus, "stress", &c->modulus, 1e9, 100e9, "1 GPa to 100 GPa, like 30GPa"},
       {"poisson", given->poisson, "1", &c->poisson, 0, 1.0 / 3, "0 to 1/3, which links in plane stress can have"},
@@ -130,6 +133,7 @@ static void add_block(const Concrete *c, Text *t)
     text_add(t, "    tensile ductility: 2\n");
   else
     text_add(t, "    fracture energy: %.4g N/m\n", c->energy);
+  if (!isnan(c->initial)) text_add(t, "    initial fracture energy: %.4g N/m\n", c->initial);
   text_add(t, "    compressive stretch: %.4g\n    compressive ductility: 2\n", c->compressive_stretch);
 }
 
@@ -292,6 +296,11 @@ int breccia_concrete_calibrate(const breccia_concrete *given, char **words, brec
   int status = sized_take(&wish, sizeof wish, given, "breccia_concrete", error);
   if (!status) status = read_all(&c, &wish, error);
   if (!status) apply_rules(&c);
+  if (!status && !isnan(c.initial) && !(c.initial < c.energy))
+    status = error_add(error, BRECCIA_USER_ERROR,
+                       "initial-fracture-energy: '%s' is not a part of the fracture energy; give more by "
+                       "'fracture-energy' or 'aggregate'",
+                       wish.initial_fracture_energy);
   if (!status && !wish.unverified) status = verify(&c, &found, error);
   if (!status) {
     tell(&c, &t);

@@ -42,6 +42,10 @@ concrete --fc 30MPa --aggregate 16mm $once; equal "aggregate: status" $? 0
 near "aggregate: G_F" "$(parameter "fracture energy")" 64.74 1e-3
 contains "aggregate: spacing" "$(cat out)" "{lattice: hexagonal, spacing: 16 mm}"
 case $(cat out) in *ductility:\ 2*tensile\ ductility*) fail "aggregate: both a ductility and a fracture energy" ;; esac
+cp out whole
+concrete --fc 30MPa --aggregate 16mm --initial-fracture-energy '39 N/m' --unverified; equal "two lines: status" $? 0
+near "two lines: G_f" "$(parameter "initial fracture energy")" 39 1e-6
+cp whole out
 # Under the sanitizers that is enough: plates have run in what was verified.
 [ -z "${BRECCIA_SANITIZED:-}" ] || { finish; exit; }
 read -r low high <<< "$(bears tension)"
@@ -104,6 +108,8 @@ refused "fc: 'strong'" --fc strong
 refused "ft: '4MPa' is not below the strength in compression, '3MPa'" --ft 4MPa --fc 3MPa
 refused "poisson: '0.4' is out of range for concrete; expected 0 to 1/3" --fc 30MPa --poisson 0.4
 refused "fracture-energy: '1e-3 N/m' is out of range" --fc 30MPa --fracture-energy '1e-3 N/m'
+refused "initial-fracture-energy: '70 N/m' is not a part of the fracture energy" --fc 30MPa --aggregate 16mm --initial-fracture-energy '70 N/m'
+refused "initial-fracture-energy: '70 N/m' is not a part of the fracture energy" --fc 30MPa --initial-fracture-energy '70 N/m'
 refused "plates of this concrete: its links store" --fc 30MPa --fracture-energy '1 N/m'
 refused "take a spacing 1.28 times smaller" --fc 30MPa --fracture-energy '1 N/m'
 refused "--picture is for measured curves" --fc 30MPa --picture a.png
