@@ -34,14 +34,20 @@ void surroundings_renew(Surroundings *s, const Family *family, int64_t slice)
   const int64_t begin = s->first[slice], count = s->first[slice + 1] - begin;
   memset(s->lanes + begin, 0, (size_t)count);
   if (s->scale) memset(s->scale + begin * SLICE, 0, (size_t)count * SLICE * sizeof *s->scale);
-  for (int lane = 0; lane < SLICE; ++lane)
+  for (int lane = 0; lane < SLICE; ++lane) {
+    int64_t n = begin; /* neighbours of a lane ascend but for a turn or two */
+    int32_t before = -1;
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot) {
       if (!(f->intact[slot] >> lane & 1)) continue;
       const int64_t at = (int64_t)f->base[slot] * SLICE + lane;
-      const int32_t *found = bsearch(&f->neighbour[at], s->place + begin, (size_t)count, sizeof *found, ascending);
-      s->lanes[found - s->place] |= (uint8_t)(1u << lane);
-      if (s->scale) s->scale[(found - s->place) * SLICE + lane] = f->scale[at];
+      const int32_t there = f->neighbour[at];
+      if (there < before) n = begin;
+      while (s->place[n] != there) ++n;
+      before = there;
+      s->lanes[n] |= (uint8_t)(1u << lane);
+      if (s->scale) s->scale[n * SLICE + lane] = f->scale[at];
     }
+  }
 }
 
 typedef struct Making {
