@@ -73,10 +73,10 @@ bench-elements: all
 	@sh scripts/opensees.sh
 	@.venv/opensees/bin/python bench/finite_elements.py build/release/breccia docs/performance.md
 
-# The tables of docs/performance.md.
+# The tables of docs/performance.md for this machine; a quarter of an hour.
 bench-report: all
 	@sh scripts/setup.sh peers
-	@bash bench/report.sh
+	@python3 -B bench/report.py build/release docs/performance.md
 
 # Pages and pictures that the program makes itself.
 docs: all

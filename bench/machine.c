@@ -105,11 +105,12 @@ double multiply_add_rate(void)
   return 2.0 * 10 * LANES * (double)rounds / median(seconds, REPEATS) / 1e9 + 0 * sink;
 }
 
-/* As many chains as hide how long an operation takes; in turn fused and plain ones, for which processors may have units of their own. */
-#define ARITHMETIC(name, lanes)                                                                                        \
+/* As many chains as hide how long an operation takes and fit into the registers; in turn fused and plain ones, for which processors may have units of
+ * their own. */
+enum { FOUR_CHAINS = 6, EIGHT_CHAINS = 8 };
+#define ARITHMETIC(name, lanes, CHAINS)                                                                                \
   double name(int64_t rounds)                                                                                          \
   {                                                                                                                    \
-    enum { CHAINS = 8 };                                                                                               \
     typedef double Vector __attribute__((vector_size(8 * (lanes))));                                                   \
     Vector fused[CHAINS], plain[CHAINS], x = (Vector){0} + 1.000000001, y = (Vector){0} + 1e-9;                        \
     for (int k = 0; k < CHAINS; ++k) fused[k] = plain[k] = (Vector){0} + k;                                            \
@@ -128,8 +129,8 @@ double multiply_add_rate(void)
 #else
 #define OF_PROCESSORS(words)
 #endif
-OF_PROCESSORS("avx512f,fma") static ARITHMETIC(arithmetic_of_eight, 8);
-OF_PROCESSORS("avx2,fma") static ARITHMETIC(arithmetic_of_four, 4);
+OF_PROCESSORS("avx512f,fma") static ARITHMETIC(arithmetic_of_eight, 8, EIGHT_CHAINS);
+OF_PROCESSORS("avx2,fma") static ARITHMETIC(arithmetic_of_four, 4, FOUR_CHAINS);
 
 double arithmetic_rate(void)
 {
@@ -141,7 +142,8 @@ double arithmetic_rate(void)
     sink += eight ? arithmetic_of_eight(rounds) : arithmetic_of_four(rounds);
     seconds[r] = busy_seconds() - start;
   }
-  return 2.0 * 8 * (eight ? 8 : 4) * (double)rounds / median(seconds, REPEATS) / 1e9 + 0 * sink;
+  return 2.0 * (eight ? EIGHT_CHAINS * 8 : FOUR_CHAINS * 4) * (double)rounds / median(seconds, REPEATS) / 1e9 +
+         0 * sink;
 }
 
 double last_cache(void)

@@ -10,6 +10,18 @@ def write(page, name, lines):
         file.write(f"{before}<!-- {name} -->\n\n" + "\n".join(lines) + f"\n\n<!-- end of {name} -->{after}")
 
 
+def write_one_of(page, name, whose, lines):
+    """The same between marks <!-- NAME of WHOSE -->, one pair for each of whom there are lines; new ones come before the mark <!-- end of all NAME -->."""
+    begin, end, last = f"<!-- {name} of {whose} -->", f"<!-- end of {name} of {whose} -->", f"<!-- end of all {name} -->"
+    with open(page) as file:
+        words = file.read()
+    if begin not in words:
+        before, after = words.split(last)
+        with open(page, "w") as file:
+            file.write(f"{before}{begin}\n{end}\n\n{last}{after}")
+    write(page, f"{name} of {whose}", lines)
+
+
 def machine():
     """What the processor calls itself."""
     with open("/proc/cpuinfo") as file:
