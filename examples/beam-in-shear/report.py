@@ -1,12 +1,10 @@
 """Beam OA1 by three formulations beside the test and hand calculations of ACI 318."""
 import csv
-import json
-import os
-import resource
 import sys
 
 from aci318 import nominal_moment, shear_strength
-from reporting import LINE, between, breccia, chart, compared, table, work
+from loaded_beam import Model
+from reporting import LINE, between, chart, compared, table
 
 INCH, PSI, POUND = 25.4, 6894.757e-6, 4.448222e-3  # in mm, MPa, kN
 SPAN, HEIGHT, WIDTH, CONCRETE, YIELD = 3660, 552, 305, 22.6, 440  # mm, MPa
@@ -19,43 +17,6 @@ steel = sum(area for area, _ in BARS)
 depth = HEIGHT - sum(area * above for area, above in BARS) / steel
 by_shear = 2 * shear_strength(CONCRETE / PSI, WIDTH / INCH, depth / INCH) * POUND
 by_bending = 4 * nominal_moment(steel / INCH**2, YIELD / PSI, CONCRETE / PSI, WIDTH / INCH, depth / INCH) * POUND * INCH / SPAN
-
-
-def columns(path):
-    with open(path) as file:
-        rows = list(csv.reader(file))
-    return {name.split(" (")[0]: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
-
-
-class Model:
-    """curve: (deflection [mm], load [kN]), means over a millisecond, so that vibrations do not count as loads."""
-
-    def __init__(self, deck, words, field):
-        self.words = words
-        folder = os.path.join(work.name, deck)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        breccia("run", deck + ".yaml", "--quiet", "--output", folder)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        jack, moved = columns(os.path.join(folder, "jack.csv")), columns(os.path.join(folder, "moved.csv"))
-        self.curve, self.times, first = [], jack["time"], 0
-        for k, time in enumerate(self.times):
-            while self.times[first] < time - 1e-3:
-                first += 1
-            share = range(first, k + 1)
-            self.curve.append((-1e3 * sum(moved["y"][n] for n in share) / len(share), -sum(jack["y"][n] for n in share) / len(share)))
-        peak = max(range(len(self.curve)), key=lambda k: self.curve[k][1])
-        self.at, self.load = self.curve[peak]
-        after_peak = next((k for k in range(peak, len(self.curve)) if self.curve[k][1] < 0.5 * self.load), len(self.curve) - 1)
-        with open(os.path.join(folder, "summary.json")) as file:
-            self.bar = json.load(file)["bars"][0]["stress_so_far"][1] / 1e3  # MPa
-        breccia("plot", folder, "--field", field, "--deformed", "20", "--time", f"{min(self.times[after_peak] + 2e-3, self.times[-1]):.6g}", "--size", "560",
-                "--output", f"pictures/{deck}.png")
-
-    def carried(self, deflection):
-        """The load at a deflection."""
-        return next((load for moved, load in self.curve if moved >= deflection), None)
-
 
 models = [Model(*model) for model in MODELS if not sys.argv[1:] or model[0] in sys.argv[1:]]
 measured = [(float(x), float(y)) for x, y in list(csv.reader(open("measured.csv")))[1:]]
