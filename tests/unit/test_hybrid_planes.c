@@ -172,10 +172,10 @@ static void breaking_has_the_same_bits_by_threads_and_after_a_restart(void **sta
   (void)state;
   breccia_model *m = torn(1);
   const int64_t before = planar(formulation_of(m));
-  step_surely(m, 90);
+  step_surely(m, 60);
   assert_true(m->domain.broken_count > 20 && planar(formulation_of(m)) < before);
   breccia_model_destroy(&m);
-  assert_same_bits_by_threads_and_restart(torn, 70, 90);
+  assert_same_bits_by_threads_and_restart(torn, 45, 60);
 }
 
 int main(void)
