@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 40, VECTORS = 3 };
+enum { MOST_ITERATIONS = 40, VECTORS = 2 };
 
 static double mass_product(const Domain *d, double *const a[MOTIONS], double *const b[MOTIONS])
 {
@@ -34,11 +34,11 @@ typedef struct Iteration { /* of Lanczos' method */
   Domain *domain;
   Aside *aside;
   double *const *base_u, *const *base_f; /* displacements u and forces f(u) */
-  double **previous, **current, **next;
+  double **previous, **current;
   double h, alpha, beta;
 } Iteration;
 
-/** next = -(f(u + h current) - f(u)) / (h rho) */
+/** next = -(f(u + h current) - f(u)) / (h rho), in the place of the forces; large bodies have no memory for more vectors. */
 static void apply(void *context)
 {
   const Iteration *n = context;
@@ -50,22 +50,23 @@ static void apply(void *context)
   TEAM_SINGLE aside_exchange(n->aside, d);
   for (int k = 0; k < d->particles->motions; ++k)
     TEAM_FOR (i, d->particles->places)
-      n->next[k][i] = (n->base_f[k][i] - n->aside->internal[k][i]) / (n->h * d->particles->inertia[k][i]);
+      n->aside->internal[k][i] = (n->base_f[k][i] - n->aside->internal[k][i]) / (n->h * d->particles->inertia[k][i]);
 }
 
+/** Next in the place of previous. */
 static void orthogonalize(void *context)
 {
   const Iteration *n = context;
   for (int k = 0; k < n->domain->particles->motions; ++k)
     TEAM_FOR (i, n->domain->particles->places)
-      n->next[k][i] -= n->alpha * n->current[k][i] + n->beta * n->previous[k][i];
+      n->previous[k][i] = n->aside->internal[k][i] - (n->alpha * n->current[k][i] + n->beta * n->previous[k][i]);
 }
 
 static void normalize(void *context)
 {
   const Iteration *n = context;
   for (int k = 0; k < n->domain->particles->motions; ++k)
-    TEAM_FOR (i, n->domain->particles->places) n->next[k][i] /= n->beta;
+    TEAM_FOR (i, n->domain->particles->places) n->previous[k][i] /= n->beta;
 }
 
 int stable_step(Domain *d, double *step, Error *error)
@@ -84,8 +85,7 @@ int stable_step(Domain *d, double *step, Error *error)
   double *const *u = d->particles->displacement;
   const bool elastic = domain_in_elastic_stage(d);
   domain_set_elastic_stage(d, true);
-  Iteration it = {
-      .domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1], .next = v[2]};
+  Iteration it = {.domain = d, .aside = &aside, .base_u = u, .base_f = base_f, .previous = v[0], .current = v[1]};
   for (int k = 0; k < motions; ++k) memcpy(aside.displacement[k], u[k], sizeof(double) * (size_t)places);
   aside_exchange(&aside, d);
   domain_evaluate(d);
@@ -106,18 +106,17 @@ int stable_step(Domain *d, double *step, Error *error)
   it.h = 1e-7 * d->body.largest_spacing * norm;
   for (int n = 0; n < MOST_ITERATIONS; ++n) {
     team_run(apply, &it);
-    it.alpha = alpha[n] = mass_product(d, it.next, it.current);
+    it.alpha = alpha[n] = mass_product(d, aside.internal, it.current);
     it.beta = beta[n];
     team_run(orthogonalize, &it);
-    it.beta = beta[n + 1] = sqrt(mass_product(d, it.next, it.next));
+    it.beta = beta[n + 1] = sqrt(mass_product(d, it.previous, it.previous));
     largest = tridiagonal_largest(alpha, beta, n + 1);
     if (!(beta[n + 1] > 1e-9 * fabs(largest)) || (n > 12 && largest - before < 1e-4 * largest)) break;
     before = largest;
     team_run(normalize, &it);
     double **spare = it.previous;
     it.previous = it.current;
-    it.current = it.next;
-    it.next = spare;
+    it.current = spare;
   }
   domain_set_elastic_stage(d, elastic);
   domain_show_states(d); /* bonds that break next are judged by what particles show */
