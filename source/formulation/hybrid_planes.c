@@ -180,7 +180,7 @@ LANES_INLINE void find_stress(const Lanes g[3][3], Lanes weight, Lanes share, bo
   const Lanes trace = (s[0][0] + s[1][1]) + s[2][2];
   for (int a = 0; a < 3; ++a) s[a][a] += share * trace;
   for (int a = 0; a < 3; ++a)
-    for (int b = a; b < 3; ++b) s[a][b] = s[b][a] = s[a][b] * weight;
+    for (int b = a; b < 3; ++b) s[a][b] = s[b][a] = lanes_product(s[a][b], weight);
   for (int a = 0; a < 3; ++a)
     for (int c = 0; c < 3; ++c) {
       p[a][c] = s[a][c];
@@ -276,13 +276,13 @@ LANES_INLINE void through(const Around *a, const Row *weight, int kind, int sx, 
   Lanes g[3][3], p[3][3];
   for (int c = 0; c < 3; ++c) {
     const Lanes own = moved(a, c, x, sx, sy, 1) - moved(a, c, x, 0, 0, 0);
-    g[0][c] = tenth * (moved(a, c, x, sx, 0, 0) - moved(a, c, x, 0, sy, 1));
-    g[1][c] = tenth * (moved(a, c, x, 0, sy, 0) - moved(a, c, x, sx, 0, 1));
-    g[2][c] = tenth * (moved(a, c, x, 0, 0, 1) - moved(a, c, x, sx, sy, 0));
+    g[0][c] = lanes_product(tenth, moved(a, c, x, sx, 0, 0) - moved(a, c, x, 0, sy, 1));
+    g[1][c] = lanes_product(tenth, moved(a, c, x, 0, sy, 0) - moved(a, c, x, sx, 0, 1));
+    g[2][c] = lanes_product(tenth, moved(a, c, x, 0, 0, 1) - moved(a, c, x, sx, sy, 0));
     g[0][c] += fifth * (moved(a, c, x, 2 * sx, 0, 0) - moved(a, c, x, -sx, sy, 1));
     g[1][c] += fifth * (moved(a, c, x, 0, 2 * sy, 0) - moved(a, c, x, sx, -sy, 1));
     g[2][c] += fifth * (moved(a, c, x, 0, 0, 2) - moved(a, c, x, sx, sy, -1));
-    const Lanes rest = third * (own - ((g[0][c] + g[1][c]) + g[2][c]));
+    const Lanes rest = lanes_product(third, own - ((g[0][c] + g[1][c]) + g[2][c]));
     for (int k = 0; k < 3; ++k) g[k][c] = sign[k] > 0 ? g[k][c] + rest : -(g[k][c] + rest);
   }
   find_stress(g, take(weight[kind] + x), a->share, a->finite, p);
@@ -290,7 +290,7 @@ LANES_INLINE void through(const Around *a, const Row *weight, int kind, int sx, 
   for (int c = 0; c < 3; ++c) {
     Lanes q[3];
     for (int k = 0; k < 3; ++k) q[k] = sign[k] > 0 ? p[k][c] : -p[k][c];
-    const Lanes mean = third * ((q[0] + q[1]) + q[2]);
+    const Lanes mean = lanes_product(third, (q[0] + q[1]) + q[2]);
     lanes_store(out[c] + x, mean);
     for (int k = 0; k < 3; ++k) lanes_store(out[3 + 3 * k + c] + x, q[k] - mean);
   }
