@@ -175,14 +175,14 @@ static double force_seconds(Domain *d, int threads)
 /** Stresses of all points on particles once more; of points on bonds the law is part of the forces. */
 static double law_seconds(Domain *d)
 {
-  if (!points_on_particles(&d->regions[0].points) || domain_observe(d, NULL)) return 0;
+  if (!points_on_particles(&d->regions[0].points)) return 0;
   double start = busy_seconds();
   for (int64_t b = 0; b < d->batch_count; ++b) {
     const int64_t first = d->batches[b].first * SLICE;
     double *strain[6], *stress[6];
     for (int k = 0; k < 6; ++k) {
-      strain[k] = d->strain[k] + first;
-      stress[k] = d->stress[k] + first;
+      strain[k] = d->regions[0].points.strain[k] + first;
+      stress[k] = d->regions[0].points.stress[k] + first;
     }
     points_update(&d->regions[0].points, first, (int)(d->batches[b].last * SLICE - first), strain, stress);
   }

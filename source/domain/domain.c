@@ -36,57 +36,9 @@ double domain_history(const Domain *d, int64_t place, int k)
   return broken + (1 - broken) * mean;
 }
 
-bool domain_forgets_tensors(const Domain *d)
-{
-  return d->region_count == 1 && points_on_particles(&d->regions[0].points) &&
-         !points_keep_tensors(&d->regions[0].points);
-}
-
-int domain_keep_tensors(Domain *d, Error *error)
-{
-  Points *points = &d->regions[0].points;
-  if (!domain_forgets_tensors(d)) return BRECCIA_OK;
-  if (domain_observe(d, error)) return BRECCIA_FAILURE;
-  for (int k = 0; k < 6; ++k) {
-    points->strain[k] = d->strain[k];
-    points->stress[k] = d->stress[k];
-  }
-  return BRECCIA_OK;
-}
-
-/** The batch of a place. */
-static int64_t batch_of(const Domain *d, int64_t place)
-{
-  int64_t low = 0, high = d->batch_count;
-  while (high - low > 1) {
-    const int64_t middle = (low + high) / 2;
-    if (d->batches[middle].first * SLICE <= place)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-/** Where points on particles keep neither. */
-static void look_again(const Domain *d, int64_t place, double strain[6], double stress[6])
-{
-  _Alignas(64) double strains[6][BATCH], stresses[6][BATCH];
-  const int64_t batch = batch_of(d, place), at = place - d->batches[batch].first * SLICE;
-  domain_look_at_batch(d, batch, strains, stresses);
-  for (int k = 0; k < 6; ++k) {
-    strain[k] = strains[k][at];
-    stress[k] = stresses[k][at];
-  }
-}
-
 void domain_look(const Domain *d, int64_t place, double strain[6], double stress[6])
 {
   const Region *region = domain_region(d, place);
-  if (domain_forgets_tensors(d)) {
-    look_again(d, place, strain, stress);
-    return;
-  }
   if (points_on_particles(&region->points)) {
     for (int k = 0; k < 6; ++k) {
       strain[k] = region->points.strain[k][place];
@@ -121,17 +73,13 @@ static void observe(void *context, int64_t n)
 
 int domain_observe(Domain *d, Error *error)
 {
-  const bool on_particles = d->region_count == 1 && points_on_particles(&d->regions[0].points);
-  if (on_particles && !domain_forgets_tensors(d)) return BRECCIA_OK;
+  if (d->region_count == 1 && points_on_particles(&d->regions[0].points)) return BRECCIA_OK;
   for (int k = 0; k < 6; ++k) {
     if (!d->strain[k]) d->strain[k] = places_array(d->particles->places, "strains", error);
     if (!d->stress[k]) d->stress[k] = places_array(d->particles->places, "stresses", error);
     if (!d->strain[k] || !d->stress[k]) return BRECCIA_FAILURE;
   }
-  if (on_particles)
-    domain_find_tensors(d);
-  else
-    team_each(d->particles->count, observe, d);
+  team_each(d->particles->count, observe, d);
   return BRECCIA_OK;
 }
 
@@ -331,9 +279,6 @@ static void show_held(void *context, int64_t slice)
 static void store_batch(void *context, int64_t b)
 {
   const Domain *d = context;
-  _Alignas(64) double strain[6][BATCH], stress[6][BATCH];
-  const bool forgets = domain_forgets_tensors(d);
-  if (forgets) domain_look_at_batch(d, b, strain, stress);
   d->batch_sum[b] = 0;
   for (int64_t slice = d->batches[b].first; slice < d->batches[b].last; ++slice) {
     const Region *region = &d->regions[d->region[slice]];
@@ -345,14 +290,6 @@ static void store_batch(void *context, int64_t b)
       if (!(counted[lane] > 0)) continue;
       if (!region->type->stored_energies)
         region->type->stored_energy(region->formulation, slice * SLICE + lane, 0, &energy);
-      if (forgets) {
-        double here[6];
-        const int64_t place = slice * SLICE + lane;
-        for (int k = 0; k < 6; ++k) here[k] = stress[k][place - d->batches[b].first * SLICE];
-        energy.stored = energy.weight * points_energy_at(points_material(&region->points, place), here) *
-                            points_softness(&region->points, place) +
-                        energy.stored;
-      }
       d->batch_sum[b] += energy.stored;
     }
   }
@@ -376,14 +313,6 @@ double domain_damage(const Domain *d, int32_t place)
   return whole > 0 ? fmax(0, 1 - family_volume(&d->family, place) / whole) : 0;
 }
 
-void domain_forget_found(Domain *d)
-{
-  for (int k = 0; k < 6 && domain_forgets_tensors(d); ++k) {
-    places_free(&d->strain[k]);
-    places_free(&d->stress[k]);
-  }
-}
-
 size_t domain_particle_bytes(const Domain *d)
 {
   size_t places = (size_t)d->particles->places;
@@ -391,7 +320,7 @@ size_t domain_particle_bytes(const Domain *d)
   for (int r = 0; r < d->region_count; ++r) {
     history += d->regions[r].points.history_size;
     if (points_on_particles(&d->regions[r].points))
-      tensors = d->initial_strain[0] ? 18 : d->strain[0] ? 12 : 0;
+      tensors = d->initial_strain[0] ? 18 : 12;
     else if (points_keep_tensors(&d->regions[r].points))
       bonds += (d->regions[r].initial[0] ? 18 : 12) * (size_t)d->regions[r].points.count;
   }

@@ -90,9 +90,7 @@ typedef struct Domain {
   Material *materials;
   int material_count;
   int32_t *material; /* [slices] */
-  bool
-      forgets_tensors; /* nobody needs strains and stresses of each step: points on particles keep none of laws of Hooke */
-  /** [places] as people see them: of points on particles that keep them theirs, otherwise what domain_observe has found, NULL before */
+  /** [places] as people see them: of points on particles theirs, otherwise what domain_observe has found, NULL before */
   double *strain[6], *stress[6];
   bool begins_under_stress; /* some of its particles do */
   double *initial_strain
@@ -145,7 +143,6 @@ typedef struct DomainSpec {
   void *const *forces;        /* [FORCES_KINDS] sections, or NULL */
   bool is_strained;           /* some load is an initial strain */
   bool begins_under_stress;   /* the deck gives stresses to begin with */
-  bool only_moves;            /* no stage asks for linearised steps */
 } DomainSpec;
 
 static inline Region *domain_region(const Domain *domain, int64_t place)
@@ -303,19 +300,8 @@ void domain_look(const Domain *domain, int64_t place, double strain[6], double s
  *  without them. */
 double domain_history(const Domain *domain, int64_t place, int k);
 
-/** Brings the arrays of strains and stresses up to date where no step writes them; makes them when they are first wanted. */
+/** Brings the arrays of strains and stresses up to date where no law writes them; makes them when they are first wanted. */
 int domain_observe(Domain *domain, Error *error);
-/** Frees arrays that domain_observe has made where points keep no strains and stresses. */
-void domain_forget_found(Domain *domain);
-/** Whether points on particles keep no strains and stresses: both are found from the displacements held when they are wanted, to the bits that a step
- *  would have left. */
-bool domain_forgets_tensors(const Domain *domain);
-/** From now on points on particles keep them. Nothing happens where they do. */
-int domain_keep_tensors(Domain *domain, Error *error);
-/** Finds them for a batch, at the displacements held; what particles show their neighbours must be of there. @param[out] strain, stress  [6][BATCH] */
-void domain_look_at_batch(const Domain *domain, int64_t batch, double (*strain)[BATCH], double (*stress)[BATCH]);
-/** Finds them for all places, from displacements alone, and writes them to the arrays of the domain. */
-void domain_find_tensors(Domain *domain);
 
 /** Broken share of the family of a place, 0 to 1. */
 double domain_damage(const Domain *domain, int32_t place);

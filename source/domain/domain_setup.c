@@ -294,7 +294,6 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
   d->forces_spec = spec->forces;
   d->is_strained = spec->is_strained;
   d->begins_under_stress = spec->begins_under_stress;
-  d->forgets_tensors = spec->only_moves && !spec->failure && !spec->is_strained && !spec->begins_under_stress;
   int status = body_create(&d->body, reader, spec->blocks, spec->cracks, spec->margins);
   if (!status) status = regions_create(d, reader, pd);
   if (status) return status;
@@ -374,12 +373,13 @@ int domain_create(Domain *d, const DeckReader *reader, const DomainSpec *spec)
 void domain_destroy(Domain *d)
 {
   forces_destroy(&d->forces);
-  const bool on_particles = d->region_count == 1 && points_on_particles(&d->regions[0].points);
-  for (int k = 0; k < 6 && (!on_particles || domain_forgets_tensors(d)); ++k) {
-    places_free(&d->strain[k]);
-    places_free(&d->stress[k]);
+  if (d->region_count > 1 || (d->region_count && !points_on_particles(&d->regions[0].points))) {
+    for (int k = 0; k < 6; ++k) {
+      places_free(&d->strain[k]);
+      places_free(&d->stress[k]);
+    }
+    free(d->gave_up);
   }
-  if (d->region_count && !on_particles) free(d->gave_up);
   for (int k = 0; k < 6; ++k) {
     places_free(&d->initial_strain[k]);
     for (int r = 0; r < d->region_count; ++r) places_free(&d->regions[r].initial[k]);

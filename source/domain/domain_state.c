@@ -97,8 +97,7 @@ void domain_state(Domain *d, StateList *list)
                    d->particles->internal, d->particles->places);
   particles_state_rotations(d->particles, "moment", "stress", laws_in_forces ? STATE_TRIED : STATE_FOLLOWS,
                             d->particles->internal, list);
-  const bool found = !points_on_particles(&d->regions[0].points) || domain_forgets_tensors(d);
-  if ((d->region_count > 1 || found) && d->strain[0]) show_strains(d, list);
+  if ((d->region_count > 1 || !points_on_particles(&d->regions[0].points)) && d->strain[0]) show_strains(d, list);
   if (d->gave_up)
     state_add(list,
               &(StateRow){.unit = "1",

@@ -86,12 +86,9 @@ int region_create_points(Domain *d, Region *region, Space space, bool may_give_u
   if (region->type->keeps_no_points || (region->type->components == 1 && region->is_linear && !d->is_strained))
     spec.components = 0;
   if (!spec.components) spec.on_bonds = false;
+  spec.no_tensors =
+      region->type->knows_hooke && spec.on_bonds && is_hookean(d, region) && !d->is_strained && !d->begins_under_stress;
   const bool on_particles = spec.components == 6 && !spec.on_bonds;
-  if (on_particles)
-    spec.no_tensors = region->type->strains_follow && d->forgets_tensors && d->region_count == 1 && !spec.plane_stress;
-  else
-    spec.no_tensors = region->type->knows_hooke && spec.on_bonds && !d->is_strained && !d->begins_under_stress;
-  spec.no_tensors = spec.no_tensors && is_hookean(d, region);
   if (spec.on_bonds && bond_list_create(&region->bonds, &d->family, d->material, region->foreign, error))
     return BRECCIA_FAILURE;
   if (on_particles && d->region_count > 1) {

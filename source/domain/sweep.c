@@ -11,7 +11,6 @@
 typedef struct Purpose {
   double *const *at; /* NULL, or displacements at which a linearised step was made */
   bool no_law;       /* stresses are as they should be */
-  bool looks;        /* strains and stresses that points do not keep are written to the arrays of the domain */
   unsigned without;  /* phases that write any of these are left out */
 } Purpose;
 
@@ -65,16 +64,12 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   Points *points = &region->points;
   const int64_t first = slices->first * SLICE;
   const int count = (int)(slices->last * SLICE - first);
-  const bool kept = points_keep_tensors(points);
   Sweep sweep = {
       .first = slices->first, .last = slices->last, .carry = carry, .no_law = purpose->no_law, .at = purpose->at};
   if (purpose->at && points->plane_stress) memset(change + ZZ * BATCH, 0, sizeof(double) * BATCH);
   for (int k = 0; k < 6 && points_on_particles(points); ++k) {
-    sweep.strain[k] = change + k * BATCH;
-    sweep.stress[k] = change + (6 + k) * BATCH;
-    if (purpose->at || (!kept && !purpose->looks)) continue;
-    sweep.strain[k] = (kept ? points->strain[k] : d->strain[k]) + first;
-    sweep.stress[k] = (kept ? points->stress[k] : d->stress[k]) + first;
+    sweep.strain[k] = purpose->at ? change + k * BATCH : points->strain[k] + first;
+    sweep.stress[k] = purpose->at ? change + (6 + k) * BATCH : points->stress[k] + first;
   }
   run_phases(region, group->from, group->law < 0 ? group->to : group->law, &sweep, purpose);
   if (group->law < 0) return;
@@ -85,7 +80,7 @@ static void run_places(Domain *d, Region *region, const Group *group, int64_t ba
   if (points_on_particles(points)) {
     if (purpose->at)
       points_change(points, first, count, sweep.strain, sweep.stress);
-    else if (!purpose->no_law || !kept) /* stresses that are not kept are answered to the same bits */
+    else if (!purpose->no_law)
       d->batch_failed[batch] = points_update(points, first, count, sweep.strain, sweep.stress);
   }
   run_phases(region, group->law, group->to, &sweep, purpose);
@@ -326,32 +321,6 @@ static void remake_forces(void *context)
   forces_resist(&d->forces);
 }
 
-static void find_tensors(void *context)
-{
-  run_all(context, &(Purpose){.looks = true, .without = OF_STATES | OF_SUMS | OF_FORCES});
-}
-
-void domain_find_tensors(Domain *d)
-{
-  team_run(find_tensors, d);
-}
-
-void domain_look_at_batch(const Domain *d, int64_t batch, double (*strain)[BATCH], double (*stress)[BATCH])
-{
-  _Alignas(64) double carry[CARRY * BATCH];
-  const Batch *slices = &d->batches[batch];
-  Region *region = domain_region(d, slices->first * SLICE);
-  const int64_t first = slices->first * SLICE;
-  Sweep sweep = {.first = slices->first, .last = slices->last, .carry = carry};
-  for (int k = 0; k < 6; ++k) {
-    sweep.strain[k] = strain[k];
-    sweep.stress[k] = stress[k];
-  }
-  for (const Phase *phase = region->type->phases; phase->run; ++phase)
-    if (phase->writes == OF_STRAINS) phase->run(region->formulation, &sweep);
-  points_update(&region->points, first, (int)(slices->last * SLICE - first), sweep.strain, sweep.stress);
-}
-
 void domain_follow(Domain *d)
 {
   domain_follow_strains(d);
@@ -379,7 +348,6 @@ bool domain_take_secants(Domain *d, Secants of)
 
 int domain_linearise(Domain *d, Error *error)
 {
-  if (domain_keep_tensors(d, error)) return BRECCIA_FAILURE;
   for (int r = 0; r < d->region_count; ++r)
     if (points_keep_tangents(&d->regions[r].points, true, error)) return BRECCIA_FAILURE;
   domain_evaluate(d);

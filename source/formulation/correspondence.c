@@ -38,7 +38,6 @@ const FormulationType formulation_correspondence = {
     .maturity = "verified against patch tests and finite elements",
     .components = 6,
     .row_sums = true,
-    .strains_follow = true,
     .may_stiffen = true,
     .section = &correspondence_section,
     .check = correspondence_check,

@@ -219,10 +219,7 @@ void correspondence_stored_energy(const void *formulation, int64_t place, double
   energy->weight = volume * shape_of_slice(&c->shapes, slice)->share[place % SLICE];
   energy->held = volume * 0.5 * held(c, place, sums.square, g, sums.now);
   energy->stored =
-      energy->held; /* what the point has by its stress, if that is not kept, is added by who has found it */
-  if (points_keep_tensors(points))
-    energy->stored =
-        energy->weight * points_elastic_energy(points, place) * points_softness(points, place) + energy->held;
+      energy->weight * points_elastic_energy(points, place) * points_softness(points, place) + energy->held;
   energy->control = volume * 0.5 * held(c, place, sums.across, g, sums.before);
 }
 

@@ -75,8 +75,7 @@ typedef struct BondLength {
 /** Energy of the deformation of a place or of a bond [energy]. What was received is what is stored less half of what the forces of the moment
  *  did along the last step: what works summed by the trapezium rule have put in, if these forces end with the step. */
 typedef struct StoredEnergy {
-  double
-      stored; /* what unloading would give back, in all; without a point's own part where points on particles keep no stresses */
+  double stored;            /* what unloading would give back, in all */
   double held;              /* of that, by the control of zero-energy modes */
   double received, control; /* by bonds that act as springs; by the control of zero-energy modes */
   double
@@ -149,9 +148,7 @@ struct FormulationType {
   double horizon;                /* in spacings, where the deck gives none; 0: 3.015 */
   bool row_sums;                 /* neighbours read sums along lattice rows */
   bool keeps_no_points;          /* what laws say of themselves is all that the formulation needs of them */
-  bool knows_hooke; /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
-  bool
-      strains_follow; /* strains of points on particles follow from displacements, batch by batch, whenever somebody asks */
+  bool knows_hooke;       /* it finds strains and stresses of points on bonds itself where all laws are Hooke's */
   bool may_stiffen;       /* the largest eigenvalue of stiffness over mass may grow as bonds break */
   const Section *section; /* its keys, which stand among those of peridynamics */
   /** Whether it takes a law of its components. NULL: takes all. */

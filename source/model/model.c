@@ -189,8 +189,7 @@ static int build(breccia_model *model, const breccia_options *options, Error *er
                       .failure = spec->failure,
                       .forces = spec->forces,
                       .is_strained = has_initial_strains(spec),
-                      .begins_under_stress = spec->initial_stress.count > 0,
-                      .only_moves = !solver_linearises(&spec->solve)};
+                      .begins_under_stress = spec->initial_stress.count > 0};
   if ((bad = domain_create(&model->domain, &model->reader, &parts))) status = bad;
   free(margins.items);
   /* What follows needs the body or the materials only: its mistakes are told together with those of the rest. */

@@ -49,13 +49,11 @@ static int write_results(Run *run, Error *error)
 {
   breccia_model *model = run->model;
   const double start = clock_seconds();
-  const bool shown = model->domain.strain[0] != NULL; /* a program may have asked for these arrays */
   int status = domain_observe(&model->domain, error);
   if (!status) {
     update_peaks(model);
     status = result_file_write(run->results, &model->domain, model->solver.clock.step, model->solver.clock.time, error);
   }
-  if (!shown) domain_forget_found(&model->domain);
   run->unwritten |= status != 0;
   const double seconds = clock_seconds() - start;
   Outlook *o = &model->outlook;

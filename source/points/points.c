@@ -35,16 +35,6 @@ static int create_runs(Points *points, const PointsSpec *spec, Error *error)
   return BRECCIA_OK;
 }
 
-int points_make_tensors(Points *points, Error *error)
-{
-  for (int k = 0; k < 6 && !points->shares; ++k) {
-    if (!points->strain[k]) points->strain[k] = places_array(points->count, "strains", error);
-    if (!points->stress[k]) points->stress[k] = places_array(points->count, "stresses", error);
-    if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
-  }
-  return BRECCIA_OK;
-}
-
 int points_create(Points *points, const PointsSpec *spec, Error *error)
 {
   *points = (Points){.components = spec->components,
@@ -65,7 +55,11 @@ int points_create(Points *points, const PointsSpec *spec, Error *error)
     points->strain[k] = spec->strain[k];
     points->stress[k] = spec->stress[k];
   }
-  if (points->components == 6 && !spec->no_tensors && points_make_tensors(points, error)) return BRECCIA_FAILURE;
+  for (int k = 0; k < 6 && points->components == 6 && !points->shares && !spec->no_tensors; ++k) {
+    points->strain[k] = places_array(points->count, "strains", error);
+    points->stress[k] = places_array(points->count, "stresses", error);
+    if (!points->strain[k] || !points->stress[k]) return BRECCIA_FAILURE;
+  }
   team_each(points->run_count, begin_run, points);
   return point_servers_create(points, spec->present, error);
 }

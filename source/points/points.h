@@ -65,8 +65,7 @@ typedef struct Points {
   size_t identity_size;
 } Points;
 
-/** Whether strains and stresses of points of six components stand in rows. Otherwise laws are Hooke's, and both are found from displacements when they
- *  are wanted: on bonds by the formulation, on particles by a sweep (domain_observe). */
+/** Whether strains and stresses of points of six components stand in rows. Otherwise laws are Hooke's, and the formulation finds both itself. */
 static inline bool points_keep_tensors(const Points *points)
 {
   return points->strain[0] != NULL;
@@ -78,9 +77,6 @@ static inline double points_whole_strain(const Points *points, int64_t row, int 
   return points->initial[k] ? strain + points->initial[k][row] : strain;
 }
 
-/** Makes the arrays of strains and stresses where there are none: zeros. */
-int points_make_tensors(Points *points, Error *error);
-
 /** Whether rows are places, and strain and stress are those of particles. */
 static inline bool points_on_particles(const Points *points)
 {
@@ -90,7 +86,7 @@ static inline bool points_on_particles(const Points *points)
 typedef struct PointsSpec {
   int components;
   bool plane_stress, on_bonds;
-  bool no_tensors;       /* strains and stresses are found when they are wanted: laws are Hooke's */
+  bool no_tensors;       /* the formulation finds strains and stresses itself: laws are Hooke's */
   const PointsRun *runs; /* borrowed while points are made */
   int64_t run_count;
   const Material *materials; /* borrowed for good */

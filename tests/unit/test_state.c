@@ -298,97 +298,6 @@ static void a_step_that_fails_gives_back_every_bit(void **state)
   }
 }
 
-static void assert_same_numbers(double *const *a, double *const *b, int rows, int64_t places, const char *name)
-{
-  for (int k = 0; k < rows; ++k)
-    if (memcmp(a[k], b[k], sizeof(double) * (size_t)places)) fail_msg("%s %d is not the same", name, k);
-}
-
-/** A bar that is pulled: nobody keeps its strains and stresses, unless `kept`. */
-static breccia_model *pulled_bar(const char *strain, bool kept)
-{
-  char deck[800];
-  snprintf(deck, sizeof deck,
-           "materials: {m: {model: elastic, density: 1, Young modulus: 150, Poisson ratio: 0.25}}\n"
-           "body: {b: {material: m, spacing: 1, shape: {box: {particles: [21, 7, 9]}}}}\n"
-           "peridynamics: {formulation: correspondence, strain: %s}\n"
-           "loads: [{on: {face: x-}, displacement: [0, 0, 0]}, {on: {face: x+}, velocity: [0.3, 0.1, 0]}]\n"
-           "solve: {explicit: {steps: 40}}\n",
-           strain);
-  breccia_model *m = model_of(deck);
-  assert_true(domain_forgets_tensors(&m->domain));
-  if (kept) assert_int_equal(domain_keep_tensors(&m->domain, NULL), BRECCIA_OK);
-  assert_int_equal(domain_forgets_tensors(&m->domain), !kept);
-  return m;
-}
-
-static void strains_that_nobody_keeps_are_found_to_the_same_bits(void **state)
-{
-  (void)state;
-  for (int finite = 0; finite < 2; ++finite) {
-    breccia_model *looking = pulled_bar(finite ? "green-lagrange" : "small", false),
-                  *blind = pulled_bar(finite ? "green-lagrange" : "small", false),
-                  *keeping = pulled_bar(finite ? "green-lagrange" : "small", true);
-    const Domain *d = &looking->domain, *with = &keeping->domain;
-    const Particles *p = d->particles, *q = with->particles;
-    for (int steps = 0; steps < 4; ++steps) {
-      advance(looking, 7);
-      advance(blind, 7);
-      advance(keeping, 7);
-      double strain[6], stress[6];
-      for (int64_t n = 0; n < p->count; n += 11) { /* before all are found */
-        const int32_t i = p->place_of[n];
-        domain_look(d, i, strain, stress);
-        for (int k = 0; k < 6; ++k) assert_true(strain[k] == with->strain[k][i] && stress[k] == with->stress[k][i]);
-      }
-      assert_true(with->stress[0][p->place_of[p->count / 2]] > 1e-3);
-      assert_true(domain_stored_energy(&looking->domain) == domain_stored_energy(&keeping->domain));
-      if (steps % 2) continue;
-      assert_int_equal(domain_observe(&looking->domain, NULL), BRECCIA_OK);
-      assert_same_numbers(d->strain, with->strain, 6, p->places, "strain");
-      assert_same_numbers(d->stress, with->stress, 6, p->places, "stress");
-    }
-    assert_same_numbers(p->displacement, q->displacement, 3, p->places, "displacement");
-    assert_same_numbers(p->velocity, q->velocity, 3, p->places, "velocity");
-    assert_same_numbers(p->displacement, blind->domain.particles->displacement, 3, p->places, "unseen displacement");
-    assert_same_numbers(p->internal, blind->domain.particles->internal, 3, p->places, "unseen force");
-    assert_null(blind->domain.strain[0]);
-    assert_null(d->regions[0].points.strain[0]);
-    domain_forget_found(&looking->domain);
-    domain_forget_found(&keeping->domain);
-    assert_null(d->strain[0]);
-    assert_ptr_equal(with->strain[0], with->regions[0].points.strain[0]);
-    assert_non_null(with->strain[0]);
-    breccia_model_destroy(&looking);
-    breccia_model_destroy(&blind);
-    breccia_model_destroy(&keeping);
-  }
-  assert_returns(pulled_bar("green-lagrange", false), 10, false);
-}
-
-/** Of explicit elastic bodies, by the program's own count: strains and stresses would take 96 bytes a particle, and a list of slots for each slice 91. */
-static void large_bodies_take_little_memory(void **state)
-{
-  (void)state;
-  const struct {
-    const char *formulation, *law;
-    double most;
-  } cases[] = {{"correspondence", "elastic, Poisson ratio: 0.2", 500},
-               {"bond-based", "elastic-1d", 300},
-               {"ordinary", "elastic, Poisson ratio: 0.2", 300}};
-  for (int n = 0; n < 3; ++n) {
-    breccia_model *m = model_of("materials: {m: {model: %s, density: 1, Young modulus: 150}}\n"
-                                "body: {b: {material: m, spacing: 1, shape: {box: {particles: [32, 32, 32]}}}}\n"
-                                "peridynamics: {formulation: %s}\nsolve: {explicit: {steps: 2}}\n",
-                                cases[n].law, cases[n].formulation);
-    advance(m, 1);
-    const double bytes = (double)domain_bytes(&m->domain) + (double)m->solver.type->bytes(&m->solver);
-    const double each = bytes / (double)m->domain.particles->count;
-    if (!(each > 100 && each < cases[n].most)) fail_msg("%s: %.0f bytes a particle", cases[n].formulation, each);
-    breccia_model_destroy(&m);
-  }
-}
-
 static void rows_have_names_of_their_own_and_known_units(void **state)
 {
   (void)state;
@@ -402,7 +311,7 @@ static void rows_have_names_of_their_own_and_known_units(void **state)
     assert_true(list.rows[k].values || (list.rows[k].care && list.rows[k].care->save));
   }
   assert_ptr_equal(breccia_model_array(m, "force y"), m->domain.particles->internal[1]);
-  assert_ptr_equal(breccia_model_array(m, "stress zx"), m->domain.stress[5]);
+  assert_ptr_equal(breccia_model_array(m, "stress zx"), m->domain.regions[0].points.stress[5]);
   assert_null(breccia_model_array(m, "history"));
   assert_null(breccia_model_array(m, "force"));
   state_list_destroy(&list);
@@ -416,8 +325,6 @@ int main(void)
       cmocka_unit_test(so_it_does_where_bonds_remember_and_bodies_meet),
       cmocka_unit_test(so_it_does_where_laws_are_in_servers),
       cmocka_unit_test(a_step_that_fails_gives_back_every_bit),
-      cmocka_unit_test(large_bodies_take_little_memory),
-      cmocka_unit_test(strains_that_nobody_keeps_are_found_to_the_same_bits),
       cmocka_unit_test(rows_have_names_of_their_own_and_known_units),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
