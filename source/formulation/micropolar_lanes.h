@@ -85,12 +85,11 @@ LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int
                                      int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
-  const int64_t slice = place / SLICE;
-  const LinkRow *row = &m->rows[family_pattern(f, slice, slot)];
+  const LinkRow *row = &m->rows[f->pattern[slot]];
   LinkLanes l = {.place = place,
                  .slot = slot,
                  .half = half,
-                 .there = family_base(f, slice, slot) + LANES * half,
+                 .there = f->base[slot] + LANES * half,
                  .intact = f->intact[slot],
                  .by_length = lanes_set(row->by_length)};
   for (int k = 0; k < dimensions; ++k) {
@@ -103,7 +102,7 @@ LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int
 
 LANES_INLINE StiffnessLanes lattice_stiffness(const Micropolar *m, const LinkLanes *l)
 {
-  const LinkRow *row = &m->rows[family_pattern(m->family, l->place / SLICE, l->slot)];
+  const LinkRow *row = &m->rows[m->family->pattern[l->slot]];
   return (StiffnessLanes){lanes_intact(l->intact, l->half, lanes_set(row->axial)),
                           lanes_intact(l->intact, l->half, lanes_set(row->bending)),
                           lanes_intact(l->intact, l->half, lanes_set(row->twist)), row->bending > 0, row->twist > 0};

@@ -57,7 +57,7 @@ static void a_neighbour_beyond_the_body_or_out_of_reach_is_seen(void **state)
     breccia_model *model = cracked_plate();
     Family *f = &model->domain.family;
     if (way == 0) f->reach /= 2;
-    if (way == 1) f->base[f->first[5] + f->entry[5]] += (int32_t)model->domain.particles->places;
+    if (way == 1) f->base[f->first[5]] += (int32_t)model->domain.particles->places;
     if (way == 2) *stored_neighbour(f) = (int32_t)model->domain.particles->places;
     if (way == 3) f->stored[3] = f->first[4] + 1;
     assert_false(family_is_valid(f));
