@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,6 +93,27 @@ void hybrid_planes_mark(Hybrid *h, int64_t slice)
   h->planar_kind[slice] = (uint8_t)n;
   if (n < h->plane_kinds || n == HYBRID_ODD) return;
   memcpy(&h->planes[h->plane_kinds++], &planes, sizeof planes); /* with what lies between its members */
+}
+
+static pthread_key_t room;
+static bool has_key;
+
+static void make_key(void)
+{
+  has_key = !pthread_key_create(&room, free);
+}
+
+void *hybrid_planes_room(size_t bytes)
+{
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, make_key);
+  if (!has_key) return NULL;
+  void *memory = pthread_getspecific(room);
+  if (memory) return memory;
+  memory = memory_zeroed(1, bytes, "planes of hybrid bonds", NULL);
+  if (!memory || !pthread_setspecific(room, memory)) return memory;
+  free(memory);
+  return NULL;
 }
 
 /** Whether planes gain something in a block: where they leave few bonds, and stripes have whole layers. Measured: docs/performance.md. */

@@ -65,9 +65,9 @@ int micropolar_find_damage_law(const Micropolar *m, int block, breccia_link *lin
              1.001 * link->tension_begin / first_end);
   return error_add(error, BRECCIA_USER_ERROR,
                    "block '%s': its links store more up to the tensile stretch of %g than the %sfracture energy of "
-                   "material '%s' lets a crack take; %s, or give more fracture energy",
+                   "material '%s' lets a crack take; %s, or give more %sfracture energy",
                    m->body->blocks[block]->head.name, link->tension_begin, bends ? "initial " : "",
-                   micropolar_material(m, block)->name, advice);
+                   micropolar_material(m, block)->name, advice, bends ? "initial " : "");
 }
 
 static int find_laws(Micropolar *m, Error *error)

@@ -298,9 +298,9 @@ int breccia_concrete_calibrate(const breccia_concrete *given, char **words, brec
   if (!status) apply_rules(&c);
   if (!status && !isnan(c.initial) && !(c.initial < c.energy))
     status = error_add(error, BRECCIA_USER_ERROR,
-                       "initial-fracture-energy: '%s' is not a part of the fracture energy; give more by "
+                       "initial-fracture-energy: '%s' is a part of the fracture energy, which %s; give more by "
                        "'fracture-energy' or 'aggregate'",
-                       wish.initial_fracture_energy);
+                       wish.initial_fracture_energy, isnan(c.energy) ? "is not given" : "is no larger");
   if (!status && !wish.unverified) status = verify(&c, &found, error);
   if (!status) {
     tell(&c, &t);

@@ -482,6 +482,7 @@ int modes_find(Domain *d, const Loading *loading, int count, Modes *modes, Error
   const bool elastic = domain_in_elastic_stage(d);
   domain_set_elastic_stage(d, true);
   int status = domain_linearise(d, error);
+  if (!status) forces_linearise(&d->forces);
   domain_set_elastic_stage(d, elastic);
   if (!status) status = create(&s, unknowns, error);
   if (!status) status = find_symmetry(&s, error);

@@ -152,6 +152,7 @@ int period_find(Domain *d, const Loading *loading, double *period, Error *error)
     const bool elastic = domain_in_elastic_stage(d);
     domain_set_elastic_stage(d, true);
     status = domain_linearise(d, error);
+    if (!status) forces_linearise(&d->forces);
     domain_set_elastic_stage(d, elastic);
   }
   if (!status) {

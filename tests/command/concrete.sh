@@ -108,8 +108,8 @@ refused "fc: 'strong'" --fc strong
 refused "ft: '4MPa' is not below the strength in compression, '3MPa'" --ft 4MPa --fc 3MPa
 refused "poisson: '0.4' is out of range for concrete; expected 0 to 1/3" --fc 30MPa --poisson 0.4
 refused "fracture-energy: '1e-3 N/m' is out of range" --fc 30MPa --fracture-energy '1e-3 N/m'
-refused "initial-fracture-energy: '70 N/m' is not a part of the fracture energy" --fc 30MPa --aggregate 16mm --initial-fracture-energy '70 N/m'
-refused "initial-fracture-energy: '70 N/m' is not a part of the fracture energy" --fc 30MPa --initial-fracture-energy '70 N/m'
+refused "initial-fracture-energy: '70 N/m' is a part of the fracture energy, which is no larger; give more by" --fc 30MPa --aggregate 16mm --initial-fracture-energy '70 N/m'
+refused "initial-fracture-energy: '70 N/m' is a part of the fracture energy, which is not given; give more by" --fc 30MPa --initial-fracture-energy '70 N/m'
 refused "plates of this concrete: its links store" --fc 30MPa --fracture-energy '1 N/m'
 refused "take a spacing 1.28 times smaller" --fc 30MPa --fracture-energy '1 N/m'
 refused "--picture is for measured curves" --fc 30MPa --picture a.png

@@ -178,10 +178,39 @@ static void breaking_has_the_same_bits_by_threads_and_after_a_restart(void **sta
   assert_same_bits_by_threads_and_restart(torn, 45, 60);
 }
 
+/** Rows of planes are as long as those of a block: what the first of two blocks that do not touch has left at the end of a longer row is none of the other's. */
+static void blocks_that_do_not_touch_exert_nothing_on_each_other(void **state)
+{
+  (void)state;
+  breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
+                              "materials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson ratio: 0.25}}\n"
+                              "body:\n"
+                              "  a: {material: m, spacing: 1, shape: {union: [{box: {from: [0, 0, 0], to: [64, 15, "
+                              "17]}}, {box: {from: [47, 15, "
+                              "0], to: [49, 16, 17]}}]}}\n"
+                              "  b: {material: m, spacing: 1, shape: {box: {from: [0, 40, 0], to: [72, 56, 16]}}}\n"
+                              "peridynamics: {formulation: hybrid, horizon: 1.5 spacings}\n"
+                              "solve: {explicit: {steps: 1, time step: 1e-3}}\n");
+  const Particles *p = m->domain.particles;
+  double moved = 0, still = 0;
+  for (int64_t i = 0; i < p->places; ++i)
+    if (p->number[i] >= 0 && p->position[1][i] < 20 && p->position[0][i] > 48)
+      p->displacement[0][i] = 1e-3 * (p->position[0][i] - 48);
+  compute_forces(m);
+  for (int64_t i = 0; i < p->places; ++i) {
+    double *most = p->position[1][i] < 20 ? &moved : &still;
+    for (int k = 0; k < 3 && p->number[i] >= 0; ++k) *most = fmax(*most, fabs(p->internal[k][i]));
+  }
+  assert_true(moved > 0);
+  assert_true(still == 0);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(planes_exert_what_walked_bonds_do),
+      cmocka_unit_test(blocks_that_do_not_touch_exert_nothing_on_each_other),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four),
       cmocka_unit_test(breaking_has_the_same_bits_by_threads_and_after_a_restart),
   };

@@ -345,6 +345,8 @@ static void spacings_that_snap_back_are_refused(void **state)
       {"tensile stretch: 1e-4, fracture energy: 0.1, initial fracture energy: 1e-3",
        "block 'b': its links store more up to the tensile stretch of 0.0001 than the initial fracture energy of "
        "material 'm' lets a crack take; take a spacing "},
+      {"tensile stretch: 1e-4, fracture energy: 0.1, initial fracture energy: 1e-3",
+       "or give more initial fracture energy"},
       {"tensile stretch: 1e-4, fracture energy: 0.1, tensile ductility: 3",
        "give 'tensile ductility' or 'fracture energy'"},
       {"tensile stretch: 1e-4, fracture energy: 1e-6, length: 1", "the curve would snap back"},
@@ -352,7 +354,9 @@ static void spacings_that_snap_back_are_refused(void **state)
        "must be less than 2 G_f / (E S_t^2) = 0.8"},
       {"tensile stretch: 1e-4, initial fracture energy: 0.04", "'initial fracture energy' is a part of"},
       {"tensile stretch: 1e-4, fracture energy: 0.1, initial fracture energy: 0.1",
-       "'initial fracture energy' is a part of"}};
+       "'initial fracture energy' (0.1) is a part of 'fracture energy' (0.1), which must be more"},
+      {"tensile stretch: 1e-4, fracture energy: 0.1, kink stress: 0.2",
+       "'kink stress' is of links that soften by two"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     char *deck = text_format(UNITS "materials: {m: {model: link-damage, density: 2, Young modulus: 1e7, Poisson ratio: "
                                    "0.2, %s}}\nbody: {b: {material: m, lattice: hexagonal, spacing: 0.1, thickness: "

@@ -40,8 +40,8 @@ static const breccia_parameter parameters[] = {
     {"initial fracture energy", "fracture energy", "", "(0, inf)",
      "G_f below the first of two lines that the force then falls by, which decides largest loads; 0.4 to 0.6 G_F in "
      "concrete; when absent G_F, one line"},
-    {"kink stress", "1", "0.3333333333333333", "(0, 1)",
-     "at which the second line begins, over the strength; of no use without an initial fracture energy"},
+    {"kink stress", "1", "", "(0, 1)",
+     "at which the second line of an initial fracture energy begins, over the strength; 1/3 when absent"},
 };
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
@@ -61,7 +61,17 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
                          .recovery = v[RECOVERY]};
   const bool bends = !isnan(v[INITIAL_ENERGY]);
   if (bends && !(v[INITIAL_ENERGY] < v[ENERGY])) {
-    snprintf(reason, size, "'initial fracture energy' is a part of 'fracture energy', which must be given and be more");
+    if (energy)
+      snprintf(reason, size, "'initial fracture energy' (%g) is a part of 'fracture energy' (%g), which must be more",
+               v[INITIAL_ENERGY], v[ENERGY]);
+    else
+      snprintf(reason, size, "'initial fracture energy' is a part of 'fracture energy': give that, too");
+    return 1;
+  }
+  if (!bends && !isnan(v[KINK])) {
+    snprintf(
+        reason, size,
+        "'kink stress' is of links that soften by two lines: give 'initial fracture energy', too, or leave it out");
     return 1;
   }
   if (!energy) return 0;
@@ -75,7 +85,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   }
   link->fracture_energy = v[ENERGY];
   link->initial_fracture_energy = bends ? v[INITIAL_ENERGY] : 0;
-  link->tension_kink = v[KINK];
+  link->tension_kink = isnan(v[KINK]) ? 1.0 / 3 : v[KINK];
   if (isinf(v[LENGTH])) return 0; /* links find their own */
   link_find_ends(link, 2 * v[ENERGY] / (young * begin * v[LENGTH]));
   link->fracture_energy = NAN;
