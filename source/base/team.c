@@ -127,18 +127,30 @@ static void *serve(void *given)
   }
 }
 
+/** Sweeps keep up to 2 MB in their frames; some systems, and limits of shells, give threads less. @return 0, or what is wrong */
+static int set_stack(pthread_attr_t *attributes)
+{
+  const size_t enough = (size_t)8 << 20;
+  size_t size = 0;
+  const int bad = pthread_attr_getstacksize(attributes, &size);
+  return bad || size >= enough ? bad : pthread_attr_setstacksize(attributes, enough);
+}
+
 static int start(Team *team, Error *error)
 {
+  pthread_attr_t attributes;
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  int bad = 0;
+  int bad = pthread_attr_init(&attributes);
+  if (!bad) bad = set_stack(&attributes);
   while (!bad && team->started < team->threads - 1) {
     struct Place *place = &team->places[team->started];
     *place = (struct Place){team, team->started + 1};
-    bad = pthread_create(&team->thread[team->started], NULL, serve, place);
+    bad = pthread_create(&team->thread[team->started], &attributes, serve, place);
     if (!bad) ++team->started;
   }
+  pthread_attr_destroy(&attributes);
   pthread_sigmask(SIG_SETMASK, &before, NULL);
   if (bad)
     error_add(error, BRECCIA_FAILURE, "only %d of %d threads could be started: %s; ask for fewer", team->started + 1,

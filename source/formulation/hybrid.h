@@ -90,6 +90,7 @@ typedef struct Hybrid Hybrid;
 typedef void HybridHookeSweep(const Hybrid *hybrid, const Sweep *sweep);
 LANES_CHOICE(HybridHookeSweep, hybrid_hooke)
 
+/** Adds to the sums of a stripe what the bonds exert that planes go through (hybrid_planes.c). */
 /** Numbers the bonds of a block whose lattice planes know, and its layers. */
 int hybrid_planes_create(Hybrid *hybrid, int block, Error *error);
 /** Gives back to walks the blocks in which planes would gain nothing, and marks all slices. */
@@ -98,10 +99,7 @@ void hybrid_planes_choose(Hybrid *hybrid);
 void hybrid_planes_weigh(const Hybrid *hybrid, int64_t slice, HybridPlanes *planes);
 /** Bonds of a slice have their geometries, or other ones. */
 void hybrid_planes_mark(Hybrid *hybrid, int64_t slice);
-/** Adds to the sums of a stripe what the bonds exert that planes go through (hybrid_planes.c). @return false: there is no memory, and nothing is done */
-bool LANES_NAMED(hybrid_planes)(const Hybrid *hybrid, const HybridStripe *stripe);
-/** Memory of the calling thread for what planes keep, too much for its stack; of one size only. Given back when the thread ends. @return NULL: there is none */
-void *hybrid_planes_room(size_t bytes);
+void LANES_NAMED(hybrid_planes)(const Hybrid *hybrid, const HybridStripe *stripe);
 
 struct Hybrid {
   const Particles *particles;

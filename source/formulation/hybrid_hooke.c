@@ -432,6 +432,6 @@ void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
   }
   clear_stripe(stripe);
   if (w.kind != (w.kind | HOOKE_FINITE | HOOKE_LINEAR)) w.planar = h->planar;
-  if (w.planar && !LANES_NAMED(hybrid_planes)(h, stripe)) w.planar = NULL;
+  if (w.planar) LANES_NAMED(hybrid_planes)(h, stripe);
   walk_stripe(h, &w);
 }

@@ -667,17 +667,16 @@ static void go_through_block(PlanesWork *w, const HybridLattice *of)
     }
 }
 
-bool LANES_NAMED(hybrid_planes)(const Hybrid *h, const HybridStripe *stripe)
+void LANES_NAMED(hybrid_planes)(const Hybrid *h, const HybridStripe *stripe)
 {
-  Column *column = hybrid_planes_room(sizeof *column);
+  _Alignas(64) Column column;
   bool clear = false;
-  if (!column) return false;
   for (int block = h->particles->block[stripe->first]; block <= h->particles->block[stripe->last - 1]; ++block) {
     const HybridLattice *of = &h->lattice[block];
     const Lattice *lattice = &h->family->lattices[block];
     if (!of->kind) continue;
-    if (!clear) memset(column, 0, sizeof *column);
-    if (clear) memset(column->exerted, 0, sizeof column->exerted); /* rows of another block may have been longer */
+    if (!clear) memset(&column, 0, sizeof column);
+    if (clear) memset(column.exerted, 0, sizeof column.exerted); /* rows of another block may have been longer */
     clear = true;
     PlanesWork w = {.h = h,
                     .lattice = lattice,
@@ -688,8 +687,7 @@ bool LANES_NAMED(hybrid_planes)(const Hybrid *h, const HybridStripe *stripe)
                     .inverse = 1 / lattice->spacing,
                     .rows = lattice->cells[lattice->across[0]],
                     .layers = lattice->cells[lattice->across[1]],
-                    .column = column};
+                    .column = &column};
     go_through_block(&w, of);
   }
-  return true;
 }

@@ -3,9 +3,9 @@
 
 #include "base/memory.h"
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 /** Steps along the rows, across them in a layer, and to the next layer, from the lower ends of bonds to their others. */
 static const int ways[HYBRID_KINDS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0}, {1, 0, 1},
@@ -95,30 +95,12 @@ void hybrid_planes_mark(Hybrid *h, int64_t slice)
   memcpy(&h->planes[h->plane_kinds++], &planes, sizeof planes); /* with what lies between its members */
 }
 
-static pthread_key_t room;
-static bool has_key;
-
-static void make_key(void)
-{
-  has_key = !pthread_key_create(&room, free);
-}
-
-void *hybrid_planes_room(size_t bytes)
-{
-  static pthread_once_t once = PTHREAD_ONCE_INIT;
-  pthread_once(&once, make_key);
-  if (!has_key) return NULL;
-  void *memory = pthread_getspecific(room);
-  if (memory) return memory;
-  memory = memory_zeroed(1, bytes, "planes of hybrid bonds", NULL);
-  if (!memory || !pthread_setspecific(room, memory)) return memory;
-  free(memory);
-  return NULL;
-}
-
 /** Whether planes gain something in a block: where they leave few bonds, and stripes have whole layers. Measured: docs/performance.md. */
 static bool is_worth_it(const Hybrid *h, int block)
 {
+  struct rlimit stack;
+  const rlim_t enough = (rlim_t)4 << 20; /* a column of planes takes half of it */
+  if (!getrlimit(RLIMIT_STACK, &stack) && stack.rlim_cur < enough) return false;
   const HybridLattice *lattice = &h->lattice[block];
   const int64_t layers = h->family->lattices[block].cells[h->family->lattices[block].across[1]];
   const double least = lattice->kinds == NEAR_KINDS ? 0.8 : 0.65;
