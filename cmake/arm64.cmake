@@ -11,5 +11,5 @@ set(ENV{PKG_CONFIG_SYSROOT_DIR} ${CMAKE_SYSROOT})
 set(ENV{PKG_CONFIG_LIBDIR} ${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
 # What is installed otherwise links to one of several libraries for linear algebra.
 set(linear_algebra usr/lib/aarch64-linux-gnu/openblas-serial)
-set(CMAKE_EXE_LINKER_FLAGS_INIT -Wl,-rpath-link,${CMAKE_SYSROOT}/${linear_algebra})
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,\"${CMAKE_SYSROOT}/${linear_algebra}\"")
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64;-L;${CMAKE_SYSROOT};-E;LD_LIBRARY_PATH=/${linear_algebra})

@@ -21,7 +21,14 @@ static bool is_straight(const Bars *b, int64_t e)
   return square < rounding;
 }
 
-int bar_bending_create(Bars *b, Error *error)
+int64_t bar_joints(const Bars *b, int n)
+{
+  int64_t joints = 0;
+  for (int64_t e = b->first[n]; e + 1 < b->first[n + 1]; ++e) joints += b->bend[e] > 0;
+  return joints;
+}
+
+int bar_bending_create(Bars *b, const ForcesParts *parts, Error *error)
 {
   for (int n = 0; n < b->specs->count; ++n) b->bends |= ((const BarSpec *)b->specs->items[n])->bending;
   if (!b->bends) return BRECCIA_OK;
@@ -30,10 +37,16 @@ int bar_bending_create(Bars *b, Error *error)
   b->turn = memory_zeroed((size_t)b->count, sizeof *b->turn, "bars", error);
   if (!b->bend || !b->bent || !b->turn) return BRECCIA_FAILURE;
   for (int n = 0; n < b->specs->count; ++n) {
-    if (!((const BarSpec *)b->specs->items[n])->bending) continue;
+    const BarSpec *bar = b->specs->items[n];
+    if (!bar->bending) continue;
     const double stiffness = bar_bending_stiffness(b, n);
     for (int64_t e = b->first[n]; e + 1 < b->first[n + 1]; ++e)
       if (is_straight(b, e)) b->bend[e] = 2 * stiffness / (b->length[e] + b->length[e + 1]);
+    if (!bar_joints(b, n))
+      return node_error(
+          parts->reader->document, section_node(bar, "bending"), error,
+          "bending: no two elements of this line lie on one straight line, so that it has a corner at each of "
+          "them, where no moment is handed on; draw straight parts longer than two spacings, or leave it out");
   }
   return BRECCIA_OK;
 }
@@ -98,7 +111,7 @@ void bar_accept_bending(Bars *b)
       const double turn = b->along[e + 1][k] - b->along[e][k];
       square += turn * turn;
     }
-    if (!(stiffness > 0)) b->bending_lost += b->bent[e];
+    if (!(stiffness > 0)) b->worked[e] += b->bent[e]; /* its element has torn: no more stored, so dissipated */
     b->bent[e] = stiffness * square / 2;
   }
 }
@@ -119,5 +132,4 @@ void bar_bending_state(Bars *b, StateList *list)
                         .count = b->count,
                         .values = b->bent};
   state_add(list, &row, "energy of bending of bars", NULL);
-  state_add_number(list, "bending of torn bars", "energy", STATE_COMMITTED, &b->bending_lost);
 }

@@ -234,7 +234,7 @@ double bars_given(const void *forces)
 double bars_dissipated(const void *forces)
 {
   const Bars *b = forces;
-  double work = b->bending_lost;
+  double work = 0;
   for (int64_t e = 0; e < b->count; ++e) work += b->worked[e];
   if (b->has_points) work -= bars_stored(b, 0, b->count, false);
   for (int n = 0; n < b->specs->count; ++n) work += bar_bond_dissipated(b, n);

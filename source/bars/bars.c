@@ -268,7 +268,7 @@ static int make(Bars *b, const ForcesParts *parts, Error *error)
   if (!status) status = bar_slips_create(b, parts, error);
   if (!status) status = make_points(b, parts, error);
   if (!status) begin_under_stress(b);
-  if (!status) status = bar_bending_create(b, error);
+  if (!status) status = bar_bending_create(b, parts, error);
   return status;
 }
 
@@ -356,7 +356,12 @@ static void describe(const void *forces, const Units *units, Text *text)
     if (lines > 1) text_add(text, "%d times ", lines);
     text_add(text, "%lld '%s' of %.4g %s%s", (long long)bar->number, bar->head.name, b->bar_area[b->lines.first[n]],
              unit, bar->number > 1 ? " together" : "");
-    if (bar->bending) text_add(text, " (EI %.4g %s)", bar_bending_stiffness(b, b->lines.first[n]), bending);
+    if (!bar->bending) continue;
+    const int line = b->lines.first[n];
+    const int64_t joints = bar_joints(b, line), most = b->first[line + 1] - b->first[line] - 1;
+    text_add(text, " (EI %.4g %s", bar_bending_stiffness(b, line), bending);
+    if (joints < most) text_add(text, " at %lld of %lld joints; none at corners", (long long)joints, (long long)most);
+    text_add(text, ")");
   }
   if (of_deck > 6) text_add(text, " and others, %lld in all", (long long)bars);
   units_name(units, dimension_find("volume"), unit, sizeof unit);

@@ -87,14 +87,13 @@ typedef struct Bars {
   int64_t *chunk; /* [chunk_count + 1] elements of one bar, at most BATCH, gone through together */
   int *chunk_bar; /* [chunk_count] */
   int64_t chunk_count;
-  BarSlips *slips;          /* NULL: no bar does */
-  bool bends;               /* some bar resists bending; else the rows of that are not there */
-  double *bend;             /* of the joint of an element and the next: moment by angle; 0: none */
-  double *bent;             /* energy of these joints, as committed */
-  double bending_lost;      /* what joints held of elements that tore */
-  double (*turn)[3];        /* of a linearised step: changes of unit vectors */
-  double *worked;           /* work on elements that have points, with what they held at the beginning */
-  double *yielded, *torn;   /* when an element did so first; below zero: it has not */
+  BarSlips *slips;        /* NULL: no bar does */
+  bool bends;             /* some bar resists bending; else the rows of that are not there */
+  double *bend;           /* of the joint of an element and the next: moment by angle; 0: none */
+  double *bent;           /* energy of these joints, as committed */
+  double (*turn)[3];      /* of a linearised step: changes of unit vectors */
+  double *worked;         /* on elements that have points, with what they began with, and what joints held that tore */
+  double *yielded, *torn; /* when an element did so first; below zero: it has not */
   double *lowest, *highest; /* [bars] stresses so far */
 } Bars;
 
@@ -164,9 +163,11 @@ double bar_bond_stress_in(const Bars *bars, int bar, int64_t element);
 /* bar_bending.c: bars that resist bending. */
 
 /** Makes room for joints, when elements are there with their points. @return status */
-int bar_bending_create(Bars *bars, Error *error);
+int bar_bending_create(Bars *bars, const ForcesParts *parts, Error *error);
 /** Young's modulus times second moment of area, of all parallel bars of a line. */
 double bar_bending_stiffness(const Bars *bars, int bar);
+/** Joints of a bar that hand on a moment. */
+int64_t bar_joints(const Bars *bars, int bar);
 /** Adds to what elements pull with the moments of their joints, when unit vectors of all are found. */
 void bar_bend(Bars *bars, int64_t from, int64_t to);
 /** The change of that, of an element; `turn` and `longer` of its neighbours are known. */

@@ -210,12 +210,14 @@ static void turning_bends_nothing_and_what_tears_is_lost(void **state)
   }
   assert_true(corner > 0 && b->bent[corner] == 0); /* it hands on no moment */
   const double before = bars_bent(b, 0, b->count), lost = b->bent[most], dissipated = bars_dissipated(b);
+  assert_near(bar_report(b, 0).dissipated, dissipated, 1e-12 * before);
   b->torn[most + 1] = 0;
   const double behind = most + 2 < b->count ? b->bent[most + 1] : 0;
   bars_accept(b);
   assert_true(lost > 0);
   assert_near(bars_bent(b, 0, b->count), before - lost - behind, 1e-12 * before);
   assert_near(bars_dissipated(b), dissipated + lost + behind, 1e-12 * before);
+  assert_near(bar_report(b, 0).dissipated, dissipated + lost + behind, 1e-12 * before); /* and of the bar itself */
   drop(force);
   breccia_model_destroy(&m);
 }
@@ -268,6 +270,27 @@ static void modes_know_bars_that_bend(void **state)
   for (int n = 0; n < COUNT; ++n) assert_true(frequency[1][n] > 0.999 * frequency[0][n]);
 }
 
+/** Lines that are nothing but corners are refused; of others the description tells at how many joints they resist. */
+static void corners_are_told(void **state)
+{
+  (void)state;
+  const char *const deck =
+      "units: {length: m, force: kN, time: s}\nmaterials: {m: {model: elastic, density: 2, Young modulus: 1e4, Poisson "
+      "ratio: 0}}\nbody: {b: {material: m, spacing: 0.1, lattice: square, thickness: 0.5, shape: {box: {from: [0, 0], "
+      "to: "
+      "[1, 0.5]}}}}\nperidynamics: {formulation: correspondence, space: plane stress}\nbars: {r: {points: [[0.1, 0.1], "
+      "[0.2, 0.1], [0.3, 0.101]%s], diameter: 20 mm, material: m, bending: yes}}\nsolve: {explicit: {steps: 1}}\n";
+  char *bad = text_format(deck, ""), *words = refusal_of(bad);
+  if (!strstr(words, "deck:5:") || !strstr(words, "bending: no two elements of this line lie on one straight line"))
+    fail_msg("%s", words);
+  free(words);
+  free(bad);
+  breccia_model *m = model_of(deck, ", [0.5, 0.103]");
+  const char *overview = breccia_model_overview(m);
+  if (!strstr(overview, " at 2 of 3 joints; none at corners); 4 elements")) fail_msg("%s", overview);
+  breccia_model_destroy(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -276,6 +299,7 @@ int main(void)
       cmocka_unit_test(moments_follow_from_an_energy),
       cmocka_unit_test(turning_bends_nothing_and_what_tears_is_lost),
       cmocka_unit_test(modes_know_bars_that_bend),
+      cmocka_unit_test(corners_are_told),
       cmocka_unit_test(a_bar_in_motion_keeps_its_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
