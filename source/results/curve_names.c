@@ -64,9 +64,8 @@ void curve_advise(const char *curve, Text *text)
     const char *there = side[1 - k];
     const char *end = there + strcspn(there, ",");
     if (!of_all_histories(side[k]) || add_name(there, end, &other)) continue;
-    char own[2 * CURVE_NAME];
-    snprintf(own, sizeof own, "%s.%s", other.watch[0], side[k]);
-    text_add(text, "; each history has its %s: '%s : %s'", side[k], k ? there : own, k ? own : there);
+    text_add(text, "; each history has its %s: '%s%s%s.%s%s%s'", side[k], k ? there : "", k ? " : " : "",
+             other.watch[0], side[k], k ? "" : " : ", k ? "" : there);
     return;
   }
 }
