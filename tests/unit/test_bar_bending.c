@@ -1,8 +1,7 @@
 /* Bars that resist bending against beams: clamped at an end, bent to a sine, turned, torn, in motion. */
-#include "support.h"
+#include "forces_beside.h"
 
 #include "bars/bars.h"
-#include "base/random.h"
 #include "solver/modes.h"
 
 static const double young = 2e8;
@@ -102,25 +101,6 @@ static breccia_model *bent_bar(const char *lattice)
       "bending: yes}}\nsolve: {explicit: {end time: 1}}\npictures: []\n",
       lattice, plane ? ", thickness: 0.3" : "", plane ? "" : ", 0", plane ? "" : ", 0.5",
       plane ? ", space: plane stress" : "", plane ? "" : ", 0.21", plane ? "" : ", 0.29", plane ? "" : ", 0.17");
-}
-
-static void shake(breccia_model *m, double by)
-{
-  Particles *p = m->domain.particles;
-  uint64_t seed = 7;
-  for (int k = 0; k < m->domain.body.dimensions; ++k)
-    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
-}
-
-static void find_beside(breccia_model *m, double *force[3])
-{
-  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
-  domain_forces_beside(&m->domain, force);
-}
-
-static void drop(double *force[3])
-{
-  for (int k = 0; k < 3; ++k) places_free(&force[k]);
 }
 
 /** Energy of bars as they stand. */

@@ -1,8 +1,7 @@
 /* Bars that slip, against closed forms, difference quotients and their law. */
-#include "support.h"
+#include "forces_beside.h"
 
 #include "bars/bars.h"
-#include "base/random.h"
 #include "model/run.h"
 #include "results/bar_lines.h"
 #include "results/watch_parts.h"
@@ -270,25 +269,6 @@ static breccia_model *bent(const char *steel, const char *bond)
                   "number: 2, material: rod, %s}}\n"
                   "solve: {explicit: {end time: 1}}\npictures: []\n",
                   steel, bond);
-}
-
-static void shake(breccia_model *m, double by)
-{
-  Particles *p = m->domain.particles;
-  uint64_t seed = 7;
-  for (int k = 0; k < 3; ++k)
-    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
-}
-
-static void find_beside(breccia_model *m, double *force[3])
-{
-  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
-  domain_forces_beside(&m->domain, force);
-}
-
-static void drop(double *force[3])
-{
-  for (int k = 0; k < 3; ++k) places_free(&force[k]);
 }
 
 static void bars_that_slip_neither_push_nor_turn_the_whole(void **state)

@@ -1,8 +1,7 @@
 /* Reinforcing bars against closed forms and difference quotients, in every formulation. */
-#include "support.h"
+#include "forces_beside.h"
 
 #include "bars/bars.h"
-#include "base/random.h"
 #include "model/run.h"
 #include "results/bar_lines.h"
 #include "results/watch_parts.h"
@@ -75,26 +74,6 @@ static void an_element_feels_uniform_deformation_exactly(void **state)
                 1e-12);
     breccia_model_destroy(&m);
   }
-}
-
-static void shake(breccia_model *m, double by)
-{
-  Particles *p = m->domain.particles;
-  uint64_t seed = 7;
-  for (int k = 0; k < m->domain.body.dimensions; ++k)
-    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
-}
-
-/** Forces of bars alone. */
-static void find_beside(breccia_model *m, double *force[3])
-{
-  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
-  domain_forces_beside(&m->domain, force);
-}
-
-static void drop(double *force[3])
-{
-  for (int k = 0; k < 3; ++k) places_free(&force[k]);
 }
 
 static void bars_neither_push_nor_turn_the_whole(void **state)

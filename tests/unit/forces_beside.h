@@ -1,0 +1,29 @@
+/* Forces beside those of bonds, in bodies whose particles stand anywhere. */
+#ifndef BRECCIA_TESTS_FORCES_BESIDE_H
+#define BRECCIA_TESTS_FORCES_BESIDE_H
+
+#include "base/random.h"
+#include "support.h"
+
+/** Moves each particle by at most half of a length along each axis, always in the same way. */
+static inline void shake(breccia_model *m, double by)
+{
+  Particles *p = m->domain.particles;
+  uint64_t seed = 7;
+  for (int k = 0; k < m->domain.body.dimensions; ++k)
+    for (int64_t n = 0; n < p->count; ++n) p->displacement[k][p->place_of[n]] += by * (random_uniform(&seed) - 0.5);
+}
+
+/** @param[out] force  arrays of places, which `drop` gives back */
+static inline void find_beside(breccia_model *m, double *force[3])
+{
+  for (int k = 0; k < 3; ++k) force[k] = places_array(m->domain.particles->places, "test", NULL);
+  domain_forces_beside(&m->domain, force);
+}
+
+static inline void drop(double *force[3])
+{
+  for (int k = 0; k < 3; ++k) places_free(&force[k]);
+}
+
+#endif
