@@ -13,6 +13,8 @@ for w, published in PUBLISHED.items():
     rows.append([f"{w} × {3 * w}", f"{loaded(w)}", f"{two.rows}", f"{two.bears:.0f} to {two.fails:.0f}", f"{published}", f"{100 * (two.load() / published - 1):+.1f} %",
                  f"{by_code(STRENGTH, w):.0f}", f"{100 * (two.load() / by_code(STRENGTH, w) - 1):+.1f} %", f"{five.bears:.0f} to {five.fails:.0f}",
                  f"{five.load() / published:.2f}"])
+mean, published = (sum(values) / len(PUBLISHED) for values in ([plates[w, 2].load() for w in PUBLISHED], PUBLISHED.values()))
+rows.append(["mean of the three", "", "", f"{mean:.0f}", f"{published:.0f}", f"{100 * (mean / published - 1):+.1f} %", "", "", "", ""])
 between("loads", table(["plate, in", "loaded particles at an end", "rows", "α_c = 2 fails between, N a particle", "thesis, N", "beside the thesis", "ten f_t, N", "beside ten f_t",
                         "α_c = 5 fails between, N", "over the thesis"], rows))
 WAYS = {"as above": {}, "held up to 5 T instead of 3 T": {"solve.explicit.end time": "${5 * period}"}, "half of the time step": {"solve.explicit.safety": 0.4},
