@@ -1,20 +1,23 @@
 """Runs the report scripts of the examples in a copy of them, and makes one page of what they found: tables, pictures, times, in red what failed or is out of its band.
 
-    examples.py [--strict] [--minutes M] [--page PAGE] SOURCE PROGRAMS WORK [EXAMPLE ...]
+    examples.py [--strict] [--minutes M] [--at-once N] [--page PAGE] SOURCE PROGRAMS WORK [EXAMPLE ...]
 
 SOURCE: the project; PROGRAMS: the folder with the command breccia; WORK: a folder of its own, which is emptied first; PAGE: SOURCE/examples/report.html when absent.
 Tables are those between marks in the pages of the examples, which report.sh has written there. A row with columns 'computed' and 'accepted' must keep to what is accepted,
 '2.2 to 3.0' or words; a column whose head says '(accepted -5 to 5)' to these; a column 'difference' to the size in the 'band' beside it. --strict: numbers that differ from those of the
 project's own pages by more than a hundredth count, too, and so does a time of all examples beyond M minutes (45).
+N examples run at once, each on its share of the cores; as many as there are cores when absent, as small bodies gain little from a second one.
 Ends with 1 if anything is red."""
 import base64
+import concurrent.futures
 import html
 import os
 import re
-import resource
 import shutil
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 
 NUMBER = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -94,12 +97,16 @@ class Example:
         with open(path, encoding="utf-8") as file:
             return file.read()
 
-    def run(self):
-        begin, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(["bash", "report.sh"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.status, self.words, self.seconds = done.returncode, done.stdout, time.monotonic() - begin
-        self.processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    def run(self, threads):
+        begin = time.monotonic()
+        with tempfile.TemporaryFile() as said:
+            started = subprocess.Popen(["bash", "report.sh"], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
+                                       env={**os.environ, "OMP_NUM_THREADS": str(threads)})
+            _, status, used = os.wait4(started.pid, 0)  # its own times: others run beside it
+            started.returncode = self.status = os.waitstatus_to_exitcode(status)
+            said.seek(0)
+            self.words = said.read().decode(errors="replace")
+        self.seconds, self.processor = time.monotonic() - begin, used.ru_utime + used.ru_stime
         self.page = self.read(os.path.join(self.folder, "README.md"))
         self.find()
 
@@ -154,15 +161,15 @@ def section(example):
     return "\n".join(out)
 
 
-def whole_time(examples):
-    return f"{sum(e.seconds for e in examples):.0f} s, {sum(e.processor for e in examples):.0f} s of processors"
+def whole_time(examples, seconds):
+    return f"{seconds:.0f} s, {sum(e.processor for e in examples):.0f} s of processors"
 
 
-def report(examples, late):
+def report(examples, seconds, late):
     rows = "".join(f'<tr class="{"red" if e.status or e.outside else "changed" if e.differs else ""}"><td><a href="#{e.name}">{e.name}</a></td><td>{text(e.told())}</td></tr>\n' for e in examples)
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>Examples of Breccia</title><style>{STYLE}</style></head><body>\n<h1>Examples of Breccia</h1>\n'
             f"<p>Computed beside published. Red: failed, or out of what is accepted; yellow: not as in the example's README.md.</p>\n<table>{rows}"
-            f'<tr class="{"changed" if late else ""}"><td>together</td><td>{whole_time(examples)}</td></tr>\n</table>\n'
+            f'<tr class="{"changed" if late else ""}"><td>together</td><td>{whole_time(examples, seconds)}</td></tr>\n</table>\n'
             + "\n".join(section(e) for e in examples) + "\n</body></html>\n")
 
 
@@ -187,13 +194,14 @@ def copy_of(source, programs, work):
 def main(words):
     strict = "--strict" in words
     words = [word for word in words if word != "--strict"]
-    values = {"--page": None, "--minutes": "45"}
+    cores = len(os.sched_getaffinity(0))
+    values = {"--page": None, "--minutes": "45", "--at-once": str(cores)}
     for option in values:
         if option in words:
             place = words.index(option)
             values[option] = words[place + 1]
             del words[place:place + 2]
-    page, minutes = values["--page"], float(values["--minutes"])
+    page, minutes, at_once = values["--page"], float(values["--minutes"]), int(values["--at-once"])
     source, programs, work, *names = words
     source = os.path.abspath(source)
     known = sorted(name for name in os.listdir(os.path.join(source, "examples")) if os.path.exists(os.path.join(source, "examples", name, "report.sh")))
@@ -201,18 +209,24 @@ def main(words):
         if name not in known:
             sys.exit(f"examples.py: there is no example '{name}' with a report.sh; there are {', '.join(known)}")
     copy_of(source, programs, work)
-    examples, late = [], False
-    for name in names or known:
-        example = Example(name, source, work)
-        print(f"{name}: ", end="", flush=True)
-        example.run()
-        print(example.told(), flush=True)
-        examples.append(example)
-        late = sum(e.seconds for e in examples) > 60 * minutes
-        with open(page or os.path.join(source, "examples", "report.html"), "w", encoding="utf-8") as file:
-            file.write(report(examples, late))
-    print(f"together: {whole_time(examples)}" + (f", beyond {minutes:g} minutes" if late else ""))
-    return (strict and late) or any(e.status or e.outside or (strict and e.differs) for e in examples)
+    examples = [Example(name, source, work) for name in names or known]
+    begin, ended, telling = time.monotonic(), [], threading.Lock()
+
+    def late():
+        return time.monotonic() - begin > 60 * minutes
+
+    def run(example):
+        example.run(max(1, cores // at_once))
+        with telling:
+            print(f"{example.name}: {example.told()}", flush=True)
+            ended.append(example)
+            with open(page or os.path.join(source, "examples", "report.html"), "w", encoding="utf-8") as file:
+                file.write(report([e for e in examples if e in ended], time.monotonic() - begin, late()))
+
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        list(pool.map(run, examples))
+    print(f"together: {whole_time(examples, time.monotonic() - begin)}" + (f", beyond {minutes:g} minutes" if late() else ""))
+    return (strict and late()) or any(e.status or e.outside or (strict and e.differs) for e in examples)
 
 
 if __name__ == "__main__":

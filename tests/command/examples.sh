@@ -36,7 +36,7 @@ example() { # NAME COMPUTED: the page of an example, and a script that writes wh
 END
   printf '%s\n' "$2" > "$work/project/examples/$1/report.sh"
 }
-example same 'sed -i "s/9 s/12 s/; s/5.1/5.11/" README.md; test -x ../../build/release/breccia; test ! -L ../../docs; test -e ../../docs/other.md'
+example same 'sed -i "s/9 s/12 s/; s/5.1/5.11/" README.md; test -x ../../build/release/breccia; test ! -L ../../docs; test -e ../../docs/other.md; test "$OMP_NUM_THREADS" -ge 1'
 example other 'sed -i "s/4.9 to 5.1/4.7 to 5.1/" README.md'
 example outside 'sed -i "s/4.9 to/3.9 to/; s/| failed | failed/| steady | failed/; s/+3.1/+5.2/; s/-0.5 %/-1.5 %/; s/| 2.1 |/| none |/" README.md'
 example broken 'echo "no <such> command"; exit 3'
@@ -73,6 +73,10 @@ report 0 --strict . "$(dirname "$breccia")" build/examples same
 report 1 --strict --minutes 0 . "$(dirname "$breccia")" build/examples same
 contains "a time beyond what is allowed" "$(cat "$work/out")" ", beyond 0 minutes"
 report 0 --minutes 0 . "$(dirname "$breccia")" build/examples same
+example first 'for n in $(seq 100); do test -e ../second/begun && exit; sleep 0.1; done; exit 1'
+example second 'touch begun'
+report 0 --at-once 2 . "$(dirname "$breccia")" build/examples first second # one waits for the other
+rm -r "$work/project/examples/first" "$work/project/examples/second"
 report 1 . "$(dirname "$breccia")" build/examples another
 contains "an example that is not there" "$(cat "$work/out")" "there is no example 'another' with a report.sh; there are broken, other, outside, same"
 
