@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import re
 import resource
 import shutil
 
@@ -13,6 +14,13 @@ def last(path):
     with open(path) as file:
         rows = list(csv.reader(file))
     return {name.split(" (")[0]: float(value) for name, value in zip(rows[0], rows[-1])}
+
+
+def pictures_of(folder, name):
+    """Files of a picture, in order of the times in their names, which no report knows: an end follows from the period that the program finds."""
+    files = os.listdir(os.path.join(folder, "pictures"))
+    drawn = [(float(found[1] or 0), file) for file in files if (found := re.fullmatch(re.escape(name) + r"(?:-([\d.]+)ms)?\.png", file))]
+    return [os.path.join(folder, "pictures", file) for _, file in sorted(drawn)]
 
 
 class Beam:
@@ -34,7 +42,7 @@ class Beam:
         return self.bears, self.fails
 
     def run(self, load, pictures=()):
-        """Runs it under a load and keeps pictures: (what the program calls one, its name here)."""
+        """Runs it under a load and keeps pictures: (what the program calls them, the names here of all that it drew of this, in order of time)."""
         folder = os.path.join(self.folder, f"{load:g}")
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         breccia("run", self.deck, *self.words, "--set", f"variables.load={load} {self.unit}", "--quiet", "--output", folder)
@@ -50,8 +58,9 @@ class Result:
         with open(os.path.join(folder, "summary.json")) as file:
             self.summary = json.load(file)
         os.makedirs("pictures", exist_ok=True)
-        for name, here in pictures:
-            shutil.copy(os.path.join(folder, "pictures", name + ".png"), f"pictures/{here}.png")
+        for name, *here in pictures:
+            for drawn, kept in zip(pictures_of(folder, name), here, strict=True):
+                shutil.copy(drawn, f"pictures/{kept}.png")
 
     def verdict(self):
         return self.summary["rest"]["quasi-static"]

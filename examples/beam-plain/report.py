@@ -13,7 +13,7 @@ def load(strength):
 
 beam = Beam("beam.yaml", "lbf/in")
 bears, fails = beam.search(280, 316, 0.02)
-torn = beam.run(300, [("damage-by-sign-6ms", "before"), ("damage-by-sign-6.5ms", "growing"), ("damage-by-sign-7ms", "crack")])
+torn = beam.run(300, [("damage-by-sign", "before", "growing", "crack")])
 whole = beam.run(270)
 between("loads", compared([
     ["cracking moment, lb in, by the thesis's f_t = 251 psi", "30 371", f"{cracking_moment(DIRECT, WIDTH, HEIGHT):.0f}", "", ""],

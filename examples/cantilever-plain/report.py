@@ -20,7 +20,7 @@ def sinks(pounds):
 beam = Beam("cantilever.yaml", "lbf")
 bears, fails = beam.search(2300, 2700, 0.02)
 whole = beam.run(2500)
-torn = beam.run(2700, [("damage-by-sign-51ms", "before"), ("damage-by-sign-57ms", "growing"), ("damage-by-sign-76.37ms", "crack")])
+torn = beam.run(2700, [("damage-by-sign", "before", "growing", "crack")])
 between("loads", compared([
     ["load of the cracking moment by the thesis's f_t = 251 psi, kips", "2.5", f"{load(DIRECT):.2f}", "", ""],
     ["the same by ACI's modulus of rupture, 474 psi", "", f"{load(rupture(4000)):.2f}", "", ""],
