@@ -104,7 +104,7 @@ along() {
   "$breccia" material "$work/home.yaml" --output "$work/home.csv"
   words=$("$breccia" material "$work/away.yaml" --output "$work/away.csv" 2>&1 || true)
   paste -d, "$work/home.csv" "$work/away.csv" | awk -F, -v words="$words" '
-    NR > 1 && NF == 24 && $19 != "" {for (k = 7; k <= 12; ++k) {a = $k < 0 ? -$k : $k; d = $k - $(k + 12); if (d < 0) d = -d; if (a > top) top = a; if (d > most) most = d}}
+    NR > 1 && $(n = NF / 2) != "" && $(n + 7) != "" {for (k = 7; k <= 12; ++k) {a = $k < 0 ? -$k : $k; d = $k - $(k + n); if (d < 0) d = -d; if (a > top) top = a; if (d > most) most = d}}
     END {if (words != "") {sub(/: OpenSees server: it returned/, ":", words); sub(/ for its point 0/, "", words); print words} else printf "to %.0e", most / top}'
 }
 {
