@@ -132,7 +132,8 @@ static void add_sides(const Contact *c, ContactRow *row)
     const int64_t former = slot - c->family->stored[slice];
     if (former < 0 && !(c->family->intact[slot] >> lane & 1)) continue;
     if (former >= 0 && !row->pairs[former].bond) continue;
-    reference_way(p, row->place, former < 0 ? c->family->base[slot] + lane : row->pairs[former].neighbour, xi);
+    reference_way(p, row->place, former < 0 ? family_base(c->family, slice, slot) + lane : row->pairs[former].neighbour,
+                  xi);
     for (int k = 0; k < 3; ++k)
       if (fabs(fabs(xi[k]) - lattice->spacing) < 1e-6 * lattice->spacing &&
           fabs(dot(xi, xi) - xi[k] * xi[k]) < 1e-6 * xi[k] * xi[k])

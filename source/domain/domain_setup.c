@@ -98,8 +98,8 @@ static int find_lowest(Domain *d, Error *error)
       for (int64_t slot = f->first[s]; slot < f->first[s + 1]; ++slot)
         for (int lane = 0; lane < SLICE; ++lane) {
           if (!(f->intact[slot] >> lane & 1)) continue;
-          const int32_t there =
-              slot < f->stored[s] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+          const int32_t there = slot < f->stored[s] ? family_base(f, s, slot) + lane
+                                                    : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
           if (d->region[there / SLICE] != d->region[s]) continue;
           if (batch_of[there / SLICE] < d->lowest[b]) d->lowest[b] = batch_of[there / SLICE];
         }
@@ -117,7 +117,7 @@ static int64_t reach_of(const Domain *d, const Region *region)
     int64_t first = d->batches[b].first;
     for (int64_t s = first; s < d->batches[b].last; ++s)
       for (int64_t slot = f->first[s]; slot < f->stored[s]; ++slot)
-        if (f->intact[slot] && f->base[slot] / SLICE < first) first = f->base[slot] / SLICE;
+        if (f->intact[slot] && family_base(f, s, slot) / SLICE < first) first = family_base(f, s, slot) / SLICE;
     while (low > region->first_batch && d->batches[low].first > first) --low;
     while (low < b && d->batches[low].last <= first) ++low;
     if (b - low > reach) reach = b - low;

@@ -57,13 +57,15 @@ static int limits(const FailureSpec *failure, const LimitsOf *of, double *limit)
 LANES_INLINE Lanes reserve(const Failure *failure, const Family *f, int64_t slot, int64_t place, int half, bool lattice)
 {
   const Particles *p = f->particles;
-  int64_t base = f->base[slot] + LANES * half, at = (int64_t)f->base[slot] * SLICE + LANES * half;
+  const int64_t slice = place / SLICE;
+  const int64_t base = lattice ? family_base(f, slice, slot) + LANES * half : 0;
+  const int64_t at = lattice ? 0 : (int64_t)f->base[slot] * SLICE + LANES * half;
   const int32_t *index = f->neighbour + at;
   Lanes square = {0}, reference = {0};
   for (int k = 0; k < 3; ++k) {
     const double *u = p->displacement[k], *x = p->position[k];
-    Lanes xi =
-        lattice ? lanes_set(f->patterns[f->pattern[slot]].xi[k]) : lanes_gather(x, index) - lanes_load(x + place);
+    Lanes xi = lattice ? lanes_set(f->patterns[family_pattern(f, slice, slot)].xi[k])
+                       : lanes_gather(x, index) - lanes_load(x + place);
     Lanes y = xi + (lattice ? lanes_load(u + base) : lanes_gather(u, index)) - lanes_load(u + place);
     square += y * y;
     reference += xi * xi;

@@ -98,7 +98,7 @@ static void fill_slice(void *context, int64_t slice)
 static int64_t opposite_slot(const Family *f, int64_t slice, const Pattern *pattern)
 {
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
-    const int *offset = f->patterns[f->pattern[slot]].offset;
+    const int *offset = f->patterns[family_pattern(f, slice, slot)].offset;
     if (offset[0] == -pattern->offset[0] && offset[1] == -pattern->offset[1] && offset[2] == -pattern->offset[2])
       return slot;
   }
@@ -114,10 +114,12 @@ static void mate_slice(void *context, int64_t slice)
   if (is_foreign(b, slice * SLICE)) return;
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot) {
     if (bond_list_owns(f, slice, slot)) continue;
-    const int32_t shift = f->base[slot] & (SLICE - 1),
-                  owners[2] = {(f->base[slot] - shift) / SLICE, (f->base[slot] - shift) / SLICE + 1};
+    const int32_t shift = family_base(f, slice, slot) & (SLICE - 1),
+                  owners[2] = {(family_base(f, slice, slot) - shift) / SLICE,
+                               (family_base(f, slice, slot) - shift) / SLICE + 1};
     for (int n = 0; n < (shift ? 2 : 1); ++n) {
-      const int64_t there = owners[n] >= 0 ? opposite_slot(f, owners[n], &f->patterns[f->pattern[slot]]) : -1;
+      const int64_t there =
+          owners[n] >= 0 ? opposite_slot(f, owners[n], &f->patterns[family_pattern(f, slice, slot)]) : -1;
       l->slot_row[slot][n] = there < 0 ? 0 : l->slot_row[there][0] + shift - (n ? SLICE : 0);
     }
   }
@@ -194,7 +196,7 @@ void bond_list_destroy(BondList *l)
 void bond_list_rows(const BondList *l, const Family *f, int64_t slice, int64_t slot, int lane, int64_t rows[2])
 {
   if (slot < f->stored[slice]) {
-    const int shift = f->base[slot] & (SLICE - 1);
+    const int shift = family_base(f, slice, slot) & (SLICE - 1);
     const bool second = !bond_list_owns(f, slice, slot) && lane + shift >= SLICE;
     rows[0] = rows[1] = l->slot_row[slot][second] + lane;
     return;

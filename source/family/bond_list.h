@@ -49,7 +49,7 @@ size_t bond_list_bytes(const BondList *list, const Family *family);
 /** True if the bonds of a lattice slot have their rows in its own slice. */
 static inline bool bond_list_owns(const Family *family, int64_t slice, int64_t slot)
 {
-  return family->base[slot] > slice * SLICE;
+  return family_base(family, slice, slot) > slice * SLICE;
 }
 
 /** Numbers per row, as half a slot sees its bonds; what stands where there is none is of no use.
@@ -60,7 +60,7 @@ LANES_INLINE Lanes bond_list_load(const BondList *list, const Family *family, co
   if (slot >= family->stored[slice])
     return lanes_gather(rows, list->stored_row + (int64_t)family->base[slot] * SLICE + LANES * half);
   const int32_t *row = list->slot_row[slot];
-  const int shift = family->base[slot] & (SLICE - 1);
+  const int shift = family_base(family, slice, slot) & (SLICE - 1);
   const Lanes first = lanes_load(rows + row[0] + LANES * half);
   if (!shift || bond_list_owns(family, slice, slot)) return first;
   return lanes_choose(lanes_half(255u >> shift, half), first, lanes_load(rows + row[1] + LANES * half));

@@ -153,12 +153,28 @@ typedef struct Build {
   const Rows *rows;
   const StoredBonds *stored;
   int64_t *stored_before; /* [slices + 1] slots that are stored, of the slices before each */
+  uint64_t *mark;         /* [slices] alike for slices whose lists of slots are alike */
+  uint8_t *own;           /* [slices] 1: it writes its list, which others may have too */
   atomic_llong bonds;
+  atomic_int unlike; /* lists that were taken for alike and are not */
 } Build;
 
-/** Slots of one slice; writes them when `write` is set. @return their number; `stored_slots` of which are stored */
-static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_t *stored_slots, int64_t *bonds)
+/** What is done with the slots of a slice: they are counted and marked; or its list is written; or, where another slice has written it, compared with that. Intact
+ *  bits are written with both. */
+typedef enum Pass { COUNT_SLOTS, WRITE_LIST, COMPARE_LIST } Pass;
+
+/** A number by which lists of slots are told apart, with one more slot. */
+static uint64_t marked_with(uint64_t mark, uint64_t number)
 {
+  mark = (mark ^ number) * 0x9e3779b97f4a7c15u;
+  return mark ^ mark >> 29;
+}
+
+/** Slots of one slice. @return their number; `stored_slots` of which are stored */
+static int64_t slice_slots(Build *build, int64_t slice, Pass pass, int64_t *stored_slots, int64_t *bonds)
+{
+  const bool write = pass != COUNT_SLOTS;
+  uint64_t mark = 0;
   Family *family = build->family;
   const Rows *where = &build->rows[slice];
   const int block = build->body->particles.block[slice];
@@ -175,11 +191,17 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
                                 beyond.begin + pattern->offset[lattice->axis], &base);
     if (mask && build->body->crack_count) mask = cut_slot(build->body, slice, base, mask);
     if (!mask) continue;
-    if (write) {
-      family->base[slot] = base;
-      family->pattern[slot] = (uint16_t)(family->pattern_begin[block] + k);
-      family->intact[slot] = mask;
+    const uint16_t row = (uint16_t)(family->pattern_begin[block] + k);
+    base -= (int32_t)(slice * SLICE);
+    if (pass == COUNT_SLOTS) mark = marked_with(mark, (uint64_t)row << 32 | (uint32_t)base);
+    if (pass == WRITE_LIST) {
+      family->base[slot + family->entry[slice]] = base;
+      family->pattern[slot + family->entry[slice]] = row;
     }
+    if (pass == COMPARE_LIST &&
+        (family->base[slot + family->entry[slice]] != base || family->pattern[slot + family->entry[slice]] != row))
+      atomic_store(&build->unlike, 1);
+    if (write) family->intact[slot] = mask;
     *bonds += __builtin_popcount(mask);
     ++slot;
   }
@@ -205,6 +227,7 @@ static int64_t slice_slots(const Build *build, int64_t slice, bool write, int64_
     }
   }
   *stored_slots += most;
+  if (pass == COUNT_SLOTS) build->mark[slice] = mark;
   return slot - begin + most;
 }
 
@@ -228,48 +251,106 @@ static void count_slots(void *context)
   Build *build = context;
   int64_t bonds = 0;
   TEAM_FOR (s, build->body->particles.slices)
-    build->family->first[s + 1] = slice_slots(build, s, false, &build->stored_before[s + 1], &bonds);
+    build->family->first[s + 1] = slice_slots(build, s, COUNT_SLOTS, &build->stored_before[s + 1], &bonds);
   atomic_fetch_add(&build->bonds, bonds);
 }
 
-static void write_slots(void *context, int64_t slice)
+static void write_list(void *context, int64_t slice)
 {
-  const Build *build = context;
+  Build *build = context;
   int64_t row = build->stored_before[slice], ignored = 0;
-  slice_slots(build, slice, true, &row, &ignored);
+  if (build->own[slice]) slice_slots(build, slice, WRITE_LIST, &row, &ignored);
+}
+
+static void compare_list(void *context, int64_t slice)
+{
+  Build *build = context;
+  int64_t row = build->stored_before[slice], ignored = 0;
+  if (!build->own[slice]) slice_slots(build, slice, COMPARE_LIST, &row, &ignored);
+}
+
+/** Finds slices whose lists of slots are alike by what they are marked with and their lengths: the first of them writes it. */
+static int share_lists(Build *build, Error *error)
+{
+  Family *family = build->family;
+  const int64_t slices = build->body->particles.slices;
+  int64_t size = 16;
+  while (size < 2 * slices) size *= 2;
+  int32_t *table = memory_reserved((size_t)size, sizeof *table, "bond rows", error); /* slice + 1; 0: empty */
+  family->entries = 0;
+  for (int64_t s = 0; s < slices && table; ++s) {
+    const int64_t length = family->first[s + 1] - family->first[s];
+    int64_t at = (int64_t)(marked_with(build->mark[s], (uint64_t)length) & (uint64_t)(size - 1)), other = -1;
+    for (; !family->stored_slots && table[at] && other < 0; at = (at + 1) & (size - 1)) {
+      const int64_t there = table[at] - 1;
+      if (build->mark[there] == build->mark[s] && family->first[there + 1] - family->first[there] == length)
+        other = there;
+    }
+    build->own[s] = other < 0;
+    family->entry[s] = (other < 0 ? family->entries : family->first[other] + family->entry[other]) - family->first[s];
+    if (other >= 0) continue;
+    table[at] = (int32_t)s + 1;
+    family->entries += length;
+  }
+  free(table);
+  return table ? BRECCIA_OK : BRECCIA_FAILURE;
+}
+
+static int write_slots(Build *build, Error *error)
+{
+  Family *family = build->family;
+  const int64_t slices = build->body->particles.slices;
+  if (share_lists(build, error)) return BRECCIA_FAILURE;
+  free(family->base);
+  free(family->pattern);
+  family->base = memory_zeroed((size_t)family->entries, sizeof *family->base, "bonds", error);
+  family->pattern = memory_zeroed((size_t)family->entries, sizeof *family->pattern, "bonds", error);
+  if (!family->base || !family->pattern) return BRECCIA_FAILURE;
+  team_each(slices, write_list, build);
+  team_each(slices, compare_list, build);
+  if (!atomic_exchange(&build->unlike, 0)) return BRECCIA_OK;
+  for (int64_t s = 0; s < slices; ++s)
+    build->mark[s] = (uint64_t)s; /* marks deceive, as hardly ever: each has its own */
+  return write_slots(build, error);
 }
 
 static int fill_slots(Build *build, Error *error)
 {
   Family *family = build->family;
-  int64_t slices = build->body->particles.slices;
-  int64_t *stored_before = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "bond rows", error);
+  const int64_t slices = build->body->particles.slices;
   family->first = memory_zeroed((size_t)slices + 1, sizeof(int64_t), "bond rows", error);
   family->stored = memory_zeroed((size_t)slices, sizeof(int64_t), "bond rows", error);
-  if (!stored_before || !family->first || !family->stored) {
-    free(stored_before);
-    return BRECCIA_FAILURE;
-  }
-  build->stored_before = stored_before;
+  family->entry = memory_zeroed((size_t)slices, sizeof(int64_t), "bond rows", error);
+  if (!family->first || !family->stored || !family->entry) return BRECCIA_FAILURE;
   team_run(count_slots, build);
   for (int64_t s = 0; s < slices; ++s) {
     family->first[s + 1] += family->first[s];
-    stored_before[s + 1] += stored_before[s];
+    build->stored_before[s + 1] += build->stored_before[s];
   }
   family->bonds = build->bonds;
   family->slots = family->first[slices];
-  family->stored_slots = stored_before[slices];
-  family->base = memory_zeroed((size_t)family->slots, sizeof *family->base, "bonds", error);
-  family->pattern = memory_zeroed((size_t)family->slots, sizeof *family->pattern, "bonds", error);
+  family->stored_slots = build->stored_before[slices];
   family->intact = memory_zeroed((size_t)family->slots, sizeof *family->intact, "bonds", error);
   const int64_t ahead = family->stored_slots ? FAMILY_AHEAD : 0;
   family->neighbour = memory_zeroed((size_t)(family->stored_slots + ahead) * SLICE, sizeof(int32_t), "bonds", error);
-  int failed = !family->base || !family->pattern || !family->intact || !family->neighbour;
+  int failed = !family->intact || !family->neighbour;
   if (build->stored->scale)
     failed |= !(family->scale = memory_zeroed((size_t)family->stored_slots * SLICE, sizeof(double), "bonds", error));
-  if (!failed) team_each(slices, write_slots, build);
-  free(stored_before);
-  return failed ? BRECCIA_FAILURE : BRECCIA_OK;
+  return failed ? BRECCIA_FAILURE : write_slots(build, error);
+}
+
+static int build_slots(Build *build, Error *error)
+{
+  const size_t slices = (size_t)build->body->particles.slices;
+  build->stored_before = memory_zeroed(slices + 1, sizeof *build->stored_before, "bond rows", error);
+  build->mark = memory_zeroed(slices, sizeof *build->mark, "bond rows", error);
+  build->own = memory_zeroed(slices, 1, "bond rows", error);
+  const bool made = build->stored_before && build->mark && build->own;
+  const int status = made ? fill_slots(build, error) : BRECCIA_FAILURE;
+  free(build->stored_before);
+  free(build->mark);
+  free(build->own);
+  return status;
 }
 
 int family_create(Family *family, const Body *body, const FamilySpec *spec, Error *error)
@@ -301,7 +382,7 @@ int family_create(Family *family, const Body *body, const FamilySpec *spec, Erro
   }
   if (!status) {
     Build build = {.family = family, .body = body, .rows = rows, .stored = &stored};
-    status = fill_slots(&build, error);
+    status = build_slots(&build, error);
   }
   if (!status && spec->row_sums) status = lattice_rows_create(family, body, error);
   free(rows);
@@ -317,6 +398,7 @@ void family_destroy(Family *family)
 {
   free(family->first);
   free(family->stored);
+  free(family->entry);
   free(family->base);
   free(family->pattern);
   free(family->intact);
@@ -418,8 +500,9 @@ void family_state(Family *family, StateList *list)
 
 size_t family_bytes(const Family *family)
 {
-  size_t slot = sizeof *family->base + sizeof *family->pattern + sizeof *family->intact;
-  size_t stored = SLICE * (sizeof *family->neighbour + (family->scale ? sizeof *family->scale : 0));
-  return (size_t)family->slots * slot + (size_t)family->stored_slots * stored +
-         (size_t)family->particles->slices * 2 * sizeof(int64_t) + lattice_rows_bytes(family);
+  const size_t entry = sizeof *family->base + sizeof *family->pattern;
+  const size_t stored = SLICE * (sizeof *family->neighbour + (family->scale ? sizeof *family->scale : 0));
+  return (size_t)family->entries * entry + (size_t)family->slots * sizeof *family->intact +
+         (size_t)family->stored_slots * stored + (size_t)family->particles->slices * 3 * sizeof(int64_t) +
+         lattice_rows_bytes(family);
 }

@@ -2,7 +2,8 @@
  *
  * The bonds of a slice of eight particles lie in slots: slot k holds one bond of each of them. On a lattice the eight
  * neighbours of a slot stand side by side too and share one reference vector, so a slot is a base index (the place of lane
- * 0's neighbour), a row of the pattern table (reference vector, length, weight) and a byte of intact bits: about one byte per bond.
+ * 0's neighbour), a row of the pattern table (reference vector, length, weight) and a byte of intact bits. Inside a body the lists of
+ * slots of most slices are alike but for where they begin: places are counted from the slice's own, and alike lists are kept once.
  * Bonds between lattices, and of particles that stand in none, are kept in stored slots: eight places, and the reference vector is the
  * difference of positions.
  * Always true:
@@ -46,8 +47,12 @@ struct Family {
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
   int64_t *first;                     /* [slices + 1]; NULL where the bonds could not be made */
   int64_t *stored;                    /* [slices] first stored slot */
-  int32_t *base;     /* [slots] lattice: place of lane 0's neighbour; stored: row of neighbour and scale */
-  uint16_t *pattern; /* [slots] row of patterns; unused in stored slots */
+  int64_t *
+      entry; /* [slices] slot n of a slice has entry n + entry[slice] of base and pattern; 0 in bodies with stored slots */
+  int64_t entries; /* of base and pattern */
+  int32_t *
+      base; /* [entries] lattice: places from the slice's first to lane 0's neighbour; stored: row of neighbour and scale */
+  uint16_t *pattern; /* [entries] row of patterns; unused in stored slots */
   uint8_t *intact;   /* [slots] */
   Pattern *patterns;
   int pattern_count,
@@ -71,13 +76,26 @@ const char *volume_correction_word(int k);
 int family_create(Family *family, const Body *body, const FamilySpec *spec, Error *error);
 void family_destroy(Family *family);
 
+/** Place of lane 0's neighbour in a lattice slot of a slice. */
+static inline int32_t family_base(const Family *family, int64_t slice, int64_t slot)
+{
+  return (int32_t)(family->base[slot + family->entry[slice]] + slice * SLICE);
+}
+
+/** The row of the pattern table of a lattice slot of a slice. */
+static inline int family_pattern(const Family *family, int64_t slice, int64_t slot)
+{
+  return family->pattern[slot + family->entry[slice]];
+}
+
 /** The bond of a lane in a slot of a slice; its intact bit is not looked at. */
 static inline Bond family_bond(const Family *family, int64_t slice, int64_t slot, int lane)
 {
   const Particles *p = family->particles;
   if (slot < family->stored[slice]) {
-    const Pattern *row = &family->patterns[family->pattern[slot]];
-    return (Bond){family->base[slot] + lane, {row->xi[0], row->xi[1], row->xi[2]}, row->length, row->weight};
+    const Pattern *row = &family->patterns[family_pattern(family, slice, slot)];
+    return (Bond){
+        family_base(family, slice, slot) + lane, {row->xi[0], row->xi[1], row->xi[2]}, row->length, row->weight};
   }
   int64_t at = (int64_t)family->base[slot] * SLICE + lane, here = slice * SLICE + lane;
   Bond bond = {.neighbour = family->neighbour[at]};
@@ -103,10 +121,10 @@ LANES_INLINE void family_fetch_ahead(const Family *family, int64_t at, const dou
     for (int k = 0; k < length; k += 8) __builtin_prefetch(shown + (int64_t)ahead[lane] * length + k);
 }
 
-/** Which lattice row the bonds of a lattice slot lead to: alike for slots of one row. */
-static inline int family_row(const Family *family, int64_t slot)
+/** Which lattice row the bonds of a lattice slot of a slice lead to: alike for slots of one row. */
+static inline int family_row(const Family *family, int64_t slice, int64_t slot)
 {
-  return family->patterns[family->pattern[slot]].row;
+  return family->patterns[family_pattern(family, slice, slot)].row;
 }
 
 /** Breaks the bond between two places on both sides. @return false if there is no intact one */

@@ -98,9 +98,10 @@ static uint8_t present_lanes(const Particles *p, const int32_t *slices, int64_t 
 static int64_t count_rows(const Family *family, int64_t slice, int64_t *first)
 {
   int64_t slot = family->first[slice], stored = family->stored[slice], rows = 0;
-  while (slot < stored && family->patterns[family->pattern[slot]].kind < 0) ++slot;
+  while (slot < stored && family->patterns[family_pattern(family, slice, slot)].kind < 0) ++slot;
   *first = slot;
-  for (; slot < stored; ++slot) rows += slot == *first || family_row(family, slot - 1) != family_row(family, slot);
+  for (; slot < stored; ++slot)
+    rows += slot == *first || family_row(family, slice, slot - 1) != family_row(family, slice, slot);
   return rows;
 }
 
@@ -184,9 +185,9 @@ void lattice_rows_destroy(LatticeRows *rows)
 }
 
 /** Places along its row, from where its sums are kept, of the neighbour in a slot. */
-static int along_row(const Family *family, int64_t slot, bool late)
+static int along_row(const Family *family, int64_t slice, int64_t slot, bool late)
 {
-  const int twice = family->patterns[family->pattern[slot]].twice;
+  const int twice = family->patterns[family_pattern(family, slice, slot)].twice;
   return (twice + (twice % 2 ? late ? 1 : -1 : 0)) / 2;
 }
 
@@ -197,16 +198,16 @@ static int64_t middle_of_whole(const Family *family, int64_t slice, int64_t begi
   const int block = family->particles->block[slice];
   const bool late = rows->late[slice];
   int64_t middle = begin;
-  while (middle < end && along_row(family, middle, late)) ++middle;
+  while (middle < end && along_row(family, slice, middle, late)) ++middle;
   if (middle == end) return -1;
-  const RowKind *kind = &rows->kind[block * ROW_KINDS + family->patterns[family->pattern[begin]].kind];
-  const int64_t there = family->base[middle] / SLICE;
+  const RowKind *kind = &rows->kind[block * ROW_KINDS + family->patterns[family_pattern(family, slice, begin)].kind];
+  const int64_t there = family_base(family, slice, middle) / SLICE;
   const uint8_t *present = rows->present + there * (2 * rows->reach + 1) + rows->reach;
   const unsigned own = lattice_rows_lanes(rows, slice);
   const int first = lattice_row_begin(kind, rows->late[there]);
   int64_t slot = begin;
   for (int along = first; along < first + kind->neighbours; ++along) {
-    bool listed = slot < end && along_row(family, slot, late) == along;
+    bool listed = slot < end && along_row(family, slice, slot, late) == along;
     if ((own & present[along]) != (listed ? family->intact[slot] : 0u)) return -1;
     slot += listed;
   }
@@ -222,7 +223,9 @@ void lattice_rows_mark(Family *family, int64_t slice)
   for (int64_t slot = family->first[slice]; slot < rows->first[slice]; ++slot)
     if (family->intact[slot] != UINT8_MAX) condition |= ROWS_GAPS;
   for (int64_t begin = rows->first[slice], end; begin < family->stored[slice]; begin = end) {
-    for (end = begin + 1; end < family->stored[slice] && family_row(family, begin) == family_row(family, end);) ++end;
+    for (end = begin + 1;
+         end < family->stored[slice] && family_row(family, slice, begin) == family_row(family, slice, end);)
+      ++end;
     int64_t middle = middle_of_whole(family, slice, begin, end);
     if (middle < 0)
       condition |= ROWS_RAGGED | ROWS_GAPS;

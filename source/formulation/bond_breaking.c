@@ -8,15 +8,16 @@
 LANES_INLINE Lanes room_of_lattice(const BondBased *b, const EnergyLimit *limit, int64_t slot, int64_t place, int half)
 {
   const Family *f = b->family;
-  const int64_t there = f->base[slot] + LANES * half;
-  const Pattern *row = &f->patterns[f->pattern[slot]];
+  const int64_t slice = place / SLICE, there = family_base(f, slice, slot) + LANES * half;
+  const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
   Lanes square = {0};
   for (int k = 0; k < 3; ++k) {
     const double *u = b->particles->displacement[k];
     const Lanes y = lanes_set(row->xi[k]) + (lanes_load(u + there) - lanes_load(u + place));
     square += y * y;
   }
-  const double constant = b->stiffness[b->particles->block[place / SLICE]] * limit->influence[f->pattern[slot]];
+  const double constant =
+      b->stiffness[b->particles->block[place / SLICE]] * limit->influence[family_pattern(f, slice, slot)];
   Lanes stiffness = lanes_set(constant / (4 * limit->half * row->length));
   if (b->surface) stiffness *= bond_surface(b, slot, half);
   const Lanes left = lanes_set(1) / lanes_root(stiffness) + lanes_set(row->length) - lanes_root(square);

@@ -20,8 +20,8 @@ LANES_INLINE HalfSlot half_slot(const BondBased *b, double *const at[3], int64_t
   const int64_t here = slice * SLICE + LANES * half;
   HalfSlot h;
   if (slot < f->stored[slice]) {
-    const Pattern *row = &f->patterns[f->pattern[slot]];
-    const int64_t there = f->base[slot] + LANES * half;
+    const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
+    const int64_t there = family_base(f, slice, slot) + LANES * half;
     h.length = lanes_set(row->length);
     h.weight = lanes_set(row->weight);
     for (int k = 0; k < 3; ++k) {

@@ -34,9 +34,9 @@ LANES_INLINE void stretch_lattice(const BondBased *b, const Chunk *chunk, int64_
                                   LanesWithin *within)
 {
   const Family *f = b->family;
-  const int pattern = f->pattern[slot];
+  const int pattern = family_pattern(f, chunk->slice, slot);
   const Pattern *row = &f->patterns[pattern];
-  const int64_t there = f->base[slot], here = chunk->slice * SLICE;
+  const int64_t there = family_base(f, chunk->slice, slot), here = chunk->slice * SLICE;
   const Lanes twice[3] = {lanes_repeated(b->numbers + b->rows[pattern].xi[0]),
                           lanes_repeated(b->numbers + b->rows[pattern].xi[1]),
                           lanes_repeated(b->numbers + b->rows[pattern].xi[2])};
@@ -200,13 +200,13 @@ LANES_INLINE void resist_lattice(const BondBased *b, const double *const u[3], i
                                  Lanes force[HALVES][3], const Lanes own[HALVES][3])
 {
   const Family *f = b->family;
-  const Pattern *row = &f->patterns[f->pattern[slot]];
+  const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
   /* Pulls of bonds that others own lie far apart: without this most of the time is waiting for them. */
   const int32_t *ahead = b->bonds->slot_row[slot + AHEAD];
   __builtin_prefetch(b->pull + ahead[0]);
   __builtin_prefetch(b->pull + ahead[1]);
   for (int half = 0; half < HALVES; ++half) {
-    const int64_t there = f->base[slot] + LANES * half;
+    const int64_t there = family_base(f, slice, slot) + LANES * half;
     Lanes pull = bond_list_load(b->bonds, f, b->pull, slice, slot, half);
     if (gaps) pull = lanes_intact(f->intact[slot], half, pull);
     for (int k = 0; k < 3; ++k)

@@ -12,14 +12,14 @@ typedef struct Sum {
 } Sum;
 
 /** Half a slot between lattice neighbours; back is -eta, and middle 2 xi + eta. Polynomial by pairs: its chain is shorter so. */
-LANES_INLINE void add_lattice(const BondBased *b, int64_t slot, int half, bool gaps, bool corrected, StretchRange range,
-                              Sum *sum)
+LANES_INLINE void add_lattice(const BondBased *b, int64_t slice, int64_t slot, int half, bool gaps, bool corrected,
+                              StretchRange range, Sum *sum)
 {
   const Family *f = b->family;
-  const int pattern = f->pattern[slot];
+  const int pattern = family_pattern(f, slice, slot);
   const SpringRow *row = &b->rows[pattern];
   const double *numbers = b->numbers, *length = numbers + row->length;
-  const int64_t there = f->base[slot] + LANES * half;
+  const int64_t there = family_base(f, slice, slot) + LANES * half;
   Lanes d = {0}, twice[3], pull;
   for (int k = 0; k < 3; ++k) {
     Lanes back = sum->own[k] - lanes_load(b->particles->displacement[k] + there);
@@ -67,7 +67,7 @@ LANES_INLINE StretchRange resist_slice(const BondBased *b, int64_t slice, bool g
     Sum sum = {.within = lanes_all_within()};
     for (int k = 0; k < 3; ++k) sum.own[k] = lanes_load(p->displacement[k] + here);
     for (int64_t slot = f->first[slice]; slot < stored; ++slot)
-      add_lattice(b, slot, half, gaps, corrected, range, &sum);
+      add_lattice(b, slice, slot, half, gaps, corrected, range, &sum);
     for (int k = 0; k < 3; ++k) sum.force[k] *= scale;
     const StretchHere own = stretch_here(p, slice, half);
     for (int64_t slot = stored; slot < last; ++slot) add_stored(b, slot, slice, half, &own, range, &sum);

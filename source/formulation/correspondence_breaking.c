@@ -107,13 +107,13 @@ static bool any_beyond(const Correspondence *c, int64_t slice, const EnergyLimit
     for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
       Lanes xi[3], eta[3], most;
       if (slot < f->stored[slice]) {
-        const Pattern *row = &f->patterns[f->pattern[slot]];
-        const int64_t there = f->base[slot] + LANES * half;
+        const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
+        const int64_t there = family_base(f, slice, slot) + LANES * half;
         for (int k = 0; k < 3; ++k) {
           xi[k] = lanes_set(row->xi[k]);
           eta[k] = lanes_load(u[k] + there) - fours.own[k];
         }
-        most = lanes_set(share / limit->influence[f->pattern[slot]]);
+        most = lanes_set(share / limit->influence[family_pattern(f, slice, slot)]);
       } else {
         const int32_t *index = f->neighbour + (int64_t)f->base[slot] * SLICE + LANES * half;
         Lanes square = {0};

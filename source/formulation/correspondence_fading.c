@@ -156,8 +156,8 @@ LANES_INLINE Lanes stored_whole(const Correspondence *c, int64_t place, const do
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot) {
     Lanes xi[3] = {{0}}, z[3] = {{0}}, weight = {0}, square = {0};
     if (slot < f->stored[slice]) {
-      const Pattern *row = &f->patterns[f->pattern[slot]];
-      const int64_t there = f->base[slot] + LANES * half;
+      const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
+      const int64_t there = family_base(f, slice, slot) + LANES * half;
       weight = lanes_set(row->weight);
       for (int k = 0; k < 3; ++k) {
         xi[k] = lanes_set(row->xi[k]);
@@ -238,8 +238,8 @@ static void mark_softened(const Correspondence *c, int64_t slice)
   mark[slice] |= SOFTENED;
   for (int64_t slot = f->first[slice]; slot < f->first[slice + 1]; ++slot)
     for (int lane = 0; lane < SLICE; ++lane) {
-      const int64_t there =
-          slot < f->stored[slice] ? f->base[slot] + lane : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
+      const int64_t there = slot < f->stored[slice] ? family_base(f, slice, slot) + lane
+                                                    : f->neighbour[(int64_t)f->base[slot] * SLICE + lane];
       if (there >= 0 && there < c->particles->places) /* lanes without a bond may lead beyond the lattice */
         mark[there / SLICE] |= BESIDE;
     }

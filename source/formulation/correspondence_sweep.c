@@ -10,9 +10,9 @@
 LANES_INLINE int64_t step_over_row(const Family *f, int64_t slice, int64_t slot, const uint16_t **whole,
                                    const uint16_t *end)
 {
-  if (*whole == end || family_row(f, slot) != family_row(f, f->first[slice] + **whole)) return slot - 1;
-  const int row = family_row(f, slot);
-  while (slot < f->stored[slice] && family_row(f, slot) == row) ++slot;
+  if (*whole == end || family_row(f, slice, slot) != family_row(f, slice, f->first[slice] + **whole)) return slot - 1;
+  const int row = family_row(f, slice, slot);
+  while (slot < f->stored[slice] && family_row(f, slice, slot) == row) ++slot;
   ++*whole;
   return slot - 1;
 }
@@ -36,9 +36,9 @@ LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool ga
           continue;
         }
       }
-      const Pattern *row = &f->patterns[f->pattern[slot]];
+      const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
       for (int half = 0; half < HALVES; ++half) {
-        Lanes there = lanes_load(u + f->base[slot] + LANES * half);
+        Lanes there = lanes_load(u + family_base(f, slice, slot) + LANES * half);
         if (gaps) there = lanes_intact(f->intact[slot], half, there);
         for (int j = 0; j < 3; ++j) sum[half][j] += there * lanes_set(row->weighted_xi[j]);
         sum[half][3] += there * lanes_set(row->weight);
@@ -50,13 +50,13 @@ LANES_INLINE void deform_lattice(const Correspondence *c, int64_t slice, bool ga
 }
 
 /** Adds one slot to forces and to sums of C. */
-LANES_INLINE void resist_slot(const Correspondence *c, int64_t slot, bool gaps, Control control, Lanes force[HALVES][3],
-                              Lanes hold[HALVES][6])
+LANES_INLINE void resist_slot(const Correspondence *c, int64_t slice, int64_t slot, bool gaps, Control control,
+                              Lanes force[HALVES][3], Lanes hold[HALVES][6])
 {
   const Family *f = c->family;
-  const Pattern *row = &f->patterns[f->pattern[slot]];
+  const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
   for (int half = 0; half < HALVES; ++half) {
-    const int64_t there = f->base[slot] + LANES * half;
+    const int64_t there = family_base(f, slice, slot) + LANES * half;
     for (int r = 0; r < 3; ++r) {
       Lanes sum = lanes_load(c->state[3 * r] + there) * lanes_set(row->weighted_xi[0]);
       sum += lanes_load(c->state[3 * r + 1] + there) * lanes_set(row->weighted_xi[1]);
@@ -86,7 +86,7 @@ LANES_INLINE void resist_lattice(const Correspondence *c, int64_t slice, bool ga
         continue;
       }
     }
-    resist_slot(c, slot, gaps, control, force, hold);
+    resist_slot(c, slice, slot, gaps, control, force, hold);
   }
 }
 
@@ -113,13 +113,14 @@ LANES_INLINE void deform_rows(const Correspondence *c, int64_t slice, Lanes sums
   const LatticeRows *rows = &c->family->rows;
   const Lattice *lattice = &c->family->lattices[c->particles->block[slice]];
   const uint16_t *begin = rows->whole + rows->begin[slice], *end = begin + rows->count[slice];
-  const uint16_t *patterns = c->family->pattern + c->family->first[slice];
-  const int32_t *bases = c->family->base + c->family->first[slice];
+  const int64_t entry = c->family->first[slice] + c->family->entry[slice];
+  const uint16_t *patterns = c->family->pattern + entry;
+  const int32_t *bases = c->family->base + entry;
   for (int half = 0; half < HALVES; ++half) {
     Lanes sum[3][4] = {{{0}}};
     for (const uint16_t *row = begin; row < end; ++row) {
       const Pattern *pattern = &c->family->patterns[patterns[*row]];
-      const double *there = c->row_displacement[pattern->kind] + (int64_t)bases[*row] * 6 + LANES * half;
+      const double *there = c->row_displacement[pattern->kind] + (bases[*row] + slice * SLICE) * 6 + LANES * half;
       for (int k = 0; k < 6 / HALVES; ++k)
         __builtin_prefetch(there + (6 + 3 * half + k) * SLICE); /* for the next slice: 5 to 10 % */
       Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
@@ -167,11 +168,12 @@ LANES_INLINE void resist_rows(const Correspondence *c, int64_t slice, Control co
   const LatticeRows *rows = &c->family->rows;
   const Lattice *lattice = &c->family->lattices[c->particles->block[slice]];
   const uint16_t *begin = rows->whole + rows->begin[slice], *end = begin + rows->count[slice];
-  const uint16_t *patterns = c->family->pattern + c->family->first[slice];
-  const int32_t *bases = c->family->base + c->family->first[slice];
+  const int64_t entry = c->family->first[slice] + c->family->entry[slice];
+  const uint16_t *patterns = c->family->pattern + entry;
+  const int32_t *bases = c->family->base + entry;
   for (const uint16_t *row = begin; row < end; ++row) {
     const Pattern *pattern = &c->family->patterns[patterns[*row]];
-    const double *there = c->row_pull[pattern->kind] + (int64_t)bases[*row] * c->pulls;
+    const double *there = c->row_pull[pattern->kind] + (bases[*row] + slice * SLICE) * c->pulls;
     for (int k = 0; k < 9; ++k) __builtin_prefetch(there + (9 + k) * SLICE); /* as above */
     Lanes across[2] = {lanes_set(pattern->xi[lattice->across[0]]), lanes_set(pattern->xi[lattice->across[1]])};
     for (int half = 0; half < HALVES; ++half)

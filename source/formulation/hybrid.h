@@ -225,10 +225,10 @@ void hybrid_section_of(const Hybrid *h, const HybridShape *shape, int64_t slice,
  *  @param[in,out] g  [count]. @return false where the members span no space */
 bool hybrid_fit(const Hybrid *h, int count, double moment[6], const double xi[3], double (*g)[3]);
 
-/** Lattice vector of a slot: 0 is none, n + 1 is pattern n of the block. */
-static inline int hybrid_vector(const Hybrid *h, int block, int64_t slot)
+/** Lattice vector of a slot of a slice: 0 is none, n + 1 is pattern n of the block. */
+static inline int hybrid_vector(const Hybrid *h, int block, int64_t slice, int64_t slot)
 {
-  return h->family->pattern[slot] - h->family->pattern_begin[block] + 1;
+  return family_pattern(h->family, slice, slot) - h->family->pattern_begin[block] + 1;
 }
 
 /** Makes room for lattices and groups, which mean nothing until bonds are listed and geometries made. */

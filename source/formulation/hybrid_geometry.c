@@ -200,7 +200,8 @@ static int list_slice(Hybrid *h, int64_t slice, int64_t *room, Error *error)
   for (int64_t group = l->owned_first[slice]; group < l->owned_first[slice + 1]; ++group)
     for (int lane = 0; lane < SLICE; ++lane) {
       const int64_t slot = f->first[slice] + l->owned[group];
-      if (!(f->intact[slot] >> lane & 1) || (whole && !see_beyond(h, slice, lane, f->base[slot] + lane))) continue;
+      if (!(f->intact[slot] >> lane & 1) || (whole && !see_beyond(h, slice, lane, family_base(f, slice, slot) + lane)))
+        continue;
       if (h->listed == *room) {
         int64_t *grown = memory_grown(h->row, (size_t)(*room = 2 * *room + 64), sizeof *grown);
         if (!grown) return error_add(error, BRECCIA_FAILURE, "out of memory: members of bonds");

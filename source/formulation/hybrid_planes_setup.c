@@ -77,7 +77,7 @@ void hybrid_planes_weigh(const Hybrid *h, int64_t slice, HybridPlanes *planes)
     if (!h->planar[group]) continue;
     planes->some = true;
     const int64_t slot = h->family->first[slice] + l->owned[group];
-    double *of = planes->volume[h->lattice[block].kind[hybrid_vector(h, block, slot)]];
+    double *of = planes->volume[h->lattice[block].kind[hybrid_vector(h, block, slice, slot)]];
     const int32_t *mixed = h->group[group] < 0 ? h->mixed[-1 - h->group[group]] : NULL;
     for (int lane = 0; lane < SLICE; ++lane)
       if (h->planar[group] >> lane & 1) of[lane] = h->table.geometry[mixed ? mixed[lane] : h->group[group]].volume;

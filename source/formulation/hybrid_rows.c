@@ -65,7 +65,7 @@ void hybrid_view_at(const Hybrid *h, const HybridRow *at, HybridView *view)
   int32_t base[HYBRID_NEAR];
   base[0] = (int32_t)(at->slice * SLICE);
   for (int64_t slot = f->first[at->slice]; slot < f->stored[at->slice]; ++slot)
-    base[f->pattern[slot] - begin] = f->base[slot];
+    base[family_pattern(f, at->slice, slot) - begin] = family_base(f, at->slice, slot);
   for (int n = 0; n < view->count; ++n) view->near[n] = base[h->table.near[geometry->first + n]] + at->lane;
 }
 
@@ -88,7 +88,7 @@ static bool next_slot(const Hybrid *h, HybridRows *rows, int64_t *other)
   const int lane = (int)(rows->place % SLICE);
   while (++rows->slot < f->first[slice + 1]) {
     if (!(f->intact[rows->slot] >> lane & 1)) continue;
-    *other = rows->slot < f->stored[slice] ? f->base[rows->slot] + lane
+    *other = rows->slot < f->stored[slice] ? family_base(f, slice, rows->slot) + lane
                                            : f->neighbour[(int64_t)f->base[rows->slot] * SLICE + lane];
     if (!is_foreign(h->foreign, rows->place) || !is_foreign(h->foreign, *other)) return true;
   }

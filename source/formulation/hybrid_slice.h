@@ -39,7 +39,7 @@ LANES_INLINE void find_slice(const Hybrid *h, int64_t slice, SliceOf *s)
   const int begin = f->pattern_begin[h->particles->block[slice]] - 1;
   s->base[0] = (int32_t)(slice * SLICE);
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-    s->base[f->pattern[slot] - begin] = f->base[slot];
+    s->base[family_pattern(f, slice, slot) - begin] = family_base(f, slice, slot);
 }
 
 /** The stripe of a slice. */
@@ -95,8 +95,8 @@ LANES_INLINE void add_to_stripe(const SliceOf *s, const HybridStripe *stripe, co
     int32_t vectors[HYBRID_WIDTH];
     int count = 0;
     if (lattice->window[0] == n) vectors[count++] = 0;
-    for (; slot < last && lattice->window[f->pattern[slot] - begin] == n; ++slot)
-      vectors[count++] = f->pattern[slot] - begin;
+    for (; slot < last && lattice->window[family_pattern(f, s->slice, slot) - begin] == n; ++slot)
+      vectors[count++] = family_pattern(f, s->slice, slot) - begin;
     if (!count) continue;
     if (h->width == 3 * QUAD) /* reaches of two places at most; loops of known length keep their sums in registers */
       add_row(s, stripe, sums, room, 3 * QUAD, vectors, count);

@@ -17,8 +17,8 @@ static int reach_of(const Hybrid *h, int64_t slice, int64_t *low, int64_t *high)
   }
   for (int64_t slot = f->first[slice] - 1; slot < f->stored[slice]; ++slot) {
     const bool own = slot < f->first[slice];
-    const int32_t to = own ? (int32_t)(slice * SLICE) : f->base[slot];
-    const int n = lattice->window[own ? 0 : hybrid_vector(h, block, slot)];
+    const int32_t to = own ? (int32_t)(slice * SLICE) : family_base(f, slice, slot);
+    const int n = lattice->window[own ? 0 : hybrid_vector(h, block, slice, slot)];
     if (to < begin[n]) begin[n] = to;
     if (to + SLICE > end[n]) end[n] = to + SLICE;
     if (end[n] - begin[n] > longest) longest = end[n] - begin[n];

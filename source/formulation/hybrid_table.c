@@ -404,12 +404,12 @@ static unsigned intact_of(const Hybrid *h, int block, int64_t slice, int vector)
   int64_t low = f->first[slice], high = f->stored[slice];
   while (low < high) {
     const int64_t middle = (low + high) / 2;
-    if (hybrid_vector(h, block, middle) < vector)
+    if (hybrid_vector(h, block, slice, middle) < vector)
       low = middle + 1;
     else
       high = middle;
   }
-  return low < f->stored[slice] && hybrid_vector(h, block, low) == vector ? f->intact[low] : 0;
+  return low < f->stored[slice] && hybrid_vector(h, block, slice, low) == vector ? f->intact[low] : 0;
 }
 
 static bool is_hidden(const Hybrid *h, int64_t a, int64_t b)
@@ -423,21 +423,21 @@ static bool is_hidden(const Hybrid *h, int64_t a, int64_t b)
 static int find_members(const Hybrid *h, int64_t slice, int64_t slot, uint16_t *key, uint8_t *lanes)
 {
   const Family *f = h->family;
-  const int block = h->particles->block[slice], other = hybrid_vector(h, block, slot);
-  const int64_t base = f->base[slot], next = base / SLICE;
+  const int block = h->particles->block[slice], other = hybrid_vector(h, block, slice, slot);
+  const int64_t base = family_base(f, slice, slot), next = base / SLICE;
   const int shift = (int)(base % SLICE);
   int count = 1;
   key[0] = 0;
   lanes[0] = f->intact[slot];
   for (int64_t to = f->first[slice]; to < f->stored[slice]; ++to) {
-    const int vector = hybrid_vector(h, block, to), from_other = difference(&h->lattice[block], other, vector);
+    const int vector = hybrid_vector(h, block, slice, to), from_other = difference(&h->lattice[block], other, vector);
     if (from_other < 0) continue;
     unsigned seen = f->intact[slot] & f->intact[to];
     if (to != slot)
       seen &= intact_of(h, block, next, from_other) >> shift |
               (shift ? intact_of(h, block, next + 1, from_other) << (SLICE - shift) : 0);
     for (int lane = 0; h->hidden[0] >= 0 && lane < SLICE; ++lane) {
-      const int64_t a = slice * SLICE + lane, b = base + lane, c = f->base[to] + lane;
+      const int64_t a = slice * SLICE + lane, b = base + lane, c = family_base(f, slice, to) + lane;
       if (is_hidden(h, a, c) || is_hidden(h, b, c)) seen &= ~(1u << lane);
       if (is_hidden(h, a, b)) lanes[0] = (uint8_t)(lanes[0] & ~(1u << lane));
     }
@@ -460,7 +460,7 @@ bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
   Members m = {.block = h->particles->block[at->slice]};
   uint16_t key[HYBRID_NEAR];
   uint8_t lanes[HYBRID_NEAR];
-  m.other = hybrid_vector(h, m.block, at->slot);
+  m.other = hybrid_vector(h, m.block, at->slice, at->slot);
   take_lane(&m, find_members(h, at->slice, at->slot, key, lanes), key, lanes, at->lane);
   view->count = m.count;
   view->member = view->near;
@@ -469,8 +469,8 @@ bool hybrid_group_weigh(const Hybrid *h, const HybridRow *at, HybridView *view)
   for (int n = 0; n < m.count; ++n) {
     const int64_t slot = h->family->first[at->slice];
     int64_t to = slot;
-    while (m.near[n] && hybrid_vector(h, m.block, to) != m.near[n]) ++to;
-    view->near[n] = (int32_t)((m.near[n] ? h->family->base[to] : at->slice * SLICE) + at->lane);
+    while (m.near[n] && hybrid_vector(h, m.block, at->slice, to) != m.near[n]) ++to;
+    view->near[n] = (int32_t)((m.near[n] ? family_base(h->family, at->slice, to) : at->slice * SLICE) + at->lane);
     memcpy(view->tried[n], m.g[n], sizeof m.g[n]);
   }
   return true;
@@ -521,7 +521,7 @@ int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int6
   Members m = {.block = h->particles->block[slice]};
   uint16_t key[HYBRID_NEAR];
   uint8_t lanes[HYBRID_NEAR];
-  m.other = hybrid_vector(h, m.block, slot);
+  m.other = hybrid_vector(h, m.block, slice, slot);
   int32_t geometry[SLICE];
   const int count = h->lattice[m.block].count ? find_members(h, slice, slot, key, lanes) : 0;
   for (int lane = 0; lane < SLICE; ++lane) {
@@ -536,7 +536,7 @@ int hybrid_group_create(Hybrid *h, const HybridShape *shape, int64_t slice, int6
     geometry[lane] = look_up(h, &m, area, volume);
     if (geometry[lane] < 0) return -2;
     if (volume == 0 || h->table.geometry[geometry[lane]].count) continue;
-    if (!hybrid_is_beyond(h, slice * SLICE + lane, h->family->base[slot] + lane)) return lane;
+    if (!hybrid_is_beyond(h, slice * SLICE + lane, family_base(h->family, slice, slot) + lane)) return lane;
     m.count = 0;
     geometry[lane] = look_up(h, &m, (double[3]){0}, 0);
     if (geometry[lane] < 0) return -2;
@@ -552,7 +552,7 @@ static void renew_group(Hybrid *h, int64_t slice, int64_t slot, int64_t group)
   uint16_t key[HYBRID_NEAR];
   uint8_t lanes[HYBRID_NEAR];
   if (!h->lattice[m.block].count) return;
-  m.other = hybrid_vector(h, m.block, slot);
+  m.other = hybrid_vector(h, m.block, slice, slot);
   int32_t geometry[SLICE];
   const int count = find_members(h, slice, slot, key, lanes);
   for (int lane = 0; lane < SLICE; ++lane) {
@@ -575,9 +575,9 @@ void hybrid_groups_renew(Hybrid *h, int64_t slice)
     const bool own = bond_list_owns(f, slice, slot);
     int64_t last = -1;
     for (int lane = 0; lane < SLICE; ++lane) {
-      const int64_t owner = own ? slice : (f->base[slot] + lane) / SLICE;
+      const int64_t owner = own ? slice : (family_base(f, slice, slot) + lane) / SLICE;
       int64_t rows[2];
-      if (owner < 0 || owner == last || f->base[slot] + lane < 0) continue;
+      if (owner < 0 || owner == last || family_base(f, slice, slot) + lane < 0) continue;
       last = owner;
       bond_list_rows(l, f, slice, slot, lane, rows);
       /* Where the owners have no such slot, the row is that of another slice. */

@@ -85,11 +85,12 @@ LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int
                                      int dimensions, const Lanes *u)
 {
   const Family *f = m->family;
-  const LinkRow *row = &m->rows[f->pattern[slot]];
+  const int64_t slice = place / SLICE;
+  const LinkRow *row = &m->rows[family_pattern(f, slice, slot)];
   LinkLanes l = {.place = place,
                  .slot = slot,
                  .half = half,
-                 .there = f->base[slot] + LANES * half,
+                 .there = family_base(f, slice, slot) + LANES * half,
                  .intact = f->intact[slot],
                  .by_length = lanes_set(row->by_length)};
   for (int k = 0; k < dimensions; ++k) {
@@ -102,7 +103,7 @@ LANES_INLINE LinkLanes lattice_links(const Micropolar *m, double *const *at, int
 
 LANES_INLINE StiffnessLanes lattice_stiffness(const Micropolar *m, const LinkLanes *l)
 {
-  const LinkRow *row = &m->rows[m->family->pattern[l->slot]];
+  const LinkRow *row = &m->rows[family_pattern(m->family, l->place / SLICE, l->slot)];
   return (StiffnessLanes){lanes_intact(l->intact, l->half, lanes_set(row->axial)),
                           lanes_intact(l->intact, l->half, lanes_set(row->bending)),
                           lanes_intact(l->intact, l->half, lanes_set(row->twist)), row->bending > 0, row->twist > 0};

@@ -93,7 +93,7 @@ struct Ordinary {
 static inline Bond ordinary_bond(const Ordinary *o, int64_t slice, int64_t slot, int lane)
 {
   Bond bond = family_bond(o->family, slice, slot, lane);
-  if (slot < o->family->stored[slice]) bond.weight *= o->factor[o->family->pattern[slot]];
+  if (slot < o->family->stored[slice]) bond.weight *= o->factor[family_pattern(o->family, slice, slot)];
   return bond;
 }
 

@@ -19,8 +19,8 @@ LANES_INLINE Four four_bonds(const Ordinary *o, const EnergyLimit *limit, int64_
   const int64_t place = slice * SLICE + LANES * half;
   Four four;
   if (slot < f->stored[slice]) {
-    const int64_t there = f->base[slot] + LANES * half;
-    const Pattern *row = &f->patterns[f->pattern[slot]];
+    const int64_t there = family_base(f, slice, slot) + LANES * half;
+    const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
     Lanes square = {0}, along = {0};
     for (int k = 0; k < 3; ++k) {
       const double *u = o->particles->displacement[k];
@@ -30,7 +30,9 @@ LANES_INLINE Four four_bonds(const Ordinary *o, const EnergyLimit *limit, int64_
     }
     four.length = lanes_set(row->length);
     four.elongation = along / (lanes_root(square) + four.length);
-    four.most = lanes_set(2 * limit->half / (limit->influence[f->pattern[slot]] * o->factor[f->pattern[slot]]));
+    four.most =
+        lanes_set(2 * limit->half /
+                  (limit->influence[family_pattern(f, slice, slot)] * o->factor[family_pattern(f, slice, slot)]));
   } else {
     for (int lane = 0; lane < LANES; ++lane) {
       const Bond bond = family_bond(f, slice, slot, LANES * half + lane);

@@ -27,10 +27,10 @@ LANES_INLINE HalfSlot half_slot(const Ordinary *o, double *const at[3], int64_t 
   HalfSlot h = {.own = slot * SLICE + LANES * half, .intact = lanes_half(f->intact[slot], half)};
   Lanes xi[3], y[3], whole = {0}, square = {0}, d = {0};
   if (slot < f->stored[slice]) {
-    const Pattern *row = &f->patterns[f->pattern[slot]];
-    h.there = f->base[slot] + LANES * half;
+    const Pattern *row = &f->patterns[family_pattern(f, slice, slot)];
+    h.there = family_base(f, slice, slot) + LANES * half;
     h.reference = lanes_set(row->length);
-    h.weight = lanes_set(row->weight * o->factor[f->pattern[slot]]);
+    h.weight = lanes_set(row->weight * o->factor[family_pattern(f, slice, slot)]);
     for (int k = 0; k < 3; ++k) xi[k] = lanes_set(row->xi[k]);
   } else {
     const int64_t first = (int64_t)f->base[slot] * SLICE + LANES * half;

@@ -4,10 +4,10 @@
 #include <math.h>
 
 /** Half a slot between lattice neighbours: -|xi|^2 d, and 2 y. */
-LANES_INLINE Lanes lattice_stretch(const Ordinary *o, const double *doubled, int64_t slot, int half, const Lanes own[3],
-                                   Lanes twice[3])
+LANES_INLINE Lanes lattice_stretch(const Ordinary *o, const double *doubled, int64_t slice, int64_t slot, int half,
+                                   const Lanes own[3], Lanes twice[3])
 {
-  const int64_t there = o->family->base[slot] + LANES * half;
+  const int64_t there = family_base(o->family, slice, slot) + LANES * half;
   Lanes d = {0};
   for (int k = 0; k < 3; ++k) {
     const Lanes back = own[k] - lanes_load(o->particles->displacement[k] + there);
@@ -40,12 +40,12 @@ LANES_INLINE Lanes stretch_of(Lanes d, StretchRange range)
   return d * (lanes_set(1) - g) - g;
 }
 
-LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
-                                 const Lanes own[3], Dilated *sum)
+LANES_INLINE void dilate_lattice(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
+                                 StretchRange range, const Lanes own[3], Dilated *sum)
 {
-  const int pattern = o->family->pattern[slot];
+  const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryDilating *row = &o->dilating[pattern];
-  Lanes twice[3], d = lattice_stretch(o, row->twice, slot, half, own, twice);
+  Lanes twice[3], d = lattice_stretch(o, row->twice, slice, slot, half, own, twice);
   if (gaps) d = lanes_intact(o->family->intact[slot], half, d);
   if (range == RANGE_SERIES) {
     const Lanes square = d * d;
@@ -79,7 +79,7 @@ LANES_INLINE StretchRange dilate_slice(const Ordinary *o, int64_t slice, bool ga
     for (int k = 0; k < 3; ++k) own[half][k] = lanes_load(o->particles->displacement[k] + slice * SLICE + LANES * half);
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
-    for (int half = 0; half < HALVES; ++half) dilate_lattice(o, slot, half, gaps, range, own[half], &sum[half]);
+    for (int half = 0; half < HALVES; ++half) dilate_lattice(o, slice, slot, half, gaps, range, own[half], &sum[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere at = stretch_here(o->particles, slice, half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)
@@ -146,13 +146,13 @@ static int64_t respond(const Ordinary *o, const Sweep *sweep)
 }
 
 /** With A = a_i + a_j and C = b_i + b_j - A the force of a bond is w (A + C g) y: e / |y| is g, and |xi| / |y| is 1 - g. */
-LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slot, int half, bool gaps, StretchRange range,
-                                 const Lanes own[3], Lanes base, Lanes slope, Lanes force[3])
+LANES_INLINE void resist_lattice(const Ordinary *o, int64_t slice, int64_t slot, int half, bool gaps,
+                                 StretchRange range, const Lanes own[3], Lanes base, Lanes slope, Lanes force[3])
 {
-  const int pattern = o->family->pattern[slot];
+  const int pattern = family_pattern(o->family, slice, slot);
   const OrdinaryResisting *row = &o->resisting[pattern];
-  const int64_t there = o->family->base[slot] + LANES * half;
-  Lanes twice[3], d = lattice_stretch(o, row->twice, slot, half, own, twice), g;
+  const int64_t there = family_base(o->family, slice, slot) + LANES * half;
+  Lanes twice[3], d = lattice_stretch(o, row->twice, slice, slot, half, own, twice), g;
   const Lanes weight = lanes_set(row->weight);
   base += lanes_load(o->base + there);
   slope += lanes_load(o->slope + there);
@@ -192,7 +192,7 @@ LANES_INLINE void resist_slice(const Ordinary *o, int64_t slice, bool gaps, Stre
   }
   for (int64_t slot = f->first[slice]; slot < f->stored[slice]; ++slot)
     for (int half = 0; half < HALVES; ++half)
-      resist_lattice(o, slot, half, gaps, range, own[half], base[half], slope[half], force[half]);
+      resist_lattice(o, slice, slot, half, gaps, range, own[half], base[half], slope[half], force[half]);
   for (int half = 0; half < HALVES; ++half) {
     const StretchHere here = stretch_here(o->particles, slice, half);
     for (int64_t slot = f->stored[slice]; slot < f->first[slice + 1]; ++slot)

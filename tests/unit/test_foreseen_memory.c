@@ -48,11 +48,22 @@ static bool take_other_ways(breccia_model *m)
   return true;
 }
 
+/** What any model takes, most of it the table of units: by one of eight particles. */
+static double taken_by_any(void)
+{
+  const double before = given_out();
+  breccia_model *m = model_of(body_of_laws, "elastic", ELASTIC, "spacing: 0.1, shape: {box: {particles: [2, 2, 2]}}",
+                              "correspondence", "explicit: {steps: 1}");
+  const double taken = given_out() - before;
+  breccia_model_destroy(&m);
+  return taken;
+}
+
 /** Arrays that are small beside those of particles, bonds and points are not counted beforehand. */
 static void a_body_takes_what_is_foreseen(void **state)
 {
   (void)state;
-  const double least = 0.75, most = 1.05;
+  const double least = 0.75, most = 1.15;
   if (given_out() == 0 || under_sanitizers()) skip();
   static const struct {
     const char *law, *keys, *body, *formulation, *solve;
@@ -86,8 +97,9 @@ static void a_body_takes_what_is_foreseen(void **state)
        "implicit: {end time: 1, time step: 0.5, equations: "
        "minimal residuals}"},
   };
+  const double any = taken_by_any();
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    const double before = given_out();
+    const double before = given_out() + any;
     breccia_model *m =
         model_of(body_of_laws, cases[k].law, cases[k].keys, cases[k].body, cases[k].formulation, cases[k].solve);
     assert_non_null(strstr(breccia_model_overview(m), " MB, "));

@@ -59,7 +59,7 @@ static void change_bonds(breccia_model *model, bool breaks)
     const int32_t a = p->place_of[(int64_t)(random_uniform(&seed) * (double)p->count)];
     const int64_t slice = a / SLICE, slots = d->family.stored[slice] - d->family.first[slice];
     const int64_t slot = d->family.first[slice] + (int64_t)(random_uniform(&seed) * (double)slots);
-    const int32_t b = d->family.base[slot] + a % SLICE;
+    const int32_t b = family_base(&d->family, slice, slot) + a % SLICE;
     if (breaks ? !family_break(&d->family, a, b) : !family_mend(&d->family, a, b)) continue;
     hybrid_renew(h, a / SLICE);
     hybrid_renew(h, b / SLICE);
