@@ -95,11 +95,11 @@ void hybrid_planes_mark(Hybrid *h, int64_t slice)
   memcpy(&h->planes[h->plane_kinds++], &planes, sizeof planes); /* with what lies between its members */
 }
 
-/** Whether planes gain something in a block: where they leave few bonds, and stripes have whole layers. Measured: docs/performance.md. */
+/** Whether planes gain something in a block: where they leave few bonds, and stripes have half a layer or more. Measured: docs/performance.md. */
 static bool is_worth_it(const Hybrid *h, int block)
 {
   struct rlimit stack;
-  const rlim_t enough = (rlim_t)4 << 20; /* a column of planes takes half of it */
+  const rlim_t enough = (rlim_t)2 << 20; /* a column of planes takes a quarter of it */
   if (!getrlimit(RLIMIT_STACK, &stack) && stack.rlim_cur < enough) return false;
   const HybridLattice *lattice = &h->lattice[block];
   const int64_t layers = h->family->lattices[block].cells[h->family->lattices[block].across[1]];
@@ -112,7 +112,7 @@ static bool is_worth_it(const Hybrid *h, int block)
     }
   for (int64_t n = 0; n < h->stripes; ++n)
     stripes += h->stripe[n].first < lattice->layer[layers] && h->stripe[n].last > lattice->layer[0];
-  return (double)planar >= least * (double)all && layers >= stripes;
+  return (double)planar >= least * (double)all && 2 * layers >= stripes;
 }
 
 void hybrid_planes_choose(Hybrid *h)

@@ -150,6 +150,35 @@ static void eight_lanes_give_the_bits_of_four(void **state)
   unsetenv("BRECCIA_LANES");
 }
 
+/** Longer than a column is wide, more than it has rows; and so short that each piece has two numbers. */
+static void rows_of_any_length_exert_what_walked_bonds_do(void **state)
+{
+  (void)state;
+  static const int size[][3] = {{70, 23, 12}, {16, 16, 16}};
+  for (int n = 0; n < 4; ++n) {
+    const int *cells = size[n / 2];
+    breccia_model *model[3]; /* eight lanes, four, walked */
+    for (int k = 0; k < 3; ++k) {
+      setenv("BRECCIA_LANES", k == 1 ? "4" : "8", 1);
+      model[k] = model_of("units: {length: m, force: kN, time: s}\n"
+                          "materials: {m: {%s, density: 2, Young modulus: 1e5, Poisson ratio: 0.3}}\n"
+                          "body: {b: {material: m, spacing: 1, shape: {box: {particles: [%d, %d, %d]}}}}\n"
+                          "peridynamics: {formulation: hybrid, horizon: %s spacings}\n"
+                          "solve: {explicit: {steps: 1, time step: 1e-3}}\n",
+                          k == 2 ? "model: j2, yield stress: 1e30" : "model: elastic", cells[0], cells[1], cells[2],
+                          n % 2 ? "2.015" : "1.5");
+      displace(model[k]);
+      compute_forces(model[k]);
+    }
+    const Particles *p = model[0]->domain.particles, *q = model[1]->domain.particles;
+    assert_true(planar(formulation_of(model[0])) > 0);
+    assert_close(p, model[2]->domain.particles, "walked");
+    for (int k = 0; k < 3; ++k) assert_memory_equal(p->internal[k], q->internal[k], sizeof(double) * (size_t)p->places);
+    for (int k = 0; k < 3; ++k) breccia_model_destroy(&model[k]);
+  }
+  unsetenv("BRECCIA_LANES");
+}
+
 /** A plate with a notch that is torn. */
 static breccia_model *torn(int threads)
 {
@@ -210,6 +239,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(planes_exert_what_walked_bonds_do),
+      cmocka_unit_test(rows_of_any_length_exert_what_walked_bonds_do),
       cmocka_unit_test(blocks_that_do_not_touch_exert_nothing_on_each_other),
       cmocka_unit_test(eight_lanes_give_the_bits_of_four),
       cmocka_unit_test(breaking_has_the_same_bits_by_threads_and_after_a_restart),
