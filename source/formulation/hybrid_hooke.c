@@ -11,8 +11,7 @@ typedef struct HookeBonds {
   int64_t first;                      /* of the members in the table */
   const uint16_t *near;               /* lattice vectors that lead to them */
   const double (*vector)[3];          /* their g */
-  const int32_t *base;                /* places of lane 0's members by lattice vector; or NULL: */
-  const int32_t (*place)[SLICE];      /* those of all members lane by lane */
+  const int32_t *base;                /* places of lane 0's members by lattice vector */
   int count;                          /* of members */
   int other;                          /* lattice vector of the other end */
   bool mirrored;                      /* as in HybridGeometry */
@@ -23,19 +22,14 @@ typedef struct HookeBonds {
 } HookeBonds;
 
 /** What kind of sweep it is: a constant where it is asked. */
-enum {
-  HOOKE_FINITE = 1,
-  HOOKE_PAIRWISE = 2,
-  HOOKE_LINEAR = 4 /* a linearised step */,
-  HOOKE_GATHERED = 8 /* bonds of several slices */
-};
+enum { HOOKE_FINITE = 1, HOOKE_PAIRWISE = 2, HOOKE_LINEAR = 4 /* a linearised step */ };
 
 /** What a sweep works with, the same for all its slices. */
 typedef struct HookeWork {
   double *u[3], *at[3]; /* as in Sweep */
   int kind;
   const HybridStripe *stripe;
-  struct HookeGathering *gathering;
+  struct HookeAside *aside;
   const uint8_t *planar; /* bonds that planes go through, or NULL */
   const HybridHooke *hooke;
   double lame, shear;
@@ -82,28 +76,27 @@ LANES_INLINE void next_bonds(const Hybrid *h, int64_t group, unsigned *left, Hoo
 }
 
 /** Numbers of member n of the bonds of lanes `lane` and on. */
-LANES_INLINE Lanes of_member(const HookeBonds *bonds, const double *u, int n, int lane, bool gathered)
+LANES_INLINE Lanes of_member(const HookeBonds *bonds, const double *u, int n, int lane)
 {
-  return gathered ? lanes_gather(u, bonds->place[n] + lane) : lanes_load(u + bonds->base[bonds->near[n]] + lane);
+  return lanes_load(u + bonds->base[bonds->near[n]] + lane);
 }
 
 /** G of the bonds of lanes `lane` and on. */
-LANES_INLINE void find_gradient(const HookeBonds *bonds, double *const u[3], int lane, int kind, Lanes g[9])
+LANES_INLINE void find_gradient(const HookeBonds *bonds, double *const u[3], int lane, Lanes g[9])
 {
-  const bool gathered = kind & HOOKE_GATHERED;
   const double(*vector)[3] = bonds->vector;
   for (int k = 0; k < 9; ++k) g[k] = lanes_set(0);
   if (bonds->mirrored) {
     for (int n = 0; n + 1 < bonds->count; n += 2)
       for (int k = 0; k < 3; ++k) {
-        const Lanes apart = of_member(bonds, u[k], n, lane, gathered) - of_member(bonds, u[k], n + 1, lane, gathered);
+        const Lanes apart = of_member(bonds, u[k], n, lane) - of_member(bonds, u[k], n + 1, lane);
         for (int j = 0; j < 3; ++j) g[3 * k + j] += apart * lanes_set(vector[n][j]);
       }
     return;
   }
   for (int n = 0; n < bonds->count; ++n)
     for (int k = 0; k < 3; ++k) {
-      const Lanes moved = of_member(bonds, u[k], n, lane, gathered);
+      const Lanes moved = of_member(bonds, u[k], n, lane);
       for (int j = 0; j < 3; ++j) g[3 * k + j] += moved * lanes_set(vector[n][j]);
     }
 }
@@ -140,7 +133,7 @@ LANES_INLINE void add_turned(const Lanes g[9], const Lanes stress[6], Lanes p[9]
 LANES_INLINE void find_first_stress(const HookeWork *w, const HookeBonds *bonds, int lane, int kind, Lanes p[9])
 {
   Lanes g[9], strain[6], stress[6];
-  find_gradient(bonds, w->u, lane, kind, g);
+  find_gradient(bonds, w->u, lane, g);
   if (!(kind & HOOKE_FINITE) || !(kind & HOOKE_LINEAR)) {
     find_strain(g, kind, strain);
     find_stress(w, strain, stress);
@@ -149,7 +142,7 @@ LANES_INLINE void find_first_stress(const HookeWork *w, const HookeBonds *bonds,
     return;
   }
   Lanes at[9], held[6];
-  find_gradient(bonds, w->at, lane, kind, at);
+  find_gradient(bonds, w->at, lane, at);
   find_strain(at, kind, strain);
   find_stress(w, strain, held);
   for (int k = 0; k < 6; ++k) {
@@ -223,159 +216,215 @@ LANES_INLINE void exert(const HookeWork *w, const HookeBonds *bonds, int lane, i
   }
 }
 
-/* ---- bonds that are alone in their slots: those of several slices that have the same members go through one turn ---- */
+/* ---- bonds that are alone in their slots: those of eight slices at once, a slice a lane ---- */
 
 enum {
-  GATHERED = 3,         /* bonds of a turn that wait for others, at most */
-  GATHERED_SLICES = 16, /* from which they come */
-  GATHERED_KINDS = 512,
-  GATHERED_LISTS = 1024
+  ALONE = 3,   /* bonds of a turn that are put aside, at most */
+  BUNDLES = 4, /* that are filled at once */
+  FEW = 19     /* lattice vectors of blocks in which nothing is gained beside whole turns, at most */
 };
 
-/** Bonds with the same members that wait. */
-typedef struct HookeList {
-  int64_t first; /* of the members in the table */
-  int count, next;
-  int32_t geometry[SLICE];
-  uint8_t slice[SLICE], lane[SLICE];
-} HookeList;
+/** Slices with bonds that are put aside, of one block and in the same lanes. */
+typedef struct HookeBundle {
+  int slices;
+  unsigned lanes;                    /* bits */
+  uint8_t aside[HYBRID_NEAR][SLICE]; /* lanes by lattice vector and slice */
+  int32_t group[HYBRID_NEAR][SLICE], base[HYBRID_NEAR][SLICE];
+} HookeBundle;
 
-typedef struct HookeGathering {
-  int slices, kinds;
-  int16_t list[GATHERED_LISTS]; /* by hash, one more than the number of the first one; 0: none */
-  HookeList kind[GATHERED_KINDS];
-  int32_t base[GATHERED_SLICES][HYBRID_NEAR];
-} HookeGathering;
+typedef struct HookeAside {
+  HookeBundle bundle[BUNDLES];
+  int next; /* which is emptied when there is room for no more */
+  int block;
+  uint8_t lanes[HYBRID_NEAR]; /* of the slice at hand, by lattice vector; and what they are bits of: */
+  int32_t group[HYBRID_NEAR];
+  bool here[HYBRID_NEAR]; /* what follows is there of these lattice vectors */
+  int32_t number[HYBRID_NEAR];
+  _Alignas(64) double u[3][HYBRID_NEAR * SLICE], at[3][HYBRID_NEAR * SLICE], sums[3 * HYBRID_NEAR * SLICE];
+} HookeAside;
 
-/** Adds what eight bonds at most exert on their members, lane by lane, to the sums of the stripe. */
-LANES_INLINE void exert_gathered(const HookeWork *w, const HookeBonds *bonds, int lanes, int kind)
+LANES_INLINE const HybridGeometry *geometry_of(const Hybrid *h, int32_t group, int lane)
 {
-  _Alignas(64) double exerted[HYBRID_NEAR][3][SLICE];
-  const int members = kind & HOOKE_PAIRWISE ? 2 : bonds->count;
-  for (int lane = 0; lane < lanes; lane += LANES) {
-    Lanes p[9];
-    find_first_stress(w, bonds, lane, kind | HOOKE_GATHERED, p);
-    if (kind & HOOKE_PAIRWISE) {
-      for (int k = 0; k < 3; ++k) {
-        Lanes force = lanes_set(0);
-        for (int j = 0; j < 3; ++j) force += p[3 * k + j] * scale_of(bonds, j, lane);
-        lanes_store(exerted[0][k] + lane, force);
-        lanes_store(exerted[1][k] + lane, -force);
-      }
-      continue;
-    }
-    const Lanes volume = scale_of(bonds, 0, lane);
-    for (int k = 0; k < 9; ++k) p[k] = p[k] * volume;
-    for (int n = 0; n < members; ++n)
-      for (int k = 0; k < 3; ++k) {
-        Lanes force = lanes_set(0);
-        for (int j = 0; j < 3; ++j) force += p[3 * k + j] * lanes_set(bonds->vector[n][j]);
-        lanes_store(exerted[n][k] + lane, -force);
+  const int32_t whole = h->group[group];
+  return &h->table.geometry[whole >= 0 ? whole : h->mixed[-1 - whole][lane]];
+}
+
+/** The next bonds of lane `lane` of a bundle's slices with the same members. */
+LANES_INLINE void next_aside(const Hybrid *h, const int32_t *group, int lane, unsigned *left, HookeBonds *bonds)
+{
+  bonds->lanes = *left;
+  bonds->alike = false;
+  *left = 0;
+  take_geometry(h, bonds, geometry_of(h, group[__builtin_ctz(bonds->lanes)], lane));
+  for (int n = 0; n < SLICE; ++n) {
+    if (!(bonds->lanes >> n & 1)) continue;
+    const HybridGeometry *geometry = geometry_of(h, group[n], lane);
+    if (geometry->first != bonds->first) *left |= 1u << n;
+    for (int k = 0; k < 3 && h->pairwise; ++k) bonds->each[k][n] = geometry->area[k];
+    if (!h->pairwise) bonds->each[0][n] = geometry->volume;
+  }
+  bonds->lanes &= ~*left;
+}
+
+/** Brings what the members of bonds are asked for, and forgets what they received. */
+LANES_INLINE void bring(const HookeWork *w, const HookeBundle *bundle, const HookeBonds *bonds, int lane, int kind)
+{
+  HookeAside *aside = w->aside;
+  for (int n = 0; n < bonds->count; ++n) {
+    const int vector = bonds->near[n], at = SLICE * vector;
+    if (aside->here[vector]) continue;
+    aside->here[vector] = true;
+    for (int k = 0; k < 3; ++k)
+      for (int part = 0; part < SLICE; part += LANES) {
+        lanes_store(aside->u[k] + at + part, lanes_gather(w->u[k] + lane, bundle->base[vector] + part));
+        if (kind & HOOKE_LINEAR)
+          lanes_store(aside->at[k] + at + part, lanes_gather(w->at[k] + lane, bundle->base[vector] + part));
+        lanes_store(aside->sums + 3 * at + SLICE * k + part, lanes_set(0));
       }
   }
+}
+
+/** Adds what they received to the sums of the stripe. */
+LANES_INLINE void take_back(const HookeWork *w, const HookeBundle *bundle, int lane, int vectors)
+{
+  HookeAside *aside = w->aside;
   const int64_t size = w->stripe->high - w->stripe->low;
-  double *to = w->stripe->sums - w->stripe->low;
-  for (int n = 0; n < members; ++n)
-    for (int lane = 0; lane < lanes; ++lane)
-      for (int k = 0; k < 3; ++k) to[k * size + bonds->place[n][lane]] += exerted[n][k][lane];
-}
-
-static void exert_list(const Hybrid *h, const HookeWork *w, HookeList *list)
-{
-  int32_t place[HYBRID_NEAR][SLICE];
-  HookeBonds bonds = {.place = (const int32_t(*)[SLICE])place};
-  take_geometry(h, &bonds, &h->table.geometry[list->geometry[0]]);
-  for (int lane = 0; lane < SLICE; ++lane) {
-    const int of = lane < list->count ? lane : 0; /* lanes that are left over do what the first one does */
-    const HybridGeometry *geometry = &h->table.geometry[list->geometry[of]];
-    const int32_t *base = w->gathering->base[list->slice[of]];
-    for (int k = 0; k < 3 && h->pairwise; ++k) bonds.each[k][lane] = geometry->area[k];
-    if (!h->pairwise) bonds.each[0][lane] = geometry->volume;
-    for (int n = 0; n < bonds.count; ++n) place[n][lane] = base[bonds.near[n]] + list->lane[of];
-  }
-  const int lanes = list->count;
-  list->count = 0;
-  switch (w->kind) {
-  case 0: exert_gathered(w, &bonds, lanes, 0); break;
-  case HOOKE_FINITE: exert_gathered(w, &bonds, lanes, HOOKE_FINITE); break;
-  case HOOKE_LINEAR: exert_gathered(w, &bonds, lanes, HOOKE_LINEAR); break;
-  case HOOKE_FINITE | HOOKE_LINEAR: exert_gathered(w, &bonds, lanes, HOOKE_FINITE | HOOKE_LINEAR); break;
-  case HOOKE_PAIRWISE: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE); break;
-  case HOOKE_PAIRWISE | HOOKE_FINITE: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE | HOOKE_FINITE); break;
-  case HOOKE_PAIRWISE | HOOKE_LINEAR: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE | HOOKE_LINEAR); break;
-  default: exert_gathered(w, &bonds, lanes, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR);
+  double *to = w->stripe->sums - w->stripe->low + lane;
+  for (int n = 0; n < vectors; ++n) {
+    if (!aside->here[n]) continue;
+    aside->here[n] = false;
+    for (int k = 0; k < 3; ++k)
+      for (int slice = 0; slice < bundle->slices; ++slice)
+        to[k * size + bundle->base[n][slice]] += aside->sums[SLICE * (3 * n + k) + slice];
   }
 }
 
-/** Lets all that wait exert what they do. */
-static void finish_gathering(const Hybrid *h, const HookeWork *w)
+LANES_INLINE void exert_lane(const Hybrid *h, const HookeWork *w, const HookeBundle *bundle, int lane, int kind)
 {
-  HookeGathering *g = w->gathering;
-  for (int n = 0; n < g->kinds; ++n)
-    if (g->kind[n].count) exert_list(h, w, &g->kind[n]);
-  if (g->kinds) memset(g->list, 0, sizeof g->list);
-  g->kinds = g->slices = 0;
-}
-
-/** The list of bonds with the members of some, or NULL: there is no room for more. */
-static HookeList *list_of(HookeGathering *g, int64_t first)
-{
-  int16_t *list = &g->list[(uint64_t)first * 0x9e3779b97f4a7c15u >> 54];
-  for (int n = *list; n; n = g->kind[n - 1].next)
-    if (g->kind[n - 1].first == first) return &g->kind[n - 1];
-  if (g->kinds == GATHERED_KINDS) return NULL;
-  g->kind[g->kinds] = (HookeList){.first = first, .next = *list};
-  *list = (int16_t)(g->kinds + 1);
-  return &g->kind[g->kinds++];
-}
-
-/** Puts bonds of a slot aside. @return false: there is no room for them */
-static bool gather(const SliceOf *s, const HookeWork *w, int64_t group, const HookeBonds *bonds)
-{
-  const Hybrid *h = s->h;
-  HookeGathering *g = w->gathering;
-  HookeList *list = list_of(g, bonds->first);
-  if (!list) return false;
-  for (unsigned left = bonds->lanes; left; left &= left - 1) {
-    const int lane = __builtin_ctz(left), n = list->count++;
-    list->slice[n] = (uint8_t)g->slices;
-    list->lane[n] = (uint8_t)lane;
-    list->geometry[n] = h->group[group] < 0 ? h->mixed[-1 - h->group[group]][lane] : h->group[group];
-    if (list->count == SLICE) exert_list(h, w, list);
+  HookeAside *aside = w->aside;
+  HookeWork work = *w;
+  HookeBonds bonds = {.base = aside->number};
+  const int vectors = h->lattice[aside->block].count;
+  for (int k = 0; k < 3; ++k) {
+    work.u[k] = aside->u[k];
+    work.at[k] = aside->at[k];
   }
-  return true;
+  work.sums = aside->sums;
+  work.room = SLICE;
+  for (int n = 0; n < vectors; ++n) {
+    unsigned left = 0;
+    for (int slice = 0; slice < bundle->slices; ++slice) left |= (bundle->aside[n][slice] >> lane & 1u) << slice;
+    while (left) {
+      next_aside(h, bundle->group[n], lane, &left, &bonds);
+      bring(w, bundle, &bonds, lane, kind);
+      for (int part = 0; part < SLICE; part += LANES)
+        if (bonds.lanes >> part & ((1u << LANES) - 1)) exert(&work, &bonds, part, kind);
+    }
+  }
+  take_back(w, bundle, lane, vectors);
 }
 
-/** @return whether there is something in the sums of lattice vectors */
-LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *w, int kind)
+/** Lets all that a bundle holds exert what it does, and empties it. */
+static void exert_bundle(const Hybrid *h, const HookeWork *w, HookeBundle *bundle)
+{
+  if (!bundle->slices) return;
+  for (unsigned left = bundle->lanes; left; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    switch (w->kind) {
+    case 0: exert_lane(h, w, bundle, lane, 0); break;
+    case HOOKE_FINITE: exert_lane(h, w, bundle, lane, HOOKE_FINITE); break;
+    case HOOKE_LINEAR: exert_lane(h, w, bundle, lane, HOOKE_LINEAR); break;
+    case HOOKE_FINITE | HOOKE_LINEAR: exert_lane(h, w, bundle, lane, HOOKE_FINITE | HOOKE_LINEAR); break;
+    case HOOKE_PAIRWISE: exert_lane(h, w, bundle, lane, HOOKE_PAIRWISE); break;
+    case HOOKE_PAIRWISE | HOOKE_FINITE: exert_lane(h, w, bundle, lane, HOOKE_PAIRWISE | HOOKE_FINITE); break;
+    case HOOKE_PAIRWISE | HOOKE_LINEAR: exert_lane(h, w, bundle, lane, HOOKE_PAIRWISE | HOOKE_LINEAR); break;
+    default: exert_lane(h, w, bundle, lane, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR);
+    }
+  }
+  bundle->slices = 0;
+}
+
+static void exert_bundles(const Hybrid *h, const HookeWork *w)
+{
+  for (int n = 0; n < BUNDLES; ++n) exert_bundle(h, w, &w->aside->bundle[n]);
+}
+
+/** A bundle of slices with bonds in some lanes that has room for one more. */
+static HookeBundle *bundle_of(const Hybrid *h, const HookeWork *w, unsigned lanes)
+{
+  HookeAside *aside = w->aside;
+  HookeBundle *empty = NULL;
+  for (int n = BUNDLES - 1; n >= 0; --n) {
+    HookeBundle *bundle = &aside->bundle[n];
+    if (bundle->slices && bundle->lanes == lanes) return bundle;
+    if (!bundle->slices) empty = bundle;
+  }
+  if (!empty) {
+    empty = &aside->bundle[aside->next];
+    aside->next = (aside->next + 1) % BUNDLES;
+    exert_bundle(h, w, empty);
+  }
+  empty->lanes = lanes;
+  return empty;
+}
+
+/** Puts a slice's bonds aside that were marked. */
+static void put_aside(const SliceOf *s, const HookeWork *w)
+{
+  HookeAside *aside = w->aside;
+  const int vectors = s->h->lattice[aside->block].count;
+  unsigned lanes = 0;
+  for (int n = 0; n < vectors; ++n) lanes |= aside->lanes[n];
+  HookeBundle *bundle = bundle_of(s->h, w, lanes);
+  const int slice = bundle->slices++;
+  for (int n = 0; n < vectors; ++n) {
+    bundle->aside[n][slice] = aside->lanes[n];
+    bundle->group[n][slice] = aside->group[n];
+    bundle->base[n][slice] = s->base[n];
+    aside->lanes[n] = 0;
+  }
+  if (bundle->slices == SLICE) exert_bundle(s->h, w, bundle);
+}
+
+/** @param[out] puts  some bonds are put aside. @return whether there is something in the sums of lattice vectors */
+LANES_INLINE bool exert_groups(const SliceOf *s, const HookeWork *w, int kind, bool *puts)
 {
   const Hybrid *h = s->h;
   HookeBonds bonds = {.base = s->base};
-  const bool gathers = w->planar && h->lattice[h->particles->block[s->slice]]
-                                        .kind; /* elsewhere slices have whole turns besides, and nothing is gained */
+  const int block = h->particles->block[s->slice];
+  const bool bundles = h->lattice[block].count > FEW || (w->planar && h->lattice[block].kind);
   bool some = false;
-  for (int n = 0; n < s->groups; ++n)
-    for (unsigned left = left_by_planes(h, w, s->first + n); left;) {
-      next_bonds(h, s->first + n, &left, &bonds);
-      if (gathers && __builtin_popcount(bonds.lanes) <= GATHERED && gather(s, w, s->first + n, &bonds)) continue;
+  for (int n = 0; n < s->groups; ++n) {
+    const int64_t group = s->first + n;
+    for (unsigned left = left_by_planes(h, w, group); left;) {
+      next_bonds(h, group, &left, &bonds);
+      if (bundles && __builtin_popcount(bonds.lanes) <= ALONE) {
+        const int64_t slot = h->family->first[s->slice] + h->bonds->owned[group];
+        const int vector = hybrid_vector(h, block, s->slice, slot);
+        w->aside->lanes[vector] |= (uint8_t)bonds.lanes;
+        w->aside->group[vector] = (int32_t)group;
+        *puts = true;
+        continue;
+      }
       some = true;
       for (int lane = 0; lane < SLICE; lane += LANES)
         if (bonds.lanes >> lane & ((1u << LANES) - 1)) exert(w, &bonds, lane, kind);
     }
+  }
   return some;
 }
 
-static bool exert_slice(const SliceOf *s, const HookeWork *w)
+static bool exert_slice(const SliceOf *s, const HookeWork *w, bool *puts)
 {
   switch (w->kind) {
-  case 0: return exert_groups(s, w, 0);
-  case HOOKE_FINITE: return exert_groups(s, w, HOOKE_FINITE);
-  case HOOKE_LINEAR: return exert_groups(s, w, HOOKE_LINEAR);
-  case HOOKE_FINITE | HOOKE_LINEAR: return exert_groups(s, w, HOOKE_FINITE | HOOKE_LINEAR);
-  case HOOKE_PAIRWISE: return exert_groups(s, w, HOOKE_PAIRWISE);
-  case HOOKE_PAIRWISE | HOOKE_FINITE: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_FINITE);
-  case HOOKE_PAIRWISE | HOOKE_LINEAR: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_LINEAR);
-  default: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR);
+  case 0: return exert_groups(s, w, 0, puts);
+  case HOOKE_FINITE: return exert_groups(s, w, HOOKE_FINITE, puts);
+  case HOOKE_LINEAR: return exert_groups(s, w, HOOKE_LINEAR, puts);
+  case HOOKE_FINITE | HOOKE_LINEAR: return exert_groups(s, w, HOOKE_FINITE | HOOKE_LINEAR, puts);
+  case HOOKE_PAIRWISE: return exert_groups(s, w, HOOKE_PAIRWISE, puts);
+  case HOOKE_PAIRWISE | HOOKE_FINITE: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_FINITE, puts);
+  case HOOKE_PAIRWISE | HOOKE_LINEAR: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_LINEAR, puts);
+  default: return exert_groups(s, w, HOOKE_PAIRWISE | HOOKE_FINITE | HOOKE_LINEAR, puts);
   }
 }
 
@@ -384,7 +433,8 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
   const HybridStripe *stripe = w->stripe;
   int cleared = 0; /* lattice vectors whose sums are zero */
   for (int64_t slice = stripe->first; slice < stripe->last; ++slice) {
-    const HybridLattice *lattice = &h->lattice[h->particles->block[slice]];
+    const int block = h->particles->block[slice];
+    const HybridLattice *lattice = &h->lattice[block];
     const HybridHooke *hooke = &h->hooke[h->material[slice]];
     unsigned left = 0;
     const int planes = w->planar ? h->planar_kind[slice] : HYBRID_ODD;
@@ -397,21 +447,23 @@ static void walk_stripe(const Hybrid *h, HookeWork *w)
              sizeof *w->sums * (size_t)(3 * (lattice->count - cleared) * w->room));
       cleared = lattice->count;
     }
-    if (w->gathering->slices == GATHERED_SLICES || w->hooke != hooke) finish_gathering(h, w);
+    if (w->hooke != hooke || w->aside->block != block) exert_bundles(h, w);
+    w->aside->block = block;
     w->hooke = hooke;
     w->lame = hooke->lame;
     w->shear = hooke->shear;
     SliceOf s;
+    for (int n = 0; n < lattice->count; ++n) s.base[n] = (int32_t)(slice * SLICE); /* where there is no slot */
     find_slice(h, slice, &s);
-    memcpy(w->gathering->base[w->gathering->slices], s.base, sizeof *s.base * (size_t)lattice->count);
-    const bool some = exert_slice(&s, w);
-    ++w->gathering->slices;
+    bool puts = false;
+    const bool some = exert_slice(&s, w, &puts);
+    if (puts) put_aside(&s, w);
     if (!some) continue;
     add_to_stripe(&s, stripe, w->sums, w->room);
     for (int n = 0; n < 3 * lattice->count; ++n)
       for (int lane = 0; lane < SLICE; lane += LANES) lanes_store(w->sums + n * w->room + lane, lanes_set(0));
   }
-  if (w->hooke) finish_gathering(h, w);
+  exert_bundles(h, w);
 }
 
 /** The first batch of a stripe stands for all of them. */
@@ -420,11 +472,14 @@ void LANES_NAMED(hybrid_hooke)(const Hybrid *h, const Sweep *sweep)
   const HybridStripe *stripe = stripe_of(h, sweep->first);
   if (sweep->first != stripe->first) return;
   _Alignas(64) double sums[3 * HYBRID_NEAR * MOST_ROOM];
-  HookeGathering gathering;
-  gathering.slices = gathering.kinds = 0;
-  memset(gathering.list, 0, sizeof gathering.list);
-  HookeWork w = {
-      .stripe = stripe, .gathering = &gathering, .sums = sums + sums_margin(h), .room = 2 * sums_margin(h) + SLICE};
+  HookeAside aside;
+  aside.next = 0;
+  aside.block = -1;
+  memset(aside.lanes, 0, sizeof aside.lanes);
+  memset(aside.here, 0, sizeof aside.here);
+  memset(aside.bundle, 0, sizeof aside.bundle); /* lanes without a slice read any place */
+  for (int n = 0; n < HYBRID_NEAR; ++n) aside.number[n] = SLICE * n;
+  HookeWork w = {.stripe = stripe, .aside = &aside, .sums = sums + sums_margin(h), .room = 2 * sums_margin(h) + SLICE};
   w.kind = (h->finite ? HOOKE_FINITE : 0) | (h->pairwise ? HOOKE_PAIRWISE : 0) | (sweep->at ? HOOKE_LINEAR : 0);
   for (int k = 0; k < 3; ++k) {
     w.u[k] = h->particles->displacement[k];
