@@ -84,13 +84,14 @@ int64_t bar_nearest(const Bars *b, int deck_bar, const double point[3])
   return nearest;
 }
 
-/** Strain that an element whose law is not Hooke's would give back. One that has not moved holds all of the stress that it began with: laws with
- *  rounded corners leave that stress by a jump, which is no flow. Laws in servers, which are not asked, are taken to unload by their first modulus. */
+/** Strain that an element whose law is not Hooke's would give back. On its first straight line it holds all of its stress: laws with rounded corners
+ *  leave the stress that they began with, or that an elastic stage gave them, by a jump, which is no flow. Laws in servers, which are not asked, are taken
+ *  to unload by their first modulus. */
 static double elastic_strain(const Bars *b, int64_t e)
 {
   const Material *m = points_material(&b->points, e);
-  const double begun = -b->stress_held[e] / material_young(m);
-  if (m->remote || (b->strain_held[e] == 0 && b->slack[e] == begun)) return -begun;
+  const double straight = b->stress_held[e] / material_young(m), rounding = 1e-12;
+  if (m->remote || fabs(b->strain_held[e] - b->slack[e] - straight) <= rounding * fabs(straight)) return straight;
   return points_elastic_strain(&b->points, e, b->strain_held[e], b->slack[e]);
 }
 

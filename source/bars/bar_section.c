@@ -13,6 +13,9 @@ static void check_slip(const DeckReader *reader, const BarSpec *bar)
       node_error(reader->document, section_node(bar, "anchored"), reader->error,
                  "anchored: '%s' is no end of a bar; take 'start' (its first point) or 'end' (its last)",
                  bar->anchored.items[n]);
+  if (bar->anchored.count == 2 && !strcmp(bar->anchored.items[0], bar->anchored.items[1]))
+    node_error(reader->document, section_node(bar, "anchored"), reader->error,
+               "anchored: '%s' stands here twice; take [start, end], or leave one out", bar->anchored.items[0]);
   if (bar->bonded.count && (bar->bonded.count != 2 || !(bar->bonded.values[0] < bar->bonded.values[1])))
     node_error(reader->document, section_node(bar, "bonded"), reader->error,
                "bonded: two lengths along the bar, from its first point; the second is the larger one");
@@ -152,14 +155,18 @@ static double spacing_at(const Body *body, const double point[3])
   return body->lattices[body->particles.block[body_nearest(body, point) / SLICE]].spacing;
 }
 
+static double apart(const double a[3], const double b[3])
+{
+  return sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+}
+
 int64_t bar_nodes(const BarSpec *bar, const Body *body, double **out)
 {
   int64_t count = 0, capacity = 0;
   double *nodes = NULL;
   for (int s = 1; s < bar->points.count; ++s) {
     const double *a = bar->points.values + 3 * (s - 1), *b = a + 3;
-    const double length =
-        sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+    const double length = apart(a, b);
     const double middle[3] = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
     const int64_t parts = (int64_t)fmax(1, round(length / spacing_at(body, middle)));
     if (count + parts + 1 > capacity) {
@@ -193,6 +200,21 @@ int64_t bar_snap(const Body *body, double *nodes, int64_t count)
   return kept;
 }
 
+/** Points nearer than roundings of a drawing would make an element that stands for nothing. */
+static int check_points(const BarSpec *bar, const ForcesParts *parts)
+{
+  const double least = 1e-6; /* spacings */
+  for (int n = 1; n < bar->points.count; ++n) {
+    const double *a = bar->points.values + 3 * (n - 1), length = apart(a, a + 3), spacing = spacing_at(parts->body, a);
+    if (length < least * spacing)
+      return node_error(parts->reader->document, section_node(bar, "points"), parts->reader->error,
+                        "points: points %d and %d of bar '%s' are %.3g apart, which is nothing beside the spacing of "
+                        "%.4g; leave one out",
+                        n, n + 1, bar->head.name, length, spacing);
+  }
+  return BRECCIA_OK;
+}
+
 /** @param[in] key  to which what is wrong is due */
 static int check_line(const BarSpec *bar, const ForcesParts *parts, const char *key)
 {
@@ -212,6 +234,9 @@ static int check_line(const BarSpec *bar, const ForcesParts *parts, const char *
                           "keep its line within the body",
                           key, bar->head.name, x[0], x[1], x[2], away);
   }
+  if (!status && bar->bending && body->dimensions == 1)
+    status = node_error(parts->reader->document, section_node(bar, "bending"), parts->reader->error,
+                        "bending: nothing bends in one dimension; leave it out");
   if (!status && bar->snap && bar_snap(body, nodes, count) < 2)
     status = node_error(parts->reader->document, section_node(bar, "snap"), parts->reader->error,
                         "snap: all of bar '%s' comes to one particle; leave 'snap' out", bar->head.name);
@@ -222,7 +247,7 @@ static int check_line(const BarSpec *bar, const ForcesParts *parts, const char *
 /** All lines of a bar of the deck, up to the first that is wrong. */
 static int check_lines(const BarLines *lines, int deck_bar, const ForcesParts *parts)
 {
-  int status = BRECCIA_OK;
+  int status = check_points(lines->deck->items[deck_bar], parts);
   for (int n = lines->first[deck_bar]; n < lines->first[deck_bar + 1] && !status; ++n)
     status = check_line(lines->specs.items[n], parts, n > lines->first[deck_bar] ? "repeat" : "points");
   return status;
@@ -261,6 +286,20 @@ static int check_served(const BarSpec *bar, const Material *m, const ForcesParts
   return BRECCIA_OK;
 }
 
+/** Lines of a bar that is repeated are told apart by a number behind its name; a bar of such a name could not be told from them. */
+static int check_name(const BarLines *lines, int deck_bar, const ForcesParts *parts)
+{
+  const BarSpec *bar = lines->deck->items[deck_bar];
+  for (int n = 0; n < lines->specs.count; ++n) {
+    const BarSpec *other = lines->specs.items[n];
+    if (other->repeat.count && !strcmp(other->head.name, bar->head.name))
+      return node_error(parts->reader->document, bar->head.node, parts->reader->error,
+                        "bars: '%s' is also the name of a line of a bar with 'repeat'; call it otherwise",
+                        bar->head.name);
+  }
+  return BRECCIA_OK;
+}
+
 int bars_check(const void *spec, const ForcesParts *parts)
 {
   const SectionList *list = spec;
@@ -270,7 +309,8 @@ int bars_check(const void *spec, const ForcesParts *parts)
   for (int n = 0; n < list->count; ++n) {
     const BarSpec *bar = list->items[n];
     const Material *m = bar_material(bar, parts);
-    int bad = check_lines(&lines, n, parts);
+    int bad = check_name(&lines, n, parts);
+    if (!bad) bad = check_lines(&lines, n, parts);
     if (m && m->remote && !bad) bad = check_served(bar, m, parts);
     if (m && m->law->components != 1 && !material_is_hookean(m))
       bad = node_error(parts->reader->document, section_node(bar, "material"), parts->reader->error,

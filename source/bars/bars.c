@@ -231,12 +231,13 @@ static int make_points(Bars *b, const ForcesParts *parts, Error *error)
   return status;
 }
 
-/** Steel that begins under stress, by its law, holds energy from the beginning. */
-static void begin_under_stress(Bars *b)
+/** Steel that begins under stress, by its law, holds energy from the beginning.
+ *  @param[in] served  of those whose law runs in a server, or of the others */
+static void begin_under_stress(Bars *b, bool served)
 {
   for (int n = 0; n < b->specs->count && b->has_points; ++n)
     for (int64_t e = b->first[n]; e < b->first[n + 1]; ++e) {
-      if (b->young[e] > 0) continue;
+      if (b->young[e] > 0 || b->served[n] != served) continue;
       const double stress = points_try(&b->points, e, 0, NULL);
       b->slack[e] = -stress / material_young(points_material(&b->points, e));
       b->stress_held[e] = b->lowest[n] = b->highest[n] = stress;
@@ -267,29 +268,39 @@ static int make(Bars *b, const ForcesParts *parts, Error *error)
   if (!status) status = make_touching(b, error);
   if (!status) status = bar_slips_create(b, parts, error);
   if (!status) status = make_points(b, parts, error);
-  if (!status) begin_under_stress(b);
+  if (!status) begin_under_stress(b, false);
   if (!status) status = bar_bending_create(b, parts, error);
   return status;
 }
 
-static void *create(const void *spec, const ForcesParts *parts, Error *error)
+static int create(const void *spec, const ForcesParts *parts, void **forces, Error *error)
 {
-  Bars *b = memory_zeroed(1, sizeof *b, "bars", error);
-  if (!b) return NULL;
+  Bars *b = *forces = memory_zeroed(1, sizeof *b, "bars", error);
+  if (!b) return BRECCIA_FAILURE;
   b->body = parts->body;
   b->materials = parts->materials;
-  if (!bar_lines_create(&b->lines, spec)) {
-    error_add(error, BRECCIA_FAILURE, "out of memory: bars");
-    free(b);
-    return NULL;
-  }
   b->specs = &b->lines.specs;
-  if (!make(b, parts, error)) return b;
-  destroy(b);
-  return NULL;
+  if (!bar_lines_create(&b->lines, spec)) return error_add(error, BRECCIA_FAILURE, "out of memory: bars");
+  return make(b, parts, error);
 }
 
 /* ---- the rest of the table ---- */
+
+static int begin(void *forces, Error *error)
+{
+  Bars *b = forces;
+  if (!b->has_points) return BRECCIA_OK;
+  const int status = points_ask_first_stresses(&b->points, error);
+  if (!status) begin_under_stress(b, true);
+  return status;
+}
+
+static bool any_served(const Bars *b)
+{
+  bool any = false;
+  for (int n = 0; n < b->specs->count; ++n) any |= b->served[n];
+  return any;
+}
 
 /** Where there are none they are told the stage and the tangents wanted all the same, for bond. */
 static Points *points(void *forces)
@@ -305,6 +316,8 @@ static void state(void *forces, StateList *list)
       .unit = "1", .kind = STATE_NUMBERS, .entity = STATE_OF_ALL, .role = STATE_COMMITTED, .count = b->count};
   row.values = b->strain_held;
   state_add(list, &row, "bar strain", NULL);
+  row.values = b->slack;
+  if (any_served(b)) state_add(list, &row, "strain of slack bars", NULL); /* of others it is made again */
   row.unit = "stress";
   row.values = b->stress_held;
   state_add(list, &row, "bar stress", NULL);
@@ -391,6 +404,7 @@ const ForcesType bars_forces = {.name = "bars",
                                 .create = create,
                                 .destroy = destroy,
                                 .points = points,
+                                .begin = begin,
                                 .accept = bars_accept,
                                 .resist = bars_resist,
                                 .linearise = bars_linearise,

@@ -10,16 +10,11 @@ static void destroy(void *forces)
   free(forces);
 }
 
-static void *create(const void *spec, const ForcesParts *parts, Error *error)
+static int create(const void *spec, const ForcesParts *parts, void **forces, Error *error)
 {
-  Contact *c = memory_plain(1, sizeof *c);
-  if (!c) {
-    error_add(error, BRECCIA_FAILURE, "out of memory: contact");
-    return NULL;
-  }
-  if (!contact_create(c, spec, parts->body, parts->family, parts->space, parts->blocks, error)) return c;
-  destroy(c);
-  return NULL;
+  Contact *c = *forces = memory_plain(1, sizeof *c);
+  if (!c) return error_add(error, BRECCIA_FAILURE, "out of memory: contact");
+  return contact_create(c, spec, parts->body, parts->family, parts->space, parts->blocks, error);
 }
 
 static void follow(void *forces, double motion)

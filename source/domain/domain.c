@@ -181,7 +181,7 @@ int domain_begin_points(Domain *d, Error *error)
   int status = BRECCIA_OK;
   for (int n = 0; n < points_groups(d) && !status; ++n)
     if (points_group(d, n)) status = points_begin(points_group(d, n), error);
-  return status;
+  return status ? status : forces_begin(&d->forces, error);
 }
 
 bool domain_can_save_points(Domain *d)

@@ -32,11 +32,10 @@ int forces_create(Forces *f, void *const *specs, const ForcesParts *parts, Error
   *f = (Forces){.count = 0};
   for (int k = 0; k < FORCES_KINDS; ++k) {
     if (!specs[k]) continue;
-    const int status = kinds[k]->check ? kinds[k]->check(specs[k], parts) : BRECCIA_OK;
+    int status = kinds[k]->check ? kinds[k]->check(specs[k], parts) : BRECCIA_OK;
+    if (!status) status = kinds[k]->create(specs[k], parts, &f->own[f->count], error);
+    if (f->own[f->count]) f->type[f->count++] = kinds[k];
     if (status) return status;
-    f->type[f->count] = kinds[k];
-    if (!(f->own[f->count] = kinds[k]->create(specs[k], parts, error))) return BRECCIA_FAILURE;
-    ++f->count;
   }
   return BRECCIA_OK;
 }
@@ -50,6 +49,14 @@ void forces_destroy(Forces *f)
 Points *forces_points(const Forces *f, int n)
 {
   return f->type[n]->points ? f->type[n]->points(f->own[n]) : NULL;
+}
+
+int forces_begin(Forces *f, Error *error)
+{
+  int status = BRECCIA_OK;
+  for (int k = 0; k < f->count && !status; ++k)
+    if (f->type[k]->begin) status = f->type[k]->begin(f->own[k], error);
+  return status;
 }
 
 void forces_accept(Forces *f)

@@ -34,10 +34,13 @@ typedef struct ForcesType {
   bool (*uses)(const void *spec, const char *material);
   /** Whether the body takes what the deck says. @return status, after messages */
   int (*check)(const void *spec, const ForcesParts *parts);
-  void *(*create)(const void *spec, const ForcesParts *parts, Error *error);
+  /** @param[out] forces  what `destroy` takes back; NULL, or what was there already where it fails, which is taken back too */
+  int (*create)(const void *spec, const ForcesParts *parts, void **forces, Error *error);
   void (*destroy)(void *forces);
   /** Their own points, which are told the time and the stage like those of regions; NULL: there are none. */
   Points *(*points)(void *forces);
+  /** Before the first step, when servers have their points. */
+  int (*begin)(void *forces, Error *error);
   /** When a step has come out well: makes what laws have answered the committed state. By one thread. */
   void (*accept)(void *forces);
   /** Before the forces of a step: no particle has moved by more than `motion`. By one thread. */
@@ -116,6 +119,7 @@ bool forces_use_materials(void *const *specs);
 void forces_follow(Forces *forces, double motion);
 /** Points of the n-th kind of this body, or NULL. */
 Points *forces_points(const Forces *forces, int n);
+int forces_begin(Forces *forces, Error *error);
 void forces_accept(Forces *forces);
 void forces_describe(const Forces *forces, const Units *units, Text *text);
 void forces_remember(Forces *forces);

@@ -10,15 +10,14 @@
 
 /* ---- materials ---- */
 
-static const MaterialSpec *spec_of(const breccia_model *model, const Material *material)
+const MaterialSpec *plausibility_spec(const breccia_model *model, const Material *material)
 {
   return section_find(&model->spec->materials, material->name);
 }
 
-/** A parameter of a material's law, in the deck's units; NaN if it has none of that name or was not given it. */
-static double parameter(const breccia_model *model, const Material *material, const char *name)
+double plausibility_parameter(const breccia_model *model, const Material *material, const char *name)
 {
-  const MaterialSpec *spec = spec_of(model, material);
+  const MaterialSpec *spec = plausibility_spec(model, material);
   const breccia_law *law = spec && spec->model ? law_find(&model->laws, spec->model) : NULL;
   for (int k = 0; law && k < law->parameter_count; ++k)
     if (!strcmp(law->parameters[k].name, name)) return spec->values[k];
@@ -109,7 +108,7 @@ static bool like_concrete(const breccia_model *model, const Material *m)
   if (called_concrete(m)) return true;
   const double young = plausibility_in_si(model, "stress", material_young(m)),
                density = plausibility_in_si(model, "density", m->density);
-  const double strength = plausibility_in_si(model, "stress", parameter(model, m, "tensile strength"));
+  const double strength = plausibility_in_si(model, "stress", plausibility_parameter(model, m, "tensile strength"));
   return young > 15e9 && young < 50e9 && density > 2000 && density < 2600 && strength > 1e6 && strength < 6e6;
 }
 
@@ -129,19 +128,19 @@ static void check_fracture_energy(breccia_model *model, const Material *m, doubl
 static void check_material(breccia_model *model, int k)
 {
   const Material *m = &model->domain.materials[k];
-  const MaterialSpec *spec = spec_of(model, m);
+  const MaterialSpec *spec = plausibility_spec(model, m);
   if (!spec) return;
   const Node *stiff = section_node(spec, "Young modulus");
   if (stiff == spec->head.node) stiff = section_node(spec, "bulk modulus");
   if (stiff == spec->head.node) stiff = section_node(spec, "shear modulus");
-  const bool young_given = !isnan(parameter(model, m, "Young modulus"));
+  const bool young_given = !isnan(plausibility_parameter(model, m, "Young modulus"));
   bool odd = plausibility_beyond(model, section_node(spec, "density"), "density", "density", m->density, 100, 25000,
                                  "kg/m3", densities, 2, 300, 20000);
   const bool concrete = called_concrete(m); /* from lean mortar to the strongest */
   odd |= plausibility_beyond(model, stiff, young_given ? "Young modulus" : "Young's modulus that follows", "stress",
                              material_young(m), concrete ? 1e9 : 1e4, concrete ? 2e11 : 1e12, "Pa", stiffnesses, 4,
                              concrete ? 5e9 : 1e6, concrete ? 1e11 : 5e11);
-  const double speed = wave_speed(model, m), strength = parameter(model, m, "tensile strength");
+  const double speed = wave_speed(model, m), strength = plausibility_parameter(model, m, "tensile strength");
   if (!odd && !(speed >= 10 && speed <= 10000 * 1.5))
     plausibility_say(
         model, spec->head.node,
@@ -154,14 +153,16 @@ static void check_material(breccia_model *model, int k)
         "tensile strength: it is %.2g of Young's modulus, so that the material stretches by %.0f %% before it breaks",
         strength / material_young(m), 100 * strength / material_young(m));
   const CriticalStretchSpec *failure = critical_stretch_spec(model->spec->failure);
-  check_fracture_energy(model, m, parameter(model, m, "fracture energy"), section_node(spec, "fracture energy"));
+  check_fracture_energy(model, m, plausibility_parameter(model, m, "fracture energy"),
+                        section_node(spec, "fracture energy"));
   if (failure && !isnan(failure->fracture_energy))
     check_fracture_energy(model, m, failure->fracture_energy, section_node(failure, "fracture energy"));
   const CriticalEnergySpec *energy = critical_energy_spec(model->spec->failure);
   if (energy && !isnan(energy->fracture_energy))
     check_fracture_energy(model, m, energy->fracture_energy, section_node(energy, "fracture energy"));
   const bool controlled = points_on_particles(&model->domain.regions[0].points);
-  const bool softens = controlled && m->law->components == 6 && !isnan(parameter(model, m, "fracture energy"));
+  const bool softens =
+      controlled && m->law->components == 6 && !isnan(plausibility_parameter(model, m, "fracture energy"));
   if (softens && !(m->softening_energy > 0) && !isfinite(model->domain.failure.limit[k]))
     plausibility_say(
         model, section_node(spec, "model"),
@@ -181,7 +182,7 @@ static void check_locking(breccia_model *model, const Region *region)
   if (strcmp(region->type->name, "ordinary") != 0 || space == SPACE_PLANE_STRESS || space == SPACE_BAR) return;
   for (int k = 0; k < d->material_count; ++k) {
     const Material *m = &d->materials[k];
-    const MaterialSpec *spec = spec_of(model, m);
+    const MaterialSpec *spec = plausibility_spec(model, m);
     if (!spec || !region_is_made_of(d, region, m->name) || !(material_poisson(m) > most)) continue;
     const Node *node = section_node(spec, "Poisson ratio");
     plausibility_say(model, node,
@@ -218,8 +219,9 @@ static void describe_material(const breccia_model *model, int k, Text *text)
   const Domain *d = &model->domain;
   const Material *m = &d->materials[k];
   const double young = plausibility_in_si(model, "stress", material_young(m)), limit = d->failure.limit[k];
-  const double strength = plausibility_in_si(model, "stress", parameter(model, m, "tensile strength"));
-  const double energy = plausibility_in_si(model, "fracture energy", parameter(model, m, "fracture energy"));
+  const double strength = plausibility_in_si(model, "stress", plausibility_parameter(model, m, "tensile strength"));
+  const double energy =
+      plausibility_in_si(model, "fracture energy", plausibility_parameter(model, m, "fracture energy"));
   const double horizon = plausibility_in_si(model, "length", d->family.horizon);
   text_add(text, "  %s: ", m->name);
   quantity_describe(plausibility_in_si(model, "density", m->density), "kg/m3", text);

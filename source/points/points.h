@@ -193,6 +193,9 @@ void points_take_up(Points *points);
 
 /** Makes the points in the servers: nothing was strained yet. */
 int points_begin(Points *points, Error *error);
+/** Asks the servers of points of one strain, all of which are there and were not strained yet, what they carry without any, and notes it in their
+ *  histories: what they answer by in elastic stages, and what points_try tells. */
+int points_ask_first_stresses(Points *points, Error *error);
 /** Brings histories and `identity` up to date, to be saved. */
 int points_save(Points *points, Error *error);
 /** Takes up servers and their points from histories and `identity` as they were saved. */

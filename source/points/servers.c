@@ -133,6 +133,42 @@ int points_begin(Points *points, Error *error)
   return status;
 }
 
+static void note_first(Points *points, int material, int64_t row, int64_t history, void *context)
+{
+  const int64_t id = (int64_t)points->committed[history], *starts = points->servers->starts[material];
+  const Remote *r = points->materials[material].remote;
+  const double strain = 0;
+  int server = 0;
+  (void)row, (void)context;
+  if (id < 0) return;
+  while (id >= starts[server + 1]) ++server;
+  const double *stress = remote_stresses(r, server) + (id - starts[server]);
+  remote_note(r, points->committed + history, &strain, stress);
+  remote_note(r, points->trial + history, &strain, stress);
+}
+
+int points_ask_first_stresses(Points *points, Error *error)
+{
+  if (!points->servers || points->components != 1) return BRECCIA_OK;
+  for (int k = 0; k < points->material_count; ++k) {
+    Remote *r = remote_of(points, k);
+    const int64_t *starts = points->servers->starts[k];
+    for (int n = 0; r && n < remote_servers(r); ++n) {
+      const int64_t count = starts[n + 1] - starts[n];
+      double *strain = count ? remote_strains(r, n) : NULL;
+      for (int64_t i = 0; strain && i < count; ++i) strain[i] = 0;
+      if (count) remote_post(r, n);
+    }
+    for (int n = 0; r && n < remote_servers(r); ++n) {
+      int64_t bad;
+      if (starts[n + 1] > starts[n] && !remote_collect(r, n, &bad))
+        return error_add(error, BRECCIA_FAILURE, "%s", remote_problem(r));
+    }
+  }
+  each_row(points, note_first, NULL);
+  return BRECCIA_OK;
+}
+
 /* ---- what servers save ---- */
 
 /** Moves what servers save between histories and one array per material, by number of point. */

@@ -56,11 +56,6 @@ static void destroy(LinearSolver *s)
 
 static int create(LinearSolver *s, Error *error)
 {
-  const char *refusal = matrix_refusal(&s->unknowns);
-  if (refusal)
-    return error_add(error, BRECCIA_USER_ERROR,
-                     "equations: 'direct' needs the stiffness as a matrix, and %s; take 'conjugate gradients'",
-                     refusal);
   Direct *d = s->own = memory_zeroed(1, sizeof *d, "direct solution", error);
   if (!d) return BRECCIA_FAILURE;
   cholmod_l_start(&d->common);
@@ -265,6 +260,7 @@ static LinearForesight foresee(const LinearSolver *s)
 
 const LinearType direct_linear = {.words = "factors of the stiffness",
                                   .suits = suits,
+                                  .refusal = matrix_refusal,
                                   .create = create,
                                   .destroy = destroy,
                                   .prepare = prepare,

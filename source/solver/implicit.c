@@ -199,7 +199,7 @@ static int check(Solver *run, const void *section, Error *error)
     return node_error(run->reader->document, spec->head.node, error,
                       "implicit: %s: expected 'form: variational', 'stiffness damping' or 'Rayleigh damping'",
                       flutters);
-  return increment_check(run, section, true, "take 'explicit'", error);
+  return increment_check(run, section, &spec->newton, "take 'explicit'", error);
 }
 
 static int plan(Solver *run, Text *warning, Error *error)

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-int increment_check(const Solver *run, const void *section, bool tangents, const char *instead, Error *error)
+int increment_check(const Solver *run, const void *section, const NewtonSpec *newton, const char *instead, Error *error)
 {
   const SectionHead *head = section;
   const Material *served = domain_without_trials(run->domain);
@@ -20,12 +20,18 @@ int increment_check(const Solver *run, const void *section, bool tangents, const
                       "%s: it tries strains several times, and the server of material '%s' cannot take a trial back; "
                       "take 'explicit', a server that can (docs/material-server.md), or a law of this program",
                       head->node->key, served->name);
-  const Material *bare = tangents ? domain_without_tangents(run->domain) : NULL;
+  const Material *bare = newton ? domain_without_tangents(run->domain) : NULL;
   if (bare)
     return node_error(run->reader->document, head->node, error,
                       "%s: it needs to know how stresses change with strains, and the law %s of material '%s' does not "
                       "fill 'tangent' when it is asked to; fill it, or %s",
                       head->node->key, bare->law_name, bare->name, instead);
+  const Unknowns unknowns = unknowns_of(run->domain, run->loading);
+  const char *full = newton ? linear_refusal(newton->linear, &unknowns) : NULL;
+  if (full)
+    return node_error(run->reader->document, section_node(section, "equations"), error,
+                      "equations: '%s' needs the stiffness as a matrix, and %s; take 'conjugate gradients'",
+                      newton->linear, full);
   return BRECCIA_OK;
 }
 

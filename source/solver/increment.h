@@ -3,7 +3,7 @@
 #define BRECCIA_SOLVER_INCREMENT_H
 
 #include "solver/face_work.h"
-#include "solver/solver.h"
+#include "solver/newton.h"
 
 typedef struct Increment {
   Domain *domain;
@@ -19,9 +19,10 @@ typedef struct Increment {
 
 /** Refuses what solvers that iterate have no place for.
  *  @param[in] section   of the solver's keys, to be named
- *  @param[in] tangents  whether it needs to know how stresses change with strains
+ *  @param[in] newton    of one that needs to know how stresses change with strains; NULL: it does not
  *  @param[in] instead   what to do without the solver */
-int increment_check(const Solver *solver, const void *section, bool tangents, const char *instead, Error *error);
+int increment_check(const Solver *solver, const void *section, const NewtonSpec *newton, const char *instead,
+                    Error *error);
 
 /** `increment` is zero; destroy it in any case. */
 int increment_create(Increment *increment, Domain *domain, const Loading *loading, Error *error);

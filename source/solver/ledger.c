@@ -171,6 +171,7 @@ void ledger_state(Ledger *l, StateList *list)
               {"energy between steps", &l->between},
               {"numerical damping", &l->numerical},
               {"kinetic energy at the start", &l->kinetic_at_start},
+              {"energy stored at the start", &l->stored_at_start},
               {"work of strains", &l->strain_work},
               {"paid energy", &l->paid}};
   state_add_number(list, "largest speed given", "velocity", STATE_TRIED, &l->given);

@@ -43,6 +43,13 @@ const char *linear_solver_words(const LinearSolver *s)
   return s->type->words ? s->type->words : linear_solver_name(s);
 }
 
+const char *linear_refusal(const char *word, const Unknowns *unknowns)
+{
+  for (int k = 0; k < TYPES; ++k)
+    if (!strcmp(word, words[k + 1]) && types[k]->refusal) return types[k]->refusal(unknowns);
+  return NULL;
+}
+
 int linear_solver_create(LinearSolver *s, const char *word, Error *error)
 {
   s->is_free = !strcmp(word, "automatic");

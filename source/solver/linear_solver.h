@@ -28,6 +28,8 @@ struct LinearType {
   const LinearType *instead; /* where the deck does not say, and K turns out not to suit this one; or NULL */
   /** How well it suits the body: the way with the highest number is taken where the deck does not say; 0: not at all. */
   double (*suits)(const LinearSolver *solver);
+  /** Why the matrix that it needs is not to be had of a body under the loads that act; NULL: it is, or it needs none. */
+  const char *(*refusal)(const Unknowns *unknowns);
   int (*create)(LinearSolver *solver, Error *error);
   void (*destroy)(LinearSolver *solver);
   /** The domain was linearised again. */
@@ -58,6 +60,10 @@ struct LinearSolver {
 
 /** Words of a choice in a deck: "automatic" and the ways there are, then NULL. */
 const char *linear_word(int k);
+
+/** Why the matrix that a way of a deck needs is not to be had of a body under the loads that act; NULL: it is, or it needs none.
+ *  @param[in] word  one of linear_word */
+const char *linear_refusal(const char *word, const Unknowns *unknowns);
 
 /** `solver` has domain, loading and unknowns, and is zero beyond; destroy it in any case.
  *  @param[in] word  one of linear_word */

@@ -173,7 +173,6 @@ int solver_create(Solver *s, Text *warning, Error *error)
   s->clock.stages = s->stages->count;
   s->clock.stable = INFINITY;
   units_name(s->reader->units, dimension_find("time"), s->clock.time_unit, sizeof s->clock.time_unit);
-  s->ledger.stored_at_start = s->domain->initial_energy + forces_energy(&s->domain->forces);
   s->records = memory_zeroed((size_t)s->clock.stages, sizeof *s->records, "stages", error);
   for (int64_t k = 0; k < s->clock.stages; ++k) zeroes |= !strcmp(stage_of(s, k)->displacements, "zero");
   if (!s->records || (zeroes && particles_make_zero(s->domain->particles, error))) return BRECCIA_FAILURE;
@@ -250,6 +249,7 @@ int solver_begin(Solver *s, Error *error)
 {
   if (s->clock.stage == 0) loading_begin(s->loading, s->domain->particles, s->clock.time);
   const double kinetic = s->ledger.kinetic;
+  if (s->clock.stage == 0) s->ledger.stored_at_start = s->domain->initial_energy + forces_energy(&s->domain->forces);
   s->ledger.damped |= s->type->damps(s);
   s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
   const int status = s->type->begin(s, error);

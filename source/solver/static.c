@@ -169,7 +169,8 @@ static int check_hold(const Solver *run, const StaticSpec *spec, Error *error)
 static int check(Solver *run, const void *section, Error *error)
 {
   const StaticSpec *spec = section;
-  int status = increment_check(run, section, strcmp(spec->method, "relaxation") != 0,
+  const bool solves = strcmp(spec->method, "relaxation") != 0;
+  int status = increment_check(run, section, solves ? &spec->newton : NULL,
                                "find rest by 'explicit' with 'local damping'", error);
   if (!status && !run->loose) status = check_hold(run, spec, error);
   if (status) return status;

@@ -402,6 +402,57 @@ refuse 's/\[0.45, 0.2\]\]}}/[0.45, 0.2]}}/' 14:41 'a bracket is opened and not c
 refuse 's/^  plate:/  - plate:/' 6:1 "body: expected names, each with its keys and values; found a list: leave out the '- '"
 refuse 's/force: kN/force: kn/' 2:1 "units: unit 'kn' is not known; expected a unit of force, like N, kN or lbf"
 
+# Reinforcing bars
+steel='s/^  steel: .*/  steel: {model: menegotto-pinto, density: 7.85, Young modulus: 200 GPa, yield stress: 500 MPa}/'
+along='points: [[0.05, 0.25, 0.15], [0.95, 0.25, 0.15]]'
+across='points: [[0.05, 0.05, 0.15], [0.05, 0.45, 0.15]]'
+fib='bond: {compressive strength: 38 MPa, rib spacing: 8 mm}'
+sed "$steel; s/^failure: .*/&\nbars: {r: {$along, diameter: 16 mm, material: steel, bending: yes, $fib, anchored: [start, end]}}/" "$work/good.yaml" > "$work/barred.yaml"
+"$breccia" check "$work/barred.yaml" > "$work/out" 2>&1 || fail "a good bar is refused: $(cat "$work/out")"
+# bar KEYS PLACE WORDS [EDIT]: the good deck with a bar of these keys
+bar() { refuse "$steel; s/^failure: .*/&\nbars: {r: {$1, material: steel}}/${4:+; $4}" "$2" "$3"; }
+bar "$along, diameter: 0" 17:72 'diameter: 0 is out of range; it must be greater than 0'
+bar "$along, diameter: 16 mm2" 17:72 "diameter: '16 mm2' has the wrong dimension; expected a length"
+bar "$along, area: 2 cm" 17:68 "area: '2 cm' has the wrong dimension; expected an area"
+bar "$along" 17:8 "bar: none of 'diameter', 'area' is given; give exactly one"
+bar "$along, diameter: 16 mm, number: 0" 17:87 'number: 0 is out of range'
+bar "$along, diameter: 16 mm, number: 100000000000000000000" 17:87 'is not a whole number'
+bar 'points: [[-1, 0.25, 0.15], [3, 0.25, 0.15]], diameter: 16 mm' 17:12 "points: bar 'r' is outside the body at [-1, 0.25, 0.15], 10.5 spacings from the nearest particle; keep its line within the body"
+bar 'points: [[0.05, 0.25, 0.15]], diameter: 16 mm' 17:12 'points: a bar needs two or more'
+bar 'points: [0.05, 0.25, 0.15], diameter: 16 mm' 17:12 'points: expected a list of points, like [[0, 0], [1, 0]]'
+bar 'points: [[0.05, 0.25, 0.15], [0.05, 0.25, 0.15]], diameter: 16 mm' 17:12 'points: points 1 and 2 are the same; leave one out'
+bar 'points: [[0.05, 0.25, 0.15], [0.5, 0.25, 0.15], [0.50000009, 0.25, 0.15]], diameter: 16 mm' 17:12 "points: points 2 and 3 of bar 'r' are 9e-08 apart, which is nothing beside the spacing of 0.1; leave one out"
+bar "$along, diameter: 16 mm, bending: yes, snap: yes" 17:88 "bending: a line that is moved to particles has a corner at each of them"
+bar 'points: [[0.05, 0.25, 0.15], [0.1, 0.25, 0.15]], diameter: 16 mm, bending: yes' 17:87 'bending: no two elements of this line lie on one straight line'
+bar "$along, diameter: 16 mm, anchored: [start]" 17:79 "anchored: a bar in perfect bond slips nowhere; add 'bond', or leave this out"
+bar "$along, diameter: 16 mm, $fib, anchored: [middle]" 17:136 "anchored: 'middle' is no end of a bar; take 'start' (its first point) or 'end' (its last)"
+bar "$along, diameter: 16 mm, $fib, anchored: [end, end]" 17:136 "anchored: 'end' stands here twice; take [start, end], or leave one out"
+bar "$along, diameter: 16 mm, $fib, bonded: [0, 900]" 17:136 "bonded: bar 'r' is 0.9 m long, from 0 to there; give lengths along it"
+bar "$along, diameter: 16 mm, $fib, bonded: [0.5, 0.1]" 17:136 'bonded: two lengths along the bar, from its first point; the second is the larger one'
+bar "$along, diameter: 16 mm, bond: yes" 17:85 'bond: expected keys and values'
+bar "$along, diameter: 16 mm, bond: {law: linear}" 17:79 "stiffness: law 'linear' needs it, the stress on the surface of the bar per slip, like 100 MPa/mm"
+bar "$across, diameter: 16 mm, repeat: {along: [1, 0, 0], pitch: 0, number: 3}" 17:113 'pitch: 0 is out of range'
+bar "$across, diameter: 16 mm, repeat: {along: [1, 0, 0], pitch: 0.1, number: 1}" 17:126 'number: 1 is out of range; it must be at least 2'
+bar "$across, diameter: 16 mm, repeat: {along: [1, 0, 0], pitch: 100, number: 2}" 17:79 "repeat: bar 'r 2' is outside the body at [100.05, 0.05, 0.15], 991 spacings"
+bar "$across, diameter: 16 mm, repeat: {along: [1, 0, 0], pitch: 0.1, number: 3}, material: steel}, r 2: {$across, diameter: 16 mm" 17:148 "bars: 'r 2' is also the name of a line of a bar with 'repeat'; call it otherwise"
+bar "$along, diameter: 16 mm" 5:3 "material 'steel' (menegotto-pinto): 'initial stress' is beyond the yield stress, and the first strain would lead back" \
+  's/yield stress: 500 MPa/yield stress: 500 MPa, initial stress: 501 MPa/'
+bar "$along, diameter: 16 mm" 5:3 "material 'steel' (elastic-perfectly-plastic): 'initial strain' makes a stress of -5.02e+05 at first, beyond the yield stress; take one from -0.0025 to 0.0025" \
+  's/menegotto-pinto\(.*500 MPa\)/elastic-perfectly-plastic\1, initial strain: 0.00251/'
+bar "$along, diameter: 16 mm" 5:3 "'initial strain' makes a stress of 2.02e+05 at first, beyond the yield stress; take one from -0.001 to 0.0025" \
+  's/menegotto-pinto\(.*\)500 MPa/elastic-perfectly-plastic\1200 MPa, compressive yield stress: 500 MPa, initial strain: -0.00101/'
+for equations in 'static: {increments: 1' 'implicit: {end time: 1, time step: 0.1'; do
+  held='s/body force: \[1, 0, 0\]/displacement: [0, 0, 0]/'
+  bar "$along, diameter: 16 mm, bending: yes" '' "equations: 'direct' needs the stiffness as a matrix, and the bending of a bar joins particles of two elements; take 'conjugate gradients'" \
+    "$held; s/^solve: .*/solve: {$equations, equations: direct}}/"
+  bar "$along, diameter: 16 mm, $fib" '' "equations: 'direct' needs the stiffness as a matrix, and the slips of a bar join all particles along it; take 'conjugate gradients'" \
+    "$held; s/^solve: .*/solve: [{explicit: {steps: 1}}, {$equations, equations: direct}}]/"
+done
+pulled() { bar "$along, diameter: 16 mm" 20:18 "$2" "s/^  - {name: pull.*/&\n  - {prestress: {$1, stress: 100 MPa}}/"; }
+pulled 'bars: [x]' "bars: there is no bar 'x'; expected names of those under 'bars' of the deck"
+pulled 'bars: []' "bars: name those that are under tension, as under 'bars' of the deck"
+pulled 'bars: [r, r]' "bars: 'r' stands here twice; leave one out"
+
 # Files that are no decks at all
 for content in '' '- a' 'words' '42' '%' '%TAG'; do
   printf '%s' "$content" > "$work/deck.yaml"

@@ -181,9 +181,10 @@ END
 bond=', bond: {compressive strength: 30 MPa, rib spacing: 8 mm}'
 tension='steel-bilinear; Young modulus=2e8; yield stress=5e5; hardening ratio=0.01'
 steel="remote: '$tension', server: ['unix:$PWD/one']"
+home='model: steel-bilinear, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01'
 rest='static: {increments: 8, end time: 0.2}'
 try_bars() { # NAME KEYS SOLVE [BODY]
-  bars "model: steel-bilinear, Young modulus: 2e8, yield stress: 5e5, hardening ratio: 0.01" "$2" "$3" > "bars-$1.yaml"
+  bars "$home" "$2" "$3" > "bars-$1.yaml"
   bars "$steel" "$2" "$3" "${4:-}" > "bars-$1-away.yaml"
   for where in "" -away; do "$breccia" run "bars-$1$where.yaml" > out 2>&1 || fail "bars-$1$where: $(cat out)"; done
   contains "bars, $1: the outcome tells of the server" "$(cat out)" "material 'steel': server at unix:$PWD/one: 18 points, "
@@ -210,6 +211,21 @@ for way in motion slip; do # from the middle, with what the server saved
   "$breccia" run bars-$way-away.yaml --restart > out 2>&1 || fail "bars, $way: restart: $(cat out)"
   same_bars bars-$way bars-$way-away
 done
+# Steel that begins under stress: what it stores at first is in the books, and it yields when it does inside the program, after a restart too.
+home='model: elastic-perfectly-plastic, Young modulus: 2e8, yield stress: 5e5, initial strain: -1e-3'
+steel="remote: 'elastic-perfectly-plastic; Young modulus=2e8; yield stress=5e5; initial strain=-1e-3', server: ['unix:$PWD/one']"
+try_bars stressed '' 'explicit: {end time: 0.2, damping: 20 1/s}'
+try_bars stressed-rest '' "$rest"
+try_bars stressed-slip "$bond" "$rest"
+at_first() { sed -n 's/.*\( - stored at the start [^,]*\),.*/\1/p' out; } # 1e-4 m2 * 1.76 m * (2e5 kPa)^2 / (2 * 2e8 kPa)
+equal "stored at first in a server" "$(at_first)" " - stored at the start 17.6 J"
+"$breccia" run bars-stressed-away.yaml --steps 4 > out 2>&1
+[ "$(json bars-stressed-away/summary.json yielded_share)" = 0 ] || fail "stressed bars yield before the restart, the test is too tame"
+"$breccia" run bars-stressed-away.yaml --restart > out 2>&1 || fail "bars, stressed: restart: $(cat out)"
+equal "stored at first, after a restart" "$(at_first)" " - stored at the start 17.6 J"
+same_bars bars-stressed bars-stressed-away
+for bar in upper lower; do nearly bars-stressed "$bar"; done
+
 refuse_bars() { # STEEL KEYS WORDS [BODY]
   bars "$1" "$2" "$rest" "${4:-}" > refused.yaml
   "$breccia" run refused.yaml > out 2> err

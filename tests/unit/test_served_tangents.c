@@ -1,50 +1,20 @@
 /* Many points of a law in servers at once: every stress and tangent comes from the point that it belongs to. */
-#include "support.h"
+#include "servers.h"
 
 #include "base/random.h"
-#include "constitutive/remote/server.h"
-
-#include <pthread.h>
-#include <time.h>
-#include <unistd.h>
-
-enum { SERVERS = 2 };
-
-static volatile int listening, interrupted;
-
-static void count_listening(const char *address)
-{
-  (void)address;
-  __atomic_fetch_add(&listening, 1, __ATOMIC_SEQ_CST);
-}
-
-static void *serve(void *spec)
-{
-  static int bad = 1;
-  return serve_materials(spec, NULL) ? &bad : NULL;
-}
 
 #define SOLID "Young modulus=2e8; Poisson ratio=0.3; yield stress=4e5; hardening modulus=2e7"
 
 static void tangents_of_many_points_on_two_servers_are_those_of_the_law(void **state)
 {
   (void)state;
-  char folder[] = "/tmp/breccia-served-XXXXXX", address[SERVERS][64];
-  pthread_t thread[SERVERS];
-  ServeSpec spec[SERVERS];
-  assert_non_null(mkdtemp(folder));
-  listening = interrupted = 0;
-  for (int k = 0; k < SERVERS; ++k) {
-    snprintf(address[k], sizeof address[k], "unix:%s/%d", folder, k);
-    spec[k] = (ServeSpec){.address = address[k], .interrupted = &interrupted, .listening = count_listening};
-    assert_int_equal(pthread_create(&thread[k], NULL, serve, &spec[k]), 0);
-  }
-  while (listening < SERVERS) nanosleep(&(struct timespec){.tv_nsec = 1000000L}, NULL);
+  Servers servers;
+  servers_start(&servers, 2);
   breccia_model *m = model_of("units: {length: m, force: kN, time: s}\n"
                               "materials: {steel: {remote: '%s', server: ['%s', '%s'], density: 8}}\n"
                               "body: {b: {material: steel, spacing: 0.1, shape: {box: {particles: [16, 8, 6]}}}}\n"
                               "solve: {explicit: {time step: 1e-9, steps: 1}}\n",
-                              "j2; " SOLID, address[0], address[1]);
+                              "j2; " SOLID, servers.address[0], servers.address[1]);
   step_surely(m, 1); /* servers take up points as a run begins */
   const Points *points = &m->domain.regions[0].points;
   const Material *remote = &points->materials[0];
@@ -89,13 +59,7 @@ static void tangents_of_many_points_on_two_servers_are_those_of_the_law(void **s
   free(numbers);
   material_destroy(&local);
   breccia_model_destroy(&m);
-  interrupted = 1;
-  for (int k = 0; k < SERVERS; ++k) {
-    void *bad;
-    pthread_join(thread[k], &bad);
-    assert_null(bad);
-  }
-  rmdir(folder);
+  servers_stop(&servers);
 }
 
 int main(void)

@@ -152,6 +152,61 @@ static void limits_are_where_they_say(void **state)
   }
 }
 
+#define PULLED(what) "loads: [{prestress: {bars: [low], " what "}}]\n"
+#define HELD_BY(law) ", bond: {" law "}"
+#define FIB_BY(stiffness) HELD_BY("compressive strength: 30 MPa, rib spacing: 8 mm, unloading stiffness: " stiffness)
+
+/** Numbers of bars whose unit is hardly meant: of steel, of bond, of tension. */
+static void bars_that_are_hardly_meant_are_told(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *yield, *keys, *more, *warning; /* NULL: there is none */
+  } bars[] = {
+      /* over Young's modulus of 200 GPa */
+      {"20.1 MPa", "", "", NULL},
+      {"19.9 MPa", "", "",
+       "yield stress: over Young's modulus it makes a strain of 9.95e-05, and steel of bars yields"},
+      {"500", "", "", "makes a strain of 2.5e-06"},
+      {"9.9 GPa", "", "", NULL},
+      {"10.1 GPa", "", "", "makes a strain of 0.0505"},
+      {"500 MPa", HELD_BY("law: linear, stiffness: 1.1 MPa/mm"), "", NULL},
+      {"500 MPa", HELD_BY("law: linear, stiffness: 0.9 MPa/mm"), "",
+       "stiffness: 0.9 MPa/mm; bond of bars in concrete has 1 MPa/mm to 100000 MPa/mm; look at its unit"},
+      {"500 MPa", HELD_BY("law: linear, stiffness: 99000 MPa/mm"), "", NULL},
+      {"500 MPa", HELD_BY("law: linear, stiffness: 101000 MPa/mm"), "", "stiffness: 1.01e+05 MPa/mm; bond of bars"},
+      {"500 MPa", HELD_BY("law: linear, stiffness: 200"), "", "stiffness: 0.0002 MPa/mm; bond of bars"},
+      {"500 MPa", FIB_BY("1.1 MPa/mm"), "", NULL},
+      {"500 MPa", FIB_BY("0.9 MPa/mm"), "", "unloading stiffness: 0.9 MPa/mm; bond of bars"},
+      {"500 MPa", "", PULLED("stress: 499 MPa"), NULL},
+      {"500 MPa", "", PULLED("stress: 501 MPa"),
+       "prestress: 501 MPa in bar 'low' is beyond the yield stress of its material 's', 500 MPa: it yields where the "
+       "body resists"},
+      {"500 MPa", "", PULLED("stress: -501 MPa"), "prestress: -501 MPa in bar 'low' is beyond"},
+      {"500 MPa", "", PULLED("strain: 0.0024"), NULL},
+      {"500 MPa", "", PULLED("strain: 0.0026"), "prestress: 520 MPa in bar 'low' is beyond"},
+      /* of 4.8e-4 m3 of body, by bars of 3e-6 m3 each */
+      {"500 MPa", ", number: 16", "", NULL},
+      {"500 MPa", ", number: 17", "", "look at the units, and at 'number'"},
+  };
+  for (size_t k = 0; k < sizeof bars / sizeof *bars; ++k) {
+    breccia_model *m = model_of(
+        "units: {length: m, force: kN, time: s}\n"
+        "materials: {m: {" USUAL "}, s: {model: steel-bilinear, density: 7.85, Young modulus: 200 GPa, yield stress: "
+        "%s}}\n"
+        "body: {b: {material: m, lattice: square, spacing: 0.01, thickness: 0.1, shape: {box: {particles: [8, 6]}}}}\n"
+        "peridynamics: {space: plane strain}\nsolve: {explicit: {steps: 1}}\n"
+        "bars: {low: {points: [[0.02, 0.025], [0.05, 0.025]], area: 1e-4, material: s%s}}\n%s",
+        bars[k].yield, bars[k].keys, bars[k].more);
+    const char *words = breccia_model_warnings(m);
+    if (!bars[k].warning && *words) fail_msg("%zu: no warning was expected: %s", k, words);
+    if (bars[k].warning &&
+        (!strstr(words, bars[k].warning) || strchr(words, '\n') || strncmp(words, "warning: deck:", 14)))
+      fail_msg("%zu: expected '%s', found: %s", k, bars[k].warning, words);
+    breccia_model_destroy(&m);
+  }
+}
+
 #define WATER(surface, weight)                                                                                         \
   "solve: {static: {}}\n", "{on: {face: x-}, water pressure: {surface: " surface ", unit weight: " weight "}}"
 #define PUSH(history) "{on: {face: x+}, force: [1e-3, 0]" history "}"
@@ -462,6 +517,7 @@ int main(void)
                                      cmocka_unit_test(loads_that_are_hardly_meant_are_told),
                                      cmocka_unit_test(held_faces_of_what_keeps_its_volume_are_told),
                                      cmocka_unit_test(bodies_that_lock_are_told),
+                                     cmocka_unit_test(bars_that_are_hardly_meant_are_told),
                                      cmocka_unit_test(ground_beyond_its_strength_is_told),
                                      cmocka_unit_test(points_between_particles_are_told),
                                      cmocka_unit_test(control_that_outlasts_yielding_is_told),

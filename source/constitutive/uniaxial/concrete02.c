@@ -95,7 +95,7 @@ static void update_point(const void *constants, UniaxialPoint *p)
 
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return uniaxial_update(constants, batch, HISTORY, concrete_young(&((const Concrete02 *)constants)->envelope), true,
+  return uniaxial_update(constants, batch, HISTORY, concrete_young(&((const Concrete02 *)constants)->envelope), 0, true,
                          update_point);
 }
 

@@ -16,10 +16,14 @@ static const breccia_parameter parameters[] = {
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
-  (void)reason, (void)size;
-  *(Perfect *)constants =
-      (Perfect){v[YOUNG], v[TENSION], isnan(v[COMPRESSION]) ? v[TENSION] : v[COMPRESSION], v[SHIFT]};
-  return 0;
+  const Perfect c = {v[YOUNG], v[TENSION], isnan(v[COMPRESSION]) ? v[TENSION] : v[COMPRESSION], v[SHIFT]};
+  const double begun = -c.young * c.shift, least = -(1 + 1e-9) * c.compression, most = (1 + 1e-9) * c.tension;
+  *(Perfect *)constants = c;
+  if (begun >= least && begun <= most) return 0;
+  snprintf(reason, size,
+           "'initial strain' makes a stress of %.4g at first, beyond the yield stress; take one from %.4g to %.4g",
+           begun, -c.tension / c.young, c.compression / c.young);
+  return 1;
 }
 
 static void moduli(const void *constants, double *bulk, double *shear)
@@ -57,7 +61,8 @@ static void update_point(const void *constants, UniaxialPoint *p)
 
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return uniaxial_update(constants, batch, 1, ((const Perfect *)constants)->young, false, update_point);
+  const Perfect *c = constants;
+  return uniaxial_update(c, batch, 1, c->young, c->shift, false, update_point);
 }
 
 const breccia_law law_elastic_perfectly_plastic = {

@@ -44,7 +44,7 @@ static void update_point(const void *constants, UniaxialPoint *p)
 
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return uniaxial_update(constants, batch, CONCRETE_HISTORY, concrete_young(constants), true, update_point);
+  return uniaxial_update(constants, batch, CONCRETE_HISTORY, concrete_young(constants), 0, true, update_point);
 }
 
 const breccia_law law_kent_scott_park = {

@@ -77,7 +77,7 @@ static void update_point(const void *constants, UniaxialPoint *p)
 
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return uniaxial_update(constants, batch, CONCRETE_HISTORY, ((const Mander *)constants)->young, true, update_point);
+  return uniaxial_update(constants, batch, CONCRETE_HISTORY, ((const Mander *)constants)->young, 0, true, update_point);
 }
 
 const breccia_law law_mander = {

@@ -22,14 +22,17 @@ static const breccia_parameter parameters[] = {
 
 static int prepare(const double *v, void *constants, char *reason, size_t size)
 {
-  (void)reason, (void)size;
   Pinto *c = constants;
   steel_prepare(&c->steel, v);
   c->roundness = v[ROUNDNESS];
   c->fall = v[FALL];
   c->fall_range = v[FALL_RANGE];
   c->initial = v[INITIAL];
-  return 0;
+  if (fabs(c->initial) <= (1 + 1e-9) * c->steel.yield) return 0;
+  snprintf(reason, size,
+           "'initial stress' is beyond the yield stress, and the first strain would lead back to the curve below it; "
+           "take one within it");
+  return 1;
 }
 
 static void moduli(const void *constants, double *bulk, double *shear)
@@ -107,7 +110,8 @@ static void update_point(const void *constants, UniaxialPoint *p)
 
 static int update(const void *constants, const breccia_batch *batch)
 {
-  return uniaxial_update(constants, batch, HISTORY, ((const Pinto *)constants)->steel.young, true, update_point);
+  const Pinto *c = constants;
+  return uniaxial_update(c, batch, HISTORY, c->steel.young, -c->initial / c->steel.young, true, update_point);
 }
 
 const breccia_law law_menegotto_pinto = {

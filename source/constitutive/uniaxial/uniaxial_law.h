@@ -25,11 +25,11 @@ static inline double uniaxial_between(double low, double x, double high)
 
 typedef void (*UniaxialPointUpdate)(const void *constants, UniaxialPoint *point);
 
-/** In the elastic stage stress is `young` times strain, and history numbers 0 and 1, which are the last strain and stress if
- *  `remembers`, follow. */
+/** In the elastic stage stress is `young` times the strain beyond that of no stress at first (`slack`), and history numbers 0 and 1, which are the last
+ *  strain and stress if `remembers`, follow. */
 __attribute__((always_inline)) static inline int uniaxial_update(const void *constants, const breccia_batch *batch,
-                                                                 int history_values, double young, bool remembers,
-                                                                 UniaxialPointUpdate update_point)
+                                                                 int history_values, double young, double slack,
+                                                                 bool remembers, UniaxialPointUpdate update_point)
 {
   for (int i = 0; i < batch->count; ++i) {
     UniaxialPoint point = {.strain = batch->strain[0][i],
@@ -37,7 +37,7 @@ __attribute__((always_inline)) static inline int uniaxial_update(const void *con
                            .trial = batch->trial + (ptrdiff_t)history_values * i};
     memcpy(point.trial, point.committed, sizeof(double) * (size_t)history_values);
     if (batch->elastic_stage) {
-      point.stress = young * point.strain;
+      point.stress = young * (point.strain - slack);
       point.tangent = young;
     } else {
       update_point(constants, &point);

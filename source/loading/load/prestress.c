@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct PrestressSpec {
   SectionHead head;
@@ -57,6 +58,14 @@ static int create(Load *load, const LoadMaking *making)
   if (load->spec->on.node)
     return node_error(reader->document, section_node(load->spec, "on"), reader->error,
                       "on: a prestress acts on the bars that it names; leave it out");
+  if (!spec->bars.count)
+    return node_error(reader->document, section_node(spec, "bars"), reader->error,
+                      "bars: name those that are under tension, as under 'bars' of the deck");
+  for (int n = 0; n < spec->bars.count; ++n)
+    for (int k = 0; k < n; ++k)
+      if (!strcmp(spec->bars.items[k], spec->bars.items[n]))
+        return node_error(reader->document, section_node(spec, "bars"), reader->error,
+                          "bars: '%s' stands here twice; leave one out", spec->bars.items[n]);
   Prestress *p = load->own = memory_zeroed(1, sizeof *p, "loads", reader->error);
   if (!p) return BRECCIA_FAILURE;
   p->bars = making->forces ? bars_among(making->forces) : NULL;

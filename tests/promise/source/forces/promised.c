@@ -23,16 +23,13 @@ typedef struct Promised {
   double stiffness;
 } Promised;
 
-static void *create(const void *spec, const ForcesParts *parts, Error *error)
+static int create(const void *spec, const ForcesParts *parts, void **forces, Error *error)
 {
-  Promised *p = calloc(1, sizeof *p);
-  if (!p) {
-    error_add(error, BRECCIA_FAILURE, "out of memory: forces");
-    return NULL;
-  }
+  Promised *p = *forces = calloc(1, sizeof *p);
+  if (!p) return error_add(error, BRECCIA_FAILURE, "out of memory: forces");
   p->particles = (Particles *)(uintptr_t)parts->family->particles;
   p->stiffness = ((const PromisedSpec *)spec)->stiffness;
-  return p;
+  return BRECCIA_OK;
 }
 
 static void resist(void *forces)
