@@ -233,6 +233,32 @@ watch: {mouth: {opening between: [[0.05, 0.15, 0.15], [0.85, 0.15, 0.15]], every
 results: {number: 4, precision: double}
 pictures: []
 Y
+# reinforced: bars that bend, slip and are repeated, among bonds that break
+cat > bars.yaml <<'Y'
+units: {length: m, force: kN, time: s}
+materials:
+  c: {model: elastic-1d, density: 2, Young modulus: 1e4}
+  s: {model: menegotto-pinto, density: 7, Young modulus: 2e8, yield stress: 5e5, initial stress: 2e4}
+body: {b: {material: c, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.4, 0.3]}}}}
+peridynamics: {formulation: bond-based, horizon: 2.015 spacings}
+failure: {critical stretch: 0.01, near grips: hold}
+bars:
+  dowel: {points: [[0.02, 0.14, 0.11], [1.18, 0.23, 0.17]], diameter: 20 mm, material: s, bending: yes,
+          bond: {compressive strength: 2 MPa, rib spacing: 8 mm}}
+  mesh: {points: [[0.15, 0.03, 0.05], [0.15, 0.37, 0.05]], diameter: 6 mm, material: s, bending: yes,
+         repeat: [{along: [1, 0, 0], pitch: 0.25, over: 0.9}, {along: [0, 0, 1], pitch: 0.2, number: 2}]}
+loads:
+  - {on: {face: x-, layers: 2}, displacement: [0, 0, 0]}
+  - {on: {face: x+, layers: 2}, displacement: [0.03, 0.03, 0], history: {table: [[0, 0], [1, 0.5], [1.01, 0.6], [1.02, 0.75]]}}
+  - {prestress: {bars: [mesh], stress: 1e4}, history: {ramp to: 0.5}}
+solve:
+  - {static: {increments: 3}}
+  - {implicit: {end time: 0.01, time step: 2e-3}}
+  - {explicit: {steps: 60}}
+watch: {mouth: {opening between: [[0.05, 0.15, 0.15], [1.15, 0.15, 0.15]], every: 1}, energy: {energy: yes, every: 1}}
+results: {number: 4, precision: double}
+pictures: []
+Y
 stop_at() { # stop_at DECK STEP ...: stopped there (under sanitizers only at the last) and taken up again, it ends as in one go
   local deck=$1 steps file again=
   shift
@@ -260,6 +286,9 @@ stop_at stages 4 8 16 31 44
 cmp -s whole-stages/profiles/strip.csv stopped-stages/profiles/strip.csv || fail "stages: a profile differs"
 [ "$(wc -l < whole-stages/profiles/strip.csv)" = 19 ] || fail "stages: a profile of 18 layers: $(cat whole-stages/profiles/strip.csv)"
 stop_at ground 1 4 16
+stop_at bars 1 5 9 30
+[ "$(json whole-bars/summary.json broken_bonds)" -gt 0 ] || fail "bars: no bond breaks, the test is too tame"
+cmp -s whole-bars/bars/bars.csv stopped-bars/bars/bars.csv || fail "bars: strains and stresses along bars differ"
 stop_at handed 6 20 50
 grep -q '"times": .*"at_rest": false}, {"name": "flow"' whole-handed/summary.json || fail "handed: what found no rest is told as at rest: $(grep '"stages"' whole-handed/summary.json)"
 checks=$((checks + 1))

@@ -220,6 +220,75 @@ static void a_bar_in_motion_keeps_its_energy(void **state)
   }
 }
 
+static const char *solver_of_torn;
+static bool bonded_in_torn;
+
+/** A block whose halves fly or are drawn apart and past each other, so that bonds between them break, with a bar across and stirrups by pitch, all of
+ *  which resist bending; they slip or do not. */
+static breccia_model *torn_apart(int threads)
+{
+  const char *const bond = bonded_in_torn ? ", bond: {compressive strength: 2 MPa, rib spacing: 8 mm}" : "";
+  const bool flies = !strstr(solver_of_torn, "static");
+  char *deck = text_format(
+      "units: {length: m, force: kN, time: s}\n"
+      "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n"
+      "  steel: {model: steel-bilinear, density: 7, Young modulus: 2e8, yield stress: 5e5}\n"
+      "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.4, 0.3]}}}}\n"
+      "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+      "failure: {critical stretch: 0.01, near grips: hold}\n"
+      "bars: {dowel: {points: [[0.02, 0.14, 0.11], [1.18, 0.23, 0.17]], diameter: 20 mm, material: steel, bending: "
+      "yes%s},\n"
+      "       stirrups: {points: [[0.15, 0.03, 0.13], [0.15, 0.37, 0.13]], diameter: 6 mm, material: steel, bending: "
+      "yes%s, repeat: {along: [1, 0, 0], pitch: 0.3, number: 4}}}\n"
+      "loads:\n  - {on: {face: x-, layers: 2}, %s}\n  - {on: {face: x+, layers: 2}, %s}\n"
+      "solve: {%s}\npictures: []\n",
+      bond, bond, flies ? "velocity: [0, 0, 0]" : "displacement: [0, 0, 0]",
+      flies ? "velocity: [0.8, 0.8, 0], history: {ramp to: 0.005}"
+            : "displacement: [0.03, 0.03, 0], history: {ramp to: 1}",
+      solver_of_torn);
+  breccia_options options = {.size = sizeof options, .threads = threads};
+  Error *error = breccia_error_create();
+  breccia_model *m;
+  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
+  breccia_error_destroy(&error);
+  free(deck);
+  return m;
+}
+
+/** While bonds around them break, and bars bend, slip and yield. */
+static void threads_and_restarts_give_the_same_bits(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *solver;
+    int64_t half, last;
+  } ways[] = {{"explicit: {end time: 1}", 150, 300},
+              {"implicit: {end time: 1, time step: 1e-3}", 45, 60},
+              {"static: {increments: 6}", 2, 4},
+              {"static: {increments: 6, method: relaxation, residual: 1e-4}", 2, 3}};
+  const size_t count = under_sanitizers() ? 1 : sizeof ways / sizeof *ways;
+  for (size_t w = 0; w < count; ++w)
+    for (int slips = 0; slips < 2; ++slips) {
+      solver_of_torn = ways[w].solver;
+      bonded_in_torn = slips;
+      breccia_model *m = torn_apart(2);
+      const Bars *b = bars_of(m);
+      step_surely(m, ways[w].half);
+      const int64_t broken = breccia_model_broken_bonds(m);
+      step_surely(m, ways[w].last - ways[w].half);
+      const BarReport dowel = bar_report(b, 0), stirrups = bar_report(b, 1);
+      print_message("%s: %lld and %lld bonds broken, bending %g and %g of %g, slip %g\n", ways[w].solver,
+                    (long long)broken, (long long)breccia_model_broken_bonds(m), bars_bent(b, 0, b->first[1]),
+                    bars_bent(b, b->first[1], b->count), dowel.stored, dowel.largest_slip);
+      assert_true(broken > 0 && breccia_model_broken_bonds(m) > broken);
+      assert_true(bars_bent(b, 0, b->first[1]) > 1e-3 * dowel.stored);
+      assert_true(bars_bent(b, b->first[1], b->count) > 1e-5 * stirrups.stored);
+      assert_true(slips ? dowel.largest_slip > 1e-5 : dowel.yielded > 0.05);
+      breccia_model_destroy(&m);
+      assert_same_bits_by_threads_and_restart(torn_apart, ways[w].half, ways[w].last);
+    }
+}
+
 /** Bars that bend make a body stiffer, along themselves no less than without: no mode becomes slower. */
 static void modes_know_bars_that_bend(void **state)
 {
@@ -280,6 +349,7 @@ int main(void)
       cmocka_unit_test(turning_bends_nothing_and_what_tears_is_lost),
       cmocka_unit_test(modes_know_bars_that_bend),
       cmocka_unit_test(corners_are_told),
+      cmocka_unit_test(threads_and_restarts_give_the_same_bits),
       cmocka_unit_test(a_bar_in_motion_keeps_its_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
