@@ -365,14 +365,14 @@ static int find_change(Newton *n, double force, double accuracy, LinearRecord *l
 }
 
 /** Whether an iteration has led a body that softens far away: where parts are held by next to nothing, equilibrium may be found in which bars are folded and
- *  have yielded a hundred times over, which no path leads to. Work that controlled loads do along the first change passes through zero where a branch snaps
- *  back, and says nothing there by itself.
+ *  have yielded a hundred times over, which no path leads to. Work along the first change is next to nothing where a bond has just broken and where a branch
+ *  snaps back, and says nothing there by itself.
  *  @param[in] energy  work after the iteration over that of the first one
  *  @param[in] way     size of all changes over that of the first one */
 static bool is_astray(const Newton *n, double energy, double way)
 {
   const double most = 1e3, far = 10;
-  return energy > most && !n->beside && domain_may_soften(n->domain) && (!n->control || way > far);
+  return energy > most && way > far && !n->beside && domain_may_soften(n->domain);
 }
 
 static NewtonOutcome solve(Newton *n, double time, Error *error)
