@@ -39,10 +39,11 @@ int static_give_back(Solver *run, Error *error)
 }
 
 /** Lets bonds break and the body find equilibrium again, in turn, until no bond is beyond its limit.
- *  @param[out] outcome  why there is no equilibrium */
-static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
+ *  @param[out] outcome  why there is no equilibrium; @param[in,out] way  what found it */
+static int break_bonds(Solver *run, NewtonOutcome *outcome, TryBy *way, Error *error)
 {
   Static *s = run->own;
+  const TryBy other = domain_bonds_may_soften(s->domain) ? BY_RELAXATION : BY_SECANTS;
   int64_t broken;
   *outcome = NEWTON_CONVERGED;
   s->newton.interrupted = NULL; /* bonds that have broken in equilibrium stay so: what this leads to is found first */
@@ -51,6 +52,12 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, Error *error)
     if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
     text_add(&run->log, "  %lld bonds break\n", (long long)broken);
     *outcome = static_try(s, s->clock->time, (Try){0}, error);
+    if (*outcome == NEWTON_ASTRAY &&
+        static_may_relax(s)) { /* the body jumps: roundings decide where the first iteration leads */
+      text_add(&run->log, "    no equilibrium near\n");
+      *outcome = static_try(s, s->clock->time, (Try){.by = other}, error);
+      if (*outcome == NEWTON_CONVERGED) *way = other;
+    }
     if (*outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
   }
   s->newton.interrupted = run->interrupted;
@@ -73,7 +80,7 @@ int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, TryBy *way
   enum { MOST = 20 };
   Static *s = run->own;
   const double enough = domain_lag_allowed(s->domain); /* what comes of so few is left to the next increment */
-  int status = break_bonds(run, outcome, error);
+  int status = break_bonds(run, outcome, way, error);
   bool first = true; /* the last try began a way */
   *settled = true;
   for (int k = 0; !status && *outcome == NEWTON_CONVERGED && domain_lags(s->domain); ++k) {
@@ -93,8 +100,8 @@ int static_settle(Solver *run, NewtonOutcome *outcome, bool *settled, TryBy *way
       break;
     }
     const int64_t broken = s->domain->broken_count;
-    status =
-        break_bonds(run, outcome, error); /* what the stage leaves overloaded would stay whole if it was the last */
+    status = break_bonds(run, outcome, way,
+                         error); /* what the stage leaves overloaded would stay whole if it was the last */
     first = s->domain->broken_count != broken;
     if (few && !first) break;
   }
