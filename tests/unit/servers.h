@@ -40,8 +40,7 @@ static inline void servers_start(Servers *s, int count)
   servers_listening = servers_interrupted = 0;
   for (int k = 0; k < count; ++k) {
     snprintf(s->address[k], sizeof s->address[k], "unix:%s/%d", s->folder, k);
-    s->spec[k] =
-        (ServeSpec){.address = s->address[k], .interrupted = &servers_interrupted, .listening = servers_count};
+    s->spec[k] = (ServeSpec){.address = s->address[k], .interrupted = &servers_interrupted, .listening = servers_count};
     assert_int_equal(pthread_create(&s->thread[k], NULL, servers_serve, &s->spec[k]), 0);
   }
   while (servers_listening < count) nanosleep(&(struct timespec){.tv_nsec = 1000000L}, NULL);
