@@ -101,32 +101,7 @@ watch: {energy: {energy: yes, every: 10}}
 results: {number: 3, precision: double, checkpoint steps: 50}
 pictures: []
 Y
-# reinforced: bars that bend, slip and are repeated, among bonds that break
-cat > bars.yaml <<'Y'
-units: {length: m, force: kN, time: s}
-materials:
-  c: {model: elastic-1d, density: 2, Young modulus: 1e4}
-  s: {model: menegotto-pinto, density: 7, Young modulus: 2e8, yield stress: 5e5, initial stress: 2e4}
-body: {b: {material: c, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.4, 0.3]}}}}
-peridynamics: {formulation: bond-based, horizon: 2.015 spacings}
-failure: {critical stretch: 0.01, near grips: hold}
-bars:
-  dowel: {points: [[0.02, 0.14, 0.11], [1.18, 0.23, 0.17]], diameter: 20 mm, material: s, bending: yes,
-          bond: {compressive strength: 2 MPa, rib spacing: 8 mm}}
-  mesh: {points: [[0.15, 0.03, 0.05], [0.15, 0.37, 0.05]], diameter: 6 mm, material: s, bending: yes,
-         repeat: [{along: [1, 0, 0], pitch: 0.25, over: 0.9}, {along: [0, 0, 1], pitch: 0.2, number: 2}]}
-loads:
-  - {on: {face: x-, layers: 2}, displacement: [0, 0, 0]}
-  - {on: {face: x+, layers: 2}, displacement: [0.03, 0.03, 0], history: {table: [[0, 0], [1, 0.5], [1.01, 0.6], [1.02, 0.75]]}}
-  - {prestress: {bars: [mesh], stress: 1e4}, history: {ramp to: 0.5}}
-solve:
-  - {static: {increments: 3}}
-  - {implicit: {end time: 0.01, time step: 2e-3}}
-  - {explicit: {steps: 60}}
-watch: {energy: {energy: yes, every: 1}}
-results: {number: 3, precision: double}
-pictures: []
-Y
+cp "$source/tests/command/decks/bars.yaml" .
 # comes to its strength at rest, flows on in motion, and is at rest again
 cat > handed.yaml <<'Y'
 units: {length: m, force: kN, time: s}

@@ -5,19 +5,35 @@ bool under_sanitizers(void)
   return getenv("BRECCIA_SANITIZED") != NULL;
 }
 
-breccia_model *model_of(const char *format, ...)
+static breccia_model *model_from(const breccia_options *options, const char *format, va_list arguments)
 {
   Text deck = {0};
-  va_list arguments;
-  va_start(arguments, format);
   text_add_list(&deck, format, arguments);
-  va_end(arguments);
   breccia_error *error = breccia_error_create();
   breccia_model *model;
-  int status = breccia_model_load_string(deck.characters, "deck", NULL, &model, error);
+  int status = breccia_model_load_string(deck.characters, "deck", options, &model, error);
   text_free(&deck);
   if (status) fail_msg("the deck was refused: %s", breccia_error_text(error));
   breccia_error_destroy(&error);
+  return model;
+}
+
+breccia_model *model_of(const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  breccia_model *model = model_from(NULL, format, arguments);
+  va_end(arguments);
+  return model;
+}
+
+breccia_model *model_on(int threads, const char *format, ...)
+{
+  const breccia_options options = {.size = sizeof options, .threads = threads};
+  va_list arguments;
+  va_start(arguments, format);
+  breccia_model *model = model_from(&options, format, arguments);
+  va_end(arguments);
   return model;
 }
 

@@ -20,6 +20,8 @@ bool under_sanitizers(void);
 
 /** A model from a deck given as text with %-directives; fails the test with the reader's words if it is refused. */
 breccia_model *model_of(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/** The same on so many threads. */
+breccia_model *model_on(int threads, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /** The words with which a deck is refused, to be freed; fails the test if it is accepted. */
 char *refusal_of(const char *deck);
 

@@ -229,7 +229,8 @@ static breccia_model *torn_apart(int threads)
 {
   const char *const bond = bonded_in_torn ? ", bond: {compressive strength: 2 MPa, rib spacing: 8 mm}" : "";
   const bool flies = !strstr(solver_of_torn, "static");
-  char *deck = text_format(
+  return model_on(
+      threads,
       "units: {length: m, force: kN, time: s}\n"
       "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n"
       "  steel: {model: steel-bilinear, density: 7, Young modulus: 2e8, yield stress: 5e5}\n"
@@ -246,13 +247,6 @@ static breccia_model *torn_apart(int threads)
       flies ? "velocity: [0.8, 0.8, 0], history: {ramp to: 0.005}"
             : "displacement: [0.03, 0.03, 0], history: {ramp to: 1}",
       solver_of_torn);
-  breccia_options options = {.size = sizeof options, .threads = threads};
-  Error *error = breccia_error_create();
-  breccia_model *m;
-  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
-  breccia_error_destroy(&error);
-  free(deck);
-  return m;
 }
 
 /** While bonds around them break, and bars bend, slip and yield. */

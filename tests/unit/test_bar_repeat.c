@@ -193,7 +193,8 @@ static const char *bond_of_struck;
 static breccia_model *struck(int threads)
 {
   char *bars = mesh(true, bond_of_struck);
-  char *deck = text_format(
+  breccia_model *m = model_on(
+      threads,
       "units: {length: m, force: kN, time: s}\n"
       "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n  " STEEL "\n"
       "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1.2, 0.8, 0.3]}}}}\n"
@@ -207,12 +208,6 @@ static breccia_model *struck(int threads)
       "        {prestress: {bars: [along x], stress: 2e5}, history: {ramp to: 1e-3}}]\n"
       "solve: {explicit: {end time: 1}}\npictures: []\n",
       bars, bond_of_struck);
-  breccia_options options = {.size = sizeof options, .threads = threads};
-  Error *error = breccia_error_create();
-  breccia_model *m;
-  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
-  breccia_error_destroy(&error);
-  free(deck);
   free(bars);
   return m;
 }

@@ -400,7 +400,8 @@ static void stiff_bond_comes_to_perfect_bond(void **state)
 /** A block with a bar along it whose ends fly apart: the bar slips, and the block swings on. */
 static breccia_model *struck(const char *solver, int threads)
 {
-  char *deck = text_format(
+  return model_on(
+      threads,
       UNITS "materials:\n  soft: {model: elastic-1d, density: 2, Young modulus: 1e4}\n  " STEEL "\n"
             "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1, 0.4, 0.4]}}}}\n"
             "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
@@ -414,13 +415,6 @@ static breccia_model *struck(const char *solver, int threads)
             "[0.4, 0.1, 0]}}]\n"
             "solve: {%s}\npictures: []\n",
       solver);
-  breccia_options options = {.size = sizeof options, .threads = threads};
-  breccia_error *error = breccia_error_create();
-  breccia_model *m;
-  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
-  breccia_error_destroy(&error);
-  free(deck);
-  return m;
 }
 
 static void works_are_in_the_books_where_bars_slip(void **state)

@@ -396,25 +396,19 @@ static void bars_tell_when_they_yield_and_tear(void **state)
 /** A block with a bar along it and one across, whose ends fly apart: the steel yields, and the block swings on. */
 static breccia_model *struck(const char *solver, int threads)
 {
-  char *deck = text_format(
-      MATERIALS "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1, 0.4, 0.4]}}}}\n"
-                "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
-                "bars: {long: {points: [[0.02, 0.14, 0.11], [0.98, 0.23, 0.17]], area: 4e-6, material: steel},\n"
-                "       stirrup: {points: [[0.5, 0.1, 0.1], [0.5, 0.3, 0.1], [0.5, 0.3, 0.3], [0.5, 0.1, 0.3], "
-                "[0.5, 0.1, 0.1]], diameter: 2 mm, material: steel}}\n"
-                "loads: [{on: {inside: {box: {from: [0, 0, 0], to: [0.5, 1, 1]}}}, initial velocity: {translation: "
-                "[-0.4, 0, 0.1]}},\n"
-                "        {on: {inside: {box: {from: [0.5, 0, 0], to: [1, 1, 1]}}}, initial velocity: {translation: "
-                "[0.4, 0.1, 0]}}]\n"
-                "solve: {%s}\npictures: []\n",
-      "elastic-1d", STEEL_OF, solver);
-  breccia_options options = {.size = sizeof options, .threads = threads};
-  breccia_error *error = breccia_error_create();
-  breccia_model *m;
-  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
-  breccia_error_destroy(&error);
-  free(deck);
-  return m;
+  return model_on(threads,
+                  MATERIALS
+                  "body: {b: {material: soft, spacing: 0.1, shape: {box: {from: [0, 0, 0], to: [1, 0.4, 0.4]}}}}\n"
+                  "peridynamics: {formulation: bond-based, horizon: 2.015 spacings}\n"
+                  "bars: {long: {points: [[0.02, 0.14, 0.11], [0.98, 0.23, 0.17]], area: 4e-6, material: steel},\n"
+                  "       stirrup: {points: [[0.5, 0.1, 0.1], [0.5, 0.3, 0.1], [0.5, 0.3, 0.3], [0.5, 0.1, 0.3], "
+                  "[0.5, 0.1, 0.1]], diameter: 2 mm, material: steel}}\n"
+                  "loads: [{on: {inside: {box: {from: [0, 0, 0], to: [0.5, 1, 1]}}}, initial velocity: {translation: "
+                  "[-0.4, 0, 0.1]}},\n"
+                  "        {on: {inside: {box: {from: [0.5, 0, 0], to: [1, 1, 1]}}}, initial velocity: {translation: "
+                  "[0.4, 0.1, 0]}}]\n"
+                  "solve: {%s}\npictures: []\n",
+                  "elastic-1d", STEEL_OF, solver);
 }
 
 static void works_are_in_the_books_where_steel_yields(void **state)

@@ -19,7 +19,8 @@ static Bars *bars_of(breccia_model *m)
 static breccia_model *beam(const char *steel, double height, const char *bar, const char *loads, const char *solve,
                            int threads)
 {
-  char *deck = text_format(
+  return model_on(
+      threads,
       UNITS "materials:\n  concrete: {model: elastic, density: 2.4e-3, Young modulus: 3e4, Poisson ratio: 0.2}\n  %s\n"
             "body: {b: {material: concrete, lattice: square, spacing: 0.04, thickness: 0.2, shape: {box: {particles: "
             "[100, 11]}}}}\n"
@@ -29,13 +30,6 @@ static breccia_model *beam(const char *steel, double height, const char *bar, co
             "displacement: [free, 0]}\n  - %s\n"
             "solve: %s\npictures: []\n",
       steel, height, height, bar, loads, solve);
-  breccia_options options = {.size = sizeof options, .threads = threads};
-  breccia_error *error = breccia_error_create();
-  breccia_model *m;
-  if (breccia_model_load_string(deck, "deck", &options, &m, error)) fail_msg("%s", breccia_error_text(error));
-  breccia_error_destroy(&error);
-  free(deck);
-  return m;
 }
 
 static double stress_in(const Bars *b, double x)
