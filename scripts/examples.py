@@ -208,6 +208,7 @@ def main(words):
     for name in names:
         if name not in known:
             sys.exit(f"examples.py: there is no example '{name}' with a report.sh; there are {', '.join(known)}")
+    at_once = max(1, min(at_once, len(names or known)))
     copy_of(source, programs, work)
     examples = [Example(name, source, work) for name in names or known]
     begin, ended, telling = time.monotonic(), [], threading.Lock()

@@ -47,11 +47,11 @@ struct Family {
   int64_t slots, stored_slots, bonds; /* bonds: directed, as built */
   int64_t *first;                     /* [slices + 1]; NULL where the bonds could not be made */
   int64_t *stored;                    /* [slices] first stored slot */
-  int64_t *
-      entry; /* [slices] slot n of a slice has entry n + entry[slice] of base and pattern; 0 in bodies with stored slots */
+  /* [slices] slot n of a slice has entry n + entry[slice] of base and pattern; 0 in bodies with stored slots. */
+  int64_t *entry;
   int64_t entries; /* of base and pattern */
-  int32_t *
-      base; /* [entries] lattice: places from the slice's first to lane 0's neighbour; stored: row of neighbour and scale */
+  /* [entries] lattice: places from the slice's first to lane 0's neighbour; stored: row of neighbour and scale. */
+  int32_t *base;
   uint16_t *pattern; /* [entries] row of patterns; unused in stored slots */
   uint8_t *intact;   /* [slots] */
   Pattern *patterns;

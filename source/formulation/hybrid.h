@@ -75,7 +75,15 @@ typedef struct HybridHooke {
 } HybridHooke;
 
 /* Kinds of bonds that planes know, at most: nine of a horizon of 1.5 spacings, all of one of 2.015. */
-enum { HYBRID_KINDS = 16, HYBRID_ODD = 255 /* slices that are like no others */ };
+/* Kinds of bonds in cubic lattices, in the order of `ways` (hybrid_planes_setup.c): along the axes, then these. */
+enum {
+  ACROSS = 3,         /* the first of those across a square */
+  NEAR_KINDS = 9,     /* of the shorter horizon */
+  TWICE = NEAR_KINDS, /* the first of those two spacings long */
+  THROUGH = 12,       /* the first of those through a cube */
+  HYBRID_KINDS = 16,
+  HYBRID_ODD = 255 /* slices that are like no others */
+};
 
 /** What planes ask of a slice, and many slices have in common. */
 typedef struct HybridPlanes {

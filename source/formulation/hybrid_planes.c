@@ -21,9 +21,6 @@ enum {
   ROW = PLACE * (CHUNKS + 2 * REACH) + SLICE, /* whole cache lines, but so many that rows meet in no set */
   DEEP = 20,                                  /* rows at once */
   RING = 4,                                   /* layers that are held */
-  NEAR_KINDS = 9,                             /* of the shorter horizon */
-  TWICE = 9,                                  /* the first of those two spacings long */
-  THROUGH = 12,                               /* the first of those through a cube */
   NO_BONDS = HYBRID_ODD + 1
 };
 
@@ -31,10 +28,10 @@ enum {
 typedef struct Column {
   double row[RING][DEEP + 2 * REACH][ROW];
   double weight[CHUNKS][HYBRID_KINDS][SLICE];
-  double line[3]
-             [SLICE * (CHUNKS + 2)]; /* numbers of a row one after the other, from a chunk before those of the column */
-  int kind[CHUNKS];                  /* of slices whose weights these are, or NO_BONDS; -1: nobody's */
-  bool some;                         /* of these weights some are not 0 */
+  /* Numbers of a row one after the other, from a chunk before those of the column. */
+  double line[3][SLICE * (CHUNKS + 2)];
+  int kind[CHUNKS]; /* of slices whose weights these are, or NO_BONDS; -1: nobody's */
+  bool some;        /* of these weights some are not 0 */
 } Column;
 
 typedef struct PlanesWork {
@@ -339,12 +336,12 @@ LANES_INLINE void through(const Around *a, int kind, int sx, int sy)
 
 LANES_INLINE void all_across(const Around *a, bool far)
 {
-  across(a, 3, 0, 1, 1, far);
-  across(a, 4, 0, 1, -1, far);
-  across(a, 5, 0, 2, 1, far);
-  across(a, 6, 0, 2, -1, far);
-  across(a, 7, 1, 2, 1, far);
-  across(a, 8, 1, 2, -1, far);
+  across(a, ACROSS, 0, 1, 1, far);
+  across(a, ACROSS + 1, 0, 1, -1, far);
+  across(a, ACROSS + 2, 0, 2, 1, far);
+  across(a, ACROSS + 3, 0, 2, -1, far);
+  across(a, ACROSS + 4, 1, 2, 1, far);
+  across(a, ACROSS + 5, 1, 2, -1, far);
 }
 
 /* Some kinds at once: more instructions than the processor keeps decoded take longer. */
@@ -374,10 +371,10 @@ LANES_INLINE void go_through_row(const PlanesWork *w, int r, int64_t layer, int 
       }
       if (which == FAR_ACROSS) all_across(&a, true);
       if (which == FAR_THROUGH) {
-        through(&a, 12, 1, 1);
-        through(&a, 13, -1, 1);
-        through(&a, 14, 1, -1);
-        through(&a, 15, -1, -1);
+        through(&a, THROUGH, 1, 1);
+        through(&a, THROUGH + 1, -1, 1);
+        through(&a, THROUGH + 2, 1, -1);
+        through(&a, THROUGH + 3, -1, -1);
       }
     }
 }
@@ -494,6 +491,7 @@ static void go_through_layer(const PlanesWork *w, int64_t layer)
     (finite ? through_finite : through_small)(w, r, layer);
   }
 }
+
 /** Whether the stripe has slices in a layer of the column. */
 static bool has_slices(const PlanesWork *w, int64_t layer)
 {

@@ -11,7 +11,6 @@
 static const int ways[HYBRID_KINDS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0}, {1, 0, 1},
                                           {-1, 0, 1}, {0, 1, 1},  {0, -1, 1}, {2, 0, 0},  {0, 2, 0},  {0, 0, 2},
                                           {1, 1, 1},  {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
-enum { NEAR_KINDS = 9 };
 
 /** Kind of the bonds along a lattice vector from their lower ends. @return -1: there is none, or -2: the lattice is no cubic one */
 static int kind_of(const Hybrid *h, int block, int vector)

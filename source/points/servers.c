@@ -133,15 +133,22 @@ int points_begin(Points *points, Error *error)
   return status;
 }
 
+/** Server of a point; `guess` is that of the one before. */
+static int server_of(const int64_t *starts, int64_t id, int guess)
+{
+  while (id < starts[guess]) --guess;
+  while (id >= starts[guess + 1]) ++guess;
+  return guess;
+}
+
 static void note_first(Points *points, int material, int64_t row, int64_t history, void *context)
 {
   const int64_t id = (int64_t)points->committed[history], *starts = points->servers->starts[material];
   const Remote *r = points->materials[material].remote;
   const double strain = 0;
-  int server = 0;
   (void)row, (void)context;
   if (id < 0) return;
-  while (id >= starts[server + 1]) ++server;
+  const int server = server_of(starts, id, 0);
   const double *stress = remote_stresses(r, server) + (id - starts[server]);
   remote_note(r, points->committed + history, &strain, stress);
   remote_note(r, points->trial + history, &strain, stress);
@@ -248,14 +255,6 @@ bool points_ask_ahead(const Points *points)
 {
   return points->servers && !points->elastic_stage && !points->keeps_tangents &&
          !(points->plane_stress && points->components == 6) && begun(points);
-}
-
-/** Server of a point; `guess` is that of the one before. */
-static int server_of(const int64_t *starts, int64_t id, int guess)
-{
-  while (id < starts[guess]) --guess;
-  while (id >= starts[guess + 1]) ++guess;
-  return guess;
 }
 
 /** So many strains more are with a server; the last ones send them all. */

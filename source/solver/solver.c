@@ -247,9 +247,11 @@ void solver_stop_at(Solver *s, const double *times, int64_t count, bool again)
 
 int solver_begin(Solver *s, Error *error)
 {
-  if (s->clock.stage == 0) loading_begin(s->loading, s->domain->particles, s->clock.time);
+  if (s->clock.stage == 0) {
+    loading_begin(s->loading, s->domain->particles, s->clock.time);
+    s->ledger.stored_at_start = s->domain->initial_energy + forces_energy(&s->domain->forces);
+  }
   const double kinetic = s->ledger.kinetic;
-  if (s->clock.stage == 0) s->ledger.stored_at_start = s->domain->initial_energy + forces_energy(&s->domain->forces);
   s->ledger.damped |= s->type->damps(s);
   s->records[s->clock.stage] = (StageRecord){.first_step = (double)s->clock.step, .begin = s->clock.time};
   const int status = s->type->begin(s, error);

@@ -75,6 +75,11 @@ NewtonOutcome static_try(Static *s, double end, Try how, Error *error);
 
 /** Whether other ways may be tried where Newton's method finds no equilibrium. */
 bool static_may_relax(const Static *s);
+/** Tries of an increment by these: where bonds soften relaxation first, which takes a fifth of the time of secants there; where points do it may not come to
+ *  rest, and secants go first.
+ *  @param[in] outcome  of Newton's method; @param[in,out] may_relax  until that was tried in vain; @param[in,out] way  raised to what found equilibrium */
+NewtonOutcome static_try_others(Static *s, NewtonOutcome outcome, double end, bool *may_relax, TryBy *way,
+                                Error *error);
 
 /** Whether an increment may be solved again with what has come of it, and be given back when it has been accepted. */
 bool static_may_go_on_again(const Static *s);

@@ -39,11 +39,11 @@ int static_give_back(Solver *run, Error *error)
 }
 
 /** Lets bonds break and the body find equilibrium again, in turn, until no bond is beyond its limit.
- *  @param[out] outcome  why there is no equilibrium; @param[in,out] way  what found it */
+ *  @param[out] outcome  why there is no equilibrium; @param[in,out] way  raised to what found it */
 static int break_bonds(Solver *run, NewtonOutcome *outcome, TryBy *way, Error *error)
 {
   Static *s = run->own;
-  const TryBy other = domain_bonds_may_soften(s->domain) ? BY_RELAXATION : BY_SECANTS;
+  bool may_relax = true;
   int64_t broken;
   *outcome = NEWTON_CONVERGED;
   s->newton.interrupted = NULL; /* bonds that have broken in equilibrium stay so: what this leads to is found first */
@@ -52,12 +52,8 @@ static int break_bonds(Solver *run, NewtonOutcome *outcome, TryBy *way, Error *e
     if (s->domain->out_of_memory) return error_add(error, BRECCIA_FAILURE, "out of memory: broken bonds");
     text_add(&run->log, "  %lld bonds break\n", (long long)broken);
     *outcome = static_try(s, s->clock->time, (Try){0}, error);
-    if (*outcome == NEWTON_ASTRAY &&
-        static_may_relax(s)) { /* the body jumps: roundings decide where the first iteration leads */
-      text_add(&run->log, "    no equilibrium near\n");
-      *outcome = static_try(s, s->clock->time, (Try){.by = other}, error);
-      if (*outcome == NEWTON_CONVERGED) *way = other;
-    }
+    if (*outcome == NEWTON_ASTRAY && static_may_relax(s)) /* roundings decide where the first iteration leads */
+      *outcome = static_try_others(s, *outcome, s->clock->time, &may_relax, way, error);
     if (*outcome == NEWTON_FAILED) return BRECCIA_FAILURE;
   }
   s->newton.interrupted = run->interrupted;

@@ -257,28 +257,32 @@ static bool came_to_equilibrium(NewtonOutcome outcome)
   return outcome == NEWTON_CONVERGED || outcome == NEWTON_COARSE;
 }
 
-/** First try of an increment, and by other ways where Newton's method is stuck: the body jumps to another equilibrium.
- *  @param[in,out] may_relax  until that was tried in vain; @param[out] way  what found equilibrium */
-static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *way, Error *error)
+NewtonOutcome static_try_others(Static *s, NewtonOutcome outcome, double end, bool *may_relax, TryBy *way, Error *error)
 {
-  const bool others = domain_may_soften(s->domain) && static_may_relax(s);
-  /* Where bonds soften relaxation takes a fifth of the time of secants; where points do, it may not come to rest. */
   const bool bonds = domain_bonds_may_soften(s->domain);
-  s->newton.has_others = others && bonds && *may_relax;
-  NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
-  s->newton.has_others = false;
-  if (outcome >= NEWTON_STOPPED || came_to_equilibrium(outcome) || !others ||
-      !is_stuck(s, outcome, end - s->clock->time))
-    return outcome;
   const TryBy ways[] = {bonds ? BY_RELAXATION : BY_SECANTS, bonds ? BY_SECANTS : BY_RELAXATION};
   for (int k = 0; k < 2 && outcome < NEWTON_STOPPED && !came_to_equilibrium(outcome); ++k) {
     if (ways[k] == BY_RELAXATION && !*may_relax) continue;
     tell_refused(s, outcome, true);
     outcome = static_try(s, end, (Try){.by = ways[k]}, error);
-    if (outcome == NEWTON_CONVERGED) *way = ways[k];
+    if (outcome == NEWTON_CONVERGED && ways[k] > *way) *way = ways[k];
     if (ways[k] == BY_RELAXATION) *may_relax = came_to_equilibrium(outcome);
   }
   return outcome;
+}
+
+/** First try of an increment, and by other ways where Newton's method is stuck: the body jumps to another equilibrium.
+ *  @param[in,out] may_relax  until that was tried in vain; @param[out] way  what found equilibrium */
+static NewtonOutcome try_first(Static *s, double end, bool *may_relax, TryBy *way, Error *error)
+{
+  const bool others = domain_may_soften(s->domain) && static_may_relax(s);
+  s->newton.has_others = others && domain_bonds_may_soften(s->domain) && *may_relax;
+  NewtonOutcome outcome = static_try(s, end, (Try){0}, error);
+  s->newton.has_others = false;
+  if (outcome >= NEWTON_STOPPED || came_to_equilibrium(outcome) || !others ||
+      !is_stuck(s, outcome, end - s->clock->time))
+    return outcome;
+  return static_try_others(s, outcome, end, may_relax, way, error);
 }
 
 /** What tries have learned for those to come. */
