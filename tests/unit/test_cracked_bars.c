@@ -38,7 +38,7 @@ static breccia_model *tie_of(const char *law, const char *formulation)
                   "[1, 1]]}}\n"
                   "  - {on: {nearest: [6.25, 50]}, displacement: [free, 0]}\n"
                   "  - {on: {nearest: [293.75, 50]}, displacement: [free, 0]}\n"
-                  "solve: {static: {increments: 40}}\n",
+                  "solve: {static: {increments: 20}}\n",
                   law, formulation);
 }
 

@@ -433,10 +433,11 @@ static void check_model(breccia_model *model, const Law *law, int32_t poor, cons
   team_use(before);
 }
 
-/** All bodies, settings and laws of a formulation. @return how many */
+/** All bodies, settings and laws of a formulation, of hybrid bonds every other one, as the sums over their points take longest. @return how many */
 static int check_formulation(const FormulationType *type)
 {
   const Law *laws = type->components == 1 ? fibre : solid;
+  const int every = under_sanitizers() ? 13 : strcmp(type->name, "hybrid") == 0 ? 2 : 1;
   const struct Covered *c = covered;
   int count = 0, asked = 0;
   while (c < covered + sizeof covered / sizeof *covered && strcmp(c->formulation, type->name)) ++c;
@@ -446,7 +447,7 @@ static int check_formulation(const FormulationType *type)
       for (int number = 0; number < s->bodies; ++number) {
         char name[256];
         if (type->takes && !type->takes(law_find(NULL, laws[n].name))) continue;
-        if (asked++ % (under_sanitizers() ? 13 : 1)) continue;
+        if (asked++ % every) continue;
         breccia_model *model = body(type->name, &laws[n], s, number);
         snprintf(name, sizeof name, "%s of %s, %s, %s, body %d", laws[n].name, type->name, s->space, s->words, number);
         check_model(model, &laws[n], 0, name);
