@@ -32,8 +32,8 @@ CORRESPONDENCE = {name: [(HYBRID, f"formulation: correspondence, zero-energy con
 def told(share):
     if not abs(share) < 100:
         return "lost"
-    if abs(share) < 1e-9:
-        return "< 1e-9"
+    if abs(share) < 1e-7:
+        return "< 1e-7"
     return f"{share:+.0e}" if abs(share) < 1e-5 else f"{100 * share:+.3f} %" if abs(share) < 1e-3 else f"{100 * share:+.1f} %"
 
 
@@ -51,7 +51,7 @@ class Column(Run):
         """Errors in the middle, at the top, and the largest of the strain in any row."""
         far = [strain / STRAIN - 1 for strain in self.strains]
         n = max(range(len(far)), key=lambda k: abs(far[k]))
-        where = "" if not 1e-9 <= abs(far[n]) < 100 else f", {HEIGHT - self.heights[n]:.3g} m below the top"
+        where = "" if not 1e-7 <= abs(far[n]) < 100 else f", {HEIGHT - self.heights[n]:.3g} m below the top"
         strain, stress = (self.last("middle", what + " xy") for what in ("strain", "stress"))
         return [told(strain / STRAIN - 1), told(stress / STRESS - 1), told(self.moved), told(far[n]) + where]
 

@@ -70,7 +70,7 @@ static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
   const char *const spaces[] = {"plane strain", "plane stress"};
   for (int k = under_sanitizers(); k < 2; ++k) {
     double fracture[2];
-    for (int fine = 0; fine < 2; ++fine) {
+    for (int fine = 0; fine < (under_sanitizers() ? 1 : 2); ++fine) {
       breccia_model *m = struck_plate(spaces[k], fine ? ", safety: 0.2" : "");
       breccia_error *error = breccia_error_create();
       if (breccia_model_step(m, INT64_MAX, error)) fail_msg("%s", breccia_error_text(error));
@@ -87,6 +87,7 @@ static void a_struck_plate_breaks_soundly_at_the_default_step(void **state)
       breccia_error_destroy(&error);
       breccia_model_destroy(&m);
     }
+    if (under_sanitizers()) continue; /* four times as many steps through the same code */
     print_message("%s: fracture %.1f J, at a quarter of the step %.1f J\n", spaces[k], fracture[0], fracture[1]);
     assert_near(fracture[0], fracture[1], 0.35 * fracture[1]);
   }
