@@ -190,6 +190,7 @@ static void answers_are_those_of_a_dense_solution(void **state)
   static const char *const ways[] = {"conjugate gradients", "minimal residuals", "direct"};
   for (int c = 0; c < CASES; ++c)
     for (int way = 0; way < 3; ++way) {
+      if (under_sanitizers() && (c + way) % 3) continue;
       Problem p = pose(model_of(UNITS "%s" END, cases[c].deck), way == 1 ? 3e3 : 0);
       char name[100];
       double *wanted[MOTIONS];
