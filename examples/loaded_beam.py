@@ -17,7 +17,7 @@ class Model:
     """curve: (deflection [mm], load [kN]), means over a time, so that vibrations do not count as loads."""
 
     def __init__(self, deck, words, field, mean=1e-3, deformed=20):
-        self.words = words
+        self.deck, self.words = deck, words
         folder = os.path.join(work.name, deck)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         breccia("run", deck + ".yaml", "--quiet", "--output", folder)
