@@ -91,6 +91,36 @@ static void eigenvalues_and_vectors_are_right_to_a_few_roundings(void **state)
   for (int k = 0; k < 3; ++k) assert_true(worst[k] < 5e-15); /* false for what is no number */
 }
 
+/** Its own eigenvalues give the tensor back; those that are positive, and none of the others, leave as much on either side as the vectors do. */
+static void tensors_are_put_together_from_parts_as_from_vectors(void **state)
+{
+  (void)state;
+  uint64_t seed = 3;
+  double worst[2] = {0};
+  for (int round = 0; round < ROUNDS; ++round) {
+    Lanes a[6], size = lanes_set(1e-300), positive[3], again[6], parts_of[6], whole[6];
+    double drawn[6];
+    for (int l = 0; l < LANES; ++l) {
+      draw(&seed, (round + l) % KINDS, drawn);
+      for (int k = 0; k < 6; ++k) a[k][l] = drawn[k];
+    }
+    for (int k = 0; k < 6; ++k) size = lanes_greatest(size, lanes_absolute(a[k]));
+    const SpectrumParts parts = spectrum_parts(a);
+    const Spectrum s = spectrum_of(a);
+    spectral_tensor_of_parts(&parts, parts.value, again);
+    for (int k = 0; k < 3; ++k) positive[k] = lanes_greatest(parts.value[k], lanes_set(0));
+    spectral_tensor_of_parts(&parts, positive, parts_of);
+    spectral_tensor(&s, positive, whole);
+    for (int l = 0; l < LANES; ++l)
+      for (int k = 0; k < 6; ++k) {
+        worst[0] = larger_of(worst[0], fabs(again[k][l] - a[k][l]) / size[l]);
+        worst[1] = larger_of(worst[1], fabs(parts_of[k][l] - whole[k][l]) / size[l]);
+      }
+  }
+  print_message("put together: off by %.1e, its positive part by %.1e\n", worst[0], worst[1]);
+  for (int k = 0; k < 2; ++k) assert_true(worst[k] < 1e-14);
+}
+
 static void tensors_that_are_nothing_or_round_have_some_basis(void **state)
 {
   (void)state;
@@ -132,6 +162,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(eigenvalues_and_vectors_are_right_to_a_few_roundings),
+      cmocka_unit_test(tensors_are_put_together_from_parts_as_from_vectors),
       cmocka_unit_test(tensors_that_are_nothing_or_round_have_some_basis),
       cmocka_unit_test(exponentials_and_logarithms_are_right_to_their_last_digits),
   };

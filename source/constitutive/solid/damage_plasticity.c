@@ -92,6 +92,10 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->tension = strength;
   c->tension_share = v[TENSION_DAMAGE];
   c->compression_share = v[COMPRESSION_DAMAGE];
+  c->by_twice_shear = 1 / (2 * c->elastic.shear);
+  c->by_rounding = 1 / c->rounding;
+  c->by_tension = 1 / strength;
+  c->by_rest_of_alpha = 1 / (1 - c->alpha);
   c->compression = v[FIRST_YIELD] * v[COMPRESSIVE];
   /* The peak of the hump, f_c0 (1 + a)^2 / (4 a), is f_c. */
   const double over = 1 / v[FIRST_YIELD];

@@ -10,7 +10,8 @@ typedef struct DamagePlasticity {
   double tension, tension_rate, tension_share;
   double tail, steeper; /* t, and k - 1; 1 and 0: one exponential */
   double compression, hump, compression_rate, compression_share;
-  SolidUpdate *update; /* for the vectors of this machine */
+  double by_twice_shear, by_rounding, by_tension, by_rest_of_alpha; /* 1 / 2G, 1 / rounding, 1 / f_t, 1 / (1 - alpha) */
+  SolidUpdate *update;                                              /* for the vectors of this machine */
 } DamagePlasticity;
 
 /* Plastic strain first. */

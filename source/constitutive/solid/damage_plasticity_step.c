@@ -13,10 +13,10 @@ typedef struct Trial {
   Dual sum, deviator[3], q;
 } Trial;
 
-/** Where the flow leads that leaves a share of the trial deviator: principal effective stresses, plastic strains in tension and compression, F, and the
- *  share of tension in the stresses. */
+/** Where the flow leads that leaves a share of the trial deviator: principal effective stresses and their sum, plastic strains in tension and compression, F,
+ *  and the share of tension in the stresses. */
 typedef struct Flow {
-  Dual stress[3], tension, compression, excess, share, multiplier;
+  Dual stress[3], sum, tension, compression, excess, share, multiplier;
 } Flow;
 
 LANES_INLINE Trial trial_of(DualSlopes n, const Lanes principal[3])
@@ -50,17 +50,18 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
 {
   Flow f;
   const Lanes zero = lanes_set(0), one = lanes_set(1);
-  const double half = 1 / (2 * c->elastic.shear), third = 1 / (3 * c->elastic.shear);
+  const double half = c->by_twice_shear, third = half * (2.0 / 3);
   const Dual q = dual_times_variable(n, t->q, left, LEFT);
-  const Lanes root = lanes_root(lanes_set(c->rounding * c->rounding) + q.value * q.value), inverse = one / left;
-  const Dual steep = dual_of(n, root, q.value / root, q);
+  const Lanes root = lanes_root(lanes_set(c->rounding * c->rounding) + q.value * q.value),
+              both = one / lanes_product(left, root), inverse = lanes_product(root, both);
+  const Dual steep = dual_of(n, root, q.value * lanes_product(left, both), q);
   Dual over = dual_constant((inverse - one) * lanes_set(third));
   over.slope[LEFT] = -inverse * inverse * lanes_set(third);
   f.multiplier = dual_product(n, over, steep);
-  const Dual whole = dual_sum(n, t->sum, -3 * c->elastic.bulk * c->dilation, f.multiplier);
+  f.sum = dual_sum(n, t->sum, -3 * c->elastic.bulk * c->dilation, f.multiplier);
   Dual positive = dual_constant(zero), all = dual_constant(zero);
   for (int k = 0; k < 3; ++k) {
-    f.stress[k] = dual_sum(n, dual_times_variable(n, t->deviator[k], left, LEFT), 1.0 / 3, whole);
+    f.stress[k] = dual_sum(n, dual_times_variable(n, t->deviator[k], left, LEFT), 1.0 / 3, f.sum);
     positive = dual_add(n, positive, dual_positive(n, f.stress[k]));
     all = dual_add(n, all, dual_absolute(n, f.stress[k]));
   }
@@ -69,7 +70,7 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
   /* Plastic strain increments: (1 - r) s_trial / 2G + dl tan(psi) / 3. */
   Dual gone = dual_constant((one - left) * lanes_set(half));
   gone.slope[LEFT] = lanes_set(-half);
-  const Dual dilated = dual_scale(n, c->dilation / 3, f.multiplier),
+  const Dual dilated = dual_scale(n, c->dilation * (1.0 / 3), f.multiplier),
              largest = dual_add(n, dual_product(n, gone, t->deviator[0]), dilated),
              least = dual_add(n, dual_product(n, gone, t->deviator[2]), dilated);
   f.tension = dual_product(n, f.share, dual_positive(n, largest));
@@ -77,102 +78,179 @@ LANES_INLINE Flow flow_by(DualSlopes n, const DamagePlasticity *c, bool tail, co
   f.compression = dual_product(n, dual_rest(n, f.share), dual_positive(n, dual_scale(n, -1, least)));
   f.compression.value += committed[PLASTIC_IN_COMPRESSION];
   const double b = c->compression_rate, m = c->compression_share;
-  Dual strength = dual_scale(n, c->tension, remaining(n, c, tail, f.tension, 1 - c->tension_share));
-  strength =
-      dual_larger(n, strength, dual_constant(lanes_set(1e-9 * c->tension))); /* a crack cannot carry, but divides */
+  /* One over the strength in tension; a crack cannot carry, but divides. */
+  Dual weakness = dual_scale(n, c->by_tension, remaining(n, c, tail, f.tension, c->tension_share - 1));
+  weakness = dual_smaller(n, weakness, dual_constant(lanes_set(1e9 * c->by_tension)));
   const Dual rise = dual_exponential(n, dual_scale(n, -b * (1 - m), f.compression)),
              fall = dual_exponential(n, dual_scale(n, -b * (2 - m), f.compression));
   Dual cohesion = dual_sum(n, dual_scale(n, c->compression * (1 + c->hump), rise), -c->compression * c->hump, fall);
   cohesion = dual_larger(n, cohesion, dual_constant(lanes_set(1e-9 * c->compression)));
-  const Dual beta = dual_shift(dual_scale(n, 1 - c->alpha, dual_quotient(n, cohesion, strength)), -(1 + c->alpha)),
+  const Dual beta = dual_shift(dual_scale(n, 1 - c->alpha, dual_product(n, cohesion, weakness)), -(1 + c->alpha)),
              pulled = dual_positive(n, f.stress[0]), pressed = dual_positive(n, dual_scale(n, -1, f.stress[0]));
-  Dual excess = dual_add(n, dual_sum(n, q, c->alpha, whole), dual_product(n, beta, pulled));
-  excess = dual_scale(n, 1 / (1 - c->alpha), dual_sum(n, excess, -c->gamma, pressed));
+  Dual excess = dual_add(n, dual_sum(n, q, c->alpha, f.sum), dual_product(n, beta, pulled));
+  excess = dual_scale(n, c->by_rest_of_alpha, dual_sum(n, excess, -c->gamma, pressed));
   f.excess = dual_sum(n, excess, -1, cohesion);
   return f;
 }
 
 /** 1 - D of a state. */
-LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, bool tail, const Flow *f)
+LANES_INLINE Dual wholeness(DualSlopes n, const DamagePlasticity *c, bool tail, Dual tension, Dual compression,
+                            Dual share)
 {
-  const Dual tension = remaining(n, c, tail, f->tension, c->tension_share),
-             compression =
-                 dual_exponential(n, dual_scale(n, -c->compression_rate * c->compression_share, f->compression));
-  return dual_product(n, compression, dual_rest(n, dual_product(n, f->share, dual_rest(n, tension))));
+  const Dual pulled = remaining(n, c, tail, tension, c->tension_share),
+             pressed = dual_exponential(n, dual_scale(n, -c->compression_rate * c->compression_share, compression));
+  return dual_product(n, pressed, dual_rest(n, dual_product(n, share, dual_rest(n, pulled))));
 }
 
-/** The share at which F vanishes, by Newton's method in a bracket; 1 of points that are elastic. F is negative where nothing is left, because the flow
- *  dilates. NaN: there is none. @param[out] flow  there, values only */
-LANES_INLINE Lanes find_left(const DamagePlasticity *c, bool tail, const Lanes principal[3], const Trial *t,
-                             const Lanes *committed, Flow *flow, LaneMask *plastic)
+/* What a search finds besides the share. */
+enum { FOUND_SUM, FOUND_TENSION, FOUND_COMPRESSION, FOUND_SHARE, FOUND };
+
+/** A group's trial stress, and where F vanishes: what the search for it knows so far. */
+typedef struct Search {
+  Lanes principal[3], sum, deviator[3], q;       /* trial stress */
+  Lanes noise, by_longest;                       /* F that is nothing; 1 / q */
+  Lanes left, low, high, moved;                  /* share, its bracket, how far it went last */
+  Lanes left_before, gap_before, inverse_before; /* share, F and 1 / slope the time before */
+  Lanes rest, found[FOUND];                      /* what the last step adds; what it leads to */
+  LaneMask flows, ended, bracketed;
+} Search;
+
+LANES_INLINE Trial searched_trial(const Search *s)
+{
+  Trial t = {dual_constant(s->sum),
+             {dual_constant(s->deviator[0]), dual_constant(s->deviator[1]), dual_constant(s->deviator[2])},
+             dual_constant(s->q)};
+  return t;
+}
+
+LANES_INLINE void begin_search(const DamagePlasticity *c, const SolidLanes *p, Search *s)
+{
+  const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
+  const DualSlopes none = {0, 0};
+  const Lanes zero = lanes_set(0), one = lanes_set(1);
+  Lanes elastic[6], value[3];
+  for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[k];
+  const Lanes volume = lanes_product(lanes_set(lambda), lanes_trace(elastic));
+  spectrum_values(elastic, value);
+  for (int k = 0; k < 3; ++k) s->principal[k] = volume + lanes_set(twice) * value[k];
+  const Trial t = trial_of(none, s->principal);
+  s->sum = t.sum.value;
+  for (int k = 0; k < 3; ++k) s->deviator[k] = t.deviator[k].value;
+  s->q = t.q.value;
+  s->noise = lanes_set(1e-14 * c->compression) +
+             lanes_set(4e-16) * lanes_greatest(lanes_absolute(s->principal[0]), lanes_absolute(s->principal[2]));
+  s->by_longest = one / lanes_greatest(s->q, lanes_set(1e-100 * c->compression));
+  s->left = s->left_before = s->high = one;
+  s->low = s->inverse_before = s->rest = zero;
+  s->moved = s->gap_before = lanes_set(INFINITY);
+  s->flows = s->ended = s->bracketed = (LaneMask){0};
+}
+
+/** One more step towards the share at which F vanishes, by Newton's method in a bracket; it is 1 of points that are elastic. F is negative where nothing is
+ *  left, because the flow dilates. From the second time on steps lead to where the cubic vanishes that has the values and slopes of the last two. Where they
+ *  and Newton's own differ by a rounding of the share, all else follows them by its slope. @param[in] give_up  whether it is the last step: shares that are not there become no number. @return whether all
+ *  are there; before, values are not told */
+LANES_INLINE bool search_on(const DamagePlasticity *c, bool tail, Search *s, const Lanes *committed, bool give_up)
+{
+  const DualSlopes to_left = {LEFT, LEFT + 1};
+  const Lanes zero = lanes_set(0), one = lanes_set(1), half = lanes_set(0.5), left = s->left;
+  const Trial t = searched_trial(s);
+  const Flow flow = flow_by(to_left, c, tail, &t, left, committed);
+  const Lanes gap = flow.excess.value, slope = flow.excess.slope[LEFT];
+  const LaneMask first = s->gap_before == lanes_set(INFINITY);
+  s->flows |= first & (gap > lanes_set(1e-12 * c->compression));
+  const LaneMask beyond = gap > zero;
+  s->high = lanes_choose(beyond, left, s->high);
+  s->low = lanes_choose(beyond, s->low, left);
+  s->bracketed |= ~beyond;
+  LaneMask ended =
+      s->ended | ~s->flows | (lanes_absolute(gap) <= s->noise) | (s->high - s->low <= lanes_set(4e-16) * s->high);
+  /* The share as a cubic of F: Hermite's interpolation. */
+  const Lanes apart = s->gap_before - gap;
+  const LaneMask two = (apart != zero) & ~first;
+  /* Newton's step in the multiplier, and three bounds from below of what it leaves: the first one of second order, the others right where the rounding of
+   * the potential's tip is nothing, and where it is all. One division for all. */
+  const double triple = 3 * c->elastic.shear;
+  const Lanes stands = one + lanes_set(triple * c->by_rounding) * flow.multiplier.value,
+              grows = lanes_product(lanes_set(triple * c->by_rounding), flow.multiplier.slope[LEFT]),
+              tip = lanes_cross(slope, stands, gap, grows), some = lanes_choose(two, apart, one),
+              by_all = one / (lanes_product(slope, some) * tip), inverse = lanes_product(some, tip) * by_all,
+              by_apart = lanes_product(slope, tip) * by_all, by_tip = lanes_product(slope, some) * by_all;
+  const Lanes step = lanes_product(gap, inverse), chord = lanes_product(s->left_before - left, by_apart),
+              bend = (chord - inverse) -
+                     lanes_product(s->gap_before, by_apart) * ((s->inverse_before + inverse) - (chord + chord)),
+              more = lanes_where(two, lanes_product(gap, gap) * lanes_product(by_apart, bend));
+  const LaneMask smooth = two & (lanes_absolute(more) <= half * lanes_absolute(step)) & (slope > zero),
+                 last = smooth & ~ended & (lanes_absolute(more) <= lanes_set(4e-16) * left) &
+                        (lanes_absolute(step) <= lanes_set(1e-7) * left);
+  s->rest = lanes_choose(last, more - step, s->rest);
+  ended |= last;
+  const Lanes wanted = lanes_set(triple) * (flow.multiplier.value - step * flow.multiplier.slope[LEFT]);
+  Lanes next = lanes_greatest(left - step, (s->q - wanted) * s->by_longest);
+  next = lanes_greatest(next, lanes_product(slope, by_tip));
+  next = lanes_choose(smooth, left - step + more, next);
+  const LaneMask inside = (slope > zero) & (next > s->low) & (next < s->high),
+                 good = inside & (~s->bracketed | (lanes_absolute(next - left) <= half * s->moved));
+  next = lanes_choose(good, next, half * (s->low + s->high));
+  if (give_up || !lanes_any(~ended)) {
+    const Dual *const found[] = {&flow.sum, &flow.tension, &flow.compression, &flow.share};
+    for (int k = 0; k < FOUND; ++k) s->found[k] = found[k]->value + s->rest * found[k]->slope[LEFT];
+    s->left = lanes_choose(ended, left + s->rest, lanes_set(NAN));
+    return true;
+  }
+  s->moved = lanes_choose(s->bracketed, lanes_absolute(next - left), s->moved);
+  s->left_before = left;
+  s->gap_before = gap;
+  s->inverse_before = inverse;
+  s->ended = ended | (next == left);
+  s->left = lanes_choose(ended, left, next);
+  return false;
+}
+
+/** Goes on until all points of all groups are there. */
+LANES_INLINE void search_all(const DamagePlasticity *c, bool tail, const SolidLanes *p, int groups, Search *searches)
 {
   enum { MOST_ITERATIONS = 400 };
-  const DualSlopes to_left = {LEFT, LEFT + 1};
-  const Lanes one = lanes_set(1), half = lanes_set(0.5), triple = lanes_set(3 * c->elastic.shear),
-              noise = lanes_set(1e-14 * c->compression) +
-                      lanes_set(4e-16) * lanes_greatest(lanes_absolute(principal[0]), lanes_absolute(principal[2])),
-              longest = lanes_greatest(t->q.value, lanes_set(1e-100 * c->compression));
-  Lanes left = one, low = lanes_set(0), high = one, before = lanes_set(INFINITY);
-  LaneMask ended = {0}, bracketed = {0};
-  for (int iteration = 0; iteration < MOST_ITERATIONS; ++iteration) {
-    *flow = flow_by(to_left, c, tail, t, left, committed);
-    const Lanes gap = flow->excess.value, slope = flow->excess.slope[LEFT];
-    if (iteration == 0) {
-      *plastic = gap > lanes_set(1e-12 * c->compression);
-      ended = ~*plastic;
+  bool there[SOLID_GROUPS] = {false};
+  int going = groups;
+  for (int iteration = 1; going; ++iteration)
+    for (int g = 0; g < groups; ++g) {
+      if (there[g]) continue;
+      there[g] = search_on(c, tail, &searches[g], p[g].committed, iteration == MOST_ITERATIONS);
+      going -= there[g];
     }
-    const LaneMask beyond = gap > lanes_set(0);
-    high = lanes_choose(beyond, left, high);
-    low = lanes_choose(beyond, low, left);
-    bracketed |= ~beyond;
-    ended |= (lanes_absolute(gap) <= noise) | (high - low <= lanes_set(4e-16) * high);
-    if (!lanes_any(~ended)) break;
-    /* Newton's step in the multiplier, and three bounds from below of what it leaves: the first one of second order, the others right where the rounding of
-     * the potential's tip is nothing, and where it is all. */
-    const Lanes step = gap / slope, wanted = triple * (flow->multiplier.value - step * flow->multiplier.slope[LEFT]);
-    Lanes next = lanes_greatest(left - step, (t->q.value - wanted) / longest);
-    next = lanes_greatest(next, one / (one + wanted * lanes_set(1 / c->rounding)));
-    const LaneMask inside = (slope > lanes_set(0)) & (next > low) & (next < high),
-                   good = inside & (~bracketed | (lanes_absolute(next - left) <= half * before));
-    next = lanes_choose(good, next, half * (low + high));
-    before = lanes_choose(bracketed, lanes_absolute(next - left), before);
-    ended |= next == left;
-    left = lanes_choose(ended, left, next);
-  }
-  return lanes_choose(ended, left, lanes_set(NAN));
 }
 
-LANES_INLINE void step_along(const DamagePlasticity *c, SolidLanes *p, bool tail, bool tangents)
+LANES_INLINE void finish_step(const DamagePlasticity *c, const Search *s, SolidLanes *p, bool tail, bool tangents)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const DualSlopes none = {0, 0}, every = {0, LEFT + 1};
-  Lanes elastic[6], effective[6], returned[6], principal[3], plastic[6];
+  Lanes elastic[6], effective[6], plastic[6];
   for (int k = 0; k < 6; ++k) elastic[k] = p->strain[k] - p->committed[k];
   elastic_stress_lanes(&c->elastic, elastic, effective);
-  const Spectrum strain = spectrum_of(elastic);
-  const Lanes volume = lanes_product(lanes_set(lambda), lanes_trace(elastic));
-  for (int k = 0; k < 3; ++k) principal[k] = volume + lanes_set(twice) * strain.value[k];
-  LaneMask flows;
-  Flow flow;
-  const Trial trial = trial_of(none, principal);
-  const Lanes left = find_left(c, tail, principal, &trial, p->committed, &flow, &flows);
-  Lanes value[3];
-  for (int k = 0; k < 3; ++k) value[k] = flow.stress[k].value;
-  spectral_tensor(&strain, value, returned);
-  for (int k = 0; k < 6; ++k) effective[k] = lanes_choose(flows, returned[k], effective[k]);
+  const Lanes left = s->left, stiff = lanes_product(lanes_set(twice), left),
+              mean = lanes_product(lanes_trace(elastic), lanes_set(1.0 / 3)),
+              spherical = lanes_product(s->found[FOUND_SUM], lanes_set(1.0 / 3));
+  for (int k = 0; k < 6; ++k) {
+    const Lanes returned = k < 3 ? spherical + stiff * (elastic[k] - mean) : lanes_product(stiff, elastic[k]);
+    effective[k] = lanes_choose(s->flows, returned, effective[k]);
+  }
   plastic_strain_lanes(&c->elastic, p->strain, effective, plastic);
-  for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(flows, plastic[k], p->committed[k]);
-  p->trial[PLASTIC_IN_TENSION] = flow.tension.value;
-  p->trial[PLASTIC_IN_COMPRESSION] = flow.compression.value;
-  Dual whole = wholeness(none, c, tail, &flow);
+  for (int k = 0; k < 6; ++k) p->trial[k] = lanes_choose(s->flows, plastic[k], p->committed[k]);
+  p->trial[PLASTIC_IN_TENSION] = s->found[FOUND_TENSION];
+  p->trial[PLASTIC_IN_COMPRESSION] = s->found[FOUND_COMPRESSION];
+  Dual whole = wholeness(none, c, tail, dual_constant(s->found[FOUND_TENSION]),
+                         dual_constant(s->found[FOUND_COMPRESSION]), dual_constant(s->found[FOUND_SHARE]));
   p->trial[PLASTIC_DAMAGE] = lanes_set(1) - whole.value;
   for (int k = 0; k < 6; ++k) p->stress[k] = lanes_product(whole.value, effective[k]) + (left - left);
   if (!tangents) return;
-  const Trial varied = trial_of(every, principal);
-  flow = flow_by(every, c, tail, &varied, left, p->committed);
-  whole = wholeness(every, c, tail, &flow);
-  Lanes slopes[9], tangent[36];
-  const Lanes by_flow = lanes_where(flows, lanes_set(1) / lanes_choose(flows, flow.excess.slope[LEFT], lanes_set(1)));
+  const Trial varied = trial_of(every, s->principal);
+  const Flow flow = flow_by(every, c, tail, &varied, left, p->committed);
+  whole = wholeness(every, c, tail, flow.tension, flow.compression, flow.share);
+  const Spectrum strain = spectrum_of(elastic);
+  Lanes value[3], slopes[9], tangent[36];
+  const Lanes by_flow =
+      lanes_where(s->flows, lanes_set(1) / lanes_choose(s->flows, flow.excess.slope[LEFT], lanes_set(1)));
   for (int k = 0; k < 3; ++k) {
     const Dual nominal = dual_product(every, whole, flow.stress[k]);
     Lanes to_trial[3];
@@ -185,14 +263,22 @@ LANES_INLINE void step_along(const DamagePlasticity *c, SolidLanes *p, bool tail
   store_tangents(tangent, p->tangent);
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step_along(const DamagePlasticity *c, SolidLanes *p, int groups, bool tail, bool tangents)
 {
-  step_along(constants, p, false, tangents);
+  Search searches[SOLID_GROUPS];
+  for (int g = 0; g < groups; ++g) begin_search(c, &p[g], &searches[g]);
+  search_all(c, tail, p, groups, searches);
+  for (int g = 0; g < groups; ++g) finish_step(c, &searches[g], &p[g], tail, tangents);
 }
 
-LANES_INLINE void step_with_tail(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
-  step_along(constants, p, true, tangents);
+  step_along(constants, p, groups, false, tangents);
+}
+
+LANES_INLINE void step_with_tail(const void *constants, SolidLanes *p, int groups, bool tangents)
+{
+  step_along(constants, p, groups, true, tangents);
 }
 
 LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)

@@ -11,9 +11,8 @@ LANES_INLINE ReturnSlopes slopes_of(const DruckerPrager *c, bool cone, double st
   return (ReturnSlopes){0, 0, 0, shears ? 1 - shear2 / (shear2 + 2 * hard / 3) : 1};
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step_group(const DruckerPrager *c, SolidLanes *p, bool tangents)
 {
-  const DruckerPrager *c = constants;
   const double shear2 = 2 * c->elastic.shear, bulk9 = 9 * c->elastic.bulk,
                stiffness = shear2 + bulk9 * c->slope * c->dilation;
   const Lanes zero = lanes_set(0), x = p->committed[CONE_EQUIVALENT], cut = lanes_set(c->cut);
@@ -57,6 +56,11 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
     else
       elastic_tangent(&c->elastic, p->tangent[l]);
   }
+}
+
+LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
+{
+  for (int g = 0; g < groups; ++g) step_group(constants, &p[g], tangents);
 }
 
 LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)

@@ -139,6 +139,10 @@ LANES_INLINE Dual dual_absolute(DualSlopes n, Dual x)
   DUAL_EACH(n, k) x.slope[k] = (Lanes)((LaneMask)x.slope[k] ^ sign);
   return x;
 }
+LANES_INLINE Dual dual_smaller(DualSlopes n, Dual x, Dual y)
+{
+  return dual_choose(n, x.value <= y.value, x, y);
+}
 LANES_INLINE Dual dual_larger(DualSlopes n, Dual x, Dual y)
 {
   return dual_choose(n, x.value >= y.value, x, y);

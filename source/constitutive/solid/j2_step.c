@@ -39,14 +39,14 @@ LANES_INLINE void step_of(const J2 *c, SolidLanes *p, bool travels, bool tangent
   }
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
-  step_of(constants, p, false, tangents);
+  for (int g = 0; g < groups; ++g) step_of(constants, &p[g], false, tangents);
 }
 
-LANES_INLINE void step_that_travels(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step_that_travels(const void *constants, SolidLanes *p, int groups, bool tangents)
 {
-  step_of(constants, p, true, tangents);
+  for (int g = 0; g < groups; ++g) step_of(constants, &p[g], true, tangents);
 }
 
 LANES_INLINE void inside(const void *constants, const TrialLanes *t, LaneMask *found)

@@ -46,9 +46,8 @@ LANES_INLINE void find_rest(DualSlopes n, const LinkLaw *c, const Lanes *committ
   rest[1] = dual_product(n, dual_rest(n, dual_product(n, d[LINK_TENSILE], dual_rest(n, closed))), uncrushed);
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step_group(const LinkLaw *c, SolidLanes *p, bool tangents)
 {
-  const LinkLaw *c = constants;
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   const DualSlopes n = {0, tangents ? 3 : 0};
   const Spectrum spectrum = spectrum_of(p->strain);
@@ -72,6 +71,11 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
     for (int m = 0; m < 3; ++m) slopes[3 * k + m] = stress[k].slope[m];
   spectral_tangent(&spectrum, value, slopes, tangent);
   store_tangents(tangent, p->tangent);
+}
+
+LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
+{
+  for (int g = 0; g < groups; ++g) step_group(constants, &p[g], tangents);
 }
 
 /** Points that were never damaged and whose strains, all together, are less than what damages. */

@@ -47,9 +47,8 @@ LANES_INLINE void respond(DualSlopes n, const Mazars *c, const Dual strain[3], c
   for (int k = 0; k < 3; ++k) stress[k] = dual_product(n, whole, effective[k]);
 }
 
-LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
+LANES_INLINE void step_group(const Mazars *c, SolidLanes *p, bool tangents)
 {
-  const Mazars *c = constants;
   const DualSlopes n = {0, tangents ? 3 : 0};
   Spectrum spectrum;
   if (tangents)
@@ -72,6 +71,11 @@ LANES_INLINE void step(const void *constants, SolidLanes *p, bool tangents)
   }
   spectral_tangent(&spectrum, value, slopes, tangent);
   store_tangents(tangent, p->tangent);
+}
+
+LANES_INLINE void step(const void *constants, SolidLanes *p, int groups, bool tangents)
+{
+  for (int g = 0; g < groups; ++g) step_group(constants, &p[g], tangents);
 }
 
 /** Points that were never damaged and whose strains, all together, are less than what damages. */

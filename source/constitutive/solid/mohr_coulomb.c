@@ -31,35 +31,17 @@ static void normal_of(int plane, double sine, double normal[3])
   normal[smaller[plane]] = -(1 - sine);
 }
 
-typedef struct PlaneSet {
-  int count, plane[3];
-} PlaneSet;
-
-/* The tip of the pyramid is a corner of the cut-off, which never lies beyond it. */
-static const PlaneSet sets[COULOMB_SETS] = {
-    {1, {SHEAR13}},
-    {1, {TENSION1}},
-    {2, {SHEAR13, TENSION1}},
-    {2, {SHEAR13, SHEAR12}},
-    {2, {SHEAR13, SHEAR23}},
-    {2, {TENSION1, TENSION2}},
-    {3, {SHEAR13, SHEAR12, TENSION1}},
-    {3, {SHEAR13, TENSION1, TENSION2}},
-    {3, {TENSION1, TENSION2, TENSION3}},
-};
-
 /** What all trial stresses share that return to a set of planes. A set with the cut-off has none where there is no cut-off. */
 static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
 {
   const double lambda = c->elastic.bulk - 2 * c->elastic.shear / 3, twice = 2 * c->elastic.shear;
   double system[9], right[3][6] = {{0}}; /* normals through the elasticity; the inverse */
-  CoulombReturn out = {.corner = set->count == 3};
+  CoulombReturn out = {.exists = false};
   for (int r = 0; r < set->count; ++r) {
     double normal[3], flow[3];
     if (set->plane[r] >= TENSION1 && isinf(c->tensile)) return out;
     normal_of(set->plane[r], c->sine, normal);
     normal_of(set->plane[r], c->dilation, flow);
-    out.plane[r] = set->plane[r];
     right[r][3 + r] = 1;
     for (int k = 0; k < 3; ++k) {
       out.stiff_flow[r][k] = lambda * (flow[0] + flow[1] + flow[2]) + twice * flow[k];
@@ -78,7 +60,7 @@ static CoulombReturn return_to(const MohrCoulomb *c, const PlaneSet *set)
   for (int r = 0; r < set->count; ++r)
     for (int k = 0; k < set->count; ++k) out.inverse[r][k] = right[r][3 + k];
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3 && !out.corner; ++k) {
+    for (int k = 0; k < 3 && set->count < 3; ++k) {
       out.slopes[3 * i + k] = lambda + (i == k ? twice : 0);
       for (int r = 0; r < set->count; ++r) out.slopes[3 * i + k] -= out.stiff_flow[r][i] * right[r][k];
     }
@@ -95,7 +77,7 @@ static int prepare(const double *v, void *constants, char *reason, size_t size)
   c->limit = 2 * v[COHESION] * cos(v[FRICTION] * degree);
   c->tensile = isnan(v[TENSILE]) ? tip : v[TENSILE];
   c->update = mohr_coulomb_update_chosen();
-  for (int k = 0; k < COULOMB_SETS; ++k) c->returns[k] = return_to(c, &sets[k]);
+  for (int k = 0; k < COULOMB_SETS; ++k) c->returns[k] = return_to(c, &coulomb_sets[k]);
   if (c->dilation > c->sine) {
     snprintf(reason, size, "'dilation angle' must not be larger than 'friction angle': the law would make energy");
     return 1;

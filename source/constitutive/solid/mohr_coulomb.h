@@ -9,11 +9,27 @@ enum { SHEAR13, SHEAR12, SHEAR23, TENSION1, TENSION2, TENSION3, PLANES };
 enum { COULOMB_SETS = 9 };
 enum { COULOMB_HISTORY = 6 }; /* the plastic strain */
 
+/* The sets of planes that a sorted stress can end on, in the order in which they are tried. The tip of the pyramid is a corner of the cut-off, which never lies
+ * beyond it. */
+typedef struct PlaneSet {
+  int count, plane[3];
+} PlaneSet;
+static const PlaneSet coulomb_sets[COULOMB_SETS] = {
+    {1, {SHEAR13}},
+    {1, {TENSION1}},
+    {2, {SHEAR13, TENSION1}},
+    {2, {SHEAR13, SHEAR12}},
+    {2, {SHEAR13, SHEAR23}},
+    {2, {TENSION1, TENSION2}},
+    {3, {SHEAR13, SHEAR12, TENSION1}},
+    {3, {SHEAR13, TENSION1, TENSION2}},
+    {3, {TENSION1, TENSION2, TENSION3}},
+};
+
 /** The return of sorted principal stresses to a set of planes: multipliers are `inverse` times what the trial stress is beyond them; each takes its `stiff_flow`
- *  off. Spare planes have none. */
+ *  off. */
 typedef struct CoulombReturn {
-  bool exists, corner; /* corner: three planes */
-  int plane[3];
+  bool exists;
   double inverse[3][3], stiff_flow[3][3], slopes[9]; /* d stress / d principal strain */
 } CoulombReturn;
 

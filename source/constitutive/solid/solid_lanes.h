@@ -7,7 +7,7 @@
 #include "base/lanes.h"
 #include "constitutive/solid/solid_law.h"
 
-enum { MOST_HISTORY = 13, SOLID_CHUNK = 128 };
+enum { MOST_HISTORY = 13, SOLID_CHUNK = 128, SOLID_GROUPS = 4 };
 
 /** `update` of a law that is compiled for each kind of vectors, and how it is chosen: LANES_CHOICE(SolidUpdate, name). */
 typedef int SolidUpdate(const void *constants, const breccia_batch *batch);
@@ -53,8 +53,9 @@ typedef struct SolidLanes {
   double *tangent[LANES];
 } SolidLanes;
 
-/** @param[in] tangents  whether they are wanted: a constant where it is asked */
-typedef void (*SolidStep)(const void *constants, SolidLanes *points, bool tangents);
+/** Some groups of points, so that a processor that waits for one has others to work on.
+ *  @param[in] tangents  whether they are wanted: a constant where it is asked */
+typedef void (*SolidStep)(const void *constants, SolidLanes *points, int groups, bool tangents);
 
 LANES_INLINE Lanes lanes_trace(const Lanes a[6])
 {
@@ -143,11 +144,31 @@ LANES_INLINE void load_rows(const double *from, int values, int count, const int
   }
 }
 
+/** The reverse, of four numbers of rows that are all different. */
+LANES_INLINE void store_quads(const double turned[QUAD][LANES], int values, const int32_t *at, double *to)
+{
+  for (int first = 0; first < LANES; first += QUAD) {
+    const Quad a = quad_load(turned[0] + first), b = quad_load(turned[1] + first), c = quad_load(turned[2] + first),
+               d = quad_load(turned[3] + first);
+    const Quad even_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+               even_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    quad_store(to + (ptrdiff_t)values * at[first], __builtin_shufflevector(even_ab, even_cd, 0, 1, 4, 5));
+    quad_store(to + (ptrdiff_t)values * at[first + 1], __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 4, 5));
+    quad_store(to + (ptrdiff_t)values * at[first + 2], __builtin_shufflevector(even_ab, even_cd, 2, 3, 6, 7));
+    quad_store(to + (ptrdiff_t)values * at[first + 3], __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 6, 7));
+  }
+}
+
 /** The reverse, of the first `count` rows. */
 LANES_INLINE void store_rows(const Lanes *numbers, int values, const int32_t *at, int count, double *to)
 {
   double turned[MOST_HISTORY][LANES];
   for (int k = 0; k < values; ++k) lanes_store(turned[k], numbers[k]);
+  if (count == LANES && values >= QUAD) {
+    for (int k = 0; k + QUAD <= values; k += QUAD) store_quads(turned + k, values, at, to + k);
+    if (values % QUAD) store_quads(turned + values - QUAD, values, at, to + values - QUAD);
+    return;
+  }
   for (int l = 0; l < count; ++l)
     for (int k = 0; k < values; ++k) to[values * at[l] + k] = turned[k][l];
 }
@@ -219,6 +240,27 @@ LANES_INLINE void sieve_chunk(const void *constants, SolidChunk *chunk, const El
   }
 }
 
+/** Stresses and history of the first `count` points of a group to where they belong. @return the first that could not be integrated, or -1 */
+LANES_INLINE int store_group(const breccia_batch *batch, const SolidLanes *p, int values, const int32_t *at, int count)
+{
+  int bad = -1;
+  Lanes size = lanes_set(0);
+  for (int k = 0; k < 6; ++k) size += lanes_absolute(p->stress[k]);
+  const LaneMask finite = size - size == lanes_set(0);
+  for (int l = 0; l < count && bad < 0 && lanes_any(~finite); ++l)
+    if (!finite[l]) bad = at[l];
+  store_rows(p->trial, values, at, count, batch->trial);
+  if (count == LANES && at[LANES - 1] - at[0] == LANES - 1) { /* side by side */
+    for (int k = 0; k < 6; ++k) lanes_store(batch->stress[k] + at[0], p->stress[k]);
+    return bad;
+  }
+  double stress[6][LANES];
+  for (int k = 0; k < 6; ++k) lanes_store(stress[k], p->stress[k]);
+  for (int l = 0; l < count; ++l)
+    for (int k = 0; k < 6; ++k) batch->stress[k][at[l]] = stress[k][l];
+  return bad;
+}
+
 /** @return the first of the points that are left which could not be integrated, or -1 */
 LANES_INLINE int step_chunk(const void *constants, SolidChunk *chunk, SolidStep step, bool tangents)
 {
@@ -229,28 +271,22 @@ LANES_INLINE int step_chunk(const void *constants, SolidChunk *chunk, SolidStep 
     for (int k = 0; k < 6; ++k) chunk->strain[k][chunk->left + l] = chunk->strain[k][chunk->left - 1];
     chunk->at[chunk->left + l] = chunk->at[chunk->left - 1];
   }
-  for (int first = 0; first < chunk->left; first += LANES) {
-    const int32_t *at = chunk->at + first;
-    SolidLanes points;
-    for (int k = 0; k < 6; ++k) points.strain[k] = lanes_load(chunk->strain[k] + first);
-    load_rows(batch->committed, values, values, at, points.committed);
-    for (int l = 0; l < LANES && tangents; ++l) points.tangent[l] = batch->tangent + 36 * at[l];
-    step(constants, &points, tangents);
-    Lanes size = lanes_set(0);
-    for (int k = 0; k < 6; ++k) size += lanes_absolute(points.stress[k]);
-    const LaneMask finite = size - size == lanes_set(0);
-    const int rest = chunk->left - first, count = rest < LANES ? rest : LANES;
-    for (int l = 0; l < count && bad < 0 && lanes_any(~finite); ++l)
-      if (!finite[l]) bad = at[l];
-    store_rows(points.trial, values, at, count, batch->trial);
-    if (count == LANES && at[LANES - 1] - at[0] == LANES - 1) { /* side by side */
-      for (int k = 0; k < 6; ++k) lanes_store(batch->stress[k] + at[0], points.stress[k]);
-      continue;
+  SolidLanes points[SOLID_GROUPS];
+  for (int first = 0; first < chunk->left; first += SOLID_GROUPS * LANES) {
+    int groups = 0;
+    for (; groups < SOLID_GROUPS && first + LANES * groups < chunk->left; ++groups) {
+      const int from = first + LANES * groups;
+      SolidLanes *p = &points[groups];
+      for (int k = 0; k < 6; ++k) p->strain[k] = lanes_load(chunk->strain[k] + from);
+      load_rows(batch->committed, values, values, chunk->at + from, p->committed);
+      for (int l = 0; l < LANES && tangents; ++l) p->tangent[l] = batch->tangent + 36 * chunk->at[from + l];
     }
-    double stress[6][LANES];
-    for (int k = 0; k < 6; ++k) lanes_store(stress[k], points.stress[k]);
-    for (int l = 0; l < count; ++l)
-      for (int k = 0; k < 6; ++k) batch->stress[k][at[l]] = stress[k][l];
+    step(constants, points, groups, tangents);
+    for (int g = 0; g < groups; ++g) {
+      const int from = first + LANES * g, rest = chunk->left - from,
+                found = store_group(batch, &points[g], values, chunk->at + from, rest < LANES ? rest : LANES);
+      if (bad < 0) bad = found;
+    }
   }
   return bad;
 }

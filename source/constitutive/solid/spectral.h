@@ -65,22 +65,57 @@ LANES_INLINE SpectrumApart spectrum_apart(const Lanes a[6])
   return x;
 }
 
-/** Eigenvalues in descending order, to a few roundings of the largest component, however close they are: the two that do not stand apart are what b less the
- *  third leaves. */
-LANES_INLINE void spectrum_values(const Lanes a[6], Lanes value[3])
+/** A symmetric tensor in parts that need no vectors. */
+typedef struct SpectrumParts {
+  Lanes value[3]; /* in descending order */
+  /* v v of the value that stands apart; radius (p p - q q) of the others' vectors; half of what these differ by, scaled. */
+  Lanes alone[6], pair[6], radius;
+  LaneMask least; /* the smallest value stands apart */
+} SpectrumParts;
+
+/** Eigenvalues to a few roundings of the largest component, however close they are: the two that do not stand apart are what b less the third leaves. */
+LANES_INLINE SpectrumParts spectrum_parts(const Lanes a[6])
 {
   const SpectrumApart x = spectrum_apart(a);
-  const Lanes middle = lanes_product(lanes_set(-0.5), x.value),
-              part = lanes_set(3) * middle / (x.adjugate[XX] + x.adjugate[YY] + x.adjugate[ZZ]);
-  Lanes rest[6];
-  for (int k = 0; k < 6; ++k) rest[k] = x.b[k] + part * x.adjugate[k];
-  for (int k = 0; k < 3; ++k) rest[k] -= middle;
-  const Lanes radius = lanes_root(lanes_square(rest[XX], rest[YY], rest[ZZ]) * lanes_set(0.5) +
-                                  lanes_square(rest[XY], rest[YZ], rest[ZX]));
-  const Lanes high = middle + radius, low = middle - radius;
-  value[0] = (x.mean + lanes_choose(x.least, high, x.value)) * x.scale;
-  value[1] = (x.mean + lanes_choose(x.least, low, high)) * x.scale;
-  value[2] = (x.mean + lanes_choose(x.least, x.value, low)) * x.scale;
+  const Lanes middle = lanes_product(lanes_set(-0.5), x.value), part = lanes_set(3) * middle,
+              shorten = lanes_set(1) / (x.adjugate[XX] + x.adjugate[YY] + x.adjugate[ZZ]);
+  SpectrumParts out;
+  out.least = x.least;
+  for (int k = 0; k < 6; ++k) {
+    out.alone[k] = lanes_product(x.adjugate[k], shorten);
+    out.pair[k] = x.b[k] + part * out.alone[k];
+    if (k < 3) out.pair[k] -= middle;
+  }
+  const Lanes *pair = out.pair;
+  out.radius = lanes_root(lanes_square(pair[XX], pair[YY], pair[ZZ]) * lanes_set(0.5) +
+                          lanes_square(pair[XY], pair[YZ], pair[ZX]));
+  const Lanes high = middle + out.radius, low = middle - out.radius;
+  out.value[0] = (x.mean + lanes_choose(x.least, high, x.value)) * x.scale;
+  out.value[1] = (x.mean + lanes_choose(x.least, low, high)) * x.scale;
+  out.value[2] = (x.mean + lanes_choose(x.least, x.value, low)) * x.scale;
+  return out;
+}
+
+/** Eigenvalues in descending order. */
+LANES_INLINE void spectrum_values(const Lanes a[6], Lanes value[3])
+{
+  const SpectrumParts parts = spectrum_parts(a);
+  for (int k = 0; k < 3; ++k) value[k] = parts.value[k];
+}
+
+/** The tensor with other eigenvalues, which must not differ by more than a constant times what the tensor's own do: where those are alike their directions
+ *  are nothing but roundings. */
+LANES_INLINE void spectral_tensor_of_parts(const SpectrumParts *s, const Lanes value[3], Lanes tensor[6])
+{
+  const Lanes half = lanes_set(0.5), high = lanes_choose(s->least, value[0], value[1]),
+              low = lanes_choose(s->least, value[1], value[2]), alone = lanes_choose(s->least, value[2], value[0]),
+              mean = (high + low) * half, more = alone - mean;
+  const LaneMask wide = s->radius > lanes_set(0);
+  const Lanes turn = (high - low) * half / lanes_choose(wide, s->radius, lanes_set(1));
+  for (int k = 0; k < 6; ++k) {
+    tensor[k] = lanes_product(more, s->alone[k]) + turn * s->pair[k];
+    if (k < 3) tensor[k] += mean;
+  }
 }
 
 /** Eigenvalues and orthonormal eigenvectors, as well: the vector that stands apart is the longest column of the adjugate, which is well conditioned, and the
